@@ -1,0 +1,33 @@
+# How everything is compiled: standard, warnings, target machine, sanitizers, ccache.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+# One flag for libraries and programs alike, so that both share one precompiled header.
+add_compile_options(-fPIC)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+add_library(fovea_compile_options INTERFACE)
+target_compile_options(fovea_compile_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow
+                       -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual)
+if(FOVEA_WARNINGS_AS_ERRORS)
+  target_compile_options(fovea_compile_options INTERFACE -Werror)
+endif()
+if(FOVEA_SANITIZE)
+  add_compile_options(-fsanitize=${FOVEA_SANITIZE} -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${FOVEA_SANITIZE})
+endif()
+
+# ccache must be told that precompiled headers are safe to share.
+find_program(FOVEA_CCACHE ccache)
+if(FOVEA_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime
+      ${FOVEA_CCACHE})
+  add_compile_options(-fpch-preprocess)
+endif()
+
+if(FOVEA_X86_64_V3 AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(FOVEA_MACHINE_OPTIONS -march=x86-64-v3)
+endif()

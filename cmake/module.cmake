@@ -1,0 +1,41 @@
+# The precompiled header that every target shares; macros of single libraries stay out of it.
+add_library(fovea_precompiled STATIC ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
+target_link_libraries(fovea_precompiled PRIVATE Eigen3::Eigen fovea_compile_options)
+target_compile_options(fovea_precompiled PRIVATE ${FOVEA_MACHINE_OPTIONS})
+target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
+
+# fovea_module(NAME [DEPENDS modules...] [PUBLIC libs...] [PRIVATE libs...])
+#
+# Makes the static library fovea_NAME (alias fovea::NAME) of src/fovea/NAME, and, from the
+# *_test.cpp files beside the sources, the test program NAME_tests.
+function(fovea_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
+  set(root ${PROJECT_SOURCE_DIR}/src/fovea/${name})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/*.cpp)
+  file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${root}/*_test.cpp)
+  list(REMOVE_ITEM sources ${tests})
+
+  add_library(fovea_${name} STATIC ${sources})
+  add_library(fovea::${name} ALIAS fovea_${name})
+  set_target_properties(fovea_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(fovea_${name} PUBLIC
+      $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
+  list(TRANSFORM ARG_DEPENDS PREPEND fovea_ OUTPUT_VARIABLE modules)
+  target_link_libraries(fovea_${name} PUBLIC ${modules} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE}
+                        $<BUILD_INTERFACE:fovea_compile_options>)
+  # Public: Eigen's alignment depends on it, so a user of the library must compile alike.
+  target_compile_options(fovea_${name} PUBLIC ${FOVEA_MACHINE_OPTIONS})
+  target_compile_features(fovea_${name} PUBLIC cxx_std_20)
+  target_precompile_headers(fovea_${name} REUSE_FROM fovea_precompiled)
+  set_property(GLOBAL APPEND PROPERTY FOVEA_MODULES fovea_${name})
+
+  if(FOVEA_BUILD_TESTS AND tests)
+    add_executable(${name}_tests ${tests})
+    target_link_libraries(${name}_tests PRIVATE fovea_${name} ${ARG_PRIVATE} fovea_compile_options
+                          GTest::gtest_main GTest::gmock)
+    target_precompile_headers(${name}_tests REUSE_FROM fovea_precompiled)
+    target_compile_definitions(${name}_tests PRIVATE
+                               FOVEA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    gtest_discover_tests(${name}_tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  endif()
+endfunction()

@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/image.h"
+#include "fovea/base/parallel.h"
+#include "fovea/base/point_cloud.h"
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+TEST(Errors, ReadWhatWhereRemedy) {
+  const InputError error("matrix has 11 numbers", "calib.txt:3", "restore the file");
+  EXPECT_STREQ(error.what(), "matrix has 11 numbers, calib.txt:3, restore the file");
+}
+
+TEST(Image, BilinearIsExactOnLinearRampAndAtPixelCentres) {
+  Image image(8, 6, 3);
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      image.pixel(x, y)[0] = static_cast<std::uint8_t>(10 * x);
+      image.pixel(x, y)[1] = static_cast<std::uint8_t>(20 * y);
+      image.pixel(x, y)[2] = static_cast<std::uint8_t>(5 * x + 7 * y);
+    }
+  }
+  for (const auto& [u, v] : {std::pair{0.0, 0.0}, {7.0, 5.0}, {2.25, 3.5}, {6.999, 0.125}}) {
+    const Eigen::Vector3f expected(float(10 * u), float(20 * v), float(5 * u + 7 * v));
+    EXPECT_LT((bilinear(image, u, v) - expected).norm(), 1e-4f) << u << ' ' << v;
+  }
+  EXPECT_EQ(bilinear(image, -3, 99), bilinear(image, 0, 5));  // clamped
+}
+
+TEST(Image, ColourRoundsAndClamps) {
+  EXPECT_EQ(to_rgb({-3.f, 12.5f, 300.f}), (Rgb{0, 13, 255}));
+}
+
+TEST(PointCloud, CheckNamesTheUnequalColumn) {
+  PointCloud cloud;
+  cloud.position.resize(3);
+  cloud.range.resize(2);
+  EXPECT_THROW(cloud.check(), std::logic_error);
+  cloud.range.resize(3);
+  EXPECT_NO_THROW(cloud.check());
+}
+
+TEST(PointCloud, SelectAndAppendKeepColumnsTogether) {
+  PointCloud cloud;
+  for (int i = 0; i < 5; ++i) {
+    cloud.position.emplace_back(float(i), 0.f, 0.f);
+    cloud.frame.push_back(i);
+  }
+  PointCloud chosen = cloud.select({4, 1});
+  ASSERT_EQ(chosen.size(), 2u);
+  EXPECT_EQ(chosen.frame[0], 4);
+  EXPECT_EQ(chosen.position[1].x(), 1.f);
+  EXPECT_TRUE(chosen.range.empty());
+  chosen.append(cloud);
+  EXPECT_EQ(chosen.size(), 7u);
+  EXPECT_EQ(chosen.frame[6], 4);
+  PointCloud other;
+  other.position.resize(1);
+  EXPECT_THROW(chosen.append(other), std::logic_error);
+}
+
+TEST(Parallel, SumIsTheSameAtAnyThreadCount) {
+  const auto sum = [](int threads) {
+    const ThreadLimit limit(threads);
+    return parallel_sum(100'003, 1000, 0.0, [](std::size_t begin, std::size_t end) {
+      double s = 0;
+      for (std::size_t i = begin; i < end; ++i) s += std::sin(double(i)) * 1e-3;
+      return s;
+    });
+  };
+  const double one = sum(1);
+  EXPECT_EQ(one, sum(2));
+  EXPECT_EQ(one, sum(4));
+}
+
+TEST(Parallel, EveryItemOnce) {
+  std::vector<std::atomic<int>> seen(1003);
+  parallel_for(seen.size(), 17, [&](std::size_t i) { ++seen[i]; });
+  for (const auto& count : seen) EXPECT_EQ(count, 1);
+  parallel_for(0, 17, [&](std::size_t) { FAIL(); });
+}
+
+TEST(Random, UniformHasTheRightMoments) {
+  Random random(7);
+  double sum = 0, square = 0;
+  constexpr int n = 100'000;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.uniform();
+    sum += x;
+    square += x * x;
+  }
+  EXPECT_NEAR(sum / n, 0.5, 0.005);
+  EXPECT_NEAR(square / n, 1.0 / 3, 0.005);
+  for (int i = 0; i < 1000; ++i) EXPECT_LT(random.below(6), 6u);
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,37 @@
+// Typed errors of the library. Each is one line: what is wrong, where, and what to do.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace fovea {
+
+/// Base of every error the library throws. `what()` reads "WHAT, WHERE, WHAT TO DO".
+class Error : public std::runtime_error {
+ public:
+  /// @param what    what is wrong ("matrix has 11 numbers, expected 12")
+  /// @param where   file, frame, line or offset ("calib_cam_to_cam.txt:12")
+  /// @param remedy  what the user can do ("restore the file from the KITTI archive")
+  Error(std::string_view what, std::string_view where, std::string_view remedy);
+};
+
+/// A file or folder that was read is missing, damaged or not of the expected form.
+class InputError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// An option or configuration key is unknown, of the wrong type or out of range.
+class ConfigError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// An output cannot be written: it exists, its folder does not, or the disk is full.
+class OutputError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace fovea

@@ -1,0 +1,42 @@
+// Images and colours. Integer pixel coordinates are pixel CENTRES, everywhere (OpenCV, KITTI).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace fovea {
+
+struct Rgb {
+  std::uint8_t r = 0, g = 0, b = 0;
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+/// Nearest 8-bit colour of a float colour (0-255 a channel, clamped).
+Rgb to_rgb(const Eigen::Vector3f& color);
+inline Eigen::Vector3f to_float(Rgb c) { return {float(c.r), float(c.g), float(c.b)}; }
+
+/// 8-bit image, rows from the top, channels interleaved; 1 (grey) or 3 (RGB) channels.
+struct Image {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  std::vector<std::uint8_t> data;  // height * width * channels
+
+  Image() = default;
+  Image(int width, int height, int channels);
+
+  bool empty() const { return data.empty(); }
+  const std::uint8_t* pixel(int x, int y) const {
+    return data.data() + (static_cast<std::size_t>(y) * width + x) * channels;
+  }
+  std::uint8_t* pixel(int x, int y) {
+    return data.data() + (static_cast<std::size_t>(y) * width + x) * channels;
+  }
+};
+
+/// Colour at sub-pixel position (u, v), bilinear between the four pixel centres around it;
+/// coordinates are clamped to the image. A grey image gives three equal channels (0-255).
+Eigen::Vector3f bilinear(const Image& image, double u, double v);
+
+}  // namespace fovea

@@ -1,0 +1,40 @@
+// A rectified pinhole camera and a vehicle's calibration.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+/// Pinhole camera without distortion. x right, y down, z forward; pixel centres at integers.
+struct Camera {
+  int index = 0;  ///< the drive's number for it (KITTI: 0, 1 grey; 2, 3 colour)
+  int width = 0, height = 0;
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+  RigidMotion T_cam_lidar = RigidMotion::Identity();
+
+  /// Points nearer than this to the camera's plane are never projected (m).
+  static constexpr double kMinDepth = 0.1;
+
+  /// Pixel of a point in the camera's frame; empty if it is not in front of the camera.
+  std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_cam) const {
+    if (!(p_cam.z() > kMinDepth)) return std::nullopt;
+    return Eigen::Vector2d(fx * p_cam.x() / p_cam.z() + cx, fy * p_cam.y() / p_cam.z() + cy);
+  }
+  /// Whether a colour can be interpolated there: 0 <= u <= width - 1 and 0 <= v <= height - 1.
+  bool in_view(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= 0 && pixel.x() <= width - 1 && pixel.y() >= 0 && pixel.y() <= height - 1;
+  }
+  /// Camera centre in the LiDAR frame.
+  Eigen::Vector3d center_lidar() const { return T_cam_lidar.inverse().translation(); }
+};
+
+struct Calibration {
+  std::vector<Camera> cameras;  ///< the cameras in use, in the order asked for
+  std::optional<RigidMotion> T_imu_lidar;
+};
+
+}  // namespace fovea

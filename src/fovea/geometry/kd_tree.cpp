@@ -1,0 +1,79 @@
+#include "fovea/geometry/kd_tree.h"
+
+#include <cmath>
+#include <limits>
+#include <nanoflann.hpp>
+
+namespace fovea {
+namespace {
+
+struct PointsAdaptor {
+  std::span<const Eigen::Vector3f> points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t dim) const { return points[i][Eigen::Index(dim)]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using NanoflannTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointsAdaptor>,
+                                        PointsAdaptor, 3, std::uint32_t>;
+constexpr std::size_t kLeafSize = 16;
+
+/// nanoflann result set that keeps one point within a bound; of equally near ones the lowest index.
+struct NearestResult {
+  using DistanceType = float;
+  float bound;  // squared
+  KdTree::Neighbor best{0, std::numeric_limits<float>::infinity()};
+
+  std::size_t size() const { return std::isfinite(best.squared_distance) ? 1 : 0; }
+  bool full() const { return true; }
+  float worstDist() const { return bound; }
+  bool addPoint(float squared, std::uint32_t index) {
+    if (squared < bound || (squared == bound && index < best.index)) {
+      bound = squared;
+      best = {index, squared};
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+struct KdTree::Index {
+  PointsAdaptor adaptor;
+  NanoflannTree tree;
+  explicit Index(std::span<const Eigen::Vector3f> points)
+      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
+};
+
+KdTree::KdTree(std::span<const Eigen::Vector3f> points) : index_(std::make_unique<Index>(points)) {}
+KdTree::~KdTree() = default;
+KdTree::KdTree(KdTree&&) noexcept = default;
+KdTree& KdTree::operator=(KdTree&&) noexcept = default;
+
+KdTree::Neighbor KdTree::nearest(const Eigen::Vector3f& query, float max_distance) const {
+  NearestResult result{max_distance * max_distance};
+  if (!index_->adaptor.points.empty()) {
+    index_->tree.findNeighbors(result, query.data(), nanoflann::SearchParams());
+  }
+  return result.best;
+}
+
+void KdTree::nearest_k(const Eigen::Vector3f& query, std::size_t k,
+                       std::vector<Neighbor>& neighbors) const {
+  thread_local std::vector<std::uint32_t> indices;
+  thread_local std::vector<float> squared;
+  indices.resize(k);
+  squared.resize(k);
+  const std::size_t found =
+      index_->adaptor.points.empty()
+          ? 0
+          : index_->tree.knnSearch(query.data(), k, indices.data(), squared.data());
+  neighbors.resize(found);
+  for (std::size_t i = 0; i < found; ++i) neighbors[i] = {indices[i], squared[i]};
+}
+
+}  // namespace fovea

@@ -1,0 +1,37 @@
+// Nearest neighbours among 3D points. Query in scan order: it is several times faster than shuffled.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace fovea {
+
+/// kd-tree over float points (nanoflann). The points must outlive it; queries are thread-safe.
+class KdTree {
+ public:
+  explicit KdTree(std::span<const Eigen::Vector3f> points);
+  ~KdTree();
+  KdTree(KdTree&&) noexcept;
+  KdTree& operator=(KdTree&&) noexcept;
+
+  struct Neighbor {
+    std::uint32_t index = 0;
+    float squared_distance = 0;  ///< m^2
+  };
+
+  /// Nearest point within `max_distance`; squared_distance is infinite if there is none.
+  Neighbor nearest(const Eigen::Vector3f& query, float max_distance = 1e18f) const;
+
+  /// The k nearest points (fewer if there are fewer), nearest first, into `neighbors`.
+  void nearest_k(const Eigen::Vector3f& query, std::size_t k,
+                 std::vector<Neighbor>& neighbors) const;
+
+ private:
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
+
+}  // namespace fovea

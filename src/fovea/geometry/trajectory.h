@@ -1,0 +1,41 @@
+// Time-stamped poses of one body, interpolated on SE(3).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fovea/base/time.h"
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+struct StampedPose {
+  TimeNs time = 0;
+  RigidMotion T_local_body = RigidMotion::Identity();
+};
+
+class Trajectory {
+ public:
+  /// How far before the first and after the last pose the constant velocity is trusted.
+  static constexpr TimeNs kMaxExtrapolation = kNsPerSecond / 5;
+
+  Trajectory() = default;
+  /// Poses in strictly increasing time, at least one; std::invalid_argument otherwise.
+  explicit Trajectory(std::vector<StampedPose> poses);
+
+  const std::vector<StampedPose>& poses() const { return poses_; }
+
+  /// Pose at a time: constant twist between neighbouring poses, and beyond the ends by the velocity
+  /// of the two poses there for at most kMaxExtrapolation; empty further out.
+  std::optional<RigidMotion> at(TimeNs time) const;
+
+  /// Twist per second in the body frame around `time`, from what is known by `known_until` (the last
+  /// poses at or before it; a live program has no later ones). Where fewer than two poses are that
+  /// early, the first two of the trajectory. Empty for a single pose.
+  std::optional<Twist> velocity(TimeNs time, TimeNs known_until) const;
+
+ private:
+  std::vector<StampedPose> poses_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,34 @@
+// What the map keeps of every frame of the range mapped: the `frames` table.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "fovea/base/time.h"
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+enum class FrameStatus { kMapped, kHeldOut, kSkipped };
+const char* to_string(FrameStatus status);
+
+struct FrameRecord {
+  int index = 0;
+  std::optional<TimeNs> stamp;
+  FrameStatus status = FrameStatus::kMapped;
+  std::string note;  ///< why it was skipped, or what a user should know of it
+  /// Refined pose; of a skipped frame interpolated between its neighbours.
+  RigidMotion T_local_lidar = RigidMotion::Identity();
+  std::optional<RigidMotion> T_local_lidar_navigation;
+  /// Twist per second of the LiDAR that compensated its sweep; absent where nothing did.
+  std::optional<Twist> velocity;
+  /// Per-stage figures by name ("points_scan", "registration_iterations", "filter_occluded", ...),
+  /// part of the digest.
+  std::map<std::string, double> figures;
+  /// Wall time by stage name, ms; not part of the digest.
+  std::map<std::string, double> milliseconds;
+};
+
+}  // namespace fovea

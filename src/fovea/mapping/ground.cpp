@@ -1,0 +1,1 @@
+#include "fovea/mapping/ground.h"

@@ -1,0 +1,91 @@
+// What a drive is: frames (a LiDAR scan and the images taken with it), calibration, navigation.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "fovea/base/image.h"
+#include "fovea/base/point_cloud.h"
+#include "fovea/base/time.h"
+#include "fovea/geometry/camera.h"
+#include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/trajectory.h"
+
+namespace fovea {
+
+/// One LiDAR sweep with the images that belong to it.
+struct Frame {
+  int index = 0;                ///< the number in the file's name
+  TimeNs stamp = 0;             ///< scan time; images count as taken then (SPEC section 1)
+  PointCloud scan;              ///< lidar frame, as measured, with intensity
+  std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
+  std::vector<Image> images;    ///< one a camera of the calibration, in its order
+};
+
+enum class SkipReason {
+  kMissingScan,
+  kDamagedScan,
+  kMissingImage,
+  kDamagedImage,
+  kMissingStamp,
+  kMissingNavigation,
+};
+const char* to_string(SkipReason reason);
+
+/// A frame that cannot be used: counted and reported, and the drive goes on.
+struct SkippedFrame {
+  int index = 0;
+  SkipReason reason = SkipReason::kMissingScan;
+  std::string detail;  ///< one line: what and which file
+};
+
+using FrameResult = std::variant<Frame, SkippedFrame>;
+
+struct DriveOptions {
+  /// Camera numbers in the order in which they take turns; empty: camera 2, or else the first colour
+  /// camera that the drive has, or else the first camera.
+  std::vector<int> cameras;
+  /// Half-open range of frame indices; an open end is the drive's own.
+  std::optional<int> begin, end;
+  bool use_navigation = true;
+};
+
+/// What is known of a drive before any frame is read.
+struct DriveInfo {
+  std::filesystem::path path;
+  std::string kind;  ///< "kitti-raw" or "kitti-odometry"
+  Calibration calibration;
+  int begin = 0, end = 0;         ///< frame indices, half-open; some may turn out to be skipped
+  double sweep_period = 0.1;      ///< s
+  bool sweep_compensated = false; ///< scans are motion compensated already (KITTI odometry)
+  bool has_time_stamps = true;    ///< false: counted as 10 Hz
+  /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR; absent where
+  /// the drive has no (usable) navigation.
+  std::optional<Trajectory> navigation;
+  std::optional<GeodeticPoint> origin;  ///< of `local`; absent: the map is not georeferenced
+  /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame index
+  /// each from 0; empty if none. Never used by the mapper.
+  std::vector<RigidMotion> reference_poses;
+  std::vector<std::string> notes;  ///< what a user must be told (no time stamps, 4 bad records, ...)
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  virtual const DriveInfo& info() const = 0;
+  /// Reads frame `index` of [info().begin, info().end). Thread-safe.
+  virtual FrameResult load(int index) const = 0;
+  /// Time of a frame without reading it; empty if it has none.
+  virtual std::optional<TimeNs> stamp(int index) const = 0;
+};
+
+/// Opens a KITTI raw or odometry drive, recognised from its contents. InputError if the folder is
+/// missing or neither, or its calibration cannot be used; ConfigError for a camera it has not.
+std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
+                                        const DriveOptions& options);
+
+}  // namespace fovea

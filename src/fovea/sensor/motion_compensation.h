@@ -1,0 +1,18 @@
+// Sweep motion: a raw scan takes 0.1 s, at 10 m/s that is 1 m (SPEC section 1).
+#pragma once
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+/// Moves every point of a sweep to where it was in the LiDAR frame at the scan's stamp.
+///
+/// The sweep turns clockwise seen from above and faces forward at the stamp, its middle: a point at
+/// azimuth a = atan2(y, x) was measured at stamp - a / (2 pi) * period.
+/// @param scan_lidar  points as measured
+/// @param velocity    twist per second of the LiDAR in its own frame (rotation, translation)
+/// @param period      s, duration of the sweep
+void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double period);
+
+}  // namespace fovea
