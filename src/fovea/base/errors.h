@@ -14,6 +14,13 @@ class Error : public std::runtime_error {
   /// @param where   file, frame, line or offset ("calib_cam_to_cam.txt:12")
   /// @param remedy  what the user can do ("restore the file from the KITTI archive")
   Error(std::string_view what, std::string_view where, std::string_view remedy);
+
+  const std::string& problem() const { return problem_; }
+  const std::string& where() const { return where_; }
+  const std::string& remedy() const { return remedy_; }
+
+ private:
+  std::string problem_, where_, remedy_;
 };
 
 /// A file or folder that was read is missing, damaged or not of the expected form.

@@ -23,21 +23,34 @@ using NanoflannTree =
 constexpr std::size_t kLeafSize = 16;
 
 /// nanoflann result set that keeps one point within a bound; of equally near ones the lowest index.
-struct NearestResult {
+class NearestResult {
+ public:
   using DistanceType = float;
-  float bound;  // squared
-  KdTree::Neighbor best{0, std::numeric_limits<float>::infinity()};
+  explicit NearestResult(float squared_bound) { set_bound(squared_bound); }
 
-  std::size_t size() const { return std::isfinite(best.squared_distance) ? 1 : 0; }
+  const KdTree::Neighbor& best() const { return best_; }
+
+  std::size_t size() const { return std::isfinite(best_.squared_distance) ? 1 : 0; }
   bool full() const { return true; }
-  float worstDist() const { return bound; }
+  float worstDist() const { return limit_; }
   bool addPoint(float squared, std::uint32_t index) {
-    if (squared < bound || (squared == bound && index < best.index)) {
-      bound = squared;
-      best = {index, squared};
+    if (squared < best_.squared_distance ||
+        (squared == best_.squared_distance && index < best_.index)) {
+      best_ = {index, squared};
+      set_bound(squared);
     }
     return true;
   }
+
+ private:
+  /// nanoflann drops whatever is not below worstDist(), so that must lie just above the bound, or
+  /// which of two equally near points is found would depend on the leaves they are in.
+  void set_bound(float squared) {
+    limit_ = std::nextafter(squared, std::numeric_limits<float>::infinity());
+  }
+
+  KdTree::Neighbor best_{0, std::numeric_limits<float>::infinity()};
+  float limit_ = 0;
 };
 
 }  // namespace
@@ -55,11 +68,11 @@ KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
 KdTree::Neighbor KdTree::nearest(const Eigen::Vector3f& query, float max_distance) const {
-  NearestResult result{max_distance * max_distance};
+  NearestResult result(max_distance * max_distance);
   if (!index_->adaptor.points.empty()) {
     index_->tree.findNeighbors(result, query.data(), nanoflann::SearchParams());
   }
-  return result.best;
+  return result.best();
 }
 
 void KdTree::nearest_k(const Eigen::Vector3f& query, std::size_t k,
@@ -69,7 +82,7 @@ void KdTree::nearest_k(const Eigen::Vector3f& query, std::size_t k,
   indices.resize(k);
   squared.resize(k);
   const std::size_t found =
-      index_->adaptor.points.empty()
+      k == 0 || index_->adaptor.points.empty()
           ? 0
           : index_->tree.knnSearch(query.data(), k, indices.data(), squared.data());
   neighbors.resize(found);

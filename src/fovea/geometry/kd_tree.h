@@ -1,4 +1,5 @@
-// Nearest neighbours among 3D points. Query in scan order: it is several times faster than shuffled.
+// Nearest neighbours among 3D points. Query in scan order: it is several times faster than
+// shuffled.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +23,8 @@ class KdTree {
     float squared_distance = 0;  ///< m^2
   };
 
-  /// Nearest point within `max_distance`; squared_distance is infinite if there is none.
+  /// Nearest point within `max_distance`, of equally near ones that of the lowest index;
+  /// squared_distance is infinite if there is none.
   Neighbor nearest(const Eigen::Vector3f& query, float max_distance = 1e18f) const;
 
   /// The k nearest points (fewer if there are fewer), nearest first, into `neighbors`.

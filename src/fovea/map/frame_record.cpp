@@ -4,11 +4,22 @@ namespace fovea {
 
 const char* to_string(FrameStatus status) {
   switch (status) {
-    case FrameStatus::kMapped: return "mapped";
-    case FrameStatus::kHeldOut: return "held-out";
-    case FrameStatus::kSkipped: return "skipped";
+    case FrameStatus::kMapped:
+      return "mapped";
+    case FrameStatus::kHeldOut:
+      return "held-out";
+    case FrameStatus::kSkipped:
+      return "skipped";
   }
   return "unknown";
+}
+
+std::optional<FrameStatus> frame_status(std::string_view name) {
+  for (const FrameStatus status :
+       {FrameStatus::kMapped, FrameStatus::kHeldOut, FrameStatus::kSkipped}) {
+    if (name == to_string(status)) return status;
+  }
+  return std::nullopt;
 }
 
 }  // namespace fovea

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "fovea/base/time.h"
 #include "fovea/geometry/rigid_motion.h"
@@ -13,6 +14,8 @@ namespace fovea {
 
 enum class FrameStatus { kMapped, kHeldOut, kSkipped };
 const char* to_string(FrameStatus status);
+/// The status of that name, or nothing.
+std::optional<FrameStatus> frame_status(std::string_view name);
 
 struct FrameRecord {
   int index = 0;

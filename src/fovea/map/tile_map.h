@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
@@ -21,13 +22,19 @@ struct TileKey {
 /// About ten seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
-  /// Points of each tile, submap frame, relative to the cloud's `origin` = the tile's lowest corner.
-  /// Columns range, incidence, color, frame, camera, interpolated are always there.
+  /// Points of each tile, submap frame, relative to the cloud's `origin` = the tile's lowest
+  /// corner. Columns range, incidence, color, frame, camera, interpolated are always there;
+  /// intensity in all tiles of a map or in none; normals are not kept.
   std::map<TileKey, PointCloud> tiles;
 };
 
+/// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a
+/// column of a wrong length.
+void check_tile_columns(const PointCloud& cloud);
+
 class TileMap {
  public:
+  /// @param tile_size  edge of a tile, m; std::invalid_argument unless positive and finite
   explicit TileMap(double tile_size = 4.0);
 
   double tile_size() const { return tile_size_; }
@@ -37,11 +44,14 @@ class TileMap {
   /// Opens a new submap, which becomes the last.
   void add_submap(const RigidMotion& T_local_submap);
 
-  /// Adds points to the last submap; std::logic_error without one or if a column of a tile is missing.
+  /// Adds points to the last submap; std::logic_error without one, if a column of a tile is
+  /// missing, if intensity is there in some calls only, or if a position is not finite.
   /// @param points_local  local frame, any origin
-  void add(const PointCloud& points_local);
+  /// @return the tiles of the last submap that grew, ascending: what a store must write again
+  std::vector<TileKey> add(const PointCloud& points_local);
 
-  /// Puts back a tile that a store has kept (resume).
+  /// Puts back a tile that a store has kept (resume); std::logic_error if the submap does not
+  /// exist, the tile does already, or its columns or origin are not those of a tile with this key.
   void restore_tile(std::size_t submap, const TileKey& key, PointCloud tile);
 
   /// Calls f(T_local_submap, tile) for every tile that a ball of `radius` m around `center_local`
@@ -51,9 +61,13 @@ class TileMap {
       const std::function<void(const RigidMotion&, const PointCloud&)>& f) const;
 
  private:
+  Eigen::Vector3d corner(const TileKey& key) const;
+  void require_same_columns(const PointCloud& cloud);
+
   double tile_size_;
   std::vector<Submap> submaps_;
   std::size_t size_ = 0;
+  std::optional<bool> has_intensity_;  // known from the first points on
 };
 
 }  // namespace fovea

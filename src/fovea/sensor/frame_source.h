@@ -19,11 +19,11 @@ namespace fovea {
 
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
-  int index = 0;                ///< the number in the file's name
-  TimeNs stamp = 0;             ///< scan time; images count as taken then (SPEC section 1)
-  PointCloud scan;              ///< lidar frame, as measured, with intensity
+  int index = 0;                   ///< the number in the file's name
+  TimeNs stamp = 0;                ///< scan time; images count as taken then (SPEC section 1)
+  PointCloud scan;                 ///< lidar frame, as measured, with intensity
   std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
-  std::vector<Image> images;    ///< one a camera of the calibration, in its order
+  std::vector<Image> images;       ///< one a camera of the calibration, in its order
 };
 
 enum class SkipReason {
@@ -46,8 +46,8 @@ struct SkippedFrame {
 using FrameResult = std::variant<Frame, SkippedFrame>;
 
 struct DriveOptions {
-  /// Camera numbers in the order in which they take turns; empty: camera 2, or else the first colour
-  /// camera that the drive has, or else the first camera.
+  /// Camera numbers in the order in which they take turns; empty: camera 2, or else the first
+  /// colour camera that the drive has, or else the first camera.
   std::vector<int> cameras;
   /// Half-open range of frame indices; an open end is the drive's own.
   std::optional<int> begin, end;
@@ -59,18 +59,19 @@ struct DriveInfo {
   std::filesystem::path path;
   std::string kind;  ///< "kitti-raw" or "kitti-odometry"
   Calibration calibration;
-  int begin = 0, end = 0;         ///< frame indices, half-open; some may turn out to be skipped
-  double sweep_period = 0.1;      ///< s
-  bool sweep_compensated = false; ///< scans are motion compensated already (KITTI odometry)
-  bool has_time_stamps = true;    ///< false: counted as 10 Hz
-  /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR; absent where
-  /// the drive has no (usable) navigation.
+  int begin = 0, end = 0;          ///< frame indices, half-open; some may turn out to be skipped
+  double sweep_period = 0.1;       ///< s
+  bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
+  bool has_time_stamps = true;     ///< false: counted as 10 Hz
+  /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR; absent
+  /// where the drive has no (usable) navigation.
   std::optional<Trajectory> navigation;
   std::optional<GeodeticPoint> origin;  ///< of `local`; absent: the map is not georeferenced
-  /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame index
-  /// each from 0; empty if none. Never used by the mapper.
+  /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame
+  /// index each from 0; empty if none. Never used by the mapper.
   std::vector<RigidMotion> reference_poses;
-  std::vector<std::string> notes;  ///< what a user must be told (no time stamps, 4 bad records, ...)
+  /// What a user must be told: no time stamps, 4 bad records, ...
+  std::vector<std::string> notes;
 };
 
 class FrameSource {

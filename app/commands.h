@@ -1,0 +1,16 @@
+// The subcommands, one file each. Each adds itself to the command line; what it does runs when the
+// command line has been parsed and it was named.
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace fovea::app {
+
+void add_map_command(CLI::App& app);
+void add_info_command(CLI::App& app);
+void add_evaluate_command(CLI::App& app);
+void add_export_command(CLI::App& app);
+void add_upsample_command(CLI::App& app);
+void add_register_command(CLI::App& app);
+
+}  // namespace fovea::app

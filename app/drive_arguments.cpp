@@ -1,0 +1,62 @@
+#include "app/drive_arguments.h"
+
+#include <CLI/Error.hpp>
+#include <charconv>
+
+#include "fovea/base/errors.h"
+
+namespace fovea::app {
+namespace {
+
+int parse_number(std::string_view text, const char* option, const char* form) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || value < 0) {
+    throw CLI::ValidationError(option, form);
+  }
+  return value;
+}
+
+}  // namespace
+
+std::vector<int> parse_cameras(const std::string& text) {
+  std::vector<int> cameras;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    cameras.push_back(parse_number(std::string_view(text).substr(begin, comma - begin), "--cameras",
+                                   "camera numbers joined by commas, e.g. 2,3"));
+    begin = comma + 1;
+  }
+  return cameras;
+}
+
+HoldOut parse_hold_out(const std::string& spec) {
+  try {
+    return HoldOut::parse(spec);
+  } catch (const ConfigError& error) {
+    throw CLI::ValidationError("--hold-out", error.problem() + ", " + error.remedy());
+  }
+}
+
+DriveOptions DriveArguments::options() const {
+  DriveOptions options;
+  if (!cameras.empty()) options.cameras = parse_cameras(cameras);
+  if (!frames.empty()) {
+    const char* form = "a half-open range A:B, either end may be left out";
+    const std::size_t colon = frames.find(':');
+    if (colon == std::string::npos) throw CLI::ValidationError("--frames", form);
+    const std::string_view range(frames), first = range.substr(0, colon),
+                                          last = range.substr(colon + 1);
+    if (!first.empty()) options.begin = parse_number(first, "--frames", form);
+    if (!last.empty()) options.end = parse_number(last, "--frames", form);
+  }
+  return options;
+}
+
+std::unique_ptr<FrameSource> DriveArguments::open(bool use_navigation) const {
+  DriveOptions wanted = options();
+  wanted.use_navigation = use_navigation;
+  return open_drive(drive, wanted);
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,29 @@
+// Arguments that several subcommands share.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/hold_out.h"
+
+namespace fovea::app {
+
+/// The drive and what of it is wanted, as typed.
+struct DriveArguments {
+  std::string drive, frames, cameras;
+
+  /// Opens the drive. CLI::ValidationError (wrong usage) for a malformed range or camera list.
+  std::unique_ptr<FrameSource> open(bool use_navigation = true) const;
+  DriveOptions options() const;
+};
+
+/// "2,3" -> {2, 3}; CLI::ValidationError otherwise.
+std::vector<int> parse_cameras(const std::string& text);
+
+/// HoldOut::parse, whose error on a command line is wrong usage: CLI::ValidationError.
+HoldOut parse_hold_out(const std::string& spec);
+
+}  // namespace fovea::app

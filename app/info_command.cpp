@@ -1,0 +1,125 @@
+// fovea info: what a map holds.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/commands.h"
+#include "fovea/map/map_store.h"
+
+namespace fovea::app {
+namespace {
+
+struct InfoArguments {
+  std::string map;
+  bool json = false, digest = false;
+};
+
+struct Contents {
+  MapMeta meta;
+  std::size_t points = 0, submaps = 0, tiles = 0;
+  int mapped = 0, held_out = 0, skipped = 0;
+  double path_length = 0;  // m, along the refined poses
+  Eigen::AlignedBox3d bounds_local;
+};
+
+Contents read_contents(const MapReader& reader) {
+  Contents contents;
+  contents.meta = reader.meta();
+  contents.points = reader.size();
+  const FrameRecord* before = nullptr;
+  const std::vector<FrameRecord> frames = reader.frames();
+  for (const FrameRecord& frame : frames) {
+    contents.mapped += frame.status == FrameStatus::kMapped;
+    contents.held_out += frame.status == FrameStatus::kHeldOut;
+    contents.skipped += frame.status == FrameStatus::kSkipped;
+    if (before != nullptr) {
+      contents.path_length +=
+          (frame.T_local_lidar.translation() - before->T_local_lidar.translation()).norm();
+    }
+    before = &frame;
+  }
+  const std::vector<RigidMotion> submaps = reader.submaps();
+  contents.submaps = submaps.size();
+  reader.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+    ++contents.tiles;
+    for (const Eigen::Vector3f& p : tile.position) {
+      contents.bounds_local.extend(submaps[submap] * (tile.origin + p.cast<double>()));
+    }
+  });
+  return contents;
+}
+
+void print_text(const Contents& c, const std::string& path) {
+  const auto meta = [&](const char* key) {
+    const auto found = c.meta.find(key);
+    return found != c.meta.end() ? found->second : std::string();
+  };
+  fmt::print("{}{}\n", path, meta("complete") == "1" ? "" : " (unfinished: --resume goes on)");
+  fmt::print("  drive      {} ({}), frames {} to {}, cameras {}\n", meta("drive.name"),
+             meta("drive.kind"), meta("frames.begin"), std::stoi("0" + meta("frames.end")) - 1,
+             meta("cameras"));
+  fmt::print("  frames     {} mapped, {} held out{}, {} skipped\n", c.mapped, c.held_out,
+             meta("hold_out").empty() ? "" : " (" + meta("hold_out") + ")", c.skipped);
+  fmt::print("  points     {} in {} tiles of {} submaps\n", c.points, c.tiles, c.submaps);
+  if (!c.bounds_local.isEmpty()) {
+    const Eigen::Vector3d size = c.bounds_local.sizes();
+    fmt::print("  extent     {:.1f} x {:.1f} x {:.1f} m, path {:.1f} m\n", size.x(), size.y(),
+               size.z(), c.path_length);
+  }
+  if (meta("georeferenced") == "1") {
+    fmt::print("  origin     {} N, {} E, {} m (WGS84; axes east, north, up)\n",
+               meta("origin.latitude"), meta("origin.longitude"), meta("origin.altitude"));
+  } else {
+    fmt::print("  origin     not georeferenced: the first scan's own axes\n");
+  }
+  if (!meta("variant").empty()) fmt::print("  variant    {}\n", meta("variant"));
+  if (!meta("notes").empty()) fmt::print("  notes      {}\n", meta("notes"));
+  fmt::print("\n{}", meta("config"));
+}
+
+void print_json(const Contents& c) {
+  nlohmann::ordered_json json{{"meta", c.meta},
+                              {"points", c.points},
+                              {"tiles", c.tiles},
+                              {"submaps", c.submaps},
+                              {"frames", c.mapped},
+                              {"frames_held_out", c.held_out},
+                              {"frames_skipped", c.skipped},
+                              {"path_length_m", c.path_length}};
+  if (!c.bounds_local.isEmpty()) {
+    const auto corner = [](const Eigen::Vector3d& v) { return std::vector{v.x(), v.y(), v.z()}; };
+    json["bounds_local"] = {{"min", corner(c.bounds_local.min())},
+                            {"max", corner(c.bounds_local.max())}};
+  }
+  fmt::print("{}\n", json.dump(2));
+}
+
+void run(const InfoArguments& arguments) {
+  const MapReader reader(arguments.map);
+  if (arguments.digest) {
+    fmt::print("{}\n", reader.digest());
+  } else if (arguments.json) {
+    print_json(read_contents(reader));
+  } else {
+    print_text(read_contents(reader), arguments.map);
+  }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* command = app.add_subcommand("info", "Describe a map");
+  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  CLI::Option* json = command->add_flag("--json", arguments->json, "As JSON");
+  command
+      ->add_flag("--digest", arguments->digest,
+                 "Only a hash of everything but timings: equal for equal maps")
+      ->excludes(json);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

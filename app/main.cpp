@@ -1,0 +1,57 @@
+// fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "app/commands.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/version.h"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+void print_error(std::string message) {
+  for (char& c : message) {
+    if (c == '\n') c = ' ';  // one line, whatever a library wrote
+  }
+  fmt::print(stderr, "fovea: error: {}\n", message);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Real-time incremental foveal texture mapping: a drive in, a coloured 3D point map out.",
+               "fovea");
+  app.set_version_flag("--version", std::string("fovea ") + fovea::version());
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(36);
+  fovea::app::add_map_command(app);
+  fovea::app::add_info_command(app);
+  fovea::app::add_evaluate_command(app);
+  fovea::app::add_export_command(app);
+  fovea::app::add_upsample_command(app);
+  fovea::app::add_register_command(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);  // --help, --version
+  } catch (const CLI::ParseError& error) {
+    print_error(std::string(error.what()) + ", command line, see fovea --help");
+    return kWrongUsage;
+  } catch (const fovea::Error& error) {
+    print_error(error.what());
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory, this machine, map fewer frames or a lower upsampling rate");
+  } catch (const std::exception& error) {
+    print_error(std::string("internal error: ") + error.what() +
+                ", fovea, please report this with the command that caused it");
+  }
+  return kFailed;
+}

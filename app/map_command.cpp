@@ -1,0 +1,132 @@
+// fovea map: a drive in, a map out.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/drive_arguments.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "app/reports.h"
+#include "fovea/base/parallel.h"
+#include "fovea/geometry/pose_file.h"
+#include "fovea/pipeline/config.h"
+#include "fovea/pipeline/map_drive.h"
+
+namespace fovea::app {
+namespace {
+
+struct MapArguments {
+  DriveArguments drive;
+  std::string output, preset = "default", config, hold_out, poses = "refine", variant, report;
+  std::vector<std::string> settings;
+  int threads = 0;
+  bool resume = false, force = false, quiet = false;
+};
+
+MapperOptions resolve_options(const MapArguments& arguments) {
+  MapperOptions options = load_preset(arguments.preset);
+  if (!arguments.config.empty()) apply_config_file(arguments.config, options);
+  if (!arguments.variant.empty()) apply_variant(arguments.variant, options);
+  for (const std::string& setting : arguments.settings) apply_setting(setting, options);
+  return options;
+}
+
+void print_summary(const MapSummary& summary, const MapArguments& arguments) {
+  for (const std::string& note : summary.notes) fmt::print("note: {}\n", note);
+  fmt::print("{}: {} points from {} frames", arguments.output, summary.points,
+             summary.frames_mapped);
+  if (summary.frames_held_out > 0) fmt::print(", {} held out", summary.frames_held_out);
+  fmt::print(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second,
+             summary.peak_rss_mb);
+  for (const auto& [reason, count] : summary.frames_skipped) {
+    fmt::print("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
+  }
+  if (summary.registrations_failed > 0) {
+    fmt::print("registration failed on {} frames: their first guess was kept\n",
+               summary.registrations_failed);
+  }
+  if (summary.interrupted) {
+    fmt::print("interrupted: what was mapped is saved; the same command with --resume goes on\n");
+  }
+}
+
+void run(const MapArguments& arguments) {
+  const InterruptGuard interrupt;
+  const ThreadLimit threads(arguments.threads);
+  MapJob job;
+  job.output = arguments.output;
+  job.options = resolve_options(arguments);
+  job.variant = arguments.variant;
+  job.hold_out = parse_hold_out(arguments.hold_out);
+  job.force = arguments.force;
+  job.resume = arguments.resume;
+  job.stop = interrupt.token();
+
+  std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
+  if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
+  const auto source = arguments.drive.open();
+  if (arguments.poses == "navigation") {
+    job.pose_source = PoseSource::kNavigation;
+  } else if (arguments.poses != "refine") {
+    job.pose_source = PoseSource::kGiven;
+    job.given_poses = read_poses(arguments.poses, source->info().begin, source->info().end);
+  }
+  const MapSummary summary = [&] {
+    ProgressBar bar(arguments.quiet);
+    return map_drive(*source, job, std::ref(bar));
+  }();
+  if (report) write_json(*report, {{"map", to_json(summary)}});
+  if (!arguments.quiet) print_summary(summary, arguments);
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app) {
+  auto arguments = std::make_shared<MapArguments>();
+  CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
+  command->add_option("DRIVE", arguments->drive.drive, "KITTI raw drive or odometry sequence folder")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "Map file to write")
+      ->required()
+      ->type_name("MAP.fovea");
+  command
+      ->add_option("--preset", arguments->preset,
+                   fmt::format("One of {}", fmt::join(preset_names(), ", ")))
+      ->capture_default_str()
+      ->check(CLI::IsMember(preset_names()));
+  command->add_option("--config", arguments->config, "Keys that differ from the preset")
+      ->type_name("FILE.toml");
+  command->add_option("--set", arguments->settings, "One key, may be repeated")
+      ->type_name("key=value")
+      ->allow_extra_args(false);
+  command->add_option("--frames", arguments->drive.frames, "Half-open range of frame indices")
+      ->type_name("A:B");
+  command->add_option("--cameras", arguments->drive.cameras, "Cameras, in turn (default: 2)")
+      ->type_name("K,...");
+  command
+      ->add_option("--hold-out", arguments->hold_out,
+                   "Frames that only get a pose: N:R (index % N == R) or blocks A-B,C-D")
+      ->type_name("SPEC");
+  command->add_option("--poses", arguments->poses, "refine, navigation, or a file of T_local_lidar")
+      ->capture_default_str();
+  command
+      ->add_option("--variant", arguments->variant,
+                   "Row of the paper's table: E0..E11, baseline-gicp, -icp or -plane")
+      ->check(CLI::IsMember(variant_names()));
+  command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--resume", arguments->resume, "Go on with an unfinished map");
+  command->add_flag("--force", arguments->force, "Overwrite the map");
+  command->add_option("--report", arguments->report, "Write figures as JSON")->type_name("FILE.json");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

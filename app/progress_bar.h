@@ -1,0 +1,23 @@
+// A progress bar on standard error, where that is a terminal.
+#pragma once
+
+#include <chrono>
+
+#include "fovea/pipeline/map_drive.h"
+
+namespace fovea::app {
+
+class ProgressBar {
+ public:
+  /// @param quiet  draw nothing, whatever standard error is
+  explicit ProgressBar(bool quiet);
+  ~ProgressBar();  ///< ends the line
+  void operator()(const MapProgress& progress);
+
+ private:
+  bool enabled_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace fovea::app

@@ -1,0 +1,17 @@
+// Figures as JSON (CONTRACT: Report).
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "fovea/base/output_file.h"
+#include "fovea/pipeline/map_drive.h"
+
+namespace fovea::app {
+
+/// The "map" object of a report.
+nlohmann::ordered_json to_json(const MapSummary& summary);
+
+/// Writes indented JSON and commits the file.
+void write_json(OutputFile& file, const nlohmann::ordered_json& json);
+
+}  // namespace fovea::app

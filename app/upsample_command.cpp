@@ -1,0 +1,75 @@
+// fovea upsample: one scan, densified on the triangles of its image projection.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "app/commands.h"
+#include "fovea/base/errors.h"
+#include "fovea/exporting/cloud_ply.h"
+#include "fovea/geometry/transform_cloud.h"
+#include "fovea/mapping/upsample.h"
+#include "fovea/sensor/kitti_calibration.h"
+#include "fovea/sensor/kitti_scan.h"
+
+namespace fovea::app {
+namespace {
+
+struct UpsampleArguments {
+  std::string scan, calibration, output;
+  UpsampleOptions options;
+  int camera = 2;
+  bool force = false;
+};
+
+Camera find_camera(const UpsampleArguments& arguments) {
+  const KittiCalibration calibration = read_kitti_raw_calibration(arguments.calibration);
+  const auto found = calibration.cameras.find(arguments.camera);
+  if (found == calibration.cameras.end()) {
+    throw ConfigError(fmt::format("there is no camera {}", arguments.camera), arguments.calibration,
+                      "give --camera with a number that the calibration has");
+  }
+  return found->second;
+}
+
+PointCloud in_view(const PointCloud& points_cam, const Camera& camera) {
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
+    const auto pixel = camera.project(points_cam.position[i].cast<double>());
+    if (pixel && camera.in_view(*pixel)) indices.push_back(i);
+  }
+  return points_cam.select(indices);
+}
+
+void run(const UpsampleArguments& arguments) {
+  const Camera camera = find_camera(arguments);
+  const PointCloud scan_lidar = read_kitti_scan(arguments.scan).points;
+  const PointCloud visible_cam = in_view(transform_cloud(scan_lidar, camera.T_cam_lidar), camera);
+  const PointCloud dense_cam = upsample(visible_cam, camera, arguments.options);
+  write_cloud_ply(transform_cloud(dense_cam, camera.T_cam_lidar.inverse()), arguments.output,
+                  arguments.force);
+  fmt::print("{} points in view, {} after upsampling\n", visible_cam.size(), dense_cam.size());
+}
+
+}  // namespace
+
+void add_upsample_command(CLI::App& app) {
+  auto arguments = std::make_shared<UpsampleArguments>();
+  CLI::App* command = app.add_subcommand("upsample", "Densify one KITTI scan in a camera's view");
+  command->add_option("SCAN.bin", arguments->scan, "KITTI scan")->required();
+  command->add_option("CALIB_DIR", arguments->calibration, "Folder of the date's calibration files")
+      ->required();
+  command->add_option("OUT.ply", arguments->output, "Points in the LiDAR frame")->required();
+  command->add_option("--rate", arguments->options.rate, "How often centroids are inserted")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 5));
+  command->add_option("--camera", arguments->camera, "Camera number")->capture_default_str();
+  command->add_option("--tau", arguments->options.max_edge, "Longest edge of a filled triangle, m")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--force", arguments->force, "Overwrite OUT.ply");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Fails if clang-format would change a source file; scripts/check_format.sh --fix changes them.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+mapfile -t files < <(git ls-files '*.h' '*.cpp')
+if [[ ${1:-} == --fix ]]; then
+  clang-format -i "${files[@]}"
+else
+  clang-format --dry-run --Werror "${files[@]}"
+fi

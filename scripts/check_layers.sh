@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# The house's floors (ARCHITECTURE.md): a folder includes only lower floors and, on its own floor, only
+# itself; the stages in mapping/ know neither each other's callers nor the store. Reads #include lines.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+declare -A floor=([base]=0 [geometry]=1 [sensor]=2 [mapping]=2 [map]=2 [pipeline]=3 [evaluation]=3
+  [simulation]=3 [exporting]=3 [server]=4)
+failed=0
+while IFS=: read -r file line include; do
+  from=${file#src/fovea/}
+  from=${from%%/*}
+  to=${include#*\"fovea/}
+  to=${to%%/*}
+  if [[ -z ${floor[$from]:-} || -z ${floor[$to]:-} ]]; then
+    echo "$file:$line: no floor is known for $from or $to (scripts/check_layers.sh)" >&2
+    failed=1
+  elif [[ $from != "$to" && ${floor[$to]} -ge ${floor[$from]} ]]; then
+    echo "$file:$line: $from/ (floor ${floor[$from]}) must not include $to/ (floor ${floor[$to]})" >&2
+    failed=1
+  fi
+done < <(grep -rnE '^ *# *include +"fovea/' src/fovea)
+if grep -rnE '^ *# *include +"app/' src/fovea; then
+  echo "src/fovea must not include app/" >&2
+  failed=1
+fi
+exit $failed

@@ -1,0 +1,49 @@
+// Output files that appear under their name only when they are whole.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <ostream>
+
+namespace fovea {
+
+/// Checks, before any work is done, that an output can be made at `path`. OutputError if there is
+/// something already and `force` is false, if it is not an ordinary file, or if its folder does not
+/// exist or cannot be written to.
+/// @return the file to make: `path`, or what it points to where it is a symbolic link
+std::filesystem::path check_output_path(const std::filesystem::path& path, bool force);
+
+/// The name beside `path` under which its contents grow: "PATH.partial".
+std::filesystem::path partial_path(const std::filesystem::path& path);
+
+/// Makes `partial` durable and renames it to `path`, which replaces what was there in one step.
+void publish_file(const std::filesystem::path& partial, const std::filesystem::path& path);
+
+/// Throws the OutputError of a failed write, by `error` (errno); a full disk has its own remedy.
+[[noreturn]] void throw_output_error(const std::filesystem::path& path, int error);
+
+/// A file written through a stream and kept only if commit() is called. A write that fails throws
+/// OutputError out of the stream's operation itself.
+class OutputFile {
+ public:
+  /// OutputError as check_output_path(), or if another program is writing the same output.
+  OutputFile(const std::filesystem::path& path, bool force);
+  /// Removes what was not committed.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  std::ostream& stream() { return stream_; }
+  /// Flushes everything to disk and gives the file its name. Nothing can be written afterwards.
+  void commit();
+
+ private:
+  class Buffer;
+
+  bool force_;
+  std::filesystem::path path_;
+  std::unique_ptr<Buffer> buffer_;
+  std::ostream stream_;
+};
+
+}  // namespace fovea

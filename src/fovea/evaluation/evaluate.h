@@ -1,0 +1,21 @@
+// Scores a map against a drive: every figure of SPEC section 7, always together.
+#pragma once
+
+#include <functional>
+
+#include "fovea/evaluation/report.h"
+
+namespace fovea {
+
+/// Called after each frame with the number done and that of all; from any thread, one call at a
+/// time. What it throws ends the evaluation.
+using EvaluationProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+/// Frames are scored in parallel; the report does not depend on the number of threads. Frames that
+/// the drive cannot load are skipped and listed. InputError if nothing can be scored (no coloured
+/// map point, no frame, no evaluated point) or the protocol does not fit the map (see
+/// select_frames); ConfigError for a camera that the drive was not opened with.
+EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
+                          const ProtocolOptions& options, const EvaluationProgress& progress = {});
+
+}  // namespace fovea

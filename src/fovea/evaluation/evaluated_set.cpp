@@ -1,0 +1,51 @@
+#include "fovea/evaluation/evaluated_set.h"
+
+#include <stdexcept>
+
+#include "fovea/sensor/motion_compensation.h"
+
+namespace fovea {
+
+std::optional<Eigen::Vector2d> scored_pixel(const Camera& camera, const Eigen::Vector3d& p_cam) {
+  if (!(p_cam.z() > kEvaluatedDepth)) return std::nullopt;
+  const std::optional<Eigen::Vector2d> pixel = camera.project(p_cam);
+  if (!pixel) return std::nullopt;
+  const bool inside = pixel->x() >= 0 && pixel->x() < camera.width - 1 && pixel->y() >= 0 &&
+                      pixel->y() < camera.height - 1;
+  return inside ? pixel : std::nullopt;
+}
+
+PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& placed,
+                            const DriveInfo& drive) {
+  PointCloud compensated;
+  compensated.position = scan_lidar.position;
+  if (placed.velocity && !drive.sweep_compensated) {
+    compensate_sweep(compensated, *placed.velocity, drive.sweep_period);
+  }
+  return compensated;
+}
+
+EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud& compensated_lidar,
+                             const PlacedFrame& placed, const Camera& camera, const Image& image,
+                             const Eigen::Vector3d& origin_local) {
+  if (measured_lidar.size() != compensated_lidar.size()) {
+    throw std::invalid_argument("the measured and the compensated scan differ in length");
+  }
+  if (image.width != camera.width || image.height != camera.height) {
+    throw std::invalid_argument("the image is not of its camera's size");
+  }
+  EvaluatedView view{placed.index, camera.index, image.channels == 1, {}, {}};
+  for (std::size_t i = 0; i < measured_lidar.size(); ++i) {
+    const float range = measured_lidar.position[i].norm();
+    if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
+    const Eigen::Vector3d p_lidar = compensated_lidar.position[i].cast<double>();
+    const std::optional<Eigen::Vector2d> pixel =
+        scored_pixel(camera, Eigen::Vector3d(camera.T_cam_lidar * p_lidar));
+    if (!pixel) continue;
+    view.position.push_back((placed.T_local_lidar * p_lidar - origin_local).cast<float>());
+    view.color.push_back(bilinear(image, pixel->x(), pixel->y()));
+  }
+  return view;
+}
+
+}  // namespace fovea

@@ -1,0 +1,51 @@
+// THE EVALUATED SET (SPEC section 7): which LiDAR points of a scan score a map, and their true
+// colours. Fixed, and independent of any map's settings.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// Points are evaluated between these ranges from the LiDAR, as measured (m, both excluded).
+inline constexpr float kEvaluatedNear = 3.0f, kEvaluatedFar = 15.0f;
+/// ... and this far in front of the scored camera (m, excluded).
+inline constexpr double kEvaluatedDepth = 0.5;
+
+/// Where a frame's scan is placed.
+struct PlacedFrame {
+  int index = 0;
+  RigidMotion T_local_lidar = RigidMotion::Identity();
+  /// Twist per second of the LiDAR in its own frame during the sweep; absent: not compensated.
+  std::optional<Twist> velocity;
+};
+
+/// The evaluated points of one scan in one scored camera.
+struct EvaluatedView {
+  int frame = 0;
+  int camera = 0;
+  bool grey = false;                      ///< the camera's image has one channel
+  std::vector<Eigen::Vector3f> position;  ///< local frame, relative to the origin asked for
+  std::vector<Eigen::Vector3f> color;     ///< 0-255; three equal channels if grey
+};
+
+/// Pixel of a point that a camera can score: over 0.5 m in front of it and inside [0, W-1) x [0,
+/// H-1).
+std::optional<Eigen::Vector2d> scored_pixel(const Camera& camera, const Eigen::Vector3d& p_cam);
+
+/// The scan with the sweep's motion taken out; as it is where the drive has done that already or
+/// the frame's velocity is unknown.
+PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& placed,
+                            const DriveInfo& drive);
+
+/// @param measured_lidar     scan as measured, origin 0: its ranges decide
+/// @param compensated_lidar  the same points in the same order, motion compensated
+/// @param image              of `camera`
+/// @param origin_local       that the positions are made relative to
+EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud& compensated_lidar,
+                             const PlacedFrame& placed, const Camera& camera, const Image& image,
+                             const Eigen::Vector3d& origin_local);
+
+}  // namespace fovea

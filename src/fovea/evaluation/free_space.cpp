@@ -1,0 +1,145 @@
+#include "fovea/evaluation/free_space.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace fovea {
+namespace {
+
+constexpr std::uint8_t kTestedBit = 1, kViolatingBit = 2;
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kConeRadians = static_cast<float>(FreeSpaceTest::kCone) * kPi / 180;
+
+/// The returns of a scan by direction: cells of azimuth and elevation, each as wide as the cone.
+class ReturnGrid {
+ public:
+  enum class Verdict { kUnseen, kBehindReturn, kViolating };
+
+  explicit ReturnGrid(const PointCloud& scan_lidar) : first_(kRows * kColumns + 1, 0) {
+    std::vector<std::uint32_t> cell(scan_lidar.size(), kNoCell);
+    for (std::size_t i = 0; i < scan_lidar.size(); ++i) {
+      const Eigen::Vector3f& p = scan_lidar.position[i];
+      const float range = p.norm();
+      if (!(range > kNoReturn)) continue;
+      const Eigen::Vector3f ray = p / range;
+      cell[i] = static_cast<std::uint32_t>(row_of(elevation_of(ray)) * kColumns +
+                                           wrap(column_of(azimuth_of(ray))));
+      ++first_[cell[i] + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    returns_.resize(first_.back());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+      if (cell[i] == kNoCell) continue;
+      const float range = scan_lidar.position[i].norm();
+      returns_[next[cell[i]]++] = {scan_lidar.position[i] / range, range};
+    }
+  }
+
+  /// Whether a point at `range` along `ray` stands in front of every return near its ray.
+  Verdict judge(const Eigen::Vector3f& ray, float range) const {
+    const float chord = 2 * std::sin(kConeRadians / 2);
+    const float elevation = elevation_of(ray), azimuth = azimuth_of(ray);
+    // Towards the poles the cone spans ever more azimuth: asin(sin(cone) / cos(elevation)), and all
+    // of it where the pole is inside.
+    const float spread = std::sin(kConeRadians) / std::cos(elevation);
+    const float half_width = spread < 1 && spread > 0 ? std::asin(spread) : kPi;
+    const int left = column_of(azimuth - half_width);
+    const int columns = std::min(column_of(azimuth + half_width) - left + 1, kColumns);
+    const int low = row_of(elevation - kConeRadians), high = row_of(elevation + kConeRadians);
+    Verdict verdict = Verdict::kUnseen;
+    for (int row = low; row <= high; ++row) {
+      for (int column = left; column < left + columns; ++column) {
+        const int cell = row * kColumns + wrap(column);
+        for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
+          if ((returns_[k].ray - ray).squaredNorm() > chord * chord) continue;
+          if (returns_[k].range <= range + FreeSpaceTest::kInFront) return Verdict::kBehindReturn;
+          verdict = Verdict::kViolating;
+        }
+      }
+    }
+    return verdict;
+  }
+
+ private:
+  static constexpr int kColumns = 900, kRows = 450;
+  static_assert(kColumns * FreeSpaceTest::kCone == 360 && kRows * FreeSpaceTest::kCone == 180);
+  static constexpr std::uint32_t kNoCell = 0xffffffffu;
+  static constexpr float kNoReturn = 1e-3f;  // m; a beam without a return is reported as the origin
+
+  static float elevation_of(const Eigen::Vector3f& ray) {
+    return std::asin(std::clamp(ray.z(), -1.0f, 1.0f));
+  }
+  static float azimuth_of(const Eigen::Vector3f& ray) { return std::atan2(ray.y(), ray.x()); }
+  static int row_of(float elevation) {
+    return std::clamp(static_cast<int>(std::floor((elevation + kPi / 2) / kConeRadians)), 0,
+                      kRows - 1);
+  }
+  static int column_of(float azimuth) {
+    return static_cast<int>(std::floor((azimuth + kPi) / kConeRadians));
+  }
+  static int wrap(int column) { return (column % kColumns + kColumns) % kColumns; }
+
+  struct Return {
+    Eigen::Vector3f ray;  // unit
+    float range;
+  };
+  std::vector<std::uint32_t> first_;  // of each cell in returns_
+  std::vector<Return> returns_;
+};
+
+bool in_any_view(const Eigen::Vector3f& p_lidar, const std::vector<Camera>& cameras) {
+  for (const Camera& camera : cameras) {
+    if (scored_pixel(camera, camera.T_cam_lidar * p_lidar.cast<double>())) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+FreeSpaceTest::FreeSpaceTest(const ColouredPoints& map)
+    : map_(map), state_(map.position.size(), 0) {}
+
+void FreeSpaceTest::add_scan(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
+                             const std::vector<Camera>& cameras) {
+  const ReturnGrid returns(scan_lidar);
+  const RigidMotion T_map_lidar = Eigen::Translation3d(-map_.origin) * T_local_lidar;
+  const Eigen::Isometry3f T_lidar_map = T_map_lidar.inverse().cast<float>();
+  const Eigen::Vector3f lidar_in_map = T_map_lidar.translation().cast<float>();
+  for (const PointRun& run : map_.runs) {
+    if (run.distance_to(lidar_in_map) >= kEvaluatedFar) continue;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const Eigen::Vector3f p_lidar = T_lidar_map * map_.position[i];
+      const float range = p_lidar.norm();
+      if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
+      // Other scans may be setting bits of the same point; bits are only ever set.
+      std::atomic_ref<std::uint8_t> state(state_[i]);
+      if ((state.load(std::memory_order_relaxed) & kViolatingBit) != 0) continue;
+      if (!in_any_view(p_lidar, cameras)) continue;
+      const ReturnGrid::Verdict verdict = returns.judge(p_lidar / range, range);
+      if (verdict == ReturnGrid::Verdict::kUnseen) continue;
+      const bool violating = verdict == ReturnGrid::Verdict::kViolating;
+      state.fetch_or(violating ? kTestedBit | kViolatingBit : kTestedBit,
+                     std::memory_order_relaxed);
+    }
+  }
+}
+
+FreeSpaceTest::Result FreeSpaceTest::result() const {
+  Result result;
+  for (const std::uint8_t state : state_) {
+    result.tested += (state & kTestedBit) != 0;
+    result.violating += (state & kViolatingBit) != 0;
+  }
+  return result;
+}
+
+double FreeSpaceTest::Result::share() const {
+  if (tested == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(violating) / static_cast<double>(tested);
+}
+
+}  // namespace fovea

@@ -1,0 +1,42 @@
+// Free-space violations (SPEC section 7): map points that stand where a scan saw through. Position
+// errors cannot see them: a map fattened by 5 cm of noise has a better ME.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fovea/evaluation/coloured_points.h"
+#include "fovea/evaluation/evaluated_set.h"
+
+namespace fovea {
+
+/// Gathers over scans which map points stand over 20 cm in front of EVERY return within 0.4 degrees
+/// of their ray.
+class FreeSpaceTest {
+ public:
+  static constexpr double kCone = 0.4;     ///< degrees between a point's ray and a return's
+  static constexpr float kInFront = 0.2f;  ///< m
+
+  /// @param map  must outlive the test
+  explicit FreeSpaceTest(const ColouredPoints& map);
+
+  /// Tests the map points that lie 3-15 m from the scan's LiDAR, in the view of one of the
+  /// `cameras` and within the cone of at least one return. Thread-safe; the result does not depend
+  /// on the order of scans.
+  /// @param scan_lidar  the whole scan, motion compensated: returns at any range count
+  void add_scan(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
+                const std::vector<Camera>& cameras);
+
+  struct Result {
+    std::size_t tested = 0;     ///< map points that any scan tested
+    std::size_t violating = 0;  ///< of these, points that violate in any scan
+    double share() const;       ///< NaN if none was tested
+  };
+  Result result() const;
+
+ private:
+  const ColouredPoints& map_;
+  std::vector<std::uint8_t> state_;  // bits of each map point, see the source
+};
+
+}  // namespace fovea

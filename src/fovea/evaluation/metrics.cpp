@@ -1,0 +1,111 @@
+#include "fovea/evaluation/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+/// Mean and standard deviation in two passes: one pass cancels where the spread is small.
+std::pair<double, double> mean_and_deviation(const std::vector<float>& values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0;
+  for (const float value : values) sum += value;
+  const double mean = sum / n;
+  double squares = 0;
+  for (const float value : values) squares += (value - mean) * (value - mean);
+  return {mean, std::sqrt(squares / n)};
+}
+
+double median(std::vector<float> values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (static_cast<double>(*std::max_element(values.begin(), middle)) + *middle);
+}
+
+double share_up_to(const std::vector<float>& values, float bound) {
+  const auto count =
+      std::count_if(values.begin(), values.end(), [&](float value) { return value <= bound; });
+  return static_cast<double>(count) / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+float color_error(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool grey) {
+  return grey ? std::abs(truth.x() - luma(map)) : (truth - map).norm();
+}
+
+NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
+                               std::span<const Rgb> color) {
+  constexpr std::size_t kGrain = 2048;
+  NearestSamples found{std::vector<float>(positions.size()),
+                       std::vector<Eigen::Vector3f>(positions.size())};
+  parallel_for(positions.size(), kGrain, [&](std::size_t i) {
+    const KdTree::Neighbor nearest = tree.nearest(positions[i]);
+    found.distance[i] = std::sqrt(nearest.squared_distance);
+    found.color[i] = to_float(color[nearest.index]);
+  });
+  return found;
+}
+
+Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
+                          const std::vector<Eigen::Vector3f>& map, bool grey) {
+  Eigen::Array3d products = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Eigen::Array3d c = truth[i].cast<double>();
+    const Eigen::Array3d n = grey ? Eigen::Array3d::Constant(luma(map[i])).eval()
+                                  : Eigen::Array3d(map[i].cast<double>());
+    products += c * n;
+    squares += n * n;
+  }
+  return (squares > 0).select(products / squares, 1.0).cast<float>();
+}
+
+void PointErrors::append(const PointErrors& other) {
+  const auto add = [](std::vector<float>& to, const std::vector<float>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  add(position, other.position);
+  add(color, other.color);
+  add(color_gain, other.color_gain);
+}
+
+PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
+                         const Eigen::Vector3f& gains) {
+  PointErrors errors;
+  errors.position = map.distance;
+  errors.color.reserve(map.color.size());
+  errors.color_gain.reserve(map.color.size());
+  for (std::size_t i = 0; i < map.color.size(); ++i) {
+    errors.color.push_back(color_error(view.color[i], map.color[i], view.grey));
+    errors.color_gain.push_back(
+        color_error(view.color[i], map.color[i].cwiseProduct(gains), view.grey));
+  }
+  return errors;
+}
+
+ErrorFigures summarize(const PointErrors& errors) {
+  if (errors.position.empty()) return {};
+  ErrorFigures figures;
+  figures.points = errors.position.size();
+  std::tie(figures.me_mean, figures.me_std) = mean_and_deviation(errors.position);
+  std::tie(figures.te_mean, figures.te_std) = mean_and_deviation(errors.color);
+  figures.te_median = median(errors.color);
+  figures.te_within_20 = share_up_to(errors.color, kColorWithin);
+  figures.te_percent = 100 * figures.te_mean / 255;
+  figures.te_gain_mean = mean_and_deviation(errors.color_gain).first;
+  figures.te_gain_within_20 = share_up_to(errors.color_gain, kColorWithin);
+  double product = 0;
+  for (std::size_t i = 0; i < errors.position.size(); ++i) {
+    product += static_cast<double>(errors.position[i]) * errors.color[i];
+  }
+  figures.mtme = product / static_cast<double>(figures.points);
+  figures.coverage_5cm = share_up_to(errors.position, kCoverageFine);
+  figures.coverage_20cm = share_up_to(errors.position, kCoverageCoarse);
+  return figures;
+}
+
+}  // namespace fovea

@@ -1,0 +1,70 @@
+// Errors of a map at the evaluated points (SPEC section 7; paper: Error Metrics).
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "fovea/base/image.h"
+#include "fovea/evaluation/evaluated_set.h"
+#include "fovea/geometry/kd_tree.h"
+
+namespace fovea {
+
+/// Coverage is the share of evaluated points with a map point this near (m, included).
+inline constexpr float kCoverageFine = 0.05f, kCoverageCoarse = 0.20f;
+/// A colour is right within this Euclidean distance in RGB (included).
+inline constexpr float kColorWithin = 20.0f;
+
+/// Brightness of a colour (ITU-R BT.601), 0-255; of a grey one its channels' common value.
+inline float luma(const Eigen::Vector3f& color) {
+  return color.dot(Eigen::Vector3f(0.299f, 0.587f, 0.114f));
+}
+
+/// TE of one point: |C - C_n|, Euclidean in RGB (0-441); for a grey camera the difference of the
+/// intensities (0-255), the map's being its luma.
+float color_error(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool grey);
+
+/// What the map has at each evaluated point: its nearest point.
+struct NearestSamples {
+  std::vector<float> distance;         ///< m
+  std::vector<Eigen::Vector3f> color;  ///< 0-255
+};
+/// @param tree   of the map's points, in the frame and origin of `positions`; not empty
+/// @param color  of the same points
+NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
+                               std::span<const Rgb> color);
+
+/// The gains that take the map's exposure to this view's: per channel the g_c of least squares,
+/// minimising sum (C_c - g_c * C_n,c)^2, not clamped; 1 where the map is black. One gain for a grey
+/// camera.
+Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
+                          const std::vector<Eigen::Vector3f>& map, bool grey);
+
+/// Errors of evaluated points, one entry a point each.
+struct PointErrors {
+  std::vector<float> position;    ///< ME of the point: |P - P_n|, m
+  std::vector<float> color;       ///< TE of the point
+  std::vector<float> color_gain;  ///< TE after the view's fitted gains
+
+  void append(const PointErrors& other);
+};
+PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
+                         const Eigen::Vector3f& gains);
+
+/// Figures of a set of points; NaN where there is none. Standard deviations are the set's own (over
+/// N).
+struct ErrorFigures {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::size_t points = 0;
+  double me_mean = kNone, me_std = kNone;                     ///< m
+  double te_mean = kNone, te_std = kNone, te_median = kNone;  ///< 0-441, or 0-255 for grey
+  double te_within_20 = kNone;                                ///< share
+  double te_percent = kNone;  ///< te_mean in % of 255, as the paper quotes it
+  double te_gain_mean = kNone, te_gain_within_20 = kNone;  ///< as te_mean and te_within_20
+  double mtme = kNone;                                     ///< mean of ME x TE of each point
+  double coverage_5cm = kNone, coverage_20cm = kNone;      ///< shares
+};
+ErrorFigures summarize(const PointErrors& errors);
+
+}  // namespace fovea

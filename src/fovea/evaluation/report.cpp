@@ -1,0 +1,102 @@
+#include "fovea/evaluation/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace fovea {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The figures of SPEC section 7 that come from point errors, under the contract's names.
+void put_figures(Json& json, const ErrorFigures& figures) {
+  json["points"] = figures.points;
+  json["me_mean"] = figures.me_mean;
+  json["me_std"] = figures.me_std;
+  json["te_mean"] = figures.te_mean;
+  json["te_std"] = figures.te_std;
+  json["te_median"] = figures.te_median;
+  json["te_within_20"] = figures.te_within_20;
+  json["te_gain_mean"] = figures.te_gain_mean;
+  json["te_gain_within_20"] = figures.te_gain_within_20;
+  json["mtme"] = figures.mtme;
+  json["coverage_5cm"] = figures.coverage_5cm;
+  json["coverage_20cm"] = figures.coverage_20cm;
+  json["te_percent"] = figures.te_percent;
+}
+
+Json view_json(const ViewReport& view) {
+  Json json;
+  json["frame"] = view.frame;
+  json["camera"] = view.camera;
+  put_figures(json, view.figures);
+  json["gain"] = {view.gains.x(), view.gains.y(), view.gains.z()};
+  json["sharpness"] = view.gradients.sharpness();
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const EvaluationReport& report) {
+  Json json;
+  json["protocol"] = to_string(report.protocol);
+  json["explanation"] = explanation(report.protocol);
+  json["cameras"] = report.cameras;
+  put_figures(json, report.figures);
+  json["free_space_violations"] = report.free_space.share();
+  json["sharpness"] = report.gradients.sharpness();
+  json["density_per_m2"] = report.density_per_m2;
+  json["free_space_points"] = report.free_space.tested;
+  json["sharpness_pixels"] = report.gradients.pixels;
+  json["map_points"] = report.map_points;
+  json["map_points_coloured"] = report.map_points_coloured;
+  json["paper_like"]["explanation"] =
+      "nearest neighbours among all map points, uncoloured ones counting as black";
+  put_figures(json["paper_like"], report.paper_like);
+  json["frames_scored"] = report.frames;
+  json["skipped"] = Json::array();
+  for (const UnscoredFrame& frame : report.skipped) {
+    json["skipped"].push_back({{"frame", frame.index}, {"reason", frame.reason}});
+  }
+  json["frames"] = Json::array();
+  for (const ViewReport& view : report.views) json["frames"].push_back(view_json(view));
+  // A reason may quote a file name in any encoding.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_text(const EvaluationReport& report) {
+  const ErrorFigures& f = report.figures;
+  const ErrorFigures& p = report.paper_like;
+  std::string text = fmt::format("{}, camera {}: {} points of {} frames ({} skipped)\n",
+                                 to_string(report.protocol), fmt::join(report.cameras, ", "),
+                                 f.points, report.frames, report.skipped.size());
+  const auto row = [&](std::string_view name, std::string_view value, std::string_view more = "") {
+    text += fmt::format("  {:<22}{:>10}  {}\n", name, value, more);
+  };
+  const auto number = [](double value, int digits) {
+    return fmt::format("{:.{}f}", value, digits);
+  };
+  row("ME mean", number(f.me_mean, 4), "m, std " + number(f.me_std, 4));
+  row("TE mean", number(f.te_mean, 2),
+      fmt::format("std {:.2f}, {:.2f}% of 255", f.te_std, f.te_percent));
+  row("TE median", number(f.te_median, 2));
+  row("TE within 20", number(f.te_within_20, 3));
+  row("TE, fitted gains", number(f.te_gain_mean, 2),
+      "within 20: " + number(f.te_gain_within_20, 3));
+  row("MTME", number(f.mtme, 3));
+  row("coverage 5 cm", number(f.coverage_5cm, 3));
+  row("coverage 20 cm", number(f.coverage_20cm, 3));
+  row("free-space violations", number(report.free_space.share(), 4),
+      fmt::format("of {} map points", report.free_space.tested));
+  row("sharpness", number(report.gradients.sharpness(), 3),
+      fmt::format("over {} pixels", report.gradients.pixels));
+  row("points per m^2", number(report.density_per_m2, 0),
+      fmt::format("{} coloured of {}", report.map_points_coloured, report.map_points));
+  row("paper-like ME / TE", number(p.me_mean, 4),
+      fmt::format("TE {:.2f} ({:.2f}%), MTME {:.3f}; uncoloured points count as black", p.te_mean,
+                  p.te_percent, p.mtme));
+  return text + explanation(report.protocol) + "\n";
+}
+
+}  // namespace fovea

@@ -1,0 +1,52 @@
+// The result of an evaluation, and its two forms: JSON for programs, a table for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/evaluation/free_space.h"
+#include "fovea/evaluation/metrics.h"
+#include "fovea/evaluation/protocol.h"
+#include "fovea/evaluation/sharpness.h"
+
+namespace fovea {
+
+/// Figures of one scored camera at one frame.
+struct ViewReport {
+  int frame = 0;
+  int camera = 0;
+  ErrorFigures figures;
+  Eigen::Vector3f gains = Eigen::Vector3f::Ones();  ///< fitted, see fit_gains
+  GradientSums gradients;
+};
+
+/// A selected frame that the drive could not give.
+struct UnscoredFrame {
+  int index = 0;
+  std::string reason;
+};
+
+struct EvaluationReport {
+  Protocol protocol = Protocol::kHeldOut;
+  std::vector<int> cameras;
+  ErrorFigures figures;  ///< of all evaluated points, against coloured map points only
+  /// Nearest neighbours among ALL map points, uncoloured ones counting as black: the only way to
+  /// the TE of 150 that the paper gives for its baselines.
+  ErrorFigures paper_like;
+  FreeSpaceTest::Result free_space;
+  GradientSums gradients;
+  double density_per_m2 = 0;  ///< see surface_density
+  std::size_t map_points = 0, map_points_coloured = 0;
+  std::size_t frames = 0;         ///< scored
+  std::vector<ViewReport> views;  ///< by frame, then camera
+  std::vector<UnscoredFrame> skipped;
+};
+
+/// JSON text, the same bytes for the same report; figures that do not exist (no point, no pixel)
+/// are null.
+std::string to_json(const EvaluationReport& report);
+
+/// A table for the terminal, lines ending with LF.
+std::string to_text(const EvaluationReport& report);
+
+}  // namespace fovea

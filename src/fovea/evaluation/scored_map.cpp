@@ -1,0 +1,92 @@
+#include "fovea/evaluation/scored_map.h"
+
+#include <set>
+
+#include "fovea/base/errors.h"
+#include "fovea/evaluation/ply_reader.h"
+#include "fovea/geometry/pose_file.h"
+#include "fovea/geometry/transform_cloud.h"
+
+namespace fovea {
+namespace {
+
+/// A point near all poses, in whole metres: floats relative to it are precise wherever `local`
+/// lies.
+Eigen::Vector3d center_of(const std::vector<FrameRecord>& frames) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const FrameRecord& record : frames) sum += record.T_local_lidar.translation();
+  if (!frames.empty()) sum /= static_cast<double>(frames.size());
+  return sum.array().round();
+}
+
+std::vector<int> cameras_of(const PointCloud& points) {
+  std::set<int> cameras;
+  for (const std::int8_t camera : points.camera) {
+    if (camera != kNoCamera) cameras.insert(camera);
+  }
+  return {cameras.begin(), cameras.end()};
+}
+
+ScoredMap load_fovea_map(const std::filesystem::path& path) {
+  const MapReader reader(path);
+  ScoredMap map;
+  map.frames = reader.frames();
+  map.meta = reader.meta();
+  map.points_local.origin = center_of(map.frames);
+  const std::vector<RigidMotion> submaps = reader.submaps();
+  reader.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+    PointCloud part;  // only what is scored: a map may be as large as memory allows
+    part.origin = tile.origin;
+    part.position = tile.position;
+    part.color = tile.color;
+    part.camera = tile.camera;
+    part.frame = tile.frame;
+    map.points_local.append(
+        transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
+  });
+  map.cameras = cameras_of(map.points_local);
+  return map;
+}
+
+/// Records without stamp and of no particular status, one a pose.
+std::vector<FrameRecord> pose_records(const std::filesystem::path& file, int first_frame) {
+  std::vector<FrameRecord> records;
+  for (const RigidMotion& pose : read_poses(file)) {
+    FrameRecord record;
+    record.index = first_frame + static_cast<int>(records.size());
+    record.T_local_lidar = pose;
+    records.push_back(record);
+  }
+  return records;
+}
+
+ScoredMap load_cloud(const std::filesystem::path& path, const ScoredMapOptions& options) {
+  if (!options.poses) {
+    throw ConfigError("a point cloud has no poses", path.string(),
+                      "give --poses FILE, one T_local_lidar a line");
+  }
+  ScoredMap map;
+  map.statuses_known = false;
+  map.frames = pose_records(*options.poses, options.first_frame);
+  PlyCloud ply = read_ply(path, center_of(map.frames));
+  map.points_local = std::move(ply.points);
+  if (ply.has_camera) map.cameras = cameras_of(map.points_local);
+  return map;
+}
+
+}  // namespace
+
+ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options) {
+  const std::string ending = path.extension().string();
+  if (ending == ".ply") return load_cloud(path, options);
+  if (ending == ".pcd" || ending == ".las" || ending == ".laz") {
+    throw InputError("clouds of the format " + ending + " cannot be scored yet", path.string(),
+                     "convert it to PLY");
+  }
+  if (options.poses) {
+    throw ConfigError("a Fovea map has poses of its own", path.string(), "leave out --poses");
+  }
+  return load_fovea_map(path);
+}
+
+}  // namespace fovea

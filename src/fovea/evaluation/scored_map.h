@@ -1,0 +1,36 @@
+// What is scored: a map's points, and the poses under which a drive's scans are placed in it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/map/frame_record.h"
+#include "fovea/map/map_store.h"
+
+namespace fovea {
+
+struct ScoredMap {
+  /// Local frame, relative to any origin near the drive; columns color and camera always, frame
+  /// where it is known.
+  PointCloud points_local;
+  std::vector<FrameRecord> frames;  ///< by index
+  MapMeta meta;                     ///< empty for a cloud
+  /// Whether `frames` says which frames were mapped and which held out; a cloud's poses do not.
+  bool statuses_known = true;
+  std::vector<int> cameras;  ///< that coloured the points, increasing; empty where unknown
+};
+
+struct ScoredMapOptions {
+  /// T_local_lidar, 12 numbers a line (3x4, row-major); needed for a cloud, and for a cloud only.
+  std::optional<std::filesystem::path> poses;
+  int first_frame = 0;  ///< frame index of the first line of `poses`
+};
+
+/// Loads a Fovea map, or a coloured PLY cloud with its poses, told apart by the file's ending.
+/// InputError if a file is missing, damaged or of a format that is not read (PCD, LAS); ConfigError
+/// for poses that are missing or not wanted.
+ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options);
+
+}  // namespace fovea

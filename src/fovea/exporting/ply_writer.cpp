@@ -1,0 +1,111 @@
+#include "fovea/exporting/ply_writer.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <string>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/output_file.h"
+#include "fovea/base/version.h"
+
+namespace fovea {
+namespace {
+
+// Values are written as they lie in memory; the header says little endian.
+static_assert(std::endian::native == std::endian::little);
+
+std::string header(const MapMeta& meta, std::size_t points, const PlyOptions& options) {
+  std::string text =
+      fmt::format("ply\nformat binary_little_endian 1.0\ncomment fovea {}\n", version());
+  const auto value = [&](const char* key) {
+    const auto found = meta.find(key);
+    return found == meta.end() ? std::string() : found->second;
+  };
+  const std::string latitude = value("origin.latitude"), longitude = value("origin.longitude"),
+                    altitude = value("origin.altitude");
+  if (!latitude.empty() && !longitude.empty() && !altitude.empty()) {
+    text += fmt::format(
+        "comment east-north-up metres; origin latitude {} longitude {} degrees, altitude {} m\n",
+        latitude, longitude, altitude);
+  }
+  const char* real = options.double_positions ? "double" : "float";
+  text += fmt::format("element vertex {}\n", points);
+  for (const char* axis : {"x", "y", "z"}) text += fmt::format("property {} {}\n", real, axis);
+  return text +
+         "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty char camera\n"
+         "property int frame\nproperty float range\nproperty uchar interpolated\nend_header\n";
+}
+
+/// Packs values one behind the other, as PLY wants them.
+class Packer {
+ public:
+  explicit Packer(std::string& bytes) : bytes_(bytes) {}
+  template <class T>
+  void put(T value) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    bytes_.append(raw, sizeof(T));
+  }
+
+ private:
+  std::string& bytes_;
+};
+
+/// Appends the chosen points of a tile to `bytes`; returns how many they are.
+std::size_t pack_tile(const PointCloud& tile, const RigidMotion& T_local_submap,
+                      const PlyOptions& options, std::string& bytes) {
+  Packer packer(bytes);
+  std::size_t packed = 0;
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    const bool colored = tile.camera[i] != kNoCamera;
+    if (!colored && !options.include_uncolored) continue;
+    const Eigen::Vector3d p_local =
+        T_local_submap * (tile.origin + tile.position[i].cast<double>());
+    for (const double coordinate : p_local) {
+      options.double_positions ? packer.put(coordinate)
+                               : packer.put(static_cast<float>(coordinate));
+    }
+    const Rgb color = colored ? tile.color[i] : Rgb{};
+    packer.put(color.r);
+    packer.put(color.g);
+    packer.put(color.b);
+    packer.put(tile.camera[i]);
+    packer.put(tile.frame[i]);
+    packer.put(tile.range[i]);
+    packer.put(tile.interpolated[i]);
+    ++packed;
+  }
+  return packed;
+}
+
+}  // namespace
+
+PlyFigures write_ply(const MapReader& map, const std::filesystem::path& path,
+                     const PlyOptions& options) {
+  OutputFile file(path, options.force);
+  const std::size_t total = map.size();
+  PlyFigures figures;
+  figures.points = options.include_uncolored ? total : map.colored_size();
+  figures.uncolored_left_out = total - figures.points;
+  file.stream() << header(map.meta(), figures.points, options);
+
+  const std::vector<RigidMotion> T_local_submap = map.submaps();
+  std::size_t written = 0;
+  std::string bytes;
+  map.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+    if (submap >= T_local_submap.size()) return;  // new since; the count below tells
+    bytes.clear();
+    written += pack_tile(tile, T_local_submap[submap], options, bytes);
+    file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  });
+  if (written != figures.points) {
+    throw InputError("the map changed while it was exported", path.string(),
+                     "export it again when nothing writes to it");
+  }
+  file.commit();
+  return figures;
+}
+
+}  // namespace fovea

@@ -1,0 +1,48 @@
+#include "fovea/geometry/camera.h"
+
+#include <gtest/gtest.h>
+
+namespace fovea {
+namespace {
+
+Camera small_camera() {
+  Camera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 500;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  // The LiDAR's x (forward) is the camera's z; the camera stands 1 m ahead of the LiDAR.
+  camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  camera.T_cam_lidar.translation() = Eigen::Vector3d(0, 0, -1);
+  return camera;
+}
+
+TEST(Camera, ProjectsAsAPinhole) {
+  const Camera camera = small_camera();
+  // 10 m deep, 1 m to the left and 2 m up.
+  const auto pixel = camera.project(camera.T_cam_lidar * Eigen::Vector3d(11, 1, 2));
+  ASSERT_TRUE(pixel);
+  EXPECT_NEAR(pixel->x(), 319.5 - 50, 1e-12);
+  EXPECT_NEAR(pixel->y(), 239.5 - 100, 1e-12);
+  EXPECT_LT((camera.center_lidar() - Eigen::Vector3d(1, 0, 0)).norm(), 1e-15);
+}
+
+TEST(Camera, NothingBehindOrBesideIt) {
+  const Camera camera = small_camera();
+  EXPECT_FALSE(camera.project({0, 0, -5}));
+  EXPECT_FALSE(camera.project({1, 1, 0}));
+  EXPECT_FALSE(camera.project({0, 0, std::numeric_limits<double>::quiet_NaN()}));
+}
+
+TEST(Camera, ViewEndsAtTheOutermostPixelCentres) {
+  const Camera camera = small_camera();
+  EXPECT_TRUE(camera.in_view({0, 0}));
+  EXPECT_TRUE(camera.in_view({639, 479}));
+  EXPECT_FALSE(camera.in_view({639.01, 479}));
+  EXPECT_FALSE(camera.in_view({-0.01, 0}));
+  EXPECT_FALSE(camera.in_view({0, std::numeric_limits<double>::quiet_NaN()}));
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,23 @@
+// Pose files in KITTI's odometry form: one 3x4 matrix a line, 12 numbers, row-major.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+/// The poses of a file, in order. InputError naming file and line if the file cannot be read or is
+/// empty, and for a line that has not 12 finite numbers or no rotation.
+std::vector<RigidMotion> read_poses(const std::filesystem::path& file);
+
+/// The poses of frames [begin, end): of a file with a line for each of them, or of one with a line for
+/// every frame from 0 on. InputError if it has too few lines.
+std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end);
+
+/// "r00 r01 r02 tx r10 ... tz", the shortest text that reads back to the same doubles.
+std::string format_pose(const RigidMotion& pose);
+
+}  // namespace fovea

@@ -1,0 +1,88 @@
+#include "fovea/geometry/trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace fovea {
+namespace {
+
+RigidMotion at_x(double x) { return RigidMotion(Eigen::Translation3d(x, 0, 0)); }
+
+/// 10 m/s along x in the first second, 20 m/s in the second, 5 m/s in the third.
+Trajectory stop_and_go() {
+  return Trajectory({{0, at_x(0)},
+                     {kNsPerSecond, at_x(10)},
+                     {2 * kNsPerSecond, at_x(30)},
+                     {3 * kNsPerSecond, at_x(35)}});
+}
+
+double x_at(const Trajectory& trajectory, double time) {
+  return trajectory.at(from_seconds(time)).value().translation().x();
+}
+
+double speed(const Trajectory& trajectory, double time, double known_until) {
+  return trajectory.velocity(from_seconds(time), from_seconds(known_until)).value()[3];
+}
+
+TEST(Trajectory, InterpolatesBetweenNeighbours) {
+  const Trajectory trajectory = stop_and_go();
+  EXPECT_NEAR(x_at(trajectory, 0), 0, 1e-12);
+  EXPECT_NEAR(x_at(trajectory, 0.25), 2.5, 1e-12);
+  EXPECT_NEAR(x_at(trajectory, 1), 10, 1e-12);
+  EXPECT_NEAR(x_at(trajectory, 1.5), 20, 1e-12);
+  EXPECT_NEAR(x_at(trajectory, 3), 35, 1e-12);
+}
+
+TEST(Trajectory, FollowsAnArc) {
+  // Half a turn to the left in a second: at half time a quarter turn, on the circle.
+  Twist turn;
+  turn << 0, 0, 3.0, 30.0, 0, 0;
+  const Trajectory trajectory({{0, RigidMotion::Identity()}, {kNsPerSecond, exp_se3(turn)}});
+  EXPECT_TRUE(trajectory.at(kNsPerSecond / 2)->isApprox(exp_se3(0.5 * turn), 1e-12));
+  EXPECT_NEAR((trajectory.at(kNsPerSecond / 3)->translation() - Eigen::Vector3d(0, 10, 0)).norm(),
+              10, 1e-12);
+  EXPECT_TRUE(trajectory.velocity(kNsPerSecond / 2, kNsPerSecond)->isApprox(turn, 1e-12));
+}
+
+TEST(Trajectory, ExtrapolatesByTheVelocityOfTheEndForAFifthOfASecond) {
+  const Trajectory trajectory = stop_and_go();
+  EXPECT_NEAR(x_at(trajectory, -0.2), -2, 1e-12);
+  EXPECT_NEAR(x_at(trajectory, 3.2), 36, 1e-12);
+  EXPECT_FALSE(trajectory.at(from_seconds(-0.2) - 1));
+  EXPECT_FALSE(trajectory.at(from_seconds(3.2) + 1));
+}
+
+TEST(Trajectory, KeepsNanosecondsAtEpochTimes) {
+  constexpr TimeNs kStart = 1'317'042'504'957'314'930;  // a double would round it by 128 ns
+  const Trajectory trajectory({{kStart, at_x(0)}, {kStart + 1000, at_x(1000)}});
+  EXPECT_NEAR(trajectory.at(kStart + 1)->translation().x(), 1, 1e-9);
+}
+
+TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
+  const Trajectory trajectory({{kNsPerSecond, at_x(7)}});
+  EXPECT_EQ(x_at(trajectory, 1.1), 7);
+  EXPECT_FALSE(trajectory.at(from_seconds(1.3)));
+  EXPECT_FALSE(trajectory.velocity(kNsPerSecond, 2 * kNsPerSecond));
+  EXPECT_FALSE(Trajectory().at(0));
+}
+
+TEST(Trajectory, VelocityIsThatAroundTheTimeAsFarAsItIsKnown) {
+  const Trajectory trajectory = stop_and_go();
+  EXPECT_NEAR(speed(trajectory, 1.5, 9), 20, 1e-12);    // all known: the pair around the time
+  EXPECT_NEAR(speed(trajectory, 1.5, 1.9), 10, 1e-12);  // the pose at 2 s is still to come
+  EXPECT_NEAR(speed(trajectory, 1.5, 2), 20, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 2.9, 2.9), 20, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 9, 9), 5, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 0.5, 0.5), 10, 1e-12);  // too early for two: the first two
+  EXPECT_NEAR(speed(trajectory, -1, -1), 10, 1e-12);
+}
+
+TEST(Trajectory, RejectsTimesThatDoNotIncrease) {
+  EXPECT_THROW(Trajectory(std::vector<StampedPose>{}), std::invalid_argument);
+  EXPECT_THROW(Trajectory({{5, at_x(0)}, {5, at_x(1)}}), std::invalid_argument);
+  EXPECT_THROW(Trajectory({{5, at_x(0)}, {4, at_x(1)}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fovea

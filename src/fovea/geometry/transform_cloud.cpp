@@ -1,0 +1,19 @@
+#include "fovea/geometry/transform_cloud.h"
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+
+PointCloud transform_cloud(PointCloud points_b, const RigidMotion& T_a_b,
+                           const Eigen::Vector3d& origin_a) {
+  // The large numbers meet in double once; the points stay near zero in float.
+  const Eigen::Matrix3f R = T_a_b.linear().cast<float>();
+  const Eigen::Vector3f t = (T_a_b * points_b.origin - origin_a).cast<float>();
+  parallel_for(points_b.size(), 16384,
+               [&](std::size_t i) { points_b.position[i] = R * points_b.position[i] + t; });
+  for (Eigen::Vector3f& normal : points_b.normal) normal = R * normal;
+  points_b.origin = origin_a;
+  return points_b;
+}
+
+}  // namespace fovea

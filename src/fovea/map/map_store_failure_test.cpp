@@ -1,0 +1,380 @@
+// What the store does where files, disks and programs fail.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+
+#include "../../../tests/file_size_limit.h"
+#include "../../../tests/sample_map.h"
+#include "../../../tests/temporary_folder.h"
+#include "fovea/base/errors.h"
+#include "fovea/map/map_store.h"
+
+namespace fovea {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+template <class Error>
+std::string message(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+void write_file(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream(path, std::ios::binary) << content;
+}
+
+void run_sql(const std::filesystem::path& path, const std::string& sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
+
+void put_meta_and_commit(MapWriter& writer, const std::string& value) {
+  writer.put_meta("config", value);
+  writer.commit();
+}
+
+// ---- names and folders
+
+TEST(MapWriter, RefusesPathsBeforeAnyWork) {
+  const TemporaryFolder folder;
+  write_file(folder / "old.fovea", "something");
+  const auto refusal = [](const std::filesystem::path& path, bool force) {
+    return message<OutputError>([&] { MapWriter::create(path, force); });
+  };
+  EXPECT_THAT(refusal(folder / "old.fovea", false),
+              AllOf(HasSubstr("exists already"), HasSubstr("old.fovea"), HasSubstr("--force")));
+  EXPECT_THAT(refusal(folder.path(), true), HasSubstr("is a folder"));
+  EXPECT_THAT(refusal(folder / "none/a.fovea", false), HasSubstr("folder does not exist"));
+  EXPECT_THAT(refusal(folder / "old.fovea/a.fovea", true), HasSubstr("folder does not exist"));
+  EXPECT_THAT(refusal("/proc/a.fovea", false), HasSubstr("cannot be written"));
+  EXPECT_THAT(folder.names(), ElementsAre("old.fovea"));
+}
+
+TEST(MapWriter, NamesWithSpecialCharactersWork) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a b.fovea", ":memory:", "q?x=1#y%20.fovea", "ü.fovea", "file:a"}) {
+    write_sample_map(folder / name);
+    EXPECT_EQ(MapReader(folder / name).frames().size(), 3u) << name;
+  }
+  EXPECT_EQ(folder.names().size(), 5u);
+}
+
+TEST(MapWriter, WithoutCommitNothingStays) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map());
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.fovea"));
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(MapWriter, ForceReplacesAtTheFirstCommit) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_meta_and_commit(*writer, "old");
+  }
+  { MapWriter::create(folder / "a.fovea", true)->put_meta("config", "dropped"); }
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "old");
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", true);
+    writer->put_meta("config", "new");
+    EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "old");
+    writer->commit();
+    EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "new");
+  }
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+  write_file(folder / "b.fovea", "not a map at all, but long enough to look like some file");
+  write_file(folder / "b.fovea-wal", "stale");
+  put_meta_and_commit(*MapWriter::create(folder / "b.fovea", true), "new");
+  EXPECT_EQ(MapReader(folder / "b.fovea").meta().at("config"), "new");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea", "b.fovea"));
+}
+
+TEST(MapWriter, DoesNotReplaceWhatAppearedMeanwhile) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    write_file(folder / "a.fovea", "somebody else's");
+    EXPECT_THROW(writer->commit(), OutputError);
+  }
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.fovea"), 15u);
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+// ---- commits
+
+TEST(MapWriter, ReadersSeeCommitsAndOnlyThose) {
+  const TemporaryFolder folder;
+  const auto writer = MapWriter::create(folder / "a.fovea", false);
+  put_meta_and_commit(*writer, "one");
+  const MapReader reader(folder / "a.fovea");
+  EXPECT_EQ(reader.meta().at("config"), "one");
+  writer->put_meta("config", "two");
+  EXPECT_EQ(reader.meta().at("config"), "one");
+  writer->commit();
+  EXPECT_EQ(reader.meta().at("config"), "two");
+}
+
+TEST(MapWriter, WhatWasNotCommittedIsDroppedAtTheEnd) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_meta_and_commit(*writer, "one");
+    put_sample_map(*writer, sample_tile_map());
+  }
+  const MapReader reader(folder / "a.fovea");
+  EXPECT_EQ(reader.meta().at("config"), "one");
+  EXPECT_EQ(reader.size(), 0u);
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+TEST(MapWriter, OpenGoesOn) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  {
+    const auto writer = MapWriter::open(folder / "a.fovea");
+    FrameRecord frame;
+    frame.index = 10;
+    writer->put_frame(frame);
+    writer->commit();
+  }
+  const MapReader reader(folder / "a.fovea");
+  EXPECT_EQ(reader.frames().size(), 4u);
+  EXPECT_EQ(reader.size(), sample_tile_map().size());
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+  EXPECT_THROW(MapWriter::open(folder / "none.fovea"), InputError);
+  write_file(folder / "text", "this is no map");
+  EXPECT_THROW(MapWriter::open(folder / "text"), InputError);
+}
+
+TEST(MapWriter, ASecondWriterIsRefused) {
+  const TemporaryFolder folder;
+  const auto writer = MapWriter::create(folder / "a.fovea", false);
+  const auto second = [&](bool force) {
+    return message<OutputError>([&] { MapWriter::create(folder / "a.fovea", force); });
+  };
+  EXPECT_THAT(second(false), HasSubstr("another program"));
+  put_meta_and_commit(*writer, "one");
+  EXPECT_THAT(message<OutputError>([&] { MapWriter::open(folder / "a.fovea"); }),
+              HasSubstr("another program"));
+  EXPECT_THAT(message<OutputError>(
+                  [&] { put_meta_and_commit(*MapWriter::create(folder / "a.fovea", true), "x"); }),
+              HasSubstr("another program"));
+  put_meta_and_commit(*writer, "two");
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "two");
+}
+
+// ---- killed programs and full disks
+
+/// Runs `f` in a process of its own, which is killed at its end without any clean-up.
+void run_and_kill(const std::function<void()>& f) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    try {
+      f();
+    } catch (...) {
+      _exit(1);
+    }
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the child failed by itself";
+}
+
+TEST(MapWriter, AKillBeforeTheFirstCommitLeavesNoMapAndBlocksNobody) {
+  const TemporaryFolder folder;
+  run_and_kill([&] {
+    auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map(50'000));
+    (void)writer.release();
+  });
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.fovea"));
+  put_meta_and_commit(*MapWriter::create(folder / "a.fovea", false), "new");
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "new");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+TEST(MapWriter, AKillLaterLeavesTheLastCommit) {
+  const TemporaryFolder folder;
+  run_and_kill([&] {
+    auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_meta_and_commit(*writer, "one");
+    put_meta_and_commit(*writer, "two");
+    put_sample_map(*writer, sample_tile_map(50'000));  // more than SQLite's cache: it spills
+    (void)writer.release();
+  });
+  {
+    const MapReader reader(folder / "a.fovea");
+    EXPECT_EQ(reader.meta().at("config"), "two");
+    EXPECT_EQ(reader.size(), 0u);
+  }
+  {
+    const auto writer = MapWriter::open(folder / "a.fovea");
+    put_meta_and_commit(*writer, "three");
+  }
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "three");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+TEST(MapWriter, ForceOverAKilledMapIgnoresItsLog) {
+  const TemporaryFolder folder;
+  run_and_kill([&] {
+    auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_meta_and_commit(*writer, "one");
+    put_sample_map(*writer, sample_tile_map(50'000));
+    (void)writer.release();
+  });
+  put_meta_and_commit(*MapWriter::create(folder / "a.fovea", true), "new");
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "new");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+TEST(MapWriter, AFullDiskBeforeTheFirstCommitLeavesTheOldMap) {
+  const TemporaryFolder folder;
+  put_meta_and_commit(*MapWriter::create(folder / "a.fovea", false), "old");
+  EXPECT_THAT(message<OutputError>([&] {
+                const auto writer = MapWriter::create(folder / "a.fovea", true);
+                const FileSizeLimit limit(200'000);
+                put_sample_map(*writer, sample_tile_map(50'000));
+                writer->commit();
+              }),
+              AllOf(HasSubstr("the disk is full"), HasSubstr("a.fovea"), HasSubstr("free some")));
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+TEST(MapWriter, AFullDiskLaterLeavesTheLastCommit) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_meta_and_commit(*writer, "one");
+    const FileSizeLimit limit(200'000);
+    EXPECT_THAT(message<OutputError>([&] {
+                  put_sample_map(*writer, sample_tile_map(50'000));
+                  writer->commit();
+                }),
+                HasSubstr("the disk is full"));
+    // Going on would write half of what belongs together.
+    EXPECT_THROW(writer->put_meta("config", "two"), std::logic_error);
+    EXPECT_THROW(writer->commit(), std::logic_error);
+  }
+  const MapReader reader(folder / "a.fovea");
+  EXPECT_EQ(reader.meta().at("config"), "one");
+  EXPECT_EQ(reader.size(), 0u);
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+// ---- reading what is no map
+
+TEST(MapReader, RefusesWhatIsNoMap) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& name) {
+    return message<InputError>([&] { MapReader(folder / name); });
+  };
+  EXPECT_THAT(refusal("none.fovea"), AllOf(HasSubstr("does not exist"), HasSubstr("none.fovea")));
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder.path()); }), HasSubstr("not a file"));
+  write_file(folder / "empty", "");
+  EXPECT_THAT(refusal("empty"), HasSubstr("empty"));
+  write_file(folder / "text", "hello");
+  EXPECT_THAT(refusal("text"), HasSubstr("not a Fovea map"));
+  write_file(folder / "long", std::string(100'000, 'x'));
+  EXPECT_THAT(refusal("long"), HasSubstr("not a Fovea map"));
+  run_sql(folder / "other", "CREATE TABLE meta(key, value)");
+  EXPECT_THAT(refusal("other"), HasSubstr("not a Fovea map"));
+  EXPECT_THAT(folder.names(), ElementsAre("empty", "long", "other", "text"));
+}
+
+TEST(MapReader, RefusesOtherVersions) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  run_sql(folder / "a.fovea", "PRAGMA user_version=2");
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
+              AllOf(HasSubstr("format version 2"), HasSubstr("newer Fovea")));
+  EXPECT_THROW(MapWriter::open(folder / "a.fovea"), InputError);
+  run_sql(folder / "a.fovea", "PRAGMA user_version=0");
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
+              AllOf(HasSubstr("format version 0"), HasSubstr("map the drive again")));
+}
+
+TEST(MapReader, ATruncatedMapIsAnInputError) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const auto size = std::filesystem::file_size(folder / "a.fovea");
+  for (const double share : {0.01, 0.1, 0.5, 0.9, 0.999}) {
+    std::filesystem::copy_file(folder / "a.fovea", folder / "b.fovea",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(folder / "b.fovea", std::uintmax_t(double(size) * share));
+    EXPECT_THROW((void)MapReader(folder / "b.fovea").digest(), InputError) << share;
+  }
+}
+
+TEST(MapReader, NamesTheDamagedTile) {
+  const TemporaryFolder folder;
+  const auto damage = [&](const std::string& assignment) {
+    std::filesystem::remove(folder / "a.fovea");
+    write_sample_map(folder / "a.fovea");
+    run_sql(folder / "a.fovea",
+            "UPDATE tiles SET " + assignment + " WHERE submap=1 AND x=-1 AND y=0 AND z=1");
+    return message<InputError>(
+        [&] { MapReader(folder / "a.fovea").for_each_tile([](auto, auto&, auto&) {}); });
+  };
+  EXPECT_EQ(damage("points=points"), "nothing thrown");
+  for (const char* assignment :
+       {"position=x'00'", "position=color", "color=zeroblob(length(color))",
+        "frame=substr(frame, 1, length(frame) - 1)", "intensity=NULL", "checksum=checksum+1",
+        "points=points+1", "colored=colored-1", "origin_z=origin_z+4",
+        "camera=CAST('text' AS BLOB)"}) {
+    EXPECT_THAT(damage(assignment),
+                AllOf(HasSubstr("tile -1 0 1 of submap 1"), HasSubstr("a.fovea")))
+        << assignment;
+  }
+}
+
+TEST(MapReader, NamesTheDamagedFrameOrSubmap) {
+  const TemporaryFolder folder;
+  const auto damage = [&](const std::string& sql) {
+    std::filesystem::remove(folder / "a.fovea");
+    write_sample_map(folder / "a.fovea");
+    run_sql(folder / "a.fovea", sql);
+    return message<InputError>([&] {
+      const MapReader reader(folder / "a.fovea");
+      reader.frames();
+      reader.for_each_tile([](auto, auto&, auto&) {});
+    });
+  };
+  EXPECT_THAT(damage("UPDATE frames SET pose='1 2 3' WHERE idx=8"),
+              AllOf(HasSubstr("'pose'"), HasSubstr("frame 8")));
+  EXPECT_THAT(damage("UPDATE frames SET status='odd' WHERE idx=9"), HasSubstr("'status'"));
+  EXPECT_THAT(damage("UPDATE frames SET figures='[1]' WHERE idx=7"), HasSubstr("'figures'"));
+  EXPECT_THAT(damage("UPDATE frames SET velocity='1' WHERE idx=7"), HasSubstr("'velocity'"));
+  EXPECT_THAT(damage("UPDATE frames SET idx=1<<40 WHERE idx=9"), HasSubstr("impossible index"));
+  EXPECT_THAT(damage("UPDATE submaps SET pose='' WHERE id=1"), HasSubstr("submap 1"));
+  EXPECT_THAT(damage("DELETE FROM submaps WHERE id=0"), HasSubstr("submap 0"));
+  EXPECT_THAT(damage("DELETE FROM submaps WHERE id=1"), HasSubstr("submap 1"));
+  EXPECT_THAT(damage("UPDATE tiles SET x=1<<40 WHERE rowid=1"), HasSubstr("impossible key"));
+  EXPECT_THAT(damage("ALTER TABLE tiles DROP COLUMN range"), HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,345 @@
+#include "fovea/map/map_store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <functional>
+#include <numeric>
+#include <set>
+
+#include "../../../tests/sample_map.h"
+#include "../../../tests/temporary_folder.h"
+
+namespace fovea {
+namespace {
+
+using ::testing::ElementsAre;
+
+void expect_same_frame(const FrameRecord& a, const FrameRecord& b) {
+  EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.stamp, b.stamp);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.note, b.note);
+  EXPECT_EQ(a.T_local_lidar.matrix(), b.T_local_lidar.matrix());
+  ASSERT_EQ(a.T_local_lidar_navigation.has_value(), b.T_local_lidar_navigation.has_value());
+  if (a.T_local_lidar_navigation) {
+    EXPECT_EQ(a.T_local_lidar_navigation->matrix(), b.T_local_lidar_navigation->matrix());
+  }
+  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.figures, b.figures);
+  EXPECT_EQ(a.milliseconds, b.milliseconds);
+}
+
+TEST(MapStore, EverythingComesBackBitForBit) {
+  const TemporaryFolder folder;
+  const TileMap map = sample_tile_map();
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, map);
+    writer->commit();
+  }
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+
+  const MapReader reader(folder / "a.fovea");
+  const MapMeta meta = reader.meta();
+  EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
+  EXPECT_EQ(meta.at("schema_version"), "1");
+  EXPECT_EQ(meta.size(), 6u);
+  const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
+  ASSERT_EQ(frames.size(), expected.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) expect_same_frame(frames[i], expected[i]);
+  const std::vector<RigidMotion> submaps = reader.submaps();
+  ASSERT_EQ(submaps.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(submaps[i].matrix(), map.submaps()[i].T_local_submap.matrix());
+  }
+  EXPECT_EQ(reader.size(), map.size());
+  std::vector<std::pair<std::size_t, TileKey>> order;
+  std::size_t colored = 0;
+  reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+    order.emplace_back(submap, key);
+    expect_same_columns(tile, map.submaps()[submap].tiles.at(key));
+    colored += std::count(tile.camera.begin(), tile.camera.end(), std::int8_t{2});
+  });
+  EXPECT_EQ(order.size(), map.submaps()[0].tiles.size() + map.submaps()[1].tiles.size());
+  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+  EXPECT_EQ(reader.colored_size(), colored);
+}
+
+TEST(MapStore, TilesWithoutIntensityOrPointsComeBack) {
+  const TemporaryFolder folder;
+  const PointCloud tile = one_point_each({{1, 2, 3}, {3, 2, 1}});
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    writer->put_submap(0, RigidMotion::Identity());
+    writer->put_tile(0, {0, 0, 0}, tile);
+    writer->put_tile(0, {-1, 0, 0}, PointCloud());
+    writer->commit();
+  }
+  std::vector<std::size_t> sizes;
+  MapReader(folder / "a.fovea")
+      .for_each_tile([&](std::size_t, const TileKey&, const PointCloud& read) {
+        sizes.push_back(read.size());
+        if (!read.empty()) expect_same_columns(read, tile);
+      });
+  EXPECT_THAT(sizes, ElementsAre(0u, 2u));
+}
+
+TEST(MapStore, AllPointsLieInTheLocalFrame) {
+  const TemporaryFolder folder;
+  const TileMap map = sample_tile_map();
+  write_sample_map(folder / "a.fovea");
+  const PointCloud points_local = MapReader(folder / "a.fovea").all_points_local();
+  points_local.check();
+  ASSERT_EQ(points_local.size(), map.size());
+  EXPECT_EQ(points_local.origin, Eigen::Vector3d::Zero());
+  std::size_t i = 0;
+  for (const Submap& submap : map.submaps()) {
+    for (const auto& [key, tile] : submap.tiles) {
+      for (std::size_t j = 0; j < tile.size(); ++j, ++i) {
+        const Eigen::Vector3d expected =
+            submap.T_local_submap * (tile.origin + tile.position[j].cast<double>());
+        EXPECT_LT((points_local.position[i].cast<double>() - expected).norm(), 1e-5);
+        EXPECT_EQ(points_local.color[i], tile.color[j]);
+        EXPECT_EQ(points_local.frame[i], tile.frame[j]);
+      }
+    }
+  }
+}
+
+TEST(MapStore, PuttingAgainReplaces) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map());
+    writer->commit();
+    writer->put_meta("config", "new");
+    FrameRecord frame = sample_frames()[0];
+    frame.note = "new";
+    frame.stamp.reset();
+    frame.velocity.reset();
+    writer->put_frame(frame);
+    writer->put_submap(1, RigidMotion::Identity());
+    writer->put_tile(0, {0, 0, 0}, one_point_each({{1, 1, 1}}));
+    writer->commit();
+  }
+  const MapReader reader(folder / "a.fovea");
+  EXPECT_EQ(reader.meta().at("config"), "new");
+  EXPECT_EQ(reader.frames()[0].note, "new");
+  EXPECT_EQ(reader.frames()[0].stamp, std::nullopt);
+  EXPECT_EQ(reader.frames()[0].velocity, std::nullopt);
+  EXPECT_EQ(reader.submaps()[1].matrix(), Eigen::Matrix4d::Identity());
+  std::size_t size = 0;
+  reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+    if (submap == 0 && key == TileKey{}) size = tile.size();
+  });
+  EXPECT_EQ(size, 1u);
+}
+
+TEST(MapStore, RefusesWhatItCannotKeep) {
+  const TemporaryFolder folder;
+  const auto writer = MapWriter::create(folder / "a.fovea", false);
+  PointCloud tile = one_point_each({{1, 1, 1}});
+  tile.range.clear();
+  EXPECT_THROW(writer->put_tile(0, {}, tile), std::logic_error);
+  EXPECT_THROW(writer->put_meta("schema_version", "7"), std::invalid_argument);
+  FrameRecord frame;
+  frame.T_local_lidar.translation().x() = std::nan("");
+  EXPECT_THROW(writer->put_frame(frame), std::invalid_argument);
+  writer->commit();  // none of these spoiled the map
+}
+
+// ---- digest
+
+using Change = std::function<void(MapWriter&)>;
+
+std::string digest_with(const Change& change) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map());
+    change(*writer);
+    writer->commit();
+  }
+  return MapReader(folder / "a.fovea").digest();
+}
+
+TEST(MapDigest, DoesNotDependOnTheOrderOrNumberOfPuts) {
+  const TileMap map = sample_tile_map();
+  const std::string expected = digest_with([](MapWriter&) {});
+  EXPECT_EQ(expected.size(), 32u);
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "b.fovea", false);
+    for (std::size_t id = map.submaps().size(); id-- > 0;) {
+      const auto& tiles = map.submaps()[id].tiles;
+      for (auto it = tiles.rbegin(); it != tiles.rend(); ++it) {
+        writer->put_tile(id, it->first, one_point_each({{0, 0, 0}}));  // replaced below
+      }
+      writer->commit();
+      for (auto it = tiles.rbegin(); it != tiles.rend(); ++it) {
+        writer->put_tile(id, it->first, it->second);
+      }
+      writer->put_submap(id, map.submaps()[id].T_local_submap);
+    }
+    const std::vector<FrameRecord> frames = sample_frames();
+    for (auto it = frames.rbegin(); it != frames.rend(); ++it) writer->put_frame(*it);
+    put_sample_map(*writer, TileMap());
+    writer->commit();
+  }
+  EXPECT_EQ(MapReader(folder / "b.fovea").digest(), expected);
+}
+
+TEST(MapDigest, LeavesOutTimingsOnly) {
+  const std::string expected = digest_with([](MapWriter&) {});
+  const auto with_frame = [](const std::function<void(FrameRecord&)>& change) {
+    return digest_with([&](MapWriter& writer) {
+      FrameRecord frame = sample_frames()[0];
+      change(frame);
+      writer.put_frame(frame);
+    });
+  };
+  EXPECT_EQ(with_frame([](FrameRecord& f) { f.milliseconds["decode"] = 99; }), expected);
+  EXPECT_EQ(digest_with([](MapWriter& w) { w.put_meta("timing.total", "1"); }), expected);
+  EXPECT_EQ(digest_with([](MapWriter& w) { w.put_meta("timing.more", "1"); }), expected);
+
+  std::set<std::string> digests = {expected};
+  const auto expect_new = [&](const std::string& digest) {
+    EXPECT_TRUE(digests.insert(digest).second);
+  };
+  expect_new(digest_with([](MapWriter& w) { w.put_meta("config", "x"); }));
+  expect_new(digest_with([](MapWriter& w) { w.put_meta("x", "config"); }));
+  expect_new(digest_with([](MapWriter& w) { w.put_submap(1, RigidMotion::Identity()); }));
+  expect_new(digest_with([](MapWriter& w) { w.put_submap(2, RigidMotion::Identity()); }));
+  expect_new(with_frame([](FrameRecord& f) { f.index = 6; }));
+  expect_new(with_frame([](FrameRecord& f) { ++*f.stamp; }));
+  expect_new(with_frame([](FrameRecord& f) { f.stamp.reset(); }));
+  expect_new(with_frame([](FrameRecord& f) { f.status = FrameStatus::kHeldOut; }));
+  expect_new(with_frame([](FrameRecord& f) { f.note = "1"; }));
+  expect_new(with_frame([](FrameRecord& f) { f.velocity.reset(); }));
+  expect_new(with_frame([](FrameRecord& f) { f.T_local_lidar_navigation.reset(); }));
+  expect_new(with_frame([](FrameRecord& f) {
+    double& x = f.T_local_lidar.translation().x();
+    x = std::nextafter(x, 1e9);
+  }));
+  expect_new(with_frame([](FrameRecord& f) { f.figures["b"] = 0; }));
+}
+
+TEST(MapDigest, ChangesWithAnyBitOfATile) {
+  const TileMap map = sample_tile_map();
+  const auto& [key, tile] = *map.submaps()[1].tiles.begin();
+  std::set<std::string> digests = {digest_with([](MapWriter&) {})};
+  const auto expect_new = [&, key = key](const PointCloud& changed) {
+    EXPECT_TRUE(
+        digests.insert(digest_with([&](MapWriter& w) { w.put_tile(1, key, changed); })).second);
+  };
+  const std::size_t last = tile.size() - 1;
+  PointCloud changed = tile;
+  changed.position[last].z() = std::nextafter(changed.position[last].z(), 100.f);
+  expect_new(changed);
+  changed = tile;
+  changed.color[last].b ^= 1;
+  expect_new(changed);
+  changed = tile;
+  changed.camera[0] = 3;
+  expect_new(changed);
+  changed = tile;
+  changed.frame[0] ^= 1 << 30;
+  expect_new(changed);
+  changed = tile;
+  changed.range[0] = std::nextafter(changed.range[0], 0.f);
+  expect_new(changed);
+  changed = tile;
+  changed.incidence[0] += 0.1f;
+  changed.incidence[last] = 0.25f;
+  expect_new(changed);
+  changed = tile;
+  changed.interpolated[last] ^= 1;
+  expect_new(changed);
+  changed = tile;
+  changed.intensity[last] = -1;
+  expect_new(changed);
+  changed = tile;
+  changed.intensity.clear();
+  expect_new(changed);
+  changed = tile;
+  changed.origin.x() += 1;
+  expect_new(changed);
+  std::vector<std::uint32_t> swapped(tile.size());
+  std::iota(swapped.rbegin(), swapped.rend(), 0u);
+  expect_new(tile.select(swapped));
+}
+
+// ---- the format as docs/map-format.md states it, read without the library's own reader
+
+struct Raw {
+  explicit Raw(const std::filesystem::path& path) {
+    EXPECT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  }
+  ~Raw() { sqlite3_close(database); }
+  sqlite3* database = nullptr;
+};
+
+template <class T>
+std::vector<T> inflate(sqlite3_stmt* row, int column, std::size_t count) {
+  std::vector<T> values(count);
+  EXPECT_EQ(ZSTD_decompress(values.data(), count * sizeof(T), sqlite3_column_blob(row, column),
+                            static_cast<std::size_t>(sqlite3_column_bytes(row, column))),
+            count * sizeof(T));
+  return values;
+}
+
+TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const TileMap map = sample_tile_map();
+  const Raw raw(folder / "a.fovea");
+  sqlite3_stmt* row = nullptr;
+  ASSERT_EQ(sqlite3_prepare_v2(raw.database, "SELECT * FROM tiles", -1, &row, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_column_count(row), 18);
+  std::size_t points = 0;
+  while (sqlite3_step(row) == SQLITE_ROW) {
+    const auto submap = static_cast<std::size_t>(sqlite3_column_int64(row, 0));
+    const TileKey key = {sqlite3_column_int(row, 1), sqlite3_column_int(row, 2),
+                         sqlite3_column_int(row, 3)};
+    const PointCloud& tile = map.submaps()[submap].tiles.at(key);
+    const auto count = static_cast<std::size_t>(sqlite3_column_int64(row, 4));
+    ASSERT_EQ(count, tile.size());
+    points += count;
+    EXPECT_EQ(sqlite3_column_double(row, 7), tile.origin.y());
+    const auto position = inflate<float>(row, 9, 3 * count);
+    const auto color = inflate<std::uint8_t>(row, 10, 3 * count);
+    EXPECT_EQ(position[3 * count - 1], tile.position.back().z());
+    EXPECT_EQ(color[1], tile.color[0].g);
+    EXPECT_TRUE(same_bits(inflate<std::int8_t>(row, 11, count), tile.camera));
+    EXPECT_TRUE(same_bits(inflate<std::int32_t>(row, 12, count), tile.frame));
+    EXPECT_TRUE(same_bits(inflate<float>(row, 13, count), tile.range));
+    EXPECT_TRUE(same_bits(inflate<float>(row, 14, count), tile.incidence));
+    EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 15, count), tile.interpolated));
+    EXPECT_TRUE(same_bits(inflate<float>(row, 16, count), tile.intensity));
+
+    std::vector<char> bytes;
+    const auto add_bytes = [&](const void* data, std::size_t size) {
+      bytes.resize(bytes.size() + size);
+      std::memcpy(bytes.data() + bytes.size() - size, data, size);
+    };
+    const auto add = [&](auto value) { add_bytes(&value, sizeof(value)); };
+    for (int column = 0; column < 6; ++column) add(sqlite3_column_int64(row, column));
+    for (int column = 6; column < 9; ++column) add(sqlite3_column_double(row, column));
+    for (int column = 9; column < 17; ++column) {
+      const int size = sqlite3_column_bytes(row, column);
+      add(std::int64_t{size});
+      add_bytes(sqlite3_column_blob(row, column), static_cast<std::size_t>(size));
+    }
+    EXPECT_EQ(static_cast<std::uint64_t>(sqlite3_column_int64(row, 17)),
+              XXH3_64bits(bytes.data(), bytes.size()));
+  }
+  sqlite3_finalize(row);
+  EXPECT_EQ(points, map.size());
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,282 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/output_file.h"
+#include "fovea/geometry/pose_file.h"
+#include "fovea/map/map_schema.h"
+#include "fovea/map/map_store.h"
+#include "fovea/map/number_text.h"
+#include "fovea/map/sqlite_database.h"
+#include "fovea/map/tile_codec.h"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::Access;
+using sqlite::Database;
+using sqlite::Statement;
+
+/// Larger than SQLite's default: a tile's columns are tens of kilobytes each.
+constexpr int kPageSize = 8192;
+
+void remove_side_files(const fs::path& path) {
+  for (const char* ending : {"-wal", "-shm", "-journal"}) {
+    std::error_code ignored;
+    fs::remove(fs::path(path) += ending, ignored);
+  }
+}
+
+/// Folds everything into the one file. Best effort: what stays beside it is read by SQLite.
+void leave_one_file(Database& database) noexcept {
+  database.try_execute("PRAGMA journal_mode=DELETE");
+}
+
+/// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
+/// new map's after the rename. OutputError if a program is using it.
+void settle_old_map(const fs::path& path) {
+  if (!fs::exists(path)) return;
+  try {
+    Database old(path, Access::kWrite, path);
+    if (old.try_execute("PRAGMA schema_version")) old.execute("PRAGMA journal_mode=DELETE");
+  } catch (const OutputError&) {
+    if (fs::exists(fs::path(path) += "-wal")) throw;
+  }
+  remove_side_files(path);
+}
+
+/// The prepared statements of one connection.
+struct Puts {
+  explicit Puts(Database& database)
+      : meta(database, "INSERT OR REPLACE INTO meta VALUES(?1, ?2)"),
+        frame(database, "INSERT OR REPLACE INTO frames VALUES(?1,?2,?3,?4,?5,?6,?7,?8,?9)"),
+        submap(database, "INSERT OR REPLACE INTO submaps VALUES(?1, ?2)"),
+        tile(database,
+             "INSERT OR REPLACE INTO tiles VALUES"
+             "(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,?17,?18)") {}
+  Statement meta, frame, submap, tile;
+};
+
+void require_finite(bool finite, const std::string& what) {
+  if (!finite) throw std::invalid_argument(fmt::format("{} is not finite", what));
+}
+
+class SqliteMapWriter : public MapWriter {
+ public:
+  /// A new map, which grows in PATH.partial until its first commit.
+  SqliteMapWriter(const fs::path& path, bool force) : path_(path), target_(path), force_(force) {
+    target_ = check_output_path(path, force);
+    start_partial_file();
+  }
+
+  /// An existing map.
+  explicit SqliteMapWriter(const fs::path& path)
+      : path_(path), target_(path), force_(true), published_(true) {
+    open_published_file();
+  }
+
+  ~SqliteMapWriter() override {
+    puts_.reset();
+    if (database_ != nullptr && published_) {
+      database_->try_execute("ROLLBACK");
+      leave_one_file(*database_);
+    }
+    const bool drop = database_ != nullptr && !published_;
+    database_.reset();
+    if (drop) remove_partial_file();
+  }
+
+  void put_meta(const std::string& key, const std::string& value) override {
+    if (key == kSchemaVersionKey) {
+      throw std::invalid_argument(fmt::format("the meta key '{}' is the store's own", key));
+    }
+    write([&] { put_meta_row(key, value); });
+  }
+
+  void put_frame(const FrameRecord& record) override;
+  void put_submap(std::size_t id, const RigidMotion& T_local_submap) override;
+  void put_tile(std::size_t submap, const TileKey& key, const PointCloud& tile) override;
+
+  void commit() override {
+    write([&] {
+      database_->execute("COMMIT");
+      if (!published_) {
+        publish();
+      } else {
+        // A reader may hold the log; then a later commit moves its pages.
+        database_->try_execute("PRAGMA wal_checkpoint(PASSIVE)");
+        database_->execute("BEGIN IMMEDIATE");
+      }
+    });
+  }
+
+ private:
+  /// Runs a step of writing; after a failure SQLite may have ended the transaction, so that a later
+  /// step would be written on its own.
+  template <class Step>
+  void write(Step&& step) {
+    if (failed_) throw std::logic_error("a map is written on after an error");
+    failed_ = true;
+    step();
+    failed_ = false;
+  }
+
+  void put_meta_row(std::string_view key, std::string_view value) {
+    puts_->meta.bind(1, key);
+    puts_->meta.bind(2, value);
+    puts_->meta.run();
+  }
+
+  void start_partial_file();
+  void remove_partial_file();
+  void publish();
+  void open_published_file();
+
+  fs::path path_;    // as the user named it
+  fs::path target_;  // the file itself, where path_ is a symbolic link
+  bool force_;
+  bool published_ = false;
+  bool failed_ = false;
+  TileEncoder encoder_;
+  std::unique_ptr<Database> database_;
+  std::unique_ptr<Puts> puts_;
+};
+
+void SqliteMapWriter::start_partial_file() {
+  const fs::path partial = partial_path(target_);
+  if (fs::exists(partial)) {
+    // Left by a killed program, unless one still has its lock.
+    Database left(partial, Access::kWrite, path_);
+    if (left.try_execute("PRAGMA schema_version")) left.execute("BEGIN EXCLUSIVE");
+    fs::remove(partial);
+  }
+  remove_side_files(partial);
+  database_ = std::make_unique<Database>(partial, Access::kCreate, path_);
+  try {
+    // A file that is thrown away on any failure needs no journal, and one sync when it is whole.
+    database_->execute(
+        fmt::format("PRAGMA page_size={}; PRAGMA locking_mode=EXCLUSIVE; PRAGMA journal_mode=OFF;"
+                    "PRAGMA synchronous=OFF; PRAGMA application_id={}; PRAGMA user_version={};"
+                    "BEGIN EXCLUSIVE;",
+                    kPageSize, kMapApplicationId, kMapSchemaVersion)
+            .c_str());
+    database_->execute(kCreateTables);
+    puts_ = std::make_unique<Puts>(*database_);
+    put_meta_row(kSchemaVersionKey, fmt::format("{}", kMapSchemaVersion));
+  } catch (...) {
+    puts_.reset();
+    database_.reset();
+    remove_partial_file();
+    throw;
+  }
+}
+
+void SqliteMapWriter::remove_partial_file() {
+  std::error_code ignored;
+  fs::remove(partial_path(target_), ignored);
+  remove_side_files(partial_path(target_));
+}
+
+void SqliteMapWriter::publish() {
+  // Another program may have made the file meanwhile.
+  check_output_path(path_, force_);
+  settle_old_map(target_);
+  publish_file(partial_path(target_), target_);
+  published_ = true;
+  puts_.reset();
+  database_.reset();
+  open_published_file();
+}
+
+void SqliteMapWriter::open_published_file() {
+  database_ = std::make_unique<Database>(target_, Access::kWrite, path_);
+  // Write-ahead log: others can read the map while it grows. The log is folded in after each
+  // commit.
+  database_->execute(
+      "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA wal_autocheckpoint=0;");
+  // The lock of one writer, held from commit to commit.
+  database_->execute("BEGIN IMMEDIATE");
+  puts_ = std::make_unique<Puts>(*database_);
+}
+
+void SqliteMapWriter::put_frame(const FrameRecord& record) {
+  const std::string what = fmt::format("frame {}: a pose or velocity", record.index);
+  require_finite(record.T_local_lidar.matrix().allFinite(), what);
+  const std::string status = to_string(record.status);
+  const std::string pose = format_pose(record.T_local_lidar);
+  const std::string figures = to_json(record.figures);
+  const std::string timings = to_json(record.milliseconds);
+  std::string navigation, velocity;
+  if (record.T_local_lidar_navigation) {
+    require_finite(record.T_local_lidar_navigation->matrix().allFinite(), what);
+    navigation = format_pose(*record.T_local_lidar_navigation);
+  }
+  if (record.velocity) {
+    require_finite(record.velocity->allFinite(), what);
+    velocity = to_text(std::span<const double>(record.velocity->data(), 6));
+  }
+  write([&] {
+    Statement& put = puts_->frame;
+    const auto bind_or_null = [&](int parameter, const std::string& text) {
+      text.empty() ? put.bind_null(parameter) : put.bind(parameter, std::string_view(text));
+    };
+    put.bind(1, std::int64_t{record.index});
+    record.stamp ? put.bind(2, *record.stamp) : put.bind_null(2);
+    put.bind(3, std::string_view(status));
+    put.bind(4, std::string_view(record.note));
+    put.bind(5, std::string_view(pose));
+    bind_or_null(6, navigation);
+    bind_or_null(7, velocity);
+    put.bind(8, std::string_view(figures));
+    put.bind(9, std::string_view(timings));
+    put.run();
+  });
+}
+
+void SqliteMapWriter::put_submap(std::size_t id, const RigidMotion& T_local_submap) {
+  require_finite(T_local_submap.matrix().allFinite(), fmt::format("the pose of submap {}", id));
+  const std::string pose = format_pose(T_local_submap);
+  write([&] {
+    puts_->submap.bind(1, static_cast<std::int64_t>(id));
+    puts_->submap.bind(2, std::string_view(pose));
+    puts_->submap.run();
+  });
+}
+
+void SqliteMapWriter::put_tile(std::size_t submap, const TileKey& key, const PointCloud& tile) {
+  const TileRow row = encoder_.encode(submap, key, tile);
+  write([&] {
+    Statement& put = puts_->tile;
+    int parameter = 0;
+    for (const std::int64_t number : {row.submap, std::int64_t{key.x}, std::int64_t{key.y},
+                                      std::int64_t{key.z}, row.points, row.colored}) {
+      put.bind(++parameter, number);
+    }
+    for (const double coordinate : row.origin) put.bind(++parameter, coordinate);
+    for (const std::span<const std::byte> blob : row.blobs) {
+      ++parameter;
+      blob.empty() ? put.bind_null(parameter) : put.bind(parameter, blob);
+    }
+    put.bind(++parameter, static_cast<std::int64_t>(row.checksum));
+    put.run();
+  });
+}
+
+}  // namespace
+
+std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
+  return std::make_unique<SqliteMapWriter>(path, force);
+}
+
+std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {
+  if (fs::is_regular_file(path)) {
+    // Where a program was killed, its last commit may still lie in a journal.
+    Database(path, Access::kWrite, path).try_execute("SELECT count(*) FROM sqlite_master");
+  }
+  { const MapReader check(path); }  // the same refusals as for reading
+  return std::make_unique<SqliteMapWriter>(path);
+}
+
+}  // namespace fovea

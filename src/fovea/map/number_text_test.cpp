@@ -1,0 +1,57 @@
+#include "fovea/map/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+TEST(NumberText, AnyFiniteDoubleReadsBack) {
+  Random random(1);
+  for (int i = 0; i < 20'000; ++i) {
+    const auto value = std::bit_cast<double>(random.next());
+    if (!std::isfinite(value)) continue;
+    const std::vector<double> numbers = {value, -0.0};
+    const auto back = numbers_from_text(to_text(numbers));
+    ASSERT_TRUE(back && back->size() == 2);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>((*back)[0]), std::bit_cast<std::uint64_t>(value));
+    EXPECT_TRUE(std::signbit((*back)[1]));
+    EXPECT_EQ(numbers_from_json(to_json({{"x", value}}))->at("x"), value);
+  }
+}
+
+TEST(NumberText, RefusesWhatIsNoNumber) {
+  EXPECT_TRUE(numbers_from_text("")->empty());
+  for (const char* text : {"1 x", "1,2", "nan", "inf 1", "1 2e999", "0x10", "1-2"}) {
+    EXPECT_FALSE(numbers_from_text(text)) << text;
+  }
+  EXPECT_FALSE(motion_from_text("1 0 0 0 0 1 0 0 0 0 1"));
+  EXPECT_FALSE(motion_from_text("1 0 0 0 0 1 0 0 0 0 1 0 0"));
+  EXPECT_FALSE(twist_from_text("1 2 3 4 5"));
+  EXPECT_EQ(motion_from_text("1 0 0 4 0 1 0 5 0 0 1 6")->translation(), Eigen::Vector3d(4, 5, 6));
+}
+
+TEST(NumberText, JsonObjectsKeepNamesAndValues) {
+  const std::map<std::string, double> numbers = {
+      {"", 1}, {"a b", -0.5}, {"quote \" backslash \\ tab \t", 1e-300}, {"ünicode", 3}};
+  EXPECT_EQ(numbers_from_json(to_json(numbers)), numbers);
+  EXPECT_EQ(to_json({{"b", 0.1}, {"a", 1}}), R"({"a":1,"b":0.1})");
+  EXPECT_EQ(to_json({}), "{}");
+  EXPECT_EQ(to_json({{"n", std::nan("")}, {"o", -INFINITY}}), R"({"n":null,"o":null})");
+  EXPECT_TRUE(std::isnan(numbers_from_json(R"({ "n" : null })")->at("n")));
+}
+
+TEST(NumberText, RefusesOtherJson) {
+  for (const char* text : {"", "{", "[]", "{\"a\"}", "{\"a\":}", "{\"a\":1", "{\"a\":1,}", "{a:1}",
+                           "{\"a\":\"1\"}", "{\"a\":1}x", "{\"a\":{}}", "{\"a", "{\"a\\",
+                           "{\"\\u00", "{\"\\u12345\":1}", "{\"a\":inf}", "{\"a\":1e999}"}) {
+    EXPECT_FALSE(numbers_from_json(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace fovea

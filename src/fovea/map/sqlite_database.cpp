@@ -1,0 +1,188 @@
+#include "fovea/map/sqlite_database.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/output_file.h"
+
+namespace fovea::sqlite {
+namespace {
+
+constexpr int kBusyTimeoutMs = 2000;
+
+/// URI of a file that SQLite shall take as never changing.
+std::string immutable_uri(const std::filesystem::path& path) {
+  std::string uri = "file://";
+  for (const char c : path.string()) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '/' || c == '.' || c == '-' || c == '_';
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri + "?immutable=1";
+}
+
+int open_flags(Access access) {
+  switch (access) {
+    case Access::kRead:
+      return SQLITE_OPEN_READONLY;
+    case Access::kReadImmutable:
+      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+    case Access::kWrite:
+      return SQLITE_OPEN_READWRITE;
+    case Access::kCreate:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  }
+  return 0;
+}
+
+bool is_reading(Access access) {
+  return access == Access::kRead || access == Access::kReadImmutable;
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& path, Access access,
+                   const std::filesystem::path& shown_path)
+    : access_(access), shown_path_(shown_path) {
+  // Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
+  const std::filesystem::path absolute = std::filesystem::absolute(path);
+  const std::string name =
+      access == Access::kReadImmutable ? immutable_uri(absolute) : absolute.string();
+  const int code = sqlite3_open_v2(name.c_str(), &handle_, open_flags(access), nullptr);
+  try {
+    if (code != SQLITE_OK) fail(code);
+    sqlite3_extended_result_codes(handle_, 1);
+    sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
+    // A map may come from anybody: nothing in its schema gets to run code.
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  } catch (...) {
+    sqlite3_close(handle_);
+    throw;
+  }
+}
+
+Database::~Database() { sqlite3_close(handle_); }
+
+void Database::execute(const char* sql) {
+  const int code = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) fail(code);
+}
+
+bool Database::try_execute(const char* sql) noexcept {
+  return sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) == SQLITE_OK;
+}
+
+std::int64_t Database::integer(const char* sql) {
+  Statement statement(*this, sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+void Database::fail(int code) const {
+  const int primary = code & 0xff;
+  const std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
+  if (is_reading(access_)) {
+    if (primary == SQLITE_NOTADB) {
+      throw InputError("not a Fovea map", where(), "give a file that 'fovea map' wrote");
+    }
+    if (primary == SQLITE_CORRUPT) {
+      throw InputError(fmt::format("the map is damaged ({})", message), where(),
+                       "restore it from a copy or map the drive again");
+    }
+    throw InputError(fmt::format("the map cannot be read ({})", message), where(),
+                     "check the file, its permissions and that no program is replacing it");
+  }
+  if (primary == SQLITE_FULL) throw_output_error(shown_path_, ENOSPC);
+  const int error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
+  if ((primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && error != 0) {
+    throw_output_error(shown_path_, error);
+  }
+  if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) {
+    throw OutputError("another program is using the map", where(),
+                      "wait until it has ended or write to another file");
+  }
+  if (primary == SQLITE_NOTADB || primary == SQLITE_CORRUPT) {
+    throw OutputError(fmt::format("the map is damaged ({})", message), where(), "start a new map");
+  }
+  throw OutputError(fmt::format("the map cannot be written ({})", message), where(),
+                    "check the file and its permissions");
+}
+
+Statement::Statement(Database& database, std::string_view sql) : database_(&database) {
+  check(sqlite3_prepare_v2(database.handle(), sql.data(), static_cast<int>(sql.size()), &handle_,
+                           nullptr));
+}
+
+Statement::~Statement() { sqlite3_finalize(handle_); }
+
+Statement::Statement(Statement&& other) noexcept
+    : database_(other.database_), handle_(std::exchange(other.handle_, nullptr)) {}
+
+void Statement::check(int code) const {
+  if (code != SQLITE_OK) database_->fail(code);
+}
+
+void Statement::bind(int parameter, std::int64_t value) {
+  check(sqlite3_bind_int64(handle_, parameter, value));
+}
+
+void Statement::bind(int parameter, double value) {
+  check(sqlite3_bind_double(handle_, parameter, value));
+}
+
+void Statement::bind(int parameter, std::string_view text) {
+  // A null pointer would bind NULL instead of an empty text.
+  const char* data = text.empty() ? "" : text.data();
+  check(sqlite3_bind_text64(handle_, parameter, data, text.size(), SQLITE_STATIC, SQLITE_UTF8));
+}
+
+void Statement::bind(int parameter, std::span<const std::byte> blob) {
+  check(sqlite3_bind_blob64(handle_, parameter, blob.data(), blob.size(), SQLITE_STATIC));
+}
+
+void Statement::bind_null(int parameter) { check(sqlite3_bind_null(handle_, parameter)); }
+
+bool Statement::step() {
+  const int code = sqlite3_step(handle_);
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) {
+    // Before reset(), which would end the statement's own transaction and its message.
+    try {
+      database_->fail(code);
+    } catch (...) {
+      sqlite3_reset(handle_);
+      throw;
+    }
+  }
+  return false;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+  check(sqlite3_reset(handle_));
+}
+
+bool Statement::is_null(int column) const {
+  return sqlite3_column_type(handle_, column) == SQLITE_NULL;
+}
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(handle_, column); }
+
+double Statement::real(int column) const { return sqlite3_column_double(handle_, column); }
+
+std::string_view Statement::text(int column) const {
+  const auto* data = reinterpret_cast<const char*>(sqlite3_column_text(handle_, column));
+  return {data == nullptr ? "" : data,
+          static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
+}
+
+std::span<const std::byte> Statement::blob(int column) const {
+  const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(handle_, column));
+  return {data, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
+}
+
+}  // namespace fovea::sqlite

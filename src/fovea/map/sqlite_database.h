@@ -1,0 +1,86 @@
+// SQLite with the library's errors. Private to map/: no public header includes it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace fovea::sqlite {
+
+enum class Access {
+  kRead,           ///< failures are InputError
+  kReadImmutable,  ///< no locks, no side files: for folders where SQLite can make none
+  kWrite,          ///< an existing file; failures are OutputError
+  kCreate,         ///< a file that need not exist; failures are OutputError
+};
+
+/// A connection. Errors name `shown_path`, the file the user knows of.
+class Database {
+ public:
+  Database(const std::filesystem::path& path, Access access,
+           const std::filesystem::path& shown_path);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  /// Runs statements whose results do not matter.
+  void execute(const char* sql);
+  /// As execute(), for clean-up: says whether it worked.
+  bool try_execute(const char* sql) noexcept;
+  /// First column of the first row, as an integer.
+  std::int64_t integer(const char* sql);
+
+  /// Throws the InputError or OutputError of a failed call with this result code.
+  [[noreturn]] void fail(int code) const;
+
+  /// Name of the file, for errors.
+  std::string where() const { return shown_path_.string(); }
+  sqlite3* handle() const { return handle_; }
+
+ private:
+  Access access_;
+  std::filesystem::path shown_path_;
+  sqlite3* handle_ = nullptr;
+};
+
+/// A prepared statement. Parameters and columns are counted from 1 and from 0, as in SQLite.
+class Statement {
+ public:
+  Statement(Database& database, std::string_view sql);
+  ~Statement();
+  Statement(Statement&& other) noexcept;
+  Statement& operator=(Statement&&) = delete;
+
+  /// Bound text and blobs must live until the statement is reset or run().
+  void bind(int parameter, std::int64_t value);
+  void bind(int parameter, double value);
+  void bind(int parameter, std::string_view text);
+  void bind(int parameter, std::span<const std::byte> blob);
+  void bind_null(int parameter);
+
+  /// Goes to the next row; false where there is none.
+  bool step();
+  /// Runs a statement without result to its end and makes it ready for the next use.
+  void run();
+
+  bool is_null(int column) const;
+  std::int64_t integer(int column) const;
+  double real(int column) const;
+  /// Valid until the next step().
+  std::string_view text(int column) const;
+  std::span<const std::byte> blob(int column) const;
+
+ private:
+  void check(int code) const;
+
+  Database* database_;
+  sqlite3_stmt* handle_ = nullptr;
+};
+
+}  // namespace fovea::sqlite

@@ -1,0 +1,130 @@
+#include "fovea/map/tile_codec.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <bit>
+#include <new>
+#include <stdexcept>
+#include <type_traits>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+// The columns are stored as they lie in memory; the format says little endian and packed.
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(Eigen::Vector3f) == 12 && sizeof(Rgb) == 3);
+
+/// Float columns hardly shrink at any level; the fastest keeps up with the mapper.
+constexpr int kCompressionLevel = 1;
+
+void add_bytes(XXH3_state_t* state, const void* data, std::size_t size) {
+  XXH3_64bits_update(state, data, size);
+}
+
+std::int64_t count_colored(const PointCloud& tile) {
+  return std::count_if(tile.camera.begin(), tile.camera.end(),
+                       [](std::int8_t camera) { return camera != kNoCamera; });
+}
+
+template <class T>
+bool decompress(ZSTD_DCtx* context, std::span<const std::byte> blob, std::size_t count,
+                std::vector<T>& column) {
+  const std::size_t size = count * sizeof(T);
+  if (ZSTD_getFrameContentSize(blob.data(), blob.size()) != size) return false;
+  column.resize(count);
+  return ZSTD_decompressDCtx(context, column.data(), size, blob.data(), blob.size()) == size;
+}
+
+}  // namespace
+
+std::uint64_t checksum(const TileRow& row) {
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              XXH3_freeState);
+  if (state == nullptr) throw std::bad_alloc();
+  XXH3_64bits_reset(state.get());
+  const std::array<std::int64_t, 6> numbers = {row.submap, row.key.x,  row.key.y,
+                                               row.key.z,  row.points, row.colored};
+  add_bytes(state.get(), numbers.data(), sizeof(numbers));
+  add_bytes(state.get(), row.origin.data(), 3 * sizeof(double));
+  for (const std::span<const std::byte> blob : row.blobs) {
+    // The lengths too: a byte must not be able to move from one blob to the next.
+    const auto size = static_cast<std::int64_t>(blob.size());
+    add_bytes(state.get(), &size, sizeof(size));
+    if (size > 0) add_bytes(state.get(), blob.data(), blob.size());
+  }
+  return XXH3_64bits_digest(state.get());
+}
+
+TileEncoder::TileEncoder() : context_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
+  if (context_ == nullptr) throw std::bad_alloc();
+}
+TileEncoder::~TileEncoder() = default;
+
+TileRow TileEncoder::encode(std::size_t submap, const TileKey& key, const PointCloud& tile) {
+  check_tile_columns(tile);
+  if (static_cast<std::int64_t>(tile.size()) > kMaxTilePoints || !tile.origin.allFinite()) {
+    throw std::invalid_argument(fmt::format("tile {} {} {} has {} points and the origin {} {} {}",
+                                            key.x, key.y, key.z, tile.size(), tile.origin.x(),
+                                            tile.origin.y(), tile.origin.z()));
+  }
+  TileRow row;
+  row.submap = static_cast<std::int64_t>(submap);
+  row.key = key;
+  row.points = static_cast<std::int64_t>(tile.size());
+  row.colored = count_colored(tile);
+  // Adding zero turns -0, which SQLite cannot keep, into 0.
+  row.origin = tile.origin.array() + 0.0;
+  std::size_t i = 0;
+  for_each_stored_column(tile, [&](const auto& column) {
+    std::vector<std::byte>& memory = memory_[i];
+    if (i != kIntensityColumn || !column.empty()) {
+      const std::span<const std::byte> bytes = std::as_bytes(std::span(column));
+      memory.resize(ZSTD_compressBound(bytes.size()));
+      const std::size_t size = ZSTD_compressCCtx(context_.get(), memory.data(), memory.size(),
+                                                 bytes.data(), bytes.size(), kCompressionLevel);
+      // With this bound only memory can run out.
+      if (ZSTD_isError(size) != 0) throw std::bad_alloc();
+      row.blobs[i] = std::span(memory.data(), size);
+    }
+    ++i;
+  });
+  row.checksum = checksum(row);
+  return row;
+}
+
+TileDecoder::TileDecoder() : context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
+  if (context_ == nullptr) throw std::bad_alloc();
+}
+TileDecoder::~TileDecoder() = default;
+
+PointCloud TileDecoder::decode(const TileRow& row, const std::string& map_path) {
+  const auto fail = [&](const char* what) {
+    throw InputError(what,
+                     fmt::format("{}, tile {} {} {} of submap {}", map_path, row.key.x, row.key.y,
+                                 row.key.z, row.submap),
+                     "restore the map from a copy or map the drive again");
+  };
+  if (checksum(row) != row.checksum) fail("the checksum of a tile is wrong");
+  if (row.points < 0 || row.points > kMaxTilePoints || !row.origin.allFinite()) {
+    fail("a tile has an impossible size or origin");
+  }
+  PointCloud tile;
+  tile.origin = row.origin;
+  std::size_t i = 0;
+  for_each_stored_column(tile, [&](auto& column) {
+    const bool missing = i == kIntensityColumn && row.blobs[i].empty();
+    if (!missing &&
+        !decompress(context_.get(), row.blobs[i], static_cast<std::size_t>(row.points), column)) {
+      fail("a column of a tile cannot be decoded");
+    }
+    ++i;
+  });
+  if (count_colored(tile) != row.colored) fail("a tile has another number of coloured points");
+  return tile;
+}
+
+}  // namespace fovea

@@ -1,0 +1,80 @@
+// Tiles as the columns of a row: compressed, and protected by a checksum. Private to map/.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/map/tile_map.h"
+
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+namespace fovea {
+
+/// Calls `f(column)` for each column of a tile that is stored, in the order of the table.
+template <class Cloud, class F>
+void for_each_stored_column(Cloud& tile, F&& f) {
+  f(tile.position);
+  f(tile.color);
+  f(tile.camera);
+  f(tile.frame);
+  f(tile.range);
+  f(tile.incidence);
+  f(tile.interpolated);
+  f(tile.intensity);
+}
+inline constexpr std::size_t kStoredColumns = 8;
+inline constexpr std::size_t kIntensityColumn = 7;  // the only one that may be missing
+
+/// Points that one tile may hold; bounds what a damaged row can make a reader allocate.
+inline constexpr std::int64_t kMaxTilePoints = std::int64_t{1} << 26;
+
+/// A row of `tiles`.
+struct TileRow {
+  std::int64_t submap = 0;
+  TileKey key;
+  std::int64_t points = 0;
+  std::int64_t colored = 0;  ///< points that a camera has coloured
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  /// zstd frames; empty where the tile lacks the column. They belong to the codec or the database.
+  std::array<std::span<const std::byte>, kStoredColumns> blobs;
+  std::uint64_t checksum = 0;
+};
+
+/// XXH3, 64 bits, of a row's numbers and blobs (docs/map-format.md).
+std::uint64_t checksum(const TileRow& row);
+
+class TileEncoder {
+ public:
+  TileEncoder();
+  ~TileEncoder();
+
+  /// The row of a tile; its blobs are valid until the next call. std::logic_error if a column is
+  /// missing, std::invalid_argument if the tile has too many points or an origin that is not
+  /// finite.
+  TileRow encode(std::size_t submap, const TileKey& key, const PointCloud& tile);
+
+ private:
+  std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> context_;
+  std::array<std::vector<std::byte>, kStoredColumns> memory_;
+};
+
+class TileDecoder {
+ public:
+  TileDecoder();
+  ~TileDecoder();
+
+  /// The tile of a row; InputError that names tile and `map_path` if the row is damaged.
+  PointCloud decode(const TileRow& row, const std::string& map_path);
+
+ private:
+  std::unique_ptr<ZSTD_DCtx_s, std::size_t (*)(ZSTD_DCtx_s*)> context_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,222 @@
+#include "fovea/mapping/delaunay.h"
+
+#include <stdexcept>
+
+#include "fovea/mapping/hilbert_order.h"
+
+namespace fovea {
+
+void DelaunayTriangulation::clear() {
+  points_.clear();
+  triangles_.clear();
+  suspects_.clear();
+  collinear_.clear();
+}
+
+DelaunayTriangulation::Insertion DelaunayTriangulation::insert(GridPoint point, std::int32_t hint) {
+  if (!on_grid(point)) {
+    throw std::invalid_argument("Delaunay triangulation: point beyond the grid (2^29)");
+  }
+  if (hint < kNoTriangle || hint >= static_cast<std::int64_t>(triangles_.size())) {
+    throw std::invalid_argument("Delaunay triangulation: the hint is not one of its triangles");
+  }
+  if (triangles_.empty()) return insert_while_collinear(point);
+
+  const std::int32_t triangle = locate(point, hint == kNoTriangle ? 0 : hint);
+  for (const std::int32_t vertex : vertices(triangle)) {
+    if (vertex != kInfiniteVertex && at(vertex) == point) return {vertex, false, triangle};
+  }
+  const std::int32_t vertex = add_vertex(point);
+  split(triangle, vertex);
+  legalize_star(triangle);
+  return {vertex, true, triangle};
+}
+
+std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points) {
+  points_.reserve(points_.size() + points.size());
+  triangles_.reserve(2 * points_.capacity());
+  std::vector<std::int32_t> vertex_of(points.size());
+  std::int32_t hint = kNoTriangle;
+  for (const std::uint32_t i : hilbert_order(points)) {
+    const Insertion insertion = insert(points[i], hint);
+    vertex_of[i] = insertion.vertex;
+    hint = insertion.triangle;
+  }
+  return vertex_of;
+}
+
+std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points,
+                                                        std::span<const std::int32_t> triangles) {
+  if (points.size() != triangles.size()) {
+    throw std::invalid_argument("Delaunay triangulation: as many triangles as points are needed");
+  }
+  points_.reserve(points_.size() + points.size());
+  triangles_.reserve(2 * points_.capacity());
+
+  const auto triangle_count = static_cast<std::int64_t>(triangles_.size());
+  const auto first_new = static_cast<std::int32_t>(points_.size());
+  std::vector<std::int32_t> vertex_of(points.size(), kInfiniteVertex);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::int32_t triangle = triangles[i];
+    // What has been split already has its new vertex in front.
+    if (triangle >= 0 && triangle < triangle_count && apex(4 * triangle) < first_new &&
+        strictly_inside(points[i], triangle)) {
+      vertex_of[i] = add_vertex(points[i]);
+      split(triangle, vertex_of[i]);
+    }
+  }
+  auto second = static_cast<std::int32_t>(triangle_count);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (vertex_of[i] == kInfiniteVertex) continue;
+    for (const std::int32_t triangle : {triangles[i], second, second + 1}) {
+      suspects_.push_back(4 * triangle);
+    }
+    second += 2;
+    legalize_suspects();
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (vertex_of[i] == kInfiniteVertex) vertex_of[i] = insert(points[i], triangles[i]).vertex;
+  }
+  return vertex_of;
+}
+
+std::int32_t DelaunayTriangulation::add_vertex(GridPoint point) {
+  if (points_.size() == kMaxVertices) {
+    throw std::length_error("Delaunay triangulation: more than 2^27 vertices");
+  }
+  points_.push_back(point);
+  return static_cast<std::int32_t>(points_.size()) - 1;
+}
+
+DelaunayTriangulation::Insertion DelaunayTriangulation::insert_while_collinear(GridPoint point) {
+  if (const auto found = collinear_.find(point); found != collinear_.end()) {
+    return {found->second, false, kNoTriangle};
+  }
+  const std::int32_t vertex = add_vertex(point);
+  if (vertex < 2 || orientation(at(0), at(1), point) == 0) {
+    collinear_.emplace(point, vertex);
+    return {vertex, true, kNoTriangle};
+  }
+  start_with(vertex);
+  return {vertex, true, 0};
+}
+
+// The first triangle and the three outside of its edges; then the vertices that had to wait.
+void DelaunayTriangulation::start_with(std::int32_t apex_vertex) {
+  const bool left = orientation(at(0), at(1), at(apex_vertex)) > 0;
+  const std::int32_t a = left ? 0 : 1, b = left ? 1 : 0, c = apex_vertex;
+  triangles_.push_back({{a, b, c}, {}});
+  triangles_.push_back({{kInfiniteVertex, c, b}, {}});
+  triangles_.push_back({{kInfiniteVertex, a, c}, {}});
+  triangles_.push_back({{kInfiniteVertex, b, a}, {}});
+  for (const Edge side : {0, 1, 2}) {
+    const Edge outside = 4 * (side + 1);
+    join(side, outside);
+    join(outside + 1, 4 * (previous(side) + 1) + 2);
+  }
+  collinear_.clear();
+  for (std::int32_t vertex = 2; vertex < apex_vertex; ++vertex) {
+    const std::int32_t triangle = locate(at(vertex), 0);
+    split(triangle, vertex);
+    legalize_star(triangle);
+  }
+}
+
+// Visibility walk: on through any edge that has the point on its far side. In a Delaunay
+// triangulation it cannot run in circles: with each step the point's power with respect to the
+// triangle's circumcircle falls, or stays while the walk crosses a set of cocircular triangles,
+// whose dual graph is a tree.
+// @return the triangle that holds the point, maybe on an edge or a corner; or, of those outside,
+// one whose edge of the hull has the point strictly in front
+std::int32_t DelaunayTriangulation::locate(GridPoint point, std::int32_t hint) const {
+  Edge entry = 4 * hint;
+  for (int corner = 0; corner < 3; ++corner) {
+    if (apex(4 * hint + corner) == kInfiniteVertex) entry = twin(4 * hint + corner);
+  }
+  const auto beyond = [&](Edge edge) {
+    return orientation(at(apex(next(edge))), at(apex(previous(edge))), point) < 0;
+  };
+  if (beyond(entry)) entry = twin(entry);
+  while (apex(entry) != kInfiniteVertex) {
+    if (beyond(next(entry))) {
+      entry = twin(next(entry));
+    } else if (beyond(previous(entry))) {
+      entry = twin(previous(entry));
+    } else {
+      break;
+    }
+  }
+  return entry >> 2;
+}
+
+bool DelaunayTriangulation::strictly_inside(GridPoint point, std::int32_t triangle) const {
+  if (!is_finite(static_cast<std::size_t>(triangle))) return false;
+  const auto [a, b, c] = vertices(static_cast<std::size_t>(triangle));
+  return orientation(at(a), at(b), point) > 0 && orientation(at(b), at(c), point) > 0 &&
+         orientation(at(c), at(a), point) > 0;
+}
+
+// Three triangles for one, the new vertex in front. A vertex on an edge makes one of them flat for
+// a moment: the edge is then flipped, for the vertex lies inside the circle beyond it.
+void DelaunayTriangulation::split(std::int32_t triangle, std::int32_t vertex) {
+  const auto [a, b, c, _v] = triangles_[triangle].vertex;
+  const auto [edge_a, edge_b, edge_c, _e] = triangles_[triangle].twin;
+  const auto t_b = static_cast<std::int32_t>(triangles_.size()), t_c = t_b + 1;
+  triangles_[triangle] = {{vertex, b, c}, {edge_a, 4 * t_b + 2, 4 * t_c + 1}};
+  triangles_.push_back({{vertex, c, a}, {edge_b, 4 * t_c + 2, 4 * triangle + 1}});
+  triangles_.push_back({{vertex, a, b}, {edge_c, 4 * triangle + 2, 4 * t_b + 1}});
+  twin(edge_a) = 4 * triangle;
+  twin(edge_b) = 4 * t_b;
+  twin(edge_c) = 4 * t_c;
+}
+
+// Whether the (finite) vertex before the edge lies strictly inside the circumcircle of the triangle
+// beyond it. The circle of a triangle outside is the open half-plane in front of its edge of the
+// hull, with that edge.
+bool DelaunayTriangulation::must_flip(Edge edge) const {
+  const std::int32_t p = apex(edge), a = apex(next(edge)), b = apex(previous(edge));
+  const std::int32_t q = apex(twin(edge));
+  if ((a | b | q) >= 0) return in_circle(at(q), at(b), at(a), at(p));
+  if (q == kInfiniteVertex) return orientation(at(p), at(a), at(b)) == 0;
+  return orientation(at(q), at(b == kInfiniteVertex ? p : b), at(a == kInfiniteVertex ? p : a)) > 0;
+}
+
+// Triangles (p, a, b), (q, b, a) -> (p, a, q), (q, b, p); p and q keep their corners, so that
+// `edge` is then (a, q), still opposite p.
+void DelaunayTriangulation::flip(Edge edge) {
+  const Edge beyond = twin(edge);
+  const Edge edge_bp = twin(next(edge)), edge_aq = twin(next(beyond));
+  apex(previous(edge)) = apex(beyond);
+  apex(previous(beyond)) = apex(edge);
+  join(edge, edge_aq);
+  join(beyond, edge_bp);
+  join(next(edge), next(beyond));
+}
+
+// Makes Delaunay again what inserting the vertex in front of `triangle` has disturbed (Lawson).
+// Only edges opposite the vertex can be illegal; they are met in one turn around it, each edge that
+// a flip brings into sight included.
+void DelaunayTriangulation::legalize_star(std::int32_t triangle) {
+  Edge edge = 4 * triangle;
+  const std::int32_t first = apex(next(edge));
+  do {
+    while (must_flip(edge)) flip(edge);
+    edge = next(twin(next(edge)));
+  } while (apex(next(edge)) != first);
+}
+
+// Lawson's algorithm from any edges: after a flip all four edges around it are suspects anew. A
+// suspect whose edge number has come to mean another edge needs no care: flips that rename edges
+// make suspects of them.
+void DelaunayTriangulation::legalize_suspects() {
+  while (!suspects_.empty()) {
+    const Edge edge = suspects_.back();
+    suspects_.pop_back();
+    if (!must_flip(edge)) continue;
+    const Edge beyond = twin(edge);
+    flip(edge);
+    for (const Edge e : {edge, previous(edge), beyond, previous(beyond)}) suspects_.push_back(e);
+  }
+}
+
+}  // namespace fovea

@@ -1,0 +1,99 @@
+#include "fovea/mapping/foveal_region.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+
+void FovealOptions::validate() const {
+  const auto reject = [](const char* what, const char* field, const char* remedy) {
+    throw ConfigError(what, field, remedy);
+  };
+  if (!(near_range >= 0)) reject("a range is negative", "foveal.near_range", "give metres >= 0");
+  if (!(far_range > near_range && far_range <= 1000)) {
+    reject("the white zone is empty or too large", "foveal.far_range",
+           "give metres above near_range and up to 1000");
+  }
+  constexpr double quarter = std::numbers::pi / 2;
+  if (!(max_incidence > 0 && max_incidence <= quarter)) {
+    reject("an angle is out of range", "foveal.max_incidence", "give degrees above 0 and up to 90");
+  }
+  for (const AngularSlice& slice : slices) {
+    if (!(slice.azimuth_min < slice.azimuth_max && slice.elevation_min < slice.elevation_max &&
+          slice.azimuth_min > -quarter && slice.azimuth_max < quarter &&
+          slice.elevation_min > -quarter && slice.elevation_max < quarter)) {
+      reject("a slice is empty or reaches beyond 90 degrees", "foveal.slices",
+             "give [azimuth_min, azimuth_max, elevation_min, elevation_max] in degrees");
+    }
+  }
+}
+
+FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
+    : options_(options),
+      camera_(camera),
+      lidar_in_cam_(camera.T_cam_lidar.translation().cast<float>()) {
+  for (const AngularSlice& s : options.slices) {
+    slices_.push_back({float(std::tan(s.azimuth_min)), float(std::tan(s.azimuth_max)),
+                       float(std::tan(s.elevation_min)), float(std::tan(s.elevation_max))});
+  }
+}
+
+bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const {
+  if (!(p_cam.z() > float(Camera::kMinDepth))) return false;
+  const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
+  if (range2 <= float(options_.near_range * options_.near_range) ||
+      range2 >= float(options_.far_range * options_.far_range)) {
+    return false;
+  }
+  const float inverse_depth = 1 / p_cam.z();
+  pixel = {float(camera_.fx) * p_cam.x() * inverse_depth + float(camera_.cx),
+           float(camera_.fy) * p_cam.y() * inverse_depth + float(camera_.cy)};
+  if (!(pixel.x() >= 0 && pixel.x() <= float(camera_.width - 1) && pixel.y() >= 0 &&
+        pixel.y() <= float(camera_.height - 1))) {
+    return false;
+  }
+  if (slices_.empty()) return true;
+  const float right = p_cam.x() * inverse_depth;
+  const float up = -p_cam.y() / std::hypot(p_cam.x(), p_cam.z());
+  for (const SlopeBounds& s : slices_) {
+    if (right >= s.right_min && right <= s.right_max && up >= s.up_min && up <= s.up_max) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::uint32_t> foveal_points(const PointCloud& points_cam, const FovealRegion& region) {
+  std::vector<std::uint32_t> inside;
+  Eigen::Vector2f pixel;
+  for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
+    if (region.contains(points_cam.position[i], pixel)) inside.push_back(i);
+  }
+  return inside;
+}
+
+std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {
+  const std::size_t n = points_cam.size();
+  points_cam.range.resize(n);
+  points_cam.incidence.resize(n);
+  std::vector<std::uint32_t> kept;
+  kept.reserve(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const Eigen::Vector3f& p = points_cam.position[i];
+    const Eigen::Vector3f& normal = points_cam.normal[i];
+    const float range = p.norm();
+    points_cam.range[i] = range;
+    points_cam.incidence[i] =
+        normal.squaredNorm() > 0.5f
+            ? std::acos(std::clamp(-normal.dot(p) / range, -1.0f, 1.0f))
+            : std::numeric_limits<float>::quiet_NaN();
+    if (!(points_cam.incidence[i] > float(max_incidence))) kept.push_back(i);
+  }
+  if (kept.size() < n) points_cam = points_cam.select(kept);
+  return n - kept.size();
+}
+
+}  // namespace fovea

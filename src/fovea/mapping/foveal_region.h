@@ -1,0 +1,63 @@
+// The foveal region (paper: Foveal Processing; SPEC section 4): where texture is mapped at all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+/// An angular slice of a camera's view, about the optical axis; azimuth is positive to the right,
+/// elevation is positive upwards (radians).
+struct AngularSlice {
+  double azimuth_min = 0, azimuth_max = 0;
+  double elevation_min = 0, elevation_max = 0;
+};
+
+struct FovealOptions {
+  double near_range = 3.0;   ///< m from the LiDAR: nearer is the near blind zone (the vehicle itself)
+  double far_range = 15.0;   ///< m from the LiDAR: from here on is the far blind zone
+  /// Union of slices that is processed; empty: the whole view of the camera.
+  std::vector<AngularSlice> slices;
+  /// Largest angle between view ray and surface normal (paper: "beyond about 70 degrees no fine
+  /// texture"), rad; pi / 2 switches it off. Points of unknown normal pass.
+  double max_incidence = 1.5707963267948966;
+  void validate() const;  ///< ConfigError that names the field
+};
+
+/// The 3D and 2D foveal region of one camera at one moment.
+class FovealRegion {
+ public:
+  FovealRegion(const FovealOptions& options, const Camera& camera);
+
+  const Camera& camera() const { return camera_; }
+  double far_range() const { return options_.far_range; }
+
+  /// Whether a point in the camera's frame lies in the white zone, the image and a slice.
+  /// @param pixel  receives the projection where the answer is yes
+  bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
+
+ private:
+  /// Slices as bounds on the ray's slopes, so that no point costs an arc tangent.
+  struct SlopeBounds {
+    float right_min, right_max;  // tan(azimuth) = x / z
+    float up_min, up_max;        // tan(elevation) = -y / hypot(x, z)
+  };
+  FovealOptions options_;
+  Camera camera_;
+  Eigen::Vector3f lidar_in_cam_;
+  std::vector<SlopeBounds> slices_;
+};
+
+/// Indices of the points in the region.
+/// @param points_cam  camera frame, origin 0
+std::vector<std::uint32_t> foveal_points(const PointCloud& points_cam, const FovealRegion& region);
+
+/// Fills range (m from the camera) and incidence (rad between view ray and normal; NaN where the normal
+/// is unknown), and drops the points that look away by more than `max_incidence` (rad). Returns how many.
+/// @param points_cam  camera frame, origin 0, with normals
+std::size_t limit_incidence(PointCloud& points_cam, double max_incidence);
+
+}  // namespace fovea

@@ -1,0 +1,120 @@
+#include "fovea/mapping/foveal_region.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// A camera that looks along the LiDAR's x axis from its place, 90 degrees wide.
+Camera forward_camera() {
+  Camera camera;
+  camera.width = 1001;
+  camera.height = 801;
+  camera.fx = camera.fy = 500;
+  camera.cx = 500;
+  camera.cy = 400;
+  camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return camera;
+}
+
+bool contains(const FovealOptions& options, const Eigen::Vector3f& p_cam,
+              const Camera& camera = forward_camera()) {
+  Eigen::Vector2f pixel;
+  return FovealRegion(options, camera).contains(p_cam, pixel);
+}
+
+TEST(FovealRegion, WhiteZoneLiesBetweenTheBlindZones) {
+  EXPECT_FALSE(contains({}, {0, 0, 2.9f}));
+  EXPECT_TRUE(contains({}, {0, 0, 3.1f}));
+  EXPECT_TRUE(contains({}, {0, 0, 14.9f}));
+  EXPECT_FALSE(contains({}, {0, 0, 15.1f}));
+}
+
+TEST(FovealRegion, RangeIsMeasuredFromTheLidar) {
+  Camera camera = forward_camera();
+  camera.T_cam_lidar.translation() = Eigen::Vector3d(0, 0, -1);  // the LiDAR is 1 m behind the camera
+  EXPECT_TRUE(contains({}, {0, 0, 2.1f}, camera));
+  EXPECT_FALSE(contains({}, {0, 0, 14.1f}, camera));
+}
+
+TEST(FovealRegion, NothingOutsideTheImageOrBehind) {
+  EXPECT_TRUE(contains({}, {4.99f, 0, 5}));
+  EXPECT_FALSE(contains({}, {5.01f, 0, 5}));
+  EXPECT_FALSE(contains({}, {0, 0, -5}));
+  EXPECT_FALSE(contains({}, {0, 0, 0}));
+}
+
+TEST(FovealRegion, PixelIsTheProjection) {
+  Eigen::Vector2f pixel;
+  ASSERT_TRUE(FovealRegion({}, forward_camera()).contains({1, -2, 5}, pixel));
+  EXPECT_NEAR(pixel.x(), 600, 1e-3);
+  EXPECT_NEAR(pixel.y(), 200, 1e-3);
+}
+
+// The paper's figure: 50 x 10 degrees, tilted down 15.
+TEST(FovealRegion, SliceTiltedDown) {
+  FovealOptions options;
+  options.slices = {{-25 * kDegree, 25 * kDegree, -20 * kDegree, -10 * kDegree}};
+  const auto at = [&](double azimuth, double elevation) {
+    // Elevation is above the horizontal plane through the camera, azimuth within that plane.
+    const double a = azimuth * kDegree, e = elevation * kDegree;
+    return contains(options, Eigen::Vector3d(8 * std::cos(e) * std::sin(a), -8 * std::sin(e),
+                                             8 * std::cos(e) * std::cos(a))
+                                 .cast<float>());
+  };
+  EXPECT_TRUE(at(0, -15));
+  EXPECT_TRUE(at(24.5, -15));
+  EXPECT_TRUE(at(-24.5, -10.5));
+  EXPECT_FALSE(at(25.5, -15));
+  EXPECT_FALSE(at(0, -9.5));
+  EXPECT_FALSE(at(0, -20.5));
+  EXPECT_FALSE(at(0, 15));
+}
+
+TEST(FovealRegion, SlicesAreAUnion) {
+  FovealOptions options;
+  options.slices = {{-25 * kDegree, 25 * kDegree, -5 * kDegree, 5 * kDegree},
+                    {-5 * kDegree, 5 * kDegree, -25 * kDegree, 25 * kDegree}};
+  EXPECT_TRUE(contains(options, {3, 0, 8}));
+  EXPECT_TRUE(contains(options, {0, 3, 8}));
+  EXPECT_FALSE(contains(options, {3, 3, 8}));
+}
+
+TEST(LimitIncidence, DropsSurfacesSeenEdgeOn) {
+  PointCloud cloud;
+  for (const double degrees : {0.0, 30.0, 69.0, 71.0, 89.0}) {
+    cloud.position.emplace_back(0.f, 0.f, 10.f);
+    cloud.normal.emplace_back(float(std::sin(degrees * kDegree)), 0.f,
+                              -float(std::cos(degrees * kDegree)));
+  }
+  cloud.position.emplace_back(0.f, 3.f, 4.f);
+  cloud.normal.emplace_back(0.f, 0.f, 0.f);  // unknown: passes
+  EXPECT_EQ(limit_incidence(cloud, 70 * kDegree), 2u);
+  ASSERT_EQ(cloud.size(), 4u);
+  EXPECT_NEAR(cloud.incidence[1], 30 * kDegree, 1e-5);
+  EXPECT_NEAR(cloud.range[1], 10, 1e-6);
+  EXPECT_TRUE(std::isnan(cloud.incidence[3]));
+  EXPECT_NEAR(cloud.range[3], 5, 1e-6);
+}
+
+TEST(FovealOptions, AreChecked) {
+  EXPECT_NO_THROW(FovealOptions{}.validate());
+  FovealOptions options;
+  options.far_range = 2;
+  EXPECT_THROW(options.validate(), ConfigError);
+  options = {};
+  options.slices = {{0.1, -0.1, 0, 1}};
+  EXPECT_THROW(options.validate(), ConfigError);
+  options = {};
+  options.max_incidence = 2;
+  EXPECT_THROW(options.validate(), ConfigError);
+}
+
+}  // namespace
+}  // namespace fovea

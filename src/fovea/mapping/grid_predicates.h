@@ -1,0 +1,66 @@
+// Points on a fixed-point grid and the two predicates of a Delaunay triangulation, both exact.
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <cstdint>
+
+namespace fovea {
+
+/// A point of the plane on an integer grid. The predicates below are exact while both coordinates
+/// lie within [-kMaxGridCoordinate, kMaxGridCoordinate].
+struct GridPoint {
+  std::int32_t x = 0, y = 0;
+  friend auto operator<=>(const GridPoint&, const GridPoint&) = default;
+};
+
+/// 2^29. Differences then have at most 30 bits, their products and sums of two products 61, and the
+/// in-circle determinant, three products of such sums, 124: all fit their integer types.
+inline constexpr std::int32_t kMaxGridCoordinate = 1 << 29;
+
+inline bool on_grid(GridPoint p) {
+  return p.x >= -kMaxGridCoordinate && p.x <= kMaxGridCoordinate && p.y >= -kMaxGridCoordinate &&
+         p.y <= kMaxGridCoordinate;
+}
+
+/// Twice the signed area of the triangle (a, b, c): positive if counter-clockwise (x right, y up),
+/// zero if collinear.
+inline std::int64_t orientation(GridPoint a, GridPoint b, GridPoint c) {
+  const std::int64_t abx = b.x - a.x, aby = b.y - a.y, acx = c.x - a.x, acy = c.y - a.y;
+  return abx * acy - aby * acx;
+}
+
+/// Whether p lies strictly inside the circle through a, b, c (counter-clockwise), in integers only.
+inline bool in_circle_exact(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
+  __extension__ using Int128 = __int128;
+  const std::int64_t ax = a.x - p.x, ay = a.y - p.y;
+  const std::int64_t bx = b.x - p.x, by = b.y - p.y;
+  const std::int64_t cx = c.x - p.x, cy = c.y - p.y;
+  return Int128{ax * ax + ay * ay} * (bx * cy - by * cx) +
+             Int128{bx * bx + by * by} * (cx * ay - cy * ax) +
+             Int128{cx * cx + cy * cy} * (ax * by - ay * bx) >
+         0;
+}
+
+/// Whether p lies strictly inside the circle through a, b, c (counter-clockwise). Exact: a
+/// floating-point filter decides all but the nearly cocircular cases, integers those.
+inline bool in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
+  const double ax = a.x - p.x, ay = a.y - p.y;
+  const double bx = b.x - p.x, by = b.y - p.y;
+  const double cx = c.x - p.x, cy = c.y - p.y;
+  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
+  const double bxcy = bx * cy, bycx = by * cx;
+  const double cxay = cx * ay, cyax = cy * ax;
+  const double axby = ax * by, aybx = ay * bx;
+  const double determinant = aa * (bxcy - bycx) + bb * (cxay - cyax) + cc * (axby - aybx);
+  // The differences are exact, so the determinant is off by at most 10 u (u = 2^-53) times the same
+  // sum with absolute values (Shewchuk 1997, incircle bound A); 16 u covers that sum's own
+  // rounding.
+  const double magnitude = aa * (std::abs(bxcy) + std::abs(bycx)) +
+                           bb * (std::abs(cxay) + std::abs(cyax)) +
+                           cc * (std::abs(axby) + std::abs(aybx));
+  if (std::abs(determinant) > 0x1.0p-49 * magnitude) return determinant > 0;
+  return in_circle_exact(a, b, c, p);
+}
+
+}  // namespace fovea

@@ -1,0 +1,64 @@
+// Ray filtering (paper: Ray-filtering and Texture Mapping; SPEC section 5).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+enum class RayFilterMode {
+  kPaper,  ///< both tests, as in the paper
+  kOff,    ///< every point is kept
+};
+
+struct RayFilterOptions {
+  RayFilterMode mode = RayFilterMode::kPaper;
+  int window = 5;             ///< M: edge of the pixel window, odd
+  double outlier_rate = 2.0;  ///< c: smaller rejects more
+  void validate() const;      ///< ConfigError that names the field
+};
+
+/// What became of a scan point.
+enum class RayVerdict : std::uint8_t {
+  kVisible,    ///< new surface: to be coloured and added
+  kOccluding,  ///< it would hide a map point
+  kOccluded,   ///< its length is an outlier among the rays around it
+  kShared,     ///< a nearer point of the same scan has its pixel
+};
+
+/// A ray from a point to the camera centre, as the filter sees it.
+struct Ray {
+  Eigen::Vector2f pixel;  ///< projection, inside the image
+  float length;           ///< m, from the point to the camera centre
+};
+
+/// The ray filter of one camera; its pixel grids are kept between frames.
+///
+/// Step 1 (paper: "we assign p to a ray having shortest ray-length d"): the shortest ray owns a pixel; a
+/// scan point that owns a pixel to which a map point also projects is occluding. Step 2 (paper Eq. 1-2):
+/// a scan point is visible if its length lies within c standard deviations of the mean over the owners
+/// in the M x M window around it. Of equally short rays the map's comes first, then the lower index.
+///
+/// A value can lie at most (N - 1) / sqrt(N) deviations off the mean of N values: with c = 2, windows of
+/// five or fewer rays reject nothing.
+class RayFilter {
+ public:
+  /// Verdict on each scan ray.
+  std::vector<RayVerdict> filter(std::span<const Ray> scan, std::span<const Ray> map,
+                                 const Camera& camera, const RayFilterOptions& options);
+
+ private:
+  struct Owner {
+    float length;
+    std::int32_t scan_index;  // kMapOwner: a map point
+    bool map_point;           // whether any map point projects here
+  };
+  void assign_owners(std::span<const Ray> scan, std::span<const Ray> map, const Camera& camera);
+
+  std::vector<Owner> owners_;  // height x width
+};
+
+}  // namespace fovea

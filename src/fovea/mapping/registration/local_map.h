@@ -1,0 +1,63 @@
+// The target of our default registration: recent scans around the vehicle (SPEC section 2.5).
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "fovea/geometry/kd_tree.h"
+#include "fovea/geometry/rigid_motion.h"
+#include "fovea/mapping/registration/registration.h"
+
+namespace fovea {
+
+struct LocalMapOptions {
+  int max_keyframes = 20;   ///< scans in the map
+  double max_range = 60.0;  ///< m from the newest scan's sensor; points further away are left out
+  double voxel = 0.25;      ///< m, at most one point a voxel; 0 keeps all
+  void validate() const;    ///< ConfigError that names the field
+};
+
+/// The last scans of known pose, thinned to one point a voxel.
+///
+/// A pure function of the last max_keyframes scans and poses added (and the options): a run that
+/// resumes and adds those again gets the same target, bit by bit.
+class LocalMap {
+ public:
+  /// A cloud to register against, in `local` axes relative to a point near the vehicle, so that
+  /// floats stay precise however far the vehicle is from local's origin.
+  struct Target {
+    Eigen::Vector3d origin_local;  ///< of the points: the newest scan's sensor
+    RegistrationCloud cloud;
+    KdTree tree;  // over cloud.points
+  };
+
+  explicit LocalMap(const LocalMapOptions& options);
+
+  /// Adds a scan and forgets the one max_keyframes before it.
+  /// @param cloud_lidar  prepared (with normals if the method needs them: all scans alike); LiDAR
+  /// frame
+  void add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar);
+
+  bool empty() const { return keyframes_.empty(); }
+
+  /// std::logic_error if the map is empty. Valid until the next add().
+  const Target& target() const;
+
+ private:
+  struct Keyframe {
+    RegistrationCloud cloud_lidar;
+    RigidMotion T_local_lidar;
+  };
+  RegistrationCloud thinned(const Eigen::Vector3d& origin_local) const;
+
+  LocalMapOptions options_;
+  std::deque<Keyframe> keyframes_;  // oldest first
+  std::unique_ptr<Target> target_;
+};
+
+/// Registers a scan to the map. T_target_source of the guess and of the result is T_local_lidar.
+RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,
+                               const RigidMotion& guess_T_local_lidar,
+                               const RegistrationOptions& options);
+
+}  // namespace fovea

@@ -1,0 +1,122 @@
+#include "fovea/mapping/registration/local_map.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "fovea/base/errors.h"
+#include "fovea/mapping/registration/test_scenes.h"
+
+namespace fovea {
+namespace {
+
+using test::motion;
+
+RegistrationCloud scan(std::uint64_t seed, const RigidMotion& T_local_lidar) {
+  return prepare_cloud(test::transformed(T_local_lidar.inverse(),
+                                         test::sample(test::room_corner(), 20, seed, 0.005)),
+                       RegistrationOptions());
+}
+
+RigidMotion pose(int i) { return motion(0, 0, 0.02 * i, 0.2 * i, -0.1 * i, 0); }
+
+TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
+  LocalMapOptions options;
+  options.max_keyframes = 4;
+  LocalMap whole(options), resumed(options);
+  for (int i = 0; i < 10; ++i) whole.add(scan(i, pose(i)), pose(i));
+  for (int i = 6; i < 10; ++i) resumed.add(scan(i, pose(i)), pose(i));
+  const LocalMap::Target& a = whole.target();
+  const LocalMap::Target& b = resumed.target();
+  EXPECT_EQ(a.origin_local, b.origin_local);
+  EXPECT_EQ(a.cloud.points, b.cloud.points);
+  EXPECT_EQ(a.cloud.normals, b.cloud.normals);
+
+  const RegistrationCloud source = scan(99, pose(10));
+  EXPECT_EQ(register_to(whole, source, pose(9), {}).T_target_source.matrix(),
+            register_to(resumed, source, pose(9), {}).T_target_source.matrix());
+}
+
+TEST(LocalMap, ForgetsOldScans) {
+  LocalMapOptions options;
+  options.max_keyframes = 1;
+  LocalMap map(options);
+  map.add(scan(1, pose(1)), pose(1));
+  map.add({{{5, 0, 0}}, {{-1, 0, 0}}}, RigidMotion::Identity());
+  EXPECT_EQ(map.target().cloud.points.size(), 1u);
+}
+
+TEST(LocalMap, HoldsOnePointAVoxelWithinReach) {
+  LocalMapOptions options;
+  options.max_range = 5;
+  options.voxel = 0.5;
+  LocalMap map(options);
+  for (int i = 0; i < 3; ++i) map.add(scan(i, pose(i)), pose(i));
+  std::set<std::tuple<int, int, int>> voxels;
+  for (const Eigen::Vector3f& p : map.target().cloud.points) {
+    EXPECT_LE(p.norm(), 5.0001f);
+    const Eigen::Vector3i v = (p / 0.5f).array().floor().cast<int>();
+    EXPECT_TRUE(voxels.emplace(v.x(), v.y(), v.z()).second);
+  }
+  EXPECT_GT(voxels.size(), 300u);
+}
+
+TEST(LocalMap, TurnsNormalsWithTheScan) {
+  LocalMap map{LocalMapOptions()};
+  const RigidMotion T = motion(0, 0, 1.0, 3, 4, 5);
+  map.add({{{5, 0, 0}}, {{-1, 0, 0}}}, T);
+  const LocalMap::Target& target = map.target();
+  EXPECT_LT(
+      (target.cloud.points[0].cast<double>() + target.origin_local - T * Eigen::Vector3d(5, 0, 0))
+          .norm(),
+      1e-6);
+  EXPECT_LT((target.cloud.normals[0].cast<double>() + T.linear().col(0)).norm(), 1e-6);
+}
+
+TEST(LocalMap, RegistersFarFromTheOriginOfItsFrame) {
+  // 50 km out, floats in `local` itself would be good to 4 mm only.
+  const RigidMotion far = motion(0, 0, 0.5, 50000, -30000, 200);
+  LocalMap map{LocalMapOptions()};
+  for (int i = 0; i < 4; ++i) map.add(scan(i, pose(i)), far * pose(i));
+  const RigidMotion truth = far * pose(4);
+  const RegistrationResult result = register_to(map, scan(44, pose(4)), far * pose(3), {});
+  EXPECT_TRUE(result.converged);
+  const Twist error = log_se3(truth.inverse() * result.T_target_source);
+  EXPECT_LT(error.tail<3>().norm(), 0.003);
+  EXPECT_LT(error.head<3>().norm(), 0.001);
+}
+
+TEST(LocalMap, EmptyMapHasNoTarget) {
+  LocalMap map{LocalMapOptions()};
+  EXPECT_TRUE(map.empty());
+  EXPECT_THROW(map.target(), std::logic_error);
+  map.add({}, RigidMotion::Identity());
+  EXPECT_FALSE(map.empty());
+  const RegistrationResult result = register_to(map, scan(1, pose(0)), RigidMotion::Identity(), {});
+  EXPECT_FALSE(result.converged);
+}
+
+TEST(LocalMapOptions, ValidateNamesTheField) {
+  EXPECT_NO_THROW(LocalMapOptions().validate());
+  const auto expect_rejected = [](auto change, const char* field) {
+    LocalMapOptions options;
+    change(options);
+    try {
+      options.validate();
+      ADD_FAILURE() << field << " was not rejected";
+    } catch (const ConfigError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(field));
+    }
+    EXPECT_THROW(LocalMap{options}, ConfigError);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect_rejected([](LocalMapOptions& o) { o.max_keyframes = 0; }, "local_map.max_keyframes");
+  expect_rejected([](LocalMapOptions& o) { o.max_range = 0; }, "local_map.max_range");
+  expect_rejected([&](LocalMapOptions& o) { o.voxel = nan; }, "local_map.voxel");
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,63 @@
+#include "fovea/mapping/registration/normals.h"
+
+#include <gtest/gtest.h>
+
+#include "fovea/mapping/registration/test_scenes.h"
+
+namespace fovea {
+namespace {
+
+TEST(Normals, OfPlanesPointToTheSensor) {
+  // Walls and floor of a corridor, away from their edges.
+  const std::vector<Eigen::Vector3f> points = test::sample(test::corridor(5), 40, 1);
+  const KdTree tree(points);
+  const std::vector<Eigen::Vector3f> normals = estimate_normals(points, tree, 10);
+  ASSERT_EQ(normals.size(), points.size());
+  std::size_t checked = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool floor = points[i].z() == -1.7f;
+    if (floor ? std::abs(points[i].y()) > 1 : points[i].z() < -0.7f) continue;
+    const Eigen::Vector3f truth =
+        floor ? Eigen::Vector3f(0, 0, 1) : Eigen::Vector3f(0, points[i].y() < 0 ? 1 : -1, 0);
+    EXPECT_GT(normals[i].dot(truth), 0.99999f);
+    ++checked;
+  }
+  EXPECT_GT(checked, points.size() / 2);
+}
+
+TEST(Normals, FarFromTheOriginAndObliqueStayExact) {
+  const RigidMotion T = test::motion(0.4, -0.3, 0.7, 90, -40, 5);
+  const std::vector<Eigen::Vector3f> points =
+      test::transformed(T, test::sample({{{-2, -2, 0}, {4, 0, 0}, {0, 4, 0}}}, 40, 2));
+  const KdTree tree(points);
+  const Eigen::Vector3f truth = T.linear().col(2).cast<float>();
+  for (const Eigen::Vector3f& normal : estimate_normals(points, tree, 10)) {
+    EXPECT_GT(std::abs(normal.dot(truth)), 0.9999f);
+    EXPECT_NEAR(normal.norm(), 1, 1e-6);
+  }
+}
+
+TEST(Normals, NoiseTiltsThemLittle) {
+  const std::vector<Eigen::Vector3f> points =
+      test::sample({{{5, -3, -3}, {0, 6, 0}, {0, 0, 6}}}, 30, 3, 0.01);
+  const KdTree tree(points);
+  double sum = 0;
+  for (const Eigen::Vector3f& normal : estimate_normals(points, tree, 15)) sum -= normal.x();
+  EXPECT_GT(sum / static_cast<double>(points.size()), 0.998);  // 3.6 degrees
+}
+
+TEST(Normals, UndeterminedAreZero) {
+  std::vector<Eigen::Vector3f> line;
+  for (int i = 0; i < 20; ++i) line.emplace_back(5, 0.1f * static_cast<float>(i), 1);
+  for (const auto& cloud : {line, std::vector<Eigen::Vector3f>(20, Eigen::Vector3f(1, 2, 3)),
+                            std::vector<Eigen::Vector3f>{{1, 2, 3}, {2, 3, 4}}}) {
+    const KdTree tree(cloud);
+    for (const Eigen::Vector3f& normal : estimate_normals(cloud, tree, 10)) {
+      EXPECT_EQ(normal, Eigen::Vector3f::Zero());
+    }
+  }
+  EXPECT_TRUE(estimate_normals({}, KdTree({}), 10).empty());
+}
+
+}  // namespace
+}  // namespace fovea

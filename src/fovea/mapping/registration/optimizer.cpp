@@ -1,0 +1,120 @@
+#include "fovea/mapping/registration/optimizer.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+
+/// Steps on one set of pairs: the pairs are about to change, so that more would be wasted.
+constexpr int kMaxSteps = 3;
+/// Damping, as a share of the information of a fully observed direction.
+constexpr double kFirstDamping = 1e-4;
+constexpr double kMaxDamping = 1e3;
+
+/// The well-observed directions of some normal equations.
+struct Directions {
+  Eigen::Matrix<double, 6, 6> vectors;   // columns, in units where a radian is kRotationArm metres
+  Eigen::Matrix<double, 6, 1> observed;  // 1 or 0
+  int degenerate = 0;
+};
+
+Twist unit_scale() {
+  Twist scale = Twist::Ones();
+  scale.head<3>().setConstant(1 / kRotationArm);
+  return scale;
+}
+
+Directions observed_directions(const PairEquations& equations, const OptimizerOptions& options) {
+  const Twist scale = unit_scale();
+  const Eigen::Matrix<double, 6, 6> evidence =
+      scale.asDiagonal() * (options.judge_by_planes ? equations.H_planes : equations.H) *
+      scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(evidence);
+  Directions directions;
+  directions.vectors = solver.eigenvectors();
+  const double least = options.degenerate_eigenvalue * equations.weight;
+  for (int i = 0; i < 6; ++i) {
+    const bool observed = solver.eigenvalues()[i] > least;
+    directions.observed[i] = observed ? 1 : 0;
+    directions.degenerate += observed ? 0 : 1;
+  }
+  return directions;
+}
+
+/// Solves (H + damping) step = -b among the observed directions only.
+Twist solve(const PairEquations& equations, const Directions& directions, double damping) {
+  const Twist scale = unit_scale();
+  const Eigen::Matrix<double, 6, 6>& V = directions.vectors;
+  Eigen::Matrix<double, 6, 6> H =
+      V.transpose() * scale.asDiagonal() * equations.H * scale.asDiagonal() * V;
+  Twist b = V.transpose() * (scale.asDiagonal() * equations.b);
+  for (int i = 0; i < 6; ++i) {
+    if (directions.observed[i] == 0) {
+      H.row(i).setZero();
+      H.col(i).setZero();
+      b[i] = 0;
+      H(i, i) = 1;
+    }
+  }
+  H.diagonal().array() += damping * equations.weight;
+  return scale.asDiagonal() * (V * H.ldlt().solve(-b));
+}
+
+bool is_small(const Twist& step, const OptimizerOptions& options) {
+  return step.head<3>().norm() < options.converged_rotation &&
+         step.tail<3>().norm() < options.converged_translation;
+}
+
+}  // namespace
+
+PairEquations accumulate(std::span<const Pair> pairs, const RigidMotion& T_target_source,
+                         double robust_width) {
+  PairEquations total =
+      parallel_sum(pairs.size(), kGrain, PairEquations(), [&](std::size_t begin, std::size_t end) {
+        PairEquations part;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (pairs[i].target_index != Pair::kNone) {
+            part.add(pairs[i], T_target_source, robust_width);
+          }
+        }
+        return part;
+      });
+  total.rotate(T_target_source.linear());
+  return total;
+}
+
+OptimizerResult minimize(std::span<const Pair> pairs, const RigidMotion& guess,
+                         const OptimizerOptions& options) {
+  OptimizerResult best{guess, 0, accumulate(pairs, guess, options.robust_width)};
+  Directions directions = observed_directions(best.equations, options);
+  best.degenerate_directions = directions.degenerate;
+  double damping = 0;
+  for (int step_count = 0; step_count < kMaxSteps && damping <= kMaxDamping;) {
+    const Twist step = solve(best.equations, directions, damping);
+    if (!step.allFinite()) break;
+    RigidMotion T = best.T_target_source * exp_se3(step);
+    // A caller that extrapolates from poses doubles their rounding every frame, unless it is taken
+    // out.
+    T.linear() = nearest_rotation(T.linear());
+    PairEquations equations = accumulate(pairs, T, options.robust_width);
+    if (equations.error > best.equations.error) {
+      if (is_small(step, options)) break;
+      damping = std::max(kFirstDamping, damping * 10);
+      continue;
+    }
+    best.T_target_source = T;
+    best.equations = std::move(equations);
+    directions = observed_directions(best.equations, options);
+    best.degenerate_directions = directions.degenerate;
+    damping = damping > kFirstDamping ? damping / 10 : 0;
+    ++step_count;
+    if (is_small(step, options)) break;
+  }
+  return best;
+}
+
+}  // namespace fovea

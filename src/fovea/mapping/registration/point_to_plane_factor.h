@@ -1,0 +1,21 @@
+// Iterative closest point (Chen, Medioni 1992): point to plane.
+#pragma once
+
+#include "fovea/mapping/registration/pair_equations.h"
+#include "fovea/mapping/registration/registration.h"
+
+namespace fovea {
+
+/// Only the distance to the target's plane counts: the error is (n^T d)^2. A target point of
+/// unknown normal says nothing.
+struct PointToPlaneFactor {
+  static constexpr bool kNeedsNormals = true;
+
+  /// @param n  unit normal of the target point, or zero
+  static Symmetric3 information(const Eigen::Vector3f& n, const Eigen::Vector3f&,
+                                const RegistrationOptions&) {
+    return pack_symmetric(n * n.transpose());
+  }
+};
+
+}  // namespace fovea

@@ -1,0 +1,151 @@
+#include "fovea/mapping/registration/registration.h"
+
+#include <cmath>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/mapping/registration/gicp_factor.h"
+#include "fovea/mapping/registration/normals.h"
+#include "fovea/mapping/registration/optimizer.h"
+#include "fovea/mapping/registration/point_to_plane_factor.h"
+#include "fovea/mapping/registration/point_to_point_factor.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+
+/// Fewer pairs than this are no evidence of six numbers.
+constexpr std::size_t kMinPairs = 50;
+
+/// Gives each source point its nearest target point and the factor's weight of the two. Pairs of
+/// the previous pose bound the search, which then ends early; the result is the same without them.
+template <class Factor>
+void find_pairs(const RegistrationCloud& target, const KdTree& target_tree,
+                const RegistrationCloud& source, const RigidMotion& T_target_source,
+                const RegistrationOptions& options, std::vector<Pair>& pairs) {
+  const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
+  const Eigen::Vector3f t = T_target_source.translation().cast<float>();
+  const float max_distance = static_cast<float>(options.max_distance);
+  parallel_for(pairs.size(), kGrain, [&](std::size_t i) {
+    Pair& pair = pairs[i];
+    const Eigen::Vector3f p = R * source.points[i] + t;
+    float bound = max_distance;
+    if (pair.target_index != Pair::kNone) {
+      // A little wider, so that rounding does not lose the previous neighbour itself.
+      bound = std::min(bound, (p - pair.target).norm() * 1.001f + 1e-4f);
+    }
+    const KdTree::Neighbor nearest = target_tree.nearest(p, bound);
+    pair.target_index = Pair::kNone;
+    if (!std::isfinite(nearest.squared_distance)) return;
+    Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
+    if constexpr (Factor::kNeedsNormals) {
+      n = target.normals[nearest.index];
+      m = R * source.normals[i];
+      if (n.isZero() && m.isZero()) return;
+    }
+    pair.target_index = nearest.index;
+    pair.target = target.points[nearest.index];
+    pair.information = Factor::information(n, m, options);
+    pair.normal = n;
+  });
+}
+
+template <class Factor>
+RegistrationResult align(const RegistrationCloud& target, const KdTree& target_tree,
+                         const RegistrationCloud& source, const RigidMotion& guess,
+                         const RegistrationOptions& options) {
+  const OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
+                                   Factor::kNeedsNormals, options.converged_rotation,
+                                   options.converged_translation};
+  std::vector<Pair> pairs(source.points.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].source = source.points[i];
+
+  RegistrationResult result;
+  result.T_target_source = guess;
+  while (result.iterations < options.max_iterations && !result.converged) {
+    find_pairs<Factor>(target, target_tree, source, result.T_target_source, options, pairs);
+    const auto [T, degenerate, equations] = minimize(pairs, result.T_target_source, optimizer);
+    ++result.iterations;
+    result.pairs = equations.pairs;
+    if (equations.pairs < kMinPairs) {
+      result.T_target_source = guess;
+      result.degenerate_directions = 6;
+      return result;
+    }
+    const Twist step = log_se3(result.T_target_source.inverse() * T);
+    result.converged = step.head<3>().norm() < options.converged_rotation &&
+                       step.tail<3>().norm() < options.converged_translation;
+    result.T_target_source = T;
+    result.degenerate_directions = degenerate;
+    result.rms_distance =
+        std::sqrt(equations.squared_distance / static_cast<double>(equations.pairs));
+  }
+  return result;
+}
+
+}  // namespace
+
+void RegistrationOptions::validate() const {
+  const auto reject = [](const char* what, const char* field, const char* remedy) {
+    throw ConfigError(what, field, remedy);
+  };
+  if (max_iterations < 1 || max_iterations > 1000) {
+    reject("an iteration limit is out of range", "registration.max_iterations", "give 1 to 1000");
+  }
+  if (!(max_distance > 0 && max_distance <= 100)) {
+    reject("a pair distance is out of range", "registration.max_distance",
+           "give metres above 0 and up to 100");
+  }
+  if (!(converged_rotation > 0 && converged_rotation < 1)) {
+    reject("a threshold is out of range", "registration.converged_rotation",
+           "give radians above 0 and below 1");
+  }
+  if (!(converged_translation > 0 && converged_translation < 10)) {
+    reject("a threshold is out of range", "registration.converged_translation",
+           "give metres above 0 and below 10");
+  }
+  if (neighbors < 4 || neighbors > 100) {
+    reject("a neighbour count is out of range", "registration.neighbors", "give 4 to 100");
+  }
+  if (!(plane_epsilon > 0 && plane_epsilon <= 1)) {
+    reject("a regularisation is out of range", "registration.plane_epsilon",
+           "give a ratio above 0 and up to 1");
+  }
+  if (!(robust_width >= 0 && robust_width <= 100)) {
+    reject("a kernel width is out of range", "registration.robust_width",
+           "give metres from 0 (off) to 100");
+  }
+  if (!(degenerate_eigenvalue >= 0 && degenerate_eigenvalue < 1)) {
+    reject("a threshold is out of range", "registration.degenerate_eigenvalue",
+           "give a number from 0 (off) to below 1");
+  }
+}
+
+RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
+                                const RegistrationOptions& options) {
+  RegistrationCloud cloud;
+  cloud.points = std::move(points);
+  std::erase_if(cloud.points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
+  if (options.method != RegistrationMethod::kPointToPoint) {
+    const KdTree tree(cloud.points);
+    cloud.normals = estimate_normals(cloud.points, tree, options.neighbors);
+  }
+  return cloud;
+}
+
+RegistrationResult register_clouds(const RegistrationCloud& target, const KdTree& target_tree,
+                                   const RegistrationCloud& source, const RigidMotion& guess,
+                                   const RegistrationOptions& options) {
+  switch (options.method) {
+    case RegistrationMethod::kGicp:
+      return align<GicpFactor>(target, target_tree, source, guess, options);
+    case RegistrationMethod::kPointToPoint:
+      return align<PointToPointFactor>(target, target_tree, source, guess, options);
+    case RegistrationMethod::kPointToPlane:
+      return align<PointToPlaneFactor>(target, target_tree, source, guess, options);
+  }
+  throw std::invalid_argument("unknown registration method");
+}
+
+}  // namespace fovea

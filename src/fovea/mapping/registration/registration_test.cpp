@@ -1,0 +1,270 @@
+#include "fovea/mapping/registration/registration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/mapping/registration/test_scenes.h"
+
+namespace fovea {
+namespace {
+
+using test::motion;
+
+constexpr RegistrationMethod kMethods[] = {RegistrationMethod::kGicp,
+                                           RegistrationMethod::kPointToPoint,
+                                           RegistrationMethod::kPointToPlane};
+
+RegistrationOptions options_for(RegistrationMethod method) {
+  RegistrationOptions options;
+  options.method = method;
+  options.max_iterations = 100;
+  return options;
+}
+
+struct Scans {
+  std::vector<Eigen::Vector3f> target, source;
+};
+
+/// Two scans of a scene that share no point; the source is seen from T_target_source.
+Scans two_scans(const std::vector<test::Rectangle>& target_scene,
+                const std::vector<test::Rectangle>& source_scene,
+                const RigidMotion& T_target_source, double sigma) {
+  return {test::sample(target_scene, 40, 1, sigma),
+          test::transformed(T_target_source.inverse(), test::sample(source_scene, 40, 2, sigma))};
+}
+
+RegistrationResult align(const Scans& scans, const RigidMotion& guess,
+                         const RegistrationOptions& options) {
+  const RegistrationCloud target = prepare_cloud(scans.target, options);
+  const RegistrationCloud source = prepare_cloud(scans.source, options);
+  return register_clouds(target, KdTree(target.points), source, guess, options);
+}
+
+struct PoseError {
+  double metres, radians;
+};
+PoseError error_of(const RigidMotion& estimate, const RigidMotion& truth) {
+  const Twist difference = log_se3(truth.inverse() * estimate);
+  return {difference.tail<3>().norm(), difference.head<3>().norm()};
+}
+
+class EveryMethod : public testing::TestWithParam<RegistrationMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(kMethods),
+                         [](const auto& test_info) -> std::string {
+                           switch (test_info.param) {
+                             case RegistrationMethod::kGicp:
+                               return "Gicp";
+                             case RegistrationMethod::kPointToPoint:
+                               return "PointToPoint";
+                             default:
+                               return "PointToPlane";
+                           }
+                         });
+
+TEST_P(EveryMethod, IdenticalPointsAreAlignedExactly) {
+  const RigidMotion truth = motion(0.01, -0.02, 0.04, 0.15, -0.1, 0.05);
+  const std::vector<Eigen::Vector3f> target = test::sample(test::room_corner(), 40, 1);
+  RegistrationOptions options = options_for(GetParam());
+  options.converged_rotation = options.converged_translation = 1e-6;
+  const RegistrationResult result =
+      align({target, test::transformed(truth.inverse(), target)}, RigidMotion::Identity(), options);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.degenerate_directions, 0);
+  EXPECT_EQ(result.pairs, target.size());
+  EXPECT_LT(result.rms_distance, 1e-5);
+  EXPECT_LT(error_of(result.T_target_source, truth).metres, 1e-5);
+  EXPECT_LT(error_of(result.T_target_source, truth).radians, 1e-5);
+}
+
+TEST_P(EveryMethod, RecoversKnownMotionsOfSeparatelySampledScans) {
+  // Point to point is the weakest: its error is the chance pattern of the samples.
+  const bool point_to_point = GetParam() == RegistrationMethod::kPointToPoint;
+  const RigidMotion truths[] = {motion(0, 0, 0, 0.5, 0, 0), motion(0, 0, 0.08, 0.3, -0.2, 0.05),
+                                motion(0.03, -0.04, -0.05, -0.3, 0.3, -0.1)};
+  for (const double sigma : {0.0, 0.01}) {
+    for (const RigidMotion& truth : truths) {
+      const Scans scans = two_scans(test::room_corner(), test::room_corner(), truth, sigma);
+      const RegistrationResult result =
+          align(scans, RigidMotion::Identity(), options_for(GetParam()));
+      const PoseError error = error_of(result.T_target_source, truth);
+      EXPECT_TRUE(result.converged) << "sigma " << sigma;
+      EXPECT_EQ(result.degenerate_directions, 0);
+      EXPECT_LT(error.metres, point_to_point ? 0.02 : 0.003) << "sigma " << sigma;
+      EXPECT_LT(error.radians, point_to_point ? 0.004 : 0.0006) << "sigma " << sigma;
+    }
+  }
+}
+
+TEST_P(EveryMethod, IsTheSameAtAnyThreadCount) {
+  const Scans scans = two_scans(test::room_corner(), test::room_corner(),
+                                motion(0.01, 0.02, 0.05, 0.2, 0.1, 0), 0.01);
+  const auto with_threads = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return align(scans, RigidMotion::Identity(), options_for(GetParam()));
+  };
+  const RegistrationResult one = with_threads(1), two = with_threads(2);
+  EXPECT_EQ(one.T_target_source.matrix(), two.T_target_source.matrix());
+  EXPECT_EQ(one.iterations, two.iterations);
+  EXPECT_EQ(one.rms_distance, two.rms_distance);
+}
+
+TEST_P(EveryMethod, EmptyAndTinyCloudsKeepTheGuess) {
+  const RigidMotion guess = motion(0, 0, 0.1, 1, 2, 3);
+  const std::vector<Eigen::Vector3f> room = test::sample(test::room_corner(), 40, 1);
+  const std::vector<Eigen::Vector3f> few(room.begin(), room.begin() + 20);
+  const std::vector<Eigen::Vector3f> one = {{1, 2, 3}};
+  for (const Scans& scans :
+       {Scans{{}, {}}, Scans{room, {}}, Scans{{}, room}, Scans{one, one}, Scans{room, few}}) {
+    const RegistrationResult result = align(scans, guess, options_for(GetParam()));
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.T_target_source.matrix(), guess.matrix());
+  }
+}
+
+TEST_P(EveryMethod, CloudsOutOfReachKeepTheGuess) {
+  const std::vector<Eigen::Vector3f> room = test::sample(test::room_corner(), 40, 1);
+  const RigidMotion guess = motion(0, 0, 0, 50, 0, 0);
+  const RegistrationResult result = align({room, room}, guess, options_for(GetParam()));
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.pairs, 0u);
+  EXPECT_EQ(result.T_target_source.matrix(), guess.matrix());
+}
+
+TEST_P(EveryMethod, NonFinitePointsAreLeftOut) {
+  const RigidMotion truth = motion(0, 0, 0.02, 0.1, 0, 0);
+  Scans scans = two_scans(test::room_corner(), test::room_corner(), truth, 0);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  scans.source.insert(scans.source.begin() + 100, {{nan, 0, 0}, {0, infinity, 0}});
+  scans.target.insert(scans.target.begin() + 50, {{0, nan, nan}, {-infinity, 0, 0}});
+  const RegistrationResult result = align(scans, RigidMotion::Identity(), options_for(GetParam()));
+  EXPECT_LT(error_of(result.T_target_source, truth).metres, 0.02);
+}
+
+TEST_P(EveryMethod, ResultIsARotationHoweverOftenItIsExtrapolated) {
+  // Constant-velocity guesses double the rounding of the poses behind them with every frame.
+  const std::vector<Eigen::Vector3f> room = test::sample(test::room_corner(), 5, 1);
+  RegistrationOptions options = options_for(GetParam());
+  const RegistrationCloud cloud = prepare_cloud(room, options);
+  const KdTree tree(cloud.points);
+  RigidMotion before = motion(0.01, 0, 0, 0, 0, 0), last = RigidMotion::Identity();
+  for (int i = 0; i < 100; ++i) {
+    const RigidMotion guess = last * (before.inverse() * last);
+    before = last;
+    last = register_clouds(cloud, tree, cloud, guess, options).T_target_source;
+  }
+  EXPECT_TRUE(is_rotation(last.linear(), 1e-12));
+}
+
+class MethodsWithNormals : public EveryMethod {};
+INSTANTIATE_TEST_SUITE_P(Methods, MethodsWithNormals,
+                         testing::Values(RegistrationMethod::kGicp,
+                                         RegistrationMethod::kPointToPlane));
+
+TEST_P(MethodsWithNormals, CorridorKeepsTheGuessAlongItsAxis) {
+  const RigidMotion truth = motion(0, 0, 0.03, 0.4, 0.15, 0.05);
+  for (const double sigma : {0.0, 0.005, 0.015}) {
+    // The source sees no end of the target, which would tell where along the axis it is.
+    const Scans scans = two_scans(test::corridor(15), test::corridor(10), truth, sigma);
+    const RigidMotion guess = motion(0, 0, 0, 0.7, 0, 0);
+    const RegistrationResult result = align(scans, guess, options_for(GetParam()));
+    EXPECT_TRUE(result.converged);
+    EXPECT_EQ(result.degenerate_directions, 1) << "sigma " << sigma;
+    const RigidMotion& T = result.T_target_source;
+    EXPECT_NEAR(T.translation().x(), 0.7, 0.02);  // the guess, not the truth
+    EXPECT_NEAR(T.translation().y(), truth.translation().y(), 0.005);
+    EXPECT_NEAR(T.translation().z(), truth.translation().z(), 0.005);
+    EXPECT_LT(rotation_angle(T.linear().transpose() * truth.linear()), 1e-3);
+  }
+}
+
+TEST_P(MethodsWithNormals, PlaneHasThreeDegenerateDirections) {
+  const std::vector<test::Rectangle> floor = {{{-10, -10, -1.7}, {20, 0, 0}, {0, 20, 0}}};
+  const std::vector<test::Rectangle> inner = {{{-5, -5, -1.7}, {10, 0, 0}, {0, 10, 0}}};
+  const RigidMotion truth = motion(0.02, 0.03, 0, 0, 0, 0.1);
+  const RigidMotion guess = motion(0, 0, 0.2, 0.5, -0.3, 0);
+  const RegistrationResult result =
+      align(two_scans(floor, inner, truth, 0), guess, options_for(GetParam()));
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.degenerate_directions, 3);
+  // The floor is met ...
+  EXPECT_LT((result.T_target_source.linear().row(2) - truth.linear().row(2)).norm(), 0.05);
+  const Eigen::Vector3d under =
+      result.T_target_source * (truth.inverse() * Eigen::Vector3d(0, 0, -1.7));
+  EXPECT_NEAR(under.z(), -1.7, 0.005);
+  // ... and turning on it and moving along it are as guessed.
+  EXPECT_NEAR(log_se3(result.T_target_source)[2], 0.2, 0.01);
+  EXPECT_NEAR(result.T_target_source.translation().x(), 0.5, 0.1);
+  EXPECT_NEAR(result.T_target_source.translation().y(), -0.3, 0.1);
+}
+
+TEST_P(EveryMethod, RobustKernelResistsAMovingBlock) {
+  // A block that moved 0.4 m between the scans makes a fifth of each.
+  const std::vector<test::Rectangle> room = test::room_corner();
+  std::vector<test::Rectangle> block;
+  test::add_box(block, {2, 1, -1.7}, {2.5, 2.5, 3.2});
+  const RigidMotion truth = motion(0, 0, 0.01, 0.05, -0.05, 0);
+  Scans scans = two_scans(room, room, truth, 0.005);
+  std::vector<Eigen::Vector3f> before = test::sample(block, 50, 3, 0.005);
+  std::vector<Eigen::Vector3f> after = test::transformed(
+      truth.inverse() * motion(0, 0, 0, 0.3, 0.25, 0), test::sample(block, 50, 4, 0.005));
+  EXPECT_GT(static_cast<double>(after.size()), 0.15 * static_cast<double>(scans.source.size()));
+  scans.target.insert(scans.target.end(), before.begin(), before.end());
+  scans.source.insert(scans.source.end(), after.begin(), after.end());
+
+  RegistrationOptions options = options_for(GetParam());
+  const double plain =
+      error_of(align(scans, RigidMotion::Identity(), options).T_target_source, truth).metres;
+  options.robust_width = 0.1;
+  const double robust =
+      error_of(align(scans, RigidMotion::Identity(), options).T_target_source, truth).metres;
+  EXPECT_LT(robust, 0.01);
+  EXPECT_LT(robust, 0.5 * plain);
+}
+
+TEST(Registration, ResultDoesNotDependOnTheTargetsOrigin) {
+  // Degeneracy and conditioning are judged about the sensor, so an offset target changes nothing.
+  const RigidMotion truth = motion(0.01, 0.02, 0.05, 0.2, 0.1, 0);
+  Scans scans = two_scans(test::room_corner(), test::room_corner(), truth, 0.01);
+  const RegistrationOptions options = options_for(RegistrationMethod::kGicp);
+  const RigidMotion near = align(scans, RigidMotion::Identity(), options).T_target_source;
+  const RigidMotion shift = motion(0, 0, 0, 60, -40, 2);
+  scans.target = test::transformed(shift, scans.target);
+  const RegistrationResult far = align(scans, shift, options);
+  EXPECT_LT(error_of(far.T_target_source, shift * near).metres, 1e-4);
+}
+
+TEST(RegistrationOptions, ValidateNamesTheField) {
+  EXPECT_NO_THROW(RegistrationOptions().validate());
+  const auto expect_rejected = [](auto change, const char* field) {
+    RegistrationOptions options;
+    change(options);
+    try {
+      options.validate();
+      ADD_FAILURE() << field << " was not rejected";
+    } catch (const ConfigError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(field));
+    }
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Options = RegistrationOptions;
+  expect_rejected([](Options& o) { o.max_iterations = 0; }, "registration.max_iterations");
+  expect_rejected([](Options& o) { o.max_distance = -1; }, "registration.max_distance");
+  expect_rejected([&](Options& o) { o.max_distance = nan; }, "registration.max_distance");
+  expect_rejected([](Options& o) { o.converged_rotation = 0; }, "registration.converged_rotation");
+  expect_rejected([](Options& o) { o.converged_translation = 0; },
+                  "registration.converged_translation");
+  expect_rejected([](Options& o) { o.neighbors = 2; }, "registration.neighbors");
+  expect_rejected([](Options& o) { o.plane_epsilon = 0; }, "registration.plane_epsilon");
+  expect_rejected([](Options& o) { o.robust_width = -0.1; }, "registration.robust_width");
+  expect_rejected([](Options& o) { o.degenerate_eigenvalue = 1; },
+                  "registration.degenerate_eigenvalue");
+}
+
+}  // namespace
+}  // namespace fovea

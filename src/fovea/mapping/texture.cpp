@@ -1,0 +1,23 @@
+#include "fovea/mapping/texture.h"
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+constexpr std::size_t kGrain = 8192;
+}
+
+void colour_points(PointCloud& points_cam, const View& view) {
+  const std::size_t n = points_cam.size();
+  points_cam.color.assign(n, Rgb{});
+  points_cam.camera.assign(n, kNoCamera);
+  points_cam.frame.assign(n, view.frame);
+  parallel_for(n, kGrain, [&](std::size_t i) {
+    const auto pixel = view.camera.project(points_cam.position[i].cast<double>());
+    if (!pixel || !view.camera.in_view(*pixel)) return;
+    points_cam.color[i] = to_rgb(bilinear(view.image, pixel->x(), pixel->y()));
+    points_cam.camera[i] = static_cast<std::int8_t>(view.camera.index);
+  });
+}
+
+}  // namespace fovea

@@ -1,0 +1,22 @@
+// Texture (paper: Ray-filtering and Texture Mapping; SPEC section 6): colour from one view.
+#pragma once
+
+#include "fovea/base/image.h"
+#include "fovea/base/point_cloud.h"
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+/// Where a point's colour comes from.
+struct View {
+  const Image& image;
+  const Camera& camera;
+  int frame = 0;
+};
+
+/// Colours every point from the image (bilinear at its projection) and notes frame and camera; points
+/// that do not project into the image get kNoCamera. One view, no average: averaging blurs edges.
+/// @param points_cam  camera frame, origin 0
+void colour_points(PointCloud& points_cam, const View& view);
+
+}  // namespace fovea

@@ -1,0 +1,46 @@
+#include "fovea/mapping/texture.h"
+
+#include <gtest/gtest.h>
+
+namespace fovea {
+namespace {
+
+TEST(Texture, ColourIsTheImageAtTheProjection) {
+  Camera camera;
+  camera.index = 3;
+  camera.width = 100;
+  camera.height = 50;
+  camera.fx = camera.fy = 80;
+  camera.cx = 49.5;
+  camera.cy = 24.5;
+  Image image(100, 50, 3);
+  for (int y = 0; y < 50; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      image.pixel(x, y)[0] = std::uint8_t(2 * x);
+      image.pixel(x, y)[1] = std::uint8_t(4 * y);
+      image.pixel(x, y)[2] = 7;
+    }
+  }
+  PointCloud cloud;
+  cloud.position = {{0, 0, 8}, {1, 0.5f, 8}, {0, 0, -8}, {100, 0, 8}};
+  colour_points(cloud, {image, camera, 17});
+  EXPECT_EQ(cloud.color[0], (Rgb{99, 98, 7}));    // 2 * 49.5, 4 * 24.5
+  EXPECT_EQ(cloud.color[1], (Rgb{119, 118, 7}));  // u = 59.5, v = 29.5
+  EXPECT_EQ(cloud.camera, (std::vector<std::int8_t>{3, 3, kNoCamera, kNoCamera}));
+  EXPECT_EQ(cloud.frame, (std::vector<std::int32_t>{17, 17, 17, 17}));
+}
+
+TEST(Texture, GreyImagesGiveThreeEqualChannels) {
+  Camera camera;
+  camera.width = camera.height = 10;
+  camera.fx = camera.fy = 10;
+  Image image(10, 10, 1);
+  image.data.assign(image.data.size(), 90);
+  PointCloud cloud;
+  cloud.position = {{1, 1, 4}};
+  colour_points(cloud, {image, camera, 0});
+  EXPECT_EQ(cloud.color[0], (Rgb{90, 90, 90}));
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,104 @@
+// The one list of configuration keys. Angles are degrees in the keys, radians in the options.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "fovea/pipeline/mapper_options.h"
+
+namespace fovea {
+
+/// A value kept in radians and written in degrees.
+struct Degrees {
+  double& radians;
+};
+
+/// Slices, written as an array of [azimuth_min, azimuth_max, elevation_min, elevation_max] in degrees.
+using Slices = std::vector<AngularSlice>;
+
+template <class Enum>
+struct EnumName {
+  Enum value;
+  std::string_view name;
+};
+
+constexpr auto names_of(RegistrationMethod) {
+  return std::array{EnumName{RegistrationMethod::kGicp, std::string_view("gicp")},
+                    EnumName{RegistrationMethod::kPointToPoint, std::string_view("icp")},
+                    EnumName{RegistrationMethod::kPointToPlane, std::string_view("plane")}};
+}
+constexpr auto names_of(RegistrationTarget) {
+  return std::array{EnumName{RegistrationTarget::kPreviousScan, std::string_view("previous-scan")},
+                    EnumName{RegistrationTarget::kLocalMap, std::string_view("local-map")}};
+}
+constexpr auto names_of(GroundMethod) {
+  return std::array{EnumName{GroundMethod::kHeight, std::string_view("height")},
+                    EnumName{GroundMethod::kRansac, std::string_view("ransac")}};
+}
+constexpr auto names_of(RayFilterMode) {
+  return std::array{EnumName{RayFilterMode::kPaper, std::string_view("paper")},
+                    EnumName{RayFilterMode::kOff, std::string_view("off")}};
+}
+
+inline constexpr int kMaxCameras = 10;
+
+/// Calls `visit(key, reference)` for every key; a reader assigns, a writer prints.
+template <class Visitor>
+void visit_config(Visitor&& visit, MapperOptions& o) {
+  visit("motion.compensate", o.compensate_motion);
+
+  RefinementOptions& r = o.refinement;
+  visit("refinement.target", r.target);
+  visit("refinement.visible_only", r.visible_only);
+  visit("refinement.upsample_rate", r.upsample_rate);
+  visit("refinement.voxel", r.voxel);
+  visit("refinement.max_correction_translation", r.max_correction_translation);
+  visit("refinement.max_correction_rotation", Degrees{r.max_correction_rotation});
+
+  visit("ground.method", r.ground.method);
+  visit("ground.sensor_height", r.ground.sensor_height);
+  visit("ground.tolerance", r.ground.tolerance);
+  visit("ground.ransac_iterations", r.ground.ransac_iterations);
+  visit("ground.ransac_max_tilt", r.ground.ransac_max_tilt);
+
+  visit("registration.method", r.registration.method);
+  visit("registration.max_iterations", r.registration.max_iterations);
+  visit("registration.max_distance", r.registration.max_distance);
+  visit("registration.converged_rotation", r.registration.converged_rotation);
+  visit("registration.converged_translation", r.registration.converged_translation);
+  visit("registration.neighbors", r.registration.neighbors);
+  visit("registration.plane_epsilon", r.registration.plane_epsilon);
+  visit("registration.robust_width", r.registration.robust_width);
+  visit("registration.degenerate_eigenvalue", r.registration.degenerate_eigenvalue);
+
+  visit("local_map.max_keyframes", r.local_map.max_keyframes);
+  visit("local_map.max_range", r.local_map.max_range);
+  visit("local_map.voxel", r.local_map.voxel);
+
+  visit("foveal.enabled", o.foveal_enabled);
+  visit("foveal.near_range", o.foveal.near_range);
+  visit("foveal.far_range", o.foveal.far_range);
+  visit("foveal.max_incidence", Degrees{o.foveal.max_incidence});
+  visit("foveal.slices", o.foveal.slices);
+  for (int camera = 0; camera < kMaxCameras; ++camera) {
+    // Present only where a camera has slices of its own.
+    const auto own = o.camera_slices.find(camera);
+    Slices slices = own != o.camera_slices.end() ? own->second : Slices{};
+    visit(fmt::format("foveal.camera_{}_slices", camera), slices);
+    if (!slices.empty()) o.camera_slices[camera] = std::move(slices);
+  }
+
+  visit("upsample.rate", o.upsample.rate);
+  visit("upsample.max_edge", o.upsample.max_edge);
+
+  visit("ray_filter.mode", o.ray_filter.mode);
+  visit("ray_filter.window", o.ray_filter.window);
+  visit("ray_filter.outlier_rate", o.ray_filter.outlier_rate);
+
+  visit("map.tile_size", o.tile_size);
+  visit("map.submap_duration", o.submap_duration);
+}
+
+}  // namespace fovea

@@ -1,0 +1,37 @@
+#include "fovea/pipeline/foveal_query.h"
+
+namespace fovea {
+
+std::vector<Ray> rays_of(const PointCloud& points_cam, const Camera& camera) {
+  std::vector<Ray> rays;
+  rays.reserve(points_cam.size());
+  // Interpolated points lie between points in view, but rounding may put them a hair outside.
+  const Eigen::Vector2f last(float(camera.width - 1), float(camera.height - 1));
+  for (const Eigen::Vector3f& p : points_cam.position) {
+    const Eigen::Vector2f pixel(float(camera.fx) * p.x() / p.z() + float(camera.cx),
+                                float(camera.fy) * p.y() / p.z() + float(camera.cy));
+    rays.push_back({pixel.cwiseMax(0.0f).cwiseMin(last), p.norm()});
+  }
+  return rays;
+}
+
+std::vector<Ray> map_rays(const TileMap& map, const FovealRegion& region,
+                          const RigidMotion& T_local_lidar) {
+  const RigidMotion T_cam_local = region.camera().T_cam_lidar * T_local_lidar.inverse();
+  std::vector<Ray> rays;
+  map.for_each_tile_near(
+      T_local_lidar.translation(), region.far_range(),
+      [&](const RigidMotion& T_local_submap, const PointCloud& tile) {
+        const RigidMotion T_cam_submap = T_cam_local * T_local_submap;
+        const Eigen::Matrix3f R = T_cam_submap.linear().cast<float>();
+        const Eigen::Vector3f t = (T_cam_submap * tile.origin).cast<float>();
+        Eigen::Vector2f pixel;
+        for (const Eigen::Vector3f& p : tile.position) {
+          const Eigen::Vector3f p_cam = R * p + t;
+          if (region.contains(p_cam, pixel)) rays.push_back({pixel, p_cam.norm()});
+        }
+      });
+  return rays;
+}
+
+}  // namespace fovea

@@ -1,0 +1,259 @@
+#include "fovea/pipeline/map_drive.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <future>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/version.h"
+#include "fovea/map/map_store.h"
+#include "fovea/pipeline/config.h"
+
+namespace fovea {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct LoadedFrame {
+  FrameResult result;
+  double milliseconds = 0;
+};
+
+/// Reads one frame ahead, so that decoding overlaps mapping.
+class FramePrefetcher {
+ public:
+  FramePrefetcher(const FrameSource& source, int begin, int end)
+      : source_(source), next_(begin), end_(end) {
+    prefetch();
+  }
+  /// The next frame of the range, in order.
+  LoadedFrame take() {
+    LoadedFrame frame = pending_.get();
+    prefetch();
+    return frame;
+  }
+
+ private:
+  void prefetch() {
+    if (next_ == end_) return;
+    pending_ = std::async(std::launch::async, [this, index = next_++] {
+      const Clock::time_point start = Clock::now();
+      FrameResult result = source_.load(index);
+      return LoadedFrame{std::move(result), milliseconds_since(start)};
+    });
+  }
+  const FrameSource& source_;
+  int next_, end_;
+  std::future<LoadedFrame> pending_;
+};
+
+/// A skipped frame gets a pose between its neighbours', by index: a line for every frame index.
+void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
+  std::vector<const FrameRecord*> known;
+  for (const FrameRecord& record : records) {
+    if (record.status != FrameStatus::kSkipped) known.push_back(&record);
+  }
+  if (known.empty()) return;
+  for (FrameRecord& record : records) {
+    if (record.status != FrameStatus::kSkipped) continue;
+    if (known.size() == 1) {
+      record.T_local_lidar = known.front()->T_local_lidar;
+      continue;
+    }
+    const auto after = std::upper_bound(
+        known.begin() + 1, known.end() - 1, record.index,
+        [](int index, const FrameRecord* other) { return index < other->index; });
+    const FrameRecord &a = **(after - 1), &b = **after;
+    record.T_local_lidar = interpolate(a.T_local_lidar, b.T_local_lidar,
+                                       double(record.index - a.index) / (b.index - a.index));
+  }
+}
+
+const char* to_string(PoseSource source) {
+  switch (source) {
+    case PoseSource::kRefine: return "refine";
+    case PoseSource::kNavigation: return "navigation";
+    case PoseSource::kGiven: return "given";
+  }
+  return "unknown";
+}
+
+/// What the map says of itself; a run can only be resumed with the same.
+MapMeta describe(const DriveInfo& drive, const MapJob& job) {
+  MapMeta meta;
+  meta["fovea.version"] = version();
+  meta["drive.name"] = std::filesystem::absolute(drive.path).lexically_normal().filename().string();
+  meta["drive.kind"] = drive.kind;
+  std::vector<int> cameras;
+  for (const Camera& camera : drive.calibration.cameras) cameras.push_back(camera.index);
+  meta["cameras"] = fmt::format("{}", fmt::join(cameras, ","));
+  meta["frames.begin"] = fmt::format("{}", drive.begin);
+  meta["frames.end"] = fmt::format("{}", drive.end);
+  meta["hold_out"] = job.hold_out.spec();
+  meta["poses"] = to_string(job.pose_source);
+  meta["variant"] = job.variant;
+  meta["config"] = to_toml(job.options);
+  meta["map.tile_size"] = fmt::format("{}", job.options.tile_size);
+  meta["georeferenced"] = drive.origin ? "1" : "0";
+  if (drive.origin) {
+    meta["origin.latitude"] = fmt::format("{}", drive.origin->latitude);
+    meta["origin.longitude"] = fmt::format("{}", drive.origin->longitude);
+    meta["origin.altitude"] = fmt::format("{}", drive.origin->altitude);
+  }
+  meta["notes"] = fmt::format("{}", fmt::join(drive.notes, "\n"));
+  return meta;
+}
+
+struct EarlierRun {
+  TileMap map;
+  std::vector<FrameRecord> records;
+};
+
+/// Reads what an interrupted run left; InputError if it was made with other settings.
+EarlierRun read_earlier_run(const MapJob& job, const MapMeta& meta) {
+  const MapReader reader(job.output);
+  const MapMeta before = reader.meta();
+  for (const auto& [key, value] : meta) {
+    const auto found = before.find(key);
+    if (found == before.end() || found->second != value) {
+      throw InputError(fmt::format("the map was made with another '{}'", key), job.output.string(),
+                       "resume with the drive and settings of the first run, or start a new map");
+    }
+  }
+  EarlierRun run{TileMap(job.options.tile_size), reader.frames()};
+  for (const RigidMotion& T_local_submap : reader.submaps()) run.map.add_submap(T_local_submap);
+  reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+    run.map.restore_tile(submap, key, tile);
+  });
+  return run;
+}
+
+FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
+  FrameRecord record;
+  record.index = skipped.index;
+  record.stamp = stamp;
+  record.status = FrameStatus::kSkipped;
+  record.note = fmt::format("{}: {}", to_string(skipped.reason), skipped.detail);
+  return record;
+}
+
+void store_map(MapWriter& writer, const MapMeta& meta, const std::vector<FrameRecord>& records,
+               const TileMap& map, bool complete) {
+  for (const auto& [key, value] : meta) writer.put_meta(key, value);
+  writer.put_meta("complete", complete ? "1" : "0");
+  for (const FrameRecord& record : records) writer.put_frame(record);
+  for (std::size_t id = 0; id < map.submaps().size(); ++id) {
+    writer.put_submap(id, map.submaps()[id].T_local_submap);
+    for (const auto& [key, tile] : map.submaps()[id].tiles) writer.put_tile(id, key, tile);
+  }
+  writer.commit();
+}
+
+StageLatency latency_of(std::vector<double> milliseconds) {
+  std::sort(milliseconds.begin(), milliseconds.end());
+  const auto at = [&](double share) {
+    return milliseconds[static_cast<std::size_t>(share * double(milliseconds.size() - 1) + 0.5)];
+  };
+  return {at(0.5), at(0.95), milliseconds.back()};
+}
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_new,
+                     const DriveInfo& drive) {
+  MapSummary summary;
+  summary.notes = drive.notes;
+  std::map<std::string, std::vector<double>> by_stage;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const FrameRecord& record = records[i];
+    switch (record.status) {
+      case FrameStatus::kMapped: ++summary.frames_mapped; break;
+      case FrameStatus::kHeldOut: ++summary.frames_held_out; break;
+      case FrameStatus::kSkipped:
+        ++summary.frames_skipped[record.note.substr(0, record.note.find(':'))];
+        break;
+    }
+    const auto failed = record.figures.find("registration_failed");
+    if (failed != record.figures.end() && failed->second > 0) ++summary.registrations_failed;
+    if (i < first_new) continue;
+    for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);
+  }
+  for (auto& [stage, times] : by_stage) summary.latency_ms[stage] = latency_of(std::move(times));
+  summary.peak_rss_mb = peak_rss_mb();
+  return summary;
+}
+
+}  // namespace
+
+int MapSummary::skipped() const {
+  int total = 0;
+  for (const auto& [reason, count] : frames_skipped) total += count;
+  return total;
+}
+
+MapSummary map_drive(const FrameSource& source, const MapJob& job,
+                     const std::function<void(const MapProgress&)>& progress) {
+  const Clock::time_point start = Clock::now();
+  const DriveInfo& drive = source.info();
+  const MapMeta meta = describe(drive, job);
+  const auto writer =
+      job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force);
+
+  Mapper mapper(drive, job.options, job.pose_source);
+  std::vector<FrameRecord> records;
+  if (job.resume) {
+    EarlierRun run = read_earlier_run(job, meta);
+    records = std::move(run.records);
+    mapper.resume(std::move(run.map), records, source);
+  }
+  const std::size_t first_new = records.size();
+  const int total = drive.end - drive.begin;
+
+  FramePrefetcher frames(source, drive.begin + static_cast<int>(first_new), drive.end);
+  while (static_cast<int>(records.size()) < total && !job.stop.stop_requested()) {
+    const LoadedFrame loaded = frames.take();
+    const Clock::time_point frame_start = Clock::now();
+    if (const auto* skipped = std::get_if<SkippedFrame>(&loaded.result)) {
+      records.push_back(skipped_record(*skipped, source.stamp(skipped->index)));
+    } else {
+      const Frame& frame = std::get<Frame>(loaded.result);
+      std::optional<RigidMotion> given;
+      if (!job.given_poses.empty()) given = job.given_poses[std::size_t(frame.index - drive.begin)];
+      records.push_back(mapper.process(frame, job.hold_out.contains(frame.index), given));
+      records.back().milliseconds["decode"] = loaded.milliseconds;
+      records.back().milliseconds["frame"] = loaded.milliseconds + milliseconds_since(frame_start);
+    }
+    if (progress) {
+      progress({static_cast<int>(records.size()), total, mapper.map().size(), &records.back()});
+    }
+  }
+  if (std::none_of(records.begin(), records.end(),
+                   [](const FrameRecord& r) { return r.status != FrameStatus::kSkipped; })) {
+    throw InputError("no frame could be mapped",
+                     records.empty() ? drive.path.string() : records.front().note,
+                     "check that the drive has scans and images for the frames asked for");
+  }
+  const bool complete = static_cast<int>(records.size()) == total;
+  interpolate_skipped_poses(records);
+  store_map(*writer, meta, records, mapper.map(), complete);
+
+  MapSummary summary = summarise(records, first_new, drive);
+  summary.points = mapper.map().size();
+  summary.interrupted = !complete;
+  summary.frames_per_second =
+      double(records.size() - first_new) / (milliseconds_since(start) / 1000);
+  return summary;
+}
+
+}  // namespace fovea

@@ -1,0 +1,59 @@
+// A whole drive into a map file: reading, mapping, accounting, storing.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/pipeline/mapper.h"
+#include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/hold_out.h"
+
+namespace fovea {
+
+struct MapJob {
+  std::filesystem::path output;
+  MapperOptions options;
+  std::string variant;  ///< name of the row that `options` stands for, or empty
+  HoldOut hold_out;
+  PoseSource pose_source = PoseSource::kRefine;
+  /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven.
+  std::vector<RigidMotion> given_poses;
+  bool force = false;   ///< overwrite `output`
+  bool resume = false;  ///< go on with `output`, which an earlier run left unfinished
+  std::stop_token stop; ///< ends after the frame at hand; what was mapped is committed
+};
+
+struct MapProgress {
+  int done = 0, total = 0;  ///< frames
+  std::size_t points = 0;
+  const FrameRecord* latest = nullptr;
+};
+
+struct StageLatency {
+  double p50 = 0, p95 = 0, max = 0;  ///< ms
+};
+
+struct MapSummary {
+  int frames_mapped = 0, frames_held_out = 0;
+  std::map<std::string, int> frames_skipped;  ///< by reason
+  int registrations_failed = 0;
+  std::size_t points = 0;
+  double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
+  double peak_rss_mb = 0;
+  std::map<std::string, StageLatency> latency_ms;
+  bool interrupted = false;
+  std::vector<std::string> notes;
+  int skipped() const;
+};
+
+/// Maps the frames of a drive into a map file. Errors as in MapWriter; InputError if no frame of the
+/// range can be used, or if the map to resume was made with other settings.
+MapSummary map_drive(const FrameSource& source, const MapJob& job,
+                     const std::function<void(const MapProgress&)>& progress);
+
+}  // namespace fovea

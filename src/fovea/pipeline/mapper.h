@@ -1,0 +1,60 @@
+// The paper's method, frame by frame: the only place that knows the order of the stages.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/map/tile_map.h"
+#include "fovea/mapping/ray_filter.h"
+#include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/motion_model.h"
+#include "fovea/pipeline/pose_refiner.h"
+#include "fovea/pipeline/stage_clock.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// Where poses come from.
+enum class PoseSource { kRefine, kNavigation, kGiven };
+
+/// Builds a map incrementally. Feed it frames in increasing order of their stamps.
+class Mapper {
+ public:
+  /// @param drive  calibration, navigation and sweep; must outlive the mapper
+  Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source);
+
+  /// Maps one frame and returns what is to be kept of it.
+  /// @param held_out    registered like any other, but adds no point, colour or registration target
+  /// @param given_pose  T_local_lidar where the pose source is kGiven
+  FrameRecord process(const Frame& frame, bool held_out,
+                      const std::optional<RigidMotion>& given_pose = std::nullopt);
+
+  const TileMap& map() const { return map_; }
+
+  /// Takes up a map where an earlier run left it: its tiles, and the frames' records in order.
+  /// `load` reads the latest frames again, which registration needs as targets.
+  void resume(TileMap map, const std::vector<FrameRecord>& records, const FrameSource& source);
+
+ private:
+  PointCloud compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const;
+  RigidMotion pose_of(const PointCloud& scan_lidar, const MotionPrediction& motion, bool held_out,
+                      const std::optional<RigidMotion>& given_pose, FrameRecord& record,
+                      StageClock& clock);
+  void open_submap_if_due(TimeNs stamp, const RigidMotion& T_local_lidar);
+  void map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera,
+                  const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
+  void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
+                      const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
+
+  const DriveInfo& drive_;
+  MapperOptions options_;
+  PoseSource pose_source_;
+  MotionModel motion_model_;
+  PoseRefiner refiner_;
+  RayFilter ray_filter_;
+  TileMap map_;
+  std::optional<TimeNs> submap_start_;
+};
+
+}  // namespace fovea

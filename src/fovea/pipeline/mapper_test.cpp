@@ -1,0 +1,214 @@
+#include "fovea/pipeline/mapper.h"
+
+#include <gtest/gtest.h>
+
+#include "../../../tests/synthetic_drive.h"
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+struct MapPoint {
+  Eigen::Vector3d p_local;
+  Rgb color;
+  int frame = 0;
+  std::int8_t camera = kNoCamera;
+  bool interpolated = false;
+};
+
+std::vector<MapPoint> points_of(const TileMap& map) {
+  std::vector<MapPoint> points;
+  for (const Submap& submap : map.submaps()) {
+    for (const auto& [key, tile] : submap.tiles) {
+      for (std::size_t i = 0; i < tile.size(); ++i) {
+        points.push_back({submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()),
+                          tile.color[i], tile.frame[i], tile.camera[i], tile.interpolated[i] != 0});
+      }
+    }
+  }
+  return points;
+}
+
+std::vector<FrameRecord> map_frames(Mapper& mapper, const SyntheticDrive& drive, int begin, int end,
+                                    int held_out = -1) {
+  std::vector<FrameRecord> records;
+  for (int i = begin; i < end; ++i) {
+    records.push_back(mapper.process(std::get<Frame>(drive.load(i)), i == held_out));
+  }
+  return records;
+}
+
+const SyntheticDrive& street() {
+  static const SyntheticDrive drive(street_scene(), 8, 0.8);
+  return drive;
+}
+
+// Noise-free scans at true poses, nothing interpolated: what remains is frames and half pixels.
+TEST(Mapper, TruePosesGiveTheTrueSurfaceAndColours) {
+  MapperOptions options;
+  options.upsample.rate = 0;
+  Mapper mapper(street().info(), options, PoseSource::kNavigation);
+  map_frames(mapper, street(), 0, 4);
+  const auto points = points_of(mapper.map());
+  ASSERT_GT(points.size(), 5000u);
+  double worst = 0, color_error = 0;
+  for (const MapPoint& point : points) {
+    worst = std::max(worst, street().scene.distance(point.p_local));
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_LT(worst, 1e-3);
+  // A point near a box's edge may be hidden from the camera by parallax; few are.
+  EXPECT_LT(color_error / double(points.size()), 2.0);
+}
+
+TEST(Mapper, UpsampledPointsStayOnTheSurface) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  const auto records = map_frames(mapper, street(), 0, 4);
+  const auto points = points_of(mapper.map());
+  std::size_t interpolated = 0, off = 0;
+  for (const MapPoint& point : points) {
+    interpolated += point.interpolated;
+    off += street().scene.distance(point.p_local) > 0.02;
+  }
+  EXPECT_GT(interpolated, points.size() / 4);
+  EXPECT_LT(double(off) / double(points.size()), 0.01);  // across edges shorter than tau
+  EXPECT_GT(records[0].figures.at("points_upsampled"), 2 * records[0].figures.at("points_foveal"));
+}
+
+TEST(Mapper, OnlyTheWhiteZoneIsTextured) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  map_frames(mapper, street(), 0, 1);
+  for (const MapPoint& point : points_of(mapper.map())) {
+    const double range = (street().T_local_lidar[0].inverse() * point.p_local).norm();
+    ASSERT_GT(range, 2.7);  // an interpolated point may lie a little inside its triangle's chord
+    ASSERT_LT(range, 15.0);
+  }
+}
+
+// The registration is given a wrong speed (navigation scaled by 0.9) and must find the true steps.
+TEST(Mapper, RefinementCorrectsTheNavigation) {
+  SyntheticDrive drive(street_scene(), 8, 0.8);
+  std::vector<StampedPose> wrong;
+  for (int i = 0; i < 8; ++i) {
+    RigidMotion T = drive.T_local_lidar[std::size_t(i)];
+    T.translation() *= 0.9;
+    wrong.push_back({SyntheticDrive::stamp_of(i), T});
+  }
+  drive.editable_info().navigation = Trajectory(wrong);
+  for (const auto target : {RegistrationTarget::kLocalMap, RegistrationTarget::kPreviousScan}) {
+    MapperOptions options;
+    options.refinement.target = target;
+    Mapper mapper(drive.info(), options, PoseSource::kRefine);
+    const auto records = map_frames(mapper, drive, 0, 8);
+    const double error = (records[7].T_local_lidar.translation() -
+                          drive.T_local_lidar[7].translation()).norm();
+    EXPECT_LT(error, 0.05) << static_cast<int>(target);  // navigation is 0.56 m off
+    EXPECT_EQ(records[7].note, "");
+  }
+}
+
+TEST(Mapper, WithoutNavigationItStartsFromRest) {
+  SyntheticDrive drive(street_scene(), 8, 0.8);
+  drive.editable_info().navigation.reset();
+  Mapper mapper(drive.info(), {}, PoseSource::kRefine);
+  const auto records = map_frames(mapper, drive, 0, 8);
+  const RigidMotion truth = drive.T_local_lidar[0].inverse() * drive.T_local_lidar[7];
+  EXPECT_LT((records[7].T_local_lidar.translation() - truth.translation()).norm(), 0.05);
+}
+
+TEST(Mapper, HeldOutFramesAddNothingButGetAPose) {
+  Mapper with(street().info(), {}, PoseSource::kRefine);
+  const auto records = map_frames(with, street(), 0, 6, /*held_out=*/3);
+  EXPECT_EQ(records[3].status, FrameStatus::kHeldOut);
+  EXPECT_EQ(records[3].figures.count("points_added"), 0u);
+  EXPECT_LT((records[3].T_local_lidar.translation() -
+             street().T_local_lidar[3].translation()).norm(), 0.05);
+  for (const MapPoint& point : points_of(with.map())) ASSERT_NE(point.frame, 3);
+
+  // The frames after it are as if it had never been: its scan is no registration target either.
+  SyntheticDrive without_it = street();
+  Mapper without(without_it.info(), {}, PoseSource::kRefine);
+  map_frames(without, without_it, 0, 3);
+  const auto rest = map_frames(without, without_it, 4, 6);
+  EXPECT_LT((rest.back().T_local_lidar.translation() - records.back().T_local_lidar.translation())
+                .norm(), 1e-3);
+}
+
+TEST(Mapper, SecondLookAddsOnlyWhatIsNew) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  const Frame frame = std::get<Frame>(street().load(2));
+  const double first = mapper.process(frame, false).figures.at("points_added");
+  const double again = mapper.process(frame, false).figures.at("points_added");
+  EXPECT_LT(again, 0.05 * first);  // the paper's rule: re-observations are occluding
+}
+
+TEST(Mapper, BaselineKeepsTheWholeScanAndLeavesTheUnseenUncoloured) {
+  MapperOptions options;
+  apply_variant("baseline-gicp", options);
+  Mapper mapper(street().info(), options, PoseSource::kNavigation);
+  const auto record = map_frames(mapper, street(), 0, 1)[0];
+  EXPECT_EQ(mapper.map().size(), std::size_t(record.figures.at("points_scan")));
+  std::size_t uncoloured = 0;
+  for (const MapPoint& point : points_of(mapper.map())) uncoloured += point.camera == kNoCamera;
+  EXPECT_EQ(double(uncoloured), record.figures.at("points_unseen"));
+  EXPECT_GT(uncoloured, mapper.map().size() / 2);
+}
+
+TEST(Mapper, TwoCamerasTakeTurns) {
+  SyntheticDrive drive(street_scene(), 2, 0.8);
+  Camera right = drive.info().calibration.cameras[0];
+  right.index = 3;
+  right.T_cam_lidar.translation().x() -= 0.54;
+  drive.editable_info().calibration.cameras.push_back(right);
+  Mapper mapper(drive.info(), {}, PoseSource::kNavigation);
+  map_frames(mapper, drive, 0, 1);
+  std::size_t from_left = 0, from_right = 0;
+  double color_error = 0;
+  for (const MapPoint& point : points_of(mapper.map())) {
+    (point.camera == 2 ? from_left : from_right) += 1;
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_GT(from_right, 0u);  // what only the second camera sees
+  EXPECT_LT(from_right, from_left / 4);  // the rest was taken by the first
+  EXPECT_LT(color_error / double(mapper.map().size()), 3.0);
+}
+
+TEST(Mapper, SameMapAtAnyThreadCount) {
+  const auto run = [](int threads) {
+    const ThreadLimit limit(threads);
+    Mapper mapper(street().info(), {}, PoseSource::kRefine);
+    map_frames(mapper, street(), 0, 3);
+    return points_of(mapper.map());
+  };
+  const auto one = run(1), two = run(2);
+  ASSERT_EQ(one.size(), two.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ASSERT_EQ(one[i].p_local, two[i].p_local);
+    ASSERT_EQ(one[i].color, two[i].color);
+  }
+}
+
+TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
+  for (const auto target : {RegistrationTarget::kLocalMap, RegistrationTarget::kPreviousScan}) {
+    MapperOptions options;
+    options.refinement.target = target;
+    options.submap_duration = 0.25;  // several submaps
+    Mapper whole(street().info(), options, PoseSource::kRefine);
+    const auto records = map_frames(whole, street(), 0, 7, 3);
+
+    Mapper first(street().info(), options, PoseSource::kRefine);
+    const auto before = map_frames(first, street(), 0, 4, 3);
+    Mapper second(street().info(), options, PoseSource::kRefine);
+    second.resume(first.map(), before, street());
+    const auto after = map_frames(second, street(), 4, 7, 3);
+
+    EXPECT_EQ(records[6].T_local_lidar.matrix(), after[2].T_local_lidar.matrix());
+    const auto a = points_of(whole.map()), b = points_of(second.map());
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].p_local, b[i].p_local);
+    EXPECT_EQ(whole.map().submaps().size(), second.map().submaps().size());
+  }
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,36 @@
+#include "fovea/pipeline/motion_model.h"
+
+namespace fovea {
+
+MotionPrediction MotionModel::predict(TimeNs stamp, TimeNs sweep_end) const {
+  MotionPrediction prediction;
+  if (last_) prediction.T_local_lidar = last_->T_local_body;
+
+  const auto now = navigation_ != nullptr ? navigation_->at(stamp) : std::nullopt;
+  if (now) {
+    prediction.T_local_lidar_navigation = now;
+    prediction.velocity = navigation_->velocity(stamp, sweep_end);
+    const auto then = last_ ? navigation_->at(last_->time) : std::nullopt;
+    if (!last_) {
+      prediction.T_local_lidar = *now;
+    } else if (then) {
+      prediction.T_local_lidar = last_->T_local_body * (then->inverse() * *now);
+    }
+    if (!last_ || then) return prediction;
+  }
+  if (last_ && before_last_) {
+    const Twist velocity = log_se3(before_last_->T_local_body.inverse() * last_->T_local_body) /
+                           seconds(last_->time - before_last_->time);
+    prediction.T_local_lidar =
+        last_->T_local_body * exp_se3(velocity * seconds(stamp - last_->time));
+    if (!prediction.velocity) prediction.velocity = velocity;
+  }
+  return prediction;
+}
+
+void MotionModel::update(TimeNs stamp, const RigidMotion& T_local_lidar) {
+  before_last_ = last_;
+  last_ = StampedPose{stamp, T_local_lidar};
+}
+
+}  // namespace fovea

@@ -1,0 +1,132 @@
+#include "fovea/pipeline/pose_refiner.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "fovea/geometry/transform_cloud.h"
+#include "fovea/geometry/voxel_grid.h"
+#include "fovea/mapping/ground.h"
+
+namespace fovea {
+
+PoseRefiner::PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras)
+    : options_(options), cameras_(std::move(cameras)), local_map_(options.local_map) {}
+
+int PoseRefiner::memory() const {
+  return options_.target == RegistrationTarget::kPreviousScan ? 1
+                                                              : options_.local_map.max_keyframes;
+}
+
+PointCloud PoseRefiner::visible_upsampled(const PointCloud& scan_lidar) const {
+  const std::vector<std::uint8_t> ground = segment_ground(scan_lidar.position, options_.ground);
+  const UpsampleOptions upsampling{.rate = options_.upsample_rate};
+  std::vector<std::uint8_t> taken(scan_lidar.size(), 0);
+  PointCloud result;
+  for (const Camera& camera : cameras_) {
+    // A point that several cameras see is upsampled in the first one's view.
+    const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
+    std::vector<std::uint32_t> ground_in_view, rest_in_view;
+    for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
+      const auto pixel = camera.project(points_cam.position[i].cast<double>());
+      if (taken[i] != 0 || !pixel || !camera.in_view(*pixel)) continue;
+      taken[i] = 1;
+      (ground[i] != 0 ? ground_in_view : rest_in_view).push_back(i);
+    }
+    const PointCloud dense =
+        upsample(points_cam.select(rest_in_view), camera, upsampling);
+    const PointCloud dense_lidar = transform_cloud(dense, camera.T_cam_lidar.inverse());
+    for (const std::uint32_t i : ground_in_view) result.position.push_back(scan_lidar.position[i]);
+    result.position.insert(result.position.end(), dense_lidar.position.begin(),
+                           dense_lidar.position.end());
+  }
+  if (options_.visible_only) return result;
+  for (std::size_t i = 0; i < scan_lidar.size(); ++i) {
+    if (taken[i] == 0) result.position.push_back(scan_lidar.position[i]);
+  }
+  return result;
+}
+
+RegistrationCloud PoseRefiner::prepare(const PointCloud& scan_lidar, StageClock& clock) const {
+  const bool whole = !options_.visible_only && options_.upsample_rate == 0;
+  PointCloud dense;
+  if (!whole) dense = clock.time("upsample", [&] { return visible_upsampled(scan_lidar); });
+  const std::vector<Eigen::Vector3f>& points = whole ? scan_lidar.position : dense.position;
+  return clock.time("register", [&] {
+    std::vector<Eigen::Vector3f> chosen;
+    if (options_.voxel > 0) {
+      for (const std::uint32_t i : voxel_sample(points, static_cast<float>(options_.voxel))) {
+        chosen.push_back(points[i]);
+      }
+    } else {
+      chosen = points;
+    }
+    return prepare_cloud(std::move(chosen), options_.registration);
+  });
+}
+
+RegistrationResult PoseRefiner::register_scan(const RegistrationCloud& source,
+                                              const RigidMotion& guess) const {
+  if (options_.target == RegistrationTarget::kLocalMap) {
+    return register_to(local_map_, source, guess, options_.registration);
+  }
+  const KdTree tree(previous_->cloud.points);
+  RegistrationResult result =
+      register_clouds(previous_->cloud, tree, source, previous_->T_local_lidar.inverse() * guess,
+                      options_.registration);
+  result.T_target_source = previous_->T_local_lidar * result.T_target_source;
+  return result;
+}
+
+void PoseRefiner::keep_as_target(RegistrationCloud cloud, const RigidMotion& T_local_lidar) {
+  if (options_.target == RegistrationTarget::kLocalMap) {
+    local_map_.add(cloud, T_local_lidar);
+  } else {
+    previous_ = PreviousScan{std::move(cloud), T_local_lidar};
+  }
+}
+
+void PoseRefiner::add_target(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar) {
+  StageClock unused;
+  keep_as_target(prepare(scan_lidar, unused), T_local_lidar);
+}
+
+RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion& guess,
+                                bool as_target, StageClock& clock) {
+  RefinedPose refined;
+  refined.T_local_lidar = guess;
+  RegistrationCloud source = prepare(scan_lidar, clock);
+  refined.figures["registration_points"] = static_cast<double>(source.points.size());
+
+  const bool has_target = options_.target == RegistrationTarget::kLocalMap ? !local_map_.empty()
+                                                                           : previous_.has_value();
+  if (has_target) {
+    const RegistrationResult result =
+        clock.time("register", [&] { return register_scan(source, guess); });
+    const RigidMotion correction = guess.inverse() * result.T_target_source;
+    const double moved = correction.translation().norm();
+    const double turned = rotation_angle(correction.linear());
+    if (!result.converged) {
+      refined.note = "registration did not converge, first guess kept";
+    } else if (moved > options_.max_correction_translation ||
+               turned > options_.max_correction_rotation) {
+      refined.note = fmt::format("registration moved {:.2f} m and {:.1f} degrees, first guess kept",
+                                 moved, turned * 180 / std::numbers::pi);
+    } else {
+      refined.T_local_lidar = result.T_target_source;
+    }
+    refined.figures["registration_iterations"] = result.iterations;
+    refined.figures["registration_pairs"] = static_cast<double>(result.pairs);
+    refined.figures["registration_rms"] = result.rms_distance;
+    refined.figures["registration_degenerate"] = result.degenerate_directions;
+    refined.figures["registration_failed"] = refined.note.empty() ? 0 : 1;
+    refined.figures["correction_translation"] = moved;
+    refined.figures["correction_rotation"] = turned;
+  }
+  if (as_target) {
+    clock.time("register", [&] { keep_as_target(std::move(source), refined.T_local_lidar); });
+  }
+  return refined;
+}
+
+}  // namespace fovea

@@ -1,0 +1,62 @@
+// A drive whose frames lie in numbered files; what KITTI's two forms have in common.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/kitti_calibration.h"
+#include "fovea/sensor/read_file.h"
+#include "fovea/sensor/time_stamps.h"
+
+namespace fovea {
+
+/// Where a drive's parts lie and which of them are usable.
+struct DriveFiles {
+  NumberedFiles scans;
+  std::vector<NumberedFiles> images;  ///< one a camera of info.calibration, in its order
+  TimeStamps stamps;                  ///< unused where !info.has_time_stamps
+  /// Why a frame's own GPS/INS record cannot be used, of every frame where that is so among
+  /// [info.begin, info.end); empty where the drive has no navigation.
+  std::map<int, std::string> bad_navigation;
+};
+
+/// Scan time of a frame; empty if the drive has stamps and this one is missing, malformed or out of
+/// order. A drive without stamps counts as 10 Hz.
+std::optional<TimeNs> frame_stamp(const DriveInfo& info, const TimeStamps& stamps, int index);
+
+/// First frame of the range that has a scan, every image and a stamp, as far as can be known
+/// without reading them, and is not in `bad_navigation`; empty if there is none.
+std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& files);
+
+/// The frames [first, last] of the scans, cut to the range asked for. ConfigError if nothing is
+/// left.
+std::pair<int, int> frame_range(const NumberedFiles& scans, const DriveOptions& options,
+                                const std::filesystem::path& drive);
+
+/// The cameras to use: those asked for, or camera 2, or else 3, 0, 1, whichever is there first.
+/// ConfigError for one that is not there or is asked for twice; InputError if the drive has none.
+/// @param present  cameras that have both a calibration and a folder of images
+std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOptions& options,
+                                const std::filesystem::path& drive);
+
+/// Fills `files.images`, info.calibration.cameras with the chosen cameras.
+/// @param folder_prefix  "image_0" or "image_", before the camera's number
+/// @param subfolder      "data" or ""
+void find_images(const KittiCalibration& calibration, const DriveOptions& options,
+                 const std::string& folder_prefix, const std::string& subfolder, DriveInfo& info,
+                 DriveFiles& files);
+
+/// Reads the time stamps and the sweep's period into `info` and `files`, with notes of what is
+/// missing.
+/// @param read  read_date_times or read_seconds
+void find_stamps(const std::filesystem::path& file,
+                 TimeStamps (*read)(const std::filesystem::path&), DriveInfo& info,
+                 DriveFiles& files);
+
+std::unique_ptr<FrameSource> make_frame_source(DriveInfo info, DriveFiles files);
+
+}  // namespace fovea

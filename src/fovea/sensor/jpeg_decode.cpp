@@ -1,0 +1,85 @@
+#include "fovea/sensor/jpeg_decode.h"
+
+#include <jpeglib.h>
+
+#include <csetjmp>
+#include <cstdio>  // jpeglib.h needs FILE and size_t, and includes neither
+#include <stdexcept>
+#include <string>
+
+#include "fovea/sensor/image_decode.h"
+
+namespace fovea {
+namespace {
+
+/// libjpeg's error manager with the place to jump to. libjpeg sees the first member only.
+struct JpegErrors {
+  jpeg_error_mgr manager;
+  std::jmp_buf failed;
+  char message[JMSG_LENGTH_MAX];
+};
+
+[[noreturn]] void fail(j_common_ptr codec) {
+  auto& errors = *reinterpret_cast<JpegErrors*>(codec->err);
+  (*codec->err->format_message)(codec, errors.message);
+  std::longjmp(errors.failed, 1);
+}
+
+/// A warning (level < 0) means that pixels were made up, as after the end of a truncated file.
+void fail_on_warning(j_common_ptr codec, int level) {
+  if (level < 0) fail(codec);
+}
+
+void print_nothing(j_common_ptr) {}
+
+/// False after an error, with the reason in `errors`; libjpeg jumps back here, so everything with a
+/// destructor belongs to the caller.
+bool decode(jpeg_decompress_struct& codec, JpegErrors& errors, std::span<const std::uint8_t> file,
+            Image& image) {
+  if (setjmp(errors.failed)) return false;
+  jpeg_mem_src(&codec, file.data(), static_cast<unsigned long>(file.size()));
+  jpeg_read_header(&codec, TRUE);
+  if (codec.image_width > kMaxImageSide || codec.image_height > kMaxImageSide) {
+    std::snprintf(errors.message, sizeof errors.message, "%u x %u pixels are too many",
+                  codec.image_width, codec.image_height);
+    return false;
+  }
+  codec.out_color_space = codec.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+  jpeg_start_decompress(&codec);
+  image = Image(static_cast<int>(codec.output_width), static_cast<int>(codec.output_height),
+                codec.output_components);
+  while (codec.output_scanline < codec.output_height) {
+    JSAMPROW row = image.pixel(0, static_cast<int>(codec.output_scanline));
+    jpeg_read_scanlines(&codec, &row, 1);
+  }
+  jpeg_finish_decompress(&codec);
+  return true;
+}
+
+struct JpegReader {
+  JpegErrors errors{};
+  jpeg_decompress_struct codec{};
+  JpegReader() {
+    codec.err = jpeg_std_error(&errors.manager);
+    errors.manager.error_exit = &fail;
+    errors.manager.emit_message = &fail_on_warning;
+    errors.manager.output_message = &print_nothing;
+    jpeg_create_decompress(&codec);
+  }
+  ~JpegReader() { jpeg_destroy_decompress(&codec); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+};
+
+}  // namespace
+
+Image decode_jpeg(std::span<const std::uint8_t> file) {
+  JpegReader reader;
+  Image image;
+  if (!decode(reader.codec, reader.errors, file, image)) {
+    throw std::runtime_error(reader.errors.message);
+  }
+  return image;
+}
+
+}  // namespace fovea

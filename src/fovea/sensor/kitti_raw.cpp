@@ -1,0 +1,115 @@
+// KITTI raw drives: DATE/DATE_drive_NNNN_sync.
+#include <fmt/format.h>
+
+#include "fovea/base/errors.h"
+#include "fovea/sensor/drive_files.h"
+#include "fovea/sensor/kitti_drives.h"
+#include "fovea/sensor/navigation.h"
+
+namespace fovea {
+namespace {
+
+/// The folder above the drive's, for "." and "drive/", too.
+std::filesystem::path date_folder(const std::filesystem::path& drive) {
+  const auto absolute = std::filesystem::absolute(drive / "").lexically_normal();
+  return absolute.parent_path().parent_path();
+}
+
+struct OxtsFolder {
+  std::vector<StampedOxts> records;         ///< usable ones
+  std::map<int, std::string> why_unusable;  ///< by record number
+};
+
+/// @param stamps  of the records; absent where the drive counts as 10 Hz: a synced drive has one
+///                record a scan, so its number is its time
+OxtsFolder read_oxts_folder(const NumberedFiles& files, const std::optional<TimeStamps>& stamps,
+                            const DriveInfo& info) {
+  OxtsFolder folder;
+  for (const auto& [index, file] : files) {
+    const std::optional<TimeNs> time = frame_stamp(info, stamps.value_or(TimeStamps{}), index);
+    const auto record = read_oxts(file);
+    if (const auto* why = std::get_if<std::string>(&record)) {
+      folder.why_unusable[index] = file.string() + " " + *why;
+    } else if (!time) {
+      folder.why_unusable[index] = file.string() + " has no usable time stamp";
+    } else {
+      folder.records.push_back({*time, std::get<OxtsRecord>(record)});
+    }
+  }
+  return folder;
+}
+
+/// Notes the unusable records, and marks the frames of the range that have none of their own.
+void mark_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, DriveInfo& info,
+                      DriveFiles& files) {
+  if (!folder.why_unusable.empty()) {
+    info.notes.push_back(
+        fmt::format("{} of {} GPS/INS records cannot be used (the first: {}): their frames are "
+                    "skipped",
+                    folder.why_unusable.size(), oxts.size(), folder.why_unusable.begin()->second));
+  }
+  for (auto scan = files.scans.lower_bound(info.begin);
+       scan != files.scans.end() && scan->first < info.end; ++scan) {
+    const int index = scan->first;
+    if (!oxts.contains(index)) {
+      files.bad_navigation[index] = fmt::format("no GPS/INS record {}", index);
+    } else if (const auto bad = folder.why_unusable.find(index); bad != folder.why_unusable.end()) {
+      files.bad_navigation[index] = bad->second;
+    }
+  }
+}
+
+/// Fills info.navigation and info.origin, or notes why there is none.
+void find_navigation(const KittiCalibration& calibration, DriveInfo& info, DriveFiles& files) {
+  const std::filesystem::path folder = info.path / "oxts";
+  const auto without = [&](const std::string& why) {
+    info.notes.push_back(why + ": no navigation, the map will not be georeferenced");
+  };
+  const NumberedFiles oxts = list_numbered_files(folder / "data", {".txt"});
+  if (oxts.empty()) return without((folder / "data").string() + " has no record");
+  if (!calibration.T_imu_lidar) return without("calib_imu_to_velo.txt is missing");
+
+  std::optional<TimeStamps> stamps;
+  if (info.has_time_stamps) {
+    const std::filesystem::path file = folder / "timestamps.txt";
+    if (!std::filesystem::exists(file)) return without(file.string() + " is missing");
+    stamps = read_date_times(file);
+  }
+  const OxtsFolder records = read_oxts_folder(oxts, stamps, info);
+  if (records.records.empty()) {
+    return without(
+        "no GPS/INS record can be used (the first: " + records.why_unusable.begin()->second + ")");
+  }
+  mark_bad_records(oxts, records, info, files);
+  info.calibration.T_imu_lidar = calibration.T_imu_lidar;
+  const std::optional<int> first = first_usable_frame(info, files);
+  const TimeNs origin_time =
+      first ? *frame_stamp(info, files.stamps, *first) : records.records.front().time;
+  Navigation navigation = make_navigation(records.records, *calibration.T_imu_lidar, origin_time);
+  info.navigation = std::move(navigation.trajectory);
+  info.origin = navigation.origin;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
+                                            const DriveOptions& options) {
+  DriveInfo info;
+  DriveFiles files;
+  info.path = path;
+  info.kind = "kitti-raw";
+  const std::filesystem::path scans = path / "velodyne_points";
+  files.scans = list_numbered_files(scans / "data", {".bin"});
+  if (files.scans.empty()) {
+    throw InputError("the drive has no scan", (scans / "data" / "*.bin").string(),
+                     "use a synced and rectified drive (DATE_drive_NNNN_sync) with its scans");
+  }
+  std::tie(info.begin, info.end) = frame_range(files.scans, options, path);
+  const KittiCalibration calibration = read_kitti_raw_calibration(date_folder(path));
+  find_images(calibration, options, "image_0", "data", info, files);
+  find_stamps(scans / "timestamps.txt", read_date_times, info, files);
+  if (options.use_navigation) find_navigation(calibration, info, files);
+  return make_frame_source(std::move(info), std::move(files));
+}
+
+}  // namespace fovea

@@ -1,0 +1,68 @@
+#include "fovea/sensor/motion_compensation.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+/// exp_se3(velocity * dt) for many dt: the axis does not change, only the angle along it does, so a
+/// point costs one sine and one cosine.
+class ConstantTwist {
+ public:
+  explicit ConstantTwist(const Twist& velocity)
+      : rate_(velocity.head<3>().norm()), v_(velocity.tail<3>()) {
+    if (rate_ < kNegligibleRate) {
+      rate_ = 0;
+      return;
+    }
+    axis_ = velocity.head<3>() / rate_;
+    v_along_ = axis_.dot(v_) * axis_;
+    v_across_ = (v_ - v_along_) / rate_;
+    v_turned_ = axis_.cross(v_) / rate_;
+  }
+
+  Eigen::Vector3d rotate(const Eigen::Vector3d& p, double s, double c) const {  // Rodrigues
+    return c * p + s * axis_.cross(p) + (1 - c) * axis_.dot(p) * axis_;
+  }
+
+  /// Point `p` (and its direction `normal`, where there is one) moved by the motion over `dt`.
+  Eigen::Vector3d move(const Eigen::Vector3d& p, double dt, Eigen::Vector3f* normal) const {
+    if (rate_ == 0) return p + dt * v_;
+    const double s = std::sin(rate_ * dt), c = std::cos(rate_ * dt);
+    if (normal != nullptr) *normal = rotate(normal->cast<double>(), s, c).cast<float>();
+    return rotate(p, s, c) + dt * v_along_ + s * v_across_ + (1 - c) * v_turned_;
+  }
+
+ private:
+  static constexpr double kNegligibleRate = 1e-9;  // rad/s: below a micrometre at 1 km in a second
+
+  double rate_;
+  Eigen::Vector3d v_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_along_ = Eigen::Vector3d::Zero();   // part of v_ along the axis
+  Eigen::Vector3d v_across_ = Eigen::Vector3d::Zero();  // part across it, over the rate
+  Eigen::Vector3d v_turned_ = Eigen::Vector3d::Zero();  // axis x v_, over the rate
+};
+
+}  // namespace
+
+void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double period) {
+  if (!scan_lidar.origin.isZero()) {
+    throw std::invalid_argument("a sweep's origin must be the LiDAR: azimuths are taken from it");
+  }
+  constexpr std::size_t kGrain = 8192;
+  const ConstantTwist motion(velocity);
+  const double time_per_radian = -period / (2 * std::numbers::pi);  // clockwise
+  parallel_for(scan_lidar.size(), kGrain, [&](std::size_t i) {
+    Eigen::Vector3f& p = scan_lidar.position[i];
+    const double dt = time_per_radian * std::atan2(p.y(), p.x());
+    Eigen::Vector3f* normal = scan_lidar.normal.empty() ? nullptr : &scan_lidar.normal[i];
+    p = motion.move(p.cast<double>(), dt, normal).cast<float>();
+  });
+}
+
+}  // namespace fovea

@@ -1,0 +1,116 @@
+#include "fovea/sensor/motion_compensation.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+#include "fovea/base/parallel.h"
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kPeriod = 0.1;
+
+Twist twist(std::initializer_list<double> values) {
+  Twist result;
+  std::copy(values.begin(), values.end(), result.data());
+  return result;
+}
+
+Eigen::Vector3f compensated(const Eigen::Vector3f& p, const Twist& velocity) {
+  PointCloud scan;
+  scan.position = {p};
+  compensate_sweep(scan, velocity, kPeriod);
+  return scan.position[0];
+}
+
+TEST(MotionCompensation, SweepTurnsClockwiseAndFacesForwardAtTheStamp) {
+  const Twist forward = twist({0, 0, 0, 10, 0, 0});
+  // Ahead: measured at the stamp. Left: a quarter turn earlier, since then the car went 0.25 m on.
+  EXPECT_LT((compensated({8, 0, 1}, forward) - Eigen::Vector3f(8, 0, 1)).norm(), 1e-6f);
+  EXPECT_LT((compensated({0, 5, 1}, forward) - Eigen::Vector3f(-0.25f, 5, 1)).norm(), 1e-6f);
+  EXPECT_LT((compensated({0, -5, 1}, forward) - Eigen::Vector3f(0.25f, -5, 1)).norm(), 1e-6f);
+  // Behind the sweep begins and ends: half a period either way.
+  EXPECT_NEAR(compensated({-5, 1e-6f, 0}, forward).x(), -5.5, 1e-5);
+  EXPECT_NEAR(compensated({-5, -1e-6f, 0}, forward).x(), -4.5, 1e-5);
+  // Straight above there is no azimuth.
+  EXPECT_EQ(compensated({0, 0, 3}, forward), Eigen::Vector3f(0, 0, 3));
+}
+
+TEST(MotionCompensation, EqualsTheExponentialOfTheTwist) {
+  Random random(5);
+  for (const Twist& velocity :
+       {twist({0, 0, 0, 0, 0, 0}), twist({0, 0, 1.5, 12, 0.3, -0.1}),
+        twist({0.4, -0.2, 0.1, 5, 1, 2}), twist({1e-7, 0, -1e-7, 30, 0, 0})}) {
+    for (int i = 0; i < 200; ++i) {
+      const Eigen::Vector3f p(
+          Eigen::Vector3d(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-2, 5))
+              .cast<float>());
+      const double azimuth = std::atan2(double(p.y()), double(p.x()));
+      const double dt = -azimuth / (2 * std::numbers::pi) * kPeriod;
+      const Eigen::Vector3d expected = exp_se3(dt * velocity) * p.cast<double>();
+      EXPECT_LT((compensated(p, velocity).cast<double>() - expected).norm(), 2e-5);
+    }
+  }
+}
+
+/// Points of a wall, n * x = d in the frame of the stamp, as a turning and driving LiDAR sees them.
+PointCloud scan_wall(const Eigen::Vector3d& n, double d, const Twist& velocity) {
+  PointCloud scan;
+  for (double azimuth = -1.2; azimuth <= 1.2; azimuth += 0.01) {
+    const double dt = -azimuth / (2 * std::numbers::pi) * kPeriod;
+    const RigidMotion T_stamp_now = exp_se3(dt * velocity);
+    const Eigen::Vector3d ray(std::cos(azimuth), std::sin(azimuth), 0.05);
+    const double range =
+        (d - n.dot(T_stamp_now.translation())) / n.dot(T_stamp_now.rotation() * ray);
+    scan.position.emplace_back((range * ray).cast<float>());
+    scan.normal.emplace_back((-T_stamp_now.rotation().transpose() * n).cast<float>());
+  }
+  return scan;
+}
+
+TEST(MotionCompensation, StraightensAWallSeenFromACarInACurve) {
+  const Twist velocity = twist({0, 0, 0.5, 10, 0.2, 0});
+  const Eigen::Vector3d n(1, 0, 0);
+  PointCloud wall = scan_wall(n, 12, velocity);
+  const auto worst = [&] {
+    double result = 0;
+    for (const auto& p : wall.position) {
+      result = std::max(result, std::abs(n.dot(p.cast<double>()) - 12));
+    }
+    return result;
+  };
+  EXPECT_GT(worst(), 0.2);
+  compensate_sweep(wall, velocity, kPeriod);
+  EXPECT_LT(worst(), 1e-4);
+  for (const auto& normal : wall.normal) EXPECT_LT((normal + n.cast<float>()).norm(), 1e-6f);
+}
+
+TEST(MotionCompensation, SameAtAnyNumberOfThreads) {
+  Random random(9);
+  PointCloud one;
+  for (int i = 0; i < 50'000; ++i) {
+    one.position.emplace_back(random.uniform(-50, 50), random.uniform(-50, 50), 0.f);
+  }
+  PointCloud many = one;
+  const Twist velocity = twist({0.1, 0, 0.5, 10, 0, 0});
+  {
+    const ThreadLimit limit(1);
+    compensate_sweep(one, velocity, kPeriod);
+  }
+  compensate_sweep(many, velocity, kPeriod);
+  EXPECT_EQ(one.position, many.position);
+}
+
+TEST(MotionCompensation, EmptyScanAndForeignOrigin) {
+  PointCloud scan;
+  compensate_sweep(scan, twist({0, 0, 1, 10, 0, 0}), kPeriod);
+  EXPECT_TRUE(scan.empty());
+  scan.origin.x() = 1;
+  EXPECT_THROW(compensate_sweep(scan, Twist::Zero(), kPeriod), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,73 @@
+#include "fovea/sensor/navigation.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+namespace fovea {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Radii of curvature of the WGS84 ellipsoid at latitude 49 degrees, m: of the meridian and across.
+struct Curvature {
+  double M, N;
+  Curvature() {
+    constexpr double a = 6378137, f = 1 / 298.257223563, e2 = f * (2 - f);
+    const double w = 1 - e2 * std::pow(std::sin(49 * kDegree), 2);
+    M = a * (1 - e2) / std::pow(w, 1.5);
+    N = a / std::sqrt(w);
+  }
+};
+
+/// Two records a second apart: 1e-4 degrees north (11.12 m), heading north.
+std::vector<StampedOxts> drive_north() {
+  OxtsRecord a{{49, 8.4, 100}, 0, 0, std::numbers::pi / 2}, b = a;
+  b.position.latitude += 1e-4;
+  return {{0, a}, {kNsPerSecond, b}};
+}
+
+TEST(Navigation, PositionsFollowTheEllipsoid) {
+  const double step = 1e-4 * kDegree * (Curvature().M + 100);
+  const Navigation north = make_navigation(drive_north(), RigidMotion::Identity(), 0);
+  const auto& poses = north.trajectory.poses();
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_LT(poses[0].T_local_body.translation().norm(), 1e-6);
+  EXPECT_LT((poses[1].T_local_body.translation() - Eigen::Vector3d(0, step, 0)).norm(), 1e-4);
+  EXPECT_LT(
+      (north.trajectory.at(from_seconds(0.3))->translation() - Eigen::Vector3d(0, 0.3 * step, 0))
+          .norm(),
+      1e-4);
+}
+
+TEST(Navigation, OriginIsTheLidarAtTheTimeAskedFor) {
+  // The LiDAR sits 1 m ahead, 0.5 m to the right and 2 m above the imu; the car heads north.
+  RigidMotion T_imu_lidar = RigidMotion::Identity();
+  T_imu_lidar.translation() = Eigen::Vector3d(1, -0.5, 2);
+  const TimeNs half = kNsPerSecond / 2;
+  const Navigation navigation = make_navigation(drive_north(), T_imu_lidar, half);
+  EXPECT_LT(navigation.trajectory.at(half)->translation().norm(), 1e-6);
+  const Curvature radius;
+  EXPECT_NEAR(navigation.origin.altitude, 102, 1e-4);
+  EXPECT_NEAR(navigation.origin.latitude, 49 + 0.5e-4 + 1 / (radius.M + 100) / kDegree, 1e-9);
+  EXPECT_NEAR(navigation.origin.longitude,
+              8.4 + 0.5 / (radius.N + 100) / std::cos(49 * kDegree) / kDegree, 1e-9);
+  // Forward of the LiDAR points north (y), its left west.
+  const Eigen::Matrix3d R = navigation.trajectory.at(half)->rotation();
+  EXPECT_LT((R.col(0) - Eigen::Vector3d::UnitY()).norm(), 1e-5);
+  EXPECT_LT((R.col(1) + Eigen::Vector3d::UnitX()).norm(), 1e-5);
+}
+
+TEST(Navigation, OriginBeyondTheRecordsIsTheFirst) {
+  const Navigation navigation =
+      make_navigation(drive_north(), RigidMotion::Identity(), 10 * kNsPerSecond);
+  EXPECT_NEAR(navigation.origin.latitude, 49, 1e-12);
+}
+
+TEST(Navigation, NeedsARecord) {
+  EXPECT_THROW(make_navigation({}, RigidMotion::Identity(), 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,52 @@
+#include "fovea/sensor/oxts.h"
+
+#include <cmath>
+
+#include "fovea/base/errors.h"
+#include "fovea/sensor/read_file.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kFields = 30;
+constexpr double kMaxAltitude = 20'000;  // m either way: no vehicle is there
+constexpr double kMaxAngle = 7;          // rad: a full turn and some rounding
+
+}  // namespace
+
+Eigen::Matrix3d OxtsRecord::R_enu_imu() const {
+  return (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers) return "has an entry that is no number";
+  if (numbers->size() != kFields) {
+    return "has " + std::to_string(numbers->size()) + " numbers, not " + std::to_string(kFields);
+  }
+  for (const double number : *numbers) {
+    if (!std::isfinite(number)) return "has an entry that is not finite";
+  }
+  const std::vector<double>& n = *numbers;
+  if (std::abs(n[0]) > 90) return "has latitude " + std::to_string(n[0]);
+  if (std::abs(n[1]) > 180) return "has longitude " + std::to_string(n[1]);
+  if (std::abs(n[2]) > kMaxAltitude) return "has altitude " + std::to_string(n[2]);
+  for (std::size_t i = 3; i < 6; ++i) {
+    if (std::abs(n[i]) > kMaxAngle) return "has angle " + std::to_string(n[i]) + " (rad)";
+  }
+  return OxtsRecord{{n[0], n[1], n[2]}, n[3], n[4], n[5]};
+}
+
+std::variant<OxtsRecord, std::string> read_oxts(const std::filesystem::path& file) {
+  try {
+    const auto bytes = read_bytes(file);
+    return parse_oxts(std::string(bytes.begin(), bytes.end()));
+  } catch (const InputError&) {
+    return "cannot be read";
+  }
+}
+
+}  // namespace fovea

@@ -1,0 +1,29 @@
+// KITTI's GPS/INS records (OXTS RT3003): oxts/data/NNNNNNNNNN.txt, one record of 30 numbers a file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "fovea/geometry/geodesy.h"
+
+namespace fovea {
+
+/// What is used of a record.
+struct OxtsRecord {
+  GeodeticPoint position;
+  /// rad. Roll: positive = left side up; pitch: positive = front down; yaw: 0 = east, positive =
+  /// counter-clockwise seen from above.
+  double roll = 0, pitch = 0, yaw = 0;
+
+  /// R = Rz(yaw) * Ry(pitch) * Rx(roll), from the imu (forward, left, up) to east-north-up there.
+  Eigen::Matrix3d R_enu_imu() const;
+};
+
+/// The record of a text, or why it cannot be used ("has 29 numbers, not 30").
+std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text);
+
+/// The same for a file; one that cannot be read gives a reason, too.
+std::variant<OxtsRecord, std::string> read_oxts(const std::filesystem::path& file);
+
+}  // namespace fovea

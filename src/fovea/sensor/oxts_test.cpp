@@ -1,0 +1,73 @@
+#include "fovea/sensor/oxts.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "../../../tests/kitti_test_drive.h"
+
+namespace fovea {
+namespace {
+
+// 24 more fields, which are not used but must be there.
+const std::string kRest = " 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 4 7 4 4 0\n";
+
+std::string why(const std::string& text) {
+  const auto result = parse_oxts(text);
+  const auto* reason = std::get_if<std::string>(&result);
+  return reason != nullptr ? *reason : "";
+}
+
+TEST(Oxts, ReadsPositionAndAttitude) {
+  const auto result = parse_oxts("49.009 8.437 114.4 0.07 0.0015 -0.26" + kRest);
+  ASSERT_TRUE(std::holds_alternative<OxtsRecord>(result));
+  const auto& record = std::get<OxtsRecord>(result);
+  EXPECT_EQ(record.position.latitude, 49.009);
+  EXPECT_EQ(record.position.longitude, 8.437);
+  EXPECT_EQ(record.position.altitude, 114.4);
+  EXPECT_EQ(record.roll, 0.07);
+  EXPECT_EQ(record.pitch, 0.0015);
+  EXPECT_EQ(record.yaw, -0.26);
+}
+
+TEST(Oxts, SaysWhyARecordCannotBeUsed) {
+  EXPECT_EQ(why("49 8 100 0 0 0 1 2 3"), "has 9 numbers, not 30");
+  EXPECT_EQ(why(""), "has 0 numbers, not 30");
+  EXPECT_EQ(why("49 8 100 0 0 0" + kRest + "1"), "has 31 numbers, not 30");
+  EXPECT_EQ(why("nan 8 100 0 0 0" + kRest), "has an entry that is not finite");
+  EXPECT_EQ(why("49 8 inf 0 0 0" + kRest), "has an entry that is not finite");
+  EXPECT_EQ(why("49 x 100 0 0 0" + kRest), "has an entry that is no number");
+  EXPECT_NE(why("91 8 100 0 0 0" + kRest).find("latitude 91"), std::string::npos);
+  EXPECT_NE(why("49 188 100 0 0 0" + kRest).find("longitude 188"), std::string::npos);
+  EXPECT_NE(why("49 8 1e9 0 0 0" + kRest).find("altitude"), std::string::npos);
+  EXPECT_NE(why("49 8 100 0 0 270" + kRest).find("angle 270"), std::string::npos);
+}
+
+TEST(Oxts, UnreadableFilesAreUnusableRecords) {
+  const test::TempFolder folder;
+  EXPECT_EQ(std::get<std::string>(read_oxts(folder.path() / "none.txt")), "cannot be read");
+  EXPECT_EQ(std::get<std::string>(read_oxts(folder.path())), "cannot be read");
+}
+
+TEST(Oxts, AnglesTurnAsTheFormatSays) {
+  OxtsRecord record;
+  const auto axis = [&](int k) { return Eigen::Vector3d(record.R_enu_imu().col(k)); };
+  record.yaw = std::numbers::pi / 2;  // heading north: forward is north, left is west
+  EXPECT_LT((axis(0) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-15);
+  EXPECT_LT((axis(1) - Eigen::Vector3d(-1, 0, 0)).norm(), 1e-15);
+  record.yaw = 0;
+  record.pitch = 0.1;  // front down
+  EXPECT_NEAR(axis(0).z(), -std::sin(0.1), 1e-15);
+  record.pitch = 0;
+  record.roll = 0.1;  // left side up
+  EXPECT_NEAR(axis(1).z(), std::sin(0.1), 1e-15);
+  record.pitch = 0.2;
+  record.yaw = 0.3;  // roll first, then pitch, then yaw: forward keeps out of the roll
+  EXPECT_LT((axis(0) - Eigen::Vector3d(std::cos(0.3) * std::cos(0.2), std::sin(0.3) * std::cos(0.2),
+                                       -std::sin(0.2)))
+                .norm(),
+            1e-15);
+}
+
+}  // namespace
+}  // namespace fovea

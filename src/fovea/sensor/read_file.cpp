@@ -1,0 +1,100 @@
+#include "fovea/sensor/read_file.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+/// No drive has as many frames; a larger number in a name is something else, such as a date.
+constexpr int kMaxFileNumber = 10'000'000;
+
+constexpr std::string_view kWhiteSpace = " \t\r\n\v\f";
+
+std::optional<int> parse_file_number(const std::string& stem) {
+  int number = 0;
+  const char* end = stem.data() + stem.size();
+  const auto [rest, error] = std::from_chars(stem.data(), end, number);
+  if (error != std::errc() || rest != end || number < 0 || number >= kMaxFileNumber) {
+    return std::nullopt;
+  }
+  return number;
+}
+
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
+  const auto fail = [&](std::string_view reason) {
+    throw InputError("the file cannot be read (" + std::string(reason) + ")", file.string(),
+                     "restore it or make it readable");
+  };
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) fail("it is a folder");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
+                                                               &std::fclose);
+  if (!stream) fail(std::strerror(errno));
+
+  std::error_code size_error;
+  const auto size = std::filesystem::file_size(file, size_error);
+  if (size_error) fail(size_error.message());
+  std::vector<std::uint8_t> bytes(size);
+  const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), stream.get());
+  if (got != bytes.size()) fail("only " + std::to_string(got) + " bytes could be read");
+  return bytes;
+}
+
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  std::vector<std::string> lines;
+  for (auto begin = bytes.begin(); begin != bytes.end();) {
+    const auto end = std::find(begin, bytes.end(), '\n');
+    lines.emplace_back(begin, end);
+    if (!lines.back().empty() && lines.back().back() == '\r') lines.back().pop_back();
+    begin = end == bytes.end() ? end : end + 1;
+  }
+  return lines;
+}
+
+std::optional<std::vector<double>> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kWhiteSpace), text.size()));
+    if (text.empty()) return numbers;
+    const std::string_view word = text.substr(0, text.find_first_of(kWhiteSpace));
+    double number = 0;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || rest != word.data() + word.size()) return std::nullopt;
+    numbers.push_back(number);
+    text.remove_prefix(word.size());
+  }
+}
+
+NumberedFiles list_numbered_files(const std::filesystem::path& folder,
+                                  std::initializer_list<std::string_view> extensions) {
+  NumberedFiles files;
+  std::error_code missing;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
+    const std::filesystem::path& file = entry.path();
+    const std::string extension = lower_case(file.extension().string());
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) continue;
+    const std::optional<int> number = parse_file_number(file.stem().string());
+    if (!number) continue;
+    const auto [it, is_new] = files.try_emplace(*number, file);
+    if (!is_new && file < it->second) it->second = file;
+  }
+  return files;
+}
+
+}  // namespace fovea

@@ -1,0 +1,34 @@
+// Reading whole files and listing folders of numbered files; every failure names the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fovea {
+
+/// Whole content of a file; InputError if it cannot be read.
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file);
+
+/// Lines of a text file without their line ends (LF or CRLF); InputError if it cannot be read.
+std::vector<std::string> read_lines(const std::filesystem::path& file);
+
+/// All numbers of a text, separated by white space; empty if anything in it is no number. "nan" and
+/// "inf" are numbers here. Independent of the locale.
+std::optional<std::vector<double>> parse_numbers(std::string_view text);
+
+/// Files by the number that their names consist of ("0000000012.bin" is 12).
+using NumberedFiles = std::map<int, std::filesystem::path>;
+
+/// The files of `folder` whose name is a number with one of the `extensions` (".png", any case);
+/// others are ignored. Empty if there is no such folder. Of two files with one number the first by
+/// name.
+NumberedFiles list_numbered_files(const std::filesystem::path& folder,
+                                  std::initializer_list<std::string_view> extensions);
+
+}  // namespace fovea

@@ -1,0 +1,59 @@
+#include "fovea/sensor/read_file.h"
+
+#include <gtest/gtest.h>
+
+#include "../../../tests/kitti_test_drive.h"
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+using test::TempFolder;
+using test::write_text;
+
+TEST(ReadFile, LinesOfEitherLineEnd) {
+  const TempFolder folder;
+  const auto lines = [&](const char* text) {
+    write_text(folder.path() / "a.txt", text);
+    return read_lines(folder.path() / "a.txt");
+  };
+  EXPECT_EQ(lines("a\r\n\nb"), (std::vector<std::string>{"a", "", "b"}));
+  EXPECT_EQ(lines("a\n\n"), (std::vector<std::string>{"a", ""}));
+  EXPECT_TRUE(lines("").empty());
+}
+
+TEST(ReadFile, FailuresNameTheFile) {
+  const TempFolder folder;
+  const auto message = [](const test::fs::path& file) {
+    return test::error_of<InputError>([&] { read_bytes(file); });
+  };
+  EXPECT_NE(message(folder.path() / "none").find("none"), std::string::npos);
+  EXPECT_NE(message(folder.path()).find("it is a folder"), std::string::npos);
+}
+
+TEST(ReadFile, NumbersInAnyNotation) {
+  EXPECT_EQ(parse_numbers(" 1 -2.5e+03\t7.215377e+02\r\n"),
+            (std::vector<double>{1, -2500, 721.5377}));
+  EXPECT_EQ(parse_numbers("  "), std::vector<double>{});
+  EXPECT_TRUE(std::isnan(parse_numbers("nan")->at(0)));
+  EXPECT_FALSE(parse_numbers("1 x"));
+  EXPECT_FALSE(parse_numbers("1,5"));
+  EXPECT_FALSE(parse_numbers("1.5m"));
+}
+
+TEST(ReadFile, NumberedFilesOnly) {
+  const TempFolder folder;
+  for (const char* name : {"0000000003.png", "000007.JPG", "0000000003.jpg", "9.jpeg", "a1.png",
+                           "1.txt", "-2.png", "1.5.png", "._1.png", "20110926130824.png", ".png"}) {
+    write_text(folder.path() / name, "x");
+  }
+  const NumberedFiles files = list_numbered_files(folder.path(), {".png", ".jpg", ".jpeg"});
+  const NumberedFiles expected{{3, folder.path() / "0000000003.jpg"},  // the first by name
+                               {7, folder.path() / "000007.JPG"},
+                               {9, folder.path() / "9.jpeg"}};
+  EXPECT_EQ(files, expected);
+  EXPECT_TRUE(list_numbered_files(folder.path() / "none", {".png"}).empty());
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Sets up, builds and runs the tests.
+#   ./test.sh [--no-install]             the test suite, with the checks of style and layers
+#   ./test.sh --sanitize [address|thread] [--no-install]
+#                                        the unit tests under address + undefined behaviour and under
+#                                        thread sanitizers (or one of them)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+install_flag=
+sanitizers=()
+sanitize=false
+for argument in "$@"; do
+  case $argument in
+    --no-install) install_flag=--no-install ;;
+    --sanitize) sanitize=true ;;
+    address | thread) sanitizers+=("$argument") ;;
+    -h | --help)
+      sed -n '2,6s/^# //p' "$0"
+      exit 0
+      ;;
+    *)
+      echo "test: unknown option $argument, see ./test.sh --help" >&2
+      exit 2
+      ;;
+  esac
+done
+scripts/setup.sh $install_flag
+
+run_tests() { # PRESET [CTEST OPTION...]
+  local preset=$1
+  shift
+  ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" "$@"
+}
+
+if ! $sanitize; then
+  scripts/check_layers.sh
+  scripts/check_format.sh
+  scripts/build.sh release
+  run_tests release
+  exit 0
+fi
+
+[[ ${#sanitizers[@]} -gt 0 ]] || sanitizers=(address thread)
+export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
+export UBSAN_OPTIONS=print_stacktrace=1
+# Debian's TBB is not instrumented: without the suppressions it reports races that are none.
+export TSAN_OPTIONS="suppressions=$PWD/scripts/tsan_suppressions.txt ignore_noninstrumented_modules=1"
+for sanitizer in "${sanitizers[@]}"; do
+  preset=$([[ $sanitizer == address ]] && echo asan || echo tsan)
+  scripts/build.sh "$preset"
+  run_tests "$preset" --label-exclude slow
+done

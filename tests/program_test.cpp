@@ -1,0 +1,341 @@
+// The program as a user meets it: commands, exit codes, one-line errors, nothing half-written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/kitti_writer.h"
+#include "tests/program.h"
+
+namespace fovea {
+namespace {
+
+using testing::HasSubstr;
+
+/// A short synthetic drive in KITTI form, written once.
+class Program : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new ScratchFolder;
+    SyntheticDrive drive(street_scene(), 6, 0.8);
+    drive_ = write_kitti_drive(drive, scratch_->path());
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+
+  /// A copy of the drive that a test may damage.
+  std::filesystem::path damaged_drive() const {
+    const auto root = own_ / "damaged";
+    std::filesystem::copy(drive_.parent_path(), root, std::filesystem::copy_options::recursive);
+    return root / drive_.filename();
+  }
+  ProgramRun map(const std::filesystem::path& drive, const std::string& more = "") const {
+    return run_fovea(fmt::format("map '{}' -o '{}' {}", drive.string(), output().string(), more));
+  }
+  std::filesystem::path output() const { return own_ / "out.fovea"; }
+  nlohmann::json info() const {
+    return nlohmann::json::parse(run_fovea("info --json '" + output().string() + "'").out);
+  }
+  std::string digest() const { return run_fovea("info --digest '" + output().string() + "'").out; }
+
+  /// One line "fovea: error: ...", exit code 1, and nothing left where the output would be.
+  void expect_failure(const ProgramRun& run, const std::string& says) const {
+    EXPECT_EQ(run.exit_code, 1) << run.err;
+    EXPECT_THAT(run.err, testing::StartsWith("fovea: error: "));
+    EXPECT_THAT(run.err, HasSubstr(says));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_TRUE(leftovers().empty()) << leftovers();
+  }
+  std::string leftovers() const {
+    std::string names;
+    for (const auto& entry : std::filesystem::directory_iterator(own_.path())) {
+      if (entry.path().filename().string().starts_with("out.")) {
+        names += entry.path().filename().string() + " ";
+      }
+    }
+    return names;
+  }
+
+  static ScratchFolder* scratch_;
+  static std::filesystem::path drive_;
+  ScratchFolder own_;
+};
+ScratchFolder* Program::scratch_ = nullptr;
+std::filesystem::path Program::drive_;
+
+TEST_F(Program, MapsInfoExportEvaluate) {
+  const auto report = own_ / "report.json";
+  const ProgramRun run = map(drive_, "--hold-out 4:2 --report '" + report.string() + "'");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");  // no progress bar where there is no terminal
+
+  const auto figures = nlohmann::json::parse(read_text(report)).at("map");
+  EXPECT_EQ(figures.at("frames"), 5);
+  EXPECT_EQ(figures.at("frames_held_out"), 1);
+  EXPECT_GT(figures.at("points"), 10000);
+  for (const char* stage :
+       {"decode", "upsample", "register", "fovea", "filter", "texture", "store", "frame"}) {
+    for (const char* key : {"p50", "p95", "max"}) {
+      EXPECT_GE(figures.at("latency_ms").at(stage).at(key), 0) << stage;
+    }
+  }
+  EXPECT_EQ(info().at("points"), figures.at("points"));
+  EXPECT_EQ(info().at("meta").at("georeferenced"), "1");
+
+  const std::string quoted = "'" + output().string() + "' ";
+  const auto ply = own_ / "map.ply", poses = own_ / "poses.txt";
+  EXPECT_EQ(run_fovea("export " + quoted + ply.string()).exit_code, 0);
+  EXPECT_THAT(read_text(ply), testing::StartsWith("ply\nformat binary_little_endian 1.0\n"));
+  EXPECT_EQ(run_fovea("export " + quoted + poses.string() + " --format kitti-poses").exit_code, 0);
+  const std::string lines = read_text(poses);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 6);  // held-out frames too
+
+  const auto scores = own_ / "scores.json";
+  const ProgramRun held_out = run_fovea("evaluate " + quoted + "'" + drive_.string() +
+                                        "' --protocol held-out --json " + scores.string());
+  ASSERT_EQ(held_out.exit_code, 0) << held_out.err;
+  const auto score = nlohmann::json::parse(read_text(scores));
+  EXPECT_LT(score.at("me_mean"), 0.05);
+  EXPECT_LT(score.at("te_mean"), 5);  // the scene's colours are smooth
+  EXPECT_GT(score.at("coverage_20cm"), 0.9);
+
+  // The exported cloud scores the same through its own door.
+  const ProgramRun cloud = run_fovea("evaluate " + ply.string() + " '" + drive_.string() +
+                                     "' --protocol held-out --hold-out 4:2 --cameras 2 --poses " +
+                                     poses.string() + " --json " + scores.string());
+  ASSERT_EQ(cloud.exit_code, 0) << cloud.err;
+  const auto cloud_score = nlohmann::json::parse(read_text(scores));
+  EXPECT_NEAR(cloud_score.at("me_mean"), score.at("me_mean"), 1e-5);
+  EXPECT_NEAR(cloud_score.at("te_mean"), score.at("te_mean"), 1e-3);
+}
+
+TEST_F(Program, TheWrittenDriveIsReadBackToTheTruth) {
+  // Calibration, geodesy, stamps, poses: with true poses every map point lies on a surface.
+  ASSERT_EQ(map(drive_, "--poses navigation --set upsample.rate=0 --set motion.compensate=false")
+                .exit_code, 0);
+  const auto ply = own_ / "map.ply";
+  ASSERT_EQ(run_fovea("export '" + output().string() + "' " + ply.string() + " --double").exit_code, 0);
+  const std::string text = read_text(ply);
+  const std::size_t header = text.find("end_header\n") + 11;
+  const auto count = std::stoul(text.substr(text.find("element vertex ") + 15));
+  const std::size_t stride = (text.size() - header) / count;
+  const Scene scene = street_scene();
+  double worst = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d p;
+    std::memcpy(p.data(), text.data() + header + i * stride, 24);
+    worst = std::max(worst, scene.distance(p));
+  }
+  EXPECT_LT(worst, 2e-3);
+}
+
+TEST_F(Program, SameDigestAtAnyThreadCountAndAfterResume) {
+  ASSERT_EQ(map(drive_, "--threads 1").exit_code, 0);
+  const std::string one = digest();
+  EXPECT_EQ(one.size(), 33u);
+  ASSERT_EQ(map(drive_, "--threads 2 --force").exit_code, 0);
+  EXPECT_EQ(digest(), one);
+  ASSERT_EQ(map(drive_, "--force --frames 0:5").exit_code, 0);
+  EXPECT_NE(digest(), one);
+
+  // Ctrl-C after the first frames, then --resume: retried with longer waits, for the interruption has
+  // to fall into the run.
+  for (const char* wait : {"0.3", "0.2", "0.15", "0.1", "0.05"}) {
+    const ProgramRun cut = run_fovea("map '" + drive_.string() + "' --force -o '" +
+                                         output().string() + "'",
+                                     std::string("timeout --preserve-status -s INT ") + wait);
+    if (cut.exit_code != 0 || info().at("meta").at("complete") != "0") continue;
+    EXPECT_THAT(cut.out, HasSubstr("--resume"));
+    ASSERT_EQ(map(drive_, "--resume").exit_code, 0);
+    EXPECT_EQ(digest(), one);
+    return;
+  }
+}
+
+TEST_F(Program, ResumeRefusesOtherSettings) {
+  ASSERT_EQ(map(drive_).exit_code, 0);
+  const ProgramRun run = map(drive_, "--resume --set upsample.rate=1");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("config"));
+}
+
+TEST_F(Program, WrongUsageIsExitCode2) {
+  for (const char* arguments :
+       {"", "nonsense", "map", "map x", "map x -o y --frames five", "map x -o y --variant E12",
+        "map x -o y --preset nonsense", "map x -o y --cameras two", "map x -o y --hold-out eight",
+        "map x -o y --threads -1", "info", "info a --json --digest", "evaluate a b --protocol nonsense",
+        "export a", "map x -o y --nonsense"}) {
+    const ProgramRun run = run_fovea(arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments << "\n" << run.err;
+    EXPECT_THAT(run.err, testing::StartsWith("fovea: error: ")) << arguments;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  EXPECT_EQ(run_fovea("--version").exit_code, 0);
+  EXPECT_EQ(run_fovea("--help").exit_code, 0);
+  EXPECT_THAT(run_fovea("map --help").out, HasSubstr("--hold-out"));
+}
+
+TEST_F(Program, BadDrives) {
+  expect_failure(map(own_ / "nowhere"), "nowhere");
+  std::filesystem::create_directory(own_ / "empty");
+  expect_failure(map(own_ / "empty"), "empty");
+  expect_failure(map(drive_, "--cameras 7"), "camera");
+  expect_failure(map(drive_, "--frames 50:60"), "frame");
+}
+
+TEST_F(Program, BadCalibration) {
+  const auto drive = damaged_drive();
+  const auto file = drive.parent_path() / "calib_velo_to_cam.txt";
+  const std::string good = read_text(file);
+  std::filesystem::remove(file);
+  expect_failure(map(drive), "calib_velo_to_cam.txt");
+  write_text(file, "R: 1 0 0 0 1 0 0 0\nT: 0 0 0\n");
+  expect_failure(map(drive), "calib_velo_to_cam.txt:1");
+  write_text(file, "R: 2 0 0 0 1 0 0 0 1\nT: 0 0 0\n");
+  expect_failure(map(drive), "rotation");
+  write_text(file, good);
+  EXPECT_EQ(map(drive).exit_code, 0);
+}
+
+TEST_F(Program, DamagedFramesAreSkippedAndCounted) {
+  const auto drive = damaged_drive();
+  const auto scan = drive / "velodyne_points/data" / (kitti_stem(1) + ".bin");
+  const auto image = drive / "image_02/data" / (kitti_stem(2) + ".png");
+  const auto record = drive / "oxts/data" / (kitti_stem(3) + ".txt");
+  write_text(scan, read_text(scan) + "odd");
+  write_text(image, read_text(image).substr(0, 5000));
+  write_text(record, "49.0 8.4 nan 0 0 0\n");
+  const auto report = own_ / "report.json";
+  ASSERT_EQ(map(drive, "--report " + report.string()).exit_code, 0);
+  const auto figures = nlohmann::json::parse(read_text(report)).at("map");
+  EXPECT_EQ(figures.at("frames"), 3);
+  EXPECT_EQ(figures.at("frames_skipped").at("damaged scan"), 1);
+  EXPECT_EQ(figures.at("frames_skipped").at("damaged image"), 1);
+  EXPECT_EQ(figures.at("frames_skipped").at("missing navigation record"), 1);
+  EXPECT_EQ(info().at("frames_skipped"), 3);
+
+  std::filesystem::remove(scan);
+  std::filesystem::remove(image);
+  EXPECT_EQ(map(drive, "--force").exit_code, 0);
+}
+
+TEST_F(Program, OddPointsAreDroppedAndCounted) {
+  const auto drive = damaged_drive();
+  const auto file = drive / "velodyne_points/data" / (kitti_stem(0) + ".bin");
+  std::string scan = read_text(file);
+  const float odd[] = {std::nanf(""), 0, 0, 0, 1e30f, 0, 0, 0};
+  std::memcpy(scan.data(), odd, sizeof(odd));
+  write_text(file, scan);
+  EXPECT_EQ(map(drive).exit_code, 0);
+  EXPECT_EQ(info().at("frames"), 6);
+}
+
+TEST_F(Program, BadStamps) {
+  const auto drive = damaged_drive();
+  const auto file = drive / "velodyne_points/timestamps.txt";
+  write_text(file, kitti_stamp(0) + kitti_stamp(1) + "\n" + kitti_stamp(3) + kitti_stamp(2));
+  ASSERT_EQ(map(drive).exit_code, 0);
+  EXPECT_EQ(info().at("frames"), 3);  // 2 is blank, 4 out of order, 5 has none
+  EXPECT_EQ(info().at("frames_skipped"), 3);
+  std::filesystem::remove(file);
+  const ProgramRun run = map(drive, "--force");
+  ASSERT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, HasSubstr("10 Hz"));
+}
+
+TEST_F(Program, WithoutNavigationItSaysSo) {
+  const auto drive = damaged_drive();
+  std::filesystem::remove_all(drive / "oxts");
+  const ProgramRun run = map(drive);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("navigation"));
+  EXPECT_EQ(info().at("meta").at("georeferenced"), "0");
+  const ProgramRun nav = map(drive, "--force --poses navigation");
+  EXPECT_EQ(nav.exit_code, 1);
+  EXPECT_THAT(nav.err, HasSubstr("navigation"));
+}
+
+TEST_F(Program, BadOutputs) {
+  const auto to = [&](const std::string& path) {
+    return run_fovea("map '" + drive_.string() + "' -o '" + path + "'");
+  };
+  expect_failure(to((own_ / "no/such/folder/out.fovea").string()), "folder");
+  expect_failure(to("/dev/full/out.fovea"), "/dev/full");
+  write_text(output(), "something dear");
+  const ProgramRun refused = map(drive_);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_EQ(read_text(output()), "something dear");
+  EXPECT_EQ(map(drive_, "--force").exit_code, 0);
+}
+
+TEST_F(Program, FullDiskLeavesNothingBehind) {
+  // A file-size limit stands in for the disk; SIGXFSZ ignored, writes fail with EFBIG.
+  const ProgramRun run =
+      run_fovea("map '" + drive_.string() + "' -o '" + output().string() + "'",
+                "trap '' XFSZ; ulimit -f 64;");
+  expect_failure(run, "out.fovea");
+}
+
+TEST_F(Program, BadConfiguration) {
+  const auto config = own_ / "my.toml";
+  write_text(config, "[upsample]\nrat = 2\n");
+  expect_failure(map(drive_, "--config " + config.string()), "my.toml:2");
+  write_text(config, "[upsample]\nrate = \"two\"\n");
+  expect_failure(map(drive_, "--config " + config.string()), "upsample.rate");
+  write_text(config, "[upsample]\nrate = 77\n");
+  expect_failure(map(drive_, "--config " + config.string()), "my.toml:2");
+  expect_failure(map(drive_, "--set nonsense.key=1"), "nonsense.key");
+  expect_failure(map(drive_, "--config " + (own_ / "none.toml").string()), "none.toml");
+}
+
+TEST_F(Program, GivenPosesAreUsed) {
+  ASSERT_EQ(map(drive_).exit_code, 0);
+  const auto poses = own_ / "poses.txt";
+  ASSERT_EQ(run_fovea("export '" + output().string() + "' " + poses.string() +
+                      " --format kitti-poses").exit_code, 0);
+  ASSERT_EQ(map(drive_, "--force --poses " + poses.string()).exit_code, 0);
+  const auto again = own_ / "again.txt";
+  ASSERT_EQ(run_fovea("export '" + output().string() + "' " + again.string() +
+                      " --format kitti-poses").exit_code, 0);
+  EXPECT_EQ(read_text(again), read_text(poses));
+  write_text(poses, "1 0 0 0 0 1 0 0 0 0 1\n");
+  const ProgramRun bad = map(drive_, "--force --poses " + poses.string());
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("poses.txt:1"));
+}
+
+TEST_F(Program, BadMaps) {
+  const auto expect = [&](const std::string& contents, const std::string& says) {
+    const auto file = own_ / "bad.fovea";
+    write_text(file, contents);
+    const ProgramRun run = run_fovea("info '" + file.string() + "'");
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_THAT(run.err, HasSubstr(says));
+  };
+  expect("", "bad.fovea");
+  expect("this is no database", "bad.fovea");
+  EXPECT_EQ(run_fovea("info " + (own_ / "missing.fovea").string()).exit_code, 1);
+  EXPECT_EQ(run_fovea("export " + (own_ / "missing.fovea").string() + " x.ply").exit_code, 1);
+}
+
+TEST_F(Program, UpsampleAndRegister) {
+  const auto scan = [&](int i) {
+    return "'" + (drive_ / "velodyne_points/data" / (kitti_stem(i) + ".bin")).string() + "' ";
+  };
+  const auto ply = own_ / "dense.ply";
+  const ProgramRun dense = run_fovea("upsample " + scan(0) + "'" + drive_.parent_path().string() +
+                                     "' " + ply.string() + " --rate 2 --camera 2");
+  ASSERT_EQ(dense.exit_code, 0) << dense.err;
+  EXPECT_THAT(read_text(ply), testing::StartsWith("ply\n"));
+  for (const char* method : {"gicp", "icp", "plane"}) {
+    const ProgramRun run = run_fovea("register " + scan(1) + scan(0) + "--method " + method);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    std::istringstream numbers(run.out);
+    std::vector<double> pose{std::istream_iterator<double>(numbers), {}};
+    ASSERT_EQ(pose.size(), 12u);
+    EXPECT_NEAR(pose[3], 0.8, 0.1) << method;
+  }
+}
+
+}  // namespace
+}  // namespace fovea

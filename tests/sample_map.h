@@ -1,0 +1,119 @@
+// Points, frames and a small map for tests of the map and of what reads it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "fovea/base/random.h"
+#include "fovea/map/map_store.h"
+
+namespace fovea {
+
+/// Points within +-half_size m, with all columns a map keeps; `frame` counts them from 0. Every
+/// third is not coloured (camera -1), some incidences are unknown (NaN).
+inline PointCloud random_map_points(std::size_t count, Random& random, double half_size) {
+  PointCloud points;
+  const auto coordinate = [&] { return static_cast<float>(random.uniform(-half_size, half_size)); };
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = coordinate(), y = coordinate(), z = coordinate();
+    points.position.emplace_back(x, y, z);
+    points.intensity.push_back(static_cast<float>(random.uniform()));
+    points.range.push_back(static_cast<float>(random.uniform(3, 15)));
+    points.incidence.push_back(i % 5 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                          : static_cast<float>(random.uniform(0, 1.5)));
+    const std::uint64_t bits = random.next();
+    points.color.push_back({std::uint8_t(bits), std::uint8_t(bits >> 8), std::uint8_t(bits >> 16)});
+    points.frame.push_back(static_cast<std::int32_t>(i));
+    points.camera.push_back(i % 3 == 0 ? kNoCamera : std::int8_t{2});
+    points.interpolated.push_back(static_cast<std::uint8_t>(bits >> 24 & 1));
+  }
+  return points;
+}
+
+/// Points at these positions, coloured, without intensity; `frame` counts them from 0.
+inline PointCloud one_point_each(const std::vector<Eigen::Vector3f>& positions) {
+  PointCloud points;
+  points.position = positions;
+  points.range.assign(positions.size(), 5.f);
+  points.incidence.assign(positions.size(), 0.f);
+  points.color.assign(positions.size(), {1, 2, 3});
+  points.camera.assign(positions.size(), 2);
+  points.interpolated.assign(positions.size(), 0);
+  for (std::size_t i = 0; i < positions.size(); ++i) points.frame.push_back(int(i));
+  return points;
+}
+
+/// Bit for bit, so that NaN equals itself.
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+inline void expect_same_columns(const PointCloud& a, const PointCloud& b) {
+  EXPECT_EQ(a.origin, b.origin);
+  EXPECT_TRUE(same_bits(a.position, b.position));
+  for_each_optional_column(a, b, [](const char* name, const auto& left, const auto& right) {
+    EXPECT_TRUE(same_bits(left, right)) << name;
+  });
+}
+
+/// Two submaps with poses of many digits.
+inline TileMap sample_tile_map(std::size_t points_per_submap = 2000) {
+  Random random(11);
+  TileMap map(4.0);
+  for (int submap = 0; submap < 2; ++submap) {
+    map.add_submap(exp_se3(
+        (Twist() << 0.01, -0.02, 1.0 / 3 + submap, 100.0 / 7, 50.0 * submap, 1e-3).finished()));
+    PointCloud points = random_map_points(points_per_submap, random, 12.0);
+    points.origin = {10, 50.0 * submap, 0};
+    map.add(points);
+  }
+  return map;
+}
+
+/// Frames 7, 8, 9: a mapped one with everything, a held-out one, a skipped one with nothing.
+inline std::vector<FrameRecord> sample_frames() {
+  std::vector<FrameRecord> frames(3);
+  frames[0].index = 7;
+  frames[0].stamp = 1'317'046'453'072'943'357;
+  frames[0].T_local_lidar =
+      exp_se3((Twist() << 0.1, 0.2, -3, 1e-17, 12345.678901234567, -5).finished());
+  frames[0].T_local_lidar_navigation = exp_se3((Twist() << 1, 2, 0.5, 1, 2, 3).finished());
+  frames[0].velocity = (Twist() << 1e-3, -2e-9, 1.0 / 3, 10.7, 0, -1e300).finished();
+  frames[0].figures = {{"points_scan", 19'329}, {"a \"quoted\\\" name\n", 0.1}, {"b", -1e-300}};
+  frames[0].milliseconds = {{"decode", 12.5}, {"frame", 1.0 / 7}};
+  frames[1].index = 8;
+  frames[1].status = FrameStatus::kHeldOut;
+  frames[1].stamp = -5;
+  frames[1].note = "a note, with 'quotes' and ünicode";
+  frames[2].index = 9;
+  frames[2].status = FrameStatus::kSkipped;
+  return frames;
+}
+
+/// Puts it all, without commit.
+inline void put_sample_map(MapWriter& writer, const TileMap& map) {
+  writer.put_meta("origin.latitude", "49.011212804408");
+  writer.put_meta("origin.longitude", "8.4228850417969");
+  writer.put_meta("origin.altitude", "112.83492279053");
+  writer.put_meta("config", "[registration]\nmethod = \"gicp\"\n");
+  writer.put_meta("timing.total", "12.5");
+  for (const FrameRecord& frame : sample_frames()) writer.put_frame(frame);
+  for (std::size_t id = 0; id < map.submaps().size(); ++id) {
+    writer.put_submap(id, map.submaps()[id].T_local_submap);
+    for (const auto& [key, tile] : map.submaps()[id].tiles) writer.put_tile(id, key, tile);
+  }
+}
+
+inline void write_sample_map(const std::filesystem::path& path) {
+  const auto writer = MapWriter::create(path, false);
+  put_sample_map(*writer, sample_tile_map());
+  writer->commit();
+}
+
+}  // namespace fovea
