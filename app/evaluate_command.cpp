@@ -65,7 +65,8 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--poses", arguments->poses, "Poses of a cloud: one T_local_lidar a line")
       ->type_name("FILE");
   command
-      ->add_option("--first-frame", arguments->first_frame, "Frame index of the first line of --poses")
+      ->add_option("--first-frame", arguments->first_frame,
+                   "Frame index of the first line of --poses")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->add_option("--cameras", arguments->drive.cameras, "Scored cameras (default: the map's)")

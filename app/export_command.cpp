@@ -20,11 +20,13 @@ struct ExportArguments {
   bool quiet = false;
 };
 
-/// The format asked for, or else the one of the output's ending; CLI::ValidationError without either.
+/// The format asked for, or else the one of the output's ending; CLI::ValidationError without
+/// either.
 std::string format_of(const ExportArguments& arguments) {
   if (!arguments.format.empty()) return arguments.format;
   if (std::filesystem::path(arguments.output).extension() == ".ply") return "ply";
-  throw CLI::ValidationError("--format", "give ply or kitti-poses: the output's ending names neither");
+  throw CLI::ValidationError("--format",
+                             "give ply or kitti-poses: the output's ending names neither");
 }
 
 void run(const ExportArguments& arguments) {
@@ -47,7 +49,8 @@ void run(const ExportArguments& arguments) {
 
 void add_export_command(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Write a map in a form that other programs read");
+  CLI::App* command =
+      app.add_subcommand("export", "Write a map in a form that other programs read");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
   command->add_option("OUT", arguments->output, "File to write")->required();
   command

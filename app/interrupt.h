@@ -7,8 +7,8 @@
 
 namespace fovea::app {
 
-/// Turns SIGINT and SIGTERM into a stop request for as long as it lives; a second one ends the program
-/// at once. To be made before other threads start, which inherit its signal mask.
+/// Turns SIGINT and SIGTERM into a stop request for as long as it lives; a second one ends the
+/// program at once. To be made before other threads start, which inherit its signal mask.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -26,8 +26,9 @@ void print_error(std::string message) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Real-time incremental foveal texture mapping: a drive in, a coloured 3D point map out.",
-               "fovea");
+  CLI::App app(
+      "Real-time incremental foveal texture mapping: a drive in, a coloured 3D point map out.",
+      "fovea");
   app.set_version_flag("--version", std::string("fovea ") + fovea::version());
   app.require_subcommand(1);
   app.get_formatter()->column_width(36);

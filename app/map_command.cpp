@@ -43,8 +43,7 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
   fmt::print("{}: {} points from {} frames", arguments.output, summary.points,
              summary.frames_mapped);
   if (summary.frames_held_out > 0) fmt::print(", {} held out", summary.frames_held_out);
-  fmt::print(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second,
-             summary.peak_rss_mb);
+  fmt::print(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
   for (const auto& [reason, count] : summary.frames_skipped) {
     fmt::print("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
   }
@@ -91,7 +90,8 @@ void run(const MapArguments& arguments) {
 void add_map_command(CLI::App& app) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
-  command->add_option("DRIVE", arguments->drive.drive, "KITTI raw drive or odometry sequence folder")
+  command
+      ->add_option("DRIVE", arguments->drive.drive, "KITTI raw drive or odometry sequence folder")
       ->required();
   command->add_option("-o,--output", arguments->output, "Map file to write")
       ->required()
@@ -124,7 +124,8 @@ void add_map_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--resume", arguments->resume, "Go on with an unfinished map");
   command->add_flag("--force", arguments->force, "Overwrite the map");
-  command->add_option("--report", arguments->report, "Write figures as JSON")->type_name("FILE.json");
+  command->add_option("--report", arguments->report, "Write figures as JSON")
+      ->type_name("FILE.json");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });
 }

@@ -24,7 +24,8 @@ void ProgressBar::operator()(const MapProgress& progress) {
   const double rate = progress.done / std::max(elapsed, 1e-3);
   fmt::print(stderr, "\r[{:<{}}] {}/{} frames  {:.1f}/s  {:.2f} M points  {:.0f} s left ",
              std::string(std::size_t(filled), '#'), kWidth, progress.done, progress.total, rate,
-             double(progress.points) * 1e-6, (progress.total - progress.done) / std::max(rate, 1e-3));
+             double(progress.points) * 1e-6,
+             (progress.total - progress.done) / std::max(rate, 1e-3));
   std::fflush(stderr);
 }
 

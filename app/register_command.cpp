@@ -52,14 +52,15 @@ void run(const RegisterArguments& arguments) {
 
 void add_register_command(CLI::App& app) {
   auto arguments = std::make_shared<RegisterArguments>();
-  CLI::App* command = app.add_subcommand(
-      "register", "Align two KITTI scans: prints T_target_source as 12 numbers");
+  CLI::App* command =
+      app.add_subcommand("register", "Align two KITTI scans: prints T_target_source as 12 numbers");
   command->add_option("SOURCE.bin", arguments->source, "Scan to be moved")->required();
   command->add_option("TARGET.bin", arguments->target, "Scan to be met")->required();
   command->add_option("--method", arguments->method, "gicp, icp (point to point) or plane")
       ->capture_default_str()
       ->check(CLI::IsMember({"gicp", "icp", "plane"}));
-  command->add_option("--guess", arguments->guess, "File whose first line is a guess of T_target_source");
+  command->add_option("--guess", arguments->guess,
+                      "File whose first line is a guess of T_target_source");
   command->add_option("--voxel", arguments->voxel, "Edge of the sampling voxels in m, 0 for none")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));

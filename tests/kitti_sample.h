@@ -10,13 +10,14 @@
 
 namespace fovea {
 
-/// Folder of the sample drive: $FOVEA_KITTI_SAMPLE, or beside the project; empty if it is not there.
+/// Folder of the sample drive: $FOVEA_KITTI_SAMPLE, or beside the project; empty if it is not
+/// there.
 inline std::optional<std::filesystem::path> kitti_sample() {
   const char* from_environment = std::getenv("FOVEA_KITTI_SAMPLE");
   const std::filesystem::path path =
-      from_environment != nullptr
-          ? from_environment
-          : FOVEA_SOURCE_DIR "/../shared/data/kitti/2011_09_26/2011_09_26_drive_0009_sync";
+      from_environment != nullptr ? from_environment
+                                  : FOVEA_SOURCE_DIR
+          "/../shared/data/kitti/2011_09_26/2011_09_26_drive_0009_sync";
   if (!std::filesystem::is_directory(path)) return std::nullopt;
   return path;
 }
@@ -30,10 +31,10 @@ inline bool kitti_required() {
 
 /// Declares `variable` as the sample drive's path; without it the test is skipped, or fails where
 /// FOVEA_REQUIRE_KITTI=1 says that it must be there.
-#define FOVEA_KITTI_SAMPLE_OR_SKIP(variable)                                             \
-  const auto variable##_found = ::fovea::kitti_sample();                                 \
-  if (!variable##_found) {                                                               \
+#define FOVEA_KITTI_SAMPLE_OR_SKIP(variable)                                               \
+  const auto variable##_found = ::fovea::kitti_sample();                                   \
+  if (!variable##_found) {                                                                 \
     if (::fovea::kitti_required()) FAIL() << "FOVEA_REQUIRE_KITTI=1, but no sample drive"; \
-    GTEST_SKIP() << "no KITTI sample drive (set FOVEA_KITTI_SAMPLE)";                    \
-  }                                                                                      \
+    GTEST_SKIP() << "no KITTI sample drive (set FOVEA_KITTI_SAMPLE)";                      \
+  }                                                                                        \
   const std::filesystem::path variable = *variable##_found

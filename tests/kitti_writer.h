@@ -1,4 +1,5 @@
-// Writes a synthetic drive as a KITTI raw drive: files that the product's own reader must read back.
+// Writes a synthetic drive as a KITTI raw drive: files that the product's own reader must read
+// back.
 #pragma once
 
 #include <fmt/format.h>
@@ -37,8 +38,9 @@ inline std::string kitti_stamp(int frame) {
   return fmt::format("2011-09-26 13:02:{:02d}.{:09d}\n", 10 + frame / 10, frame % 10 * 100'000'000);
 }
 
-/// Writes the drive below `root` and returns its folder, ROOT/2011_09_26/2011_09_26_drive_0001_sync.
-/// The IMU is where the LiDAR is, and every scan is taken at rest (no sweep motion is written).
+/// Writes the drive below `root` and returns its folder,
+/// ROOT/2011_09_26/2011_09_26_drive_0001_sync. The IMU is where the LiDAR is, and every scan is
+/// taken at rest (no sweep motion is written).
 inline std::filesystem::path write_kitti_drive(const SyntheticDrive& drive,
                                                const std::filesystem::path& root) {
   const auto date = root / "2011_09_26";
@@ -63,8 +65,7 @@ inline std::filesystem::path write_kitti_drive(const SyntheticDrive& drive,
   write_text(date / "calib_velo_to_cam.txt",
              fmt::format("R:{}\nT:{}\n", numbers(camera.T_cam_lidar.linear()),
                          numbers(camera.T_cam_lidar.translation())));
-  write_text(date / "calib_imu_to_velo.txt",
-             fmt::format("R:{}\nT: 0 0 0\n", numbers(identity)));
+  write_text(date / "calib_imu_to_velo.txt", fmt::format("R:{}\nT: 0 0 0\n", numbers(identity)));
 
   const LocalTangentPlane plane({49.01, 8.43, 114.5});
   std::string stamps;
@@ -82,10 +83,11 @@ inline std::filesystem::path write_kitti_drive(const SyntheticDrive& drive,
     const RigidMotion& T = drive.T_local_lidar[std::size_t(i)];
     const GeodeticPoint g = plane.to_geodetic(T.translation());
     const double yaw = std::atan2(T.linear()(1, 0), T.linear()(0, 0));
-    write_text(folder / "oxts/data" / (kitti_stem(i) + ".txt"),
-               fmt::format("{:.14f} {:.14f} {:.9f} 0 0 {:.15f} 0 0 8 0 0 0 0 9.8 0 0 9.8 0 0 0 0 0 0 "
-                           "0.05 0.05 4 10 4 4 0\n",
-                           g.latitude, g.longitude, g.altitude, yaw));
+    write_text(
+        folder / "oxts/data" / (kitti_stem(i) + ".txt"),
+        fmt::format("{:.14f} {:.14f} {:.9f} 0 0 {:.15f} 0 0 8 0 0 0 0 9.8 0 0 9.8 0 0 0 0 0 0 "
+                    "0.05 0.05 4 10 4 4 0\n",
+                    g.latitude, g.longitude, g.altitude, yaw));
     stamps += kitti_stamp(i);
   }
   for (const char* part : {"velodyne_points", "image_02", "oxts"}) {

@@ -1,6 +1,7 @@
 // Runs the built program and the folders that its tests need.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -9,8 +10,6 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-
-#include <gtest/gtest.h>
 
 namespace fovea {
 
@@ -51,7 +50,8 @@ inline std::string read_text(const std::filesystem::path& file) {
 inline ProgramRun run_fovea(const std::string& arguments, const std::string& before = "") {
   const ScratchFolder scratch;
   const std::string command = before + " '" FOVEA_PROGRAM "' " + arguments + " >'" +
-                              (scratch / "out").string() + "' 2>'" + (scratch / "err").string() + "'";
+                              (scratch / "out").string() + "' 2>'" + (scratch / "err").string() +
+                              "'";
   const int status = std::system(command.c_str());
   ProgramRun run;
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -1,5 +1,6 @@
-// A drive through a scene of boxes whose every surface point and colour is known, in memory: analytic
-// truth for the whole chain. (The full simulator writes drives to disk; this one serves unit tests.)
+// A drive through a scene of boxes whose every surface point and colour is known, in memory:
+// analytic truth for the whole chain. (The full simulator writes drives to disk; this one serves
+// unit tests.)
 #pragma once
 
 #include <cmath>
@@ -64,7 +65,8 @@ class SyntheticDrive : public FrameSource {
   std::vector<RigidMotion> T_local_lidar;  ///< true pose of each frame
   int beams = 48, columns = 720;
 
-  /// Straight ahead (local x) in steps, with a slight weave, one camera, scans without sweep motion.
+  /// Straight ahead (local x) in steps, with a slight weave, one camera, scans without sweep
+  /// motion.
   SyntheticDrive(Scene scene_, int frames, double step) : scene(std::move(scene_)) {
     std::vector<StampedPose> navigation;
     for (int i = 0; i < frames; ++i) {

@@ -1,4 +1,5 @@
-// Registers two clouds with the installed library: headers, archives and their dependencies are there.
+// Registers two clouds with the installed library: headers, archives and their dependencies are
+// there.
 #include <fovea/base/version.h>
 #include <fovea/mapping/registration/registration.h>
 #include <fovea/pipeline/config.h>

@@ -8,13 +8,15 @@
 
 namespace fovea {
 
-static_assert(std::endian::native == std::endian::little);  // values are written as they lie in memory
+static_assert(std::endian::native ==
+              std::endian::little);  // values are written as they lie in memory
 
 void write_cloud_ply(const PointCloud& cloud, const std::filesystem::path& path, bool force) {
   OutputFile file(path, force);
   const bool intensity = !cloud.intensity.empty(), interpolated = !cloud.interpolated.empty();
   file.stream() << fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float "
+      "y\n"
       "property float z\n{}{}end_header\n",
       cloud.size(), intensity ? "property float intensity\n" : "",
       interpolated ? "property uchar interpolated\n" : "");

@@ -9,6 +9,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/version.h"
+#include "fovea/map/number_text.h"
 
 namespace fovea {
 namespace {
@@ -16,19 +17,25 @@ namespace {
 // Values are written as they lie in memory; the header says little endian.
 static_assert(std::endian::native == std::endian::little);
 
+/// A number of the map's meta. Parsed, because text of a map from elsewhere could hold a line end.
+std::optional<double> number(const MapMeta& meta, const char* key) {
+  const auto found = meta.find(key);
+  if (found == meta.end()) return std::nullopt;
+  const std::optional<std::vector<double>> numbers = numbers_from_text(found->second);
+  if (!numbers || numbers->size() != 1) return std::nullopt;
+  return numbers->front();
+}
+
 std::string header(const MapMeta& meta, std::size_t points, const PlyOptions& options) {
   std::string text =
       fmt::format("ply\nformat binary_little_endian 1.0\ncomment fovea {}\n", version());
-  const auto value = [&](const char* key) {
-    const auto found = meta.find(key);
-    return found == meta.end() ? std::string() : found->second;
-  };
-  const std::string latitude = value("origin.latitude"), longitude = value("origin.longitude"),
-                    altitude = value("origin.altitude");
-  if (!latitude.empty() && !longitude.empty() && !altitude.empty()) {
+  const auto latitude = number(meta, "origin.latitude"),
+             longitude = number(meta, "origin.longitude"),
+             altitude = number(meta, "origin.altitude");
+  if (latitude && longitude && altitude) {
     text += fmt::format(
         "comment east-north-up metres; origin latitude {} longitude {} degrees, altitude {} m\n",
-        latitude, longitude, altitude);
+        *latitude, *longitude, *altitude);
   }
   const char* real = options.double_positions ? "double" : "float";
   text += fmt::format("element vertex {}\n", points);

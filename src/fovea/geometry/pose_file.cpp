@@ -11,6 +11,7 @@ namespace fovea {
 namespace {
 
 constexpr double kRotationTolerance = 1e-3;  // poses are often written with few digits
+constexpr double kRotationRounding = 1e-12;
 constexpr const char* kRemedy = "give one 3x4 row-major T_local_lidar a line, 12 numbers";
 
 RigidMotion parse_pose(const std::string& line, const std::string& where) {
@@ -37,7 +38,10 @@ RigidMotion parse_pose(const std::string& line, const std::string& where) {
   if (!is_rotation(pose.linear(), kRotationTolerance)) {
     throw InputError("a pose has no rotation matrix", where, kRemedy);
   }
-  pose.linear() = nearest_rotation(pose.linear());
+  // Full digits are kept as they are, so that what we write reads back to the same bits.
+  if (!is_rotation(pose.linear(), kRotationRounding)) {
+    pose.linear() = nearest_rotation(pose.linear());
+  }
   return pose;
 }
 

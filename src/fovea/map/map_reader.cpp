@@ -47,7 +47,8 @@ std::unique_ptr<sqlite::Database> open_for_reading(const fs::path& path) {
   require_file(path);
   auto database = std::make_unique<sqlite::Database>(path, Access::kRead, path);
   // SQLite reads nothing before the first statement.
-  if (!database->try_execute("SELECT count(*) FROM sqlite_master") && !has_log(path)) {
+  if (database->attempt("SELECT count(*) FROM sqlite_master") == sqlite::Outcome::kFailed &&
+      !has_log(path)) {
     database = std::make_unique<sqlite::Database>(path, Access::kReadImmutable, path);
   }
   return database;
@@ -73,7 +74,7 @@ class Snapshot {
   explicit Snapshot(sqlite::Database& database) : database_(database) {
     database_.execute("SAVEPOINT snapshot");
   }
-  ~Snapshot() { database_.try_execute("RELEASE snapshot"); }
+  ~Snapshot() { database_.attempt("RELEASE snapshot"); }
   Snapshot(const Snapshot&) = delete;
   Snapshot& operator=(const Snapshot&) = delete;
 

@@ -331,11 +331,17 @@ TEST(MapReader, ATruncatedMapIsAnInputError) {
 
 TEST(MapReader, NamesTheDamagedTile) {
   const TemporaryFolder folder;
+  const TileMap map = sample_tile_map();
+  const TileKey key = std::next(map.submaps()[1].tiles.begin(), 20)->first;
+  const auto numbers = [&](const char* between_y, const char* between_z) {
+    return std::to_string(key.x) + between_y + std::to_string(key.y) + between_z +
+           std::to_string(key.z);
+  };
   const auto damage = [&](const std::string& assignment) {
     std::filesystem::remove(folder / "a.fovea");
     write_sample_map(folder / "a.fovea");
-    run_sql(folder / "a.fovea",
-            "UPDATE tiles SET " + assignment + " WHERE submap=1 AND x=-1 AND y=0 AND z=1");
+    run_sql(folder / "a.fovea", "UPDATE tiles SET " + assignment +
+                                    " WHERE submap=1 AND x=" + numbers(" AND y=", " AND z="));
     return message<InputError>(
         [&] { MapReader(folder / "a.fovea").for_each_tile([](auto, auto&, auto&) {}); });
   };
@@ -345,8 +351,8 @@ TEST(MapReader, NamesTheDamagedTile) {
         "frame=substr(frame, 1, length(frame) - 1)", "intensity=NULL", "checksum=checksum+1",
         "points=points+1", "colored=colored-1", "origin_z=origin_z+4",
         "camera=CAST('text' AS BLOB)"}) {
-    EXPECT_THAT(damage(assignment),
-                AllOf(HasSubstr("tile -1 0 1 of submap 1"), HasSubstr("a.fovea")))
+    EXPECT_THAT(damage(assignment), AllOf(HasSubstr("tile " + numbers(" ", " ") + " of submap 1"),
+                                          HasSubstr("a.fovea")))
         << assignment;
   }
 }

@@ -1,5 +1,6 @@
 #include "fovea/map/map_store.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -218,7 +219,7 @@ TEST(MapDigest, LeavesOutTimingsOnly) {
   expect_new(with_frame([](FrameRecord& f) { ++*f.stamp; }));
   expect_new(with_frame([](FrameRecord& f) { f.stamp.reset(); }));
   expect_new(with_frame([](FrameRecord& f) { f.status = FrameStatus::kHeldOut; }));
-  expect_new(with_frame([](FrameRecord& f) { f.note = "1"; }));
+  expect_new(with_frame([](FrameRecord& f) { f.note += "another"; }));
   expect_new(with_frame([](FrameRecord& f) { f.velocity.reset(); }));
   expect_new(with_frame([](FrameRecord& f) { f.T_local_lidar_navigation.reset(); }));
   expect_new(with_frame([](FrameRecord& f) {
@@ -230,7 +231,9 @@ TEST(MapDigest, LeavesOutTimingsOnly) {
 
 TEST(MapDigest, ChangesWithAnyBitOfATile) {
   const TileMap map = sample_tile_map();
-  const auto& [key, tile] = *map.submaps()[1].tiles.begin();
+  const auto& [key, tile] = *std::max_element(
+      map.submaps()[1].tiles.begin(), map.submaps()[1].tiles.end(),
+      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
   std::set<std::string> digests = {digest_with([](MapWriter&) {})};
   const auto expect_new = [&, key = key](const PointCloud& changed) {
     EXPECT_TRUE(
@@ -339,6 +342,77 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
   }
   sqlite3_finalize(row);
   EXPECT_EQ(points, map.size());
+}
+
+/// Bytes of the digest, as the format's page lists them.
+struct DigestBytes {
+  void add(const void* data, std::size_t size) {
+    if (size == 0) return;
+    bytes.resize(bytes.size() + size);
+    std::memcpy(bytes.data() + bytes.size() - size, data, size);
+  }
+  void tag(char kind) { add(&kind, 1); }
+  void number(char kind, auto value) {
+    tag(kind);
+    add(&value, sizeof(value));
+  }
+  void sized(char kind, const void* data, std::size_t size) {
+    number(kind, static_cast<std::int64_t>(size));
+    add(data, size);
+  }
+  void column(sqlite3_stmt* row, int column) {
+    const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, column));
+    switch (sqlite3_column_type(row, column)) {
+      case SQLITE_INTEGER:
+        return number('i', sqlite3_column_int64(row, column));
+      case SQLITE_FLOAT:
+        return number('r', sqlite3_column_double(row, column));
+      case SQLITE_TEXT:
+        return sized('t', sqlite3_column_text(row, column), size);
+      case SQLITE_NULL:
+        return tag('n');
+      default:
+        break;
+    }
+    const void* blob = sqlite3_column_blob(row, column);
+    const auto content = static_cast<std::size_t>(ZSTD_getFrameContentSize(blob, size));
+    const auto values = inflate<char>(row, column, content);
+    sized('b', values.data(), content);
+  }
+  void table(sqlite3* database, const std::string& name, const std::string& query) {
+    tag('S');
+    sized('t', name.data(), name.size());
+    sqlite3_stmt* row = nullptr;
+    ASSERT_EQ(sqlite3_prepare_v2(database, query.c_str(), -1, &row, nullptr), SQLITE_OK);
+    while (sqlite3_step(row) == SQLITE_ROW) {
+      tag('R');
+      for (int i = 0; i < sqlite3_column_count(row); ++i) column(row, i);
+    }
+    sqlite3_finalize(row);
+  }
+  std::vector<char> bytes;
+};
+
+TEST(MapFormat, DigestIsAsStated) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const Raw raw(folder / "a.fovea");
+  DigestBytes digest;
+  digest.table(raw.database, "meta",
+               "SELECT key, value FROM meta WHERE key NOT LIKE 'timing.%' ORDER BY key");
+  digest.table(raw.database, "frames",
+               "SELECT idx, stamp_ns, status, note, pose, navigation_pose, velocity, figures "
+               "FROM frames ORDER BY idx");
+  digest.table(raw.database, "submaps", "SELECT id, pose FROM submaps ORDER BY id");
+  digest.table(raw.database, "tiles",
+               "SELECT submap, x, y, z, points, origin_x, origin_y, origin_z, position, color, "
+               "camera, frame, range, incidence, interpolated, intensity "
+               "FROM tiles ORDER BY submap, x, y, z");
+  XXH128_canonical_t canonical;
+  XXH128_canonicalFromHash(&canonical, XXH3_128bits(digest.bytes.data(), digest.bytes.size()));
+  std::string hex;
+  for (const unsigned char byte : canonical.digest) hex += fmt::format("{:02x}", byte);
+  EXPECT_EQ(MapReader(folder / "a.fovea").digest(), hex);
 }
 
 }  // namespace

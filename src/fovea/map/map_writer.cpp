@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using sqlite::Access;
 using sqlite::Database;
+using sqlite::Outcome;
 using sqlite::Statement;
 
 /// Larger than SQLite's default: a tile's columns are tens of kilobytes each.
@@ -30,19 +31,16 @@ void remove_side_files(const fs::path& path) {
 }
 
 /// Folds everything into the one file. Best effort: what stays beside it is read by SQLite.
-void leave_one_file(Database& database) noexcept {
-  database.try_execute("PRAGMA journal_mode=DELETE");
-}
+void leave_one_file(Database& database) noexcept { database.attempt("PRAGMA journal_mode=DELETE"); }
 
 /// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
 /// new map's after the rename. OutputError if a program is using it.
 void settle_old_map(const fs::path& path) {
   if (!fs::exists(path)) return;
-  try {
+  {
     Database old(path, Access::kWrite, path);
-    if (old.try_execute("PRAGMA schema_version")) old.execute("PRAGMA journal_mode=DELETE");
-  } catch (const OutputError&) {
-    if (fs::exists(fs::path(path) += "-wal")) throw;
+    // What fails otherwise is no map, and is replaced all the same.
+    if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
   }
   remove_side_files(path);
 }
@@ -66,21 +64,21 @@ void require_finite(bool finite, const std::string& what) {
 class SqliteMapWriter : public MapWriter {
  public:
   /// A new map, which grows in PATH.partial until its first commit.
-  SqliteMapWriter(const fs::path& path, bool force) : path_(path), target_(path), force_(force) {
-    target_ = check_output_path(path, force);
+  SqliteMapWriter(const fs::path& path, bool force)
+      : path_(path), target_(check_output_path(path, force)), force_(force) {
     start_partial_file();
   }
 
   /// An existing map.
   explicit SqliteMapWriter(const fs::path& path)
-      : path_(path), target_(path), force_(true), published_(true) {
+      : path_(path), target_(check_output_path(path, true)), force_(true), published_(true) {
     open_published_file();
   }
 
   ~SqliteMapWriter() override {
     puts_.reset();
     if (database_ != nullptr && published_) {
-      database_->try_execute("ROLLBACK");
+      database_->attempt("ROLLBACK");
       leave_one_file(*database_);
     }
     const bool drop = database_ != nullptr && !published_;
@@ -106,7 +104,7 @@ class SqliteMapWriter : public MapWriter {
         publish();
       } else {
         // A reader may hold the log; then a later commit moves its pages.
-        database_->try_execute("PRAGMA wal_checkpoint(PASSIVE)");
+        database_->attempt("PRAGMA wal_checkpoint(PASSIVE)");
         database_->execute("BEGIN IMMEDIATE");
       }
     });
@@ -149,7 +147,7 @@ void SqliteMapWriter::start_partial_file() {
   if (fs::exists(partial)) {
     // Left by a killed program, unless one still has its lock.
     Database left(partial, Access::kWrite, path_);
-    if (left.try_execute("PRAGMA schema_version")) left.execute("BEGIN EXCLUSIVE");
+    if (left.attempt("BEGIN EXCLUSIVE") == Outcome::kBusy) left.throw_busy();
     fs::remove(partial);
   }
   remove_side_files(partial);
@@ -273,7 +271,7 @@ std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
 std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {
   if (fs::is_regular_file(path)) {
     // Where a program was killed, its last commit may still lie in a journal.
-    Database(path, Access::kWrite, path).try_execute("SELECT count(*) FROM sqlite_master");
+    Database(path, Access::kWrite, path).attempt("SELECT count(*) FROM sqlite_master");
   }
   { const MapReader check(path); }  // the same refusals as for reading
   return std::make_unique<SqliteMapWriter>(path);

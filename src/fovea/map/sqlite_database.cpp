@@ -12,7 +12,7 @@
 namespace fovea::sqlite {
 namespace {
 
-constexpr int kBusyTimeoutMs = 2000;
+constexpr int kBusyTimeoutMs = 1000;
 
 /// URI of a file that SQLite shall take as never changing.
 std::string immutable_uri(const std::filesystem::path& path) {
@@ -72,13 +72,20 @@ void Database::execute(const char* sql) {
   if (code != SQLITE_OK) fail(code);
 }
 
-bool Database::try_execute(const char* sql) noexcept {
-  return sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) == SQLITE_OK;
+Outcome Database::attempt(const char* sql) noexcept {
+  const int code = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
+  if (code == SQLITE_OK) return Outcome::kDone;
+  return (code & 0xff) == SQLITE_BUSY ? Outcome::kBusy : Outcome::kFailed;
 }
 
 std::int64_t Database::integer(const char* sql) {
   Statement statement(*this, sql);
   return statement.step() ? statement.integer(0) : 0;
+}
+
+void Database::throw_busy() const {
+  throw OutputError("another program is using the map", where(),
+                    "wait until it has ended or write to another file");
 }
 
 void Database::fail(int code) const {
@@ -100,10 +107,7 @@ void Database::fail(int code) const {
   if ((primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && error != 0) {
     throw_output_error(shown_path_, error);
   }
-  if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) {
-    throw OutputError("another program is using the map", where(),
-                      "wait until it has ended or write to another file");
-  }
+  if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) throw_busy();
   if (primary == SQLITE_NOTADB || primary == SQLITE_CORRUPT) {
     throw OutputError(fmt::format("the map is damaged ({})", message), where(), "start a new map");
   }

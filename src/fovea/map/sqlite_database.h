@@ -20,6 +20,8 @@ enum class Access {
   kCreate,         ///< a file that need not exist; failures are OutputError
 };
 
+enum class Outcome { kDone, kBusy, kFailed };
+
 /// A connection. Errors name `shown_path`, the file the user knows of.
 class Database {
  public:
@@ -31,13 +33,15 @@ class Database {
 
   /// Runs statements whose results do not matter.
   void execute(const char* sql);
-  /// As execute(), for clean-up: says whether it worked.
-  bool try_execute(const char* sql) noexcept;
+  /// As execute(), where a failure is no error of the user: says how it went.
+  Outcome attempt(const char* sql) noexcept;
   /// First column of the first row, as an integer.
   std::int64_t integer(const char* sql);
 
   /// Throws the InputError or OutputError of a failed call with this result code.
   [[noreturn]] void fail(int code) const;
+  /// Throws the OutputError of a file that another program has locked.
+  [[noreturn]] void throw_busy() const;
 
   /// Name of the file, for errors.
   std::string where() const { return shown_path_.string(); }

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "fovea/mapping/hilbert_order.h"
+#include "fovea/mapping/insertion_order.h"
 
 namespace fovea {
 
@@ -33,51 +33,115 @@ DelaunayTriangulation::Insertion DelaunayTriangulation::insert(GridPoint point, 
 }
 
 std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points) {
-  points_.reserve(points_.size() + points.size());
-  triangles_.reserve(2 * points_.capacity());
+  reserve(points.size());
   std::vector<std::int32_t> vertex_of(points.size());
   std::int32_t hint = kNoTriangle;
-  for (const std::uint32_t i : hilbert_order(points)) {
+  for (const std::uint32_t i : insertion_order(points)) {
     const Insertion insertion = insert(points[i], hint);
     vertex_of[i] = insertion.vertex;
     hint = insertion.triangle;
   }
+  order_triangles();
   return vertex_of;
 }
 
-std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points,
-                                                        std::span<const std::int32_t> triangles) {
+std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points,
+                                                         std::span<const std::int32_t> triangles) {
   if (points.size() != triangles.size()) {
     throw std::invalid_argument("Delaunay triangulation: as many triangles as points are needed");
   }
-  points_.reserve(points_.size() + points.size());
-  triangles_.reserve(2 * points_.capacity());
-
-  const auto triangle_count = static_cast<std::int64_t>(triangles_.size());
-  const auto first_new = static_cast<std::int32_t>(points_.size());
-  std::vector<std::int32_t> vertex_of(points.size(), kInfiniteVertex);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  reserve(points.size());
+  std::vector<std::uint32_t> point_of, to_locate;
+  point_of.reserve(points.size());
+  std::vector<std::int32_t> vertex_in(triangles_.size(), kInfiniteVertex);
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::int32_t triangle = triangles[i];
-    // What has been split already has its new vertex in front.
-    if (triangle >= 0 && triangle < triangle_count && apex(4 * triangle) < first_new &&
-        strictly_inside(points[i], triangle)) {
-      vertex_of[i] = add_vertex(points[i]);
-      split(triangle, vertex_of[i]);
+    if (triangle >= 0 && triangle < static_cast<std::int64_t>(triangles_.size()) &&
+        vertex_in[triangle] == kInfiniteVertex && strictly_inside(points[i], triangle)) {
+      vertex_in[triangle] = add_vertex(points[i]);
+      point_of.push_back(i);
+    } else {
+      to_locate.push_back(i);
     }
   }
-  auto second = static_cast<std::int32_t>(triangle_count);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (vertex_of[i] == kInfiniteVertex) continue;
-    for (const std::int32_t triangle : {triangles[i], second, second + 1}) {
-      suspects_.push_back(4 * triangle);
+  const std::vector<std::int32_t> moved_to = split_all(vertex_in);
+  legalize_after_split(vertex_in, moved_to);
+  for (const std::uint32_t i : to_locate) {
+    const std::int32_t hint = triangles[i] == kNoTriangle ? kNoTriangle : moved_to.at(triangles[i]);
+    if (insert(points[i], hint).inserted) point_of.push_back(i);
+  }
+  return point_of;
+}
+
+// Splits each triangle that has a vertex in `vertex_in`. The three new triangles take its place in
+// memory, those behind it move up: what was near stays near.
+// @return where each triangle is now (the first of the three)
+std::vector<std::int32_t> DelaunayTriangulation::split_all(
+    std::span<const std::int32_t> vertex_in) {
+  std::vector<std::int32_t> moved_to(triangles_.size());
+  std::int32_t count = 0;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    moved_to[t] = count;
+    count += vertex_in[t] == kInfiniteVertex ? 1 : 3;
+  }
+  const auto moved = [&](Edge edge) {
+    const std::int32_t triangle = edge >> 2, corner = edge & 3;
+    return vertex_in[triangle] == kInfiniteVertex ? 4 * moved_to[triangle] + corner
+                                                  : 4 * (moved_to[triangle] + corner);
+  };
+  std::size_t t = triangles_.size();
+  triangles_.resize(static_cast<std::size_t>(count));
+  while (t-- > 0) {  // from the last to the first, so that none is overwritten before it has moved
+    const auto [a, b, c, _v] = triangles_[t].vertex;
+    const auto [edge_a, edge_b, edge_c, _e] = triangles_[t].twin;
+    const std::int32_t to = moved_to[t], v = vertex_in[t];
+    if (v == kInfiniteVertex) {
+      triangles_[to] = {{a, b, c}, {moved(edge_a), moved(edge_b), moved(edge_c)}};
+    } else {
+      triangles_[to] = {{v, b, c}, {moved(edge_a), 4 * (to + 1) + 2, 4 * (to + 2) + 1}};
+      triangles_[to + 1] = {{v, c, a}, {moved(edge_b), 4 * (to + 2) + 2, 4 * to + 1}};
+      triangles_[to + 2] = {{v, a, b}, {moved(edge_c), 4 * to + 2, 4 * (to + 1) + 1}};
     }
-    second += 2;
+  }
+  return moved_to;
+}
+
+void DelaunayTriangulation::legalize_after_split(std::span<const std::int32_t> vertex_in,
+                                                 std::span<const std::int32_t> moved_to) {
+  for (std::size_t t = 0; t < vertex_in.size(); ++t) {
+    if (vertex_in[t] == kInfiniteVertex) continue;
+    const Edge edge = 4 * moved_to[t];
+    suspects_.insert(suspects_.end(), {edge, edge + 4, edge + 8});
     legalize_suspects();
   }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (vertex_of[i] == kInfiniteVertex) vertex_of[i] = insert(points[i], triangles[i]).vertex;
+}
+
+// Renumbers the triangles breadth first, so that neighbours are near each other in memory.
+void DelaunayTriangulation::order_triangles() {
+  if (triangles_.empty()) return;
+  std::vector<std::int32_t> order{0}, moved_to(triangles_.size(), kNoTriangle);
+  order.reserve(triangles_.size());
+  moved_to[0] = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::int32_t neighbor = triangles_[order[i]].twin[corner] >> 2;
+      if (moved_to[neighbor] != kNoTriangle) continue;
+      moved_to[neighbor] = static_cast<std::int32_t>(order.size());
+      order.push_back(neighbor);
+    }
   }
-  return vertex_of;
+  std::vector<Triangle> ordered;
+  ordered.reserve(triangles_.capacity());
+  for (const std::int32_t t : order) {
+    ordered.push_back(triangles_[t]);
+    for (Edge& edge : ordered.back().twin) edge = 4 * moved_to[edge >> 2] + (edge & 3);
+  }
+  triangles_.swap(ordered);
+}
+
+void DelaunayTriangulation::reserve(std::size_t more_points) {
+  points_.reserve(points_.size() + more_points);
+  triangles_.reserve(2 * (points_.size() + more_points));
 }
 
 std::int32_t DelaunayTriangulation::add_vertex(GridPoint point) {

@@ -46,13 +46,14 @@ class DelaunayTriangulation {
   /// @return the vertex of each point; equal points have the same. Errors as above.
   std::vector<std::int32_t> insert(std::span<const GridPoint> points);
 
-  /// Inserts points near each of which a triangle is known: points strictly inside a triangle of
+  /// Inserts points near each of which a triangle is known: those strictly inside a triangle of
   /// their own are not searched for, and the edges are made Delaunay once for all, not once a
   /// point.
   /// @param triangles  one a point, as `hint` above; std::invalid_argument if the numbers differ
-  /// @return the vertex of each point; equal points have the same
-  std::vector<std::int32_t> insert(std::span<const GridPoint> points,
-                                   std::span<const std::int32_t> triangles);
+  /// @return of each new vertex, in order, the index of its point; a point where there was a vertex
+  ///         already gets none
+  std::vector<std::uint32_t> insert(std::span<const GridPoint> points,
+                                    std::span<const std::int32_t> triangles);
 
   /// Grid points by vertex.
   std::span<const GridPoint> points() const { return points_; }
@@ -91,6 +92,7 @@ class DelaunayTriangulation {
   GridPoint at(std::int32_t vertex) const { return points_[static_cast<std::size_t>(vertex)]; }
   void join(Edge a, Edge b) { twin(a) = b, twin(b) = a; }
 
+  void reserve(std::size_t more_points);
   std::int32_t add_vertex(GridPoint point);
   Insertion insert_while_collinear(GridPoint point);
   void start_with(std::int32_t apex_vertex);
@@ -101,6 +103,10 @@ class DelaunayTriangulation {
   void flip(Edge edge);
   void legalize_star(std::int32_t triangle);
   void legalize_suspects();
+  std::vector<std::int32_t> split_all(std::span<const std::int32_t> vertex_in);
+  void legalize_after_split(std::span<const std::int32_t> vertex_in,
+                            std::span<const std::int32_t> moved_to);
+  void order_triangles();
 
   std::vector<GridPoint> points_;
   std::vector<Triangle> triangles_;

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <fstream>
 #include <numbers>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "fovea/base/errors.h"
 #include "fovea/pipeline/config_keys.h"
@@ -89,13 +89,13 @@ class ConfigReader {
       if (bounds == nullptr || bounds->size() != 4) wrong_type(node, key, expected);
       std::array<double, 4> degrees{};
       for (std::size_t i = 0; i < 4; ++i) read(*bounds->get(i), key, degrees[i]);
-      result.push_back({degrees[0] * kDegree, degrees[1] * kDegree, degrees[2] * kDegree,
-                        degrees[3] * kDegree});
+      result.push_back(
+          {degrees[0] * kDegree, degrees[1] * kDegree, degrees[2] * kDegree, degrees[3] * kDegree});
     }
     slices = std::move(result);
   }
   template <class Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void read(const toml::node& node, std::string_view key, Enum& value) const {
     const auto text = node.value_exact<std::string>();
     if (!text) wrong_type(node, key, "one of " + choices<Enum>());
@@ -116,8 +116,9 @@ class ConfigReader {
       if (const toml::table* inner = node.as_table()) {
         reject_unknown(*inner, key + ".");
       } else {
-        throw ConfigError("unknown key", place(node, key),
-                          "remove it, or see `fovea map --help` and config/default.toml for the keys");
+        throw ConfigError(
+            "unknown key", place(node, key),
+            "remove it, or see `fovea map --help` and config/default.toml for the keys");
       }
     }
   }
@@ -179,7 +180,7 @@ class ConfigWriter {
     return fmt::format("[{}]", fmt::join(parts, ", "));
   }
   template <class Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   static std::string print(Enum value) {
     for (const auto& entry : names_of(Enum{})) {
       if (entry.value == value) return fmt::format("\"{}\"", entry.name);

@@ -16,8 +16,8 @@ std::vector<std::string> preset_names();
 /// Options of a preset; ConfigError for an unknown name.
 MapperOptions load_preset(std::string_view name);
 
-/// Applies the keys of a TOML file. InputError if it cannot be read; ConfigError naming file, line and
-/// key for a syntax error, an unknown key, a wrong type or a value out of range.
+/// Applies the keys of a TOML file. InputError if it cannot be read; ConfigError naming file, line
+/// and key for a syntax error, an unknown key, a wrong type or a value out of range.
 void apply_config_file(const std::filesystem::path& file, MapperOptions& options);
 
 /// Applies TOML text; `name` stands for the file in errors.

@@ -15,7 +15,8 @@ struct Degrees {
   double& radians;
 };
 
-/// Slices, written as an array of [azimuth_min, azimuth_max, elevation_min, elevation_max] in degrees.
+/// Slices, written as an array of [azimuth_min, azimuth_max, elevation_min, elevation_max] in
+/// degrees.
 using Slices = std::vector<AngularSlice>;
 
 template <class Enum>

@@ -65,8 +65,9 @@ TEST(Config, ErrorsNameFileLineAndKey) {
                              HasSubstr("ray_filter.windw")));
   EXPECT_THAT(error("[ray_filter]\n\nwindow = 5.5"),
               testing::AllOf(HasSubstr("wrong type"), HasSubstr("my.toml:3"), HasSubstr("whole")));
-  EXPECT_THAT(error("[ray_filter]\nwindow = 4"),
-              testing::AllOf(HasSubstr("my.toml:2"), HasSubstr("ray_filter.window"), HasSubstr("odd")));
+  EXPECT_THAT(
+      error("[ray_filter]\nwindow = 4"),
+      testing::AllOf(HasSubstr("my.toml:2"), HasSubstr("ray_filter.window"), HasSubstr("odd")));
   EXPECT_THAT(error("[registration]\nmethod = \"icpp\""),
               testing::AllOf(HasSubstr("icpp"), HasSubstr("'plane'"), HasSubstr("my.toml:2")));
   EXPECT_THAT(error("[upsample]\nrate = 2\nmax_edge = \"far\""), HasSubstr("my.toml:3"));
@@ -78,7 +79,8 @@ TEST(Config, ErrorsNameFileLineAndKey) {
 TEST(Config, AFailedFileChangesNothing) {
   MapperOptions options;
   const std::string before = to_toml(options);
-  EXPECT_THROW(apply_config_text("[upsample]\nrate = 3\nmax_edge = -1.0", "x", options), ConfigError);
+  EXPECT_THROW(apply_config_text("[upsample]\nrate = 3\nmax_edge = -1.0", "x", options),
+               ConfigError);
   EXPECT_EQ(to_toml(options), before);
 }
 

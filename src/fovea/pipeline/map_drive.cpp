@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/resource.h>
 
 #include <chrono>
-#include <future>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/version.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/config.h"
+#include "fovea/pipeline/frame_prefetcher.h"
 
 namespace fovea {
 namespace {
@@ -20,39 +19,6 @@ using Clock = std::chrono::steady_clock;
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
-
-struct LoadedFrame {
-  FrameResult result;
-  double milliseconds = 0;
-};
-
-/// Reads one frame ahead, so that decoding overlaps mapping.
-class FramePrefetcher {
- public:
-  FramePrefetcher(const FrameSource& source, int begin, int end)
-      : source_(source), next_(begin), end_(end) {
-    prefetch();
-  }
-  /// The next frame of the range, in order.
-  LoadedFrame take() {
-    LoadedFrame frame = pending_.get();
-    prefetch();
-    return frame;
-  }
-
- private:
-  void prefetch() {
-    if (next_ == end_) return;
-    pending_ = std::async(std::launch::async, [this, index = next_++] {
-      const Clock::time_point start = Clock::now();
-      FrameResult result = source_.load(index);
-      return LoadedFrame{std::move(result), milliseconds_since(start)};
-    });
-  }
-  const FrameSource& source_;
-  int next_, end_;
-  std::future<LoadedFrame> pending_;
-};
 
 /// A skipped frame gets a pose between its neighbours', by index: a line for every frame index.
 void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
@@ -67,9 +33,9 @@ void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
       record.T_local_lidar = known.front()->T_local_lidar;
       continue;
     }
-    const auto after = std::upper_bound(
-        known.begin() + 1, known.end() - 1, record.index,
-        [](int index, const FrameRecord* other) { return index < other->index; });
+    const auto after =
+        std::upper_bound(known.begin() + 1, known.end() - 1, record.index,
+                         [](int index, const FrameRecord* other) { return index < other->index; });
     const FrameRecord &a = **(after - 1), &b = **after;
     record.T_local_lidar = interpolate(a.T_local_lidar, b.T_local_lidar,
                                        double(record.index - a.index) / (b.index - a.index));
@@ -78,9 +44,12 @@ void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
 
 const char* to_string(PoseSource source) {
   switch (source) {
-    case PoseSource::kRefine: return "refine";
-    case PoseSource::kNavigation: return "navigation";
-    case PoseSource::kGiven: return "given";
+    case PoseSource::kRefine:
+      return "refine";
+    case PoseSource::kNavigation:
+      return "navigation";
+    case PoseSource::kGiven:
+      return "given";
   }
   return "unknown";
 }
@@ -156,56 +125,16 @@ void store_map(MapWriter& writer, const MapMeta& meta, const std::vector<FrameRe
   writer.commit();
 }
 
-StageLatency latency_of(std::vector<double> milliseconds) {
-  std::sort(milliseconds.begin(), milliseconds.end());
-  const auto at = [&](double share) {
-    return milliseconds[static_cast<std::size_t>(share * double(milliseconds.size() - 1) + 0.5)];
-  };
-  return {at(0.5), at(0.95), milliseconds.back()};
-}
-
-double peak_rss_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
-MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_new,
-                     const DriveInfo& drive) {
-  MapSummary summary;
-  summary.notes = drive.notes;
-  std::map<std::string, std::vector<double>> by_stage;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const FrameRecord& record = records[i];
-    switch (record.status) {
-      case FrameStatus::kMapped: ++summary.frames_mapped; break;
-      case FrameStatus::kHeldOut: ++summary.frames_held_out; break;
-      case FrameStatus::kSkipped:
-        ++summary.frames_skipped[record.note.substr(0, record.note.find(':'))];
-        break;
-    }
-    const auto failed = record.figures.find("registration_failed");
-    if (failed != record.figures.end() && failed->second > 0) ++summary.registrations_failed;
-    if (i < first_new) continue;
-    for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);
-  }
-  for (auto& [stage, times] : by_stage) summary.latency_ms[stage] = latency_of(std::move(times));
-  summary.peak_rss_mb = peak_rss_mb();
-  return summary;
-}
-
 }  // namespace
-
-int MapSummary::skipped() const {
-  int total = 0;
-  for (const auto& [reason, count] : frames_skipped) total += count;
-  return total;
-}
 
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress) {
   const Clock::time_point start = Clock::now();
   const DriveInfo& drive = source.info();
+  if (job.pose_source == PoseSource::kNavigation && !drive.navigation) {
+    throw InputError("the drive has no navigation to take poses from", drive.path.string(),
+                     "let registration find them (--poses refine)");
+  }
   const MapMeta meta = describe(drive, job);
   const auto writer =
       job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force);

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/pipeline/map_summary.h"
 #include "fovea/pipeline/mapper.h"
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/hold_out.h"
@@ -23,9 +23,9 @@ struct MapJob {
   PoseSource pose_source = PoseSource::kRefine;
   /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven.
   std::vector<RigidMotion> given_poses;
-  bool force = false;   ///< overwrite `output`
-  bool resume = false;  ///< go on with `output`, which an earlier run left unfinished
-  std::stop_token stop; ///< ends after the frame at hand; what was mapped is committed
+  bool force = false;    ///< overwrite `output`
+  bool resume = false;   ///< go on with `output`, which an earlier run left unfinished
+  std::stop_token stop;  ///< ends after the frame at hand; what was mapped is committed
 };
 
 struct MapProgress {
@@ -34,25 +34,9 @@ struct MapProgress {
   const FrameRecord* latest = nullptr;
 };
 
-struct StageLatency {
-  double p50 = 0, p95 = 0, max = 0;  ///< ms
-};
-
-struct MapSummary {
-  int frames_mapped = 0, frames_held_out = 0;
-  std::map<std::string, int> frames_skipped;  ///< by reason
-  int registrations_failed = 0;
-  std::size_t points = 0;
-  double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
-  double peak_rss_mb = 0;
-  std::map<std::string, StageLatency> latency_ms;
-  bool interrupted = false;
-  std::vector<std::string> notes;
-  int skipped() const;
-};
-
-/// Maps the frames of a drive into a map file. Errors as in MapWriter; InputError if no frame of the
-/// range can be used, or if the map to resume was made with other settings.
+/// Maps the frames of a drive into a map file. Errors as in MapWriter; InputError if no frame of
+/// the range can be used, if navigation's poses are wanted and there are none, or if the map to
+/// resume was made with other settings.
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress);
 

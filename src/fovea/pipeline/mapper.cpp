@@ -86,8 +86,7 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
   return record;
 }
 
-PointCloud Mapper::compensated(const PointCloud& scan,
-                               const std::optional<Twist>& velocity) const {
+PointCloud Mapper::compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const {
   PointCloud scan_lidar = scan;
   if (velocity) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
   return scan_lidar;
@@ -123,14 +122,14 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   });
   PointCloud dense_cam =
       clock.time("upsample", [&] { return upsample(foveal_cam, camera, options_.upsample); });
-  const std::size_t oblique =
-      clock.time("fovea", [&] { return limit_incidence(dense_cam, options_.foveal.max_incidence); });
+  const std::size_t oblique = clock.time(
+      "fovea", [&] { return limit_incidence(dense_cam, options_.foveal.max_incidence); });
 
   const std::vector<Ray> accumulated =
       clock.time("filter", [&] { return map_rays(map_, region, T_local_lidar); });
   PointCloud visible_cam = clock.time("filter", [&] {
-    const auto verdicts = ray_filter_.filter(rays_of(dense_cam, camera), accumulated, camera,
-                                             options_.ray_filter);
+    const auto verdicts =
+        ray_filter_.filter(rays_of(dense_cam, camera), accumulated, camera, options_.ray_filter);
     return keep_visible(dense_cam, verdicts, record.figures);
   });
   clock.time("texture", [&] {

@@ -16,9 +16,12 @@ namespace {
 RegistrationMethod method_of_variant(int number) {
   // The paper's Table II: E0-E3 GICP, E4-E7 point to point, E8-E11 point to plane.
   switch (number / 4) {
-    case 0: return RegistrationMethod::kGicp;
-    case 1: return RegistrationMethod::kPointToPoint;
-    default: return RegistrationMethod::kPointToPlane;
+    case 0:
+      return RegistrationMethod::kGicp;
+    case 1:
+      return RegistrationMethod::kPointToPoint;
+    default:
+      return RegistrationMethod::kPointToPlane;
   }
 }
 

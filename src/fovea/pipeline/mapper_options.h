@@ -28,8 +28,8 @@ struct RefinementOptions {
   int upsample_rate = 0;      ///< constrained upsampling of the non-ground points, 0-5
   double voxel = 0.25;        ///< m, at most one registered point a voxel; 0: no thinning
   /// A result further than this from the first guess has failed: the guess is kept and said so.
-  double max_correction_translation = 2.0;                 ///< m
-  double max_correction_rotation = 0.08726646259971647;    ///< rad
+  double max_correction_translation = 2.0;               ///< m
+  double max_correction_rotation = 0.08726646259971647;  ///< rad
   GroundOptions ground;
   RegistrationOptions registration;
   LocalMapOptions local_map;
@@ -39,24 +39,26 @@ struct RefinementOptions {
 struct MapperOptions {
   bool compensate_motion = true;  ///< sweep motion, where the drive's scans are raw
   RefinementOptions refinement;
-  /// False (baselines): no foveal region; every point is kept, and what no camera sees is uncoloured.
+  /// False (baselines): no foveal region; every point is kept, and what no camera sees is
+  /// uncoloured.
   bool foveal_enabled = true;
   FovealOptions foveal;
   /// Slices of single cameras by number, in place of foveal.slices.
   std::map<int, std::vector<AngularSlice>> camera_slices;
   UpsampleOptions upsample;
   RayFilterOptions ray_filter;
-  double tile_size = 4.0;        ///< m
-  double submap_duration = 10;   ///< s
-  void validate() const;  ///< ConfigError that names the field
+  double tile_size = 4.0;       ///< m
+  double submap_duration = 10;  ///< s
+  void validate() const;        ///< ConfigError that names the field
 };
 
-/// The rows of the paper's Table II: "baseline-gicp", "baseline-icp", "baseline-plane", "E0".."E11".
+/// The rows of the paper's Table II: "baseline-gicp", "baseline-icp", "baseline-plane",
+/// "E0".."E11".
 const std::vector<std::string>& variant_names();
 
-/// Options of a row (SPEC section 2): every row sets all that Table II compares, so that a row is one
-/// change; what it does not set (ground, tau, tiles, ...) stays as in `options`.
-/// ConfigError for an unknown name.
+/// Options of a row (SPEC section 2): every row sets all that Table II compares, so that a row is
+/// one change; what it does not set (ground, tau, tiles, ...) stays as in `options`. ConfigError
+/// for an unknown name.
 void apply_variant(std::string_view name, MapperOptions& options);
 
 }  // namespace fovea

@@ -10,7 +10,8 @@ namespace fovea {
 
 struct MotionPrediction {
   RigidMotion T_local_lidar = RigidMotion::Identity();
-  /// Twist per second of the LiDAR in its own frame during the sweep; absent where nothing is known.
+  /// Twist per second of the LiDAR in its own frame during the sweep; absent where nothing is
+  /// known.
   std::optional<Twist> velocity;
   /// Pose by navigation alone.
   std::optional<RigidMotion> T_local_lidar_navigation;

@@ -43,7 +43,8 @@ TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
   MotionModel model(&navigation);
   model.update(0, at_x(0));
   model.update(kTenth, at_x(1));
-  const MotionPrediction late = model.predict(10 * kTenth, 10 * kTenth);  // 0.9 s after the last record
+  const MotionPrediction late =
+      model.predict(10 * kTenth, 10 * kTenth);  // 0.9 s after the last record
   EXPECT_NEAR(late.T_local_lidar.translation().x(), 10, 1e-9);
   EXPECT_FALSE(late.T_local_lidar_navigation);
 }

@@ -33,8 +33,7 @@ PointCloud PoseRefiner::visible_upsampled(const PointCloud& scan_lidar) const {
       taken[i] = 1;
       (ground[i] != 0 ? ground_in_view : rest_in_view).push_back(i);
     }
-    const PointCloud dense =
-        upsample(points_cam.select(rest_in_view), camera, upsampling);
+    const PointCloud dense = upsample(points_cam.select(rest_in_view), camera, upsampling);
     const PointCloud dense_lidar = transform_cloud(dense, camera.T_cam_lidar.inverse());
     for (const std::uint32_t i : ground_in_view) result.position.push_back(scan_lidar.position[i]);
     result.position.insert(result.position.end(), dense_lidar.position.begin(),

@@ -26,8 +26,9 @@ class PoseRefiner {
   /// @param cameras  whose view bounds the points where options.visible_only
   PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras);
 
-  /// Registers a scan from a first guess of its pose. A registration that does not converge, or ends
-  /// too far from the guess, keeps the guess. The first scan keeps it too: there is no target yet.
+  /// Registers a scan from a first guess of its pose. A registration that does not converge, or
+  /// ends too far from the guess, keeps the guess. The first scan keeps it too: there is no target
+  /// yet.
   /// @param scan_lidar  motion compensated
   /// @param as_target   whether later scans may be registered against this one (not if held out)
   RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_local_lidar,

@@ -24,9 +24,7 @@ class StageClock {
     double& total;
     Clock::time_point start = Clock::now();
     explicit Timer(double& total_) : total(total_) {}
-    ~Timer() {
-      total += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    }
+    ~Timer() { total += std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
   };
   std::map<std::string, double> milliseconds_;
 };

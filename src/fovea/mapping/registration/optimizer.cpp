@@ -101,7 +101,7 @@ OptimizerResult minimize(std::span<const Pair> pairs, const RigidMotion& guess,
     // out.
     T.linear() = nearest_rotation(T.linear());
     PairEquations equations = accumulate(pairs, T, options.robust_width);
-    if (equations.error > best.equations.error) {
+    if (!(equations.error <= best.equations.error)) {
       if (is_small(step, options)) break;
       damping = std::max(kFirstDamping, damping * 10);
       continue;

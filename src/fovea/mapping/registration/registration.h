@@ -23,7 +23,11 @@ struct RegistrationOptions {
   double plane_epsilon = 1e-3;          ///< GICP: variance along the normal over that in the plane
   /// Robust kernel (Geman-McClure) width in m; 0 switches it off.
   double robust_width = 0.0;
-  /// A direction whose normal-equation eigenvalue per pair is below this is degenerate.
+  /// A direction of motion is degenerate if the planes of the target say less than this of it, per
+  /// pair: the mean square of the change of distance to the plane per metre moved, or per tenth of
+  /// a radian turned about the sensor. A street gives its least known direction 0.1 and more, a
+  /// featureless corridor 0.0025 (errors of the normals alone). Without normals (point to point)
+  /// every direction looks known.
   double degenerate_eigenvalue = 0.01;
   void validate() const;  ///< ConfigError that names the field
 };
@@ -31,10 +35,12 @@ struct RegistrationOptions {
 /// A cloud ready to be registered: points with what the method needs beside them.
 struct RegistrationCloud {
   std::vector<Eigen::Vector3f> points;   ///< m
-  std::vector<Eigen::Vector3f> normals;  ///< unit; empty for point to point
+  std::vector<Eigen::Vector3f> normals;  ///< unit, zero where unknown; empty for point to point
 };
 
-/// Normals from the k nearest neighbours of each point (plane of least variance).
+/// The finite points, and unless the method is point to point their normals (plane of least
+/// variance through the k nearest neighbours, see normals.h).
+/// @param points  m, in the sensor's frame
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
                                 const RegistrationOptions& options);
 
@@ -47,8 +53,14 @@ struct RegistrationResult {
   int degenerate_directions = 0;  ///< of six; the step was not taken along them
 };
 
-/// Aligns source to target from a first guess; never throws on data (too few pairs: not converged,
-/// T_target_source = guess).
+/// Aligns source to target from a first guess: pairs of nearest points, a few damped Gauss-Newton
+/// steps on them, new pairs, until the pose settles. The same result at any number of threads.
+///
+/// Floats are precise enough within some 100 m of the target's origin. Never throws on data: fewer
+/// than 50 pairs are no evidence (not converged, T_target_source = guess, six degenerate
+/// directions). Point to point takes small steps: from a poor guess give it 100 iterations.
+/// @param target       with normals unless point to point; the tree is of its points
+/// @param source       in the sensor's frame, the sensor at the origin
 RegistrationResult register_clouds(const RegistrationCloud& target, const KdTree& target_tree,
                                    const RegistrationCloud& source, const RigidMotion& guess,
                                    const RegistrationOptions& options);

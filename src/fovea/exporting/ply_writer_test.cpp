@@ -1,0 +1,176 @@
+#include "fovea/exporting/ply_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "../../../tests/file_size_limit.h"
+#include "../../../tests/sample_map.h"
+#include "../../../tests/temporary_folder.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/version.h"
+
+namespace fovea {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A minimal reader of binary little endian PLY with one element, written from the format's
+/// description: every property by name, as double.
+struct Ply {
+  explicit Ply(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    std::getline(file, line);
+    EXPECT_EQ(line, "ply");
+    std::getline(file, line);
+    EXPECT_EQ(line, "format binary_little_endian 1.0");
+    while (std::getline(file, line) && line != "end_header") {
+      std::istringstream words(line);
+      std::string word, type, name;
+      words >> word;
+      if (word == "comment") {
+        comments.push_back(line.substr(8));
+      } else if (word == "element") {
+        words >> name >> count;
+        EXPECT_EQ(name, "vertex");
+      } else {
+        EXPECT_EQ(word, "property");
+        words >> type >> name;
+        properties.emplace_back(name, type);
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const auto& [name, type] : properties) columns[name].push_back(value(file, type));
+    }
+    EXPECT_TRUE(file.good()) << "fewer points than the header says";
+    file.peek();
+    EXPECT_TRUE(file.eof()) << "more bytes than the header says";
+  }
+
+  static double value(std::istream& file, const std::string& type) {
+    if (type == "double") return raw<double>(file);
+    if (type == "float") return raw<float>(file);
+    if (type == "int") return raw<std::int32_t>(file);
+    if (type == "char") return raw<std::int8_t>(file);
+    EXPECT_EQ(type, "uchar");
+    return raw<std::uint8_t>(file);
+  }
+  template <class T>
+  static double raw(std::istream& file) {
+    T result{};
+    file.read(reinterpret_cast<char*>(&result), sizeof(T));
+    return static_cast<double>(result);
+  }
+
+  std::size_t count = 0;
+  std::vector<std::string> comments;
+  std::vector<std::pair<std::string, std::string>> properties;
+  std::map<std::string, std::vector<double>> columns;
+};
+
+/// Points of the sample map in the order of the file, with their positions in the local frame.
+void for_each_sample_point(
+    const std::function<void(const Eigen::Vector3d&, const PointCloud&, std::size_t)>& f) {
+  const TileMap map = sample_tile_map();
+  for (const Submap& submap : map.submaps()) {
+    for (const auto& [key, tile] : submap.tiles) {
+      for (std::size_t i = 0; i < tile.size(); ++i) {
+        f(submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()), tile, i);
+      }
+    }
+  }
+}
+
+class PlyWriter : public testing::Test {
+ protected:
+  void SetUp() override { write_sample_map(folder_ / "a.fovea"); }
+  PlyFigures write(const PlyOptions& options = {}) {
+    return write_ply(MapReader(folder_ / "a.fovea"), folder_ / "a.ply", options);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
+  const PlyFigures figures = write();
+  const Ply ply(folder_ / "a.ply");
+  const std::vector<std::pair<std::string, std::string>> expected_properties = {
+      {"x", "float"},     {"y", "float"},           {"z", "float"},     {"red", "uchar"},
+      {"green", "uchar"}, {"blue", "uchar"},        {"camera", "char"}, {"frame", "int"},
+      {"range", "float"}, {"interpolated", "uchar"}};
+  EXPECT_EQ(ply.properties, expected_properties);
+  EXPECT_EQ(ply.comments[0], std::string("fovea ") + version());
+  EXPECT_THAT(ply.comments,
+              Contains(HasSubstr("latitude 49.011212804408 longitude 8.4228850417969")));
+
+  std::size_t row = 0, left_out = 0;
+  for_each_sample_point([&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
+    if (tile.camera[i] == kNoCamera) {
+      ++left_out;
+      return;
+    }
+    ASSERT_LT(row, ply.count);
+    const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
+    EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-5);
+    EXPECT_EQ(at("red"), tile.color[i].r);
+    EXPECT_EQ(at("green"), tile.color[i].g);
+    EXPECT_EQ(at("blue"), tile.color[i].b);
+    EXPECT_EQ(at("camera"), tile.camera[i]);
+    EXPECT_EQ(at("frame"), tile.frame[i]);
+    EXPECT_EQ(at("range"), tile.range[i]);
+    EXPECT_EQ(at("interpolated"), tile.interpolated[i]);
+    ++row;
+  });
+  EXPECT_EQ(row, ply.count);
+  EXPECT_GT(left_out, 0u);
+  EXPECT_EQ(figures.points, ply.count);
+  EXPECT_EQ(figures.uncolored_left_out, left_out);
+}
+
+TEST_F(PlyWriter, DoublePositionsAndUncolouredPoints) {
+  const PlyFigures figures = write({.double_positions = true, .include_uncolored = true});
+  const Ply ply(folder_ / "a.ply");
+  EXPECT_EQ(figures.points, sample_tile_map().size());
+  EXPECT_EQ(figures.uncolored_left_out, 0u);
+  ASSERT_EQ(ply.count, figures.points);
+  EXPECT_EQ(ply.properties[2].second, "double");
+  std::size_t row = 0;
+  for_each_sample_point([&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
+    const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
+    EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-12);
+    EXPECT_EQ(at("camera"), tile.camera[i]);
+    EXPECT_EQ(at("red"), tile.camera[i] == kNoCamera ? 0 : tile.color[i].r);
+    ++row;
+  });
+}
+
+TEST_F(PlyWriter, ReplacesOnlyWithForce) {
+  std::ofstream(folder_ / "a.ply") << "old";
+  EXPECT_THROW(write(), OutputError);
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "a.ply"), 3u);
+  write({.force = true});
+  EXPECT_GT(Ply(folder_ / "a.ply").count, 0u);
+}
+
+TEST_F(PlyWriter, LeavesNothingWhenTheDiskIsFull) {
+  const MapReader reader(folder_ / "a.fovea");
+  const FileSizeLimit limit(30'000);
+  EXPECT_THROW(write_ply(reader, folder_ / "a.ply"), OutputError);
+  EXPECT_THAT(folder_.names(), ElementsAre("a.fovea"));
+}
+
+TEST_F(PlyWriter, AnEmptyMapGivesAnEmptyCloud) {
+  MapWriter::create(folder_ / "b.fovea", false)->commit();
+  const PlyFigures figures = write_ply(MapReader(folder_ / "b.fovea"), folder_ / "b.ply");
+  EXPECT_EQ(figures.points, 0u);
+  const Ply ply(folder_ / "b.ply");
+  EXPECT_EQ(ply.count, 0u);
+  EXPECT_EQ(ply.comments.size(), 1u);  // not georeferenced: no origin
+}
+
+}  // namespace
+}  // namespace fovea

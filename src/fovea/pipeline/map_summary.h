@@ -1,0 +1,35 @@
+// What a run of the mapper did, in figures.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+struct StageLatency {
+  double p50 = 0, p95 = 0, max = 0;  ///< ms
+};
+
+struct MapSummary {
+  int frames_mapped = 0, frames_held_out = 0;
+  std::map<std::string, int> frames_skipped;  ///< by reason
+  int registrations_failed = 0;
+  std::size_t points = 0;
+  double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
+  double peak_rss_mb = 0;
+  std::map<std::string, StageLatency> latency_ms;
+  bool interrupted = false;
+  std::vector<std::string> notes;
+  int skipped() const;
+};
+
+/// Counts frames, skips and failures of all records; latencies of those from `first_new` on, which
+/// this run made. Points, rate and interruption are the caller's to add.
+MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_new,
+                     const DriveInfo& drive);
+
+}  // namespace fovea
