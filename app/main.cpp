@@ -1,6 +1,4 @@
 // fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage.
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -16,16 +14,15 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
-void print_error(std::string message) {
-  for (char& c : message) {
-    if (c == '\n') c = ' ';  // one line, whatever a library wrote
-  }
-  fmt::print(stderr, "fovea: error: {}\n", message);
+/// One line on standard error, whatever a library wrote. Must not throw: it is the last resort.
+void print_error(const char* message, const char* where_and_remedy = "") noexcept {
+  std::fputs("fovea: error: ", stderr);
+  for (const char* c = message; *c != '\0'; ++c) std::fputc(*c == '\n' ? ' ' : *c, stderr);
+  std::fputs(where_and_remedy, stderr);
+  std::fputc('\n', stderr);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "Real-time incremental foveal texture mapping: a drive in, a coloured 3D point map out.",
       "fovea");
@@ -44,15 +41,22 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);  // --help, --version
   } catch (const CLI::ParseError& error) {
-    print_error(std::string(error.what()) + ", command line, see fovea --help");
+    print_error(error.what(), ", command line, see fovea --help");
     return kWrongUsage;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
   } catch (const fovea::Error& error) {
     print_error(error.what());
   } catch (const std::bad_alloc&) {
-    print_error("out of memory, this machine, map fewer frames or a lower upsampling rate");
+    print_error("out of memory, this machine, map fewer frames or at a lower upsampling rate");
   } catch (const std::exception& error) {
-    print_error(std::string("internal error: ") + error.what() +
-                ", fovea, please report this with the command that caused it");
+    print_error(error.what(), ", inside fovea, please report this with the command that caused it");
   }
   return kFailed;
 }

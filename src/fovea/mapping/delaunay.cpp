@@ -1,5 +1,6 @@
 #include "fovea/mapping/delaunay.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "fovea/mapping/insertion_order.h"
@@ -14,12 +15,7 @@ void DelaunayTriangulation::clear() {
 }
 
 DelaunayTriangulation::Insertion DelaunayTriangulation::insert(GridPoint point, std::int32_t hint) {
-  if (!on_grid(point)) {
-    throw std::invalid_argument("Delaunay triangulation: point beyond the grid (2^29)");
-  }
-  if (hint < kNoTriangle || hint >= static_cast<std::int64_t>(triangles_.size())) {
-    throw std::invalid_argument("Delaunay triangulation: the hint is not one of its triangles");
-  }
+  check_arguments({&point, 1}, {&hint, 1});
   if (triangles_.empty()) return insert_while_collinear(point);
 
   const std::int32_t triangle = locate(point, hint == kNoTriangle ? 0 : hint);
@@ -33,6 +29,7 @@ DelaunayTriangulation::Insertion DelaunayTriangulation::insert(GridPoint point, 
 }
 
 std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points) {
+  check_arguments(points, {});
   reserve(points.size());
   std::vector<std::int32_t> vertex_of(points.size());
   std::int32_t hint = kNoTriangle;
@@ -50,14 +47,15 @@ std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoi
   if (points.size() != triangles.size()) {
     throw std::invalid_argument("Delaunay triangulation: as many triangles as points are needed");
   }
+  check_arguments(points, triangles);
   reserve(points.size());
   std::vector<std::uint32_t> point_of, to_locate;
   point_of.reserve(points.size());
   std::vector<std::int32_t> vertex_in(triangles_.size(), kInfiniteVertex);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::int32_t triangle = triangles[i];
-    if (triangle >= 0 && triangle < static_cast<std::int64_t>(triangles_.size()) &&
-        vertex_in[triangle] == kInfiniteVertex && strictly_inside(points[i], triangle)) {
+    if (triangle != kNoTriangle && vertex_in[triangle] == kInfiniteVertex &&
+        strictly_inside(points[i], triangle)) {
       vertex_in[triangle] = add_vertex(points[i]);
       point_of.push_back(i);
     } else {
@@ -67,7 +65,7 @@ std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoi
   const std::vector<std::int32_t> moved_to = split_all(vertex_in);
   legalize_after_split(vertex_in, moved_to);
   for (const std::uint32_t i : to_locate) {
-    const std::int32_t hint = triangles[i] == kNoTriangle ? kNoTriangle : moved_to.at(triangles[i]);
+    const std::int32_t hint = triangles[i] == kNoTriangle ? kNoTriangle : moved_to[triangles[i]];
     if (insert(points[i], hint).inserted) point_of.push_back(i);
   }
   return point_of;
@@ -139,15 +137,28 @@ void DelaunayTriangulation::order_triangles() {
   triangles_.swap(ordered);
 }
 
+void DelaunayTriangulation::check_arguments(std::span<const GridPoint> points,
+                                            std::span<const std::int32_t> hints) const {
+  if (!std::ranges::all_of(points, on_grid)) {
+    throw std::invalid_argument("Delaunay triangulation: point beyond the grid (2^29)");
+  }
+  const auto is_hint = [&](std::int32_t hint) {
+    return hint >= kNoTriangle && hint < static_cast<std::int64_t>(triangles_.size());
+  };
+  if (!std::ranges::all_of(hints, is_hint)) {
+    throw std::invalid_argument("Delaunay triangulation: the hint is not one of its triangles");
+  }
+  if (points.size() > kMaxVertices - points_.size()) {
+    throw std::length_error("Delaunay triangulation: more than 2^27 vertices");
+  }
+}
+
 void DelaunayTriangulation::reserve(std::size_t more_points) {
   points_.reserve(points_.size() + more_points);
   triangles_.reserve(2 * (points_.size() + more_points));
 }
 
 std::int32_t DelaunayTriangulation::add_vertex(GridPoint point) {
-  if (points_.size() == kMaxVertices) {
-    throw std::length_error("Delaunay triangulation: more than 2^27 vertices");
-  }
   points_.push_back(point);
   return static_cast<std::int32_t>(points_.size()) - 1;
 }

@@ -92,6 +92,8 @@ class DelaunayTriangulation {
   GridPoint at(std::int32_t vertex) const { return points_[static_cast<std::size_t>(vertex)]; }
   void join(Edge a, Edge b) { twin(a) = b, twin(b) = a; }
 
+  void check_arguments(std::span<const GridPoint> points,
+                       std::span<const std::int32_t> hints) const;
   void reserve(std::size_t more_points);
   std::int32_t add_vertex(GridPoint point);
   Insertion insert_while_collinear(GridPoint point);

@@ -26,21 +26,24 @@ struct EnumName {
 };
 
 constexpr auto names_of(RegistrationMethod) {
-  return std::array{EnumName{RegistrationMethod::kGicp, std::string_view("gicp")},
-                    EnumName{RegistrationMethod::kPointToPoint, std::string_view("icp")},
-                    EnumName{RegistrationMethod::kPointToPlane, std::string_view("plane")}};
+  return std::array{
+      EnumName<RegistrationMethod>{RegistrationMethod::kGicp, std::string_view("gicp")},
+      EnumName<RegistrationMethod>{RegistrationMethod::kPointToPoint, std::string_view("icp")},
+      EnumName<RegistrationMethod>{RegistrationMethod::kPointToPlane, std::string_view("plane")}};
 }
 constexpr auto names_of(RegistrationTarget) {
-  return std::array{EnumName{RegistrationTarget::kPreviousScan, std::string_view("previous-scan")},
-                    EnumName{RegistrationTarget::kLocalMap, std::string_view("local-map")}};
+  return std::array{
+      EnumName<RegistrationTarget>{RegistrationTarget::kPreviousScan,
+                                   std::string_view("previous-scan")},
+      EnumName<RegistrationTarget>{RegistrationTarget::kLocalMap, std::string_view("local-map")}};
 }
 constexpr auto names_of(GroundMethod) {
-  return std::array{EnumName{GroundMethod::kHeight, std::string_view("height")},
-                    EnumName{GroundMethod::kRansac, std::string_view("ransac")}};
+  return std::array{EnumName<GroundMethod>{GroundMethod::kHeight, std::string_view("height")},
+                    EnumName<GroundMethod>{GroundMethod::kRansac, std::string_view("ransac")}};
 }
 constexpr auto names_of(RayFilterMode) {
-  return std::array{EnumName{RayFilterMode::kPaper, std::string_view("paper")},
-                    EnumName{RayFilterMode::kOff, std::string_view("off")}};
+  return std::array{EnumName<RayFilterMode>{RayFilterMode::kPaper, std::string_view("paper")},
+                    EnumName<RayFilterMode>{RayFilterMode::kOff, std::string_view("off")}};
 }
 
 inline constexpr int kMaxCameras = 10;
