@@ -44,10 +44,8 @@ fi
 [[ ${#sanitizers[@]} -gt 0 ]] || sanitizers=(address thread)
 export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
-# Debian's TBB is not instrumented: without the suppressions it reports races that are none.
-export TSAN_OPTIONS="suppressions=$PWD/scripts/tsan_suppressions.txt ignore_noninstrumented_modules=1"
 for sanitizer in "${sanitizers[@]}"; do
   preset=$([[ $sanitizer == address ]] && echo asan || echo tsan)
   scripts/build.sh "$preset"
-  run_tests "$preset" --label-exclude slow
+  run_tests "$preset"
 done

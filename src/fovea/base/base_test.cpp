@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
-#include <numeric>
+#include <mutex>
+#include <set>
+#include <thread>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/image.h"
@@ -34,9 +37,7 @@ TEST(Image, BilinearIsExactOnLinearRampAndAtPixelCentres) {
   EXPECT_EQ(bilinear(image, -3, 99), bilinear(image, 0, 5));  // clamped
 }
 
-TEST(Image, ColourRoundsAndClamps) {
-  EXPECT_EQ(to_rgb({-3.f, 12.5f, 300.f}), (Rgb{0, 13, 255}));
-}
+TEST(Image, ColourRoundsAndClamps) { EXPECT_EQ(to_rgb({-3.f, 12.5f, 300.f}), (Rgb{0, 13, 255})); }
 
 TEST(PointCloud, CheckNamesTheUnequalColumn) {
   PointCloud cloud;
@@ -85,6 +86,31 @@ TEST(Parallel, EveryItemOnce) {
   parallel_for(seen.size(), 17, [&](std::size_t i) { ++seen[i]; });
   for (const auto& count : seen) EXPECT_EQ(count, 1);
   parallel_for(0, 17, [&](std::size_t) { FAIL(); });
+}
+
+TEST(Parallel, LimitIsKept) {
+  const auto threads_used = [](int limit) {
+    const ThreadLimit guard(limit);
+    std::mutex mutex;
+    std::set<std::thread::id> seen;
+    parallel_for(64, 1, [&](std::size_t) {
+      std::this_thread::sleep_for(
+          std::chrono::milliseconds(1));  // so that others would get a share
+      const std::lock_guard lock(mutex);
+      seen.insert(std::this_thread::get_id());
+    });
+    return seen.size();
+  };
+  EXPECT_EQ(threads_used(1), 1u);
+  EXPECT_LE(threads_used(2), 2u);
+}
+
+TEST(Parallel, ErrorsReachTheCaller) {
+  EXPECT_THROW(parallel_for(100, 1,
+                            [](std::size_t i) {
+                              if (i == 57) throw InputError("a", "b", "c");
+                            }),
+               InputError);
 }
 
 TEST(Random, UniformHasTheRightMoments) {

@@ -12,16 +12,16 @@ enum class GroundMethod { kHeight, kRansac };
 
 struct GroundOptions {
   GroundMethod method = GroundMethod::kHeight;
-  double sensor_height = 1.73;   ///< m, LiDAR above the road (KITTI: 1.73)
-  double tolerance = 0.25;       ///< m, points up to this above the plane are ground
+  double sensor_height = 1.73;  ///< m, LiDAR above the road (KITTI: 1.73)
+  double tolerance = 0.25;      ///< m, points up to this above the plane are ground
   int ransac_iterations = 200;
-  double ransac_max_tilt = 10;   ///< degrees between the plane's normal and the LiDAR's z axis
+  double ransac_max_tilt = 10;  ///< degrees between the plane's normal and the LiDAR's z axis
   std::uint64_t seed = 1;
   void validate() const;  ///< ConfigError that names the field
 };
 
-/// Mask, 1 for ground, of points in the LiDAR frame (m, relative to the LiDAR). RANSAC falls back to
-/// the height threshold where no plane within ransac_max_tilt is found.
+/// Mask, 1 for ground, of points in the LiDAR frame (m, relative to the LiDAR). RANSAC falls back
+/// to the height threshold where no plane within ransac_max_tilt is found.
 std::vector<std::uint8_t> segment_ground(std::span<const Eigen::Vector3f> points_lidar,
                                          const GroundOptions& options);
 

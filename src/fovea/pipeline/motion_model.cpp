@@ -23,6 +23,8 @@ MotionPrediction MotionModel::predict(TimeNs stamp, TimeNs sweep_end) const {
                            seconds(last_->time - before_last_->time);
     prediction.T_local_lidar =
         last_->T_local_body * exp_se3(velocity * seconds(stamp - last_->time));
+    // Guesses made of guesses would double their rounding every frame.
+    prediction.T_local_lidar.linear() = nearest_rotation(prediction.T_local_lidar.linear());
     if (!prediction.velocity) prediction.velocity = velocity;
   }
   return prediction;

@@ -49,5 +49,18 @@ TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
   EXPECT_FALSE(late.T_local_lidar_navigation);
 }
 
+TEST(MotionModel, AThousandGuessesInARowStayRigid) {
+  MotionModel model(nullptr);
+  RigidMotion T = RigidMotion::Identity();
+  model.update(0, T);
+  T.linear() = Eigen::AngleAxisd(0.01, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  model.update(kTenth, T);
+  for (int i = 2; i < 1000; ++i) {
+    T = model.predict(i * kTenth, i * kTenth).T_local_lidar;
+    model.update(i * kTenth, T);
+  }
+  EXPECT_TRUE(is_rotation(T.linear(), 1e-12));
+}
+
 }  // namespace
 }  // namespace fovea
