@@ -5,7 +5,8 @@
 
 namespace fovea {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): 64-bit state, passes BigCrush, trivially seedable per item.
+/// SplitMix64 (Steele, Lea, Flood 2014): 64-bit state, passes BigCrush, trivially seedable per
+/// item.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -69,7 +69,8 @@ std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin
   if (count == end - begin) return poses;
   if (count < end) {
     throw InputError(fmt::format("{} poses for frames {} to {}", count, begin, end - 1),
-                     file.string(), "give one line for each of these frames, or for every frame from 0");
+                     file.string(),
+                     "give one line for each of these frames, or for every frame from 0");
   }
   return {poses.begin() + begin, poses.begin() + end};
 }

@@ -13,8 +13,8 @@ namespace fovea {
 /// empty, and for a line that has not 12 finite numbers or no rotation.
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file);
 
-/// The poses of frames [begin, end): of a file with a line for each of them, or of one with a line for
-/// every frame from 0 on. InputError if it has too few lines.
+/// The poses of frames [begin, end): of a file with a line for each of them, or of one with a line
+/// for every frame from 0 on. InputError if it has too few lines.
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end);
 
 /// "r00 r01 r02 tx r10 ... tz", the shortest text that reads back to the same doubles.

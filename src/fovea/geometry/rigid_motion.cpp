@@ -43,7 +43,8 @@ Twist log_se3(const RigidMotion& T) {
   const double s = q.vec().norm();
   const double angle = 2 * std::atan2(s, q.w());
   Twist twist;
-  twist.head<3>() = s > 1e-12 ? Eigen::Vector3d(q.vec() * (angle / s)) : Eigen::Vector3d(2 * q.vec());
+  twist.head<3>() =
+      s > 1e-12 ? Eigen::Vector3d(q.vec() * (angle / s)) : Eigen::Vector3d(2 * q.vec());
   twist.tail<3>() =
       left_jacobian(twist.head<3>()).partialPivLu().solve(Eigen::Vector3d(T.translation()));
   return twist;

@@ -86,10 +86,9 @@ std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {
     const Eigen::Vector3f& normal = points_cam.normal[i];
     const float range = p.norm();
     points_cam.range[i] = range;
-    points_cam.incidence[i] =
-        normal.squaredNorm() > 0.5f
-            ? std::acos(std::clamp(-normal.dot(p) / range, -1.0f, 1.0f))
-            : std::numeric_limits<float>::quiet_NaN();
+    points_cam.incidence[i] = normal.squaredNorm() > 0.5f
+                                  ? std::acos(std::clamp(-normal.dot(p) / range, -1.0f, 1.0f))
+                                  : std::numeric_limits<float>::quiet_NaN();
     if (!(points_cam.incidence[i] > float(max_incidence))) kept.push_back(i);
   }
   if (kept.size() < n) points_cam = points_cam.select(kept);

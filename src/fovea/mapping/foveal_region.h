@@ -17,8 +17,9 @@ struct AngularSlice {
 };
 
 struct FovealOptions {
-  double near_range = 3.0;   ///< m from the LiDAR: nearer is the near blind zone (the vehicle itself)
-  double far_range = 15.0;   ///< m from the LiDAR: from here on is the far blind zone
+  double near_range =
+      3.0;  ///< m from the LiDAR: nearer is the near blind zone (the vehicle itself)
+  double far_range = 15.0;  ///< m from the LiDAR: from here on is the far blind zone
   /// Union of slices that is processed; empty: the whole view of the camera.
   std::vector<AngularSlice> slices;
   /// Largest angle between view ray and surface normal (paper: "beyond about 70 degrees no fine
@@ -55,8 +56,9 @@ class FovealRegion {
 /// @param points_cam  camera frame, origin 0
 std::vector<std::uint32_t> foveal_points(const PointCloud& points_cam, const FovealRegion& region);
 
-/// Fills range (m from the camera) and incidence (rad between view ray and normal; NaN where the normal
-/// is unknown), and drops the points that look away by more than `max_incidence` (rad). Returns how many.
+/// Fills range (m from the camera) and incidence (rad between view ray and normal; NaN where the
+/// normal is unknown), and drops the points that look away by more than `max_incidence` (rad).
+/// Returns how many.
 /// @param points_cam  camera frame, origin 0, with normals
 std::size_t limit_incidence(PointCloud& points_cam, double max_incidence);
 

@@ -38,7 +38,8 @@ TEST(FovealRegion, WhiteZoneLiesBetweenTheBlindZones) {
 
 TEST(FovealRegion, RangeIsMeasuredFromTheLidar) {
   Camera camera = forward_camera();
-  camera.T_cam_lidar.translation() = Eigen::Vector3d(0, 0, -1);  // the LiDAR is 1 m behind the camera
+  camera.T_cam_lidar.translation() =
+      Eigen::Vector3d(0, 0, -1);  // the LiDAR is 1 m behind the camera
   EXPECT_TRUE(contains({}, {0, 0, 2.1f}, camera));
   EXPECT_FALSE(contains({}, {0, 0, 14.1f}, camera));
 }

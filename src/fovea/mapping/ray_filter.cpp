@@ -54,7 +54,8 @@ void RayFilterOptions::validate() const {
 
 void RayFilter::assign_owners(std::span<const Ray> scan, std::span<const Ray> map,
                               const Camera& camera) {
-  owners_.assign(static_cast<std::size_t>(camera.width) * camera.height, {kNoRay, kMapOwner, false});
+  owners_.assign(static_cast<std::size_t>(camera.width) * camera.height,
+                 {kNoRay, kMapOwner, false});
   const auto owner_at = [&](const Ray& ray) -> Owner& {
     const Pixel p = pixel_of(ray);
     return owners_[static_cast<std::size_t>(p.y) * camera.width + p.x];
@@ -97,8 +98,8 @@ std::vector<RayVerdict> RayFilter::filter(std::span<const Ray> scan, std::span<c
       }
     }
     const double offset = std::abs(window.mean()), sigma = window.sigma();
-    const bool visible = offset <= options.outlier_rate * sigma ||
-                         (sigma < kFlatSigma && offset < kFlatOffset);
+    const bool visible =
+        offset <= options.outlier_rate * sigma || (sigma < kFlatSigma && offset < kFlatOffset);
     return visible ? RayVerdict::kVisible : RayVerdict::kOccluded;
   };
   parallel_for(scan.size(), kGrain, [&](std::size_t i) { verdicts[i] = judge(i); });

@@ -37,13 +37,14 @@ struct Ray {
 
 /// The ray filter of one camera; its pixel grids are kept between frames.
 ///
-/// Step 1 (paper: "we assign p to a ray having shortest ray-length d"): the shortest ray owns a pixel; a
-/// scan point that owns a pixel to which a map point also projects is occluding. Step 2 (paper Eq. 1-2):
-/// a scan point is visible if its length lies within c standard deviations of the mean over the owners
-/// in the M x M window around it. Of equally short rays the map's comes first, then the lower index.
+/// Step 1 (paper: "we assign p to a ray having shortest ray-length d"): the shortest ray owns a
+/// pixel; a scan point that owns a pixel to which a map point also projects is occluding. Step 2
+/// (paper Eq. 1-2): a scan point is visible if its length lies within c standard deviations of the
+/// mean over the owners in the M x M window around it. Of equally short rays the map's comes first,
+/// then the lower index.
 ///
-/// A value can lie at most (N - 1) / sqrt(N) deviations off the mean of N values: with c = 2, windows of
-/// five or fewer rays reject nothing.
+/// A value can lie at most (N - 1) / sqrt(N) deviations off the mean of N values: with c = 2,
+/// windows of five or fewer rays reject nothing.
 class RayFilter {
  public:
   /// Verdict on each scan ray.

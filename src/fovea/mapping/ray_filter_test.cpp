@@ -28,9 +28,9 @@ std::vector<Ray> wall(float z, const Camera& c, int x0, int x1, int y0, int y1) 
   std::vector<Ray> rays;
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) {
-      rays.push_back(ray_of(
-          {(float(x) - float(c.cx)) / float(c.fx) * z, (float(y) - float(c.cy)) / float(c.fy) * z, z},
-          c));
+      rays.push_back(ray_of({(float(x) - float(c.cx)) / float(c.fx) * z,
+                             (float(y) - float(c.cy)) / float(c.fy) * z, z},
+                            c));
     }
   }
   return rays;
@@ -63,9 +63,9 @@ TEST(RayFilter, NewSurfaceBesideTheMapIsKept) {
   EXPECT_EQ(count(verdicts, RayVerdict::kVisible), scan.size());
 }
 
-// The paper's case: a box in front of a wall, the map seeded from another pose. The wall behind the box
-// is in the map; the scan sees the box (new, in front of mapped wall) and, by parallax between LiDAR and
-// camera, wall points that the box hides from the camera.
+// The paper's case: a box in front of a wall, the map seeded from another pose. The wall behind the
+// box is in the map; the scan sees the box (new, in front of mapped wall) and, by parallax between
+// LiDAR and camera, wall points that the box hides from the camera.
 TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
   const Camera camera = test_camera();
   const auto box = wall(5, camera, 80, 120, 30, 70);  // in the map
@@ -73,9 +73,9 @@ TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
   for (int y = 40; y < 60; y += 8) {
     for (int x = 90; x < 110; x += 8) {
       const float z = 10;
-      hidden.push_back(ray_of({(float(x) - float(camera.cx)) / 100 * z,
-                               (float(y) - float(camera.cy)) / 100 * z, z},
-                              camera));
+      hidden.push_back(ray_of(
+          {(float(x) - float(camera.cx)) / 100 * z, (float(y) - float(camera.cy)) / 100 * z, z},
+          camera));
     }
   }
   const auto verdicts = RayFilter().filter(hidden, box, camera, {});
@@ -83,16 +83,19 @@ TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
 }
 
 TEST(RayFilter, OccludersStillOwnTheirPixelsInTheSecondTest) {
-  // A scan patch that occludes the map is discarded, but a lone far scan point in the midst of it must
-  // still be seen against it: SPEC section 5, "discarded occluders still count as owners in step 2".
+  // A scan patch that occludes the map is discarded, but a lone far scan point in the midst of it
+  // must still be seen against it: SPEC section 5, "discarded occluders still count as owners in
+  // step 2".
   const Camera camera = test_camera();
   auto map = wall(10, camera, 0, 200, 0, 100);
   std::erase_if(map, [](const Ray& r) {
-    return r.pixel.x() > 99.4f && r.pixel.x() < 100.6f && r.pixel.y() > 49.4f && r.pixel.y() < 50.6f;
+    return r.pixel.x() > 99.4f && r.pixel.x() < 100.6f && r.pixel.y() > 49.4f &&
+           r.pixel.y() < 50.6f;
   });
   auto scan = wall(5, camera, 90, 111, 40, 61);
   std::erase_if(scan, [](const Ray& r) {
-    return r.pixel.x() > 99.4f && r.pixel.x() < 100.6f && r.pixel.y() > 49.4f && r.pixel.y() < 50.6f;
+    return r.pixel.x() > 99.4f && r.pixel.x() < 100.6f && r.pixel.y() > 49.4f &&
+           r.pixel.y() < 50.6f;
   });
   scan.push_back(ray_of({(100.f - 99.5f) / 100 * 10, (50.f - 49.5f) / 100 * 10, 10}, camera));
   const auto verdicts = RayFilter().filter(scan, map, camera, {});
@@ -104,7 +107,8 @@ TEST(RayFilter, OfOneScanTheNearestKeepsThePixel) {
   const Camera camera = test_camera();
   const std::vector<Ray> scan{{{50, 50}, 9.0f}, {{50.3f, 50.2f}, 8.99f}, {{49.6f, 50.4f}, 9.01f}};
   const auto verdicts = RayFilter().filter(scan, {}, camera, {});
-  EXPECT_EQ(verdicts, (std::vector{RayVerdict::kShared, RayVerdict::kVisible, RayVerdict::kShared}));
+  EXPECT_EQ(verdicts,
+            (std::vector{RayVerdict::kShared, RayVerdict::kVisible, RayVerdict::kShared}));
 }
 
 TEST(RayFilter, PixelLostToTheMapGoesOnToTheSecondTest) {
@@ -173,7 +177,8 @@ TEST(RayFilter, MatchesTheFormulaByBruteForce) {
   for (int i = 0; i < int(scan.size()); ++i) {
     const auto p = pixel(scan[i]);
     const auto& rays = at[p];
-    const bool map_here = std::any_of(rays.begin(), rays.end(), [](auto r) { return r.second < 0; });
+    const bool map_here =
+        std::any_of(rays.begin(), rays.end(), [](auto r) { return r.second < 0; });
     RayVerdict expected = RayVerdict::kVisible;
     if (rays[0].second == i && map_here) {
       expected = RayVerdict::kOccluding;
@@ -201,8 +206,7 @@ TEST(RayFilter, MatchesTheFormulaByBruteForce) {
 TEST(RayFilter, ImageBordersAndReuseOfTheGrid) {
   const Camera camera = test_camera();
   RayFilter filter;
-  const std::vector<Ray> corners{
-      {{0, 0}, 5}, {{199, 0}, 5}, {{0, 99}, 5}, {{199, 99}, 5}};
+  const std::vector<Ray> corners{{{0, 0}, 5}, {{199, 0}, 5}, {{0, 99}, 5}, {{199, 99}, 5}};
   const auto first = filter.filter(corners, {}, camera, {});
   EXPECT_EQ(count(first, RayVerdict::kVisible), 4u);
   EXPECT_EQ(filter.filter(corners, {}, camera, {}), first);  // nothing is left of the last frame

@@ -14,8 +14,9 @@ struct View {
   int frame = 0;
 };
 
-/// Colours every point from the image (bilinear at its projection) and notes frame and camera; points
-/// that do not project into the image get kNoCamera. One view, no average: averaging blurs edges.
+/// Colours every point from the image (bilinear at its projection) and notes frame and camera;
+/// points that do not project into the image get kNoCamera. One view, no average: averaging blurs
+/// edges.
 /// @param points_cam  camera frame, origin 0
 void colour_points(PointCloud& points_cam, const View& view);
 
