@@ -19,24 +19,22 @@ selection() { # ROW: the options that select it
   esac
 }
 
-for row in "${rows[@]}"; do
-  # All frames for the paper's in-sample figures, and once more with every 8th held out for quality.
-  for set in all held; do
+score() { # SET PROTOCOL, of every row: SET is all (every frame mapped) or held (every 8th held out)
+  local set=$1 protocol=$2 row base hold_out=
+  [[ $set == held ]] && hold_out="--hold-out 8:4"
+  for row in "${rows[@]}"; do
     base=$out/$row.$set
-    [[ $set == all ]] && hold_out="" || hold_out="--hold-out 8:4"
-    if [[ ! -s $base.map.json ]]; then
-      # shellcheck disable=SC2046,SC2086
-      "$fovea" map "$drive" -o "$base.fovea" $(selection "$row") $hold_out --force --quiet \
-        --report "$base.map.json"
-    fi
-    [[ $set == all ]] && protocols="in-sample in-sample-nav" || protocols=held-out
-    for protocol in $protocols; do
-      [[ -s $base.$protocol.json ]] || "$fovea" evaluate "$base.fovea" "$drive" \
-        --protocol "$protocol" --json "$base.$protocol.json" >/dev/null
-    done
-    rm -f "$base.fovea"
+    # shellcheck disable=SC2046,SC2086
+    [[ -s $base.map.json ]] || "$fovea" map "$drive" -o "$base.fovea" $(selection "$row") $hold_out \
+      --force --quiet --report "$base.map.json"
+    [[ -s $base.$protocol.json ]] || "$fovea" evaluate "$base.fovea" "$drive" \
+      --protocol "$protocol" --json "$base.$protocol.json" >/dev/null
   done
-done
+}
+score held held-out
+score all in-sample
+score all in-sample-nav
+rm -f "$out"/*.fovea
 
 table() { # PROTOCOL SET
   echo "| row | points | ME m | sd | TE | sd | median | within 20 | TE fitted gain | MTME | cover 5 cm | cover 20 cm | violations | sharpness | TE, uncoloured black |"
