@@ -1,4 +1,4 @@
-// Figures as JSON (CONTRACT: Report).
+// Figures as JSON (the contract of --report).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

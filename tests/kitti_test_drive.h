@@ -14,30 +14,13 @@
 #include <vector>
 
 #include "fovea/base/image.h"
+#include "temporary_folder.h"
 
 namespace fovea::test {
 
 namespace fs = std::filesystem;
 
-/// A new folder that is removed at the end of the test.
-class TempFolder {
- public:
-  TempFolder() {
-    std::string pattern = (fs::temp_directory_path() / "fovea_test_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using fovea::TemporaryFolder;
 
 inline void write_text(const fs::path& file, std::string_view text) {
   fs::create_directories(file.parent_path());

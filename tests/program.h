@@ -1,7 +1,6 @@
 // Runs the built program and the folders that its tests need.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -11,32 +10,13 @@
 #include <sstream>
 #include <string>
 
+#include "tests/temporary_folder.h"
+
 namespace fovea {
 
 struct ProgramRun {
   int exit_code = -1;  ///< 128 + signal if it was killed
   std::string out, err;
-};
-
-/// A folder of the test's own, removed afterwards.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "fovea-test-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline std::string read_text(const std::filesystem::path& file) {
@@ -48,7 +28,7 @@ inline std::string read_text(const std::filesystem::path& file) {
 
 /// Runs `fovea ARGUMENTS` (a shell's words), with `before` in front of it (e.g. "timeout 5 ").
 inline ProgramRun run_fovea(const std::string& arguments, const std::string& before = "") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::string command = before + " '" FOVEA_PROGRAM "' " + arguments + " >'" +
                               (scratch / "out").string() + "' 2>'" + (scratch / "err").string() +
                               "'";

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 class Program : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scratch_ = new ScratchFolder;
+    scratch_ = new TemporaryFolder;
     SyntheticDrive drive(street_scene(), 6, 0.8);
     drive_ = write_kitti_drive(drive, scratch_->path());
   }
@@ -56,11 +56,11 @@ class Program : public testing::Test {
     return names;
   }
 
-  static ScratchFolder* scratch_;
+  static TemporaryFolder* scratch_;
   static std::filesystem::path drive_;
-  ScratchFolder own_;
+  TemporaryFolder own_;
 };
-ScratchFolder* Program::scratch_ = nullptr;
+TemporaryFolder* Program::scratch_ = nullptr;
 std::filesystem::path Program::drive_;
 
 TEST_F(Program, MapsInfoExportEvaluate) {
@@ -334,7 +334,7 @@ TEST_F(Program, UpsampleAndRegister) {
                                      "' " + ply.string() + " --rate 2 --camera 2");
   ASSERT_EQ(dense.exit_code, 0) << dense.err;
   EXPECT_THAT(read_text(ply), testing::StartsWith("ply\n"));
-  // Point to point is drawn towards no motion by the scan's own rings (SPEC section 2): its
+  // Point to point is drawn towards no motion by the scan's own rings (docs/method.md 2): its
   // accuracy is the unit tests' business, here it meets a scan with itself.
   for (const auto& [method, source, step] :
        {std::tuple{"gicp", 1, 0.8}, {"plane", 1, 0.8}, {"icp", 0, 0.0}}) {

@@ -30,7 +30,7 @@ class SampleDrive : public testing::Test {
     both["evaluate"] = nlohmann::json::parse(read_text(scores));
     return both;
   }
-  ScratchFolder own_;
+  TemporaryFolder own_;
 };
 
 TEST_F(SampleDrive, DefaultPresetOnHeldOutFrames) {

@@ -1,4 +1,4 @@
-// Scores a map against a drive: every figure of SPEC section 7, always together.
+// Scores a map against a drive: every figure of docs/method.md 7, always together.
 #pragma once
 
 #include <functional>

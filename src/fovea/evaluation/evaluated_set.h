@@ -1,4 +1,4 @@
-// THE EVALUATED SET (SPEC section 7): which LiDAR points of a scan score a map, and their true
+// THE EVALUATED SET (docs/method.md 7): which LiDAR points of a scan score a map, and their true
 // colours. Fixed, and independent of any map's settings.
 #pragma once
 

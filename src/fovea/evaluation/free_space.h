@@ -1,5 +1,5 @@
-// Free-space violations (SPEC section 7): map points that stand where a scan saw through. Position
-// errors cannot see them: a map fattened by 5 cm of noise has a better ME.
+// Free-space violations (docs/method.md 7): map points that stand where a scan saw through.
+// Position errors cannot see them: a map fattened by 5 cm of noise has a better ME.
 #pragma once
 
 #include <cstdint>

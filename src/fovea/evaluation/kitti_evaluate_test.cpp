@@ -1,5 +1,5 @@
 // The evaluator on the real drive, against the simplest map there is: every point of the mapped
-// scans in view, coloured by projection (SPEC section 7, first row of the prototype's table).
+// scans in view, coloured by projection (docs/method.md 7, first row of the prototype's table).
 #include <gtest/gtest.h>
 
 #include "../../../tests/kitti_sample.h"
@@ -54,8 +54,8 @@ TEST(KittiEvaluate, FiguresOfTheKeepEveryPointMapAreThePrototypes) {
   const ScoredMap map = keep_every_point(*drive);
   const EvaluationReport held_out = evaluate(map, *drive, {});
   RecordProperty("report", to_json(held_out));
-  // SPEC: ME 0.0422, TE 29.2, median 17.6, within 20 0.545, MTME 1.64, coverage 0.793 with refined
-  // poses; navigation poses are worse.
+  // Prototype: ME 0.0422, TE 29.2, median 17.6, within 20 0.545, MTME 1.64, coverage 0.793 with
+  // refined poses; navigation poses are worse.
   EXPECT_NEAR(held_out.figures.me_mean, 0.042, 0.012) << to_text(held_out);
   EXPECT_NEAR(held_out.figures.te_mean, 30, 3);
   EXPECT_NEAR(held_out.figures.te_within_20, 0.55, 0.05);

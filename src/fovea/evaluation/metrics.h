@@ -1,4 +1,4 @@
-// Errors of a map at the evaluated points (SPEC section 7; paper: Error Metrics).
+// Errors of a map at the evaluated points (docs/method.md 7; paper: Error Metrics).
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// Evaluation protocols (SPEC section 7): which scans score a map, and where they are placed.
+// Evaluation protocols (docs/method.md 7): which scans score a map, and where they are placed.
 #pragma once
 
 #include <string_view>

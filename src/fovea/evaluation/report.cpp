@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The figures of SPEC section 7 that come from point errors, under the contract's names.
+/// The figures of docs/method.md 7 that come from point errors, under the contract's names.
 void put_figures(Json& json, const ErrorFigures& figures) {
   json["points"] = figures.points;
   json["me_mean"] = figures.me_mean;

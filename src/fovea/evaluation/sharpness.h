@@ -1,5 +1,5 @@
-// Sharpness (SPEC section 7): how much of the photograph's detail the map has. Colour errors cannot
-// see it: a blur of one pixel "improves" TE.
+// Sharpness (docs/method.md 7): how much of the photograph's detail the map has. Colour errors
+// cannot see it: a blur of one pixel "improves" TE.
 #pragma once
 
 #include "fovea/evaluation/splat.h"

@@ -58,13 +58,10 @@ class DelaunayTriangulation {
   /// Grid points by vertex.
   std::span<const GridPoint> points() const { return points_; }
 
-  /// Number of triangles, those with the infinite vertex included. A triangle keeps its number, but
-  /// insertions change its vertices.
+  /// Number of triangles, those with the infinite vertex included. Insertions change the triangles
+  /// and their numbers.
   std::size_t triangle_count() const { return triangles_.size(); }
-  Vertices vertices(std::size_t triangle) const {
-    const auto& v = triangles_[triangle].vertex;
-    return {v[0], v[1], v[2]};
-  }
+  const Vertices& vertices(std::size_t triangle) const { return triangles_[triangle].vertex; }
   bool is_finite(std::size_t triangle) const {
     const auto& v = triangles_[triangle].vertex;
     return (v[0] | v[1] | v[2]) >= 0;
@@ -79,12 +76,15 @@ class DelaunayTriangulation {
   // not three, for shifts instead of divisions, and for triangles that never straddle a cache line.
   using Edge = std::int32_t;
   struct alignas(32) Triangle {
-    std::array<std::int32_t, 4> vertex;  // the fourth is padding
-    std::array<Edge, 4> twin;            // of the edge opposite each vertex, seen from beyond it
+    std::array<std::int32_t, 3> vertex;
+    std::array<Edge, 3> twin;   // of the edge opposite each vertex, its number from beyond
+    std::int32_t suspects = 0;  // bit k: the edge opposite vertex k is in suspects_
   };
 
-  static Edge next(Edge edge) { return (edge & 3) == 2 ? edge - 2 : edge + 1; }
-  static Edge previous(Edge edge) { return (edge & 3) == 0 ? edge + 2 : edge - 1; }
+  // The next and the previous edge of the same triangle, without the branches that a processor
+  // would mispredict all the time.
+  static Edge next(Edge edge) { return edge + 1 - 3 * (edge >> 1 & 1); }
+  static Edge previous(Edge edge) { return edge - 1 + 3 * (~(edge | edge >> 1) & 1); }
   std::int32_t& apex(Edge edge) { return triangles_[edge >> 2].vertex[edge & 3]; }
   std::int32_t apex(Edge edge) const { return triangles_[edge >> 2].vertex[edge & 3]; }
   Edge& twin(Edge edge) { return triangles_[edge >> 2].twin[edge & 3]; }
@@ -94,16 +94,18 @@ class DelaunayTriangulation {
 
   void check_arguments(std::span<const GridPoint> points,
                        std::span<const std::int32_t> hints) const;
-  void reserve(std::size_t more_points);
   std::int32_t add_vertex(GridPoint point);
   Insertion insert_while_collinear(GridPoint point);
   void start_with(std::int32_t apex_vertex);
   std::int32_t locate(GridPoint point, std::int32_t hint) const;
   bool strictly_inside(GridPoint point, std::int32_t triangle) const;
+  void put_fan(const Triangle& triangle, std::int32_t vertex,
+               const std::array<std::int32_t, 3>& places);
   void split(std::int32_t triangle, std::int32_t vertex);
   bool must_flip(Edge edge) const;
   void flip(Edge edge);
   void legalize_star(std::int32_t triangle);
+  void suspect(Edge edge);
   void legalize_suspects();
   std::vector<std::int32_t> split_all(std::span<const std::int32_t> vertex_in);
   void legalize_after_split(std::span<const std::int32_t> vertex_in,
@@ -112,9 +114,9 @@ class DelaunayTriangulation {
 
   std::vector<GridPoint> points_;
   std::vector<Triangle> triangles_;
-  std::vector<Edge> suspects_;  // edges that may have to be flipped; a stack
-  std::map<GridPoint, std::int32_t>
-      collinear_;  // vertices before the first triangle, along the line
+  std::vector<Edge> suspects_;  // edges that may have to be flipped
+  // The vertices while they are collinear, in their order on the line.
+  std::map<GridPoint, std::int32_t> collinear_;
 };
 
 }  // namespace fovea

@@ -1,4 +1,4 @@
-// The foveal region (paper: Foveal Processing; SPEC section 4): where texture is mapped at all.
+// The foveal region (paper: Foveal Processing; docs/method.md 4): where texture is mapped at all.
 #pragma once
 
 #include <string>

@@ -49,17 +49,13 @@ inline bool in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
   const double bx = b.x - p.x, by = b.y - p.y;
   const double cx = c.x - p.x, cy = c.y - p.y;
   const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
-  const double bxcy = bx * cy, bycx = by * cx;
-  const double cxay = cx * ay, cyax = cy * ax;
-  const double axby = ax * by, aybx = ay * bx;
-  const double determinant = aa * (bxcy - bycx) + bb * (cxay - cyax) + cc * (axby - aybx);
+  const double determinant =
+      aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx);
   // The differences are exact, so the determinant is off by at most 10 u (u = 2^-53) times the same
-  // sum with absolute values (Shewchuk 1997, incircle bound A); 16 u covers that sum's own
-  // rounding.
-  const double magnitude = aa * (std::abs(bxcy) + std::abs(bycx)) +
-                           bb * (std::abs(cxay) + std::abs(cyax)) +
-                           cc * (std::abs(axby) + std::abs(aybx));
-  if (std::abs(determinant) > 0x1.0p-49 * magnitude) return determinant > 0;
+  // sum with absolute values (Shewchuk 1997, incircle bound A). There |bx cy| + |by cx| <= |b| |c|
+  // <= (bb + cc) / 2, and so on: the sum is at most the one below, and 16 u cover its own rounding.
+  const double bound = 0x1.0p-49 * (aa * bb + bb * cc + cc * aa);
+  if (std::abs(determinant) > bound) return determinant > 0;
   return in_circle_exact(a, b, c, p);
 }
 

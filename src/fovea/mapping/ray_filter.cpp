@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int32_t kMapOwner = -1;
 constexpr float kNoRay = std::numeric_limits<float>::infinity();
-// SPEC section 5, step 2: where all rays are alike a deviation of millimetres means nothing.
+// docs/method.md 5, step 2: where all rays are alike a deviation of millimetres means nothing.
 constexpr double kFlatSigma = 1e-3;   // m
 constexpr double kFlatOffset = 1e-2;  // m
 constexpr std::size_t kGrain = 4096;

@@ -1,4 +1,4 @@
-// Ray filtering (paper: Ray-filtering and Texture Mapping; SPEC section 5).
+// Ray filtering (paper: Ray-filtering and Texture Mapping; docs/method.md 5).
 #pragma once
 
 #include <cstdint>

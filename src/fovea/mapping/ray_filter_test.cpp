@@ -84,7 +84,7 @@ TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
 
 TEST(RayFilter, OccludersStillOwnTheirPixelsInTheSecondTest) {
   // A scan patch that occludes the map is discarded, but a lone far scan point in the midst of it
-  // must still be seen against it: SPEC section 5, "discarded occluders still count as owners in
+  // must still be seen against it: docs/method.md 5, "discarded occluders still count as owners in
   // step 2".
   const Camera camera = test_camera();
   auto map = wall(10, camera, 0, 200, 0, 100);

@@ -1,4 +1,4 @@
-// Texture (paper: Ray-filtering and Texture Mapping; SPEC section 6): colour from one view.
+// Texture (paper: Ray-filtering and Texture Mapping; docs/method.md 6): colour from one view.
 #pragma once
 
 #include "fovea/base/image.h"

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
+#include <vector>
 
 #include "fovea/base/errors.h"
 #include "fovea/mapping/delaunay.h"
@@ -74,7 +76,7 @@ ImageMesh triangulate_projection(const PointCloud& points, const Projection& pro
   }
   const std::vector<std::int32_t> vertices = mesh.triangulation.insert(pixels);
 
-  const auto depth = [&](std::uint32_t point) {
+  const auto squared_range = [&](std::uint32_t point) {
     return project.from_camera(points.position[point]).squaredNorm();
   };
   constexpr std::uint32_t kNoPoint = ~0u;
@@ -82,7 +84,7 @@ ImageMesh triangulate_projection(const PointCloud& points, const Projection& pro
   mesh.point_of_vertex.assign(mesh.triangulation.points().size(), kNoPoint);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     std::uint32_t& nearest = mesh.point_of_vertex[vertices[i]];
-    if (nearest == kNoPoint || depth(point_of_pixel[i]) < depth(nearest)) {
+    if (nearest == kNoPoint || squared_range(point_of_pixel[i]) < squared_range(nearest)) {
       nearest = point_of_pixel[i];
     }
     mesh.vertex_of_point[point_of_pixel[i]] = vertices[i];

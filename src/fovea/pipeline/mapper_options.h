@@ -18,10 +18,10 @@ namespace fovea {
 /// What a scan is registered against.
 enum class RegistrationTarget {
   kPreviousScan,  ///< the paper: pairwise, drifts
-  kLocalMap,      ///< our default: recent scans within reach (SPEC section 2.5)
+  kLocalMap,      ///< our default: recent scans within reach (docs/method.md 2.5)
 };
 
-/// Pose refinement (paper: Pose Refinement; SPEC section 2).
+/// Pose refinement (paper: Pose Refinement; docs/method.md 2).
 struct RefinementOptions {
   RegistrationTarget target = RegistrationTarget::kLocalMap;
   bool visible_only = false;  ///< register only points that a camera sees (the paper's 0xUp..3xUp)
@@ -56,7 +56,7 @@ struct MapperOptions {
 /// "E0".."E11".
 const std::vector<std::string>& variant_names();
 
-/// Options of a row (SPEC section 2): every row sets all that Table II compares, so that a row is
+/// Options of a row (docs/method.md 2): every row sets all that Table II compares, so that a row is
 /// one change; what it does not set (ground, tau, tiles, ...) stays as in `options`. ConfigError
 /// for an unknown name.
 void apply_variant(std::string_view name, MapperOptions& options);

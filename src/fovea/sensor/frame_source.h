@@ -20,7 +20,7 @@ namespace fovea {
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
   int index = 0;                   ///< the number in the file's name
-  TimeNs stamp = 0;                ///< scan time; images count as taken then (SPEC section 1)
+  TimeNs stamp = 0;                ///< scan time; images count as taken then (docs/method.md 1)
   PointCloud scan;                 ///< lidar frame, as measured, with intensity
   std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
   std::vector<Image> images;       ///< one a camera of the calibration, in its order

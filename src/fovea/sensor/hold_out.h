@@ -1,4 +1,4 @@
-// Which frames are held out of a map: they add no point and no colour (SPEC section 7).
+// Which frames are held out of a map: they add no point and no colour (docs/method.md 7).
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@ namespace {
 
 using test::error_of;
 using test::pattern;
-using test::TempFolder;
+using test::TemporaryFolder;
 using test::write_png;
 using test::write_text;
 
@@ -73,7 +73,7 @@ class ImageDecode : public testing::Test {
     const std::string what = message();
     return what.find(text) != std::string::npos && what.find(file_.string()) != std::string::npos;
   }
-  TempFolder folder_;
+  TemporaryFolder folder_;
   test::fs::path file_ = folder_.path() / "0000000007.png";
 };
 

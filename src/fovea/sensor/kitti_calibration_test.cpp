@@ -10,7 +10,7 @@ namespace {
 
 using test::edit;
 using test::error_of;
-using test::TempFolder;
+using test::TemporaryFolder;
 using test::write_text;
 
 // Numbers of the drives of 2011-09-26.
@@ -56,7 +56,7 @@ class KittiCalibrationTest : public testing::Test {
     return message().find(text) != std::string::npos;
   }
 
-  TempFolder folder_;
+  TemporaryFolder folder_;
   test::fs::path cam_to_cam_ = folder_.path() / "calib_cam_to_cam.txt";
   test::fs::path velo_to_cam_ = folder_.path() / "calib_velo_to_cam.txt";
   test::fs::path imu_to_velo_ = folder_.path() / "calib_imu_to_velo.txt";
@@ -142,7 +142,7 @@ TEST_F(KittiCalibrationTest, MissingKeysAndFiles) {
 }
 
 TEST(KittiOdometryCalibration, ReadsProjectionsAndTr) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = test::write_odometry_sequence(folder.path(), 1) / "calib.txt";
   const KittiCalibration calibration = read_kitti_odometry_calibration(file);
   ASSERT_EQ(calibration.cameras.size(), 4u);

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 class KittiOdometry : public testing::Test {
  protected:
-  test::TempFolder folder_;
+  test::TemporaryFolder folder_;
   path sequence_ = test::write_odometry_sequence(folder_.path(), 6);
 };
 

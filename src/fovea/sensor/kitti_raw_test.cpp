@@ -52,7 +52,7 @@ class KittiRaw : public testing::Test {
     EXPECT_THAT(skipped.detail, HasSubstr(detail));
   }
 
-  test::TempFolder folder_;
+  test::TemporaryFolder folder_;
   path drive_ = test::write_raw_drive(folder_.path(), kFrames);
   DriveOptions options_;
 };

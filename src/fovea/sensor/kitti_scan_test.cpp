@@ -11,7 +11,7 @@ namespace fovea {
 namespace {
 
 using test::error_of;
-using test::TempFolder;
+using test::TemporaryFolder;
 using test::write_scan;
 using test::write_text;
 
@@ -19,7 +19,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 TEST(KittiScan, ReadsPointsInOrder) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   write_scan(folder.path() / "a.bin", {{1, 2, 3, 0.5f}, {-4, 5, -6, 0.99f}});
   const KittiScan scan = read_kitti_scan(folder.path() / "a.bin");
   ASSERT_EQ(scan.points.size(), 2u);
@@ -30,7 +30,7 @@ TEST(KittiScan, ReadsPointsInOrder) {
 }
 
 TEST(KittiScan, DropsAndCountsWhatNoLidarMeasures) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   write_scan(folder.path() / "a.bin", {{kNan, 0, 0, 0},
                                        {0, kInf, 0, 0},
                                        {0, 0, -kInf, 0},
@@ -46,7 +46,7 @@ TEST(KittiScan, DropsAndCountsWhatNoLidarMeasures) {
 }
 
 TEST(KittiScan, DamagedFilesAreErrorsThatNameThem) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "a.bin";
   const auto message = [&] { return error_of<InputError>([&] { read_kitti_scan(file); }); };
   EXPECT_NE(message().find("a.bin"), std::string::npos);  // missing

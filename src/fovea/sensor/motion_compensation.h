@@ -1,4 +1,4 @@
-// Sweep motion: a raw scan takes 0.1 s, at 10 m/s that is 1 m (SPEC section 1).
+// Sweep motion: a raw scan takes 0.1 s, at 10 m/s that is 1 m (docs/method.md 1).
 #pragma once
 
 #include "fovea/base/point_cloud.h"

@@ -44,7 +44,7 @@ TEST(Oxts, SaysWhyARecordCannotBeUsed) {
 }
 
 TEST(Oxts, UnreadableFilesAreUnusableRecords) {
-  const test::TempFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_EQ(std::get<std::string>(read_oxts(folder.path() / "none.txt")), "cannot be read");
   EXPECT_EQ(std::get<std::string>(read_oxts(folder.path())), "cannot be read");
 }

@@ -8,11 +8,11 @@
 namespace fovea {
 namespace {
 
-using test::TempFolder;
+using test::TemporaryFolder;
 using test::write_text;
 
 TEST(ReadFile, LinesOfEitherLineEnd) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto lines = [&](const char* text) {
     write_text(folder.path() / "a.txt", text);
     return read_lines(folder.path() / "a.txt");
@@ -23,7 +23,7 @@ TEST(ReadFile, LinesOfEitherLineEnd) {
 }
 
 TEST(ReadFile, FailuresNameTheFile) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto message = [](const test::fs::path& file) {
     return test::error_of<InputError>([&] { read_bytes(file); });
   };
@@ -42,7 +42,7 @@ TEST(ReadFile, NumbersInAnyNotation) {
 }
 
 TEST(ReadFile, NumberedFilesOnly) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   for (const char* name : {"0000000003.png", "000007.JPG", "0000000003.jpg", "9.jpeg", "a1.png",
                            "1.txt", "-2.png", "1.5.png", "._1.png", "20110926130824.png", ".png"}) {
     write_text(folder.path() / name, "x");

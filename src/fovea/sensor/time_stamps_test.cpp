@@ -8,7 +8,7 @@
 namespace fovea {
 namespace {
 
-using test::TempFolder;
+using test::TemporaryFolder;
 using test::write_text;
 using Times = std::vector<std::optional<TimeNs>>;
 
@@ -33,7 +33,7 @@ TEST(TimeStamps, MalformedDateTimesAreNone) {
 }
 
 TEST(TimeStamps, BlankLinesKeepTheirPlace) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "timestamps.txt";
   write_text(file,
              "2011-09-26 13:00:00.0\r\n2011-09-26 13:00:00.1\r\n\r\n  \n2011-09-26 13:00:00.4\n"
@@ -49,7 +49,7 @@ TEST(TimeStamps, BlankLinesKeepTheirPlace) {
 }
 
 TEST(TimeStamps, WildStampsCostOnlyThemselves) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "times.txt";
   const auto out_of_order = [&](const char* text) {
     write_text(file, text);
@@ -64,7 +64,7 @@ TEST(TimeStamps, WildStampsCostOnlyThemselves) {
 }
 
 TEST(TimeStamps, SecondsInAnyNotation) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "times.txt";
   write_text(file, "0.000000e+00\n1.037359e-01\n0.5\nnan\n1 2\n\n1e300\n7\n");
   const TimeStamps stamps = read_seconds(file);
@@ -82,7 +82,7 @@ TEST(TimeStamps, MedianIgnoresGaps) {
 }
 
 TEST(TimeStamps, NothingUsable) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   write_text(folder.path() / "a.txt", "\n\nx\n");
   EXPECT_FALSE(read_date_times(folder.path() / "a.txt").any());
   EXPECT_THROW(read_date_times(folder.path() / "b.txt"), InputError);

@@ -1,4 +1,4 @@
-// The target of our default registration: recent scans around the vehicle (SPEC section 2.5).
+// The target of our default registration: recent scans around the vehicle (docs/method.md 2.5).
 #pragma once
 
 #include <deque>
