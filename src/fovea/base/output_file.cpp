@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <streambuf>
@@ -63,7 +64,7 @@ fs::path check_output_path(const fs::path& path, bool force) {
     throw OutputError("the output exists already", path.string(),
                       "use --force to replace it or give another name");
   }
-  const fs::path target = fs::exists(status) ? fs::canonical(path) : path;
+  fs::path target = fs::exists(status) ? fs::canonical(path) : path;
   const fs::path folder = folder_of(target);
   if (!fs::is_directory(folder, ignored)) {
     throw OutputError("the output's folder does not exist", folder.string(), "make it first");
