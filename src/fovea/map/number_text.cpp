@@ -95,7 +95,9 @@ class JsonCursor {
   }
 
   void skip_space() {
-    while (!rest_.empty() && std::string_view(" \t\r\n").find(rest_.front()) != rest_.npos) next();
+    while (!rest_.empty() &&
+           std::string_view(" \t\r\n").find(rest_.front()) != std::string_view::npos)
+      next();
   }
 
   std::string_view rest_;
