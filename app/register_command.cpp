@@ -22,13 +22,8 @@ struct RegisterArguments {
 
 RegistrationCloud read_cloud(const std::string& file, double voxel,
                              const RegistrationOptions& options) {
-  const std::vector<Eigen::Vector3f> points = read_kitti_scan(file).points.position;
-  if (voxel <= 0) return prepare_cloud(points, options);
-  std::vector<Eigen::Vector3f> chosen;
-  for (const std::uint32_t i : voxel_sample(points, static_cast<float>(voxel))) {
-    chosen.push_back(points[i]);
-  }
-  return prepare_cloud(std::move(chosen), options);
+  return prepare_cloud(
+      voxel_thinned(read_kitti_scan(file).points.position, static_cast<float>(voxel)), options);
 }
 
 void run(const RegisterArguments& arguments) {

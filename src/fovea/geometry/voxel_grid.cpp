@@ -53,4 +53,11 @@ std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points,
   return chosen;
 }
 
+std::vector<Eigen::Vector3f> voxel_thinned(std::vector<Eigen::Vector3f> points, float size) {
+  if (size == 0) return points;
+  std::vector<Eigen::Vector3f> chosen;
+  for (const std::uint32_t i : voxel_sample(points, size)) chosen.push_back(points[i]);
+  return chosen;
+}
+
 }  // namespace fovea

@@ -13,4 +13,7 @@ namespace fovea {
 /// the same input.
 std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points, float size);
 
+/// The points that voxel_sample chooses; all of them for size 0.
+std::vector<Eigen::Vector3f> voxel_thinned(std::vector<Eigen::Vector3f> points, float size);
+
 }  // namespace fovea

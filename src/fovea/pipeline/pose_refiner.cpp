@@ -52,15 +52,8 @@ RegistrationCloud PoseRefiner::prepare(const PointCloud& scan_lidar, StageClock&
   if (!whole) dense = clock.time("upsample", [&] { return visible_upsampled(scan_lidar); });
   const std::vector<Eigen::Vector3f>& points = whole ? scan_lidar.position : dense.position;
   return clock.time("register", [&] {
-    std::vector<Eigen::Vector3f> chosen;
-    if (options_.voxel > 0) {
-      for (const std::uint32_t i : voxel_sample(points, static_cast<float>(options_.voxel))) {
-        chosen.push_back(points[i]);
-      }
-    } else {
-      chosen = points;
-    }
-    return prepare_cloud(std::move(chosen), options_.registration);
+    return prepare_cloud(voxel_thinned(points, static_cast<float>(options_.voxel)),
+                         options_.registration);
   });
 }
 
