@@ -1,0 +1,20 @@
+// What is true of one LiDAR return (docs/simulator.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "fovea/base/image.h"
+
+namespace fovea {
+
+struct TruthPoint {
+  Eigen::Vector3f hit_lidar;  ///< exact, in the LiDAR's frame at the scan's stamp (m)
+  float time = 0;             ///< s from the stamp
+  std::uint32_t surface = 0;  ///< id of the thing hit
+  Rgb albedo;                 ///< there, sRGB
+  std::uint8_t ring = 0;      ///< 0 is the highest beam
+  bool moving = false;
+};
+
+}  // namespace fovea
