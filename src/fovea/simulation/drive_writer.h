@@ -11,9 +11,10 @@
 
 namespace fovea {
 
-/// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was not
-/// finished is removed. OutputError where anything exists at ROOT, its parent does not, or the disk is
-/// full. Files of different frames and cameras may be written at once, from several threads.
+/// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was
+/// not finished is removed. OutputError where anything exists at ROOT, its parent does not, or the
+/// disk is full. Files of different frames and cameras may be written at once, from several
+/// threads.
 class DriveWriter {
  public:
   explicit DriveWriter(const std::filesystem::path& root);
@@ -27,8 +28,8 @@ class DriveWriter {
   void write_perfect_image(int camera, int frame, const Image& image);
   /// @param depth  m, row by row; 0 for sky
   void write_depth(int camera, int frame, int width, int height, const std::vector<float>& depth);
-  /// A text below the drive's folder ("oxts/timestamps.txt", "truth/truth.json") or, with `in_date`, below
-  /// its date's ("calib_cam_to_cam.txt").
+  /// A text below the drive's folder ("oxts/timestamps.txt", "truth/truth.json") or, with
+  /// `in_date`, below its date's ("calib_cam_to_cam.txt").
   void write_text(const std::string& name, const std::string& text, bool in_date = false);
   /// Folder of the truth, for what writes its files itself (write_world).
   std::filesystem::path truth_folder() const;

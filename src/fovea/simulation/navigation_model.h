@@ -14,8 +14,9 @@ struct NavigationRecord {
   std::string text;  ///< the 30 fields, one line
 };
 
-/// One record a frame, of the time at which it was taken (its scan's stamp and a delay). Errors come
-/// from the seed: a constant bias, random walks of position and angles, white noise, GPS jumps, outages.
+/// One record a frame, of the time at which it was taken (its scan's stamp and a delay). Errors
+/// come from the seed: a constant bias, random walks of position and angles, white noise, GPS
+/// jumps, outages.
 /// @param T_world_local  the truth's local frame in the world (a translation)
 std::vector<NavigationRecord> simulate_navigation(const VehicleMotion& motion, const Rig& rig,
                                                   const RigidMotion& T_world_local,

@@ -7,8 +7,9 @@
 
 namespace fovea {
 
-/// A plane curve by its heading, a smooth function of the way along it (m). Position is the integral of
-/// the direction, to 1e-9 m; any `s` of the range asked for, in any order, from any thread.
+/// A plane curve by its heading, a smooth function of the way along it (m). Position is the
+/// integral of the direction, to 1e-9 m; any `s` of the range asked for, in any order, from any
+/// thread.
 class Path {
  public:
   struct Point {

@@ -25,60 +25,60 @@ enum class Scene {
 struct LightOptions {
   double sun_azimuth = 130 * std::numbers::pi / 180;  ///< rad, clockwise from north
   double sun_elevation = 42 * std::numbers::pi / 180;
-  double sun = 2.2;           ///< irradiance, in units that show a white sheet in the sky's light as 1 / 1.2
-  double sky = 0.55;          ///< the same of the whole sky
-  bool reflections = true;    ///< glossy surfaces mirror what is around
+  double sun = 2.2;  ///< irradiance, in units that show a white sheet in the sky's light as 1 / 1.2
+  double sky = 0.55;        ///< the same of the whole sky
+  bool reflections = true;  ///< glossy surfaces mirror what is around
 };
 
 /// How the vehicle drives along its path. T_world_vehicle is a smooth function of time.
 struct VehicleOptions {
-  double speed = 9;             ///< m/s, mean
-  double speed_variation = 0.25;  ///< share of the speed
-  double weave = 0.25;          ///< m, sideways in the lane
+  double speed = 9;                             ///< m/s, mean
+  double speed_variation = 0.25;                ///< share of the speed
+  double weave = 0.25;                          ///< m, sideways in the lane
   double sway = 0.25 * std::numbers::pi / 180;  ///< rad, amplitude of roll and pitch
-  double heave = 0.01;          ///< m, up and down on the springs
+  double heave = 0.01;                          ///< m, up and down on the springs
 };
 
 /// HDL-64E S2: 32 beams from +2 to -8.33 degrees and 32 from -8.83 to -24.33, turning clockwise.
 struct LidarOptions {
-  double period = 0.1034;      ///< s a sweep, KITTI's
-  int columns = 2083;          ///< firings a sweep
+  double period = 0.1034;                   ///< s a sweep, KITTI's
+  int columns = 2083;                       ///< firings a sweep
   double min_range = 0.9, max_range = 120;  ///< m
-  double range_noise = 0.015;    ///< m, standard deviation
-  double range_resolution = 0.002;  ///< m; 0: exact
-  double dropouts = 1;         ///< factor on the chance that a weak return is lost; 0: none is
-  double height = 1.73;        ///< m above the road
+  double range_noise = 0.015;               ///< m, standard deviation
+  double range_resolution = 0.002;          ///< m; 0: exact
+  double dropouts = 1;   ///< factor on the chance that a weak return is lost; 0: none is
+  double height = 1.73;  ///< m above the road
 };
 
 struct SimulatedCamera {
-  int number = 2;              ///< KITTI's: 0, 1 grey; 2, 3 colour
-  double right = 0;            ///< m, from camera 0 along the rectified x axis
+  int number = 2;    ///< KITTI's: 0, 1 grey; 2, 3 colour
+  double right = 0;  ///< m, from camera 0 along the rectified x axis
   bool grey = false;
 };
 
 struct CameraOptions {
   std::vector<SimulatedCamera> cameras = {{2, -0.060, false}, {3, 0.473, false}};
   int width = 1242, height = 375;
-  double focal = 721.5;        ///< pixels
-  double cx = 609.6, cy = 172.9;  ///< pixel centres at integers
-  int samples = 2;             ///< rays along each side of a pixel, before edges are refined
-  double exposure = 1.0;       ///< factor on linear light
+  double focal = 721.5;              ///< pixels
+  double cx = 609.6, cy = 172.9;     ///< pixel centres at integers
+  int samples = 2;                   ///< rays along each side of a pixel, before edges are refined
+  double exposure = 1.0;             ///< factor on linear light
   double exposure_variation = 0.35;  ///< natural logarithm, amplitude over the drive
-  double vignetting = 0.25;    ///< light lost in the image's corners
-  double noise = 1.5;          ///< grey levels of 255 at half light, standard deviation
+  double vignetting = 0.25;          ///< light lost in the image's corners
+  double noise = 1.5;                ///< grey levels of 255 at half light, standard deviation
 };
 
 struct NavigationOptions {
-  GeodeticPoint origin{49.01, 8.43, 114.5};  ///< of the LiDAR at frame 0
+  GeodeticPoint origin{49.01, 8.43, 114.5};     ///< of the LiDAR at frame 0
   double min_delay = 0.011, max_delay = 0.038;  ///< s, of a record after its scan
-  double position_noise = 0.01;     ///< m, white, each axis
-  double position_walk = 0.03;      ///< m per square root of a second, random walk
-  double position_bias = 0.4;       ///< m, standard deviation of the constant error
-  double angle_noise = 0.0002;      ///< rad, white
-  double angle_walk = 0.0003;       ///< rad per square root of a second
-  double jump_rate = 0.02;          ///< GPS jumps a second
-  double jump_size = 0.4;           ///< m, standard deviation
-  bool outages = false;             ///< satellites are lost for a while: the walk grows tenfold
+  double position_noise = 0.01;                 ///< m, white, each axis
+  double position_walk = 0.03;                  ///< m per square root of a second, random walk
+  double position_bias = 0.4;                   ///< m, standard deviation of the constant error
+  double angle_noise = 0.0002;                  ///< rad, white
+  double angle_walk = 0.0003;                   ///< rad per square root of a second
+  double jump_rate = 0.02;                      ///< GPS jumps a second
+  double jump_size = 0.4;                       ///< m, standard deviation
+  bool outages = false;  ///< satellites are lost for a while: the walk grows tenfold
 };
 
 struct SimulationOptions {
@@ -87,8 +87,8 @@ struct SimulationOptions {
   int frames = 100;
   LightOptions light;
   VehicleOptions vehicle;
-  double bends = 0.12;      ///< rad, how far the street's heading swings
-  double curvature = 0;     ///< 1/m, of the whole street, besides its bends
+  double bends = 0.12;   ///< rad, how far the street's heading swings
+  double curvature = 0;  ///< 1/m, of the whole street, besides its bends
   LidarOptions lidar;
   CameraOptions camera;
   NavigationOptions navigation;
@@ -101,8 +101,8 @@ struct SimulationOptions {
 Scene parse_scene(std::string_view name);
 std::string_view to_string(Scene scene);
 
-/// Options of a scene under one of the levels of noise: "none" (every noise, bias, drop-out, exposure
-/// change and vignetting off), "default", "harsh". ConfigError for another name.
+/// Options of a scene under one of the levels of noise: "none" (every noise, bias, drop-out,
+/// exposure change and vignetting off), "default", "harsh". ConfigError for another name.
 SimulationOptions simulation_options(Scene scene, std::string_view noise);
 
 }  // namespace fovea

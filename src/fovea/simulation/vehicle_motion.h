@@ -8,9 +8,9 @@
 
 namespace fovea {
 
-/// Motion of the vehicle along a path: speed that changes, weaving in the lane, roll, pitch and heave;
-/// all smooth (sums of sines whose phases come from the seed). With speed_variation, weave, sway and
-/// heave at 0 on a path of constant curvature its twist is constant.
+/// Motion of the vehicle along a path: speed that changes, weaving in the lane, roll, pitch and
+/// heave; all smooth (sums of sines whose phases come from the seed). With speed_variation, weave,
+/// sway and heave at 0 on a path of constant curvature its twist is constant.
 class VehicleMotion {
  public:
   /// @param lane_offset  m to the left of the path (right-hand traffic: negative)
@@ -32,8 +32,8 @@ class VehicleMotion {
 /// How far a path must reach before and beyond s = 0 for a drive of so many seconds.
 double longest_way(const VehicleOptions& options, double seconds);
 
-/// Where the sensors sit: KITTI's arrangement with angles that are small and not zero, so that a forgotten
-/// rotation shows.
+/// Where the sensors sit: KITTI's arrangement with angles that are small and not zero, so that a
+/// forgotten rotation shows.
 struct Rig {
   RigidMotion T_vehicle_lidar, T_imu_lidar;
   RigidMotion T_cam0_lidar;        ///< camera 0 before rectification (calib_velo_to_cam.txt)

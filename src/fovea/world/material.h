@@ -12,17 +12,18 @@ namespace fovea {
 
 /// How a material's colour varies over its texture coordinates (s, t, r), in metres.
 enum class Pattern : std::uint8_t {
-  kPlain,      ///< color everywhere
-  kChecker,    ///< squares of `scale` in color and color_2 (tests)
-  kGrain,      ///< color with grain down to 1 cm and stains: plaster, concrete, earth
-  kAsphalt,    ///< grain, cracks, patches of another age
-  kRoad,       ///< asphalt with markings: s across from the road's middle, t along it, `size` = (half width, dash period)
-  kSlabs,      ///< rectangular slabs of `size` with joints in color_2
-  kBricks,     ///< courses of bricks of `size`, mortar color_2
-  kBoards,     ///< boards along t, `scale` wide
-  kFoliage,    ///< leaves: a colour of its own for every r
-  kBark,       ///< streaks along t
-  kGrass,      ///< blades and patches
+  kPlain,    ///< color everywhere
+  kChecker,  ///< squares of `scale` in color and color_2 (tests)
+  kGrain,    ///< color with grain down to 1 cm and stains: plaster, concrete, earth
+  kAsphalt,  ///< grain, cracks, patches of another age
+  kRoad,     ///< asphalt with markings: s across from the road's middle, t along it, `size` = (half
+             ///< width, dash period)
+  kSlabs,    ///< rectangular slabs of `size` with joints in color_2
+  kBricks,   ///< courses of bricks of `size`, mortar color_2
+  kBoards,   ///< boards along t, `scale` wide
+  kFoliage,  ///< leaves: a colour of its own for every r
+  kBark,     ///< streaks along t
+  kGrass,    ///< blades and patches
   kLettering,  ///< `text` in color_2 on color, on a board of `size` from (0, 0)
   kFacade,     ///< windows painted on a distant wall, cells of `size`, glass color_2
 };
@@ -37,10 +38,10 @@ struct Material {
   Eigen::Vector3f color_2 = Eigen::Vector3f::Constant(0.5f);  ///< the pattern's other albedo
   float scale = 1;                                            ///< m, see Pattern
   Eigen::Vector2f size = Eigen::Vector2f::Ones();             ///< m, see Pattern
-  float contrast = 1;      ///< of grain, stains and tints; 0: none
-  std::uint32_t seed = 0;  ///< of the pattern's noise
-  std::string text;        ///< of kLettering
-  float gloss = 0;         ///< mirror reflection at normal incidence, 0-1; 0: matte
+  float contrast = 1;        ///< of grain, stains and tints; 0: none
+  std::uint32_t seed = 0;    ///< of the pattern's noise
+  std::string text;          ///< of kLettering
+  float gloss = 0;           ///< mirror reflection at normal incidence, 0-1; 0: matte
   float reflectance = 0.4f;  ///< for the LiDAR, 0-1
   bool glass = false;        ///< the LiDAR mostly sees nothing here
 };

@@ -16,8 +16,8 @@ class SurfaceIndex {
   ~SurfaceIndex();
   SurfaceIndex(SurfaceIndex&&) noexcept;
 
-  /// Nearest point of the mesh; thread-safe, and the same for any number of threads (of equally near
-  /// triangles the one of the lowest number).
+  /// Nearest point of the mesh; thread-safe, and the same for any number of threads (of equally
+  /// near triangles the one of the lowest number).
   SurfacePoint nearest(const Eigen::Vector3d& p) const;
 
  private:

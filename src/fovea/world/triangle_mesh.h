@@ -12,11 +12,12 @@ namespace fovea {
 /// Triangles, as columns of equal length. Their frame is what the variable's name says
 /// (`mesh_local`).
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> position;               ///< of the vertices (m)
-  std::vector<Eigen::Vector3f> texture;                ///< of the vertices: where on (or in) the material (m)
+  std::vector<Eigen::Vector3d> position;  ///< of the vertices (m)
+  std::vector<Eigen::Vector3f> texture;   ///< of the vertices: where on (or in) the material (m)
   std::vector<std::array<std::uint32_t, 3>> triangle;  ///< vertices, counter-clockwise from outside
-  std::vector<std::uint16_t> material;                 ///< of the triangles: place in a list of Material
-  std::vector<std::uint32_t> surface;                  ///< of the triangles: id of the thing (house, car, road, ...)
+  std::vector<std::uint16_t> material;  ///< of the triangles: place in a list of Material
+  std::vector<std::uint32_t>
+      surface;  ///< of the triangles: id of the thing (house, car, road, ...)
 
   std::size_t size() const { return triangle.size(); }
   bool empty() const { return triangle.empty(); }

@@ -13,8 +13,8 @@ namespace fovea {
 
 /// The static part of a world. Moving things are not in it.
 struct World {
-  TriangleMesh mesh_local;                      ///< local = east-north-up of the truth's origin
-  std::vector<Material> materials;              ///< that the mesh's triangles name
+  TriangleMesh mesh_local;                        ///< local = east-north-up of the truth's origin
+  std::vector<Material> materials;                ///< that the mesh's triangles name
   std::map<std::uint32_t, std::string> surfaces;  ///< surface id -> kind ("house", "parked car")
 };
 
