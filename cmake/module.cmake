@@ -4,12 +4,13 @@ target_link_libraries(fovea_precompiled PRIVATE Eigen3::Eigen fovea_compile_opti
 target_compile_options(fovea_precompiled PRIVATE ${FOVEA_MACHINE_OPTIONS})
 target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
 
-# fovea_module(NAME [DEPENDS modules...] [PUBLIC libs...] [PRIVATE libs...])
+# fovea_module(NAME [DEPENDS modules...] [PUBLIC libs...] [PRIVATE libs...] [TEST_DEPENDS modules...])
 #
 # Makes the static library fovea_NAME (alias fovea::NAME) of src/fovea/NAME, and, from the
-# *_test.cpp files beside the sources, the test program NAME_tests.
+# *_test.cpp files beside the sources, the test program NAME_tests. TEST_DEPENDS: what only the tests
+# include, such as the reader of what the module writes.
 function(fovea_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
   set(root ${PROJECT_SOURCE_DIR}/src/fovea/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/*.cpp)
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${root}/*_test.cpp)
@@ -31,8 +32,9 @@ function(fovea_module name)
 
   if(FOVEA_BUILD_TESTS AND tests)
     add_executable(${name}_tests ${tests})
-    target_link_libraries(${name}_tests PRIVATE fovea_${name} ${ARG_PRIVATE} fovea_compile_options
-                          GTest::gtest_main GTest::gmock)
+    list(TRANSFORM ARG_TEST_DEPENDS PREPEND fovea_)
+    target_link_libraries(${name}_tests PRIVATE fovea_${name} ${ARG_TEST_DEPENDS} ${ARG_PRIVATE}
+                          fovea_compile_options GTest::gtest_main GTest::gmock)
     target_precompile_headers(${name}_tests REUSE_FROM fovea_precompiled)
     target_compile_definitions(${name}_tests PRIVATE
                                FOVEA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

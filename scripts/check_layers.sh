@@ -18,6 +18,10 @@ while IFS=: read -r file line include; do
   elif [[ $from != "$to" && ${floor[$to]} -ge ${floor[$from]} ]]; then
     echo "$file:$line: $from/ (floor ${floor[$from]}) must not include $to/ (floor ${floor[$to]})" >&2
     failed=1
+  elif [[ $from == simulation && $file != *_test.cpp && ! $to =~ ^(simulation|world|geometry|base)$ ]]; then
+    # What the product is judged by shares nothing with it but mathematics; its tests may read back.
+    echo "$file:$line: simulation/ must not include $to/" >&2
+    failed=1
   fi
 done < <(grep -rnE '^ *# *include +"fovea/' src/fovea)
 if grep -rnE '^ *# *include +"app/' src/fovea; then

@@ -8,8 +8,8 @@
 namespace fovea {
 
 /// A plane curve by its heading, a smooth function of the way along it (m). Position is the
-/// integral of the direction, to 1e-9 m; any `s` of the range asked for, in any order, from any
-/// thread.
+/// integral of the direction, to 1e-9 m where the heading is smooth over half a metre; any `s` of
+/// the range asked for, in any order, from any thread.
 class Path {
  public:
   struct Point {
@@ -20,10 +20,12 @@ class Path {
 
   /// @param heading    rad at s
   /// @param curvature  its derivative, 1/m
-  /// @param begin,end  range of s in which at() is exact; s = 0 lies at the world's origin
+  /// @param begin,end  range of s in which at() is exact; s = 0, at the world's origin, lies in it
+  ///                   (std::invalid_argument otherwise)
   Path(std::function<double(double)> heading, std::function<double(double)> curvature, double begin,
        double end);
 
+  /// std::out_of_range for an `s` beyond the range: nothing is known there.
   Point at(double s) const;
   double begin() const { return begin_; }
   double end() const { return end_; }
@@ -32,6 +34,11 @@ class Path {
   Eigen::Vector2d offset(double s, double d) const;
 
  private:
+  /// Integral of the direction from `from` to `to`, at most kStep apart.
+  Eigen::Vector2d way_between(double from, double to) const;
+
+  static constexpr double kStep = 0.5;  // m
+
   std::function<double(double)> heading_, curvature_;
   double begin_, end_;
   std::vector<Eigen::Vector2d> knots_;  // positions every kStep from begin_

@@ -1,0 +1,29 @@
+// Where a vehicle's LiDAR, cameras and IMU sit.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fovea/geometry/camera.h"
+#include "fovea/geometry/rigid_motion.h"
+#include "fovea/simulation/simulation_options.h"
+
+namespace fovea {
+
+/// KITTI's arrangement with angles that are small and not zero, so that a forgotten rotation shows.
+struct Rig {
+  /// Vehicle: forward, left, up, on the road below the LiDAR.
+  RigidMotion T_vehicle_lidar = RigidMotion::Identity();
+  RigidMotion T_imu_lidar = RigidMotion::Identity();
+  /// Camera 0 before rectification (calib_velo_to_cam.txt).
+  RigidMotion T_cam0_lidar = RigidMotion::Identity();
+  Eigen::Matrix3d R_rect = Eigen::Matrix3d::Identity();  ///< of camera 0 (R_rect_00)
+  /// Rectified, with T_cam_lidar, as a reader must find them; in the options' order.
+  std::vector<Camera> cameras;
+  /// P_rect's fourth column is K * t, of each camera: the origin of rectified camera 0 as the
+  /// camera sees it (m).
+  std::vector<Eigen::Vector3d> t;
+};
+Rig make_rig(const SimulationOptions& options);
+
+}  // namespace fovea

@@ -1,0 +1,101 @@
+#include "fovea/simulation/vehicle_motion.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// A sum of two sines with amplitudes that add up to 1.
+struct Wave {
+  double amplitude[2];
+  double period[2];
+
+  double value(double x, const double* phases) const {
+    double sum = 0;
+    for (int i = 0; i < 2; ++i) {
+      sum += amplitude[i] * std::sin(kTurn * x / period[i] + phases[i]);
+    }
+    return sum;
+  }
+  double slope(double x, const double* phases) const {
+    double sum = 0;
+    for (int i = 0; i < 2; ++i) {
+      const double rate = kTurn / period[i];
+      sum += amplitude[i] * rate * std::cos(rate * x + phases[i]);
+    }
+    return sum;
+  }
+  /// Integral of the value from 0 to x.
+  double integral(double x, const double* phases) const {
+    double sum = 0;
+    for (int i = 0; i < 2; ++i) {
+      const double rate = kTurn / period[i];
+      sum += amplitude[i] / rate * (std::cos(phases[i]) - std::cos(rate * x + phases[i]));
+    }
+    return sum;
+  }
+  /// No integral is larger.
+  double largest_integral() const {
+    double sum = 0;
+    for (int i = 0; i < 2; ++i) sum += 2 * amplitude[i] * period[i] / kTurn;
+    return sum;
+  }
+};
+
+// Periods that have no common multiple within a drive; in seconds, the weave's in metres of way: a
+// vehicle that stands still does not slide sideways.
+constexpr Wave kSpeed{{0.6, 0.4}, {17.3, 7.4}};
+constexpr Wave kWeave{{0.7, 0.3}, {113, 47}};
+constexpr Wave kRoll{{0.65, 0.35}, {3.1, 1.7}};
+constexpr Wave kPitch{{0.65, 0.35}, {2.7, 1.5}};
+constexpr Wave kHeave{{0.6, 0.4}, {2.3, 1.3}};
+
+enum Phase { kOfSpeed = 0, kOfWeave = 2, kOfRoll = 4, kOfPitch = 6, kOfHeave = 8 };
+
+}  // namespace
+
+VehicleMotion::VehicleMotion(const Path& path, double lane_offset, const VehicleOptions& options,
+                             int seed)
+    : path_(&path), lane_offset_(lane_offset), options_(options) {
+  constexpr std::uint64_t kItem = 0x7665686963;  // so that other items of this seed differ
+  Random random(kItem ^ (static_cast<std::uint64_t>(seed) << 32));
+  for (double& phase : phases_) phase = random.uniform(0, kTurn);
+}
+
+double VehicleMotion::way(double time) const {
+  return options_.speed *
+         (time + options_.speed_variation * kSpeed.integral(time, &phases_[kOfSpeed]));
+}
+
+RigidMotion VehicleMotion::T_world_vehicle(double time) const {
+  const double s = way(time);
+  const Path::Point point = path_->at(s);
+  const double aside = lane_offset_ + options_.weave * kWeave.value(s, &phases_[kOfWeave]);
+  const double aside_slope = options_.weave * kWeave.slope(s, &phases_[kOfWeave]);
+  // d/ds of position + aside * left, in the path's own directions.
+  const double yaw = point.heading + std::atan2(aside_slope, 1 - point.curvature * aside);
+  const double pitch = options_.sway * kPitch.value(time, &phases_[kOfPitch]);
+  const double roll = options_.sway * kRoll.value(time, &phases_[kOfRoll]);
+
+  const Eigen::Vector2d left(-std::sin(point.heading), std::cos(point.heading));
+  RigidMotion T = RigidMotion::Identity();
+  T.translation() << point.position + aside * left,
+      options_.heave * kHeave.value(time, &phases_[kOfHeave]);
+  T.linear() = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+                   .toRotationMatrix();
+  return T;
+}
+
+double longest_way(const VehicleOptions& options, double seconds) {
+  return options.speed *
+         (seconds + options.speed_variation * std::min(seconds, kSpeed.largest_integral()));
+}
+
+}  // namespace fovea
