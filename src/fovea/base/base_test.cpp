@@ -127,5 +127,40 @@ TEST(Random, UniformHasTheRightMoments) {
   for (int i = 0; i < 1000; ++i) EXPECT_LT(random.below(6), 6u);
 }
 
+TEST(Random, NormalHasTheRightMomentsAndTails) {
+  Random random(11);
+  double sum = 0, square = 0, fourth = 0;
+  int beyond_two = 0;
+  constexpr int n = 200'000;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.normal();
+    ASSERT_TRUE(std::isfinite(x));
+    sum += x;
+    square += x * x;
+    fourth += x * x * x * x;
+    if (std::abs(x) > 2) ++beyond_two;
+  }
+  // Five standard errors: 1, sqrt(2), sqrt(96) and sqrt(0.0434) over sqrt(n).
+  const double five = 5 / std::sqrt(n);
+  EXPECT_NEAR(sum / n, 0, five);
+  EXPECT_NEAR(square / n, 1, five * std::sqrt(2));
+  EXPECT_NEAR(fourth / n, 3, five * std::sqrt(96));
+  EXPECT_NEAR(double(beyond_two) / n, 0.0455, five * std::sqrt(0.0434));
+}
+
+TEST(Random, ItemsAreIndependent) {
+  EXPECT_EQ(Random::of_item(1, 2, 3).next(), Random::of_item(1, 2, 3).next());
+  EXPECT_NE(Random::of_item(1, 2, 3).next(), Random::of_item(1, 3, 2).next());
+  EXPECT_NE(Random::of_item(1, 2, 3).next(), Random::of_item(2, 1, 3).next());
+  // Neighbouring items do not correlate.
+  double product = 0;
+  constexpr int n = 100'000;
+  for (int i = 0; i < n; ++i) {
+    product += Random::of_item(1, 7, std::uint64_t(i)).normal() *
+               Random::of_item(1, 7, std::uint64_t(i) + 1).normal();
+  }
+  EXPECT_NEAR(product / n, 0, 5 / std::sqrt(n));
+}
+
 }  // namespace
 }  // namespace fovea

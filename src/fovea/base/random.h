@@ -1,7 +1,9 @@
 // Random numbers whose seed belongs to an item, not to a thread.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace fovea {
 
@@ -10,6 +12,14 @@ namespace fovea {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
+  /// Numbers of one item (a frame, a point) of one kind (any constant): those of other items, kinds
+  /// and seeds have nothing to do with them.
+  static Random of_item(std::uint64_t seed, std::uint64_t kind, std::uint64_t item) {
+    Random mixed(seed);
+    mixed.state_ = mixed.next() ^ kind;
+    mixed.state_ = mixed.next() ^ item;
+    return Random(mixed.next());
+  }
 
   std::uint64_t next() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
@@ -24,6 +34,12 @@ class Random {
   std::uint64_t below(std::uint64_t bound) {
     __extension__ using Uint128 = unsigned __int128;
     return static_cast<std::uint64_t>((static_cast<Uint128>(next()) * bound) >> 64);
+  }
+  /// Standard normal (Box and Muller 1958; the second number of a pair is not kept, so that every
+  /// draw takes the same two from the sequence).
+  double normal() {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
   }
 
  private:

@@ -13,7 +13,7 @@
 namespace fovea {
 namespace {
 
-constexpr int kCameras = 4;
+constexpr int kCameras = 10;                 // KITTI has four; simulated drives may have more
 constexpr double kRotationTolerance = 1e-3;  // the files round to 7 digits
 constexpr const char* kRemedy = "restore the file from the KITTI archive's calibration";
 

@@ -5,32 +5,28 @@
 #include <vector>
 
 #include "fovea/base/time.h"
+#include "fovea/simulation/rig.h"
+#include "fovea/simulation/simulation_options.h"
 #include "fovea/simulation/vehicle_motion.h"
 
 namespace fovea {
 
 struct NavigationRecord {
-  TimeNs time = 0;   ///< on the drive's clock
-  std::string text;  ///< the 30 fields, one line
+  TimeNs time = 0;   ///< on the drive's clock, on which all stamps lie
+  std::string text;  ///< the 30 fields of oxts/data/NNNNNNNNNN.txt, one line
 };
 
-/// One record a frame, of the time at which it was taken (its scan's stamp and a delay). Errors
-/// come from the seed: a constant bias, random walks of position and angles, white noise, GPS
-/// jumps, outages.
-/// @param T_world_local  the truth's local frame in the world (a translation)
+/// What the fields mean (oxts/dataformat.txt).
+std::string navigation_format_text();
+
+/// One record a frame, of the time at which it was taken: its scan's stamp and a delay, which is
+/// the same without noise: stamps do not lie. Position and angles are off by navigation_errors();
+/// velocities, accelerations (of which gravity is a part, as the unit measures it) and rates are
+/// the motion's own. The motion's path must reach half a second beyond the last stamp.
+/// @param T_world_local  the truth's local frame in the world (a translation): east-north-up at
+///                       options.navigation.origin
 std::vector<NavigationRecord> simulate_navigation(const VehicleMotion& motion, const Rig& rig,
                                                   const RigidMotion& T_world_local,
                                                   const SimulationOptions& options);
-
-/// Time of the stamp of a frame.
-TimeNs stamp_of(int frame, const SimulationOptions& options);
-/// "2026-01-01 12:00:00.000000000" of a time.
-std::string date_time_text(TimeNs time);
-
-/// The texts of calib_cam_to_cam.txt, calib_velo_to_cam.txt, calib_imu_to_velo.txt.
-struct CalibrationTexts {
-  std::string cam_to_cam, velo_to_cam, imu_to_velo;
-};
-CalibrationTexts calibration_texts(const Rig& rig, const SimulationOptions& options);
 
 }  // namespace fovea

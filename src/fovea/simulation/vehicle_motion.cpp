@@ -62,8 +62,8 @@ enum Phase { kOfSpeed = 0, kOfWeave = 2, kOfRoll = 4, kOfPitch = 6, kOfHeave = 8
 VehicleMotion::VehicleMotion(const Path& path, double lane_offset, const VehicleOptions& options,
                              int seed)
     : path_(&path), lane_offset_(lane_offset), options_(options) {
-  constexpr std::uint64_t kItem = 0x7665686963;  // so that other items of this seed differ
-  Random random(kItem ^ (static_cast<std::uint64_t>(seed) << 32));
+  constexpr std::uint64_t kKind = 0x6d6f74696f6e;
+  Random random = Random::of_item(static_cast<std::uint64_t>(seed), kKind, 0);
   for (double& phase : phases_) phase = random.uniform(0, kTurn);
 }
 
