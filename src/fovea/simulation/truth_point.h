@@ -9,7 +9,8 @@
 namespace fovea {
 
 struct TruthPoint {
-  Eigen::Vector3f hit_lidar;  ///< exact, in the LiDAR's frame at the scan's stamp (m)
+  /// Exact, in the LiDAR's frame at the scan's stamp (m).
+  Eigen::Vector3f hit_lidar = Eigen::Vector3f::Zero();
   float time = 0;             ///< s from the stamp
   std::uint32_t surface = 0;  ///< id of the thing hit
   Rgb albedo;                 ///< there, sRGB
