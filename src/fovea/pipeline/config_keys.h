@@ -5,25 +5,12 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
+#include "fovea/base/settings.h"
 #include "fovea/pipeline/mapper_options.h"
 
 namespace fovea {
-
-/// A value kept in radians and written in degrees.
-struct Degrees {
-  double& radians;
-};
-
-/// Slices, written as an array of [azimuth_min, azimuth_max, elevation_min, elevation_max] in
-/// degrees.
-using Slices = std::vector<AngularSlice>;
-
-template <class Enum>
-struct EnumName {
-  Enum value;
-  std::string_view name;
-};
 
 constexpr auto names_of(RegistrationMethod) {
   return std::array{
@@ -48,9 +35,21 @@ constexpr auto names_of(RayFilterMode) {
 
 inline constexpr int kMaxCameras = 10;
 
+/// Slices, written as an array of [azimuth_min, azimuth_max, elevation_min, elevation_max] in
+/// degrees.
+inline void visit_slices(SettingVisitor& visit, std::string_view key,
+                         std::vector<AngularSlice>& slices) {
+  std::vector<std::array<double, 4>> rows;
+  for (const AngularSlice& s : slices) {
+    rows.push_back({s.azimuth_min, s.azimuth_max, s.elevation_min, s.elevation_max});
+  }
+  visit(key, DegreeRows{rows, "[azimuth_min, azimuth_max, elevation_min, elevation_max]"});
+  slices.clear();
+  for (const auto& row : rows) slices.push_back({row[0], row[1], row[2], row[3]});
+}
+
 /// Calls `visit(key, reference)` for every key; a reader assigns, a writer prints.
-template <class Visitor>
-void visit_config(Visitor&& visit, MapperOptions& o) {
+inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("motion.compensate", o.compensate_motion);
 
   RefinementOptions& r = o.refinement;
@@ -85,12 +84,14 @@ void visit_config(Visitor&& visit, MapperOptions& o) {
   visit("foveal.near_range", o.foveal.near_range);
   visit("foveal.far_range", o.foveal.far_range);
   visit("foveal.max_incidence", Degrees{o.foveal.max_incidence});
-  visit("foveal.slices", o.foveal.slices);
+  visit_slices(visit, "foveal.slices", o.foveal.slices);
   for (int camera = 0; camera < kMaxCameras; ++camera) {
+    const std::string key = fmt::format("foveal.camera_{}_slices", camera);
     // Present only where a camera has slices of its own.
     const auto own = o.camera_slices.find(camera);
-    Slices slices = own != o.camera_slices.end() ? own->second : Slices{};
-    visit(fmt::format("foveal.camera_{}_slices", camera), slices);
+    auto slices = own != o.camera_slices.end() ? own->second : std::vector<AngularSlice>{};
+    if (slices.empty() && !visit.is_given(key)) continue;
+    visit_slices(visit, key, slices);
     if (!slices.empty()) o.camera_slices[camera] = std::move(slices);
   }
 

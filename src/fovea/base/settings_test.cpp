@@ -1,0 +1,111 @@
+#include "fovea/base/settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fovea/base/angle.h"
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+enum class Shade { kDark, kLight };
+constexpr auto names_of(Shade) {
+  return std::array{EnumName<Shade>{Shade::kDark, std::string_view("dark")},
+                    EnumName<Shade>{Shade::kLight, std::string_view("light")}};
+}
+
+struct Options {
+  bool on = true;
+  int count = 3;
+  double length = 2;
+  double angle = 70 * kDegree;
+  std::vector<int> numbers = {2, 3};
+  std::vector<std::array<double, 4>> rows;
+  Shade shade = Shade::kLight;
+  std::optional<double> extra;
+};
+
+void visit_options(SettingVisitor& visit, Options& o) {
+  visit("a.on", o.on);
+  visit("a.count", o.count);
+  visit("a.length", o.length);
+  visit("b.angle", Degrees{o.angle});
+  visit("b.numbers", o.numbers);
+  visit("b.rows", DegreeRows{o.rows, "[p, q, r, s]"});
+  visit("b.shade", o.shade);
+  visit("b.extra", o.extra);
+}
+
+void read(std::string_view text, Options& options) {
+  SettingsDocument::from_text(text, "x.toml")
+      .apply([&](SettingVisitor& visit) { visit_options(visit, options); },
+             [&] {
+               if (options.count < 0) throw ConfigError("a count is negative", "a.count", "add");
+             },
+             "look there");
+}
+
+std::string text_of(Options options) {
+  return settings_text([&](SettingVisitor& visit) { visit_options(visit, options); });
+}
+
+std::string error_of(std::string_view text) {
+  try {
+    Options options;
+    read(text, options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no ConfigError";
+}
+
+TEST(Settings, ArePrintedByTable) {
+  EXPECT_EQ(text_of({}),
+            "[a]\non = true\ncount = 3\nlength = 2.0\n\n[b]\nangle = 70.0\nnumbers = [2, 3]\n"
+            "rows = []\nshade = \"light\"\n");
+}
+
+TEST(Settings, ReadBackTheSame) {
+  Options options{false, -0, 1e-7, 33.3 * kDegree, {5}, {}, Shade::kDark, 1.5};
+  options.rows = {{1 * kDegree, 2 * kDegree, 3 * kDegree, -4.5 * kDegree}};
+  Options back;
+  read(text_of(options), back);
+  EXPECT_EQ(back.on, false);
+  EXPECT_EQ(back.count, 0);
+  EXPECT_EQ(back.length, 1e-7);
+  EXPECT_EQ(back.angle, options.angle);
+  EXPECT_THAT(back.numbers, ElementsAre(5));
+  EXPECT_EQ(back.rows, options.rows);
+  EXPECT_EQ(back.shade, Shade::kDark);
+  EXPECT_EQ(back.extra, 1.5);
+}
+
+TEST(Settings, WhatIsNotGivenStays) {
+  Options options;
+  read("b.shade = 'dark'", options);
+  EXPECT_EQ(options.shade, Shade::kDark);
+  EXPECT_EQ(options.count, 3);
+  EXPECT_FALSE(options.extra);
+}
+
+TEST(Settings, ErrorsNameFileLineAndKey) {
+  EXPECT_THAT(error_of("\n[a]\ncuont = 1"),
+              AllOf(HasSubstr("unknown key"), HasSubstr("x.toml:3, key 'a.cuont'"),
+                    HasSubstr("remove it, or look there")));
+  EXPECT_THAT(error_of("[a]\ncount = -1"),
+              AllOf(HasSubstr("negative"), HasSubstr("x.toml:2, key 'a.count'")));
+  EXPECT_THAT(error_of("[b]\nnumbers = [1, 2.5]"), HasSubstr("give a whole number"));
+  EXPECT_THAT(error_of("[b]\nnumbers = 7"), HasSubstr("give an array of whole numbers"));
+  EXPECT_THAT(error_of("[b]\nrows = [[1, 2]]"), HasSubstr("an array of [p, q, r, s] in degrees"));
+  EXPECT_THAT(error_of("[b]\nshade = 'grey'"), HasSubstr("give one of 'dark', 'light'"));
+  EXPECT_THAT(error_of("[b]\nextra = 'much'"), HasSubstr("give a number"));
+  EXPECT_THAT(error_of("[b"), HasSubstr("x.toml:1"));
+}
+
+}  // namespace
+}  // namespace fovea
