@@ -230,11 +230,13 @@ SettingsDocument SettingsDocument::from_file(const std::filesystem::path& file) 
   return from_text(text.str(), file.string());
 }
 
-SettingsDocument SettingsDocument::from_assignment(std::string_view assignment) {
+SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,
+                                                   std::string_view example) {
   const std::string name = fmt::format("--set {}", assignment);
   const std::size_t equals = assignment.find('=');
   if (equals == std::string_view::npos || equals == 0) {
-    throw ConfigError("a setting is not of the form key=value", name, "write e.g. upsample.rate=2");
+    throw ConfigError("a setting is not of the form key=value", name,
+                      fmt::format("write e.g. {}", example));
   }
   const std::string key(assignment.substr(0, equals)), value(assignment.substr(equals + 1));
   toml::table table;

@@ -92,7 +92,8 @@ class SettingsDocument {
   /// InputError if the file cannot be read; ConfigError as above.
   static SettingsDocument from_file(const std::filesystem::path& file);
   /// One "key=value" of the command line, the value in TOML form (a bare word is a string).
-  static SettingsDocument from_assignment(std::string_view assignment);
+  /// @param example  what a right one looks like ("upsample.rate=2"), for errors
+  static SettingsDocument from_assignment(std::string_view assignment, std::string_view example);
 
   ~SettingsDocument();
   SettingsDocument(SettingsDocument&&) noexcept;

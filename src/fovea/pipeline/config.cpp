@@ -50,7 +50,7 @@ void apply_config_text(std::string_view text, std::string_view name, MapperOptio
 }
 
 void apply_setting(std::string_view setting, MapperOptions& options) {
-  apply(SettingsDocument::from_assignment(setting), options);
+  apply(SettingsDocument::from_assignment(setting, "upsample.rate=2"), options);
 }
 
 std::string to_toml(const MapperOptions& options) {

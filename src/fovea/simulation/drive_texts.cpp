@@ -76,7 +76,7 @@ CalibrationTexts calibration_texts(const Rig& rig, const SimulationOptions& opti
     cameras[rig.cameras[i].index] = camera_text(rig.cameras[i], rig.t[i], rig.R_rect);
   }
   SimulationOptions kitti = options;
-  kitti.camera.cameras = {{0, 0, true}, {1, 0.54, true}, {2, -0.06, false}, {3, 0.473, false}};
+  kitti.camera.cameras = {kitti_camera(0), kitti_camera(1), kitti_camera(2), kitti_camera(3)};
   const Rig all = make_rig(kitti);
   for (std::size_t i = 0; i < all.cameras.size(); ++i) {
     cameras.try_emplace(all.cameras[i].index, camera_text(all.cameras[i], all.t[i], all.R_rect));

@@ -1,13 +1,11 @@
 // Everything that a simulated drive depends on besides the program: same options, same bytes.
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fovea/base/angle.h"
 #include "fovea/geometry/geodesy.h"
 
 namespace fovea {
@@ -23,8 +21,8 @@ enum class Scene {
 
 /// Sun and sky.
 struct LightOptions {
-  double sun_azimuth = 130 * std::numbers::pi / 180;  ///< rad, clockwise from north
-  double sun_elevation = 42 * std::numbers::pi / 180;
+  double sun_azimuth = 130 * kDegree;  ///< rad, clockwise from north
+  double sun_elevation = 42 * kDegree;
   double sun = 2.2;  ///< irradiance, in units that show a white sheet in the sky's light as 1 / 1.2
   double sky = 0.55;        ///< the same of the whole sky
   bool reflections = true;  ///< glossy surfaces mirror what is around
@@ -32,11 +30,11 @@ struct LightOptions {
 
 /// How the vehicle drives along its path. T_world_vehicle is a smooth function of time.
 struct VehicleOptions {
-  double speed = 9;                             ///< m/s, mean
-  double speed_variation = 0.25;                ///< share of the speed
-  double weave = 0.25;                          ///< m, sideways in the lane
-  double sway = 0.25 * std::numbers::pi / 180;  ///< rad, amplitude of roll and pitch
-  double heave = 0.01;                          ///< m, up and down on the springs
+  double speed = 9;               ///< m/s, mean
+  double speed_variation = 0.25;  ///< share of the speed
+  double weave = 0.25;            ///< m, sideways in the lane
+  double sway = 0.25 * kDegree;   ///< rad, amplitude of roll and pitch
+  double heave = 0.01;            ///< m, up and down on the springs
 };
 
 /// HDL-64E S2: 32 beams from +2 to -8.33 degrees and 32 from -8.83 to -24.33, turning clockwise.
@@ -56,6 +54,9 @@ struct SimulatedCamera {
   bool grey = false;
 };
 
+/// The place of KITTI's camera of that number (0 to 3), or one beside camera 0.
+SimulatedCamera kitti_camera(int number);
+
 struct CameraOptions {
   std::vector<SimulatedCamera> cameras = {{2, -0.060, false}, {3, 0.473, false}};
   int width = 1242, height = 375;
@@ -74,21 +75,23 @@ struct NavigationOptions {
   double position_noise = 0.01;                 ///< m, white, each axis
   double position_walk = 0.03;                  ///< m per square root of a second, random walk
   double position_bias = 0.4;                   ///< m, standard deviation of the constant error
-  double angle_noise = 0.0002;                  ///< rad, white
-  double angle_walk = 0.0003;                   ///< rad per square root of a second
+  double angle_noise = 0.012 * kDegree;         ///< rad, white
+  double angle_walk = 0.018 * kDegree;          ///< rad per square root of a second
   double jump_rate = 0.02;                      ///< GPS jumps a second
   double jump_size = 0.4;                       ///< m, standard deviation
   bool outages = false;  ///< satellites are lost for a while: the walk grows tenfold
 };
 
 struct SimulationOptions {
+  static constexpr int kMaxFrames = 100'000;
+
   Scene scene = Scene::kStreet;
   int seed = 1;
   int frames = 100;
   LightOptions light;
   VehicleOptions vehicle;
-  double bends = 0.12;   ///< rad, how far the street's heading swings
-  double curvature = 0;  ///< 1/m, of the whole street, besides its bends
+  double bends = 7 * kDegree;  ///< rad, how far the street's heading swings
+  double curvature = 0;        ///< 1/m, of the whole street, besides its bends
   LidarOptions lidar;
   CameraOptions camera;
   NavigationOptions navigation;
@@ -97,12 +100,18 @@ struct SimulationOptions {
   void validate() const;
 };
 
+/// Names of all scenes ("street"), in the order of Scene.
+std::vector<std::string> scene_names();
 /// Scene of that name; ConfigError that lists all for any other.
 Scene parse_scene(std::string_view name);
 std::string_view to_string(Scene scene);
 
-/// Options of a scene under one of the levels of noise: "none" (every noise, bias, drop-out,
-/// exposure change and vignetting off), "default", "harsh". ConfigError for another name.
+/// "none", "default", "harsh".
+std::vector<std::string> noise_names();
+
+/// Options of a scene under a level of noise: with "none" every error is off (of ranges, pixels,
+/// exposure, vignetting, navigation), with "harsh" they are two to three times as large and
+/// satellites get lost. The vehicle drives the same way under all. ConfigError for another name.
 SimulationOptions simulation_options(Scene scene, std::string_view noise);
 
 }  // namespace fovea

@@ -1,0 +1,168 @@
+#include "fovea/simulation/simulation_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+template <class F>
+std::string config_error(F&& f) {
+  try {
+    f();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no ConfigError";
+}
+
+TEST(SimulationOptions, ScenesHaveNamesAndValidOptions) {
+  EXPECT_THAT(scene_names(),
+              ElementsAre("street", "traffic", "crossing", "canyon", "plaza", "stress"));
+  for (const std::string& name : scene_names()) {
+    EXPECT_EQ(to_string(parse_scene(name)), name);
+    for (const std::string& noise : noise_names()) {
+      const SimulationOptions options = simulation_options(parse_scene(name), noise);
+      EXPECT_EQ(options.scene, parse_scene(name));
+      EXPECT_NO_THROW(options.validate()) << name << ' ' << noise;
+    }
+  }
+  EXPECT_THAT(config_error([] { parse_scene("moon"); }),
+              AllOf(HasSubstr("moon"), HasSubstr("--scene"), HasSubstr("street, traffic")));
+  EXPECT_THAT(config_error([] { simulation_options(Scene::kStreet, "some"); }),
+              AllOf(HasSubstr("some"), HasSubstr("--noise"), HasSubstr("none, default, harsh")));
+}
+
+TEST(SimulationOptions, NoiseLevelsGrowAndLeaveTheVehicleAlone) {
+  const auto none = simulation_options(Scene::kCanyon, "none"),
+             usual = simulation_options(Scene::kCanyon, "default"),
+             harsh = simulation_options(Scene::kCanyon, "harsh");
+  const auto levels = [](const SimulationOptions& o) {
+    const NavigationOptions& n = o.navigation;
+    return std::vector<double>{o.lidar.range_noise, o.lidar.range_resolution,
+                               o.lidar.dropouts,    o.camera.exposure_variation,
+                               o.camera.vignetting, o.camera.noise,
+                               n.position_noise,    n.position_walk,
+                               n.position_bias,     n.angle_noise,
+                               n.angle_walk,        n.jump_rate};
+  };
+  for (std::size_t i = 0; i < levels(none).size(); ++i) {
+    EXPECT_EQ(levels(none)[i], 0) << i;
+    EXPECT_GT(levels(usual)[i], 0) << i;
+    EXPECT_GT(levels(harsh)[i], 1.9 * levels(usual)[i]) << i;
+    EXPECT_LT(levels(harsh)[i], 4 * levels(usual)[i]) << i;
+  }
+  EXPECT_FALSE(none.navigation.outages);
+  EXPECT_TRUE(usual.navigation.outages);
+  EXPECT_FALSE(simulation_options(Scene::kStreet, "default").navigation.outages);
+  EXPECT_TRUE(simulation_options(Scene::kStreet, "harsh").navigation.outages);
+  EXPECT_EQ(none.vehicle.speed, harsh.vehicle.speed);
+  EXPECT_EQ(none.vehicle.sway, harsh.vehicle.sway);
+}
+
+TEST(SimulationOptions, RejectsByKey) {
+  const auto error = [](auto&& change) {
+    SimulationOptions options;
+    change(options);
+    return config_error([&] { options.validate(); });
+  };
+  EXPECT_THAT(error([](auto& o) { o.frames = 0; }),
+              AllOf(HasSubstr("--frames"), HasSubstr("1 to 100000")));
+  EXPECT_THAT(error([](auto& o) { o.frames = 100'001; }), HasSubstr("--frames"));
+  EXPECT_THAT(error([](auto& o) { o.seed = -1; }), HasSubstr("--seed"));
+  EXPECT_THAT(error([](auto& o) { o.vehicle.speed = NAN; }), HasSubstr("vehicle.speed"));
+  EXPECT_THAT(error([](auto& o) { o.vehicle.speed_variation = 1; }),
+              HasSubstr("vehicle.speed_variation"));
+  EXPECT_THAT(error([](auto& o) { o.vehicle.sway = 1; }),
+              AllOf(HasSubstr("vehicle.sway"), HasSubstr("57.2958 degrees")));
+  EXPECT_THAT(error([](auto& o) { o.lidar.min_range = 50, o.lidar.max_range = 40; }),
+              HasSubstr("lidar.max_range"));
+  EXPECT_THAT(error([](auto& o) { o.camera.cameras.clear(); }), HasSubstr("camera.numbers"));
+  EXPECT_THAT(error([](auto& o) { o.camera.cameras = {{2, 0}, {2, 1}}; }), HasSubstr("twice"));
+  EXPECT_THAT(error([](auto& o) { o.camera.cameras = {{10, 0}}; }), HasSubstr("camera.numbers"));
+  EXPECT_THAT(error([](auto& o) { o.camera.width = 1 << 20; }), HasSubstr("camera.width"));
+  EXPECT_THAT(error([](auto& o) { o.navigation.max_delay = 0.005; }),
+              HasSubstr("navigation.max_delay"));
+  EXPECT_THAT(error([](auto& o) { o.navigation.max_delay = 0.13; }), HasSubstr("out of order"));
+  EXPECT_THAT(error([](auto& o) { o.navigation.origin.latitude = 90; }),
+              HasSubstr("navigation.latitude"));
+}
+
+TEST(SimulationConfig, ReadsBackTheSame) {
+  for (const std::string& noise : noise_names()) {
+    SimulationOptions options = simulation_options(Scene::kCanyon, noise);
+    options.camera.cameras = {{3, 0.5, false}, {0, 0.1, true}, {9, -0.3, true}};
+    options.curvature = -0.0123;
+    SimulationOptions back;
+    apply_config_text(to_toml(options), "x.toml", back);
+    EXPECT_EQ(to_toml(back), to_toml(options));
+    // To the last bit: the same options make the same bytes.
+    EXPECT_EQ(back.light.sun_azimuth, options.light.sun_azimuth);
+    EXPECT_EQ(back.vehicle.sway, options.vehicle.sway);
+    EXPECT_EQ(back.bends, options.bends);
+    EXPECT_EQ(back.curvature, options.curvature);
+    EXPECT_EQ(back.navigation.angle_noise, options.navigation.angle_noise);
+    EXPECT_EQ(back.navigation.angle_walk, options.navigation.angle_walk);
+    ASSERT_EQ(back.camera.cameras.size(), 3u);
+    EXPECT_EQ(back.camera.cameras[2].number, 9);
+    EXPECT_EQ(back.camera.cameras[2].right, -0.3);
+    EXPECT_TRUE(back.camera.cameras[2].grey);
+  }
+}
+
+TEST(SimulationConfig, Cameras) {
+  SimulationOptions options;
+  apply_setting("camera.numbers=[0, 1, 2, 3, 5]", options);  // KITTI's places are known
+  ASSERT_EQ(options.camera.cameras.size(), 5u);
+  EXPECT_EQ(options.camera.cameras[1].right, 0.54);
+  EXPECT_TRUE(options.camera.cameras[1].grey);
+  EXPECT_EQ(options.camera.cameras[3].right, 0.473);
+  apply_setting("camera.right_5=0.2", options);
+  apply_setting("camera.grey_5=true", options);
+  EXPECT_EQ(options.camera.cameras[4].right, 0.2);
+  EXPECT_TRUE(options.camera.cameras[4].grey);
+  EXPECT_THAT(config_error([&] { apply_setting("camera.right_6=0.2", options); }),
+              AllOf(HasSubstr("not simulated"), HasSubstr("--set camera.right_6=0.2:1"),
+                    HasSubstr("camera.numbers")));
+  EXPECT_THAT(config_error([&] { apply_setting("camera.numbers=[2, 2]", options); }),
+              HasSubstr("twice"));
+  EXPECT_THAT(config_error([&] { apply_setting("camera.numbers=[12]", options); }),
+              HasSubstr("0 to 9"));
+  EXPECT_EQ(options.camera.cameras.size(), 5u);  // what failed changed nothing
+}
+
+TEST(SimulationConfig, AnglesAreInDegreesAndErrorsNameFileLineAndKey) {
+  SimulationOptions options;
+  apply_config_text("[light]\nsun_azimuth = 90\n[navigation]\noutages = true", "x.toml", options);
+  EXPECT_EQ(options.light.sun_azimuth, 90 * kDegree);
+  EXPECT_TRUE(options.navigation.outages);
+  const auto error = [&](std::string_view text) {
+    return config_error([&] { apply_config_text(text, "x.toml", options); });
+  };
+  EXPECT_THAT(error("[light]\nsun = 1\nsun_elevation = 95"),
+              AllOf(HasSubstr("x.toml:3"), HasSubstr("light.sun_elevation"), HasSubstr("0 to 90")));
+  EXPECT_THAT(error("[light]\nmoon = 1"),
+              AllOf(HasSubstr("unknown key"), HasSubstr("docs/simulator.md")));
+  EXPECT_EQ(options.light.sun, LightOptions{}.sun);
+  EXPECT_THAT(config_error([&] { apply_setting("speed", options); }),
+              HasSubstr("vehicle.speed=12"));
+  EXPECT_THROW(apply_config_file("/nonexistent.toml", options), InputError);
+}
+
+TEST(SimulationConfig, TheDocumentationListsEveryKeyWithItsDefault) {
+  std::ostringstream document;
+  document << std::ifstream(FOVEA_SOURCE_DIR "/docs/simulator.md").rdbuf();
+  EXPECT_THAT(document.str(), HasSubstr("```toml\n" + to_toml(SimulationOptions{}) + "```"));
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,235 @@
+#include "fovea/simulation/simulation_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::array<std::pair<Scene, std::string_view>, 6> kScenes{{{Scene::kStreet, "street"},
+                                                                     {Scene::kTraffic, "traffic"},
+                                                                     {Scene::kCrossing, "crossing"},
+                                                                     {Scene::kCanyon, "canyon"},
+                                                                     {Scene::kPlaza, "plaza"},
+                                                                     {Scene::kStress, "stress"}}};
+
+[[noreturn]] void reject(std::string_view what, std::string_view key, std::string_view remedy) {
+  throw ConfigError(what, key, remedy);
+}
+
+/// ConfigError unless low <= value <= high; NaN is outside of everything.
+void check(std::string_view key, double value, double low, double high,
+           std::string_view unit = "") {
+  if (value >= low && value <= high) return;
+  const std::string_view space = unit.empty() ? "" : " ";
+  reject(fmt::format("{:.6g}{}{} is out of range", value, space, unit), key,
+         fmt::format("give {:g} to {:g}{}{}", low, high, space, unit));
+}
+
+void check_degrees(std::string_view key, double radians, double low, double high) {
+  check(key, radians / kDegree, low, high, "degrees");
+}
+
+void check(const LightOptions& light) {
+  check_degrees("light.sun_azimuth", light.sun_azimuth, -360, 360);
+  check_degrees("light.sun_elevation", light.sun_elevation, 0, 90);
+  check("light.sun", light.sun, 0, 100);
+  check("light.sky", light.sky, 0, 100);
+}
+
+void check(const VehicleOptions& vehicle) {
+  check("vehicle.speed", vehicle.speed, 0, 50, "m/s");
+  check("vehicle.speed_variation", vehicle.speed_variation, 0, 0.99);
+  check("vehicle.weave", vehicle.weave, 0, 1, "m");
+  check_degrees("vehicle.sway", vehicle.sway, 0, 10);
+  check("vehicle.heave", vehicle.heave, 0, 0.5, "m");
+}
+
+void check(const LidarOptions& lidar) {
+  check("lidar.period", lidar.period, 0.04, 0.25, "s");
+  check("lidar.columns", lidar.columns, 8, 20'000);
+  check("lidar.min_range", lidar.min_range, 0, 100, "m");
+  check("lidar.max_range", lidar.max_range, 1, 1000, "m");
+  if (lidar.max_range <= lidar.min_range) {
+    reject("the longest range is not beyond the shortest", "lidar.max_range",
+           "give more than lidar.min_range");
+  }
+  check("lidar.range_noise", lidar.range_noise, 0, 1, "m");
+  check("lidar.range_resolution", lidar.range_resolution, 0, 1, "m");
+  check("lidar.dropouts", lidar.dropouts, 0, 100);
+  check("lidar.height", lidar.height, 0.3, 5, "m");
+}
+
+void check(const CameraOptions& camera) {
+  if (camera.cameras.empty()) reject("there is no camera", "camera.numbers", "give one or more");
+  std::set<int> numbers;
+  for (const SimulatedCamera& one : camera.cameras) {
+    check("camera.numbers", one.number, 0, 9);
+    check(fmt::format("camera.right_{}", one.number), one.right, -10, 10, "m");
+    if (!numbers.insert(one.number).second) {
+      reject(fmt::format("camera {} is named twice", one.number), "camera.numbers",
+             "name each camera once");
+    }
+  }
+  check("camera.width", camera.width, 8, 8192, "pixels");
+  check("camera.height", camera.height, 8, 8192, "pixels");
+  check("camera.focal", camera.focal, 1, 1e5, "pixels");
+  check("camera.cx", camera.cx, -1e5, 1e5, "pixels");
+  check("camera.cy", camera.cy, -1e5, 1e5, "pixels");
+  check("camera.samples", camera.samples, 1, 16);
+  check("camera.exposure", camera.exposure, 0.01, 100);
+  check("camera.exposure_variation", camera.exposure_variation, 0, 3);
+  check("camera.vignetting", camera.vignetting, 0, 1);
+  check("camera.noise", camera.noise, 0, 100, "grey levels");
+}
+
+void check(const NavigationOptions& navigation, double period) {
+  // East and north are not defined at the poles.
+  check("navigation.latitude", navigation.origin.latitude, -89, 89, "degrees");
+  check("navigation.longitude", navigation.origin.longitude, -180, 180, "degrees");
+  check("navigation.altitude", navigation.origin.altitude, -1000, 10'000, "m");
+  check("navigation.min_delay", navigation.min_delay, 0, 0.2, "s");
+  check("navigation.max_delay", navigation.max_delay, 0, 0.2, "s");
+  const double spread = navigation.max_delay - navigation.min_delay;
+  if (spread < 0) {
+    reject("the longest delay is below the shortest", "navigation.max_delay",
+           "give at least navigation.min_delay");
+  }
+  if (spread >= period) {
+    reject("the delays would put records out of order", "navigation.max_delay",
+           "give less than navigation.min_delay and lidar.period together");
+  }
+  check("navigation.position_noise", navigation.position_noise, 0, 100, "m");
+  check("navigation.position_walk", navigation.position_walk, 0, 100, "m per root second");
+  check("navigation.position_bias", navigation.position_bias, 0, 100, "m");
+  check_degrees("navigation.angle_noise", navigation.angle_noise, 0, 10);
+  check_degrees("navigation.angle_walk", navigation.angle_walk, 0, 10);
+  check("navigation.jump_rate", navigation.jump_rate, 0, 10, "a second");
+  check("navigation.jump_size", navigation.jump_size, 0, 100, "m");
+}
+
+/// What a scene has of its own; errors as by default.
+SimulationOptions scene_options(Scene scene) {
+  SimulationOptions options;
+  options.scene = scene;
+  switch (scene) {
+    case Scene::kStreet:
+    case Scene::kTraffic:
+      break;
+    case Scene::kCrossing:
+      options.vehicle.speed = 7;
+      options.bends = 0;
+      break;
+    case Scene::kCanyon:
+      options.vehicle.speed = 8;
+      options.bends = 4 * kDegree;
+      options.navigation.outages = true;
+      break;
+    case Scene::kPlaza:
+      options.vehicle.speed = 5;
+      break;
+    case Scene::kStress:
+      options.vehicle.speed = 6;
+      break;
+  }
+  return options;
+}
+
+void take_errors_off(SimulationOptions& options) {
+  options.lidar.range_noise = options.lidar.range_resolution = options.lidar.dropouts = 0;
+  options.camera.exposure_variation = options.camera.vignetting = options.camera.noise = 0;
+  NavigationOptions& n = options.navigation;
+  n.position_noise = n.position_walk = n.position_bias = 0;
+  n.angle_noise = n.angle_walk = 0;
+  n.jump_rate = n.jump_size = 0;
+  n.outages = false;
+}
+
+void make_harsh(SimulationOptions& options) {
+  options.lidar.range_noise = 0.04;
+  options.lidar.range_resolution = 0.005;
+  options.lidar.dropouts = 2.5;
+  options.camera.exposure_variation = 0.8;
+  options.camera.vignetting = 0.5;
+  options.camera.noise = 4;
+  NavigationOptions& n = options.navigation;
+  n.position_noise = 0.03;
+  n.position_walk = 0.08;
+  n.position_bias = 1;
+  n.angle_noise = 0.035 * kDegree;
+  n.angle_walk = 0.05 * kDegree;
+  n.jump_rate = 0.06;
+  n.jump_size = 1;
+  n.outages = true;
+}
+
+}  // namespace
+
+void SimulationOptions::validate() const {
+  check("--seed", seed, 0, 2'147'483'647);
+  check("--frames", frames, 1, kMaxFrames);
+  check(light);
+  check(vehicle);
+  check_degrees("street.bends", bends, 0, 60);
+  check("street.curvature", curvature, -0.05, 0.05, "per m");
+  check(lidar);
+  check(camera);
+  check(navigation, lidar.period);
+}
+
+SimulatedCamera kitti_camera(int number) {
+  switch (number) {
+    case 0:
+      return {0, 0, true};
+    case 1:
+      return {1, 0.54, true};
+    case 2:
+      return {2, -0.06, false};
+    case 3:
+      return {3, 0.473, false};
+    default:
+      return {number, 0, false};
+  }
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : kScenes) names.emplace_back(entry.second);
+  return names;
+}
+
+Scene parse_scene(std::string_view name) {
+  for (const auto& [scene, known] : kScenes) {
+    if (known == name) return scene;
+  }
+  throw ConfigError(fmt::format("unknown scene '{}'", name), "--scene",
+                    fmt::format("give one of {}", fmt::join(scene_names(), ", ")));
+}
+
+std::string_view to_string(Scene scene) {
+  return kScenes.at(static_cast<std::size_t>(scene)).second;
+}
+
+std::vector<std::string> noise_names() { return {"none", "default", "harsh"}; }
+
+SimulationOptions simulation_options(Scene scene, std::string_view noise) {
+  SimulationOptions options = scene_options(scene);
+  if (noise == "none") {
+    take_errors_off(options);
+  } else if (noise == "harsh") {
+    make_harsh(options);
+  } else if (noise != "default") {
+    throw ConfigError(fmt::format("unknown level of noise '{}'", noise), "--noise",
+                      fmt::format("give one of {}", fmt::join(noise_names(), ", ")));
+  }
+  return options;
+}
+
+}  // namespace fovea
