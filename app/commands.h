@@ -12,5 +12,6 @@ void add_evaluate_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);
+void add_simulate_command(CLI::App& app);
 
 }  // namespace fovea::app

@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   fovea::app::add_export_command(app);
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);
+  fovea::app::add_simulate_command(app);
   try {
     app.parse(argc, argv);
     return 0;

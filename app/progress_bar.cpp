@@ -1,6 +1,6 @@
 #include "app/progress_bar.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -15,17 +15,21 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::operator()(const MapProgress& progress) {
+  draw(progress.done, progress.total,
+       fmt::format("{:.2f} M points  ", double(progress.points) * 1e-6));
+}
+
+void ProgressBar::draw(int done, int total, std::string_view detail) {
   if (!enabled_) return;
   drawn_ = true;
   constexpr int kWidth = 30;
-  const int filled = progress.total > 0 ? kWidth * progress.done / progress.total : kWidth;
+  const int filled = total > 0 ? kWidth * done / total : kWidth;
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const double rate = progress.done / std::max(elapsed, 1e-3);
-  fmt::print(stderr, "\r[{:<{}}] {}/{} frames  {:.1f}/s  {:.2f} M points  {:.0f} s left ",
-             std::string(std::size_t(filled), '#'), kWidth, progress.done, progress.total, rate,
-             double(progress.points) * 1e-6,
-             (progress.total - progress.done) / std::max(rate, 1e-3));
+  const double rate = done / std::max(elapsed, 1e-3);
+  fmt::print(stderr, "\r[{:<{}}] {}/{} frames  {:.1f}/s  {}{:.0f} s left ",
+             std::string(std::size_t(filled), '#'), kWidth, done, total, rate, detail,
+             (total - done) / std::max(rate, 1e-3));
   std::fflush(stderr);
 }
 

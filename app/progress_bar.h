@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <string_view>
 
 #include "fovea/pipeline/map_drive.h"
 
@@ -13,6 +14,8 @@ class ProgressBar {
   explicit ProgressBar(bool quiet);
   ~ProgressBar();  ///< ends the line
   void operator()(const MapProgress& progress);
+  /// @param detail  shown between the rate and the time left
+  void draw(int done, int total, std::string_view detail = "");
 
  private:
   bool enabled_;
