@@ -1,0 +1,119 @@
+#include "fovea/world/world_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/output_file.h"
+#include "fovea/world/mesh_ply.h"
+
+namespace fovea {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* kRemedy = "write the world anew with 'fovea simulate'";
+
+Json to_json(const Material& m) {
+  return {{"name", m.name},
+          {"pattern", to_string(m.pattern)},
+          {"color", {m.color.x(), m.color.y(), m.color.z()}},
+          {"color_2", {m.color_2.x(), m.color_2.y(), m.color_2.z()}},
+          {"scale", m.scale},
+          {"size", {m.size.x(), m.size.y()}},
+          {"contrast", m.contrast},
+          {"seed", m.seed},
+          {"text", m.text},
+          {"gloss", m.gloss},
+          {"reflectance", m.reflectance},
+          {"glass", m.glass}};
+}
+
+template <int N>
+Eigen::Matrix<float, N, 1> vector_of(const Json& json) {
+  const auto numbers = json.get<std::array<float, N>>();
+  if (json.size() != N) throw std::invalid_argument(fmt::format("{} numbers expected", N));
+  return Eigen::Map<const Eigen::Matrix<float, N, 1>>(numbers.data());
+}
+
+Material material_of(const Json& json) {
+  Material m;
+  m.name = json.at("name").get<std::string>();
+  m.pattern = parse_pattern(json.at("pattern").get<std::string>());
+  m.color = vector_of<3>(json.at("color"));
+  m.color_2 = vector_of<3>(json.at("color_2"));
+  m.scale = json.at("scale").get<float>();
+  m.size = vector_of<2>(json.at("size"));
+  m.contrast = json.at("contrast").get<float>();
+  m.seed = json.at("seed").get<std::uint32_t>();
+  m.text = json.at("text").get<std::string>();
+  m.gloss = json.at("gloss").get<float>();
+  m.reflectance = json.at("reflectance").get<float>();
+  m.glass = json.at("glass").get<bool>();
+  return m;
+}
+
+std::uint32_t surface_id(const std::string& key) {
+  std::uint32_t id = 0;
+  const char* end = key.data() + key.size();
+  const auto [rest, error] = std::from_chars(key.data(), end, id);
+  if (error != std::errc() || rest != end) {
+    throw std::invalid_argument("a surface has the id \"" + key + "\"");
+  }
+  return id;
+}
+
+void read_lists(const fs::path& file, World& world) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || fs::is_directory(file)) {
+    throw InputError("the world's materials cannot be read", file.string(), kRemedy);
+  }
+  try {
+    const Json json = Json::parse(stream);
+    for (const Json& material : json.at("materials")) {
+      world.materials.push_back(material_of(material));
+    }
+    for (const auto& [key, kind] : json.at("surfaces").items()) {
+      world.surfaces[surface_id(key)] = kind.get<std::string>();
+    }
+  } catch (const std::exception& error) {  // nlohmann's, parse_pattern's and ours
+    throw InputError(fmt::format("the world's materials are damaged ({})", error.what()),
+                     file.string(), kRemedy);
+  }
+}
+
+}  // namespace
+
+void write_world(const World& world, const fs::path& folder) {
+  write_mesh(world.mesh_local, folder / "world.ply");
+  Json json;
+  json["materials"] = Json::array();
+  for (const Material& material : world.materials) json["materials"].push_back(to_json(material));
+  json["surfaces"] = Json::object();
+  for (const auto& [id, kind] : world.surfaces) json["surfaces"][fmt::format("{}", id)] = kind;
+  OutputFile output(folder / "world.json", /*force=*/true);
+  output.stream() << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+  output.commit();
+}
+
+World read_world(const fs::path& folder) {
+  World world;
+  read_lists(folder / "world.json", world);
+  const fs::path mesh_file = folder / "world.ply";
+  world.mesh_local = read_mesh(mesh_file);
+  const auto& used = world.mesh_local.material;
+  const auto highest = std::max_element(used.begin(), used.end());
+  if (highest != used.end() && *highest >= world.materials.size()) {
+    throw InputError(fmt::format("a triangle names material {}, world.json has {}", *highest,
+                                 world.materials.size()),
+                     mesh_file.string(), kRemedy);
+  }
+  return world;
+}
+
+}  // namespace fovea
