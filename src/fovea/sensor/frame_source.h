@@ -84,8 +84,10 @@ class FrameSource {
   virtual std::optional<TimeNs> stamp(int index) const = 0;
 };
 
-/// Opens a KITTI raw or odometry drive, recognised from its contents. InputError if the folder is
-/// missing or neither, or its calibration cannot be used; ConfigError for a camera it has not.
+/// Opens a KITTI raw or odometry drive, recognised from its contents, or the one raw drive in the
+/// folders DATE/DATE_drive_NNNN_sync below `path`, as `fovea simulate` writes it. InputError if the
+/// folder is missing, is neither, or holds several drives, or its calibration cannot be used;
+/// ConfigError for a camera it has not.
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                         const DriveOptions& options);
 

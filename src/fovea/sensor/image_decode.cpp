@@ -19,10 +19,11 @@ bool starts_with(const std::vector<std::uint8_t>& bytes, const std::array<std::u
   return bytes.size() >= N && std::equal(magic.begin(), magic.end(), bytes.begin());
 }
 
+constexpr const char* kRemedy = "restore the file from the drive's archive";
+
 }  // namespace
 
 Image read_image(const std::filesystem::path& file) {
-  constexpr const char* kRemedy = "restore the file from the drive's archive";
   const std::vector<std::uint8_t> bytes = read_bytes(file);
   const bool png = starts_with(bytes, kPngMagic);
   if (!png && !starts_with(bytes, kJpegMagic)) {
@@ -35,6 +36,24 @@ Image read_image(const std::filesystem::path& file) {
         std::string(png ? "the PNG" : "the JPEG") + " image cannot be read (" + error.what() + ")",
         file.string(), kRemedy);
   }
+}
+
+DepthImage read_depth_image(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  DepthImage image;
+  try {
+    const Samples16 samples = decode_png_16(bytes);
+    image.width = samples.width;
+    image.height = samples.height;
+    image.depth.reserve(samples.data.size());
+    for (const std::uint16_t sample : samples.data) {
+      image.depth.push_back(static_cast<float>(sample) / 256.0f);
+    }
+  } catch (const std::runtime_error& error) {
+    throw InputError(std::string("the depth map cannot be read (") + error.what() + ")",
+                     file.string(), kRemedy);
+  }
+  return image;
 }
 
 }  // namespace fovea

@@ -1,4 +1,8 @@
 // Which kind of drive a folder holds.
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/kitti_drives.h"
@@ -9,6 +13,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The synced raw drives two folders below: ROOT/DATE/DATE_drive_NNNN_sync; sorted.
+std::vector<fs::path> drives_below(const fs::path& root) {
+  std::vector<fs::path> drives;
+  for (const auto& date : fs::directory_iterator(root)) {
+    if (!date.is_directory()) continue;
+    std::error_code closed;  // a folder that is none of ours and may not be looked into
+    for (const auto& drive : fs::directory_iterator(date.path(), closed)) {
+      const std::string name = drive.path().filename().string();
+      if (name.starts_with(date.path().filename().string() + "_drive_") &&
+          name.ends_with("_sync") && fs::is_directory(drive.path() / "velodyne_points")) {
+        drives.push_back(drive.path());
+      }
+    }
+  }
+  std::sort(drives.begin(), drives.end());
+  return drives;
+}
+
+/// "a, b, c, ..." of the first few names, relative to the root.
+std::string list_drives(const std::vector<fs::path>& drives, const fs::path& root) {
+  constexpr std::size_t kShown = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(drives.size(), kShown); ++i) {
+    text += (i > 0 ? ", " : "") + drives[i].lexically_relative(root).string();
+  }
+  return text + (drives.size() > kShown ? ", ..." : "");
+}
+
 std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOptions& options) {
   constexpr const char* kRemedy =
       "give a KITTI raw drive (.../DATE/DATE_drive_NNNN_sync) or odometry sequence "
@@ -18,6 +50,13 @@ std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOp
   if (fs::is_directory(path / "velodyne_points")) return open_kitti_raw(path, options);
   if (fs::is_directory(path / "velodyne")) return open_kitti_odometry(path, options);
   if (fs::is_empty(path)) throw InputError("the drive's folder is empty", path.string(), kRemedy);
+  const std::vector<fs::path> drives = drives_below(path);
+  if (drives.size() == 1) return open_kitti_raw(drives.front(), options);
+  if (drives.size() > 1) {
+    throw InputError("the folder holds " + std::to_string(drives.size()) +
+                         " drives: " + list_drives(drives, path),
+                     path.string(), "name one of them");
+  }
   throw InputError("the folder has neither velodyne_points/ (KITTI raw) nor velodyne/ (odometry)",
                    path.string(), kRemedy);
 }

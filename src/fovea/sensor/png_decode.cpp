@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <bit>
 #include <csetjmp>
 #include <cstring>
 #include <stdexcept>
@@ -59,6 +60,37 @@ bool decode(png_structp png, png_infop header, Image& image, std::vector<png_byt
   return true;
 }
 
+/// As read_header, for samples of 16 bits, which a PNG file stores high byte first.
+void read_header_16(png_structp png, png_infop header) {
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
+  png_read_info(png, header);
+  if (png_get_bit_depth(png, header) != 16 ||
+      png_get_color_type(png, header) != PNG_COLOR_TYPE_GRAY) {
+    png_error(png, "it has not one channel of 16 bits");
+  }
+  png_set_swap(png);
+  png_set_interlace_handling(png);
+  png_read_update_info(png, header);
+}
+
+/// As decode.
+bool decode_16(png_structp png, png_infop header, Samples16& samples,
+               std::vector<png_bytep>& rows) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  read_header_16(png, header);
+  samples.width = static_cast<int>(png_get_image_width(png, header));
+  samples.height = static_cast<int>(png_get_image_height(png, header));
+  const auto width = static_cast<std::size_t>(samples.width);
+  rows.resize(static_cast<std::size_t>(samples.height));
+  samples.data.resize(width * rows.size());
+  for (std::size_t y = 0; y < rows.size(); ++y) {
+    rows[y] = reinterpret_cast<png_bytep>(samples.data.data() + y * width);
+  }
+  png_read_image(png, rows.data());
+  png_read_end(png, nullptr);
+  return true;
+}
+
 struct PngReader {
   png_structp png;
   png_infop header;
@@ -82,6 +114,17 @@ Image decode_png(std::span<const std::uint8_t> file) {
   std::vector<png_bytep> rows;
   if (!decode(reader.png, reader.header, image, rows)) throw std::runtime_error(input.error);
   return image;
+}
+
+Samples16 decode_png_16(std::span<const std::uint8_t> file) {
+  static_assert(std::endian::native == std::endian::little, "samples are swapped to little endian");
+  PngInput input{file, {}};
+  PngReader reader(input);
+  if (reader.header == nullptr) throw std::bad_alloc();
+  Samples16 samples;
+  std::vector<png_bytep> rows;
+  if (!decode_16(reader.png, reader.header, samples, rows)) throw std::runtime_error(input.error);
+  return samples;
 }
 
 }  // namespace fovea

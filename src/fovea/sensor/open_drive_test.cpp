@@ -1,0 +1,53 @@
+#include <gmock/gmock.h>
+
+#include "../../../tests/kitti_test_drive.h"
+#include "fovea/base/errors.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+namespace {
+
+using test::error_of;
+using test::fs::path;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// ROOT/DATE/DATE_drive_NUMBER_sync with two frames.
+path write_synced_drive(const path& root, const std::string& date, const std::string& number) {
+  const path drive = root / date / (date + "_drive_" + number + "_sync");
+  test::fs::rename(test::write_raw_drive(root / date, 2), drive);
+  return drive;
+}
+
+TEST(OpenDrive, FindsTheOnlyDriveBelowARoot) {
+  const TemporaryFolder root;
+  const path drive = write_synced_drive(root.path(), "2026_01_01", "0001");
+  test::write_text(root / "2026_01_01/notes/readme.txt", "no drive");
+  test::write_text(root / "other/velodyne_points/readme.txt", "no drive");
+  const auto opened = open_drive(root.path(), {});
+  EXPECT_EQ(opened->info().path, drive);
+  EXPECT_EQ(opened->info().end, 2);
+  EXPECT_TRUE(std::holds_alternative<Frame>(opened->load(0)));
+}
+
+TEST(OpenDrive, DoesNotChooseAmongSeveralDrives) {
+  const TemporaryFolder root;
+  write_synced_drive(root.path(), "2026_01_01", "0002");
+  write_synced_drive(root.path(), "2026_01_01", "0001");
+  write_synced_drive(root.path(), "2026_01_02", "0001");
+  EXPECT_THAT(error_of<InputError>([&] { open_drive(root.path(), {}); }),
+              AllOf(HasSubstr("3 drives: 2026_01_01/2026_01_01_drive_0001_sync, "
+                              "2026_01_01/2026_01_01_drive_0002_sync, "
+                              "2026_01_02/2026_01_02_drive_0001_sync, "),
+                    HasSubstr(root.path().string())));
+}
+
+TEST(OpenDrive, AFolderWithoutADriveIsRefused) {
+  const TemporaryFolder root;
+  test::write_text(root / "2026_01_01/2026_01_01_drive_0001_sync/image_02/a.txt", "");
+  EXPECT_THAT(error_of<InputError>([&] { open_drive(root.path(), {}); }),
+              HasSubstr("neither velodyne_points/"));
+}
+
+}  // namespace
+}  // namespace fovea
