@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #if defined(__SANITIZE_THREAD__)
@@ -61,6 +62,8 @@ void parallel_chunks(std::size_t count, std::size_t grain,
     run_chunks(chunks, run);
   }
 }
+
+void run_alone(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 
 // Made in place: a copied global_control is lifted when the copy's source dies.
 struct ThreadLimit::Control {

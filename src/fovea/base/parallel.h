@@ -33,6 +33,10 @@ T parallel_sum(std::size_t count, std::size_t grain, T zero, Map&& map) {
   return zero;
 }
 
+/// Runs `body` as on a machine with one processor: a library that splits its work by the number of
+/// threads then does it the same way everywhere.
+void run_alone(const std::function<void()>& body);
+
 /// While it lives, at most `threads` threads work (0: as many as the machine has).
 class ThreadLimit {
  public:

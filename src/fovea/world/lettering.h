@@ -6,8 +6,8 @@
 
 namespace fovea {
 
-/// Share of ink at a place of a board, averaged over `footprint` (m): `text` (A-Z, 0-9, space; others are
-/// blank) in one line, centred, as large as fits.
+/// Share of ink at a place of a board, averaged over `footprint` (m): `text` (A-Z, 0-9, space;
+/// others are blank) in one line, centred, as large as fits.
 /// @param place  from the board's lower left corner (m)
 /// @param board  width and height (m)
 float lettering_ink(std::string_view text, const Eigen::Vector2f& place,

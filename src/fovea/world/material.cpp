@@ -15,8 +15,8 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr std::array<std::string_view, 13> kPatternNames = {
-    "plain",  "checker", "grain",   "asphalt", "road",      "slabs", "bricks",
-    "boards", "foliage", "bark",    "grass",   "lettering", "facade"};
+    "plain",  "checker", "grain", "asphalt", "road",      "slabs", "bricks",
+    "boards", "foliage", "bark",  "grass",   "lettering", "facade"};
 
 Vector3f mix(const Vector3f& a, const Vector3f& b, float share) { return a + share * (b - a); }
 
@@ -27,19 +27,19 @@ Vector3f tinted(const Vector3f& color, float factor) {
 /// Cell number along one axis, for random numbers.
 int cell(float x, float size) { return static_cast<int>(std::floor(x / size)); }
 
-Vector3f checker(const Material& m, const Vector3f& p, float f) {
+Vector3f checker(const Material& m, const Vector2f& p, float f) {
   const float x = 2 * repeated_band(p.x(), 2 * m.scale, m.scale, f) - 1;
   const float y = 2 * repeated_band(p.y(), 2 * m.scale, m.scale, f) - 1;
   return mix(m.color, m.color_2, 0.5f - 0.5f * x * y);
 }
 
-Vector3f grain(const Material& m, const Vector3f& p, float f) {
+Vector3f grain(const Material& m, const Vector2f& p, float f) {
   const float fine = layered_noise(p, 0.04f, 0.01f, f, m.seed);
   const float stains = layered_noise(p, 3.0f, 0.2f, f, m.seed + 1);
   return tinted(m.color, 1 + m.contrast * (0.12f * fine + 0.22f * stains));
 }
 
-Vector3f asphalt(const Material& m, const Vector3f& p, float f) {
+Vector3f asphalt(const Material& m, const Vector2f& p, float f) {
   const float fine = layered_noise(p, 0.03f, 0.01f, f, m.seed);
   const float wear = layered_noise(p, 5.0f, 0.4f, f, m.seed + 1);
   float tone = 1 + m.contrast * (0.30f * fine + 0.20f * wear);
@@ -50,9 +50,9 @@ Vector3f asphalt(const Material& m, const Vector3f& p, float f) {
   // Patches of another age: in some cells of 7 m a rectangle, with a sealed edge.
   constexpr float kCell = 7;
   const int cx = cell(p.x(), kCell), cy = cell(p.y(), kCell);
-  if (cell_random(cx, cy, 0, m.seed + 5) < 0.3f) {
-    const float w = 0.8f + 2.0f * cell_random(cx, cy, 1, m.seed + 5);
-    const float h = 1.0f + 3.5f * cell_random(cx, cy, 2, m.seed + 5);
+  if (cell_random(cx, cy, m.seed + 5) < 0.3f) {
+    const float w = 0.8f + 2.0f * cell_random(cx, cy, m.seed + 6);
+    const float h = 1.0f + 3.5f * cell_random(cx, cy, m.seed + 7);
     const float x = p.x() - kCell * static_cast<float>(cx) - 1.0f;
     const float y = p.y() - kCell * static_cast<float>(cy) - 1.0f;
     const float inside = band(x, 0, w, f) * band(y, 0, h, f);
@@ -73,36 +73,40 @@ float road_paint(const Material& m, float s, float t, float f) {
   const float along = t - kCrossings * std::floor(t / kCrossings);
   const float zebra = band(along, kCrossingAt, kCrossingAt + kCrossingLong, f);
   if (zebra > 0) {
-    const float bars = repeated_band(s + 0.25f, 1.0f, 0.5f, f) * band(std::abs(s), -1, half - 0.4f, f);
+    const float bars =
+        repeated_band(s + 0.25f, 1.0f, 0.5f, f) * band(std::abs(s), -1, half - 0.4f, f);
     paint = paint * (1 - zebra) + zebra * bars;
   }
   return std::min(paint, 1.0f);
 }
 
-Vector3f road(const Material& m, const Vector3f& p, float f) {
+Vector3f road(const Material& m, const Vector2f& p, float f) {
   Vector3f color = asphalt(m, p, f);
   // Manholes, one in some cells of 17 m, off the middle.
   constexpr float kCell = 17, kRadius = 0.33f;
   const int c = cell(p.y(), kCell);
-  const Vector2f from(p.x() - (cell_random(c, 0, 0, m.seed + 7) - 0.5f) * m.size.x() * 1.4f,
+  const Vector2f from(p.x() - (cell_random(c, 0, m.seed + 9) - 0.5f) * m.size.x() * 1.4f,
                       p.y() - kCell * (static_cast<float>(c) + 0.5f));
   const float radius = from.norm();
   if (radius < kRadius + f) {
     const float lid = band(radius, -1, kRadius, f);
-    const float studs = repeated_band(from.x(), 0.08f, 0.04f, f) * repeated_band(from.y(), 0.08f, 0.04f, f);
+    const float studs =
+        repeated_band(from.x(), 0.08f, 0.04f, f) * repeated_band(from.y(), 0.08f, 0.04f, f);
     const float rim = band(radius, kRadius - 0.03f, kRadius, f);
     color = mix(color, tinted(Vector3f::Constant(0.10f), 1 + 0.8f * studs - 0.6f * rim), lid);
   }
+  const float paint = road_paint(m, p.x(), p.y(), f);
+  if (paint <= 0) return color;
   const float worn = 0.80f + 0.35f * layered_noise(p, 0.5f, 0.02f, f, m.seed + 8);
-  return mix(color, m.color_2, road_paint(m, p.x(), p.y(), f) * std::clamp(worn, 0.0f, 1.0f));
+  return mix(color, m.color_2, paint * std::clamp(worn, 0.0f, 1.0f));
 }
 
 /// Cells with a tint of their own, joints between them; rows may be shifted by half a cell.
-Vector3f cells(const Material& m, const Vector3f& p, float f, float joint, bool shifted) {
+Vector3f cells(const Material& m, const Vector2f& p, float f, float joint, bool shifted) {
   const int row = cell(p.y(), m.size.y());
   const float x = p.x() + (shifted && (row & 1) != 0 ? 0.5f * m.size.x() : 0.0f);
   const float keep = resolved(m.size.minCoeff(), f);
-  const float tint = (cell_random(cell(x, m.size.x()), row, 0, m.seed) - 0.5f) * keep;
+  const float tint = (cell_random(cell(x, m.size.x()), row, m.seed) - 0.5f) * keep;
   const float fine = layered_noise(p, 0.06f, 0.01f, f, m.seed + 1);
   const float stains = layered_noise(p, 3.0f, 0.3f, f, m.seed + 2);
   const Vector3f face =
@@ -112,35 +116,37 @@ Vector3f cells(const Material& m, const Vector3f& p, float f, float joint, bool 
   return mix(face, m.color_2, vertical + level - vertical * level);
 }
 
-Vector3f boards(const Material& m, const Vector3f& p, float f) {
+Vector3f boards(const Material& m, const Vector2f& p, float f) {
   const int board = cell(p.x(), m.scale);
-  const float tint = (cell_random(board, 0, 0, m.seed) - 0.5f) * resolved(m.scale, f);
-  const float veins =
-      layered_noise({p.x() * 12, p.y(), static_cast<float>(board)}, 0.4f, 0.05f, 12 * f, m.seed + 1);
+  const float tint = (cell_random(board, 0, m.seed) - 0.5f) * resolved(m.scale, f);
+  const float veins = layered_noise({p.x() * 12, p.y()}, 0.4f, 0.05f, 12 * f,
+                                    m.seed + 1 + static_cast<std::uint32_t>(board));
   const Vector3f wood = tinted(m.color, 1 + m.contrast * (0.3f * tint + 0.25f * veins));
   return tinted(wood, 1 - 0.6f * repeated_band(p.x(), m.scale, 0.008f, f));
 }
 
 Vector3f foliage(const Material& m, const Vector3f& p, float f) {
   const int leaf = static_cast<int>(p.z());
-  const float tone = cell_random(leaf, 0, 0, m.seed), hue = cell_random(leaf, 1, 0, m.seed);
-  const float veins = layered_noise({p.x(), p.y(), static_cast<float>(leaf)}, 0.06f, 0.015f, f, m.seed);
-  return tinted(mix(m.color, m.color_2, hue), 1 + m.contrast * (0.7f * (tone - 0.5f) + 0.15f * veins));
+  const float tone = cell_random(leaf, 0, m.seed), hue = cell_random(leaf, 1, m.seed);
+  const float veins =
+      layered_noise(p.head<2>(), 0.06f, 0.015f, f, m.seed + static_cast<std::uint32_t>(leaf));
+  return tinted(mix(m.color, m.color_2, hue),
+                1 + m.contrast * (0.7f * (tone - 0.5f) + 0.15f * veins));
 }
 
-Vector3f bark(const Material& m, const Vector3f& p, float f) {
-  const float streaks = layered_noise({p.x() * 5, p.y(), p.z()}, 0.3f, 0.05f, 5 * f, m.seed);
+Vector3f bark(const Material& m, const Vector2f& p, float f) {
+  const float streaks = layered_noise({p.x() * 5, p.y()}, 0.3f, 0.05f, 5 * f, m.seed);
   return tinted(m.color, 1 + 0.6f * m.contrast * streaks);
 }
 
-Vector3f grass(const Material& m, const Vector3f& p, float f) {
+Vector3f grass(const Material& m, const Vector2f& p, float f) {
   const float blades = layered_noise(p, 0.05f, 0.0125f, f, m.seed);
   const float patches = layered_noise(p, 4.0f, 0.4f, f, m.seed + 1);
   return tinted(mix(m.color, m.color_2, std::clamp(0.5f + 0.7f * patches, 0.0f, 1.0f)),
                 1 + m.contrast * 0.5f * blades);
 }
 
-Vector3f facade(const Material& m, const Vector3f& p, float f) {
+Vector3f facade(const Material& m, const Vector2f& p, float f) {
   const Vector2f window = 0.5f * m.size;
   const float glass = repeated_band(p.x() - 0.25f * m.size.x(), m.size.x(), window.x(), f) *
                       repeated_band(p.y() - 0.3f * m.size.y(), m.size.y(), window.y(), f);
@@ -168,25 +174,36 @@ Pattern parse_pattern(std::string_view name) {
   return static_cast<Pattern>(at - kPatternNames.begin());
 }
 
-Vector3f albedo(const Material& m, const Vector3f& p, float footprint) {
+Vector3f albedo(const Material& m, const Vector3f& texture, float footprint) {
+  const Vector2f p = texture.head<2>();
   constexpr float kSlabJoint = 0.008f, kMortar = 0.010f;
   switch (m.pattern) {
-    case Pattern::kPlain: return m.color;
-    case Pattern::kChecker: return checker(m, p, footprint);
-    case Pattern::kGrain: return grain(m, p, footprint);
-    case Pattern::kAsphalt: return asphalt(m, p, footprint);
-    case Pattern::kRoad: return road(m, p, footprint);
-    case Pattern::kSlabs: return cells(m, p, footprint, kSlabJoint, false);
-    case Pattern::kBricks: return cells(m, p, footprint, kMortar, true);
-    case Pattern::kBoards: return boards(m, p, footprint);
-    case Pattern::kFoliage: return foliage(m, p, footprint);
-    case Pattern::kBark: return bark(m, p, footprint);
-    case Pattern::kGrass: return grass(m, p, footprint);
-    case Pattern::kLettering: {
-      const Vector2f place = p.head<2>();
-      return mix(m.color, m.color_2, lettering_ink(m.text, place, m.size, footprint));
-    }
-    case Pattern::kFacade: return facade(m, p, footprint);
+    case Pattern::kPlain:
+      return m.color;
+    case Pattern::kChecker:
+      return checker(m, p, footprint);
+    case Pattern::kGrain:
+      return grain(m, p, footprint);
+    case Pattern::kAsphalt:
+      return asphalt(m, p, footprint);
+    case Pattern::kRoad:
+      return road(m, p, footprint);
+    case Pattern::kSlabs:
+      return cells(m, p, footprint, kSlabJoint, false);
+    case Pattern::kBricks:
+      return cells(m, p, footprint, kMortar, true);
+    case Pattern::kBoards:
+      return boards(m, p, footprint);
+    case Pattern::kFoliage:
+      return foliage(m, texture, footprint);
+    case Pattern::kBark:
+      return bark(m, p, footprint);
+    case Pattern::kGrass:
+      return grass(m, p, footprint);
+    case Pattern::kLettering:
+      return mix(m.color, m.color_2, lettering_ink(m.text, p, m.size, footprint));
+    case Pattern::kFacade:
+      return facade(m, p, footprint);
   }
   throw std::invalid_argument("a material has no such pattern");
 }

@@ -18,11 +18,10 @@ float repeated_length(float x, float period, float width) {
 
 }  // namespace
 
-float cell_random(int x, int y, int z, std::uint32_t seed) {
+float cell_random(int x, int y, std::uint32_t seed) {
   // Murmur3's finaliser over a linear mix of the coordinates.
   std::uint32_t h = seed * 0x9e3779b9u + static_cast<std::uint32_t>(x) * 0x85ebca6bu +
-                    static_cast<std::uint32_t>(y) * 0xc2b2ae35u +
-                    static_cast<std::uint32_t>(z) * 0x27d4eb2fu;
+                    static_cast<std::uint32_t>(y) * 0xc2b2ae35u;
   h ^= h >> 16;
   h *= 0x85ebca6bu;
   h ^= h >> 13;
@@ -31,34 +30,26 @@ float cell_random(int x, int y, int z, std::uint32_t seed) {
   return static_cast<float>(h >> 8) * 0x1.0p-24f;
 }
 
-float value_noise(const Eigen::Vector3f& p, std::uint32_t seed) {
-  const Eigen::Vector3f whole = p.array().floor();
-  const Eigen::Vector3i c = whole.cast<int>();
-  const float u = smooth(p.x() - whole.x()), v = smooth(p.y() - whole.y()),
-              w = smooth(p.z() - whole.z());
-  float corners[2][2][2];
-  for (int k = 0; k < 2; ++k) {
-    for (int j = 0; j < 2; ++j) {
-      for (int i = 0; i < 2; ++i) {
-        corners[k][j][i] = cell_random(c.x() + i, c.y() + j, c.z() + k, seed);
-      }
-    }
-  }
-  const auto row = [&](int k, int j) { return std::lerp(corners[k][j][0], corners[k][j][1], u); };
-  const auto plane = [&](int k) { return std::lerp(row(k, 0), row(k, 1), v); };
-  return 2 * std::lerp(plane(0), plane(1), w) - 1;
+float value_noise(const Eigen::Vector2f& p, std::uint32_t seed) {
+  const Eigen::Vector2f whole = p.array().floor();
+  const int x = static_cast<int>(whole.x()), y = static_cast<int>(whole.y());
+  const float u = smooth(p.x() - whole.x()), v = smooth(p.y() - whole.y());
+  const float a = cell_random(x, y, seed), b = cell_random(x + 1, y, seed);
+  const float c = cell_random(x, y + 1, seed), d = cell_random(x + 1, y + 1, seed);
+  const float low = a + u * (b - a), high = c + u * (d - c);
+  return 2 * (low + v * (high - low)) - 1;
 }
 
 float resolved(float size, float footprint) {
   return std::clamp(1.5f - footprint / std::max(size, kSharpest), 0.0f, 1.0f);
 }
 
-float layered_noise(const Eigen::Vector3f& p, float longest, float shortest, float footprint,
+float layered_noise(const Eigen::Vector2f& p, float longest, float shortest, float footprint,
                     std::uint32_t seed) {
   float sum = 0, amplitude = 0.6f;
   for (float length = longest; length >= 0.75f * shortest; length *= 0.5f, amplitude *= 0.6f) {
     const float weight = resolved(0.5f * length, footprint);  // two samples a wave
-    if (weight <= 0) break;                                    // so are all that follow
+    if (weight <= 0) break;                                   // so are all that follow
     sum += weight * amplitude * value_noise(p / length, seed);
     seed += 0x51ed27u;
   }

@@ -1,4 +1,5 @@
-// Noise for procedural textures: the same for the same place, band-limited to what a camera resolves.
+// Noise for procedural textures: the same for the same place, band-limited to what a camera
+// resolves.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,14 +8,15 @@
 namespace fovea {
 
 /// A number in [0, 1) of a cell of a grid and a seed.
-float cell_random(int x, int y, int z, std::uint32_t seed);
+float cell_random(int x, int y, std::uint32_t seed);
 
 /// Value noise in [-1, 1]: random numbers at whole coordinates, smoothly interpolated between.
-float value_noise(const Eigen::Vector3f& p, std::uint32_t seed);
+float value_noise(const Eigen::Vector2f& p, std::uint32_t seed);
 
-/// Octaves of value noise from `longest` to `shortest` wavelength (m), each with half the wavelength
-/// and 0.6 of the amplitude of the one before, about [-1, 1]; octaves finer than `footprint` resolves fade out.
-float layered_noise(const Eigen::Vector3f& p, float longest, float shortest, float footprint,
+/// Octaves of value noise from `longest` to `shortest` wavelength (m), each with half the
+/// wavelength and 0.6 of the amplitude of the one before, about [-1, 1]; octaves finer than
+/// `footprint` resolves fade out.
+float layered_noise(const Eigen::Vector2f& p, float longest, float shortest, float footprint,
                     std::uint32_t seed);
 
 /// Share of the interval of width `footprint` around x that lies in [low, high].

@@ -66,7 +66,7 @@ struct SurfaceIndex::Scene {
   Eigen::Vector3d center;  // the corners are rounded relative to it
   double extent = 0;       // largest coordinate relative to it
   // One thread: the tree, and with it the time of a query, is the same in every run.
-  Owned<RTCDevice, rtcReleaseDevice> device{rtcNewDevice("threads=1")};
+  Owned<RTCDevice, rtcReleaseDevice> device{rtcNewDevice(nullptr)};
   Owned<RTCScene, rtcReleaseScene> scene{nullptr};
 
   explicit Scene(const TriangleMesh& m) : mesh(m), center(center_of(m)) {

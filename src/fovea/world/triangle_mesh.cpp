@@ -10,6 +10,19 @@ Eigen::Vector3d TriangleMesh::normal(std::size_t t) const {
   return length > 0 ? Eigen::Vector3d(n / length) : Eigen::Vector3d::Zero();
 }
 
+void TriangleMesh::append(const TriangleMesh& other, const Eigen::Affine3d& T) {
+  const auto first = static_cast<std::uint32_t>(position.size());
+  for (const Eigen::Vector3d& p : other.position) position.push_back(T * p);
+  for (const auto& [a, b, c] : other.triangle)
+    triangle.push_back({a + first, b + first, c + first});
+  const auto join = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  join(texture, other.texture);
+  join(material, other.material);
+  join(surface, other.surface);
+}
+
 void TriangleMesh::check() const {
   if (texture.size() != position.size()) {
     throw std::logic_error("mesh: texture and position differ in length");

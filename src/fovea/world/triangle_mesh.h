@@ -1,7 +1,7 @@
 // Surfaces of a known world: triangles with a material and the id of the thing they belong to.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,6 +28,9 @@ struct TriangleMesh {
   }
   /// Unit normal of a triangle; zero where it has no area.
   Eigen::Vector3d normal(std::size_t t) const;
+
+  /// Appends another mesh, moved by T. Surface ids and materials stay as they are.
+  void append(const TriangleMesh& other, const Eigen::Affine3d& T);
 
   /// Throws std::logic_error if columns differ in length or a triangle names no vertex.
   void check() const;
