@@ -1,0 +1,70 @@
+#include "fovea/simulation/traffic.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+
+using Eigen::Vector3d;
+
+Traffic::Traffic(const ModelSet& models, const Palette& palette, int seed) {
+  Random random(static_cast<std::uint64_t>(seed) * 7919 + 3);
+  const auto pick = [&](const auto& choices) { return choices[random.below(choices.size())]; };
+  // A car ahead, at about the vehicle's own mean speed; cars that come the other way.
+  movers_.push_back({pick(models.cars), pick(palette.car_paints), 19, 9, -1.75, 0, 1, 0});
+  for (int k = 0; k < 7; ++k) {
+    movers_.push_back({pick(models.cars), pick(palette.car_paints), 26.0 * k + random.uniform(0, 9),
+                       -9.5, 1.75, 0, 1, 182});
+  }
+  for (int k = 0; k < 3; ++k) {
+    movers_.push_back({pick(models.cyclists), pick(palette.clothes),
+                       21.0 + 70 * k + random.uniform(0, 30), random.uniform(4.2, 5.2), -3.15, 0, 1,
+                       210});
+  }
+  for (int k = 0; k < 24; ++k) {
+    const bool left = random.uniform() < 0.5;
+    const double pace = random.uniform(1.0, 1.6) * (random.uniform() < 0.5 ? 1 : -1);
+    const double lane = random.uniform(6.6, 8.0);
+    movers_.push_back({models.pedestrians.back(), pick(palette.clothes),
+                       9.0 * k + random.uniform(0, 9), pace, left ? lane : -lane, 0, 1, 216});
+  }
+  for (int k = 0; k < 2; ++k) {  // people who cross the street
+    movers_.push_back({models.pedestrians.back(), pick(palette.clothes), 31.0 + 77 * k, 0, 0, 7.2,
+                       random.uniform(18, 26), 154});
+  }
+}
+
+void Traffic::add_one(const Path& path, const Mover& mover, std::uint32_t number, double time,
+                      double way, std::vector<Placement>& movers) const {
+  double s = mover.begin + mover.speed * time;
+  if (mover.spacing > 0) s += mover.spacing * std::round((way - s) / mover.spacing);
+  if (std::abs(s - way) > kReach || s < path.begin() + 5 || s > path.end() - 5) return;
+  const double phase = 2 * std::numbers::pi * time / mover.period;
+  const double d = mover.side + mover.across * std::sin(phase);
+  double heading = path.at(s).heading;
+  if (mover.speed < 0) heading += std::numbers::pi;
+  if (mover.across != 0) {
+    heading += (std::cos(phase) > 0 ? 0.5 : -0.5) * std::numbers::pi;
+  }
+  Placement placement;
+  placement.model = mover.model;
+  placement.paint = mover.paint;
+  placement.surface = Scenery::kMoving | number;
+  const Eigen::Vector2d p = path.offset(s, d);
+  const double ground = std::abs(d) > 5.7 ? 0.12 : 0.0;  // the pavement's height
+  placement.T_world_model.translation() = Vector3d(p.x(), p.y(), ground);
+  placement.T_world_model.linear() = Eigen::AngleAxisd(heading, Vector3d::UnitZ()).matrix();
+  movers.push_back(placement);
+}
+
+std::vector<Placement> Traffic::at(const Path& path, double time, double way) const {
+  std::vector<Placement> movers;
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    add_one(path, movers_[k], static_cast<std::uint32_t>(k), time, way, movers);
+  }
+  return movers;
+}
+
+}  // namespace fovea

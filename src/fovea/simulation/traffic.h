@@ -1,0 +1,38 @@
+// Cars, cyclists and pedestrians that move: where each is at any time.
+#pragma once
+
+#include <vector>
+
+#include "fovea/simulation/models.h"
+
+namespace fovea {
+
+/// Without arguments: nothing moves.
+class Traffic {
+ public:
+  Traffic() = default;
+  Traffic(const ModelSet& models, const Palette& palette, int seed);
+
+  /// Everything that moves within kReach of the vehicle, along the path.
+  std::vector<Placement> at(const Path& path, double time, double way) const;
+
+  static constexpr double kReach = 140;  // m
+
+ private:
+  struct Mover {
+    std::uint32_t model = 0;
+    std::uint16_t paint = 0;
+    double begin = 0;    ///< way at time 0 (m)
+    double speed = 0;    ///< m/s along the path, negative against it
+    double side = 0;     ///< m to the left of the path
+    double across = 0;   ///< amplitude of crossing the street (m)
+    double period = 30;  ///< s, of crossing it
+    double spacing = 0;  ///< m after which the mover repeats: traffic without end
+  };
+  void add_one(const Path& path, const Mover& mover, std::uint32_t number, double time, double way,
+               std::vector<Placement>& movers) const;
+
+  std::vector<Mover> movers_;
+};
+
+}  // namespace fovea
