@@ -95,7 +95,6 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("camera.focal", o.camera.focal);
   visit("camera.cx", o.camera.cx);
   visit("camera.cy", o.camera.cy);
-  visit("camera.samples", o.camera.samples);
   visit("camera.exposure", o.camera.exposure);
   visit("camera.exposure_variation", o.camera.exposure_variation);
   visit("camera.vignetting", o.camera.vignetting);

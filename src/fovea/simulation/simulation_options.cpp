@@ -83,7 +83,6 @@ void check(const CameraOptions& camera) {
   check("camera.focal", camera.focal, 1, 1e5, "pixels");
   check("camera.cx", camera.cx, -1e5, 1e5, "pixels");
   check("camera.cy", camera.cy, -1e5, 1e5, "pixels");
-  check("camera.samples", camera.samples, 1, 16);
   check("camera.exposure", camera.exposure, 0.01, 100);
   check("camera.exposure_variation", camera.exposure_variation, 0, 3);
   check("camera.vignetting", camera.vignetting, 0, 1);

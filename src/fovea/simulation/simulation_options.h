@@ -23,8 +23,9 @@ enum class Scene {
 struct LightOptions {
   double sun_azimuth = 130 * kDegree;  ///< rad, clockwise from north
   double sun_elevation = 42 * kDegree;
-  double sun = 2.2;  ///< irradiance, in units that show a white sheet in the sky's light as 1 / 1.2
-  double sky = 0.55;        ///< the same of the whole sky
+  /// Irradiance of a surface that faces the sun, and of one that sees the whole sky; 1 shows a
+  /// white surface at full scale (exposure 1).
+  double sun = 0.95, sky = 0.38;
   bool reflections = true;  ///< glossy surfaces mirror what is around
 };
 
@@ -62,7 +63,6 @@ struct CameraOptions {
   int width = 1242, height = 375;
   double focal = 721.5;              ///< pixels
   double cx = 609.6, cy = 172.9;     ///< pixel centres at integers
-  int samples = 2;                   ///< rays along each side of a pixel, before edges are refined
   double exposure = 1.0;             ///< factor on linear light
   double exposure_variation = 0.35;  ///< natural logarithm, amplitude over the drive
   double vignetting = 0.25;          ///< light lost in the image's corners

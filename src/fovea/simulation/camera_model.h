@@ -1,0 +1,70 @@
+// Cameras: what a perfect one sees, and what a real one makes of it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fovea/base/image.h"
+#include "fovea/geometry/camera.h"
+#include "fovea/simulation/shading.h"
+
+namespace fovea {
+
+/// What a perfect camera sees.
+struct Rendering {
+  int width = 0, height = 0;
+  std::vector<Eigen::Vector3f> light;  ///< linear RGB, mean over each pixel's square
+  std::vector<float> depth;            ///< z of the surface at each pixel's centre (m), 0 for sky
+};
+
+class CameraModel {
+ public:
+  /// Keeps references.
+  CameraModel(const RayCaster& caster, const Shader& shader, const Camera& camera);
+
+  Rendering render(const RigidMotion& T_world_cam, const RayCaster::Moment& moment) const;
+
+  /// Mean light over the square of one pixel's size round (u, v), anywhere in the image.
+  Eigen::Vector3f light_at(double u, double v, const RigidMotion& T_world_cam,
+                           const RayCaster::Moment& moment) const;
+  /// What the ray through (u, v) meets.
+  std::optional<RayHit> hit_at(double u, double v, const RigidMotion& T_world_cam,
+                               const RayCaster::Moment& moment) const;
+
+ private:
+  class PixelSum;
+
+  /// Casts and shades rays through `pixel`, of which n lie along a pixel's side; add(k, hit,
+  /// light).
+  template <class Add>
+  void trace(const RayCaster::Packet<Eigen::Vector2d>& pixel, int n, const RigidMotion& T_world_cam,
+             const RayCaster::Moment& moment, const Add& add) const;
+  /// Samples of the pixel (u, v) and of its right neighbour.
+  std::array<PixelSum, 2> sample_pair(double u, double v, const RigidMotion& T_world_cam,
+                                      const RayCaster::Moment& moment) const;
+  Eigen::Vector3f sample_finely(double u, double v, const RigidMotion& T_world_cam,
+                                const RayCaster::Moment& moment) const;
+  double depth_at(double u, double v, const RigidMotion& T_world_cam,
+                  const RayCaster::Moment& moment) const;
+  double depth_of_plane(const RayHit& on_plane, double u, double v,
+                        const RigidMotion& T_world_cam) const;
+
+  const RayCaster& caster_;
+  const Shader& shader_;
+  Camera camera_;
+};
+
+/// How light becomes numbers in one image.
+struct Development {
+  double exposure = 1;    ///< factor on linear light
+  double vignetting = 0;  ///< light lost in the corners
+  double noise = 0;       ///< grey levels at half light
+  bool grey = false;
+  std::uint64_t seed = 0;  ///< of this image's noise
+};
+Image develop(const Rendering& rendering, const Development& development);
+
+/// Exposure of an image: a smooth function of time, a little different for each camera.
+double exposure_at(const CameraOptions& options, int camera, double time, int seed);
+
+}  // namespace fovea

@@ -1,0 +1,312 @@
+#include "fovea/simulation/ray_caster.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+/// Triangles with the tree that finds them; vertices relative to `center` in float.
+struct TracedMesh {
+  TriangleMesh mesh;
+  Vector3d center = Vector3d::Zero();
+  EmbreeScene scene;
+};
+
+EmbreeScene new_scene(RTCDevice device) {
+  EmbreeScene scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between neighbours
+  return scene;
+}
+
+/// Builds a scene's tree on one thread: which of two equally near triangles Embree reports depends
+/// on the tree, and the same seed must give the same bytes at any number of threads. (The device's
+/// own option "threads=1" would hold back every thread of the program.)
+void commit(RTCScene scene) {
+  run_alone([&] { rtcJoinCommitScene(scene); });
+}
+
+TracedMesh trace(RTCDevice device, TriangleMesh mesh, const Vector3d& center) {
+  TracedMesh traced{std::move(mesh), center, new_scene(device)};
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               traced.mesh.position.size()));
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), traced.mesh.size()));
+  if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
+  for (std::size_t i = 0; i < traced.mesh.position.size(); ++i) {
+    Eigen::Map<Vector3f>(vertices + 3 * i) = (traced.mesh.position[i] - center).cast<float>();
+  }
+  for (std::size_t i = 0; i < traced.mesh.size(); ++i) {
+    std::copy(traced.mesh.triangle[i].begin(), traced.mesh.triangle[i].end(), indices + 3 * i);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(traced.scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  commit(traced.scene.get());
+  return traced;
+}
+
+RTCRay make_ray(const Vector3d& from, const Vector3d& along, double min, double max) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(from.x());
+  ray.org_y = static_cast<float>(from.y());
+  ray.org_z = static_cast<float>(from.z());
+  ray.dir_x = static_cast<float>(along.x());
+  ray.dir_y = static_cast<float>(along.y());
+  ray.dir_z = static_cast<float>(along.z());
+  ray.tnear = static_cast<float>(min);
+  ray.tfar = static_cast<float>(max);
+  ray.mask = ~0u;
+  return ray;
+}
+
+/// One ray of a packet.
+void fill_ray(RTCRay8& rays, std::size_t i, const Vector3d& from, const Vector3d& along, double min,
+              double max) {
+  const RTCRay ray = make_ray(from, along, min, max);
+  rays.org_x[i] = ray.org_x;
+  rays.org_y[i] = ray.org_y;
+  rays.org_z[i] = ray.org_z;
+  rays.dir_x[i] = ray.dir_x;
+  rays.dir_y[i] = ray.dir_y;
+  rays.dir_z[i] = ray.dir_z;
+  rays.tnear[i] = ray.tnear;
+  rays.tfar[i] = ray.tfar;
+  rays.mask[i] = ray.mask;
+}
+
+/// Surface and paint of a placed model's triangle are the placement's.
+void apply_placement(const Placement& placement, RayHit& hit) {
+  hit.surface = placement.surface;
+  if (hit.material == Palette::kPaint) hit.material = placement.paint;
+}
+
+/// The hit on a triangle known to be met, in double: Embree's own distance is good to 1e-5 m only.
+RayHit exact_hit(const TriangleMesh& mesh, std::uint32_t triangle, const RigidMotion& T_world_mesh,
+                 const Vector3d& from, const Vector3d& along, double approximate) {
+  const Vector3d a = T_world_mesh * mesh.corner(triangle, 0),
+                 b = T_world_mesh * mesh.corner(triangle, 1),
+                 c = T_world_mesh * mesh.corner(triangle, 2);
+  const Vector3d cross = (b - a).cross(c - a);
+  const double across = cross.dot(along);
+  RayHit hit;
+  hit.distance = approximate;
+  if (std::abs(across) > 1e-12 * cross.norm()) hit.distance = cross.dot(a - from) / across;
+  hit.position = from + hit.distance * along;
+  hit.normal = cross.normalized();
+  if (across > 0) hit.normal = -hit.normal;
+  const double area = cross.squaredNorm();
+  const auto v = static_cast<float>(cross.dot((hit.position - a).cross(c - a)) / area);
+  const auto w = static_cast<float>(cross.dot((b - a).cross(hit.position - a)) / area);
+  const auto& corners = mesh.triangle[triangle];
+  const Vector3f &ta = mesh.texture[corners[0]], &tb = mesh.texture[corners[1]],
+                 &tc = mesh.texture[corners[2]];
+  hit.texture = ta + v * (tb - ta) + w * (tc - ta);
+  hit.material = mesh.material[triangle];
+  hit.surface = mesh.surface[triangle];
+  return hit;
+}
+
+/// Whether a ball lies on the way of a ray no longer than `max`.
+bool meets_ball(const Vector3d& center, double radius, const Vector3d& from, const Vector3d& along,
+                double max) {
+  const Vector3d to = center - from;
+  const double nearest = to.dot(along);
+  if (nearest < -radius || nearest > max + radius) return false;
+  return (to - nearest * along).squaredNorm() <= radius * radius;
+}
+
+}  // namespace
+
+/// What Embree says of a ray: which triangle of which instance.
+struct RayCaster::Found {
+  float distance = 0;
+  std::uint32_t triangle = 0, instance = 0;
+};
+
+struct RayCaster::Resident {
+  Device device{rtcNewDevice(nullptr)};
+  std::vector<TracedMesh> models;
+  std::map<std::uint32_t, TracedMesh> chunks;
+  EmbreeScene scene;
+  Vector3d anchor = Vector3d::Zero();        // world; the scene's floats are relative to it
+  std::vector<const TracedMesh*> instances;  // chunks by instance id
+};
+
+RayCaster::RayCaster(const Scenery& scenery)
+    : scenery_(scenery), resident_(std::make_unique<Resident>()) {
+  if (!resident_->device) throw std::runtime_error("Embree cannot be started");
+  for (const Model& model : scenery.models()) {
+    resident_->models.push_back(trace(resident_->device.get(), model.mesh, Vector3d::Zero()));
+  }
+}
+RayCaster::~RayCaster() = default;
+
+void RayCaster::move_to(const Eigen::Vector2d& place, double radius) {
+  const std::vector<ChunkPlace> wanted = scenery_.chunks_near(place, radius);
+  auto& chunks = resident_->chunks;
+  bool changed = std::erase_if(chunks, [&](const auto& entry) {
+                   return std::none_of(wanted.begin(), wanted.end(),
+                                       [&](const ChunkPlace& c) { return c.id == entry.first; });
+                 }) > 0;
+  for (const ChunkPlace& c : wanted) {
+    if (chunks.contains(c.id)) continue;
+    const Vector3d center(c.center.x(), c.center.y(), 0);
+    chunks.emplace(c.id, trace(resident_->device.get(), scenery_.chunk(c.id).mesh_world, center));
+    changed = true;
+  }
+  if (!changed && resident_->scene) return;
+  resident_->anchor = Vector3d(place.x(), place.y(), 0);
+  rebuild();
+}
+
+void RayCaster::rebuild() {
+  Resident& r = *resident_;
+  r.scene = new_scene(r.device.get());
+  r.instances.clear();
+  for (const auto& [id, chunk] : r.chunks) {
+    // A chunk's floats are relative to its center, the scene's to the anchor.
+    Eigen::Matrix4f T = Eigen::Matrix4f::Identity();
+    T.topRightCorner<3, 1>() = (chunk.center - r.anchor).cast<float>();
+    RTCGeometry instance = rtcNewGeometry(r.device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, chunk.scene.get());
+    rtcSetGeometryTimeStepCount(instance, 1);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, T.data());
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(r.scene.get(), instance, static_cast<unsigned>(r.instances.size()));
+    rtcReleaseGeometry(instance);
+    r.instances.push_back(&chunk);
+  }
+  commit(r.scene.get());
+}
+
+RayCaster::Moment RayCaster::moment(double time, double way) const {
+  Moment moment;
+  for (const Placement& placement : scenery_.movers(time, way)) {
+    moment.movers.push_back({placement, placement.T_world_model.inverse(),
+                             placement.T_world_model.translation(),
+                             scenery_.models()[placement.model].radius});
+  }
+  return moment;
+}
+
+RayHit RayCaster::exact(const Found& found, const Vector3d& from, const Vector3d& along) const {
+  return exact_hit(resident_->instances[found.instance]->mesh, found.triangle,
+                   RigidMotion::Identity(), from, along, found.distance);
+}
+
+void RayCaster::cast_at_movers(const Moment& moment, const Vector3d& from, const Vector3d& along,
+                               double min, double max, std::optional<RayHit>& hit) const {
+  for (const Moment::Mover& mover : moment.movers) {
+    const double nearer = hit ? hit->distance : max;
+    if (!meets_ball(mover.center, mover.radius, from, along, nearer)) continue;
+    const TracedMesh& traced = resident_->models[mover.placement.model];
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    query.ray =
+        make_ray(mover.T_model_world * from, mover.T_model_world.linear() * along, min, nearer);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(traced.scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+    hit = exact_hit(traced.mesh, query.hit.primID, mover.placement.T_world_model, from, along,
+                    query.ray.tfar);
+    apply_placement(mover.placement, *hit);
+  }
+}
+
+std::optional<RayHit> RayCaster::cast(const Moment& moment, const Vector3d& from,
+                                      const Vector3d& along, double min, double max) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray = make_ray(from - resident_->anchor, along, min, max);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(resident_->scene.get(), &context, &query);
+  std::optional<RayHit> hit;
+  if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
+    hit = exact({query.ray.tfar, query.hit.primID, query.hit.instID[0]}, from, along);
+  }
+  cast_at_movers(moment, from, along, min, max, hit);
+  return hit;
+}
+
+auto RayCaster::cast(const Moment& moment, const Vector3d& from, const Packet<Vector3d>& along,
+                     double min, double max) const -> Packet<std::optional<RayHit>> {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(32) const Packet<int> valid{-1, -1, -1, -1, -1, -1, -1, -1};
+  RTCRayHit8 query{};
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    fill_ray(query.ray, i, from - resident_->anchor, along[i], min, max);
+    query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect8(valid.data(), resident_->scene.get(), &context, &query);
+  Packet<std::optional<RayHit>> hits;
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
+      hits[i] =
+          exact({query.ray.tfar[i], query.hit.primID[i], query.hit.instID[0][i]}, from, along[i]);
+    }
+    cast_at_movers(moment, from, along[i], min, max, hits[i]);
+  }
+  return hits;
+}
+
+auto RayCaster::blocked(const Moment& moment, const Packet<Vector3d>& from,
+                        const Packet<bool>& wanted, const Vector3d& along, double min,
+                        double max) const -> Packet<bool> {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(32) Packet<int> valid{};
+  RTCRay8 query{};
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    valid[i] = wanted[i] ? -1 : 0;
+    fill_ray(query, i, from[i] - resident_->anchor, along, min, max);
+  }
+  rtcOccluded8(valid.data(), resident_->scene.get(), &context, &query);
+  Packet<bool> blocked{};
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    blocked[i] =
+        wanted[i] && (query.tfar[i] < 0 || blocked_by_mover(moment, from[i], along, min, max));
+  }
+  return blocked;
+}
+
+bool RayCaster::blocked_by_mover(const Moment& moment, const Vector3d& from, const Vector3d& along,
+                                 double min, double max) const {
+  return std::any_of(moment.movers.begin(), moment.movers.end(), [&](const Moment::Mover& mover) {
+    if (!meets_ball(mover.center, mover.radius, from, along, max)) return false;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray =
+        make_ray(mover.T_model_world * from, mover.T_model_world.linear() * along, min, max);
+    rtcOccluded1(resident_->models[mover.placement.model].scene.get(), &context, &ray);
+    return ray.tfar < 0;
+  });
+}
+
+}  // namespace fovea
