@@ -12,6 +12,7 @@
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/evaluate.h"
+#include "fovea/evaluation/evaluate_truth.h"
 
 namespace fovea::app {
 namespace {
@@ -20,12 +21,36 @@ struct EvaluateArguments {
   std::string map, protocol = "held-out", poses, hold_out, json;
   DriveArguments drive;
   int first_frame = 0, threads = 0;
+  bool truth = false, no_align = false;
 };
 
+constexpr const char* kTruth = "truth";
+
+/// What of the arguments does not go together; CLI::ValidationError.
+void check(const EvaluateArguments& arguments) {
+  if (arguments.truth && !arguments.hold_out.empty()) {
+    throw CLI::ValidationError("--hold-out", "the truth scores the whole map");
+  }
+  if (arguments.no_align && !arguments.truth) {
+    throw CLI::ValidationError("--no-align", "only the protocol truth aligns a map");
+  }
+}
+
+template <class Report>
+void put_report(const Report& report, std::optional<OutputFile>& json) {
+  if (json) {
+    json->stream() << to_json(report);
+    json->commit();
+  }
+  fmt::print("{}", to_text(report));
+}
+
 void run(EvaluateArguments arguments) {
+  arguments.truth = arguments.truth || arguments.protocol == kTruth;
+  check(arguments);
   const ThreadLimit threads(arguments.threads);
   ProtocolOptions options;
-  options.protocol = parse_protocol(arguments.protocol);
+  if (!arguments.truth) options.protocol = parse_protocol(arguments.protocol);
   options.hold_out = parse_hold_out(arguments.hold_out);
   std::optional<OutputFile> json;  // opened first: a bad path must not cost a run
   if (!arguments.json.empty()) json.emplace(arguments.json, /*force=*/true);
@@ -40,12 +65,11 @@ void run(EvaluateArguments arguments) {
     arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));
   }
   const auto drive = arguments.drive.open();
-  const EvaluationReport report = evaluate(map, *drive, options);
-  if (json) {
-    json->stream() << to_json(report);
-    json->commit();
+  if (arguments.truth) {
+    put_report(evaluate_truth(map, *drive, {.align = !arguments.no_align}), json);
+  } else {
+    put_report(evaluate(map, *drive, options), json);
   }
-  fmt::print("{}", to_text(report));
 }
 
 }  // namespace
@@ -57,11 +81,17 @@ void add_evaluate_command(CLI::App& app) {
       ->required();
   command->add_option("DRIVE", arguments->drive.drive, "The drive whose scans and images score it")
       ->required();
-  command
-      ->add_option("--protocol", arguments->protocol,
-                   "held-out (quality), in-sample (the paper's way) or in-sample-nav")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"in-sample", "in-sample-nav", "held-out"}));
+  CLI::Option* protocol =
+      command
+          ->add_option("--protocol", arguments->protocol,
+                       "held-out (quality), in-sample (the paper's way), in-sample-nav, or truth "
+                       "(simulated drives)")
+          ->capture_default_str()
+          ->check(CLI::IsMember({"in-sample", "in-sample-nav", "held-out", kTruth}));
+  command->add_flag("--truth", arguments->truth, "The same as --protocol truth")
+      ->excludes(protocol);
+  command->add_flag("--no-align", arguments->no_align,
+                    "With truth: leave the map where its georeference says it lies");
   command->add_option("--poses", arguments->poses, "Poses of a cloud: one T_local_lidar a line")
       ->type_name("FILE");
   command

@@ -84,9 +84,20 @@ struct Property {
 };
 
 /// The columns that are read, in the order in which a vertex's values are handed on.
-enum Column : std::size_t { kX, kY, kZ, kRed, kGreen, kBlue, kCamera, kFrame, kColumns };
-constexpr std::array<const char*, kColumns> kColumnNames = {"x",     "y",    "z",      "red",
-                                                            "green", "blue", "camera", "frame"};
+enum Column : std::size_t {
+  kX,
+  kY,
+  kZ,
+  kRed,
+  kGreen,
+  kBlue,
+  kCamera,
+  kFrame,
+  kInterpolated,
+  kColumns
+};
+constexpr std::array<const char*, kColumns> kColumnNames = {
+    "x", "y", "z", "red", "green", "blue", "camera", "frame", "interpolated"};
 using Vertex = std::array<double, kColumns>;
 
 struct Header {
@@ -216,6 +227,7 @@ class PlyFile {
     points.color.reserve(header_.vertices);
     points.camera.reserve(header_.vertices);
     if (header_.has(kFrame)) points.frame.reserve(header_.vertices);
+    if (header_.has(kInterpolated)) points.interpolated.reserve(header_.vertices);
   }
 
   void add(const Vertex& vertex) {
@@ -236,6 +248,7 @@ class PlyFile {
                             static_cast<std::uint8_t>(vertex[kGreen]),
                             static_cast<std::uint8_t>(vertex[kBlue])});
     if (header_.has(kFrame)) points.frame.push_back(static_cast<std::int32_t>(frame));
+    if (header_.has(kInterpolated)) points.interpolated.push_back(vertex[kInterpolated] != 0);
   }
 
   void read_binary() {

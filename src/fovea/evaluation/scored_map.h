@@ -13,7 +13,7 @@ namespace fovea {
 
 struct ScoredMap {
   /// Local frame, relative to any origin near the drive; columns color and camera always, frame
-  /// where it is known.
+  /// and interpolated where they are known.
   PointCloud points_local;
   std::vector<FrameRecord> frames;  ///< by index
   MapMeta meta;                     ///< empty for a cloud

@@ -1,0 +1,133 @@
+#include "fovea/evaluation/evaluate_truth.h"
+
+#include "fovea/base/errors.h"
+#include "fovea/evaluation/metrics.h"
+#include "fovea/evaluation/truth_colors.h"
+#include "fovea/evaluation/truth_ghosts.h"
+#include "fovea/evaluation/truth_upsampling.h"
+#include "fovea/geometry/transform_cloud.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kDriftLength = 10;  // m
+
+PointCloud coloured_only(const PointCloud& points) {
+  std::vector<std::uint32_t> coloured;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (points.camera[i] != kNoCamera) coloured.push_back(i);
+  }
+  if (coloured.empty()) {
+    throw InputError("the map has no coloured point", "evaluation",
+                     "score a map whose points have colours");
+  }
+  return points.select(coloured);
+}
+
+PoseFigures figures(const PoseErrors& errors) {
+  return {distribution(errors.position_m), distribution(errors.rotation_deg)};
+}
+
+ColorFigures figures(const ColorErrors& errors) {
+  return {distribution(errors.raw), distribution(errors.gain),
+          share_within(errors.raw, kColorWithin), share_within(errors.gain, kColorWithin)};
+}
+
+void put_poses(const std::vector<PosePair>& pairs, const RigidMotion& T_true_map_as_given,
+               const RigidMotion& T_true_map_aligned, TruthReport& report) {
+  const PoseErrors as_given = absolute_errors(pairs, T_true_map_as_given);
+  const PoseErrors aligned = absolute_errors(pairs, T_true_map_aligned);
+  report.pose_absolute = figures(as_given);
+  report.pose_aligned = figures(aligned);
+  report.pose_relative = figures(relative_errors(pairs));
+  report.pose_drift_percent = distribution(drift_percent(pairs, kDriftLength));
+  const PoseErrors& used = report.aligned ? aligned : as_given;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    report.frames.push_back({pairs[i].frame, used.position_m[i], used.rotation_deg[i]});
+  }
+}
+
+/// Distances of the static points: all, those measured and those interpolated.
+void put_accuracy(const SurfaceMatches& matches, const std::vector<std::uint8_t>& is_ghost,
+                  const std::vector<std::uint8_t>& interpolated, TruthReport& report) {
+  std::vector<float> all, parts[2];
+  for (std::size_t i = 0; i < matches.distance.size(); ++i) {
+    if (is_ghost[i] != 0) continue;
+    all.push_back(matches.distance[i]);
+    if (!interpolated.empty()) parts[interpolated[i] != 0 ? 1 : 0].push_back(matches.distance[i]);
+  }
+  report.accuracy = distribution(std::move(all));
+  report.accuracy_measured = distribution(std::move(parts[0]));
+  report.accuracy_interpolated = distribution(std::move(parts[1]));
+}
+
+void put_upsampling(UpsamplingErrors errors, TruthReport& report) {
+  report.upsampling.frames = errors.frames;
+  report.upsampling.hidden = errors.hidden;
+  if (errors.hidden > 0) {
+    report.upsampling.recovered =
+        static_cast<double>(errors.recovered) / static_cast<double>(errors.hidden);
+  }
+  report.upsampling.error = distribution(std::move(errors.distance));
+}
+
+}  // namespace
+
+TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
+                           const TruthOptions& options) {
+  map.points_local.check();
+  const DriveTruth truth(drive.info().path);
+  const std::vector<PosePair> pairs = pose_pairs(map.frames, truth);
+  PointCloud points = coloured_only(map.points_local);
+  const std::vector<Camera>& cameras = drive.info().calibration.cameras;
+
+  TruthReport report;
+  report.scene = truth.scene();
+  for (const Camera& camera : cameras) report.cameras.push_back(camera.index);
+  report.aligned = options.align;
+  report.map_points = map.points_local.size();
+  report.map_points_coloured = points.size();
+
+  const std::optional<RigidMotion> T_true_map_earth = georeference(map.meta, truth.origin());
+  report.georeferenced = T_true_map_earth.has_value();
+  const RigidMotion as_given = T_true_map_earth.value_or(RigidMotion::Identity());
+  const RigidMotion aligned = align_trajectories(pairs);
+  put_poses(pairs, as_given, aligned, report);
+
+  std::vector<std::uint8_t> is_ghost(points.size(), 0);
+  if (!points.frame.empty()) {
+    is_ghost = find_ghosts(points, pairs, truth);
+    report.ghosts = static_cast<std::size_t>(std::count(is_ghost.begin(), is_ghost.end(), 1));
+  }
+
+  const RigidMotion& T_true_map = options.align ? aligned : as_given;
+  // Whole metres, near the points: floats relative to it are precise wherever the map lies.
+  const Eigen::Vector3d origin_true = (T_true_map * points.origin).array().round();
+  points = transform_cloud(std::move(points), T_true_map, origin_true);
+
+  const World world = read_world(truth.folder());
+  if (world.mesh_local.empty()) {
+    throw InputError("the true world has no surface", truth.folder().string(),
+                     "write the drive anew with 'fovea simulate'");
+  }
+  const SurfaceIndex surfaces(world.mesh_local);
+  const SurfaceMatches matches = match_surfaces(points, world, surfaces);
+  put_accuracy(matches, is_ghost, points.interpolated, report);
+  report.shares = surface_shares(matches.distance, points.position,
+                                 seen_surface(truth, pairs, cameras, origin_true));
+
+  const ColouredTruth coloured{points, matches, is_ghost};
+  const ColorErrorSets albedo =
+      albedo_errors(coloured, grey_cameras(truth, map.cameras, pairs.front().frame));
+  report.color_albedo = figures(albedo.all);
+  report.color_albedo_matte = figures(albedo.matte);
+  if (!points.frame.empty() && !map.cameras.empty()) {
+    const ColorErrorSets view = view_errors(coloured, truth, cameras);
+    report.color_view = figures(view.all);
+    report.color_view_matte = figures(view.matte);
+  }
+  put_upsampling(upsampling_errors(truth, pairs, cameras, surfaces), report);
+  return report;
+}
+
+}  // namespace fovea

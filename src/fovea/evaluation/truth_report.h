@@ -1,0 +1,63 @@
+// The result of a comparison with the truth, and its two forms: JSON for programs, a table for
+// people. docs/simulator.md says what each figure means.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/evaluation/distribution.h"
+#include "fovea/evaluation/truth_surfaces.h"
+
+namespace fovea {
+
+/// Errors of positions (m) and rotations (degrees).
+struct PoseFigures {
+  Distribution position_m, rotation_deg;
+};
+
+/// Errors of a set of points' colours.
+struct ColorFigures {
+  Distribution raw, gain;
+  double within_20 = Distribution::kNone, gain_within_20 = Distribution::kNone;  ///< shares
+};
+
+struct UpsamplingFigures {
+  Distribution error;                      ///< of interpolated points, m
+  std::size_t hidden = 0;                  ///< true hits that were hidden
+  double recovered = Distribution::kNone;  ///< share of these with a point within 5 cm
+  std::size_t frames = 0;
+};
+
+/// Pose errors of one frame, under the alignment that the report uses.
+struct FramePoseError {
+  int frame = 0;
+  double position_m = 0, rotation_deg = 0;
+};
+
+struct TruthReport {
+  std::string scene;
+  std::vector<int> cameras;
+  bool aligned = true;         ///< trajectories laid over each other before all but `pose_absolute`
+  bool georeferenced = false;  ///< the map's place on earth is known
+  std::size_t map_points = 0, map_points_coloured = 0;
+
+  PoseFigures pose_absolute;  ///< the map where its georeference says it lies
+  PoseFigures pose_aligned, pose_relative;
+  Distribution pose_drift_percent;  ///< over 10 m
+
+  Distribution accuracy, accuracy_measured, accuracy_interpolated;  ///< m
+  SurfaceShares shares;
+  ColorFigures color_albedo, color_albedo_matte, color_view, color_view_matte;
+  std::optional<std::size_t> ghosts;  ///< unknown where points do not name their frame
+  UpsamplingFigures upsampling;
+  std::vector<FramePoseError> frames;
+};
+
+/// JSON text, the same bytes for the same report; figures that do not exist are null.
+std::string to_json(const TruthReport& report);
+
+/// A table for the terminal, lines ending with LF.
+std::string to_text(const TruthReport& report);
+
+}  // namespace fovea
