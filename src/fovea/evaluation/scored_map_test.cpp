@@ -62,6 +62,7 @@ TEST_F(ScoredMapTest, ReadsAsciiClouds) {
   EXPECT_THAT(ply.points.camera, ElementsAre(0, 0));
   EXPECT_FALSE(ply.has_camera);
   EXPECT_TRUE(ply.points.frame.empty());
+  EXPECT_TRUE(ply.points.interpolated.empty());
 }
 
 TEST_F(ScoredMapTest, ReadsBinaryCloudsWithAnyFurtherProperties) {
@@ -69,7 +70,7 @@ TEST_F(ScoredMapTest, ReadsBinaryCloudsWithAnyFurtherProperties) {
       "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 2\r\nproperty double x\r\n"
       "property double y\r\nproperty double z\r\nproperty float range\r\nproperty uint8 red\r\n"
       "property uint8 green\r\nproperty uint8 blue\r\nproperty char camera\r\nproperty int "
-      "frame\r\n"
+      "frame\r\nproperty uchar interpolated\r\n"
       "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n";
   for (const int i : {0, 1}) {
     for (const double x : {500000.25 + i, 2.0, 3.0}) put(bytes, x);
@@ -77,6 +78,7 @@ TEST_F(ScoredMapTest, ReadsBinaryCloudsWithAnyFurtherProperties) {
     bytes += {1, 2, static_cast<char>(200)};
     put(bytes, static_cast<std::int8_t>(i == 0 ? 3 : kNoCamera));
     put(bytes, 100 + i);
+    put(bytes, static_cast<std::uint8_t>(i));
   }
   const PlyCloud ply = read_ply(write("b.ply", bytes + "face"), {500000, 0, 0});
   EXPECT_THAT(ply.points.position,
@@ -84,6 +86,7 @@ TEST_F(ScoredMapTest, ReadsBinaryCloudsWithAnyFurtherProperties) {
   EXPECT_THAT(ply.points.color, ElementsAre(Rgb{1, 2, 200}, Rgb{1, 2, 200}));
   EXPECT_THAT(ply.points.camera, ElementsAre(3, kNoCamera));
   EXPECT_THAT(ply.points.frame, ElementsAre(100, 101));
+  EXPECT_THAT(ply.points.interpolated, ElementsAre(0, 1));
   EXPECT_TRUE(ply.has_camera);
 }
 
@@ -174,7 +177,7 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
     points.frame = {5, 6};
     points.range.assign(2, 1);
     points.incidence.assign(2, 0);
-    points.interpolated.assign(2, 0);
+    points.interpolated = {0, 1};
     tiles.add(points);
     writer->put_submap(0, tiles.submaps()[0].T_local_submap);
     for (const auto& [key, tile] : tiles.submaps()[0].tiles) writer->put_tile(0, key, tile);
@@ -192,6 +195,9 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
   EXPECT_TRUE(map.points_local.position[coloured].isApprox(Eigen::Vector3f(1, 2, 3), 1e-5f));
   EXPECT_EQ(map.points_local.color[coloured], (Rgb{1, 2, 3}));
   EXPECT_EQ(map.points_local.frame[coloured], 5);
+  ASSERT_EQ(map.points_local.interpolated.size(), 2u);
+  EXPECT_EQ(map.points_local.interpolated[coloured], 0);
+  EXPECT_EQ(map.points_local.interpolated[1 - coloured], 1);
   ScoredMapOptions with_poses;
   with_poses.poses = "poses.txt";
   EXPECT_THROW(load_scored_map(file, with_poses), ConfigError);
