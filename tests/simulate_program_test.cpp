@@ -85,10 +85,11 @@ TEST_F(Simulate, QuietSaysNothing) {
 }
 
 TEST_F(Simulate, AnInterruptEndsCleanlyAndLeavesNothing) {
-  // `timeout` sends the signal; --preserve-status gives the program's own exit code.
+  // `timeout` sends the signal, with --foreground only once (a second one would end the program on
+  // the spot); --preserve-status gives the program's own exit code.
   const ProgramRun run =
       simulate("--frames 5000 --set camera.width=96 --set camera.height=32 --set lidar.columns=90",
-               "timeout --preserve-status -s INT 2");
+               "timeout --foreground --preserve-status -s INT 2");
   expect_error(run, 1, "interrupted");
   EXPECT_THAT(folder_.names(), IsEmpty());
 }

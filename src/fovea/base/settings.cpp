@@ -157,6 +157,7 @@ class Writer : public SettingVisitor {
     std::vector<std::string> rows;
     for (const std::array<double, 4>& row : value.radians) {
       std::vector<std::string> numbers;
+      numbers.reserve(row.size());
       for (const double angle : row) numbers.push_back(degrees_text(angle));
       rows.push_back(fmt::format("[{}]", fmt::join(numbers, ", ")));
     }

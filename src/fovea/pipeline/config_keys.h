@@ -40,6 +40,7 @@ inline constexpr int kMaxCameras = 10;
 inline void visit_slices(SettingVisitor& visit, std::string_view key,
                          std::vector<AngularSlice>& slices) {
   std::vector<std::array<double, 4>> rows;
+  rows.reserve(slices.size());
   for (const AngularSlice& s : slices) {
     rows.push_back({s.azimuth_min, s.azimuth_max, s.elevation_min, s.elevation_max});
   }

@@ -168,7 +168,7 @@ void DriveWriter::write_text(const std::string& name, const std::string& text, b
 }
 
 fs::path DriveWriter::truth_folder() const {
-  const fs::path folder = drive_folder(partial_) / "truth";
+  fs::path folder = drive_folder(partial_) / "truth";
   make_folders(folder);
   return folder;
 }

@@ -200,6 +200,7 @@ SimulatedCamera kitti_camera(int number) {
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
+  names.reserve(kScenes.size());
   for (const auto& entry : kScenes) names.emplace_back(entry.second);
   return names;
 }
