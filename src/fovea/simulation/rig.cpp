@@ -1,13 +1,12 @@
 #include "fovea/simulation/rig.h"
 
-#include <numbers>
+#include "fovea/base/angle.h"
 
 namespace fovea {
 namespace {
 
 /// Rz(z) * Ry(y) * Rx(x), degrees.
 Eigen::Matrix3d rotation(double x, double y, double z) {
-  constexpr double kDegree = std::numbers::pi / 180;
   return (Eigen::AngleAxisd(z * kDegree, Eigen::Vector3d::UnitZ()) *
           Eigen::AngleAxisd(y * kDegree, Eigen::Vector3d::UnitY()) *
           Eigen::AngleAxisd(x * kDegree, Eigen::Vector3d::UnitX()))
