@@ -16,7 +16,7 @@ using testing::StartsWith;
 
 /// A drive that takes no time.
 constexpr const char* kSmall =
-    " --frames 3 --set camera.width=96 --set camera.height=32 --set camera.samples=1"
+    " --frames 3 --set camera.width=96 --set camera.height=32"
     " --set camera.focal=60 --set camera.cx=47.5 --set camera.cy=15.5 --set lidar.columns=90 ";
 
 class Simulate : public testing::Test {
