@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fovea {
 namespace {
@@ -10,7 +11,8 @@ namespace {
 StageLatency latency_of(std::vector<double> milliseconds) {
   std::sort(milliseconds.begin(), milliseconds.end());
   const auto at = [&](double share) {
-    return milliseconds[static_cast<std::size_t>(share * double(milliseconds.size() - 1) + 0.5)];
+    return milliseconds[static_cast<std::size_t>(
+        std::lround(share * double(milliseconds.size() - 1)))];
   };
   return {at(0.5), at(0.95), milliseconds.back()};
 }

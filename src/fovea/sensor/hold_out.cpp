@@ -1,6 +1,7 @@
 #include "fovea/sensor/hold_out.h"
 
 #include <charconv>
+#include <tuple>
 #include <utility>
 
 #include "fovea/base/errors.h"

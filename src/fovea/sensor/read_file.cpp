@@ -1,5 +1,6 @@
 #include "fovea/sensor/read_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>

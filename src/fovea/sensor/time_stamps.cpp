@@ -1,5 +1,6 @@
 #include "fovea/sensor/time_stamps.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
