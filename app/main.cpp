@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   fovea::app::add_info_command(app);
   fovea::app::add_evaluate_command(app);
   fovea::app::add_export_command(app);
+  fovea::app::add_render_command(app);
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);
   fovea::app::add_simulate_command(app);

@@ -1,6 +1,6 @@
-// The whole chain against exact truth: a drive without noise, simulated, written as KITTI's files, read
-// back and mapped under its true poses, must give a map without errors. What is left tells of a mistake in
-// frames, times or pixels, which a real drive cannot show.
+// The whole chain against exact truth: a drive without noise, simulated, written as KITTI's files,
+// read back and mapped under its true poses, must give a map without errors. What is left tells of
+// a mistake in frames, times or pixels, which a real drive cannot show.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,10 +24,9 @@ namespace {
 struct Chain {
   explicit Chain(const SimulationOptions& options_) : options(options_) {
     folder = simulate(options, own / "drive");
-    const ProgramRun run = run_fovea("map '" + folder.string() + "' -o '" +
-                                     (own / "map.fovea").string() + "' --poses '" +
-                                     (folder / "truth/poses.txt").string() +
-                                     "' --set upsample.rate=0 --quiet");
+    const ProgramRun run = run_fovea(
+        "map '" + folder.string() + "' -o '" + (own / "map.fovea").string() + "' --poses '" +
+        (folder / "truth/poses.txt").string() + "' --set upsample.rate=0 --quiet");
     EXPECT_EQ(run.exit_code, 0) << run.err;
     map = MapReader(own / "map.fovea").all_points_local();
   }
@@ -83,8 +82,8 @@ class Eye {
     caster_.move_to(T_world_cam_.translation().head<2>(), 260);
   }
 
-  /// What a perfect camera sees at the very pixel of a point; empty if the point is not matte, is not what is
-  /// seen there, or lies within two pixels of an edge in depth.
+  /// What a perfect camera sees at the very pixel of a point; empty if the point is not matte, is
+  /// not what is seen there, or lies within two pixels of an edge in depth.
   std::optional<Eigen::Vector3f> color_at(const Eigen::Vector3d& p_local) const {
     const Eigen::Vector3d p_cam = T_world_cam_.inverse() * (T_world_local_ * p_local);
     const auto pixel = rig_.cameras.front().project(p_cam);
@@ -149,7 +148,8 @@ TEST(SimulatedChain, WithoutNoiseColoursAreWhatACameraSeesAtThatVeryPoint) {
   EXPECT_LT(sum / double(compared), 3.0) << compared << " points";
 }
 
-// The vehicle speeds up, weaves and sways: poses between records are interpolated, and that is all that is off.
+// The vehicle speeds up, weaves and sways: poses between records are interpolated, and that is all
+// that is off.
 TEST(SimulatedChain, AnOrdinaryDriveIsOffByItsInterpolationOnly) {
   SimulationOptions options = simulation_options(Scene::kStreet, "none");
   options.frames = 8;

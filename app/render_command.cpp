@@ -1,0 +1,116 @@
+// fovea render: a picture of a map.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <memory>
+#include <string>
+
+#include "app/commands.h"
+#include "fovea/base/angle.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/output_file.h"
+#include "fovea/evaluation/scored_map.h"
+#include "fovea/evaluation/splat.h"
+#include "fovea/simulation/png_encode.h"
+
+namespace fovea::app {
+namespace {
+
+struct RenderArguments {
+  std::string map, output, view = "behind";
+  int frame = -1, width = 1280, height = 720;
+  bool force = false;
+};
+
+/// Where a picture is taken from, seen from the LiDAR's place with z up.
+struct View {
+  const char* name;
+  double back, up;       ///< m
+  double pitch;          ///< rad, downwards
+  double field_of_view;  ///< rad, horizontal
+};
+constexpr std::array kViews{View{"driver", 0, 0, 4 * kDegree, 80 * kDegree},
+                            View{"behind", 9, 5, 20 * kDegree, 75 * kDegree},
+                            View{"above", -6, 28, 88 * kDegree, 70 * kDegree}};
+
+Camera view_camera(const View& view, int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = 0.5 * width / std::tan(0.5 * view.field_of_view);
+  camera.cx = 0.5 * (width - 1);
+  camera.cy = 0.5 * (height - 1);
+  return camera;
+}
+
+/// Level, whichever way the vehicle leans: it looks along the LiDAR's x axis, pitched down.
+RigidMotion view_pose(const View& view, const RigidMotion& T_local_lidar) {
+  const Eigen::Vector3d forward = T_local_lidar.linear().col(0);
+  const Eigen::AngleAxisd heading(std::atan2(forward.y(), forward.x()), Eigen::Vector3d::UnitZ());
+  RigidMotion T_local_view = RigidMotion::Identity();
+  T_local_view.translation() = T_local_lidar.translation();
+  T_local_view.rotate(heading);
+  T_local_view.translate(Eigen::Vector3d(-view.back, 0, view.up));
+  T_local_view.rotate(Eigen::AngleAxisd(view.pitch, Eigen::Vector3d::UnitY()));
+  RigidMotion T_view_cam = RigidMotion::Identity();  // x right, y down, z forward
+  T_view_cam.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return T_local_view * T_view_cam;
+}
+
+/// The frame asked for, or the middle one.
+const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string& path) {
+  if (map.frames.empty()) {
+    throw InputError("the map has no frames", path, "map a drive first");
+  }
+  if (index < 0) return map.frames[map.frames.size() / 2];
+  for (const FrameRecord& frame : map.frames) {
+    if (frame.index == index) return frame;
+  }
+  throw InputError(fmt::format("frame {} is not in the map", index), path,
+                   fmt::format("give --frame {} to {}", map.frames.front().index,
+                               map.frames.back().index));
+}
+
+void run(const RenderArguments& arguments) {
+  OutputFile output(arguments.output, arguments.force);
+  const ScoredMap map = load_scored_map(arguments.map, {});
+  const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
+  const View& view = *std::find_if(kViews.begin(), kViews.end(),
+                                   [&](const View& v) { return v.name == arguments.view; });
+  const ColouredPoints points = coloured_points(map.points_local);
+  SplatOptions options;
+  options.max_radius = 20;
+  const SplatView picture =
+      splat(points, sample_spacing(points.position),
+            view_camera(view, arguments.width, arguments.height),
+            view_pose(view, frame.T_local_lidar).inverse(), options);
+  const std::vector<std::uint8_t> png = encode_png(picture.image);
+  output.stream().write(reinterpret_cast<const char*>(png.data()),
+                        static_cast<std::streamsize>(png.size()));
+  output.commit();
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* command = app.add_subcommand("render", "Draw a picture of a map");
+  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  command->add_option("OUT.png", arguments->output, "Picture to write")->required();
+  command->add_option("--view", arguments->view, "driver, behind or above")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"driver", "behind", "above"}));
+  command->add_option("--frame", arguments->frame, "From where the vehicle was (default: half way)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--width", arguments->width, "Pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 8192));
+  command->add_option("--height", arguments->height, "Pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 8192));
+  command->add_flag("--force", arguments->force, "Overwrite OUT");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app
