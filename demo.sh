@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds, maps a drive, scores the map and exports it.
 #   ./demo.sh [--no-install] [DRIVE]     results under out/
+# Without DRIVE it simulates one first, 60 frames of a street, and scores the map against the truth, too.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -10,7 +11,7 @@ for argument in "$@"; do
   case $argument in
     --no-install) install_flag=--no-install ;;
     -h | --help)
-      sed -n '2,3s/^# //p' "$0"
+      sed -n '2,4s/^# //p' "$0"
       exit 0
       ;;
     -*)
@@ -21,29 +22,35 @@ for argument in "$@"; do
   esac
 done
 
-if [[ -z $drive ]]; then
-  drive=${FOVEA_KITTI_SAMPLE:-../shared/data/kitti/2011_09_26/2011_09_26_drive_0009_sync}
-  if [[ ! -d $drive ]]; then
-    echo "demo: no drive given and no sample drive at $drive, usage: ./demo.sh DRIVE" >&2
-    echo "demo: DRIVE is a KITTI raw drive folder (2011_09_26/2011_09_26_drive_0009_sync) or an" >&2
-    echo "demo: odometry sequence folder (sequences/00)" >&2
-    exit 2
-  fi
-fi
-
 scripts/setup.sh $install_flag
 scripts/build.sh release fovea_app
 fovea=build/release/fovea
-name=$(basename "$(cd "$drive" && pwd)")
 mkdir -p out
+
+truth=
+cameras=()
+if [[ -z $drive ]]; then
+  drive=out/street
+  truth=yes
+  cameras=(--cameras 2,3)
+  rm -rf "$drive"
+  echo "== simulating a street: 60 frames, two cameras"
+  "$fovea" simulate -o "$drive" --frames 60
+fi
+name=$(basename "$(cd "$drive" && pwd)")
 map=out/$name.fovea
 
 echo "== mapping $drive, every 8th frame held out"
-"$fovea" map "$drive" -o "$map" --hold-out 8:4 --force --report "out/$name.map.json"
+"$fovea" map "$drive" -o "$map" "${cameras[@]}" --hold-out 8:4 --force --report "out/$name.map.json"
 echo "== scores on the frames held out"
 "$fovea" evaluate "$map" "$drive" --protocol held-out --json "out/$name.held-out.json"
+if [[ -n $truth ]]; then
+  echo "== scores against the truth"
+  "$fovea" evaluate "$map" "$drive" --protocol truth --json "out/$name.truth.json"
+fi
 echo "== export"
 "$fovea" export "$map" "out/$name.ply" --force
 "$fovea" export "$map" "out/$name.poses.txt" --format kitti-poses --force
-echo "== written: $map, out/$name.ply (open it in CloudCompare or MeshLab), out/$name.poses.txt,"
-echo "            out/$name.map.json, out/$name.held-out.json"
+"$fovea" render "$map" "out/$name.png" --force
+echo "== written: $map, out/$name.ply (open it in CloudCompare or MeshLab), out/$name.png (a picture of it),"
+echo "            out/$name.poses.txt, out/$name.*.json"

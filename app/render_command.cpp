@@ -67,9 +67,9 @@ const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string
   for (const FrameRecord& frame : map.frames) {
     if (frame.index == index) return frame;
   }
-  throw InputError(fmt::format("frame {} is not in the map", index), path,
-                   fmt::format("give --frame {} to {}", map.frames.front().index,
-                               map.frames.back().index));
+  throw InputError(
+      fmt::format("frame {} is not in the map", index), path,
+      fmt::format("give --frame {} to {}", map.frames.front().index, map.frames.back().index));
 }
 
 void run(const RenderArguments& arguments) {
@@ -81,10 +81,9 @@ void run(const RenderArguments& arguments) {
   const ColouredPoints points = coloured_points(map.points_local);
   SplatOptions options;
   options.max_radius = 20;
-  const SplatView picture =
-      splat(points, sample_spacing(points.position),
-            view_camera(view, arguments.width, arguments.height),
-            view_pose(view, frame.T_local_lidar).inverse(), options);
+  const SplatView picture = splat(points, sample_spacing(points.position),
+                                  view_camera(view, arguments.width, arguments.height),
+                                  view_pose(view, frame.T_local_lidar).inverse(), options);
   const std::vector<std::uint8_t> png = encode_png(picture.image);
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));

@@ -19,6 +19,15 @@ namespace {
 constexpr double kSeen = 260;   // m: chunks whose middle is nearer are there for rays
 constexpr double kTruth = 140;  // m: ... and are part of the truth's world; what the LiDAR reaches
 
+/// What a drive takes on disk, about: scans and their truth, images with perfect image and depth.
+std::uintmax_t expected_size(const SimulationOptions& options) {
+  constexpr double kReturn = 44, kPixel = 4, kWorld = 60e6;  // bytes
+  const double frame = kReturn * kRings * options.lidar.columns +
+                       kPixel * options.camera.width * options.camera.height *
+                           static_cast<double>(options.camera.cameras.size());
+  return static_cast<std::uintmax_t>(kWorld + frame * options.frames);
+}
+
 /// One line of a KITTI pose file: 3x4, row by row.
 std::string pose_line(const RigidMotion& T) {
   std::string line;
@@ -160,6 +169,7 @@ class Simulation {
 std::filesystem::path simulate(const SimulationOptions& options, const std::filesystem::path& root,
                                const SimulationProgress& progress) {
   options.validate();
+  check_free_space(root, expected_size(options));
   Simulation simulation(options, root);
   for (int frame = 0; frame < options.frames; ++frame) {
     simulation.simulate_frame(frame);
