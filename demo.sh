@@ -51,6 +51,6 @@ fi
 echo "== export"
 "$fovea" export "$map" "out/$name.ply" --force
 "$fovea" export "$map" "out/$name.poses.txt" --format kitti-poses --force
-"$fovea" render "$map" "out/$name.png" --force
+"$fovea" render "$map" -o "out/$name.png" --force
 echo "== written: $map, out/$name.ply (open it in CloudCompare or MeshLab), out/$name.png (a picture of it),"
 echo "            out/$name.poses.txt, out/$name.*.json"

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/drive_arguments.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
@@ -18,7 +19,8 @@ namespace fovea::app {
 namespace {
 
 struct RenderArguments {
-  std::string map, output, view = "behind";
+  std::string map, drive, output, view = "behind";
+  int camera = 2;
   int frame = -1, width = 1280, height = 720;
   bool force = false;
 };
@@ -72,19 +74,54 @@ const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string
       fmt::format("give --frame {} to {}", map.frames.front().index, map.frames.back().index));
 }
 
+SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam) {
+  const ColouredPoints points = coloured_points(map.points_local);
+  SplatOptions options;
+  options.max_radius = 20;
+  return splat(points, sample_spacing(points.position), camera, T_local_cam.inverse(), options);
+}
+
+/// The map as one of the drive's cameras sees it, above the photograph that it took.
+Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
+                        const FrameRecord& frame) {
+  const DriveArguments drive_arguments{arguments.drive, "", std::to_string(arguments.camera)};
+  const auto drive = drive_arguments.open();
+  const Camera& camera = drive->info().calibration.cameras.at(0);
+  const FrameResult loaded = drive->load(frame.index);
+  if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
+    throw InputError(fmt::format("frame {} cannot be read ({})", skipped->index, skipped->detail),
+                     arguments.drive, "choose another --frame");
+  }
+  const Image& photograph = std::get<Frame>(loaded).images.at(0);
+  const SplatView drawn = draw(map, camera, frame.T_local_lidar * camera.T_cam_lidar.inverse());
+  Image both(camera.width, 2 * camera.height, 3);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      for (int c = 0; c < 3; ++c) {
+        both.pixel(u, v)[c] = drawn.image.pixel(u, v)[c];
+        both.pixel(u, camera.height + v)[c] =
+            photograph.pixel(u, v)[photograph.channels == 3 ? c : 0];
+      }
+    }
+  }
+  return both;
+}
+
+Image from_view(const RenderArguments& arguments, const ScoredMap& map, const FrameRecord& frame) {
+  const View& view = *std::find_if(kViews.begin(), kViews.end(),
+                                   [&](const View& v) { return v.name == arguments.view; });
+  return draw(map, view_camera(view, arguments.width, arguments.height),
+              view_pose(view, frame.T_local_lidar))
+      .image;
+}
+
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
   const ScoredMap map = load_scored_map(arguments.map, {});
   const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
-  const View& view = *std::find_if(kViews.begin(), kViews.end(),
-                                   [&](const View& v) { return v.name == arguments.view; });
-  const ColouredPoints points = coloured_points(map.points_local);
-  SplatOptions options;
-  options.max_radius = 20;
-  const SplatView picture = splat(points, sample_spacing(points.position),
-                                  view_camera(view, arguments.width, arguments.height),
-                                  view_pose(view, frame.T_local_lidar).inverse(), options);
-  const std::vector<std::uint8_t> png = encode_png(picture.image);
+  const std::vector<std::uint8_t> png =
+      encode_png(arguments.drive.empty() ? from_view(arguments, map, frame)
+                                         : beside_photograph(arguments, map, frame));
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));
   output.commit();
@@ -96,8 +133,13 @@ void add_render_command(CLI::App& app) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand("render", "Draw a picture of a map");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
-  command->add_option("OUT.png", arguments->output, "Picture to write")->required();
-  command->add_option("--view", arguments->view, "driver, behind or above")
+  command->add_option("DRIVE", arguments->drive,
+                      "Draw what a camera of this drive sees, above its photograph");
+  command->add_option("-o,--output", arguments->output, "Picture to write")
+      ->required()
+      ->type_name("OUT.png");
+  command->add_option("--camera", arguments->camera, "Camera of DRIVE")->capture_default_str();
+  command->add_option("--view", arguments->view, "Without DRIVE: driver, behind or above")
       ->capture_default_str()
       ->check(CLI::IsMember({"driver", "behind", "above"}));
   command->add_option("--frame", arguments->frame, "From where the vehicle was (default: half way)")
