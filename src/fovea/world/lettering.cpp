@@ -94,6 +94,17 @@ float distance_to_letter(std::string_view strokes, const Eigen::Vector2f& p) {
   return nearest;
 }
 
+/// Ink at a place on the grid (from the text's lower left corner), averaged over `soft` grid units,
+/// which must not be much more than a stroke's width.
+float ink_on_grid(std::string_view text, const Eigen::Vector2f& p, float soft) {
+  const int at = static_cast<int>(std::floor((p.x() + 0.5f * (kAdvance - kGridWidth)) / kAdvance));
+  if (at < 0 || at >= static_cast<int>(text.size())) return 0;
+  const Eigen::Vector2f in_letter(p.x() - kAdvance * static_cast<float>(at), p.y());
+  const float distance =
+      distance_to_letter(strokes_of(text[static_cast<std::size_t>(at)]), in_letter);
+  return std::clamp((kHalfStroke - distance) / soft + 0.5f, 0.0f, 1.0f);
+}
+
 }  // namespace
 
 float lettering_ink(std::string_view text, const Eigen::Vector2f& place,
@@ -104,14 +115,19 @@ float lettering_ink(std::string_view text, const Eigen::Vector2f& place,
   const float unit = std::min(board.x() / (width + 2), board.y() / (kGridHeight + 2));
   const Eigen::Vector2f p =
       (place - 0.5f * board) / unit + 0.5f * Eigen::Vector2f(width, kGridHeight);
-  const int at = static_cast<int>(std::floor((p.x() + 0.5f * (kAdvance - kGridWidth)) / kAdvance));
-  if (at < 0 || at >= static_cast<int>(text.size())) return 0;
-  const Eigen::Vector2f in_letter(p.x() - kAdvance * static_cast<float>(at), p.y());
-  const float distance =
-      distance_to_letter(strokes_of(text[static_cast<std::size_t>(at)]), in_letter);
-  const float soft = std::max(footprint / unit, 1e-3f);
-  return std::clamp((kHalfStroke - distance) / soft + 0.5f, 0.0f, 1.0f) *
-         std::min(1.0f, 2 * kHalfStroke / soft);
+  // A wide footprint is taken apart: the distance to one stroke says nothing of the others in it.
+  constexpr float kSoftest = 0.5f;
+  constexpr int kMost = 8;
+  const float side = std::max(footprint / unit, 1e-3f);
+  const int steps = std::clamp(static_cast<int>(std::ceil(side / kSoftest)), 1, kMost);
+  const float step = side / static_cast<float>(steps);
+  float sum = 0;
+  for (int i = 0; i < steps * steps; ++i) {
+    const Eigen::Vector2f cell(static_cast<float>(i % steps), static_cast<float>(i / steps));
+    const Eigen::Vector2f offset = step * (cell.array() + 0.5f) - 0.5f * side;
+    sum += ink_on_grid(text, p + offset, std::min(step, kSoftest));
+  }
+  return sum / static_cast<float>(steps * steps);
 }
 
 }  // namespace fovea

@@ -101,24 +101,50 @@ Vector3f road(const Material& m, const Vector2f& p, float f) {
   return mix(color, m.color_2, paint * std::clamp(worn, 0.0f, 1.0f));
 }
 
-/// Cells with a tint of their own, joints between them; rows may be shifted by half a cell.
+/// Random numbers -0.5 to 0.5, one a cell of `size` along an axis, averaged over the footprint.
+template <class RandomOf>
+float mean_of_cells(float x, float size, float f, const RandomOf& random_of) {
+  const int last = cell(x + 0.5f * f, size);
+  float sum = 0;
+  for (int k = cell(x - 0.5f * f, size); k <= last; ++k) {
+    const auto low = static_cast<float>(k) * size;
+    sum += band(x, low, low + size, f) * (random_of(k) - 0.5f);
+  }
+  return sum;
+}
+
+/// Cells with a tint of their own, joints between them; odd rows may be shifted by half a cell.
 Vector3f cells(const Material& m, const Vector2f& p, float f, float joint, bool shifted) {
-  const int row = cell(p.y(), m.size.y());
-  const float x = p.x() + (shifted && (row & 1) != 0 ? 0.5f * m.size.x() : 0.0f);
-  const float keep = resolved(m.size.minCoeff(), f);
-  const float tint = (cell_random(cell(x, m.size.x()), row, m.seed) - 0.5f) * keep;
+  const float width = m.size.x(), height = m.size.y();
+  const auto column_place = [&](int row) {
+    return p.x() + (shifted && (row & 1) != 0 ? 0.5f * width : 0.0f);
+  };
+  const float keep = resolved(2 * m.size.minCoeff(), f);
+  float tint = 0;
+  if (keep > 0) {
+    tint = keep * mean_of_cells(p.y(), height, f, [&](int row) {
+             return 0.5f + mean_of_cells(column_place(row), width, f, [&](int column) {
+                      return cell_random(column, row, m.seed);
+                    });
+           });
+  }
   const float fine = layered_noise(p, 0.06f, 0.01f, f, m.seed + 1);
   const float stains = layered_noise(p, 3.0f, 0.3f, f, m.seed + 2);
   const Vector3f face =
       tinted(m.color, 1 + m.contrast * (0.45f * tint + 0.15f * fine + 0.18f * stains));
-  const float vertical = repeated_band(x, m.size.x(), joint, f);
-  const float level = repeated_band(p.y(), m.size.y(), joint, f);
+  const float odd = shifted ? repeated_band(p.y() - height, 2 * height, height, f) : 0.0f;
+  const float vertical = (1 - odd) * repeated_band(column_place(0), width, joint, f) +
+                         odd * repeated_band(column_place(1), width, joint, f);
+  const float level = repeated_band(p.y(), height, joint, f);
   return mix(face, m.color_2, vertical + level - vertical * level);
 }
 
 Vector3f boards(const Material& m, const Vector2f& p, float f) {
   const int board = cell(p.x(), m.scale);
-  const float tint = (cell_random(board, 0, m.seed) - 0.5f) * resolved(m.scale, f);
+  const float keep = resolved(2 * m.scale, f);
+  const float tint = keep <= 0 ? 0.0f : keep * mean_of_cells(p.x(), m.scale, f, [&](int k) {
+                                          return cell_random(k, 0, m.seed);
+                                        });
   const float veins = layered_noise({p.x() * 12, p.y()}, 0.4f, 0.05f, 12 * f,
                                     m.seed + 1 + static_cast<std::uint32_t>(board));
   const Vector3f wood = tinted(m.color, 1 + m.contrast * (0.3f * tint + 0.25f * veins));

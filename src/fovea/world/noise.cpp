@@ -58,14 +58,21 @@ float layered_noise(const Eigen::Vector2f& p, float longest, float shortest, flo
 
 float band(float x, float low, float high, float footprint) {
   const float f = std::max(footprint, kSharpest);
-  const float from = std::max(x - 0.5f * f, low), to = std::min(x + 0.5f * f, high);
-  return std::max(to - from, 0.0f) / f;
+  // Relative to x: a kilometre from the origin a float's steps are as wide as a footprint.
+  const float from = std::max(-0.5f * f, low - x), to = std::min(0.5f * f, high - x);
+  return std::clamp((to - from) / f, 0.0f, 1.0f);
 }
 
 float repeated_band(float x, float period, float width, float footprint) {
   const float f = std::max(footprint, kSharpest);
-  return (repeated_length(x + 0.5f * f, period, width) -
-          repeated_length(x - 0.5f * f, period, width)) /
+  const float into = x - period * std::floor(x / period);
+  if (f <= period) {
+    float share = 0;
+    for (const float at : {into - period, into, into + period}) share += band(at, 0, width, f);
+    return std::min(share, 1.0f);
+  }
+  return (repeated_length(into + 0.5f * f, period, width) -
+          repeated_length(into - 0.5f * f, period, width)) /
          f;
 }
 
