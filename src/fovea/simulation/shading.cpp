@@ -24,13 +24,14 @@ Shader::Shader(const RayCaster& caster, const LightOptions& options)
 
 Vector3f Shader::sky(const Vector3d& along) const {
   const auto up = static_cast<float>(along.z());
-  if (up < 0) return kFarGround;
+  const auto level = static_cast<float>(options_.sky / 0.4);
+  if (up < 0) return level * kFarGround;
   const float share = std::pow(1 - up, 4.0f);
   Vector3f color = (1 - share) * kZenith + share * kHaze;
   const auto sun = static_cast<float>(std::max(along.dot(to_sun_), 0.0));
   color +=
       Vector3f::Constant(0.35f * std::pow(sun, 24.0f)) + kSunColor * (sun > 0.9998f ? 30.0f : 0.0f);
-  return static_cast<float>(options_.sky / 0.4) * color;
+  return level * color;
 }
 
 auto Shader::matte_light(const RayCaster::Moment& moment, const Packet<std::optional<RayHit>>& hits,
