@@ -77,7 +77,9 @@ class EndlessStreet : public City {
     axis_.path = path_.get();
     first_ = static_cast<int>(std::ceil(path_->begin() / kChunkLength));
     last_ = static_cast<int>(std::floor(path_->end() / kChunkLength)) - 1;
-    if (options.scene == Scene::kTraffic) traffic_ = Traffic(set_, palette_, options.seed);
+    if (options.scene == Scene::kTraffic) {
+      traffic_ = Traffic(set_, palette_, options.vehicle, options.seed);
+    }
   }
 
   std::vector<ChunkPlace> chunks_near(const Vector2d& place, double radius) const override {
@@ -242,7 +244,7 @@ class Block : public City {
     make.surface = first_surface;
     chunk.surfaces[first_surface] = "crossing";
     make.material = palette_.asphalt;
-    const double j = kJunction, k = style_.kerb, h = 0.12;
+    const double j = kJunction + kOverlap, k = style_.kerb, h = 0.12;
     make.quad({-j, -j, 0}, {j, -j, 0}, {j, j, 0}, {-j, j, 0});
     const std::uint32_t pavement = first_surface + 1;
     chunk.surfaces[pavement] = "pavement";

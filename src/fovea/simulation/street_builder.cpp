@@ -74,7 +74,8 @@ class StreetMaker {
     constexpr int kPieces = 16;
     for (int k = 0; k < kPieces; ++k) {
       const double s0 = begin_ + kChunkLength * k / kPieces,
-                   s1 = begin_ + kChunkLength * (k + 1) / kPieces;
+                   s1 = begin_ + kChunkLength * (k + 1) / kPieces +
+                        (k + 1 == kPieces ? kOverlap : 0.0);
       const bool wall = std::abs(d1 - d0) < 1e-9;  // a kerb's face: textured by height
       const auto t = [&](double s, double d, double z) {
         return Vector3f(float(wall ? s : d), float(wall ? z : s), 0);

@@ -38,6 +38,9 @@ struct StreetAxis {
 };
 
 inline constexpr double kChunkLength = 24;  ///< of a street (m)
+/// The ground of a chunk reaches so far into the next (m): no ray slips through the seam, whose two
+/// sides are not the same floats.
+inline constexpr double kOverlap = 0.001;
 
 /// Builds the piece [begin, begin + kChunkLength) of a street.
 /// @param first_surface  id of the piece's first thing; the others follow

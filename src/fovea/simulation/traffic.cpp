@@ -1,26 +1,43 @@
 #include "fovea/simulation/traffic.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "fovea/base/random.h"
+#include "fovea/simulation/vehicle_motion.h"
 
 namespace fovea {
 
 using Eigen::Vector3d;
 
-Traffic::Traffic(const ModelSet& models, const Palette& palette, int seed) {
+namespace {
+
+/// Who crosses the street begins and is done when the vehicle is so far away (m).
+constexpr double kCrossesFrom = 80, kCrossesTo = 8;
+
+/// How much farther than at its mean speed the vehicle can get (m).
+double lead(const VehicleOptions& vehicle) {
+  constexpr double kLong = 1000;  // s
+  return longest_way(vehicle, kLong) - vehicle.speed * kLong;
+}
+
+}  // namespace
+
+Traffic::Traffic(const ModelSet& models, const Palette& palette, const VehicleOptions& vehicle,
+                 int seed) {
   Random random(static_cast<std::uint64_t>(seed) * 7919 + 3);
   const auto pick = [&](const auto& choices) { return choices[random.below(choices.size())]; };
-  // A car ahead, at about the vehicle's own mean speed; cars that come the other way.
-  movers_.push_back({pick(models.cars), pick(palette.car_paints), 19, 9, -1.75, 0, 1, 0});
+  // A car ahead, at the vehicle's own mean speed; cars that come the other way.
+  movers_.push_back(
+      {pick(models.cars), pick(palette.car_paints), 9.5 + lead(vehicle), vehicle.speed, -1.75});
   for (int k = 0; k < 7; ++k) {
     movers_.push_back({pick(models.cars), pick(palette.car_paints), 26.0 * k + random.uniform(0, 9),
-                       -9.5, 1.75, 0, 1, 182});
+                       -9.5, 1.75, 182});
   }
   for (int k = 0; k < 3; ++k) {
     movers_.push_back({pick(models.cyclists), pick(palette.clothes),
-                       21.0 + 70 * k + random.uniform(0, 30), random.uniform(4.2, 5.2), -3.15, 0, 1,
+                       21.0 + 70 * k + random.uniform(0, 30), random.uniform(4.2, 5.2), -3.32,
                        210});
   }
   for (int k = 0; k < 24; ++k) {
@@ -28,11 +45,11 @@ Traffic::Traffic(const ModelSet& models, const Palette& palette, int seed) {
     const double pace = random.uniform(1.0, 1.6) * (random.uniform() < 0.5 ? 1 : -1);
     const double lane = random.uniform(6.6, 8.0);
     movers_.push_back({models.pedestrians.back(), pick(palette.clothes),
-                       9.0 * k + random.uniform(0, 9), pace, left ? lane : -lane, 0, 1, 216});
+                       9.0 * k + random.uniform(0, 9), pace, left ? lane : -lane, 216});
   }
   for (int k = 0; k < 2; ++k) {  // people who cross the street
-    movers_.push_back({models.pedestrians.back(), pick(palette.clothes), 31.0 + 77 * k, 0, 0, 7.2,
-                       random.uniform(18, 26), 154});
+    movers_.push_back({models.pedestrians.back(), pick(palette.clothes),
+                       31.0 + 77 * k + random.uniform(-8, 8), 0, 0, 154, k == 0 ? 7.2 : -7.2});
   }
 }
 
@@ -41,13 +58,12 @@ void Traffic::add_one(const Path& path, const Mover& mover, std::uint32_t number
   double s = mover.begin + mover.speed * time;
   if (mover.spacing > 0) s += mover.spacing * std::round((way - s) / mover.spacing);
   if (std::abs(s - way) > kReach || s < path.begin() + 5 || s > path.end() - 5) return;
-  const double phase = 2 * std::numbers::pi * time / mover.period;
-  const double d = mover.side + mover.across * std::sin(phase);
+  const double crossed =
+      std::clamp((kCrossesFrom - (s - way)) / (kCrossesFrom - kCrossesTo), 0.0, 1.0);
+  const double d = mover.side + mover.across * (1 - 2 * crossed);
   double heading = path.at(s).heading;
   if (mover.speed < 0) heading += std::numbers::pi;
-  if (mover.across != 0) {
-    heading += (std::cos(phase) > 0 ? 0.5 : -0.5) * std::numbers::pi;
-  }
+  if (mover.across != 0) heading -= std::copysign(0.5 * std::numbers::pi, mover.across);
   Placement placement;
   placement.model = mover.model;
   placement.paint = mover.paint;

@@ -4,14 +4,15 @@
 #include <vector>
 
 #include "fovea/simulation/models.h"
+#include "fovea/simulation/simulation_options.h"
 
 namespace fovea {
 
-/// Without arguments: nothing moves.
+/// Without arguments: nothing moves. Nothing runs into the vehicle, which keeps to its lane.
 class Traffic {
  public:
   Traffic() = default;
-  Traffic(const ModelSet& models, const Palette& palette, int seed);
+  Traffic(const ModelSet& models, const Palette& palette, const VehicleOptions& vehicle, int seed);
 
   /// Everything that moves within kReach of the vehicle, along the path.
   std::vector<Placement> at(const Path& path, double time, double way) const;
@@ -25,9 +26,8 @@ class Traffic {
     double begin = 0;    ///< way at time 0 (m)
     double speed = 0;    ///< m/s along the path, negative against it
     double side = 0;     ///< m to the left of the path
-    double across = 0;   ///< amplitude of crossing the street (m)
-    double period = 30;  ///< s, of crossing it
     double spacing = 0;  ///< m after which the mover repeats: traffic without end
+    double across = 0;   ///< m to the left whence it crosses the street as the vehicle comes
   };
   void add_one(const Path& path, const Mover& mover, std::uint32_t number, double time, double way,
                std::vector<Placement>& movers) const;
