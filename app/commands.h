@@ -11,6 +11,7 @@ void add_info_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_reproduce_command(CLI::App& app);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);

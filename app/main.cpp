@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   fovea::app::add_evaluate_command(app);
   fovea::app::add_export_command(app);
   fovea::app::add_render_command(app);
+  fovea::app::add_reproduce_command(app);
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);
   fovea::app::add_simulate_command(app);

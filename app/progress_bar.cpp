@@ -8,7 +8,8 @@
 
 namespace fovea::app {
 
-ProgressBar::ProgressBar(bool quiet) : enabled_(!quiet && isatty(STDERR_FILENO) != 0) {}
+ProgressBar::ProgressBar(bool quiet, std::string_view unit)
+    : enabled_(!quiet && isatty(STDERR_FILENO) != 0), unit_(unit) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) fmt::print(stderr, "\n");
@@ -27,8 +28,8 @@ void ProgressBar::draw(int done, int total, std::string_view detail) {
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double rate = done / std::max(elapsed, 1e-3);
-  fmt::print(stderr, "\r[{:<{}}] {}/{} frames  {:.1f}/s  {}{:.0f} s left ",
-             std::string(std::size_t(filled), '#'), kWidth, done, total, rate, detail,
+  fmt::print(stderr, "\r[{:<{}}] {}/{} {}  {:.1f}/s  {}{:.0f} s left ",
+             std::string(std::size_t(filled), '#'), kWidth, done, total, unit_, rate, detail,
              (total - done) / std::max(rate, 1e-3));
   std::fflush(stderr);
 }

@@ -11,7 +11,8 @@ namespace fovea::app {
 class ProgressBar {
  public:
   /// @param quiet  draw nothing, whatever standard error is
-  explicit ProgressBar(bool quiet);
+  /// @param unit   what is counted
+  explicit ProgressBar(bool quiet, std::string_view unit = "frames");
   ~ProgressBar();  ///< ends the line
   void operator()(const MapProgress& progress);
   /// @param detail  shown between the rate and the time left
@@ -19,6 +20,7 @@ class ProgressBar {
 
  private:
   bool enabled_;
+  std::string_view unit_;
   bool drawn_ = false;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

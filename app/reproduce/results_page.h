@@ -1,0 +1,29 @@
+// The page that `fovea reproduce` writes: the paper's tables and figures, ours beside theirs.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/reproduce/upsampling_times.h"
+
+namespace fovea::app {
+
+struct DriveResults {
+  std::string name;                        ///< of the drive's folder
+  std::vector<int> cameras;
+  int frames = 0;
+  std::vector<nlohmann::ordered_json> rows;  ///< see run_row
+  std::vector<UpsamplingTime> upsampling;
+};
+
+/// Everything as JSON.
+nlohmann::ordered_json results_json(const std::vector<DriveResults>& drives);
+
+/// The page in Markdown. Its charts are written beside it, into `folder`: FIGURE-DRIVE.svg.
+/// @param command  what was typed, to stand at the top
+std::string write_results_page(const std::vector<DriveResults>& drives, const std::string& command,
+                               const std::filesystem::path& folder);
+
+}  // namespace fovea::app

@@ -1,0 +1,86 @@
+#include "app/reproduce/upsampling_times.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "app/reproduce/paper_numbers.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/base/random.h"
+#include "fovea/geometry/transform_cloud.h"
+#include "fovea/mapping/upsample.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr int kMaxRate = 5;
+constexpr int kRuns = 7;
+
+/// Points of the middle scan in view of the camera, in its frame, shuffled.
+PointCloud scan_in_view(const FrameSource& drive, const Camera& camera) {
+  const DriveInfo& info = drive.info();
+  for (int index = (info.begin + info.end) / 2; index < info.end; ++index) {
+    const FrameResult loaded = drive.load(index);
+    if (std::holds_alternative<SkippedFrame>(loaded)) continue;
+    PointCloud scan = std::get<Frame>(loaded).scan;
+    scan.intensity.clear();
+    const PointCloud points_cam = transform_cloud(std::move(scan), camera.T_cam_lidar);
+    std::vector<std::uint32_t> visible;
+    for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
+      const auto pixel = camera.project(points_cam.position[i].cast<double>());
+      if (pixel && camera.in_view(*pixel)) visible.push_back(i);
+    }
+    Random random(1);
+    for (std::size_t i = visible.size(); i > 1; --i) std::swap(visible[i - 1], visible[random.below(i)]);
+    return points_cam.select(visible);
+  }
+  throw InputError("no frame of the drive can be read", info.path.string(), "check its files");
+}
+
+/// `count` of the shuffled points, in the order of a scan's rings as near as can be told.
+PointCloud first_points(const PointCloud& shuffled, std::size_t count) {
+  std::vector<std::uint32_t> indices(count);
+  for (std::uint32_t i = 0; i < count; ++i) indices[i] = i;
+  return shuffled.select(indices);
+}
+
+UpsamplingTime time_one(const PointCloud& shuffled, const Camera& camera, int wanted) {
+  UpsampleOptions options;
+  const auto produced = [&](std::size_t count) {
+    return upsample(first_points(shuffled, count), camera, options).size();
+  };
+  const auto goal = static_cast<std::size_t>(wanted);
+  for (options.rate = 1; options.rate < kMaxRate && produced(shuffled.size()) < goal;) ++options.rate;
+  // As few points as give the number wanted: what they give grows with their number.
+  std::size_t low = 3, high = shuffled.size();
+  while (high - low > high / 100 + 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (produced(middle) < goal ? low : high) = middle;
+  }
+  const PointCloud points = first_points(shuffled, high);
+  UpsamplingTime time{wanted, points.size(), 0, options.rate, 0};
+  std::vector<double> seconds;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    time.points = upsample(points, camera, options).size();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::sort(seconds.begin(), seconds.end());
+  time.seconds = seconds[kRuns / 2];
+  return time;
+}
+
+}  // namespace
+
+std::vector<UpsamplingTime> time_upsampling(const FrameSource& drive) {
+  const ThreadLimit one(1);
+  const Camera& camera = drive.info().calibration.cameras.at(0);
+  const PointCloud shuffled = scan_in_view(drive, camera);
+  std::vector<UpsamplingTime> times;
+  for (const PaperUpsampling& column : paper_table_1()) {
+    times.push_back(time_one(shuffled, camera, column.points));
+  }
+  return times;
+}
+
+}  // namespace fovea::app

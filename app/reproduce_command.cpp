@@ -1,0 +1,121 @@
+// fovea reproduce: the paper's tables and figures on given drives.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/drive_arguments.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "app/reports.h"
+#include "app/reproduce/results_page.h"
+#include "app/reproduce/rows.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+
+namespace fovea::app {
+namespace {
+
+struct ReproduceArguments {
+  std::vector<std::string> drives, rows;
+  std::string output, cameras, frames;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// A name for files: the drive's own folder.
+std::string name_of(const FrameSource& drive) {
+  return std::filesystem::absolute(drive.info().path / "").parent_path().filename().string();
+}
+
+/// Rows as asked for, in the order of the tables.
+std::vector<std::string> wanted_rows(const ReproduceArguments& arguments) {
+  if (arguments.rows.empty()) return reproduced_rows();
+  std::vector<std::string> rows;
+  for (const std::string& row : reproduced_rows()) {
+    if (std::find(arguments.rows.begin(), arguments.rows.end(), row) != arguments.rows.end()) rows.push_back(row);
+  }
+  return rows;
+}
+
+std::string command_line(const ReproduceArguments& arguments) {
+  std::string text = "fovea reproduce";
+  for (const std::string& drive : arguments.drives) {
+    text += " " + std::filesystem::path(drive).lexically_normal().filename().string();
+  }
+  text += " -o " + std::filesystem::path(arguments.output).filename().string();
+  if (!arguments.cameras.empty()) text += " --cameras " + arguments.cameras;
+  if (!arguments.frames.empty()) text += " --frames " + arguments.frames;
+  return text;
+}
+
+std::filesystem::path make_folder(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed || !std::filesystem::is_directory(folder)) {
+    throw OutputError("the folder cannot be made", folder.string(), "give another -o");
+  }
+  return folder;
+}
+
+void run(const ReproduceArguments& arguments) {
+  const InterruptGuard interrupt;
+  const ThreadLimit threads(arguments.threads);
+  const std::vector<std::string> rows = wanted_rows(arguments);
+  std::vector<std::unique_ptr<FrameSource>> sources;  // all opened first: a bad path must not cost a run
+  for (const std::string& drive : arguments.drives) {
+    sources.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
+  }
+  const std::filesystem::path output = make_folder(arguments.output);
+  ProgressBar bar(arguments.quiet, "rows");
+  const int total = static_cast<int>(rows.size() * sources.size());
+  int done = 0;
+  std::vector<DriveResults> results;
+  for (const auto& source : sources) {
+    const DriveInfo& info = source->info();
+    DriveResults drive{name_of(*source), {}, info.end - info.begin, {}, time_upsampling(*source)};
+    for (const Camera& camera : info.calibration.cameras) drive.cameras.push_back(camera.index);
+    const std::filesystem::path folder = make_folder(output / ("rows-" + drive.name));
+    for (const std::string& row : rows) {
+      nlohmann::ordered_json result = run_row(*source, row, folder, interrupt.token());
+      if (result.is_null()) {
+        fmt::print("interrupted: the rows that are done are kept; the same command goes on\n");
+        return;
+      }
+      drive.rows.push_back(std::move(result));
+      bar.draw(++done, total, row + "  ");
+    }
+    results.push_back(std::move(drive));
+  }
+  OutputFile json(output / "results.json", /*force=*/true), page(output / "results.md", /*force=*/true);
+  page.stream() << write_results_page(results, command_line(arguments), output);
+  write_json(json, results_json(results));
+  page.commit();
+  if (!arguments.quiet) fmt::print("{}\n", (output / "results.md").string());
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app) {
+  auto arguments = std::make_shared<ReproduceArguments>();
+  CLI::App* command =
+      app.add_subcommand("reproduce", "The paper's tables and figures on drives of your own");
+  command->add_option("DRIVE", arguments->drives, "Drives, one or more")->required();
+  command->add_option("-o,--output", arguments->output, "Folder for results.md, results.json and charts")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--cameras", arguments->cameras, "Cameras, in turn (default: 2)")->type_name("K,...");
+  command->add_option("--frames", arguments->frames, "Half-open range of frame indices")->type_name("A:B");
+  command->add_option("--rows", arguments->rows, "Only these rows (default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(reproduced_rows()));
+  command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app
