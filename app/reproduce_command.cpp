@@ -36,7 +36,8 @@ std::vector<std::string> wanted_rows(const ReproduceArguments& arguments) {
   if (arguments.rows.empty()) return reproduced_rows();
   std::vector<std::string> rows;
   for (const std::string& row : reproduced_rows()) {
-    if (std::find(arguments.rows.begin(), arguments.rows.end(), row) != arguments.rows.end()) rows.push_back(row);
+    if (std::find(arguments.rows.begin(), arguments.rows.end(), row) != arguments.rows.end())
+      rows.push_back(row);
   }
   return rows;
 }
@@ -65,7 +66,8 @@ void run(const ReproduceArguments& arguments) {
   const InterruptGuard interrupt;
   const ThreadLimit threads(arguments.threads);
   const std::vector<std::string> rows = wanted_rows(arguments);
-  std::vector<std::unique_ptr<FrameSource>> sources;  // all opened first: a bad path must not cost a run
+  std::vector<std::unique_ptr<FrameSource>>
+      sources;  // all opened first: a bad path must not cost a run
   for (const std::string& drive : arguments.drives) {
     sources.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
   }
@@ -90,7 +92,8 @@ void run(const ReproduceArguments& arguments) {
     }
     results.push_back(std::move(drive));
   }
-  OutputFile json(output / "results.json", /*force=*/true), page(output / "results.md", /*force=*/true);
+  OutputFile json(output / "results.json", /*force=*/true),
+      page(output / "results.md", /*force=*/true);
   page.stream() << write_results_page(results, command_line(arguments), output);
   write_json(json, results_json(results));
   page.commit();
@@ -104,11 +107,15 @@ void add_reproduce_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("reproduce", "The paper's tables and figures on drives of your own");
   command->add_option("DRIVE", arguments->drives, "Drives, one or more")->required();
-  command->add_option("-o,--output", arguments->output, "Folder for results.md, results.json and charts")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Folder for results.md, results.json and charts")
       ->required()
       ->type_name("DIR");
-  command->add_option("--cameras", arguments->cameras, "Cameras, in turn (default: 2)")->type_name("K,...");
-  command->add_option("--frames", arguments->frames, "Half-open range of frame indices")->type_name("A:B");
+  command->add_option("--cameras", arguments->cameras, "Cameras, in turn (default: 2)")
+      ->type_name("K,...");
+  command->add_option("--frames", arguments->frames, "Half-open range of frame indices")
+      ->type_name("A:B");
   command->add_option("--rows", arguments->rows, "Only these rows (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember(reproduced_rows()));

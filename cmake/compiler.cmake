@@ -2,8 +2,9 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-# One flag for libraries and programs alike, so that both share one precompiled header.
-add_compile_options(-fPIC)
+# One flag for libraries and programs alike, so that both share one precompiled header. Without
+# semantic interposition the compiler may inline what a shared library could otherwise replace.
+add_compile_options(-fPIC -fno-semantic-interposition)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()

@@ -18,10 +18,17 @@ std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
     switch (c) {
-      case '&': safe += "&amp;"; break;
-      case '<': safe += "&lt;"; break;
-      case '>': safe += "&gt;"; break;
-      default: safe += c;
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      default:
+        safe += c;
     }
   }
   return safe;
@@ -74,15 +81,16 @@ class Drawing {
   }
   void text(double x, double y, const char* anchor, const std::string& what,
             const std::string& more = "") {
-    out_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"#222\" {}>{}</text>\n",
-                        x, y, anchor, more, escaped(what));
+    out_ += fmt::format(
+        "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"#222\" {}>{}</text>\n", x, y,
+        anchor, more, escaped(what));
   }
   void axis() {
     const double step = tick_step(top_);
     for (double v = 0; v <= top_; v += step) {
       out_ += fmt::format(
-          "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n", kLeft,
-          kWidth - kRight, y_of(v), y_of(v));
+          "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n",
+          kLeft, kWidth - kRight, y_of(v), y_of(v));
       text(kLeft - 6, y_of(v) + 4, "end", fmt::format("{:.4g}", v));
     }
     const double middle = 0.5 * (kTop + kHeight - kBottom);
@@ -92,8 +100,8 @@ class Drawing {
   void legend() {
     double x = kLeft;
     for (std::size_t s = 0; s < chart_.series.size(); ++s) {
-      out_ += fmt::format("<rect x=\"{:.1f}\" y=\"24\" width=\"10\" height=\"10\" fill=\"{}\"/>\n", x,
-                          kColors[s % kColors.size()]);
+      out_ += fmt::format("<rect x=\"{:.1f}\" y=\"24\" width=\"10\" height=\"10\" fill=\"{}\"/>\n",
+                          x, kColors[s % kColors.size()]);
       text(x + 14, 33, "start", chart_.series[s].name);
       x += 28 + 6.4 * static_cast<double>(chart_.series[s].name.size());
     }
@@ -108,8 +116,8 @@ class Drawing {
       if (!std::isfinite(value)) continue;
       const double x = left + bar * static_cast<double>(s), y = y_of(std::min(value, top_));
       out_ += fmt::format(
-          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x, y,
-          0.92 * bar, kHeight - kBottom - y, kColors[s % kColors.size()]);
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x,
+          y, 0.92 * bar, kHeight - kBottom - y, kColors[s % kColors.size()]);
       if (value > top_) {
         text(x + 0.5 * bar, y - 3, "middle", fmt::format("{:.3g}", value), "font-size=\"9\"");
       }

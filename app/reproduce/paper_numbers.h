@@ -22,7 +22,8 @@ struct PaperRow {
 };
 std::span<const PaperRow> paper_table_2();
 
-/// The paper's Table I: time to upsample to so many points (s), theirs and that of moving least squares.
+/// The paper's Table I: time to upsample to so many points (s), theirs and that of moving least
+/// squares.
 struct PaperUpsampling {
   int points;
   double proposed, mls;

@@ -11,7 +11,7 @@
 namespace fovea::app {
 
 struct DriveResults {
-  std::string name;                        ///< of the drive's folder
+  std::string name;  ///< of the drive's folder
   std::vector<int> cameras;
   int frames = 0;
   std::vector<nlohmann::ordered_json> rows;  ///< see run_row

@@ -65,13 +65,15 @@ class RowRun {
         all["in_sample_nav"] = score(scored, drive_, Protocol::kInSampleNavigation);
       }
       const ScanMatching matching = scan_matching(scored, drive_);
-      all["scan_matching"] = {{"mean", matching.mean}, {"points", matching.points}, {"pairs", matching.pairs}};
+      all["scan_matching"] = {
+          {"mean", matching.mean}, {"points", matching.points}, {"pairs", matching.pairs}};
     }
     Json held = map(options, HoldOut::parse(kHoldOut));
     if (stop_.stop_requested()) return nullptr;
     held["held_out"] = score(load_scored_map(map_file_, {}), drive_, Protocol::kHeldOut);
     std::filesystem::remove(map_file_);
-    return {{"row", row_}, {"config", fingerprint(options, drive_)}, {"all", all}, {"held_out", held}};
+    return {
+        {"row", row_}, {"config", fingerprint(options, drive_)}, {"all", all}, {"held_out", held}};
   }
 
  private:

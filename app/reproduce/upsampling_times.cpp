@@ -31,7 +31,8 @@ PointCloud scan_in_view(const FrameSource& drive, const Camera& camera) {
       if (pixel && camera.in_view(*pixel)) visible.push_back(i);
     }
     Random random(1);
-    for (std::size_t i = visible.size(); i > 1; --i) std::swap(visible[i - 1], visible[random.below(i)]);
+    for (std::size_t i = visible.size(); i > 1; --i)
+      std::swap(visible[i - 1], visible[random.below(i)]);
     return points_cam.select(visible);
   }
   throw InputError("no frame of the drive can be read", info.path.string(), "check its files");
@@ -50,7 +51,8 @@ UpsamplingTime time_one(const PointCloud& shuffled, const Camera& camera, int wa
     return upsample(first_points(shuffled, count), camera, options).size();
   };
   const auto goal = static_cast<std::size_t>(wanted);
-  for (options.rate = 1; options.rate < kMaxRate && produced(shuffled.size()) < goal;) ++options.rate;
+  for (options.rate = 1; options.rate < kMaxRate && produced(shuffled.size()) < goal;)
+    ++options.rate;
   // As few points as give the number wanted: what they give grows with their number.
   std::size_t low = 3, high = shuffled.size();
   while (high - low > high / 100 + 1) {
@@ -63,7 +65,8 @@ UpsamplingTime time_one(const PointCloud& shuffled, const Camera& camera, int wa
   for (int run = 0; run < kRuns; ++run) {
     const auto start = std::chrono::steady_clock::now();
     time.points = upsample(points, camera, options).size();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   std::sort(seconds.begin(), seconds.end());
   time.seconds = seconds[kRuns / 2];

@@ -1,4 +1,5 @@
-// Scan-matching error: how well neighbouring scans lie on each other (paper: first chart of the results).
+// Scan-matching error: how well neighbouring scans lie on each other (paper: first chart of the
+// results).
 #pragma once
 
 #include <cstddef>
@@ -9,15 +10,16 @@
 namespace fovea {
 
 struct ScanMatching {
-  double mean = 0;         ///< m, over all matched points of all pairs of frames; NaN if there is none
+  double mean = 0;  ///< m, over all matched points of all pairs of frames; NaN if there is none
   std::size_t points = 0;  ///< matched
   std::size_t pairs = 0;   ///< of neighbouring frames
 };
 
-/// Mean distance from the points of each mapped scan, placed by the map's poses, to the nearest point of
-/// the mapped scan before it: ORIGINAL points only (with interpolated ones the figure falls by density
-/// alone), without ground, in view of one of the drive's cameras, pairs under 1 m (docs/method.md 2).
-/// Scans are motion compensated with the map's velocities. Does not depend on the number of threads.
+/// Mean distance from the points of each mapped scan, placed by the map's poses, to the nearest
+/// point of the mapped scan before it: ORIGINAL points only (with interpolated ones the figure
+/// falls by density alone), without ground, in view of one of the drive's cameras, pairs under 1 m
+/// (docs/method.md 2). Scans are motion compensated with the map's velocities. Does not depend on
+/// the number of threads.
 ScanMatching scan_matching(const ScoredMap& map, const FrameSource& drive);
 
 }  // namespace fovea

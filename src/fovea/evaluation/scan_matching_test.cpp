@@ -9,7 +9,8 @@
 namespace fovea {
 namespace {
 
-/// What a map of the drive knows of its frames, every pose off by `error` (m, sideways) times its index.
+/// What a map of the drive knows of its frames, every pose off by `error` (m, sideways) times its
+/// index.
 ScoredMap map_with_poses(const SyntheticDrive& drive, double error) {
   ScoredMap map;
   for (std::size_t i = 0; i < drive.T_local_lidar.size(); ++i) {

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 /// Pixels whose samples differ by more than this (encoded, 0-255) are sampled again, finer.
-constexpr float kEdge = 16;
+constexpr float kEdge = 20;
 // Samples along each side of a pixel, else and there: a packet is two coarse pixels or half a fine
 // one.
 constexpr int kCoarse = 2, kFine = 4;

@@ -103,11 +103,10 @@ void apply_placement(const Placement& placement, RayHit& hit) {
 }
 
 /// The hit on a triangle known to be met, in double: Embree's own distance is good to 1e-5 m only.
-RayHit exact_hit(const TriangleMesh& mesh, std::uint32_t triangle, const RigidMotion& T_world_mesh,
-                 const Vector3d& from, const Vector3d& along, double approximate) {
-  const Vector3d a = T_world_mesh * mesh.corner(triangle, 0),
-                 b = T_world_mesh * mesh.corner(triangle, 1),
-                 c = T_world_mesh * mesh.corner(triangle, 2);
+/// @param a,b,c  its corners in the world
+RayHit exact_hit(const TriangleMesh& mesh, std::uint32_t triangle, const Vector3d& a,
+                 const Vector3d& b, const Vector3d& c, const Vector3d& from, const Vector3d& along,
+                 double approximate) {
   const Vector3d cross = (b - a).cross(c - a);
   const double across = cross.dot(along);
   RayHit hit;
@@ -212,8 +211,10 @@ RayCaster::Moment RayCaster::moment(double time, double way) const {
 }
 
 RayHit RayCaster::exact(const Found& found, const Vector3d& from, const Vector3d& along) const {
-  return exact_hit(resident_->instances[found.instance]->mesh, found.triangle,
-                   RigidMotion::Identity(), from, along, found.distance);
+  const TriangleMesh& mesh = resident_->instances[found.instance]->mesh;
+  return exact_hit(mesh, found.triangle, mesh.corner(found.triangle, 0),
+                   mesh.corner(found.triangle, 1), mesh.corner(found.triangle, 2), from, along,
+                   found.distance);
 }
 
 void RayCaster::cast_at_movers(const Moment& moment, const Vector3d& from, const Vector3d& along,
@@ -230,8 +231,11 @@ void RayCaster::cast_at_movers(const Moment& moment, const Vector3d& from, const
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(traced.scene.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-    hit = exact_hit(traced.mesh, query.hit.primID, mover.placement.T_world_model, from, along,
-                    query.ray.tfar);
+    const RigidMotion& T = mover.placement.T_world_model;
+    const std::uint32_t triangle = query.hit.primID;
+    hit = exact_hit(traced.mesh, triangle, T * traced.mesh.corner(triangle, 0),
+                    T * traced.mesh.corner(triangle, 1), T * traced.mesh.corner(triangle, 2), from,
+                    along, query.ray.tfar);
     apply_placement(mover.placement, *hit);
   }
 }
