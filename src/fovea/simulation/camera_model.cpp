@@ -19,7 +19,7 @@ constexpr float kEdge = 20;
 // Samples along each side of a pixel, else and there: a packet is two coarse pixels or half a fine
 // one.
 constexpr int kCoarse = 2, kFine = 4;
-static_assert(RayCaster::kPacket == 2 * kCoarse * kCoarse);
+static_assert(RayCaster::kPacket == std::size_t{2} * kCoarse * kCoarse);
 /// Coarse samples from a pixel's centre: of the fine ones one in each row and column, so that an
 /// upright or level edge that takes more than an eighth of the pixel does not pass unseen.
 constexpr std::array<std::array<double, 2>, 4> kCoarsePlaces{
@@ -107,7 +107,7 @@ auto CameraModel::sample_pair(double u, double v, const RigidMotion& T_world_cam
   RayCaster::Packet<Eigen::Vector2d> places;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto& [x, y] = kCoarsePlaces[k % 4];
-    places[k] = {u + static_cast<double>(k / 4) + x, v + y};
+    places[k] = {(k < 4 ? u : u + 1) + x, v + y};
   }
   std::array<PixelSum, 2> sums;
   trace(

@@ -123,7 +123,8 @@ float lettering_ink(std::string_view text, const Eigen::Vector2f& place,
   const float step = side / static_cast<float>(steps);
   float sum = 0;
   for (int i = 0; i < steps * steps; ++i) {
-    const Eigen::Vector2f cell(static_cast<float>(i % steps), static_cast<float>(i / steps));
+    const int column = i % steps, row = i / steps;
+    const Eigen::Vector2f cell(static_cast<float>(column), static_cast<float>(row));
     const Eigen::Vector2f offset = step * (cell.array() + 0.5f) - 0.5f * side;
     sum += ink_on_grid(text, p + offset, std::min(step, kSoftest));
   }

@@ -46,12 +46,14 @@ float resolved(float size, float footprint) {
 
 float layered_noise(const Eigen::Vector2f& p, float longest, float shortest, float footprint,
                     std::uint32_t seed) {
-  float sum = 0, amplitude = 0.6f;
-  for (float length = longest; length >= 0.75f * shortest; length *= 0.5f, amplitude *= 0.6f) {
+  float sum = 0, amplitude = 0.6f, length = longest;
+  while (length >= 0.75f * shortest) {
     const float weight = resolved(0.5f * length, footprint);  // two samples a wave
     if (weight <= 0) break;                                   // so are all that follow
     sum += weight * amplitude * value_noise(p / length, seed);
     seed += 0x51ed27u;
+    length *= 0.5f;
+    amplitude *= 0.6f;
   }
   return sum;
 }
