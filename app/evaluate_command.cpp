@@ -77,7 +77,9 @@ void run(EvaluateArguments arguments) {
 void add_evaluate_command(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand("evaluate", "Score a map against a drive");
-  command->add_option("MAP", arguments->map, "Fovea map, or coloured PLY cloud with --poses")
+  command
+      ->add_option("MAP", arguments->map,
+                   "Fovea map, or coloured cloud (PLY, PCD, LAS) with --poses")
       ->required();
   command->add_option("DRIVE", arguments->drive.drive, "The drive whose scans and images score it")
       ->required();

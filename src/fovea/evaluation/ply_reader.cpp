@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -15,8 +13,6 @@ namespace fovea {
 namespace {
 
 constexpr int kMaxHeaderLines = 1000;
-
-enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
 std::optional<Scalar> parse_scalar(std::string_view name) {
   if (name == "char" || name == "int8") return Scalar::kInt8;
@@ -30,98 +26,33 @@ std::optional<Scalar> parse_scalar(std::string_view name) {
   return std::nullopt;
 }
 
-std::size_t size_of(Scalar type) {
-  switch (type) {
-    case Scalar::kInt8:
-    case Scalar::kUint8:
-      return 1;
-    case Scalar::kInt16:
-    case Scalar::kUint16:
-      return 2;
-    case Scalar::kInt32:
-    case Scalar::kUint32:
-    case Scalar::kFloat:
-      return 4;
-    case Scalar::kDouble:
-      return 8;
-  }
-  return 0;
-}
-
-template <class T>
-double read_as(const char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);  // little endian, like every machine this is built for
-  return static_cast<double>(value);
-}
-
-double decode(Scalar type, const char* bytes) {
-  switch (type) {
-    case Scalar::kInt8:
-      return read_as<std::int8_t>(bytes);
-    case Scalar::kUint8:
-      return read_as<std::uint8_t>(bytes);
-    case Scalar::kInt16:
-      return read_as<std::int16_t>(bytes);
-    case Scalar::kUint16:
-      return read_as<std::uint16_t>(bytes);
-    case Scalar::kInt32:
-      return read_as<std::int32_t>(bytes);
-    case Scalar::kUint32:
-      return read_as<std::uint32_t>(bytes);
-    case Scalar::kFloat:
-      return read_as<float>(bytes);
-    case Scalar::kDouble:
-      return read_as<double>(bytes);
-  }
-  return 0;
-}
-
 struct Property {
   std::string name;
   Scalar type;
   std::size_t offset;  // in a binary vertex
 };
 
-/// The columns that are read, in the order in which a vertex's values are handed on.
-enum Column : std::size_t {
-  kX,
-  kY,
-  kZ,
-  kRed,
-  kGreen,
-  kBlue,
-  kCamera,
-  kFrame,
-  kInterpolated,
-  kColumns
-};
-constexpr std::array<const char*, kColumns> kColumnNames = {
+/// By column.
+constexpr std::array<const char*, kCloudColumns> kColumnNames = {
     "x", "y", "z", "red", "green", "blue", "camera", "frame", "interpolated"};
-using Vertex = std::array<double, kColumns>;
 
 struct Header {
   bool ascii = false;
   std::size_t vertices = 0;
   std::vector<Property> properties;
   std::size_t vertex_bytes = 0;
-  std::array<std::optional<std::size_t>, kColumns> columns;  // into properties
+  std::array<std::optional<std::size_t>, kCloudColumns> columns;  // into properties
 
-  bool has(Column column) const { return columns[column].has_value(); }
+  bool has(CloudColumn column) const { return columns[column].has_value(); }
 };
 
 class PlyFile {
  public:
   PlyFile(const std::filesystem::path& file, const Eigen::Vector3d& origin)
-      : name_(file.string()), stream_(file, std::ios::binary) {
-    if (!stream_) throw InputError("the file cannot be read", name_, "check the path");
-    cloud_.points.origin = origin;
+      : name_(file.string()), lines_(file), cloud_(file, origin) {
     read_header();
     resolve_columns();
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-    const std::uintmax_t rest =
-        error ? 0 : bytes - std::min<std::uintmax_t>(bytes, stream_.tellg());
+    const std::uintmax_t rest = lines_.rest();
     // A vertex takes at least two characters a property as text. Checked before anything is
     // allocated: the count of a damaged header can be anything.
     const std::size_t least = header_.ascii ? 2 * header_.properties.size() : header_.vertex_bytes;
@@ -133,35 +64,32 @@ class PlyFile {
     }
   }
 
-  PlyCloud read() {
-    reserve();
+  CloudFile read() {
+    std::array<bool, kCloudColumns> columns{};
+    for (std::size_t column = 0; column < kCloudColumns; ++column) {
+      columns[column] = header_.columns[column].has_value();
+    }
+    cloud_.expect(header_.vertices, columns);
     header_.ascii ? read_ascii() : read_binary();
-    return std::move(cloud_);
+    return cloud_.take();
   }
 
  private:
   [[noreturn]] void reject(const std::string& what) const {
-    throw InputError(what, name_ + ":" + std::to_string(line_number_),
+    throw InputError(what, name_ + ":" + std::to_string(std::max(1, lines_.line_number())),
                      "give a PLY file with x y z and red green blue");
   }
 
   std::string next_line() {
-    std::string line;
-    if (!std::getline(stream_, line)) reject("the PLY file ends early");
-    ++line_number_;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    return line;
+    std::optional<std::string> line = lines_.next();
+    if (!line) reject("the PLY file ends early");
+    return *std::move(line);
   }
 
   void read_header() {
-    char magic[3] = {};
-    stream_.read(magic, sizeof magic);
-    line_number_ = 1;
-    if (std::string_view(magic, 3) != "ply") reject("this is no PLY file");
-    line_number_ = 0;
-    if (!next_line().empty()) reject("this is no PLY file");
+    if (lines_.next() != "ply") reject("this is no PLY file");
     bool format_seen = false, vertices_seen = false, in_vertices = false;
-    while (line_number_ < kMaxHeaderLines) {
+    while (lines_.line_number() < kMaxHeaderLines) {
       std::istringstream words(next_line());
       std::string keyword, name;
       words >> keyword;
@@ -200,7 +128,7 @@ class PlyFile {
 
   void resolve_columns() {
     const auto& properties = header_.properties;
-    for (std::size_t column = 0; column < kColumns; ++column) {
+    for (std::size_t column = 0; column < kCloudColumns; ++column) {
       const auto found = std::find_if(properties.begin(), properties.end(), [&](const Property& p) {
         return p.name == kColumnNames[column];
       });
@@ -218,37 +146,6 @@ class PlyFile {
     if (header_.has(kRed) != header_.has(kGreen) || header_.has(kRed) != header_.has(kBlue)) {
       reject("red, green and blue are not all there");
     }
-    cloud_.has_camera = header_.has(kCamera);
-  }
-
-  void reserve() {
-    PointCloud& points = cloud_.points;
-    points.position.reserve(header_.vertices);
-    points.color.reserve(header_.vertices);
-    points.camera.reserve(header_.vertices);
-    if (header_.has(kFrame)) points.frame.reserve(header_.vertices);
-    if (header_.has(kInterpolated)) points.interpolated.reserve(header_.vertices);
-  }
-
-  void add(const Vertex& vertex) {
-    const auto refuse = [&](const char* what) {
-      throw InputError(what, name_ + ", vertex " + std::to_string(cloud_.points.size()),
-                       "write the file anew");
-    };
-    const Eigen::Vector3d p(vertex[kX], vertex[kY], vertex[kZ]);
-    if (!p.allFinite()) refuse("a coordinate is not finite");
-    const double camera = !header_.has(kRed) ? kNoCamera : vertex[kCamera];
-    if (!(camera >= kNoCamera && camera <= 127)) refuse("a camera number is out of range");
-    const double frame = vertex[kFrame];
-    if (!(std::abs(frame) < 2e9)) refuse("a frame number is out of range");
-    PointCloud& points = cloud_.points;
-    points.position.push_back((p - points.origin).cast<float>());
-    points.camera.push_back(static_cast<std::int8_t>(camera));
-    points.color.push_back({static_cast<std::uint8_t>(vertex[kRed]),
-                            static_cast<std::uint8_t>(vertex[kGreen]),
-                            static_cast<std::uint8_t>(vertex[kBlue])});
-    if (header_.has(kFrame)) points.frame.push_back(static_cast<std::int32_t>(frame));
-    if (header_.has(kInterpolated)) points.interpolated.push_back(vertex[kInterpolated] != 0);
   }
 
   void read_binary() {
@@ -257,16 +154,17 @@ class PlyFile {
     for (std::size_t begin = 0; begin < header_.vertices; begin += kBlock) {
       const std::size_t count = std::min(kBlock, header_.vertices - begin);
       const auto bytes = static_cast<std::streamsize>(count * header_.vertex_bytes);
-      if (!stream_.read(buffer.data(), bytes)) reject("the PLY file cannot be read to its end");
+      if (!lines_.stream().read(buffer.data(), bytes))
+        reject("the PLY file cannot be read to its end");
       for (std::size_t i = 0; i < count; ++i) {
         const char* row = buffer.data() + i * header_.vertex_bytes;
-        Vertex vertex{};
-        for (std::size_t column = 0; column < kColumns; ++column) {
+        CloudRow vertex{};
+        for (std::size_t column = 0; column < kCloudColumns; ++column) {
           if (!header_.columns[column]) continue;
           const Property& property = header_.properties[*header_.columns[column]];
           vertex[column] = decode(property.type, row + property.offset);
         }
-        add(vertex);
+        cloud_.add(vertex, begin + i);
       }
     }
   }
@@ -277,27 +175,23 @@ class PlyFile {
       if (!numbers || numbers->size() != header_.properties.size()) {
         reject("a vertex is not " + std::to_string(header_.properties.size()) + " numbers");
       }
-      Vertex vertex{};
-      for (std::size_t column = 0; column < kColumns; ++column) {
+      CloudRow vertex{};
+      for (std::size_t column = 0; column < kCloudColumns; ++column) {
         if (header_.columns[column]) vertex[column] = (*numbers)[*header_.columns[column]];
       }
-      for (const Column color : {kRed, kGreen, kBlue}) {
-        if (!(vertex[color] >= 0 && vertex[color] <= 255)) reject("a colour is not in 0-255");
-      }
-      add(vertex);
+      cloud_.add(vertex, i);
     }
   }
 
   std::string name_;
-  std::ifstream stream_;
-  int line_number_ = 0;
+  LineReader lines_;
   Header header_;
-  PlyCloud cloud_;
+  CloudBuilder cloud_;
 };
 
 }  // namespace
 
-PlyCloud read_ply(const std::filesystem::path& file, const Eigen::Vector3d& origin) {
+CloudFile read_ply(const std::filesystem::path& file, const Eigen::Vector3d& origin) {
   return PlyFile(file, origin).read();
 }
 

@@ -3,7 +3,8 @@
 #include <set>
 
 #include "fovea/base/errors.h"
-#include "fovea/evaluation/ply_reader.h"
+#include "fovea/evaluation/cloud_format.h"
+#include "fovea/evaluation/las_reader.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/transform_cloud.h"
 
@@ -61,7 +62,9 @@ std::vector<FrameRecord> pose_records(const std::filesystem::path& file, int fir
   return records;
 }
 
-ScoredMap load_cloud(const std::filesystem::path& path, const ScoredMapOptions& options) {
+ScoredMap load_cloud(const std::filesystem::path& path, CloudFormat format,
+                     const ScoredMapOptions& options) {
+  if (format == CloudFormat::kLaz) reject_laz(path);  // whatever else is missing
   if (!options.poses) {
     throw ConfigError("a point cloud has no poses", path.string(),
                       "give --poses FILE, one T_local_lidar a line");
@@ -69,21 +72,16 @@ ScoredMap load_cloud(const std::filesystem::path& path, const ScoredMapOptions& 
   ScoredMap map;
   map.statuses_known = false;
   map.frames = pose_records(*options.poses, options.first_frame);
-  PlyCloud ply = read_ply(path, center_of(map.frames));
-  map.points_local = std::move(ply.points);
-  if (ply.has_camera) map.cameras = cameras_of(map.points_local);
+  CloudFile cloud = read_cloud(path, format, center_of(map.frames));
+  map.points_local = std::move(cloud.points);
+  if (cloud.has_camera) map.cameras = cameras_of(map.points_local);
   return map;
 }
 
 }  // namespace
 
 ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options) {
-  const std::string ending = path.extension().string();
-  if (ending == ".ply") return load_cloud(path, options);
-  if (ending == ".pcd" || ending == ".las" || ending == ".laz") {
-    throw InputError("clouds of the format " + ending + " cannot be scored yet", path.string(),
-                     "convert it to PLY");
-  }
+  if (const auto format = cloud_format(path)) return load_cloud(path, *format, options);
   if (options.poses) {
     throw ConfigError("a Fovea map has poses of its own", path.string(), "leave out --poses");
   }

@@ -28,9 +28,9 @@ struct ScoredMapOptions {
   int first_frame = 0;  ///< frame index of the first line of `poses`
 };
 
-/// Loads a Fovea map, or a coloured PLY cloud with its poses, told apart by the file's ending.
-/// InputError if a file is missing, damaged or of a format that is not read (PCD, LAS); ConfigError
-/// for poses that are missing or not wanted.
+/// Loads a Fovea map, or a coloured cloud (PLY, PCD, LAS) with its poses, told apart by the file's
+/// ending. InputError if a file is missing, damaged or of a format that is not read (LAZ);
+/// ConfigError for poses that are missing or not wanted.
 ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options);
 
 }  // namespace fovea

@@ -52,7 +52,7 @@ const std::string kAsciiHeader =
     "property uchar blue\nend_header\n";
 
 TEST_F(ScoredMapTest, ReadsAsciiClouds) {
-  const PlyCloud ply =
+  const CloudFile ply =
       read_ply(write("a.ply", kAsciiHeader + "1 2 3 4 5 6\n-1.5 1e1 0 255 0 7"), {1, 1, 1});
   ASSERT_EQ(ply.points.size(), 2u);
   EXPECT_EQ(ply.points.origin, Eigen::Vector3d(1, 1, 1));
@@ -80,7 +80,7 @@ TEST_F(ScoredMapTest, ReadsBinaryCloudsWithAnyFurtherProperties) {
     put(bytes, 100 + i);
     put(bytes, static_cast<std::uint8_t>(i));
   }
-  const PlyCloud ply = read_ply(write("b.ply", bytes + "face"), {500000, 0, 0});
+  const CloudFile ply = read_ply(write("b.ply", bytes + "face"), {500000, 0, 0});
   EXPECT_THAT(ply.points.position,
               ElementsAre(Eigen::Vector3f(0.25f, 2, 3), Eigen::Vector3f(1.25f, 2, 3)));
   EXPECT_THAT(ply.points.color, ElementsAre(Rgb{1, 2, 200}, Rgb{1, 2, 200}));
@@ -91,7 +91,7 @@ TEST_F(ScoredMapTest, ReadsBinaryCloudsWithAnyFurtherProperties) {
 }
 
 TEST_F(ScoredMapTest, CloudsWithoutColorsAreUncoloured) {
-  const PlyCloud ply =
+  const CloudFile ply =
       read_ply(write("c.ply",
                      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                      "property float z\nend_header\n1 2 3\n"),
@@ -112,7 +112,7 @@ TEST_F(ScoredMapTest, RejectsMalformedClouds) {
   std::string header = kAsciiHeader;
   expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1.25 2 3 4 5\n", "bad.ply:13");
   expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1 2 3 4 5 256\n", "0-255");
-  expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1 nan 3 4 5 6\n", "vertex 1");
+  expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1 nan 3 4 5 6\n", "point 1");
   expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n", "too short");
   header.replace(header.find("vertex 2"), 8, "vertex 99999999999999");
   expect_rejected(header + "1 2 3 4 5 6\n", "too short");
@@ -152,9 +152,23 @@ TEST_F(ScoredMapTest, ACloudComesWithItsPoses) {
   EXPECT_THROW(load_scored_map(cloud, options), InputError);
 }
 
-TEST_F(ScoredMapTest, OtherCloudsAreRefused) {
-  for (const char* name : {"a.pcd", "a.las", "a.laz"}) {
-    EXPECT_THROW(load_scored_map(write(name, "x"), {}), InputError);
+TEST_F(ScoredMapTest, CompressedLasIsRefusedWithAWayOut) {
+  for (const char* name : {"a.laz", "a.LAZ"}) {
+    EXPECT_THAT([&] { load_scored_map(write(name, "x"), {}); },
+                ThrowsMessage<InputError>(HasSubstr("laszip")));
+  }
+}
+
+TEST_F(ScoredMapTest, CloudsAreToldByTheirEnding) {
+  const auto poses = write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const std::string pcd =
+      "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nWIDTH 1\nHEIGHT 1\nDATA ascii\n1 2 3 66051\n";
+  for (const char* name : {"a.pcd", "a.PCD"}) {
+    const ScoredMap map = load_scored_map(write(name, pcd), {.poses = poses});
+    EXPECT_THAT(map.points_local.color, ElementsAre(Rgb{1, 2, 3}));
+  }
+  for (const char* name : {"a.ply", "a.las"}) {
+    EXPECT_THROW(load_scored_map(write(name, pcd), {.poses = poses}), InputError);
   }
 }
 

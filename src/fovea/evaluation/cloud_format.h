@@ -1,0 +1,23 @@
+// Which clouds of other programs can be scored, and their readers.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+
+#include "fovea/evaluation/cloud_columns.h"
+
+namespace fovea {
+
+enum class CloudFormat { kPly, kPcd, kLas, kLaz };
+
+/// By the ending, in any case; empty if it is none of a cloud.
+std::optional<CloudFormat> cloud_format(const std::filesystem::path& file);
+
+/// Reads a coloured cloud, see read_ply, read_pcd and read_las. InputError if it is missing,
+/// damaged, or compressed LAS.
+/// @param origin  that the points are made relative to
+CloudFile read_cloud(const std::filesystem::path& file, CloudFormat format,
+                     const Eigen::Vector3d& origin);
+
+}  // namespace fovea
