@@ -11,6 +11,7 @@
 #include "app/drive_arguments.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
+#include "fovea/evaluation/compare_color_rules.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
 
@@ -21,7 +22,7 @@ struct EvaluateArguments {
   std::string map, protocol = "held-out", poses, hold_out, json;
   DriveArguments drive;
   int first_frame = 0, threads = 0;
-  bool truth = false, no_align = false;
+  bool truth = false, no_align = false, color_rules = false;
 };
 
 constexpr const char* kTruth = "truth";
@@ -33,6 +34,9 @@ void check(const EvaluateArguments& arguments) {
   }
   if (arguments.no_align && !arguments.truth) {
     throw CLI::ValidationError("--no-align", "only the protocol truth aligns a map");
+  }
+  if (arguments.color_rules && arguments.protocol != "held-out") {
+    throw CLI::ValidationError("--color-rules", "only the protocol held-out compares them");
   }
 }
 
@@ -47,6 +51,7 @@ void put_report(const Report& report, std::optional<OutputFile>& json) {
 
 void run(EvaluateArguments arguments) {
   arguments.truth = arguments.truth || arguments.protocol == kTruth;
+  if (arguments.truth) arguments.protocol = kTruth;
   check(arguments);
   const ThreadLimit threads(arguments.threads);
   ProtocolOptions options;
@@ -68,7 +73,9 @@ void run(EvaluateArguments arguments) {
   if (arguments.truth) {
     put_report(evaluate_truth(map, *drive, {.align = !arguments.no_align}), json);
   } else {
-    put_report(evaluate(map, *drive, options), json);
+    EvaluationReport report = evaluate(map, *drive, options);
+    if (arguments.color_rules) report.color_rules = compare_color_rules(map, *drive, options);
+    put_report(report, json);
   }
 }
 
@@ -107,6 +114,8 @@ void add_evaluate_command(CLI::App& app) {
       ->add_option("--hold-out", arguments->hold_out,
                    "Frames to score (default: those the map held out)")
       ->type_name("SPEC");
+  command->add_flag("--color-rules", arguments->color_rules,
+                    "Also compare colour rules on the map's points, by the training frames");
   command->add_option("--json", arguments->json, "Write all figures as JSON")->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
       ->check(CLI::NonNegativeNumber);

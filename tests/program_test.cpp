@@ -91,13 +91,18 @@ TEST_F(Program, MapsInfoExportEvaluate) {
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 6);  // held-out frames too
 
   const auto scores = own_ / "scores.json";
-  const ProgramRun held_out = run_fovea("evaluate " + quoted + "'" + drive_.string() +
-                                        "' --protocol held-out --json " + scores.string());
+  const ProgramRun held_out =
+      run_fovea("evaluate " + quoted + "'" + drive_.string() +
+                "' --protocol held-out --color-rules --json " + scores.string());
   ASSERT_EQ(held_out.exit_code, 0) << held_out.err;
   const auto score = nlohmann::json::parse(read_text(scores));
   EXPECT_LT(score.at("me_mean"), 0.05);
   EXPECT_LT(score.at("te_mean"), 5);  // the scene's colours are smooth
   EXPECT_GT(score.at("coverage_20cm"), 0.9);
+  ASSERT_EQ(score.at("color_rules").size(), 9u);
+  EXPECT_EQ(score.at("color_rules").at(0).at("rule"), "fovea");
+  EXPECT_NEAR(score.at("color_rules").at(0).at("te_mean"), score.at("te_mean"), 0.5);
+  EXPECT_THAT(held_out.out, HasSubstr("oracle"));
 
   // The exported cloud scores the same through its own door.
   const ProgramRun cloud = run_fovea("evaluate " + ply.string() + " '" + drive_.string() +
@@ -167,7 +172,8 @@ TEST_F(Program, WrongUsageIsExitCode2) {
        {"", "nonsense", "map", "map x", "map x -o y --frames five", "map x -o y --variant E12",
         "map x -o y --preset nonsense", "map x -o y --cameras two", "map x -o y --hold-out eight",
         "map x -o y --threads -1", "info", "info a --json --digest",
-        "evaluate a b --protocol nonsense", "export a", "map x -o y --nonsense"}) {
+        "evaluate a b --protocol nonsense", "evaluate a b --protocol in-sample --color-rules",
+        "evaluate a b --truth --color-rules", "export a", "map x -o y --nonsense"}) {
     const ProgramRun run = run_fovea(arguments);
     EXPECT_EQ(run.exit_code, 2) << arguments << "\n" << run.err;
     EXPECT_THAT(run.err, testing::StartsWith("fovea: error: ")) << arguments;

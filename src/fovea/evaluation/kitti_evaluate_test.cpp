@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "../../../tests/kitti_sample.h"
-#include "fovea/evaluation/evaluate.h"
+#include "fovea/evaluation/compare_color_rules.h"
+#include "fovea/evaluation/training_views.h"
 
 namespace fovea {
 namespace {
@@ -70,6 +71,47 @@ TEST(KittiEvaluate, FiguresOfTheKeepEveryPointMapAreThePrototypes) {
   const EvaluationReport in_sample = evaluate(map, *drive, options);
   EXPECT_LT(in_sample.figures.me_mean, 1e-4);  // a map that keeps every point
   EXPECT_LT(in_sample.figures.te_mean, 1);
+}
+
+TEST(KittiEvaluate, RulesSeeTheColoursThatTheMapTookFromTheSameViews) {
+  FOVEA_KITTI_SAMPLE_OR_SKIP(path);
+  const std::unique_ptr<FrameSource> drive = open_drive(path, {});
+  const ScoredMap map = keep_every_point(*drive);
+  const ColouredPoints points = coloured_points(map.points_local);
+  const std::vector<float> spacing = sample_spacing(points.position);
+  std::size_t own = 0, same = 0, visible = 0;
+  for (const FrameRecord& record : training_frames(map, drive->info(), {}, HoldOut::parse("8:4"))) {
+    if (record.index % 10 != 1) continue;  // five of them
+    for (const TrainingView& view : load_training_views(*drive, record, {0}, points, spacing, 0)) {
+      const Eigen::Isometry3f T_cam_map =
+          RigidMotion(view.T_cam_local * Eigen::Translation3d(points.origin)).cast<float>();
+      for (std::size_t i = 0; i < points.position.size(); ++i) {
+        if (map.points_local.frame[i] != record.index) continue;
+        const auto seen =
+            observation_of(view, T_cam_map, points.position[i], Eigen::Vector3f::Zero());
+        if (!seen) continue;
+        ++own;
+        const Eigen::Vector3f difference = to_float(seen->color) - to_float(points.color[i]);
+        same += difference.cwiseAbs().maxCoeff() <= 1 ? 1 : 0;
+        visible += seen->visible ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(own, 30000u);
+  EXPECT_GT(static_cast<double>(same), 0.999 * static_cast<double>(own));
+  // The simplest map keeps what the camera cannot see beside the LiDAR, too.
+  EXPECT_GT(static_cast<double>(visible), 0.85 * static_cast<double>(own));
+}
+
+TEST(KittiEvaluate, NoRuleIsBelowTheFloor) {
+  FOVEA_KITTI_SAMPLE_OR_SKIP(path);
+  const std::unique_ptr<FrameSource> drive = open_drive(path, {});
+  const auto scores = compare_color_rules(keep_every_point(*drive), *drive, {});
+  const ErrorFigures& floor = scores.back().figures;
+  for (const ColorRuleScore& score : scores) {
+    EXPECT_EQ(score.figures.points, floor.points) << to_text(scores);
+    EXPECT_GE(score.figures.te_mean, floor.te_mean) << to_text(scores);
+  }
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ std::string to_json(const EvaluationReport& report) {
   json["paper_like"]["explanation"] =
       "nearest neighbours among all map points, uncoloured ones counting as black";
   put_figures(json["paper_like"], report.paper_like);
+  if (!report.color_rules.empty()) json["color_rules"] = to_json(report.color_rules);
   json["frames_scored"] = report.frames;
   json["skipped"] = Json::array();
   for (const UnscoredFrame& frame : report.skipped) {
@@ -96,7 +97,7 @@ std::string to_text(const EvaluationReport& report) {
   row("paper-like ME / TE", number(p.me_mean, 4),
       fmt::format("TE {:.2f} ({:.2f}%), MTME {:.3f}; uncoloured points count as black", p.te_mean,
                   p.te_percent, p.mtme));
-  return text + explanation(report.protocol) + "\n";
+  return text + explanation(report.protocol) + "\n" + to_text(report.color_rules);
 }
 
 }  // namespace fovea

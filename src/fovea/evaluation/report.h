@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/evaluation/color_rules_report.h"
 #include "fovea/evaluation/free_space.h"
 #include "fovea/evaluation/metrics.h"
 #include "fovea/evaluation/protocol.h"
@@ -40,6 +41,7 @@ struct EvaluationReport {
   std::size_t frames = 0;         ///< scored
   std::vector<ViewReport> views;  ///< by frame, then camera
   std::vector<UnscoredFrame> skipped;
+  std::vector<ColorRuleScore> color_rules;  ///< empty unless asked for, see compare_color_rules
 };
 
 /// JSON text, the same bytes for the same report; figures that do not exist (no point, no pixel)
