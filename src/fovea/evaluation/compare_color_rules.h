@@ -10,7 +10,7 @@ namespace fovea {
 /// Gives every coloured point of a map the colours that each rule takes from the training frames,
 /// and scores them by the held-out frames, in the order of kColorRules.
 ///
-/// One pass over the training frames serves all rules; memory grows with the points (about 150
+/// One pass over the training frames serves all rules; memory grows with the points (about 200
 /// bytes each) and not with the frames. The scores do not depend on the number of threads. Frames
 /// that the drive cannot load are passed over.
 /// @param options  of the protocol held-out (ConfigError otherwise)
