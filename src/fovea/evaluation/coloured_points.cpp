@@ -50,6 +50,10 @@ ColouredPoints coloured_points(const PointCloud& map_local) {
     if (map_local.camera[i] == kNoCamera) continue;
     coloured.position.push_back(map_local.position[i]);
     coloured.color.push_back(map_local.color[i]);
+    if (!map_local.interpolated.empty()) {
+      coloured.interpolated.push_back(map_local.interpolated[i]);
+    }
+    if (!map_local.frame.empty()) coloured.frame.push_back(map_local.frame[i]);
   }
   coloured.runs = make_runs(coloured.position, kRunLength);
   return coloured;

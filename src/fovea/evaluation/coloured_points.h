@@ -25,7 +25,9 @@ struct ColouredPoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3f> position;  ///< local frame, relative to origin
   std::vector<Rgb> color;
-  std::vector<PointRun> runs;  ///< covering all points in order
+  std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling; empty where not known
+  std::vector<std::int32_t> frame;         ///< that the point comes from; empty where not known
+  std::vector<PointRun> runs;              ///< covering all points in order
 };
 
 /// The points of a map (local frame, columns color and camera) that some camera has coloured.

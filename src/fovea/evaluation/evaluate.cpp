@@ -4,6 +4,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/evaluation/scan_projection.h"
 
 namespace fovea {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 /// What one frame adds to the report.
 struct FrameScore {
   PointErrors errors, paper_like_errors;
+  std::vector<std::uint8_t> hidden;        // 1 a point of `errors` that the camera cannot see
   std::vector<Eigen::Vector3f> positions;  // of its evaluated points, in the map's float frame
   std::vector<ViewReport> views;
   std::optional<UnscoredFrame> unscored;
@@ -71,13 +73,15 @@ class Scorer {
                   const Camera& camera, const Image& image, FrameScore& score) const {
     const EvaluatedView view =
         evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
-    const NearestSamples nearest = nearest_samples(view.position, coloured_tree_, coloured_.color);
+    const NearestSamples nearest =
+        nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
     ViewReport report{placed.index, camera.index, {}, {}, {}};
     report.gains = fit_gains(view.color, nearest.color, view.grey);
     const PointErrors errors = point_errors(view, nearest, report.gains);
     report.figures = summarize(errors);
     report.gradients = draw_and_compare(placed, camera, image);
     score.errors.append(errors);
+    mark(view, scan, camera, score);
     if (all_tree_) {
       const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);
       score.paper_like_errors.append(
@@ -85,6 +89,16 @@ class Scorer {
     }
     score.positions.insert(score.positions.end(), view.position.begin(), view.position.end());
     score.views.push_back(report);
+  }
+
+  static void mark(const EvaluatedView& view, const PointCloud& scan, const Camera& camera,
+                   FrameScore& score) {
+    const ScanProjection projection(scan, camera);
+    for (std::size_t i = 0; i < view.pixel.size(); ++i) {
+      const Eigen::Vector3d p_lidar = scan.position[view.scan_index[i]].cast<double>();
+      const double distance = (camera.T_cam_lidar * p_lidar).norm();
+      score.hidden.push_back(projection.hidden(view.pixel[i], distance) ? 1 : 0);
+    }
   }
 
   GradientSums draw_and_compare(const PlacedFrame& placed, const Camera& camera,
@@ -118,6 +132,12 @@ void require_coloured(const ScoredMap& map) {
                    "score a map whose points have colours");
 }
 
+double share_interpolated(const ColouredPoints& map) {
+  if (map.interpolated.empty()) return ErrorFigures::kNone;
+  const auto made = std::count(map.interpolated.begin(), map.interpolated.end(), 1);
+  return static_cast<double>(made) / static_cast<double>(map.interpolated.size());
+}
+
 std::vector<FrameScore> score_frames(Scorer& scorer, const std::vector<PlacedFrame>& frames,
                                      const EvaluationProgress& progress) {
   std::vector<FrameScore> scores(frames.size());
@@ -144,7 +164,8 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   EvaluationReport report;
   report.protocol = options.protocol;
   for (const Camera& camera : scorer.cameras()) report.cameras.push_back(camera.index);
-  PointErrors errors, paper_like_errors;
+  SetCollector all, visible;
+  PointErrors paper_like_errors;
   std::vector<Eigen::Vector3f> positions;
   for (FrameScore& score : scores) {  // in the order of frames, whichever was done first
     if (score.unscored) {
@@ -152,7 +173,9 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
       continue;
     }
     ++report.frames;
-    errors.append(score.errors);
+    all.add(score.errors);
+    const PointErrors seen = score.errors.select(score.hidden, 0);
+    visible.add(seen, score.errors.position.size() - seen.position.size());
     paper_like_errors.append(score.paper_like_errors);
     positions.insert(positions.end(), score.positions.begin(), score.positions.end());
     for (const ViewReport& view : score.views) {
@@ -167,7 +190,11 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                          std::to_string(report.skipped.size()) + " skipped",
                      "check that the map belongs to this drive");
   }
-  report.figures = summarize(errors);
+  const SetFigures figures = all.figures();
+  report.figures = figures.figures;
+  report.intervals = figures.intervals;
+  report.visible = visible.figures();
+  report.map_share_interpolated = share_interpolated(scorer.coloured());
   report.paper_like =
       paper_like_errors.position.empty() ? report.figures : summarize(paper_like_errors);
   report.free_space = scorer.free_space();

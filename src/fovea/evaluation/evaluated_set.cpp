@@ -34,7 +34,7 @@ EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud&
   if (image.width != camera.width || image.height != camera.height) {
     throw std::invalid_argument("the image is not of its camera's size");
   }
-  EvaluatedView view{placed.index, camera.index, image.channels == 1, {}, {}};
+  EvaluatedView view{placed.index, camera.index, image.channels == 1, {}, {}, {}, {}};
   for (std::size_t i = 0; i < measured_lidar.size(); ++i) {
     const float range = measured_lidar.position[i].norm();
     if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
@@ -44,6 +44,8 @@ EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud&
     if (!pixel) continue;
     view.position.push_back((placed.T_local_lidar * p_lidar - origin_local).cast<float>());
     view.color.push_back(bilinear(image, pixel->x(), pixel->y()));
+    view.pixel.push_back(*pixel);
+    view.scan_index.push_back(static_cast<std::uint32_t>(i));
   }
   return view;
 }

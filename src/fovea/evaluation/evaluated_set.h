@@ -26,9 +26,11 @@ struct PlacedFrame {
 struct EvaluatedView {
   int frame = 0;
   int camera = 0;
-  bool grey = false;                      ///< the camera's image has one channel
-  std::vector<Eigen::Vector3f> position;  ///< local frame, relative to the origin asked for
-  std::vector<Eigen::Vector3f> color;     ///< 0-255; three equal channels if grey
+  bool grey = false;                           ///< the camera's image has one channel
+  std::vector<Eigen::Vector3f> position;       ///< local frame, relative to the origin asked for
+  std::vector<Eigen::Vector3f> color;          ///< 0-255; three equal channels if grey
+  std::vector<Eigen::Vector2d> pixel = {};     ///< where the colour was taken
+  std::vector<std::uint32_t> scan_index = {};  ///< of the point in the scan
 };
 
 /// Pixel of a point that a camera can score: over 0.5 m in front of it and inside [0, W-1) x [0,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fovea/base/parallel.h"
+#include "fovea/evaluation/ciede2000.h"
 
 namespace fovea {
 namespace {
@@ -39,14 +40,17 @@ float color_error(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool
 }
 
 NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
-                               std::span<const Rgb> color) {
+                               std::span<const Rgb> color,
+                               std::span<const std::uint8_t> interpolated) {
   constexpr std::size_t kGrain = 2048;
   NearestSamples found{std::vector<float>(positions.size()),
-                       std::vector<Eigen::Vector3f>(positions.size())};
+                       std::vector<Eigen::Vector3f>(positions.size()),
+                       std::vector<std::uint8_t>(interpolated.empty() ? 0 : positions.size())};
   parallel_for(positions.size(), kGrain, [&](std::size_t i) {
     const KdTree::Neighbor nearest = tree.nearest(positions[i]);
     found.distance[i] = std::sqrt(nearest.squared_distance);
     found.color[i] = to_float(color[nearest.index]);
+    if (!interpolated.empty()) found.interpolated[i] = interpolated[nearest.index];
   });
   return found;
 }
@@ -65,12 +69,29 @@ Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
 }
 
 void PointErrors::append(const PointErrors& other) {
-  const auto add = [](std::vector<float>& to, const std::vector<float>& from) {
+  const auto add = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
   add(position, other.position);
   add(color, other.color);
   add(color_gain, other.color_gain);
+  add(ciede2000, other.ciede2000);
+  add(interpolated, other.interpolated);
+}
+
+PointErrors PointErrors::select(const std::vector<std::uint8_t>& marks, std::uint8_t wanted) const {
+  PointErrors selected;
+  const auto take = [&](auto& to, const auto& from) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      if (marks[i] == wanted) to.push_back(from[i]);
+    }
+  };
+  take(selected.position, position);
+  take(selected.color, color);
+  take(selected.color_gain, color_gain);
+  take(selected.ciede2000, ciede2000);
+  take(selected.interpolated, interpolated);
+  return selected;
 }
 
 PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
@@ -79,10 +100,15 @@ PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
   errors.position = map.distance;
   errors.color.reserve(map.color.size());
   errors.color_gain.reserve(map.color.size());
+  errors.ciede2000.reserve(map.color.size());
+  errors.interpolated = map.interpolated;
   for (std::size_t i = 0; i < map.color.size(); ++i) {
     errors.color.push_back(color_error(view.color[i], map.color[i], view.grey));
     errors.color_gain.push_back(
         color_error(view.color[i], map.color[i].cwiseProduct(gains), view.grey));
+    const Eigen::Vector3f seen =
+        view.grey ? Eigen::Vector3f::Constant(luma(map.color[i])) : map.color[i];
+    errors.ciede2000.push_back(static_cast<float>(ciede2000(lab_of(view.color[i]), lab_of(seen))));
   }
   return errors;
 }
@@ -98,6 +124,15 @@ ErrorFigures summarize(const PointErrors& errors) {
   figures.te_percent = 100 * figures.te_mean / 255;
   figures.te_gain_mean = mean_and_deviation(errors.color_gain).first;
   figures.te_gain_within_20 = share_up_to(errors.color_gain, kColorWithin);
+  if (!errors.ciede2000.empty()) {
+    figures.te_ciede2000_mean = mean_and_deviation(errors.ciede2000).first;
+    figures.te_ciede2000_median = median(errors.ciede2000);
+  }
+  if (!errors.interpolated.empty()) {
+    const auto made = std::count(errors.interpolated.begin(), errors.interpolated.end(), 1);
+    figures.share_interpolated =
+        static_cast<double>(made) / static_cast<double>(errors.interpolated.size());
+  }
   double product = 0;
   for (std::size_t i = 0; i < errors.position.size(); ++i) {
     product += static_cast<double>(errors.position[i]) * errors.color[i];

@@ -29,11 +29,15 @@ float color_error(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool
 struct NearestSamples {
   std::vector<float> distance;         ///< m
   std::vector<Eigen::Vector3f> color;  ///< 0-255
+  /// 1 if made by upsampling, 0 if measured; empty where the map does not say.
+  std::vector<std::uint8_t> interpolated = {};
 };
-/// @param tree   of the map's points, in the frame and origin of `positions`; not empty
-/// @param color  of the same points
+/// @param tree          of the map's points, in the frame and origin of `positions`; not empty
+/// @param color         of the same points
+/// @param interpolated  of the same points, or empty
 NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
-                               std::span<const Rgb> color);
+                               std::span<const Rgb> color,
+                               std::span<const std::uint8_t> interpolated = {});
 
 /// The gains that take the map's exposure to this view's: per channel the g_c of least squares,
 /// minimising sum (C_c - g_c * C_n,c)^2, not clamped; 1 where the map is black. One gain for a grey
@@ -43,11 +47,15 @@ Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
 
 /// Errors of evaluated points, one entry a point each.
 struct PointErrors {
-  std::vector<float> position;    ///< ME of the point: |P - P_n|, m
-  std::vector<float> color;       ///< TE of the point
-  std::vector<float> color_gain;  ///< TE after the view's fitted gains
+  std::vector<float> position;                  ///< ME of the point: |P - P_n|, m
+  std::vector<float> color;                     ///< TE of the point
+  std::vector<float> color_gain;                ///< TE after the view's fitted gains
+  std::vector<float> ciede2000 = {};            ///< TE as CIEDE2000, without gains
+  std::vector<std::uint8_t> interpolated = {};  ///< of the nearest point; empty: not known
 
   void append(const PointErrors& other);
+  /// Those of the points whose mark is `wanted` (0 or 1). @param marks  one a point
+  PointErrors select(const std::vector<std::uint8_t>& marks, std::uint8_t wanted) const;
 };
 PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
                          const Eigen::Vector3f& gains);
@@ -61,9 +69,12 @@ struct ErrorFigures {
   double te_mean = kNone, te_std = kNone, te_median = kNone;  ///< 0-441, or 0-255 for grey
   double te_within_20 = kNone;                                ///< share
   double te_percent = kNone;  ///< te_mean in % of 255, as the paper quotes it
-  double te_gain_mean = kNone, te_gain_within_20 = kNone;  ///< as te_mean and te_within_20
-  double mtme = kNone;                                     ///< mean of ME x TE of each point
-  double coverage_5cm = kNone, coverage_20cm = kNone;      ///< shares
+  double te_gain_mean = kNone, te_gain_within_20 = kNone;         ///< as te_mean and te_within_20
+  double te_ciede2000_mean = kNone, te_ciede2000_median = kNone;  ///< see ciede2000.h
+  double mtme = kNone;                                            ///< mean of ME x TE of each point
+  double coverage_5cm = kNone, coverage_20cm = kNone;             ///< shares
+  /// Share of the evaluated points whose nearest map point was made by upsampling.
+  double share_interpolated = kNone;
 };
 ErrorFigures summarize(const PointErrors& errors);
 

@@ -51,6 +51,11 @@ TEST(NearestSamples, GiveDistanceAndColorOfTheNearest) {
   EXPECT_THAT(found.distance, ElementsAre(0.25f, 5.0f));
   EXPECT_EQ(found.color[0], Eigen::Vector3f(4, 5, 6));
   EXPECT_EQ(found.color[1], Eigen::Vector3f(1, 2, 3));
+  EXPECT_TRUE(found.interpolated.empty());
+  const std::vector<std::uint8_t> made = {0, 1};
+  EXPECT_THAT(
+      nearest_samples({{0.75f, 0, 0}, {-3, 4, 0}}, KdTree(points), colors, made).interpolated,
+      ElementsAre(1, 0));
 }
 
 TEST(PointErrors, HoldRawAndGainErrors) {
@@ -60,6 +65,16 @@ TEST(PointErrors, HoldRawAndGainErrors) {
   EXPECT_THAT(errors.position, ElementsAre(0.5f));
   EXPECT_FLOAT_EQ(errors.color[0], 50 * std::sqrt(3.0f));
   EXPECT_THAT(errors.color_gain, ElementsAre(0.0f));
+  EXPECT_NEAR(errors.ciede2000[0], 17.0, 0.1);  // L* 42.4 against 20.8, weighed by 1.27
+}
+
+TEST(PointErrors, OfMarkedPoints) {
+  const PointErrors errors{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}};
+  const PointErrors marked = errors.select({0, 1, 1}, 1);
+  EXPECT_THAT(marked.position, ElementsAre(2, 3));
+  EXPECT_THAT(marked.ciede2000, ElementsAre(11, 12));
+  EXPECT_TRUE(marked.interpolated.empty());
+  EXPECT_THAT(errors.select({0, 1, 1}, 0).color, ElementsAre(4));
 }
 
 TEST(Summary, OfAHandfulOfPoints) {

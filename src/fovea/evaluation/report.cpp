@@ -24,6 +24,25 @@ void put_figures(Json& json, const ErrorFigures& figures) {
   json["coverage_5cm"] = figures.coverage_5cm;
   json["coverage_20cm"] = figures.coverage_20cm;
   json["te_percent"] = figures.te_percent;
+  json["te_ciede2000_mean"] = figures.te_ciede2000_mean;
+  json["te_ciede2000_median"] = figures.te_ciede2000_median;
+  json["share_interpolated"] = figures.share_interpolated;
+}
+
+void put_intervals(Json& json, const MeanIntervals& intervals) {
+  Json& all = json["intervals_95"];
+  const auto put = [&](const char* name, const Interval& interval) {
+    all[name] = {interval.low, interval.high};
+  };
+  put("me_mean", intervals.me);
+  put("te_mean", intervals.te);
+  put("mtme", intervals.mtme);
+}
+
+void put_set(Json& json, const SetFigures& set) {
+  json["left_out"] = set.left_out;
+  put_figures(json, set.figures);
+  put_intervals(json, set.intervals);
 }
 
 Json view_json(const ViewReport& view) {
@@ -38,19 +57,31 @@ Json view_json(const ViewReport& view) {
 
 }  // namespace
 
+const ViewReport* worst_view(const EvaluationReport& report) {
+  const ViewReport* worst = nullptr;
+  for (const ViewReport& view : report.views) {
+    if (view.figures.points == 0) continue;
+    if (worst == nullptr || view.figures.te_mean > worst->figures.te_mean) worst = &view;
+  }
+  return worst;
+}
+
 std::string to_json(const EvaluationReport& report) {
   Json json;
   json["protocol"] = to_string(report.protocol);
   json["explanation"] = explanation(report.protocol);
   json["cameras"] = report.cameras;
   put_figures(json, report.figures);
+  put_intervals(json, report.intervals);
   json["free_space_violations"] = report.free_space.share();
   json["sharpness"] = report.gradients.sharpness();
   json["density_per_m2"] = report.density_per_m2;
+  put_set(json["visible"], report.visible);
   json["free_space_points"] = report.free_space.tested;
   json["sharpness_pixels"] = report.gradients.pixels;
   json["map_points"] = report.map_points;
   json["map_points_coloured"] = report.map_points_coloured;
+  json["map_share_interpolated"] = report.map_share_interpolated;
   json["paper_like"]["explanation"] =
       "nearest neighbours among all map points, uncoloured ones counting as black";
   put_figures(json["paper_like"], report.paper_like);
@@ -59,6 +90,12 @@ std::string to_json(const EvaluationReport& report) {
   json["skipped"] = Json::array();
   for (const UnscoredFrame& frame : report.skipped) {
     json["skipped"].push_back({{"frame", frame.index}, {"reason", frame.reason}});
+  }
+  if (const ViewReport* worst = worst_view(report)) {
+    json["worst_frame"] = {{"frame", worst->frame},
+                           {"camera", worst->camera},
+                           {"me_mean", worst->figures.me_mean},
+                           {"te_mean", worst->figures.te_mean}};
   }
   json["frames"] = Json::array();
   for (const ViewReport& view : report.views) json["frames"].push_back(view_json(view));
@@ -78,14 +115,21 @@ std::string to_text(const EvaluationReport& report) {
   const auto number = [](double value, int digits) {
     return fmt::format("{:.{}f}", value, digits);
   };
-  row("ME mean", number(f.me_mean, 4), "m, std " + number(f.me_std, 4));
+  const auto interval = [](const Interval& i, int digits) {
+    return fmt::format("95%: {:.{}f} to {:.{}f}", i.low, digits, i.high, digits);
+  };
+  row("ME mean", number(f.me_mean, 4),
+      "m, std " + number(f.me_std, 4) + ", " + interval(report.intervals.me, 4));
   row("TE mean", number(f.te_mean, 2),
-      fmt::format("std {:.2f}, {:.2f}% of 255", f.te_std, f.te_percent));
+      fmt::format("std {:.2f}, {:.2f}% of 255, {}", f.te_std, f.te_percent,
+                  interval(report.intervals.te, 2)));
+  row("TE, CIEDE2000", number(f.te_ciede2000_mean, 2),
+      "median " + number(f.te_ciede2000_median, 2));
   row("TE median", number(f.te_median, 2));
   row("TE within 20", number(f.te_within_20, 3));
   row("TE, fitted gains", number(f.te_gain_mean, 2),
       "within 20: " + number(f.te_gain_within_20, 3));
-  row("MTME", number(f.mtme, 3));
+  row("MTME", number(f.mtme, 3), interval(report.intervals.mtme, 3));
   row("coverage 5 cm", number(f.coverage_5cm, 3));
   row("coverage 20 cm", number(f.coverage_20cm, 3));
   row("free-space violations", number(report.free_space.share(), 4),
@@ -94,6 +138,20 @@ std::string to_text(const EvaluationReport& report) {
       fmt::format("over {} pixels", report.gradients.pixels));
   row("points per m^2", number(report.density_per_m2, 0),
       fmt::format("{} coloured of {}", report.map_points_coloured, report.map_points));
+  row("interpolated", number(f.share_interpolated, 3),
+      "of the nearest points, " + number(report.map_share_interpolated, 3) + " of the map's");
+  if (const ViewReport* worst = worst_view(report)) {
+    row("worst frame", fmt::format("{}", worst->frame),
+        fmt::format("camera {}: ME {:.4f}, TE {:.2f}", worst->camera, worst->figures.me_mean,
+                    worst->figures.te_mean));
+  }
+  const auto set_row = [&](std::string_view name, const SetFigures& set) {
+    row(name, number(set.figures.me_mean, 4),
+        fmt::format("TE {:.2f} ({}), within 20: {:.3f}, coverage {:.3f}; {} points left out",
+                    set.figures.te_mean, interval(set.intervals.te, 2), set.figures.te_within_20,
+                    set.figures.coverage_5cm, set.left_out));
+  };
+  set_row("visible ME / TE", report.visible);
   row("paper-like ME / TE", number(p.me_mean, 4),
       fmt::format("TE {:.2f} ({:.2f}%), MTME {:.3f}; uncoloured points count as black", p.te_mean,
                   p.te_percent, p.mtme));

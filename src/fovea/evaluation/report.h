@@ -8,6 +8,7 @@
 #include "fovea/evaluation/free_space.h"
 #include "fovea/evaluation/metrics.h"
 #include "fovea/evaluation/protocol.h"
+#include "fovea/evaluation/set_figures.h"
 #include "fovea/evaluation/sharpness.h"
 
 namespace fovea {
@@ -30,7 +31,13 @@ struct UnscoredFrame {
 struct EvaluationReport {
   Protocol protocol = Protocol::kHeldOut;
   std::vector<int> cameras;
-  ErrorFigures figures;  ///< of all evaluated points, against coloured map points only
+  ErrorFigures figures;     ///< of all evaluated points, against coloured map points only
+  MeanIntervals intervals;  ///< of `figures`
+  /// Of the points that the scored camera can see, see ScanProjection::hidden; the others' colours
+  /// are those of what stands before them.
+  SetFigures visible;
+  /// Share of the coloured map points that were made by upsampling; NaN where the map does not say.
+  double map_share_interpolated = ErrorFigures::kNone;
   /// Nearest neighbours among ALL map points, uncoloured ones counting as black: the only way to
   /// the TE of 150 that the paper gives for its baselines.
   ErrorFigures paper_like;
@@ -43,6 +50,9 @@ struct EvaluationReport {
   std::vector<UnscoredFrame> skipped;
   std::vector<ColorRuleScore> color_rules;  ///< empty unless asked for, see compare_color_rules
 };
+
+/// The view with the highest mean TE, the first of equal ones; null if none has a point.
+const ViewReport* worst_view(const EvaluationReport& report);
 
 /// JSON text, the same bytes for the same report; figures that do not exist (no point, no pixel)
 /// are null.

@@ -56,6 +56,32 @@ TEST(Report, HasTheKeysOfTheContract) {
   EXPECT_EQ(json["skipped"][0]["reason"], "missing scan");
 }
 
+TEST(Report, HasTheFiguresBesideTheContracts) {
+  EvaluationReport report = some_report();
+  report.figures =
+      summarize({{0.1f, 0.3f}, {10, 30}, {5, 7}, {1, 4}, std::vector<std::uint8_t>{1, 0}});
+  report.intervals.te = {12, 28};
+  report.map_share_interpolated = 0.75;
+  const nlohmann::json json = nlohmann::json::parse(to_json(report));
+  EXPECT_EQ(json["te_ciede2000_mean"], 2.5);
+  EXPECT_EQ(json["te_ciede2000_median"], 2.5);
+  EXPECT_EQ(json["share_interpolated"], 0.5);
+  EXPECT_EQ(json["map_share_interpolated"], 0.75);
+  EXPECT_EQ(json["intervals_95"]["te_mean"], (std::vector<double>{12, 28}));
+  EXPECT_TRUE(json["intervals_95"]["me_mean"][0].is_null());
+}
+
+TEST(Report, NamesTheWorstFrame) {
+  EvaluationReport report = some_report();
+  ViewReport bad = report.views[0];
+  bad.frame = 20;
+  bad.figures.te_mean = 99;
+  report.views.push_back(bad);
+  report.views.push_back({28, 2, {}, {1, 1, 1}, {}});  // without a point
+  EXPECT_EQ(nlohmann::json::parse(to_json(report))["worst_frame"]["frame"], 20);
+  EXPECT_THAT(to_text(report), testing::ContainsRegex("worst frame +20  camera 2: .*TE 99.00"));
+}
+
 TEST(Report, WhatDoesNotExistIsNull) {
   EvaluationReport report;
   const nlohmann::json json = nlohmann::json::parse(to_json(report));

@@ -1,0 +1,77 @@
+#include "fovea/evaluation/scan_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace fovea {
+namespace {
+
+constexpr double kCell = 8;     // pixels
+constexpr double kMargin = 8;  // what lies just outside the image may hide, and be an edge
+
+}  // namespace
+
+int ScanProjection::column_of(double u) const {
+  return std::clamp(static_cast<int>((u + kMargin) / kCell), 0, columns_ - 1);
+}
+int ScanProjection::row_of(double v) const {
+  return std::clamp(static_cast<int>((v + kMargin) / kCell), 0, rows_ - 1);
+}
+
+ScanProjection::ScanProjection(const PointCloud& scan_lidar, const Camera& camera)
+    : columns_(static_cast<int>((camera.width + 2 * kMargin) / kCell) + 1),
+      rows_(static_cast<int>((camera.height + 2 * kMargin) / kCell) + 1),
+      hiding_radius_(camera.fx * std::tan(kHidingDegrees * std::numbers::pi / 180)) {
+  std::vector<Point> seen;
+  for (const Eigen::Vector3f& p_lidar : scan_lidar.position) {
+    const Eigen::Vector3d p_cam = camera.T_cam_lidar * p_lidar.cast<double>();
+    const std::optional<Eigen::Vector2d> pixel = camera.project(p_cam);
+    if (!pixel || pixel->x() < -kMargin || pixel->x() > camera.width + kMargin ||
+        pixel->y() < -kMargin || pixel->y() > camera.height + kMargin) {
+      continue;
+    }
+    seen.push_back({static_cast<float>(pixel->x()), static_cast<float>(pixel->y()),
+                    static_cast<float>(p_cam.norm())});
+  }
+  const auto cell_of = [&](const Point& p) {
+    return static_cast<std::size_t>(row_of(p.v)) * columns_ + column_of(p.u);
+  };
+  first_.assign(static_cast<std::size_t>(rows_) * columns_ + 1, 0);
+  for (const Point& p : seen) ++first_[cell_of(p) + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  points_.resize(seen.size());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (const Point& p : seen) points_[next[cell_of(p)]++] = p;
+}
+
+template <class Test>
+bool ScanProjection::any_within(const Eigen::Vector2d& pixel, double radius, Test&& test) const {
+  const int right = column_of(pixel.x() + radius), bottom = row_of(pixel.y() + radius);
+  for (int row = row_of(pixel.y() - radius); row <= bottom; ++row) {
+    for (int column = column_of(pixel.x() - radius); column <= right; ++column) {
+      const std::size_t cell = static_cast<std::size_t>(row) * columns_ + column;
+      for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
+        const double du = points_[k].u - pixel.x(), dv = points_[k].v - pixel.y();
+        if (du * du + dv * dv <= radius * radius && test(points_[k].distance)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool ScanProjection::hidden(const Eigen::Vector2d& pixel, double distance) const {
+  return any_within(pixel, hiding_radius_, [&](double other) {
+    return distance - other > std::max(kHidingStep, kHidingShare * other);
+  });
+}
+
+bool ScanProjection::near_edge(const Eigen::Vector2d& pixel, double distance) const {
+  return any_within(pixel, kEdgePixels, [&](double other) {
+    return std::abs(distance - other) >
+           std::max(kEdgeStep, kEdgeShare * std::min(distance, other));
+  });
+}
+
+}  // namespace fovea
