@@ -9,6 +9,7 @@ find_package(tomlplusplus REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(SQLite3 REQUIRED)
+find_package(pugixml REQUIRED)
 find_package(PkgConfig REQUIRED)
 
 if(NOT TARGET nanoflann::nanoflann)
