@@ -93,10 +93,12 @@ void add_evaluate_command(CLI::App& app) {
   CLI::Option* protocol =
       command
           ->add_option("--protocol", arguments->protocol,
-                       "held-out (quality), in-sample (the paper's way), in-sample-nav, or truth "
+                       "held-out (quality), cross-camera (the same in a camera that coloured "
+                       "nothing), in-sample (the paper's way), in-sample-nav, or truth "
                        "(simulated drives)")
           ->capture_default_str()
-          ->check(CLI::IsMember({"in-sample", "in-sample-nav", "held-out", kTruth}));
+          ->check(
+              CLI::IsMember({"in-sample", "in-sample-nav", "held-out", "cross-camera", kTruth}));
   command->add_flag("--truth", arguments->truth, "The same as --protocol truth")
       ->excludes(protocol);
   command->add_flag("--no-align", arguments->no_align,

@@ -75,8 +75,7 @@ double ciede2000(const Lab& first, const Lab& second) {
   const double t = 1 - 0.17 * std::cos(h - degrees(30)) + 0.24 * std::cos(2 * h) +
                    0.32 * std::cos(3 * h + degrees(6)) - 0.20 * std::cos(4 * h - degrees(63));
   const double blue = (h - degrees(275)) / degrees(25);
-  const double rotation =
-      -std::sin(degrees(60) * std::exp(-blue * blue)) * 2 * chroma_weight(c);
+  const double rotation = -std::sin(degrees(60) * std::exp(-blue * blue)) * 2 * chroma_weight(c);
   const double lightness = (l - 50) * (l - 50);
   const double scaled_l = dl / (1 + 0.015 * lightness / std::sqrt(20 + lightness));
   const double scaled_c = dc / (1 + 0.045 * c);

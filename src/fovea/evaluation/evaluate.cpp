@@ -4,123 +4,10 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
-#include "fovea/evaluation/scan_projection.h"
+#include "fovea/evaluation/scorer.h"
 
 namespace fovea {
 namespace {
-
-/// What one frame adds to the report.
-struct FrameScore {
-  PointErrors errors, paper_like_errors;
-  std::vector<std::uint8_t> hidden;        // 1 a point of `errors` that the camera cannot see
-  std::vector<Eigen::Vector3f> positions;  // of its evaluated points, in the map's float frame
-  std::vector<ViewReport> views;
-  std::optional<UnscoredFrame> unscored;
-};
-
-/// The map made ready for questions; one for all frames.
-class Scorer {
- public:
-  Scorer(const ScoredMap& map, const FrameSource& drive, std::vector<std::size_t> cameras)
-      : map_(map.points_local),
-        drive_(drive),
-        places_(std::move(cameras)),
-        coloured_(coloured_points(map_)),
-        coloured_tree_(coloured_.position),
-        spacing_(sample_spacing(coloured_.position)),
-        free_space_(coloured_) {
-    for (const std::size_t place : places_) {
-      cameras_.push_back(drive.info().calibration.cameras[place]);
-    }
-    if (coloured_.position.size() < map_.size()) {
-      all_tree_.emplace(map_.position);
-      all_color_ = map_.color;
-      for (std::size_t i = 0; i < map_.size(); ++i) {
-        if (map_.camera[i] == kNoCamera) all_color_[i] = Rgb{};
-      }
-    }
-  }
-
-  const ColouredPoints& coloured() const { return coloured_; }
-  const std::vector<Camera>& cameras() const { return cameras_; }
-  FreeSpaceTest::Result free_space() const { return free_space_.result(); }
-
-  /// Thread-safe.
-  FrameScore score(const PlacedFrame& placed) {
-    FrameScore score;
-    const DriveInfo& info = drive_.info();
-    if (placed.index < info.begin || placed.index >= info.end) {
-      score.unscored = {placed.index, "not in the drive"};
-      return score;
-    }
-    const FrameResult loaded = drive_.load(placed.index);
-    if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
-      score.unscored = {placed.index,
-                        std::string(to_string(skipped->reason)) + ": " + skipped->detail};
-      return score;
-    }
-    const Frame& frame = std::get<Frame>(loaded);
-    const PointCloud scan = compensated_scan(frame.scan, placed, info);
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      score_view(frame, scan, placed, cameras_[k], frame.images.at(places_[k]), score);
-    }
-    free_space_.add_scan(scan, placed.T_local_lidar, cameras_);
-    return score;
-  }
-
- private:
-  void score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
-                  const Camera& camera, const Image& image, FrameScore& score) const {
-    const EvaluatedView view =
-        evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
-    const NearestSamples nearest =
-        nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
-    ViewReport report{placed.index, camera.index, {}, {}, {}};
-    report.gains = fit_gains(view.color, nearest.color, view.grey);
-    const PointErrors errors = point_errors(view, nearest, report.gains);
-    report.figures = summarize(errors);
-    report.gradients = draw_and_compare(placed, camera, image);
-    score.errors.append(errors);
-    mark(view, scan, camera, score);
-    if (all_tree_) {
-      const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);
-      score.paper_like_errors.append(
-          point_errors(view, any, fit_gains(view.color, any.color, view.grey)));
-    }
-    score.positions.insert(score.positions.end(), view.position.begin(), view.position.end());
-    score.views.push_back(report);
-  }
-
-  static void mark(const EvaluatedView& view, const PointCloud& scan, const Camera& camera,
-                   FrameScore& score) {
-    const ScanProjection projection(scan, camera);
-    for (std::size_t i = 0; i < view.pixel.size(); ++i) {
-      const Eigen::Vector3d p_lidar = scan.position[view.scan_index[i]].cast<double>();
-      const double distance = (camera.T_cam_lidar * p_lidar).norm();
-      score.hidden.push_back(projection.hidden(view.pixel[i], distance) ? 1 : 0);
-    }
-  }
-
-  GradientSums draw_and_compare(const PlacedFrame& placed, const Camera& camera,
-                                const Image& image) const {
-    SplatOptions options;  // the depth that the evaluated points reach: beyond it nothing is scored
-    options.min_depth = kEvaluatedDepth;
-    options.max_depth = kEvaluatedFar;
-    const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
-    return compare_gradients(splat(coloured_, spacing_, camera, T_cam_local, options), image);
-  }
-
-  const PointCloud& map_;
-  const FrameSource& drive_;
-  std::vector<std::size_t> places_;  // of the scored cameras in the drive's calibration
-  std::vector<Camera> cameras_;      // the same
-  ColouredPoints coloured_;
-  KdTree coloured_tree_;
-  std::vector<float> spacing_;
-  FreeSpaceTest free_space_;
-  std::optional<KdTree> all_tree_;  // where there are uncoloured points
-  std::vector<Rgb> all_color_;
-};
 
 void require_coloured(const ScoredMap& map) {
   map.points_local.check();
@@ -152,22 +39,71 @@ std::vector<FrameScore> score_frames(Scorer& scorer, const std::vector<PlacedFra
   return scores;
 }
 
+/// What the protocol and the drive's files ask of the scorer.
+ScorerOptions scorer_options(const ScoredMap& map, const FrameSource& drive,
+                             const ProtocolOptions& options, bool blocks) {
+  ScorerOptions scoring;
+  scoring.cameras = select_cameras(map, drive.info(), options);
+  if (const auto file = find_tracklets(drive.info().path)) {
+    scoring.moving.emplace(read_tracklets(*file), map.frames);
+  }
+  if (blocks) {
+    std::vector<Camera> colouring;
+    for (const Camera& camera : drive.info().calibration.cameras) {
+      if (std::find(map.cameras.begin(), map.cameras.end(), camera.index) != map.cameras.end()) {
+        colouring.push_back(camera);
+      }
+    }
+    scoring.reach.emplace(map.frames, colouring);
+  }
+  return scoring;
+}
+
+/// The collected scores of blocks of frames, each on its own.
+class BlockCollector {
+ public:
+  explicit BlockCollector(const std::vector<std::pair<int, int>>& blocks) {
+    for (const auto& [first, last] : blocks) reports_.push_back({first, last, {}});
+    errors_.resize(blocks.size());
+  }
+  void add(int frame, const PointErrors& errors) {
+    for (std::size_t i = 0; i < reports_.size(); ++i) {
+      if (frame >= reports_[i].first && frame <= reports_[i].last) errors_[i].append(errors);
+    }
+  }
+  std::vector<BlockReport> reports() {
+    for (std::size_t i = 0; i < reports_.size(); ++i) reports_[i].figures = summarize(errors_[i]);
+    return reports_;
+  }
+
+ private:
+  std::vector<BlockReport> reports_;
+  std::vector<PointErrors> errors_;
+};
+
 }  // namespace
 
 EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                           const ProtocolOptions& options, const EvaluationProgress& progress) {
   require_coloured(map);
   const std::vector<PlacedFrame> frames = select_frames(map, drive, options);
-  Scorer scorer(map, drive, select_cameras(map, drive.info(), options));
+  std::vector<std::pair<int, int>> blocks;
+  if (scores_held_out(options.protocol)) blocks = scored_blocks(frames, map.frames);
+  const bool in_blocks = blocks.size() < frames.size() && !blocks.empty();
+  if (!in_blocks) blocks.clear();
+  const ScorerOptions scoring = scorer_options(map, drive, options, in_blocks);
+  Scorer scorer(map, drive, scoring);
   std::vector<FrameScore> scores = score_frames(scorer, frames, progress);
 
   EvaluationReport report;
   report.protocol = options.protocol;
   for (const Camera& camera : scorer.cameras()) report.cameras.push_back(camera.index);
-  SetCollector all, visible;
+  SetCollector all, visible, without_moving;
+  BlockCollector block_collector(blocks);
   PointErrors paper_like_errors;
   std::vector<Eigen::Vector3f> positions;
-  for (FrameScore& score : scores) {  // in the order of frames, whichever was done first
+  for (std::size_t i = 0; i < scores.size(); ++i) {  // in the order of frames
+    FrameScore& score = scores[i];
     if (score.unscored) {
       report.skipped.push_back(*score.unscored);
       continue;
@@ -176,6 +112,10 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
     all.add(score.errors);
     const PointErrors seen = score.errors.select(score.hidden, 0);
     visible.add(seen, score.errors.position.size() - seen.position.size());
+    without_moving.add(score.errors_without_moving,
+                       score.errors.position.size() - score.errors_without_moving.position.size());
+    block_collector.add(frames[i].index, score.errors);
+    report.unreached += score.unreached;
     paper_like_errors.append(score.paper_like_errors);
     positions.insert(positions.end(), score.positions.begin(), score.positions.end());
     for (const ViewReport& view : score.views) {
@@ -194,6 +134,11 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   report.figures = figures.figures;
   report.intervals = figures.intervals;
   report.visible = visible.figures();
+  report.blocks = block_collector.reports();
+  if (scoring.moving) {
+    report.without_moving = MovingReport{scoring.moving->labelled(), scoring.moving->moved(),
+                                         scorer.moving_points(), without_moving.figures()};
+  }
   report.map_share_interpolated = share_interpolated(scorer.coloured());
   report.paper_like =
       paper_like_errors.position.empty() ? report.figures : summarize(paper_like_errors);

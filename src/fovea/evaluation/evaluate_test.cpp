@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "../../../tests/temporary_folder.h"
+#include "../../../tests/tracklet_writer.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/test_scene.h"
@@ -138,6 +142,72 @@ TEST(Evaluate, ScoresEveryCameraOfEveryFrame) {
                                        report.views[2].figures.points +
                                        report.views[3].figures.points);
   EXPECT_LT(report.figures.te_mean, 12);
+}
+
+TEST(Evaluate, WhatMovedIsLeftOutOfBothSides) {
+  // A board at x = 5 in frame 4's scan and another, of another colour, in the map from frame 3: a
+  // labelled box that moved holds both. (The drive's scans have no board: the box cuts into the
+  // wall.)
+  TemporaryFolder folder;
+  WallDrive drive;
+  drive.mutable_info().path = folder.path();
+  std::vector<test::BoxPose> poses;  // 4 m wide, moving along y; at frame 4 it stands at y = 0
+  for (int i = 0; i < 9; ++i) poses.push_back({7.5 - 0.2 * i, i - 4.0, -1, 0});
+  std::ofstream(folder / "tracklet_labels.xml")
+      << test::tracklet_file({test::tracklet_item("Van", 2, 2, 2, 0, poses)});
+  PointCloud points = WallScene::map(0.02);
+  for (std::size_t i = 0; i < points.size(); ++i) {  // frame 3's box stands at y = -1
+    const Eigen::Vector3f& p = points.position[i];
+    points.frame[i] = 3;
+    if (std::abs(p.y() + 1) < 1 && std::abs(p.z()) < 0.9f) points.color[i] = {255, 0, 255};
+  }
+  const EvaluationReport report = evaluate_held_out(points, drive);
+  ASSERT_TRUE(report.without_moving);
+  EXPECT_EQ(report.without_moving->moved, 1u);
+  EXPECT_NEAR(static_cast<double>(report.without_moving->map_points_left_out), 110 * 110, 300);
+  const SetFigures& standing = report.without_moving->set;
+  EXPECT_EQ(standing.left_out + standing.figures.points, report.figures.points);
+  EXPECT_GT(standing.left_out, 500u);
+  // Left out of the map are y -2.1 to 0.1, of the scored points -1.1 to 1.1.
+  EXPECT_LT(standing.figures.coverage_5cm, 0.97);
+  EXPECT_GT(report.figures.coverage_5cm, 0.99);
+  EXPECT_FALSE(evaluate_held_out(points).without_moving);
+}
+
+TEST(Evaluate, BlocksAreScoredWhereTrainingReached) {
+  const WallDrive drive(40);  // 0.2 m a frame: frame 25 stands 3 m before the wall
+  ScoredMap map = wall_map(WallScene::map(0.02), 40);
+  for (FrameRecord& record : map.frames) {
+    record.status = record.index >= 15 && record.index <= 24 ? FrameStatus::kHeldOut
+                    : record.index < 15 && record.index > 9  ? FrameStatus::kMapped
+                                                             : FrameStatus::kSkipped;
+  }
+  const EvaluationReport report = evaluate(map, drive, {});
+  ASSERT_EQ(report.blocks.size(), 1u);
+  EXPECT_EQ(report.blocks[0].first, 15);
+  EXPECT_EQ(report.blocks[0].last, 24);
+  EXPECT_EQ(report.blocks[0].figures.points, report.figures.points);
+  EXPECT_EQ(report.unreached, 0u);  // from farther off all was in view
+  for (FrameRecord& record : map.frames) {
+    if (record.index < 15) record.status = FrameStatus::kSkipped;
+    if (record.index == 25) record.status = FrameStatus::kMapped;
+  }
+  const EvaluationReport near = evaluate(map, drive, {});
+  EXPECT_GT(near.unreached, 10 * near.figures.points / 100);
+  EXPECT_EQ(near.unreached + near.figures.points, report.figures.points);
+  EXPECT_TRUE(evaluate_held_out(WallScene::map(0.1)).blocks.empty());
+}
+
+TEST(Evaluate, CrossCameraScoresAnotherCamera) {
+  Camera left = forward_camera(3);
+  left.T_cam_lidar = RigidMotion(Eigen::Translation3d(0.5, 0, 0)) * left.T_cam_lidar;
+  const WallDrive drive(9, {forward_camera(2), left});
+  ProtocolOptions options;
+  options.protocol = Protocol::kCrossCamera;
+  options.cameras = {3};
+  const EvaluationReport report = evaluate(wall_map(WallScene::map(0.01)), drive, options);
+  EXPECT_EQ(report.cameras, std::vector<int>{3});
+  EXPECT_LT(report.figures.te_mean, 6);
 }
 
 TEST(Evaluate, FramesThatCannotBeLoadedAreSkippedAndListed) {

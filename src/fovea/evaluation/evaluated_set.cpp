@@ -15,6 +15,18 @@ std::optional<Eigen::Vector2d> scored_pixel(const Camera& camera, const Eigen::V
   return inside ? pixel : std::nullopt;
 }
 
+EvaluatedView select(const EvaluatedView& view, const std::vector<std::uint8_t>& marks) {
+  EvaluatedView selected{view.frame, view.camera, view.grey, {}, {}, {}, {}};
+  for (std::size_t i = 0; i < view.position.size(); ++i) {
+    if (marks[i] == 0) continue;
+    selected.position.push_back(view.position[i]);
+    selected.color.push_back(view.color[i]);
+    selected.pixel.push_back(view.pixel[i]);
+    selected.scan_index.push_back(view.scan_index[i]);
+  }
+  return selected;
+}
+
 PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& placed,
                             const DriveInfo& drive) {
   PointCloud compensated;

@@ -33,6 +33,9 @@ struct EvaluatedView {
   std::vector<std::uint32_t> scan_index = {};  ///< of the point in the scan
 };
 
+/// The points whose mark is 1. @param marks  one a point
+EvaluatedView select(const EvaluatedView& view, const std::vector<std::uint8_t>& marks);
+
 /// Pixel of a point that a camera can score: over 0.5 m in front of it and inside [0, W-1) x [0,
 /// H-1).
 std::optional<Eigen::Vector2d> scored_pixel(const Camera& camera, const Eigen::Vector3d& p_cam);

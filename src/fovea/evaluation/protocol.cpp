@@ -38,7 +38,7 @@ std::optional<Twist> sweep_velocity(const FrameRecord& record, const FrameSource
 bool is_scored(const FrameRecord& record, const ScoredMap& map, const ProtocolOptions& options) {
   if (record.status == FrameStatus::kSkipped) return false;
   const bool named = options.hold_out.contains(record.index);
-  if (options.protocol != Protocol::kHeldOut) {
+  if (!scores_held_out(options.protocol)) {
     return record.status == FrameStatus::kMapped && !named;
   }
   if (!map.statuses_known) return named;
@@ -64,7 +64,7 @@ void require_nothing_of(const std::vector<PlacedFrame>& frames, const PointCloud
 }
 
 [[noreturn]] void reject_empty_selection(const ProtocolOptions& options) {
-  const bool held_out = options.protocol == Protocol::kHeldOut;
+  const bool held_out = scores_held_out(options.protocol);
   throw InputError(held_out ? "the map held out no frame" : "the map has no frame to score",
                    std::string("protocol ") + to_string(options.protocol),
                    held_out ? "build it with --hold-out, or choose another protocol"
@@ -72,6 +72,10 @@ void require_nothing_of(const std::vector<PlacedFrame>& frames, const PointCloud
 }
 
 }  // namespace
+
+bool scores_held_out(Protocol protocol) {
+  return protocol == Protocol::kHeldOut || protocol == Protocol::kCrossCamera;
+}
 
 const char* to_string(Protocol protocol) {
   switch (protocol) {
@@ -81,17 +85,19 @@ const char* to_string(Protocol protocol) {
       return "in-sample-nav";
     case Protocol::kHeldOut:
       return "held-out";
+    case Protocol::kCrossCamera:
+      return "cross-camera";
   }
   return "unknown";
 }
 
 Protocol parse_protocol(std::string_view name) {
-  for (const Protocol protocol :
-       {Protocol::kInSample, Protocol::kInSampleNavigation, Protocol::kHeldOut}) {
+  for (const Protocol protocol : {Protocol::kInSample, Protocol::kInSampleNavigation,
+                                  Protocol::kHeldOut, Protocol::kCrossCamera}) {
     if (name == to_string(protocol)) return protocol;
   }
   throw ConfigError("there is no protocol \"" + std::string(name) + "\"", "--protocol",
-                    "use in-sample, in-sample-nav or held-out");
+                    "use in-sample, in-sample-nav, held-out or cross-camera");
 }
 
 const char* explanation(Protocol protocol) {
@@ -109,15 +115,19 @@ const char* explanation(Protocol protocol) {
       return "Held-out: the scans scored added no point and no colour to the map. No single figure "
              "tells its quality: coverage, free-space violations and sharpness belong to ME and "
              "TE.";
+    case Protocol::kCrossCamera:
+      return "Cross-camera: the scans scored added no point and no colour to the map, and the "
+             "cameras scored coloured none of it: what two cameras disagree on counts as error.";
   }
   return "";
 }
 
 std::vector<PlacedFrame> select_frames(const ScoredMap& map, const FrameSource& drive,
                                        const ProtocolOptions& options) {
-  const bool held_out = options.protocol == Protocol::kHeldOut;
+  const bool held_out = scores_held_out(options.protocol);
   if (held_out && !map.statuses_known && options.hold_out.none()) {
-    throw InputError("a point cloud does not say which frames were held out", "protocol held-out",
+    throw InputError("a point cloud does not say which frames were held out",
+                     std::string("protocol ") + to_string(options.protocol),
                      "name them with --hold-out");
   }
   const std::optional<Trajectory> refined = refined_trajectory(map, drive);
@@ -155,6 +165,11 @@ std::vector<std::size_t> select_cameras(const ScoredMap& map, const DriveInfo& d
     if (found == available.end()) {
       throw ConfigError("the drive was not opened with a camera to be scored",
                         "camera " + std::to_string(number), "open it with all scored cameras");
+    }
+    if (options.protocol == Protocol::kCrossCamera &&
+        std::find(map.cameras.begin(), map.cameras.end(), number) != map.cameras.end()) {
+      throw ConfigError("a camera to be scored cross-camera has coloured the map",
+                        "camera " + std::to_string(number), "choose another one with --cameras");
     }
     const auto place = static_cast<std::size_t>(found - available.begin());
     if (std::find(selected.begin(), selected.end(), place) == selected.end()) {

@@ -15,9 +15,13 @@ enum class Protocol {
   kInSample,            ///< the scans that built the map, placed by its refined poses
   kInSampleNavigation,  ///< the same, placed by the navigation's poses
   kHeldOut,             ///< scans that added nothing to the map, placed by its refined poses
+  kCrossCamera,         ///< the same, scored in cameras that coloured nothing of the map
 };
 
-/// "in-sample", "in-sample-nav", "held-out".
+/// Whether the scored scans must have added nothing to the map.
+bool scores_held_out(Protocol protocol);
+
+/// "in-sample", "in-sample-nav", "held-out", "cross-camera".
 const char* to_string(Protocol protocol);
 /// ConfigError for any other name.
 Protocol parse_protocol(std::string_view name);
@@ -29,8 +33,8 @@ struct ProtocolOptions {
   /// Scored cameras; empty: the map's, or where it does not know them all that the drive is opened
   /// with.
   std::vector<int> cameras;
-  /// held-out: the frames to score, instead of all that the map says it held out. In-sample: frames
-  /// that are not scored.
+  /// held-out and cross-camera: the frames to score, instead of all that the map says it held out.
+  /// In-sample: frames that are not scored.
   HoldOut hold_out;
 };
 
@@ -46,7 +50,7 @@ std::vector<PlacedFrame> select_frames(const ScoredMap& map, const FrameSource& 
                                        const ProtocolOptions& options);
 
 /// The scored cameras' places in the drive's calibration. ConfigError for one that the drive was
-/// not opened with.
+/// not opened with and, cross-camera, for one that coloured the map.
 std::vector<std::size_t> select_cameras(const ScoredMap& map, const DriveInfo& drive,
                                         const ProtocolOptions& options);
 

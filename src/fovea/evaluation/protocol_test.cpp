@@ -31,7 +31,7 @@ class ProtocolTest : public testing::Test {
 };
 
 TEST_F(ProtocolTest, NamesGoBothWays) {
-  for (const char* name : {"in-sample", "in-sample-nav", "held-out"}) {
+  for (const char* name : {"in-sample", "in-sample-nav", "held-out", "cross-camera"}) {
     EXPECT_STREQ(to_string(parse_protocol(name)), name);
     EXPECT_STRNE(explanation(parse_protocol(name)), "");
   }
@@ -120,6 +120,20 @@ TEST_F(ProtocolTest, CamerasAreTheMapsUnlessOthersAreAskedFor) {
   options.cameras = {};
   map_.cameras = {};
   EXPECT_THAT(select_cameras(map_, drive_.info(), options), ElementsAre(0u, 1u));
+}
+
+TEST_F(ProtocolTest, CrossCameraScoresHeldOutFramesInOtherCameras) {
+  EXPECT_THAT(selected(Protocol::kCrossCamera), ElementsAre(4, 12));
+  EXPECT_THROW(selected(Protocol::kCrossCamera, "4-5"), InputError);
+  ProtocolOptions options;
+  options.protocol = Protocol::kCrossCamera;
+  options.cameras = {3};
+  EXPECT_THAT(select_cameras(map_, drive_.info(), options), ElementsAre(1u));
+  options.cameras = {3, 2};
+  EXPECT_THAT([&] { select_cameras(map_, drive_.info(), options); },
+              ThrowsMessage<ConfigError>(HasSubstr("camera 2")));
+  options.cameras = {};
+  EXPECT_THROW(select_cameras(map_, drive_.info(), options), ConfigError);
 }
 
 }  // namespace

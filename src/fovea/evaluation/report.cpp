@@ -45,6 +45,26 @@ void put_set(Json& json, const SetFigures& set) {
   put_intervals(json, set.intervals);
 }
 
+void put_moving(Json& json, const std::optional<MovingReport>& moving) {
+  if (!moving) return;  // null: the drive has no labels
+  json["boxes"] = moving->labelled;
+  json["boxes_moved"] = moving->moved;
+  json["map_points_left_out"] = moving->map_points_left_out;
+  put_set(json, moving->set);
+}
+
+void put_blocks(Json& json, const EvaluationReport& report) {
+  json["explanation"] =
+      "contiguous held-out frames, scored where a training frame's white zone reached";
+  json["left_out"] = report.unreached;
+  json["list"] = Json::array();
+  for (const BlockReport& block : report.blocks) {
+    Json one{{"first_frame", block.first}, {"last_frame", block.last}};
+    put_figures(one, block.figures);
+    json["list"].push_back(one);
+  }
+}
+
 Json view_json(const ViewReport& view) {
   Json json;
   json["frame"] = view.frame;
@@ -77,6 +97,8 @@ std::string to_json(const EvaluationReport& report) {
   json["sharpness"] = report.gradients.sharpness();
   json["density_per_m2"] = report.density_per_m2;
   put_set(json["visible"], report.visible);
+  put_moving(json["without_moving"], report.without_moving);
+  if (!report.blocks.empty()) put_blocks(json["blocks"], report);
   json["free_space_points"] = report.free_space.tested;
   json["sharpness_pixels"] = report.gradients.pixels;
   json["map_points"] = report.map_points;
@@ -152,6 +174,21 @@ std::string to_text(const EvaluationReport& report) {
                     set.figures.coverage_5cm, set.left_out));
   };
   set_row("visible ME / TE", report.visible);
+  if (report.without_moving) {
+    const MovingReport& moving = *report.without_moving;
+    set_row("without moving ME / TE", moving.set);
+    row("  boxes that moved", fmt::format("{}", moving.moved),
+        fmt::format("of {}; {} map points left out", moving.labelled, moving.map_points_left_out));
+  }
+  for (const BlockReport& block : report.blocks) {
+    row(fmt::format("block {}-{} ME / TE", block.first, block.last),
+        number(block.figures.me_mean, 4),
+        fmt::format("TE {:.2f}, within 20: {:.3f}, coverage {:.3f}", block.figures.te_mean,
+                    block.figures.te_within_20, block.figures.coverage_5cm));
+  }
+  if (!report.blocks.empty()) {
+    row("  beyond training", fmt::format("{}", report.unreached), "points left out");
+  }
   row("paper-like ME / TE", number(p.me_mean, 4),
       fmt::format("TE {:.2f} ({:.2f}%), MTME {:.3f}; uncoloured points count as black", p.te_mean,
                   p.te_percent, p.mtme));

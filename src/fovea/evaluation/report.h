@@ -1,6 +1,7 @@
 // The result of an evaluation, and its two forms: JSON for programs, a table for people.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,19 @@ struct UnscoredFrame {
   std::string reason;
 };
 
+/// Figures of the points outside moved boxes, against map points outside them.
+struct MovingReport {
+  std::size_t labelled = 0, moved = 0;  ///< boxes
+  std::size_t map_points_left_out = 0;
+  SetFigures set;
+};
+
+/// Figures of one block of held-out frames.
+struct BlockReport {
+  int first = 0, last = 0;  ///< frame indices
+  ErrorFigures figures;
+};
+
 struct EvaluationReport {
   Protocol protocol = Protocol::kHeldOut;
   std::vector<int> cameras;
@@ -36,6 +50,9 @@ struct EvaluationReport {
   /// Of the points that the scored camera can see, see ScanProjection::hidden; the others' colours
   /// are those of what stands before them.
   SetFigures visible;
+  std::optional<MovingReport> without_moving;  ///< where the drive has tracklets
+  std::vector<BlockReport> blocks;  ///< where held-out frames follow each other, else empty
+  std::size_t unreached = 0;  ///< points left out with blocks: no training frame could see them
   /// Share of the coloured map points that were made by upsampling; NaN where the map does not say.
   double map_share_interpolated = ErrorFigures::kNone;
   /// Nearest neighbours among ALL map points, uncoloured ones counting as black: the only way to

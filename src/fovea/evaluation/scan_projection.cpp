@@ -8,7 +8,7 @@
 namespace fovea {
 namespace {
 
-constexpr double kCell = 8;     // pixels
+constexpr double kCell = 8;    // pixels
 constexpr double kMargin = 8;  // what lies just outside the image may hide, and be an edge
 
 }  // namespace
@@ -69,8 +69,7 @@ bool ScanProjection::hidden(const Eigen::Vector2d& pixel, double distance) const
 
 bool ScanProjection::near_edge(const Eigen::Vector2d& pixel, double distance) const {
   return any_within(pixel, kEdgePixels, [&](double other) {
-    return std::abs(distance - other) >
-           std::max(kEdgeStep, kEdgeShare * std::min(distance, other));
+    return std::abs(distance - other) > std::max(kEdgeStep, kEdgeShare * std::min(distance, other));
   });
 }
 

@@ -14,8 +14,8 @@ namespace fovea {
 class ScanProjection {
  public:
   /// A point this much nearer to the camera hides what lies behind it: the larger of the two.
-  static constexpr double kHidingStep = 0.3;        ///< m
-  static constexpr double kHidingShare = 0.05;      ///< of the nearer point's distance
+  static constexpr double kHidingStep = 0.3;    ///< m
+  static constexpr double kHidingShare = 0.05;  ///< of the nearer point's distance
   /// ... within this many degrees of its ray. Rings of common LiDARs stand 1/3 to 1/2 degree apart:
   /// half of that reaches every gap between two rings of what hides, and stays on a ring of the
   /// ground, whose next ring is nearer too and hides nothing.
@@ -24,9 +24,9 @@ class ScanProjection {
   /// Distances (from the camera) of two points at an edge of depth differ by more than this: the
   /// larger of the two. The ground at 15 m falls off by 5% from ring to ring, so 5% would find
   /// edges in it.
-  static constexpr double kEdgeStep = 0.5;      ///< m
-  static constexpr double kEdgeShare = 0.10;    ///< of the nearer one's
-  static constexpr double kEdgePixels = 5;      ///< and their projections by less than this
+  static constexpr double kEdgeStep = 0.5;    ///< m
+  static constexpr double kEdgeShare = 0.10;  ///< of the nearer one's
+  static constexpr double kEdgePixels = 5;    ///< and their projections by less than this
 
   /// @param scan_lidar  the whole scan, motion compensated: points at any range hide
   ScanProjection(const PointCloud& scan_lidar, const Camera& camera);
@@ -49,7 +49,7 @@ class ScanProjection {
   int row_of(double v) const;
 
   int columns_, rows_;
-  double hiding_radius_;  // pixels
+  double hiding_radius_;              // pixels
   std::vector<std::uint32_t> first_;  // of each cell in points_
   std::vector<Point> points_;
 };

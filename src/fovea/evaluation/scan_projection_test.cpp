@@ -104,7 +104,8 @@ TEST(ScanProjection, TheGroundHidesNothingAndHasNoEdge) {
 
 TEST(ScanProjection, BothSidesOfAStepAreEdges) {
   PointCloud step;
-  for (int i = -50; i <= 50; ++i) step.position.emplace_back(i < 0 ? 8.0f : 10.0f, 0.02f * float(i), 0);
+  for (int i = -50; i <= 50; ++i)
+    step.position.emplace_back(i < 0 ? 8.0f : 10.0f, 0.02f * float(i), 0);
   const Camera camera = camera_at(Eigen::Vector3d::Zero());
   const ScanProjection projection(step, camera);
   const auto edge = [&](int i) {

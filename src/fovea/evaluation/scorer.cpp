@@ -1,0 +1,143 @@
+#include "fovea/evaluation/scorer.h"
+
+#include <map>
+
+#include "fovea/base/errors.h"
+#include "fovea/evaluation/scan_projection.h"
+
+namespace fovea {
+namespace {
+
+void mark_hidden(const EvaluatedView& view, const PointCloud& scan, const Camera& camera,
+                 FrameScore& score) {
+  const ScanProjection projection(scan, camera);
+  for (std::size_t i = 0; i < view.pixel.size(); ++i) {
+    const Eigen::Vector3d p_lidar = scan.position[view.scan_index[i]].cast<double>();
+    const double distance = (camera.T_cam_lidar * p_lidar).norm();
+    score.hidden.push_back(projection.hidden(view.pixel[i], distance) ? 1 : 0);
+  }
+}
+
+}  // namespace
+
+Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options)
+    : map_(map.points_local),
+      drive_(drive),
+      options_(std::move(options)),
+      coloured_(coloured_points(map_)),
+      coloured_tree_(coloured_.position),
+      spacing_(sample_spacing(coloured_.position)),
+      free_space_(coloured_) {
+  for (const std::size_t place : options_.cameras) {
+    cameras_.push_back(drive.info().calibration.cameras[place]);
+  }
+  if (coloured_.position.size() < map_.size()) {
+    all_tree_.emplace(map_.position);
+    all_color_ = map_.color;
+    for (std::size_t i = 0; i < map_.size(); ++i) {
+      if (map_.camera[i] == kNoCamera) all_color_[i] = Rgb{};
+    }
+  }
+  if (options_.moving) leave_out_moving(map.frames);
+}
+
+void Scorer::leave_out_moving(const std::vector<FrameRecord>& frames) {
+  std::map<int, RigidMotion> T_lidar_map;
+  for (const FrameRecord& record : frames) {
+    T_lidar_map[record.index] =
+        record.T_local_lidar.inverse() * Eigen::Translation3d(coloured_.origin);
+  }
+  static_.origin = coloured_.origin;
+  for (std::size_t i = 0; i < coloured_.position.size(); ++i) {
+    if (!coloured_.frame.empty()) {  // a cloud that does not name frames keeps what moved
+      const auto placed = T_lidar_map.find(coloured_.frame[i]);
+      if (placed != T_lidar_map.end() &&
+          options_.moving->contain(placed->first,
+                                   placed->second * coloured_.position[i].cast<double>())) {
+        continue;
+      }
+    }
+    static_.position.push_back(coloured_.position[i]);
+    static_.color.push_back(coloured_.color[i]);
+    if (!coloured_.interpolated.empty()) {
+      static_.interpolated.push_back(coloured_.interpolated[i]);
+    }
+  }
+  if (!static_.position.empty()) static_tree_.emplace(static_.position);
+}
+
+FrameScore Scorer::score(const PlacedFrame& placed) {
+  FrameScore score;
+  const DriveInfo& info = drive_.info();
+  if (placed.index < info.begin || placed.index >= info.end) {
+    score.unscored = {placed.index, "not in the drive"};
+    return score;
+  }
+  const FrameResult loaded = drive_.load(placed.index);
+  if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
+    score.unscored = {placed.index,
+                      std::string(to_string(skipped->reason)) + ": " + skipped->detail};
+    return score;
+  }
+  const Frame& frame = std::get<Frame>(loaded);
+  const PointCloud scan = compensated_scan(frame.scan, placed, info);
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    score_view(frame, scan, placed, cameras_[k], frame.images.at(options_.cameras[k]), score);
+  }
+  free_space_.add_scan(scan, placed.T_local_lidar, cameras_);
+  return score;
+}
+
+void Scorer::score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
+                        const Camera& camera, const Image& image, FrameScore& score) const {
+  EvaluatedView view = evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
+  if (options_.reach) {
+    const std::size_t all = view.position.size();
+    view = select(view, options_.reach->reached(view.position, coloured_.origin,
+                                                placed.T_local_lidar.translation()));
+    score.unreached += all - view.position.size();
+  }
+  const NearestSamples nearest =
+      nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
+  ViewReport report{placed.index, camera.index, {}, {}, {}};
+  report.gains = fit_gains(view.color, nearest.color, view.grey);
+  const PointErrors errors = point_errors(view, nearest, report.gains);
+  report.figures = summarize(errors);
+  report.gradients = compare_gradients(draw(placed, camera), image);
+  score.errors.append(errors);
+  mark_hidden(view, scan, camera, score);
+  if (static_tree_) score_without_moving(view, scan, score);
+  if (all_tree_) {
+    const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);
+    score.paper_like_errors.append(
+        point_errors(view, any, fit_gains(view.color, any.color, view.grey)));
+  }
+  score.positions.insert(score.positions.end(), view.position.begin(), view.position.end());
+  score.views.push_back(report);
+}
+
+void Scorer::score_without_moving(const EvaluatedView& view, const PointCloud& scan,
+                                  FrameScore& score) const {
+  std::vector<std::uint8_t> stands(view.position.size());
+  for (std::size_t i = 0; i < stands.size(); ++i) {
+    stands[i] = options_.moving->contain(
+                    view.frame, scan.position[view.scan_index[i]].cast<double>())
+                    ? 0
+                    : 1;
+  }
+  const EvaluatedView standing = select(view, stands);
+  const NearestSamples nearest =
+      nearest_samples(standing.position, *static_tree_, static_.color, static_.interpolated);
+  score.errors_without_moving.append(
+      point_errors(standing, nearest, fit_gains(standing.color, nearest.color, standing.grey)));
+}
+
+SplatView Scorer::draw(const PlacedFrame& placed, const Camera& camera) const {
+  SplatOptions options;  // the depth that the evaluated points reach: beyond it nothing is scored
+  options.min_depth = kEvaluatedDepth;
+  options.max_depth = kEvaluatedFar;
+  const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
+  return splat(coloured_, spacing_, camera, T_cam_local, options);
+}
+
+}  // namespace fovea

@@ -1,0 +1,69 @@
+// Scores one frame after the other: everything that needs the map and one frame only.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/evaluation/free_space.h"
+#include "fovea/evaluation/moving_boxes.h"
+#include "fovea/evaluation/report.h"
+#include "fovea/evaluation/training_reach.h"
+
+namespace fovea {
+
+/// What one frame adds to the report; marks are one a point of `errors`.
+struct FrameScore {
+  PointErrors errors, paper_like_errors;
+  std::vector<std::uint8_t> hidden;        ///< 1: the camera cannot see the point
+  PointErrors errors_without_moving;       ///< of the points outside moved boxes
+  std::vector<Eigen::Vector3f> positions;  ///< of the points, in the map's float frame
+  std::size_t unreached = 0;               ///< points that no training frame could see
+  std::vector<ViewReport> views;
+  std::optional<UnscoredFrame> unscored;
+};
+
+struct ScorerOptions {
+  std::vector<std::size_t> cameras;    ///< scored: places in the drive's calibration
+  std::optional<MovingBoxes> moving;   ///< labelled boxes, where the drive has them
+  std::optional<TrainingReach> reach;  ///< points beyond it are not scored
+};
+
+/// The map made ready for questions; one for all frames.
+class Scorer {
+ public:
+  /// @param map, drive  must outlive the scorer
+  Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options);
+
+  /// Thread-safe.
+  FrameScore score(const PlacedFrame& placed);
+
+  const ColouredPoints& coloured() const { return coloured_; }
+  const std::vector<Camera>& cameras() const { return cameras_; }
+  FreeSpaceTest::Result free_space() const { return free_space_.result(); }
+  /// Coloured map points that lie in a moved box of their own frame.
+  std::size_t moving_points() const { return coloured_.position.size() - static_.position.size(); }
+
+ private:
+  void score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
+                  const Camera& camera, const Image& image, FrameScore& score) const;
+  void score_without_moving(const EvaluatedView& view, const PointCloud& scan,
+                            FrameScore& score) const;
+  SplatView draw(const PlacedFrame& placed, const Camera& camera) const;
+  void leave_out_moving(const std::vector<FrameRecord>& frames);
+
+  const PointCloud& map_;
+  const FrameSource& drive_;
+  ScorerOptions options_;
+  std::vector<Camera> cameras_;
+  ColouredPoints coloured_;
+  KdTree coloured_tree_;
+  std::vector<float> spacing_;
+  FreeSpaceTest free_space_;
+  ColouredPoints static_;  // without what moved; empty unless boxes are known
+  std::optional<KdTree> static_tree_;
+  std::optional<KdTree> all_tree_;  // where there are uncoloured points
+  std::vector<Rgb> all_color_;
+};
+
+}  // namespace fovea
