@@ -120,10 +120,9 @@ void Scorer::score_without_moving(const EvaluatedView& view, const PointCloud& s
                                   FrameScore& score) const {
   std::vector<std::uint8_t> stands(view.position.size());
   for (std::size_t i = 0; i < stands.size(); ++i) {
-    stands[i] = options_.moving->contain(
-                    view.frame, scan.position[view.scan_index[i]].cast<double>())
-                    ? 0
-                    : 1;
+    stands[i] =
+        options_.moving->contain(view.frame, scan.position[view.scan_index[i]].cast<double>()) ? 0
+                                                                                               : 1;
   }
   const EvaluatedView standing = select(view, stands);
   const NearestSamples nearest =

@@ -35,7 +35,8 @@ std::vector<std::uint8_t> TrainingReach::reached(const std::vector<Eigen::Vector
                                                  const Eigen::Vector3d& lidar_local) const {
   std::vector<const RigidMotion*> near;  // others' white zones cannot hold any of the points
   for (const RigidMotion& T_lidar_local : T_lidar_local_) {
-    if ((T_lidar_local * lidar_local).norm() < 2 * kEvaluatedFar + 1) near.push_back(&T_lidar_local);
+    if ((T_lidar_local * lidar_local).norm() < 2 * kEvaluatedFar + 1)
+      near.push_back(&T_lidar_local);
   }
   const auto in_view = [&](const Eigen::Vector3d& p_lidar) {
     return cameras_.empty() ||

@@ -28,8 +28,8 @@ TEST(TrainingReach, IsTheWhiteZoneInView) {
   std::vector<FrameRecord> frames(2);
   frames[1].status = FrameStatus::kHeldOut;  // at the same place, but no help
   frames[1].T_local_lidar = Eigen::Translation3d(10, 0, 0) * RigidMotion::Identity();
-  const std::vector<Eigen::Vector3f> points = {
-      {2, 0, 0}, {5, 0, 0}, {14, 0, 0}, {16, 0, 0}, {-5, 0, 0}, {5, 5, 0}};
+  const std::vector<Eigen::Vector3f> points = {{2, 0, 0},  {5, 0, 0},  {14, 0, 0},
+                                               {16, 0, 0}, {-5, 0, 0}, {5, 5, 0}};
   const Eigen::Vector3d origin(1, 0, 0);  // so that the points lie 1 m farther on
   const TrainingReach reach(frames, {forward_camera()});
   EXPECT_THAT(reach.reached(points, origin, {8, 0, 0}), ElementsAre(0, 1, 0, 0, 0, 0));

@@ -1,5 +1,5 @@
-// KITTI tracklets: boxes that people have drawn around cars, cyclists and pedestrians of a raw drive
-// (Geiger, Lenz, Stiller, Urtasun 2013, "Vision meets Robotics: The KITTI Dataset", IJRR).
+// KITTI tracklets: boxes that people have drawn around cars, cyclists and pedestrians of a raw
+// drive (Geiger, Lenz, Stiller, Urtasun 2013, "Vision meets Robotics: The KITTI Dataset", IJRR).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@ namespace fovea {
 
 /// One thing over the frames in which it is labelled.
 struct Tracklet {
-  std::string type;                                    ///< "Car", "Pedestrian", ...
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();      ///< length, width, height (m)
-  int first_frame = 0;                                 ///< of the drive
+  std::string type;                                ///< "Car", "Pedestrian", ...
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< length, width, height (m)
+  int first_frame = 0;                             ///< of the drive
   /// T_lidar_box of the first frame and each that follows; the box's origin is the middle of its
   /// bottom, x along its length, z up.
   std::vector<RigidMotion> T_lidar_box;

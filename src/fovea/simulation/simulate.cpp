@@ -169,8 +169,8 @@ class Simulation {
 std::filesystem::path simulate(const SimulationOptions& options, const std::filesystem::path& root,
                                const SimulationProgress& progress) {
   options.validate();
-  check_free_space(root, expected_size(options));
   Simulation simulation(options, root);
+  check_free_space(root, expected_size(options));
   for (int frame = 0; frame < options.frames; ++frame) {
     simulation.simulate_frame(frame);
     if (progress && !progress(frame + 1, options.frames)) return {};
