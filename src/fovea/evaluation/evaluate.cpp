@@ -4,7 +4,9 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/scorer.h"
+#include "fovea/evaluation/warnings.h"
 
 namespace fovea {
 namespace {
@@ -59,6 +61,21 @@ ScorerOptions scorer_options(const ScoredMap& map, const FrameSource& drive,
   return scoring;
 }
 
+/// The marks of points that are not hidden.
+std::vector<std::uint8_t> select(const std::vector<std::uint8_t>& marks,
+                                 const std::vector<std::uint8_t>& hidden) {
+  std::vector<std::uint8_t> selected;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (hidden[i] == 0) selected.push_back(marks[i]);
+  }
+  return selected;
+}
+
+BleedingFigures bleeding_figures(const PointErrors& edges, const PointErrors& elsewhere) {
+  const ErrorFigures at = summarize(edges), off = summarize(elsewhere);
+  return {at.points, at.te_mean, off.te_mean, at.coverage_5cm, off.coverage_5cm};
+}
+
 /// The collected scores of blocks of frames, each on its own.
 class BlockCollector {
  public:
@@ -100,6 +117,8 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   for (const Camera& camera : scorer.cameras()) report.cameras.push_back(camera.index);
   SetCollector all, visible, without_moving;
   BlockCollector block_collector(blocks);
+  PointErrors edges, elsewhere;
+  std::vector<float> distances;
   PointErrors paper_like_errors;
   std::vector<Eigen::Vector3f> positions;
   for (std::size_t i = 0; i < scores.size(); ++i) {  // in the order of frames
@@ -111,6 +130,10 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
     ++report.frames;
     all.add(score.errors);
     const PointErrors seen = score.errors.select(score.hidden, 0);
+    distances.insert(distances.end(), score.errors.position.begin(), score.errors.position.end());
+    const std::vector<std::uint8_t> seen_edges = select(score.near_edge, score.hidden);
+    edges.append(seen.select(seen_edges, 1));
+    elsewhere.append(seen.select(seen_edges, 0));
     visible.add(seen, score.errors.position.size() - seen.position.size());
     without_moving.add(score.errors_without_moving,
                        score.errors.position.size() - score.errors_without_moving.position.size());
@@ -120,6 +143,9 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
     positions.insert(positions.end(), score.positions.begin(), score.positions.end());
     for (const ViewReport& view : score.views) {
       report.gradients += view.gradients;
+      report.roughness += view.roughness;
+      report.pictures += view.pictures;
+      report.shift += view.shift;
       report.views.push_back(view);
     }
     score = {};
@@ -134,6 +160,12 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   report.figures = figures.figures;
   report.intervals = figures.intervals;
   report.visible = visible.figures();
+  report.bleeding = bleeding_figures(edges, elsewhere);
+  report.cross_view = scorer.cross_view();
+  report.thickness = plane_thickness(scorer.coloured().position);
+  report.scan_scores = scan_scores(scorer.testable_points(), positions, distances);
+  report.share_within_2mm = share_within(distances, 0.002f);
+  report.stray = pose_stray(map.frames, frames);
   report.blocks = block_collector.reports();
   if (scoring.moving) {
     report.without_moving = MovingReport{scoring.moving->labelled(), scoring.moving->moved(),
@@ -146,6 +178,7 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   report.density_per_m2 = surface_density(scorer.coloured().position, positions);
   report.map_points = map.points_local.size();
   report.map_points_coloured = scorer.coloured().position.size();
+  report.warnings = warnings(report);
   return report;
 }
 

@@ -58,6 +58,25 @@ TEST(Evaluate, AGoodMapOfTheWallScoresWell) {
   EXPECT_GT(report.free_space.tested, 100000u);
 }
 
+TEST(Evaluate, AGoodMapOfTheWallHasGoodStructure) {
+  const EvaluationReport report = evaluate_held_out(WallScene::map(0.01));
+  EXPECT_LT(report.thickness.thickness, 1e-4);
+  EXPECT_GT(report.thickness.patches, 1000u);
+  EXPECT_GT(report.scan_scores.f_score[0], 0.99);
+  EXPECT_GT(report.pictures.psnr_covered(), 30);
+  EXPECT_GT(report.pictures.mean_ssim_covered(), 0.95);
+  EXPECT_EQ(report.shift.best(), Eigen::Vector2i(0, 0));
+  EXPECT_EQ(report.bleeding.points_edges, 0u);
+  EXPECT_EQ(report.cross_view.points, 0u);  // one held-out view only
+  EXPECT_EQ(evaluate_held_out(WallScene::map(0.01)).visible.left_out, 0u);
+
+  const WallDrive drive(16);
+  const EvaluationReport both = evaluate(wall_map(WallScene::map(0.01), 16), drive, {});
+  EXPECT_GT(both.cross_view.points, 5000u);
+  EXPECT_LT(both.cross_view.map, 15);  // nearest pixels: half a pixel off is up to 18 a channel
+  EXPECT_LE(both.cross_view.floor, both.cross_view.map);
+}
+
 TEST(Evaluate, AShiftedTextureShowsInTheColorErrorOnly) {
   PointCloud shifted = WallScene::map(0.01);
   for (std::size_t i = 0; i < shifted.size(); ++i) {

@@ -137,6 +137,12 @@ FreeSpaceTest::Result FreeSpaceTest::result() const {
   return result;
 }
 
+std::vector<std::uint8_t> FreeSpaceTest::tested() const {
+  std::vector<std::uint8_t> marks(state_.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = state_[i] & kTestedBit;
+  return marks;
+}
+
 double FreeSpaceTest::Result::share() const {
   if (tested == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(violating) / static_cast<double>(tested);

@@ -33,6 +33,8 @@ class FreeSpaceTest {
     double share() const;       ///< NaN if none was tested
   };
   Result result() const;
+  /// Marks (1) the map points that any scan tested.
+  std::vector<std::uint8_t> tested() const;
 
  private:
   const ColouredPoints& map_;

@@ -65,6 +65,39 @@ void put_blocks(Json& json, const EvaluationReport& report) {
   }
 }
 
+void put_structure(Json& json, const EvaluationReport& report) {
+  const BleedingFigures& bleeding = report.bleeding;
+  json["bleeding"] = {{"points_edges", bleeding.points_edges},
+                      {"te_edges", bleeding.te_edges},
+                      {"te_elsewhere", bleeding.te_elsewhere},
+                      {"coverage_5cm_edges", bleeding.coverage_5cm_edges},
+                      {"coverage_5cm_elsewhere", bleeding.coverage_5cm_elsewhere}};
+  json["consistency"] = {{"roughness", report.roughness.roughness()},
+                         {"roughness_patches", report.roughness.patches},
+                         {"cross_view_rms", report.cross_view.map},
+                         {"cross_view_floor", report.cross_view.floor},
+                         {"cross_view_points", report.cross_view.points}};
+  Json& geometry = json["geometry"];
+  geometry["plane_thickness"] = report.thickness.thickness;
+  geometry["planar_patches"] = report.thickness.patches;
+  for (std::size_t k = 0; k < ScanScores::kCentimetres.size(); ++k) {
+    const std::string at = fmt::format("_{}cm", ScanScores::kCentimetres[k]);
+    geometry["precision" + at] = report.scan_scores.precision[k];
+    geometry["recall" + at] = report.scan_scores.recall[k];
+    geometry["f_score" + at] = report.scan_scores.f_score[k];
+  }
+  const Eigen::Vector2i shift = report.shift.best();
+  json["pictures"] = {{"psnr_covered", report.pictures.psnr_covered()},
+                      {"psnr_all", report.pictures.psnr_all()},
+                      {"ssim_covered", report.pictures.mean_ssim_covered()},
+                      {"ssim_all", report.pictures.mean_ssim_all()},
+                      {"covered", report.pictures.share_covered()},
+                      {"shift", {shift.x(), shift.y()}}};
+  json["share_within_2mm"] = report.share_within_2mm;
+  json["pose_stray"] = {{"scored", report.stray.scored}, {"mapped", report.stray.mapped}};
+  json["warnings"] = report.warnings;
+}
+
 Json view_json(const ViewReport& view) {
   Json json;
   json["frame"] = view.frame;
@@ -72,6 +105,9 @@ Json view_json(const ViewReport& view) {
   put_figures(json, view.figures);
   json["gain"] = {view.gains.x(), view.gains.y(), view.gains.z()};
   json["sharpness"] = view.gradients.sharpness();
+  json["psnr_covered"] = view.pictures.psnr_covered();
+  json["ssim_covered"] = view.pictures.mean_ssim_covered();
+  json["covered"] = view.pictures.share_covered();
   return json;
 }
 
@@ -97,6 +133,7 @@ std::string to_json(const EvaluationReport& report) {
   json["sharpness"] = report.gradients.sharpness();
   json["density_per_m2"] = report.density_per_m2;
   put_set(json["visible"], report.visible);
+  put_structure(json, report);
   put_moving(json["without_moving"], report.without_moving);
   if (!report.blocks.empty()) put_blocks(json["blocks"], report);
   json["free_space_points"] = report.free_space.tested;
@@ -158,6 +195,23 @@ std::string to_text(const EvaluationReport& report) {
       fmt::format("of {} map points", report.free_space.tested));
   row("sharpness", number(report.gradients.sharpness(), 3),
       fmt::format("over {} pixels", report.gradients.pixels));
+  const BleedingFigures& b = report.bleeding;
+  row("TE at depth edges", number(b.te_edges, 2),
+      fmt::format("elsewhere {:.2f}; coverage 5 cm {:.3f}, elsewhere {:.3f}; {} points",
+                  b.te_elsewhere, b.coverage_5cm_edges, b.coverage_5cm_elsewhere, b.points_edges));
+  row("roughness", number(report.roughness.roughness(), 2),
+      fmt::format("on {} smooth patches", report.roughness.patches));
+  row("cross-view RMS", number(report.cross_view.map, 2),
+      fmt::format("no less than {:.2f}; {} points", report.cross_view.floor,
+                  report.cross_view.points));
+  row("plane thickness", number(report.thickness.thickness, 4),
+      fmt::format("m, median of {} patches", report.thickness.patches));
+  row("F-score 5 / 10 / 20 cm", number(report.scan_scores.f_score[0], 3),
+      fmt::format("{:.3f}, {:.3f}", report.scan_scores.f_score[1], report.scan_scores.f_score[2]));
+  row("PSNR", number(report.pictures.psnr_covered(), 2),
+      fmt::format("dB, SSIM {:.3f} on the {:.1f}% covered; all {:.2f} dB, {:.3f}",
+                  report.pictures.mean_ssim_covered(), 100 * report.pictures.share_covered(),
+                  report.pictures.psnr_all(), report.pictures.mean_ssim_all()));
   row("points per m^2", number(report.density_per_m2, 0),
       fmt::format("{} coloured of {}", report.map_points_coloured, report.map_points));
   row("interpolated", number(f.share_interpolated, 3),
@@ -192,6 +246,7 @@ std::string to_text(const EvaluationReport& report) {
   row("paper-like ME / TE", number(p.me_mean, 4),
       fmt::format("TE {:.2f} ({:.2f}%), MTME {:.3f}; uncoloured points count as black", p.te_mean,
                   p.te_percent, p.mtme));
+  for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
   return text + explanation(report.protocol) + "\n" + to_text(report.color_rules);
 }
 

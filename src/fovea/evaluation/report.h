@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "fovea/evaluation/color_rules_report.h"
+#include "fovea/evaluation/consistency.h"
 #include "fovea/evaluation/free_space.h"
+#include "fovea/evaluation/map_geometry.h"
 #include "fovea/evaluation/metrics.h"
+#include "fovea/evaluation/picture_quality.h"
+#include "fovea/evaluation/pose_stray.h"
 #include "fovea/evaluation/protocol.h"
 #include "fovea/evaluation/set_figures.h"
 #include "fovea/evaluation/sharpness.h"
@@ -21,6 +25,9 @@ struct ViewReport {
   ErrorFigures figures;
   Eigen::Vector3f gains = Eigen::Vector3f::Ones();  ///< fitted, see fit_gains
   GradientSums gradients;
+  RoughnessSums roughness = {};
+  PictureSums pictures = {};
+  ShiftSums shift = {};
 };
 
 /// A selected frame that the drive could not give.
@@ -42,6 +49,14 @@ struct BlockReport {
   ErrorFigures figures;
 };
 
+/// Figures of the visible points within 5 pixels of an edge of depth (see ScanProjection) and of
+/// the others: colours of a foreground that bleed onto what lies behind it show here.
+struct BleedingFigures {
+  std::size_t points_edges = 0;
+  double te_edges = ErrorFigures::kNone, te_elsewhere = ErrorFigures::kNone;
+  double coverage_5cm_edges = ErrorFigures::kNone, coverage_5cm_elsewhere = ErrorFigures::kNone;
+};
+
 struct EvaluationReport {
   Protocol protocol = Protocol::kHeldOut;
   std::vector<int> cameras;
@@ -53,6 +68,16 @@ struct EvaluationReport {
   std::optional<MovingReport> without_moving;  ///< where the drive has tracklets
   std::vector<BlockReport> blocks;  ///< where held-out frames follow each other, else empty
   std::size_t unreached = 0;  ///< points left out with blocks: no training frame could see them
+  BleedingFigures bleeding;
+  RoughnessSums roughness;
+  CrossViewTest::Result cross_view;
+  PlaneThickness thickness;
+  ScanScores scan_scores;
+  PictureSums pictures;
+  ShiftSums shift;
+  double share_within_2mm = ErrorFigures::kNone;  ///< of the points, of a map point
+  PoseStray stray;
+  std::vector<std::string> warnings;  ///< see warnings.h
   /// Share of the coloured map points that were made by upsampling; NaN where the map does not say.
   double map_share_interpolated = ErrorFigures::kNone;
   /// Nearest neighbours among ALL map points, uncoloured ones counting as black: the only way to

@@ -8,13 +8,14 @@
 namespace fovea {
 namespace {
 
-void mark_hidden(const EvaluatedView& view, const PointCloud& scan, const Camera& camera,
+void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera& camera,
                  FrameScore& score) {
   const ScanProjection projection(scan, camera);
   for (std::size_t i = 0; i < view.pixel.size(); ++i) {
     const Eigen::Vector3d p_lidar = scan.position[view.scan_index[i]].cast<double>();
     const double distance = (camera.T_cam_lidar * p_lidar).norm();
     score.hidden.push_back(projection.hidden(view.pixel[i], distance) ? 1 : 0);
+    score.near_edge.push_back(projection.near_edge(view.pixel[i], distance) ? 1 : 0);
   }
 }
 
@@ -27,7 +28,8 @@ Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions opt
       coloured_(coloured_points(map_)),
       coloured_tree_(coloured_.position),
       spacing_(sample_spacing(coloured_.position)),
-      free_space_(coloured_) {
+      free_space_(coloured_),
+      cross_view_(coloured_) {
   for (const std::size_t place : options_.cameras) {
     cameras_.push_back(drive.info().calibration.cameras[place]);
   }
@@ -89,7 +91,7 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
 }
 
 void Scorer::score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
-                        const Camera& camera, const Image& image, FrameScore& score) const {
+                        const Camera& camera, const Image& image, FrameScore& score) {
   EvaluatedView view = evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
   if (options_.reach) {
     const std::size_t all = view.position.size();
@@ -103,9 +105,9 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   report.gains = fit_gains(view.color, nearest.color, view.grey);
   const PointErrors errors = point_errors(view, nearest, report.gains);
   report.figures = summarize(errors);
-  report.gradients = compare_gradients(draw(placed, camera), image);
+  compare_with_photograph(placed, camera, image, report);
   score.errors.append(errors);
-  mark_hidden(view, scan, camera, score);
+  mark_points(view, scan, camera, score);
   if (static_tree_) score_without_moving(view, scan, score);
   if (all_tree_) {
     const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);
@@ -131,12 +133,27 @@ void Scorer::score_without_moving(const EvaluatedView& view, const PointCloud& s
       point_errors(standing, nearest, fit_gains(standing.color, nearest.color, standing.grey)));
 }
 
-SplatView Scorer::draw(const PlacedFrame& placed, const Camera& camera) const {
+std::vector<Eigen::Vector3f> Scorer::testable_points() const {
+  const std::vector<std::uint8_t> tested = free_space_.tested();
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < tested.size(); ++i) {
+    if (tested[i] != 0) points.push_back(coloured_.position[i]);
+  }
+  return points;
+}
+
+void Scorer::compare_with_photograph(const PlacedFrame& placed, const Camera& camera,
+                                     const Image& image, ViewReport& report) {
   SplatOptions options;  // the depth that the evaluated points reach: beyond it nothing is scored
   options.min_depth = kEvaluatedDepth;
   options.max_depth = kEvaluatedFar;
   const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
-  return splat(coloured_, spacing_, camera, T_cam_local, options);
+  const SplatView drawn = splat(coloured_, spacing_, camera, T_cam_local, options);
+  report.gradients = compare_gradients(drawn, image);
+  report.roughness = compare_roughness(drawn, image);
+  report.pictures = compare_pictures(drawn, image);
+  report.shift = compare_shifts(drawn, image);
+  cross_view_.add_view(drawn, camera, T_cam_local, image);
 }
 
 }  // namespace fovea

@@ -16,6 +16,7 @@ namespace fovea {
 struct FrameScore {
   PointErrors errors, paper_like_errors;
   std::vector<std::uint8_t> hidden;        ///< 1: the camera cannot see the point
+  std::vector<std::uint8_t> near_edge;     ///< 1: at an edge of depth
   PointErrors errors_without_moving;       ///< of the points outside moved boxes
   std::vector<Eigen::Vector3f> positions;  ///< of the points, in the map's float frame
   std::size_t unreached = 0;               ///< points that no training frame could see
@@ -41,15 +42,19 @@ class Scorer {
   const ColouredPoints& coloured() const { return coloured_; }
   const std::vector<Camera>& cameras() const { return cameras_; }
   FreeSpaceTest::Result free_space() const { return free_space_.result(); }
+  CrossViewTest::Result cross_view() const { return cross_view_.result(); }
+  /// Coloured map points that any scored scan could have seen.
+  std::vector<Eigen::Vector3f> testable_points() const;
   /// Coloured map points that lie in a moved box of their own frame.
   std::size_t moving_points() const { return coloured_.position.size() - static_.position.size(); }
 
  private:
   void score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
-                  const Camera& camera, const Image& image, FrameScore& score) const;
+                  const Camera& camera, const Image& image, FrameScore& score);
+  void compare_with_photograph(const PlacedFrame& placed, const Camera& camera, const Image& image,
+                               ViewReport& report);
   void score_without_moving(const EvaluatedView& view, const PointCloud& scan,
                             FrameScore& score) const;
-  SplatView draw(const PlacedFrame& placed, const Camera& camera) const;
   void leave_out_moving(const std::vector<FrameRecord>& frames);
 
   const PointCloud& map_;
@@ -60,6 +65,7 @@ class Scorer {
   KdTree coloured_tree_;
   std::vector<float> spacing_;
   FreeSpaceTest free_space_;
+  CrossViewTest cross_view_;
   ColouredPoints static_;  // without what moved; empty unless boxes are known
   std::optional<KdTree> static_tree_;
   std::optional<KdTree> all_tree_;  // where there are uncoloured points

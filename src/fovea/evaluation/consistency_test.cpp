@@ -1,0 +1,66 @@
+#include "fovea/evaluation/consistency.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fovea/evaluation/test_scene.h"
+
+namespace fovea {
+namespace {
+
+Image even(int width, int height, std::uint8_t value, int channels = 3) {
+  Image image(width, height, channels);
+  std::fill(image.data.begin(), image.data.end(), value);
+  return image;
+}
+
+SplatView drawn(Image image) {
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
+  return {std::move(image), std::vector<float>(pixels, 8), std::vector<std::uint8_t>(pixels, 1)};
+}
+
+TEST(Roughness, IsWhatThePhotographHasNot) {
+  Image rough = even(32, 16, 100);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      std::fill_n(rough.pixel(x, y), 3, std::uint8_t((x + y) % 2 == 0 ? 90 : 110));
+    }
+  }
+  const RoughnessSums sums = compare_roughness(drawn(rough), even(32, 16, 50));
+  EXPECT_EQ(sums.patches, 8u);
+  EXPECT_NEAR(sums.roughness(), 10, 1e-3);
+  EXPECT_NEAR(compare_roughness(drawn(even(32, 16, 9)), even(32, 16, 50)).roughness(), 0, 1e-2);
+  EXPECT_EQ(compare_roughness(drawn(even(32, 16, 9)), rough).patches, 0u);  // not smooth there
+  SplatView holed = drawn(rough);
+  holed.covered[0] = 0;
+  EXPECT_EQ(compare_roughness(holed, even(32, 16, 50, 1)).patches, 7u);
+}
+
+TEST(CrossView, KnowsTheMapsErrorAndTheFloor) {
+  // Photographs 100 and 120 of a map of 105: errors 5 and 15 a channel, 10 about their mean.
+  PointCloud points = WallScene::map(0.1);
+  for (Rgb& color : points.color) color = {105, 105, 105};
+  const ColouredPoints map = coloured_points(points);
+  const Camera camera = forward_camera();
+  const SplatView view = drawn(even(camera.width, camera.height, 105));
+  CrossViewTest test(map);
+  test.add_view(view, camera, camera.T_cam_lidar, even(camera.width, camera.height, 100));
+  EXPECT_EQ(test.result().points, 0u);
+  EXPECT_TRUE(std::isnan(test.result().map));
+  test.add_view(view, camera, camera.T_cam_lidar, even(camera.width, camera.height, 120));
+  EXPECT_GT(test.result().points, 500u);
+  EXPECT_NEAR(test.result().map, std::sqrt(3 * (25 + 225) / 2.0), 1e-9);
+  EXPECT_NEAR(test.result().floor, std::sqrt(300.0), 1e-9);
+
+  SplatView before = view;  // something stands before the wall
+  std::fill(before.depth.begin(), before.depth.end(), 7.5f);
+  CrossViewTest hidden(map);
+  for (int i = 0; i < 2; ++i) {
+    hidden.add_view(before, camera, camera.T_cam_lidar, even(camera.width, camera.height, 100));
+  }
+  EXPECT_EQ(hidden.result().points, 0u);
+}
+
+}  // namespace
+}  // namespace fovea
