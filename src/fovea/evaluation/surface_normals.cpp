@@ -27,7 +27,7 @@ Eigen::Vector3f normal_of(const Moments& total) {
   const Eigen::Vector3d mean = total.sum / n;
   const Eigen::Matrix3d covariance = total.products / n - mean * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  const Eigen::Vector3d spread = solver.eigenvalues();  // increasing
+  const Eigen::Vector3d& spread = solver.eigenvalues();  // increasing
   if (!(spread[0] < kFlat * spread[1] && spread[1] > kWide * spread[2])) {
     return Eigen::Vector3f::Zero();
   }
