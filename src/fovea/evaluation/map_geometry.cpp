@@ -105,8 +105,7 @@ ScanScores scan_scores(const std::vector<Eigen::Vector3f>& map,
     const double recall = share_within(distances, bound);
     scores.precision[k] = precision;
     scores.recall[k] = recall;
-    scores.f_score[k] =
-        precision + recall == 0 ? 0 : 2 * precision * recall / (precision + recall);
+    scores.f_score[k] = precision + recall == 0 ? 0 : 2 * precision * recall / (precision + recall);
   }
   return scores;
 }

@@ -1,4 +1,5 @@
-// The shape of a map: how thin its surfaces are, and how it and the held-out scans cover each other.
+// The shape of a map: how thin its surfaces are, and how it and the held-out scans cover each
+// other.
 #pragma once
 
 #include <Eigen/Core>

@@ -23,8 +23,8 @@ Plane luma_plane(const Image& image) {
   Plane plane(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
     const std::uint8_t* p = image.data.data() + i * image.channels;
-    plane[i] = image.channels == 1 ? static_cast<float>(p[0])
-                                   : luma(Eigen::Vector3f(p[0], p[1], p[2]));
+    plane[i] =
+        image.channels == 1 ? static_cast<float>(p[0]) : luma(Eigen::Vector3f(p[0], p[1], p[2]));
   }
   return plane;
 }

@@ -23,10 +23,10 @@ struct PictureSums {
 };
 
 /// Adds up squared errors (of RGB; of luma for a grey photograph) and the structural similarity of
-/// the lumas (Wang, Bovik, Sheikh, Simoncelli 2004, "Image quality assessment: from error visibility
-/// to structural similarity", IEEE TIP 13: Gaussian window of 11 x 11 pixels, deviation 1.5, K1 =
-/// 0.01, K2 = 0.03). "All" takes what is not drawn as black; "covered" averages over covered pixels,
-/// and its windows weigh covered pixels only. At the border windows are cut.
+/// the lumas (Wang, Bovik, Sheikh, Simoncelli 2004, "Image quality assessment: from error
+/// visibility to structural similarity", IEEE TIP 13: Gaussian window of 11 x 11 pixels,
+/// deviation 1.5, K1 = 0.01, K2 = 0.03). "All" takes what is not drawn as black; "covered" averages
+/// over covered pixels, and its windows weigh covered pixels only. At the border windows are cut.
 PictureSums compare_pictures(const SplatView& drawn, const Image& photograph);
 
 /// How far the drawn texture lies beside the photograph's: sums of absolute differences of luma for

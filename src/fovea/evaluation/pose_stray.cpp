@@ -23,8 +23,7 @@ PoseStray pose_stray(const std::vector<FrameRecord>& frames,
     }
   }
   const auto correction = [](const FrameRecord& record) -> Eigen::Vector3d {
-    return record.T_local_lidar.translation() -
-           record.T_local_lidar_navigation->translation();
+    return record.T_local_lidar.translation() - record.T_local_lidar_navigation->translation();
   };
   std::set<int> indices;
   for (const PlacedFrame& placed : scored) indices.insert(placed.index);
@@ -35,8 +34,7 @@ PoseStray pose_stray(const std::vector<FrameRecord>& frames,
     while (after < known.size() && known[after]->status != FrameStatus::kMapped) ++after;
     if (before == 0 || after == known.size()) continue;
     const FrameRecord &low = *known[before - 1], &high = *known[after];
-    const double share =
-        double(known[i]->index - low.index) / double(high.index - low.index);
+    const double share = double(known[i]->index - low.index) / double(high.index - low.index);
     const Eigen::Vector3d expected = (1 - share) * correction(low) + share * correction(high);
     const double stray = (correction(*known[i]) - expected).norm();
     if (indices.contains(known[i]->index)) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 namespace fovea {
 namespace {
 
@@ -12,8 +11,8 @@ constexpr double kSameShare = 0.3;     // nearest points within 2 mm
 constexpr double kCoverage = 0.9;      // within 20 cm
 constexpr double kEdgeCoverage = 0.7;  // at edges of depth over elsewhere
 constexpr double kShiftPixels = 3;
-constexpr double kBleeding = 3;         // TE at edges over elsewhere
-constexpr double kThickness = 0.035;    // m
+constexpr double kBleeding = 3;       // TE at edges over elsewhere
+constexpr double kThickness = 0.035;  // m
 constexpr double kFreeSpace = 0.1;
 constexpr double kSharpness = 0.6;
 constexpr double kStrayTimes = 3, kStrayMetres = 0.05;
@@ -30,10 +29,11 @@ std::vector<std::string> warnings(const EvaluationReport& report) {
        fmt::format("{:.0f}% of the scored points have a map point within 2 mm: the map seems to "
                    "hold the scored scans themselves",
                    100 * report.share_within_2mm));
-  warn(report.figures.coverage_20cm < kCoverage,
-       fmt::format("{:.0f}% of the scored points have no map point within 20 cm: the map has holes, "
-                   "and colours say little there",
-                   100 * (1 - report.figures.coverage_20cm)));
+  warn(
+      report.figures.coverage_20cm < kCoverage,
+      fmt::format("{:.0f}% of the scored points have no map point within 20 cm: the map has holes, "
+                  "and colours say little there",
+                  100 * (1 - report.figures.coverage_20cm)));
   const BleedingFigures& bleeding = report.bleeding;
   warn(bleeding.coverage_5cm_edges < kEdgeCoverage * bleeding.coverage_5cm_elsewhere,
        fmt::format("coverage within 5 cm is {:.2f} at edges of depth and {:.2f} elsewhere: hard "
