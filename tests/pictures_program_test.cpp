@@ -1,0 +1,115 @@
+// fovea render and fovea reproduce, as a user meets them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "fovea/sensor/image_decode.h"
+#include "tests/kitti_writer.h"
+#include "tests/program.h"
+
+namespace fovea {
+namespace {
+
+using testing::HasSubstr;
+
+class Pictures : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new TemporaryFolder;
+    drive_ = write_kitti_drive(SyntheticDrive(street_scene(), 9, 0.8), scratch_->path());
+    const ProgramRun run = run_fovea("map '" + drive_.string() + "' -o '" + map().string() + "'");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+
+  static std::filesystem::path map() { return *scratch_ / "map.fovea"; }
+  ProgramRun render(const std::string& more) const {
+    return run_fovea("render '" + map().string() + "' " + more + " -o '" + picture().string() + "'");
+  }
+  std::filesystem::path picture() const { return own_ / "picture.png"; }
+
+  static TemporaryFolder* scratch_;
+  static std::filesystem::path drive_;
+  TemporaryFolder own_;
+};
+TemporaryFolder* Pictures::scratch_ = nullptr;
+std::filesystem::path Pictures::drive_;
+
+TEST_F(Pictures, AViewHasTheSizeAskedForAndIsNotEmpty) {
+  for (const char* view : {"driver", "behind", "above"}) {
+    const ProgramRun run =
+        render(std::string("--force --width 320 --height 200 --frame 2 --view ") + view);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Image image = read_image(picture());
+    EXPECT_EQ(image.width, 320);
+    EXPECT_EQ(image.height, 200);
+    const auto drawn = std::count_if(image.data.begin(), image.data.end(),
+                                     [](std::uint8_t value) { return value > 0; });
+    EXPECT_GT(drawn, 20'000) << view;
+  }
+}
+
+// The synthetic camera sees what the map was coloured with: where the map is drawn, both agree.
+TEST_F(Pictures, ACamerasPictureLooksLikeThePhotographBelowIt) {
+  const ProgramRun run = render("'" + drive_.string() + "' --frame 4");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Image image = read_image(picture());
+  const int height = image.height / 2;
+  double error = 0;
+  int drawn = 0;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < image.width; ++u) {
+      const std::uint8_t* pixel = image.pixel(u, v);
+      if (pixel[0] + pixel[1] + pixel[2] == 0) continue;
+      ++drawn;
+      for (int c = 0; c < 3; ++c) error += std::abs(pixel[c] - image.pixel(u, height + v)[c]) / 3.0;
+    }
+  }
+  EXPECT_GT(drawn, 10'000);
+  EXPECT_LT(error / drawn, 6);
+}
+
+TEST_F(Pictures, WrongRequestsAreOneLine) {
+  const ProgramRun unknown = render("--frame 77");
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("frame 77 is not in the map"));
+  EXPECT_FALSE(std::filesystem::exists(picture()));
+  EXPECT_EQ(render("--view sideways").exit_code, 2);
+  ASSERT_EQ(render("").exit_code, 0);
+  EXPECT_EQ(render("").exit_code, 1) << "an existing picture is not overwritten without --force";
+}
+
+TEST_F(Pictures, ReproduceWritesAPageAndGoesOnWhereItStopped) {
+  const std::string command = "reproduce '" + drive_.string() + "' -o '" + (own_ / "out").string() +
+                              "' --rows E0,default --quiet";
+  const ProgramRun run = run_fovea(command);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string page = read_text(own_ / "out/results.md");
+  for (const char* section : {"## Held out", "## Table I", "## Table II", "## The four charts", "| E0 |"}) {
+    EXPECT_THAT(page, HasSubstr(section));
+  }
+  const auto json = nlohmann::json::parse(read_text(own_ / "out/results.json"));
+  EXPECT_EQ(json["drives"][0]["rows"].size(), 2u);
+  EXPECT_EQ(json["drives"][0]["upsampling"].size(), 5u);
+  EXPECT_GT(json["drives"][0]["rows"][0]["held_out"]["held_out"]["points"], 100);
+
+  // A row that stands there is taken as it is.
+  const auto kept = own_ / ("out/rows-" + drive_.filename().string()) / "E0.json";
+  auto row = nlohmann::ordered_json::parse(read_text(kept));
+  row["held_out"]["held_out"]["te_mean"] = 123.25;
+  std::ofstream(kept) << row.dump();
+  ASSERT_EQ(run_fovea(command).exit_code, 0);
+  EXPECT_THAT(read_text(own_ / "out/results.md"), HasSubstr("123.25"));
+}
+
+TEST_F(Pictures, ReproduceRefusesAFolderThatCannotBe) {
+  std::ofstream(own_ / "file") << "x";
+  const ProgramRun run = run_fovea("reproduce '" + drive_.string() + "' -o '" +
+                                   (own_ / "file/out").string() + "' --rows E0");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("the folder cannot be made"));
+}
+
+}  // namespace
+}  // namespace fovea
