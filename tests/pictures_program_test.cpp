@@ -25,7 +25,8 @@ class Pictures : public testing::Test {
 
   static std::filesystem::path map() { return *scratch_ / "map.fovea"; }
   ProgramRun render(const std::string& more) const {
-    return run_fovea("render '" + map().string() + "' " + more + " -o '" + picture().string() + "'");
+    return run_fovea("render '" + map().string() + "' " + more + " -o '" + picture().string() +
+                     "'");
   }
   std::filesystem::path picture() const { return own_ / "picture.png"; }
 
@@ -86,7 +87,8 @@ TEST_F(Pictures, ReproduceWritesAPageAndGoesOnWhereItStopped) {
   const ProgramRun run = run_fovea(command);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string page = read_text(own_ / "out/results.md");
-  for (const char* section : {"## Held out", "## Table I", "## Table II", "## The four charts", "| E0 |"}) {
+  for (const char* section :
+       {"## Held out", "## Table I", "## Table II", "## The four charts", "| E0 |"}) {
     EXPECT_THAT(page, HasSubstr(section));
   }
   const auto json = nlohmann::json::parse(read_text(own_ / "out/results.json"));

@@ -66,6 +66,7 @@ TEST(Evaluate, AGoodMapOfTheWallHasGoodStructure) {
   EXPECT_GT(report.pictures.psnr_covered(), 30);
   EXPECT_GT(report.pictures.mean_ssim_covered(), 0.95);
   EXPECT_EQ(report.shift.best(), Eigen::Vector2i(0, 0));
+  EXPECT_NEAR(report.gradients.detail(), 1, 0.1);
   EXPECT_EQ(report.bleeding.points_edges, 0u);
   EXPECT_EQ(report.cross_view.points, 0u);  // one held-out view only
   EXPECT_EQ(evaluate_held_out(WallScene::map(0.01)).visible.left_out, 0u);

@@ -157,11 +157,12 @@ ShiftSums& ShiftSums::operator+=(const ShiftSums& other) {
   return *this;
 }
 
+double ShiftSums::at(const Eigen::Vector2i& shift) const {
+  return difference[static_cast<std::size_t>((shift.y() + kReach) * kSide + shift.x() + kReach)];
+}
+
 Eigen::Vector2i ShiftSums::best() const {
   Eigen::Vector2i best = Eigen::Vector2i::Zero();
-  const auto at = [&](const Eigen::Vector2i& shift) {
-    return difference[(shift.y() + kReach) * kSide + shift.x() + kReach];
-  };
   if (pixels == 0) return best;
   for (int dy = -kReach; dy <= kReach; ++dy) {
     for (int dx = -kReach; dx <= kReach; ++dx) {

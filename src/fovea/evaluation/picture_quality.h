@@ -37,6 +37,7 @@ struct ShiftSums {
   std::array<double, std::size_t{kSide} * kSide> difference{};
 
   ShiftSums& operator+=(const ShiftSums& other);
+  double at(const Eigen::Vector2i& shift) const;
   /// What is drawn at p lies at p + shift in the photograph; zero if nothing could be compared, and
   /// of equal ones the smallest.
   Eigen::Vector2i best() const;

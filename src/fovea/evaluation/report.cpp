@@ -131,6 +131,7 @@ std::string to_json(const EvaluationReport& report) {
   put_intervals(json, report.intervals);
   json["free_space_violations"] = report.free_space.share();
   json["sharpness"] = report.gradients.sharpness();
+  json["detail"] = report.gradients.detail();
   json["density_per_m2"] = report.density_per_m2;
   put_set(json["visible"], report.visible);
   put_structure(json, report);
@@ -194,7 +195,8 @@ std::string to_text(const EvaluationReport& report) {
   row("free-space violations", number(report.free_space.share(), 4),
       fmt::format("of {} map points", report.free_space.tested));
   row("sharpness", number(report.gradients.sharpness(), 3),
-      fmt::format("over {} pixels", report.gradients.pixels));
+      fmt::format("over {} pixels; detail {:.3f}", report.gradients.pixels,
+                  report.gradients.detail()));
   const BleedingFigures& b = report.bleeding;
   row("TE at depth edges", number(b.te_edges, 2),
       fmt::format("elsewhere {:.2f}; coverage 5 cm {:.3f}, elsewhere {:.3f}; {} points",

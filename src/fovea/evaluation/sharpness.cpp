@@ -15,9 +15,9 @@ float luma_at(const Image& image, int x, int y) {
   return image.channels == 1 ? static_cast<float>(p[0]) : luma(Eigen::Vector3f(p[0], p[1], p[2]));
 }
 
-double gradient_at(const Image& image, int x, int y) {
+Eigen::Vector2d gradient_at(const Image& image, int x, int y) {
   const float here = luma_at(image, x, y);
-  return std::hypot(luma_at(image, x + 1, y) - here, luma_at(image, x, y + 1) - here);
+  return {luma_at(image, x + 1, y) - here, luma_at(image, x, y + 1) - here};
 }
 
 }  // namespace
@@ -26,12 +26,19 @@ GradientSums& GradientSums::operator+=(const GradientSums& other) {
   pixels += other.pixels;
   map += other.map;
   photograph += other.photograph;
+  products += other.products;
+  squares += other.squares;
   return *this;
 }
 
 double GradientSums::sharpness() const {
   if (!(photograph > 0)) return std::numeric_limits<double>::quiet_NaN();
   return map / photograph;
+}
+
+double GradientSums::detail() const {
+  if (!(squares > 0)) return std::numeric_limits<double>::quiet_NaN();
+  return products / squares;
 }
 
 GradientSums compare_gradients(const SplatView& drawn, const Image& photograph) {
@@ -50,8 +57,12 @@ GradientSums compare_gradients(const SplatView& drawn, const Image& photograph) 
       };
       if (drawn.covered[here] == 0 || !like_here(here + 1) || !like_here(here + width)) continue;
       ++sums.pixels;
-      sums.map += gradient_at(drawn.image, x, y);
-      sums.photograph += gradient_at(photograph, x, y);
+      const Eigen::Vector2d map = gradient_at(drawn.image, x, y);
+      const Eigen::Vector2d photo = gradient_at(photograph, x, y);
+      sums.map += map.norm();
+      sums.photograph += photo.norm();
+      sums.products += map.dot(photo);
+      sums.squares += photo.squaredNorm();
     }
   }
   return sums;

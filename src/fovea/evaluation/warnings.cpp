@@ -15,6 +15,7 @@ constexpr double kBleeding = 3;       // TE at edges over elsewhere
 constexpr double kThickness = 0.035;  // m
 constexpr double kFreeSpace = 0.1;
 constexpr double kSharpness = 0.6;
+constexpr double kDetail = 0.3;
 constexpr double kStrayTimes = 3, kStrayMetres = 0.05;
 
 }  // namespace
@@ -55,6 +56,10 @@ std::vector<std::string> warnings(const EvaluationReport& report) {
                    100 * report.free_space.share()));
   warn(report.gradients.sharpness() < kSharpness,
        fmt::format("sharpness is {:.2f}: blur flatters TE", report.gradients.sharpness()));
+  warn(report.gradients.detail() < kDetail,
+       fmt::format("the map repeats {:.0f}% of the photographs' detail: its colours are blurred, "
+                   "coarse or out of place, and blur flatters TE",
+                   100 * report.gradients.detail()));
   const PoseStray& stray = report.stray;
   warn(stray.scored > kStrayMetres && stray.scored > kStrayTimes * stray.mapped,
        fmt::format("poses of scored frames stray {:.2f} m from the navigation's course, those of "

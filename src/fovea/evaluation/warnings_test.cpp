@@ -67,12 +67,13 @@ TEST(Warnings, ShiftedColors) {
     const Eigen::Vector3f& p = shifted.position[i];
     shifted.color[i] = to_rgb(WallScene::texture(p.y() + 0.24, p.z()));
   }
-  EXPECT_THAT(warnings_of(shifted), ElementsAre(HasSubstr("(5, 0) pixels beside")));
+  EXPECT_THAT(warnings_of(shifted), testing::Contains(HasSubstr("(5, 0) pixels beside")));
 }
 
 TEST(Warnings, FattenedPositions) {
   // Evenly spread over +-8.7 cm: a deviation of 5 cm.
-  EXPECT_THAT(warnings_of(WallScene::map(0.01, 0.087)), ElementsAre(HasSubstr("thick (RMS)")));
+  EXPECT_THAT(warnings_of(WallScene::map(0.01, 0.087)),
+              testing::Contains(HasSubstr("thick (RMS)")));
   EXPECT_THAT(warnings_of(WallScene::map(0.01, 0.4)), testing::Contains(HasSubstr("saw through")));
 }
 
@@ -81,7 +82,13 @@ TEST(Warnings, BlurredColors) {
   for (Rgb& color : blurred.color) {  // what a wide blur leaves of a sine
     color = to_rgb(0.4f * to_float(color) + Eigen::Vector3f::Constant(0.6f * 128));
   }
-  EXPECT_THAT(warnings_of(blurred), ElementsAre(HasSubstr("blur flatters TE")));
+  EXPECT_THAT(warnings_of(blurred), ElementsAre(HasSubstr("sharpness is 0.4")));
+}
+
+TEST(Warnings, LittleOfThePhotographsDetail) {
+  EvaluationReport report;
+  report.gradients = {100, 10, 10, 20, 100};  // sharp enough, but of noise
+  EXPECT_THAT(warnings(report), ElementsAre(HasSubstr("repeats 20% of the photographs' detail")));
 }
 
 TEST(Warnings, PosesThatStrayFromTheCourse) {
