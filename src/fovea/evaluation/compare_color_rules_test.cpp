@@ -144,9 +144,9 @@ TEST(CompareColorRules, TrainingFramesAreNeverHeldOut) {
   const PanelDrive drive;
   const auto indices = [&](const HoldOut& hold_out) {
     std::vector<int> found;
-    PlacedFrame scored;
-    scored.index = 4;
-    for (const auto& record : training_frames(map, drive.info(), {scored}, hold_out)) {
+    std::vector<PlacedFrame> scored(1);
+    scored[0].index = 4;
+    for (const auto& record : training_frames(map, drive.info(), scored, hold_out)) {
       found.push_back(record.index);
     }
     return found;
