@@ -81,10 +81,13 @@ void add_body(MeshBuilder& make, const Palette& palette, const Stations& station
   // Front, rear and floor.
   make.material = Palette::kPaint;
   const auto nose = outline(stations.front()), tail = outline(stations.back());
-  for (std::size_t k = 0; k + 1 < nose.size(); ++k) {
+  const std::size_t top = nose.size() - 1;  // on the middle: its own mirror image
+  for (std::size_t k = 0; k + 1 < top; ++k) {
     make.quad(nose[k], mirrored(nose[k]), mirrored(nose[k + 1]), nose[k + 1]);
     make.quad(mirrored(tail[k]), tail[k], tail[k + 1], mirrored(tail[k + 1]));
   }
+  make.triangle(nose[top - 1], mirrored(nose[top - 1]), nose[top]);
+  make.triangle(mirrored(tail[top - 1]), tail[top - 1], tail[top]);
   make.material = palette.dark_metal;
   make.quad(mirrored(tail[0]), mirrored(nose[0]), nose[0], tail[0]);
 }
