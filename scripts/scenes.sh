@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Simulates every scene, maps it with the default preset and prints the table of docs/results.md:
+# Simulates every scene, maps it with the default preset and prints a table of its scores:
 #   scripts/scenes.sh OUT_DIR [FRAMES]
 # What stands in OUT_DIR already is not made again.
 set -euo pipefail
