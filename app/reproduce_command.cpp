@@ -83,11 +83,11 @@ void run(const ReproduceArguments& arguments) {
     const std::filesystem::path folder = make_folder(output / ("rows-" + drive.name));
     for (const std::string& row : rows) {
       nlohmann::ordered_json result = run_row(*source, row, folder, interrupt.token());
-      if (result.is_null()) {
+      if (interrupt.token().stop_requested()) {
         fmt::print("interrupted: the rows that are done are kept; the same command goes on\n");
         return;
       }
-      drive.rows.push_back(std::move(result));
+      if (!result.is_null()) drive.rows.push_back(std::move(result));
       bar.draw(++done, total, row + "  ");
     }
     results.push_back(std::move(drive));

@@ -83,16 +83,17 @@ TEST_F(Pictures, WrongRequestsAreOneLine) {
 
 TEST_F(Pictures, ReproduceWritesAPageAndGoesOnWhereItStopped) {
   const std::string command = "reproduce '" + drive_.string() + "' -o '" + (own_ / "out").string() +
-                              "' --rows E0,default --quiet";
+                              "' --rows E0,default,no-refinement,tau-1 --quiet";
   const ProgramRun run = run_fovea(command);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string page = read_text(own_ / "out/results.md");
   for (const char* section :
-       {"## Held out", "## Table I", "## Table II", "## The four charts", "| E0 |"}) {
+       {"## Held out", "## Table I", "## Table II", "## The four charts", "| E0 |", "## Ablations",
+        "Each part switched off:", "| no-refinement |", "| tau-1 |"}) {
     EXPECT_THAT(page, HasSubstr(section));
   }
   const auto json = nlohmann::json::parse(read_text(own_ / "out/results.json"));
-  EXPECT_EQ(json["drives"][0]["rows"].size(), 2u);
+  EXPECT_EQ(json["drives"][0]["rows"].size(), 4u);
   EXPECT_EQ(json["drives"][0]["upsampling"].size(), 5u);
   EXPECT_GT(json["drives"][0]["rows"][0]["held_out"]["held_out"]["points"], 100);
 

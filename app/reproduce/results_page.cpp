@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "app/reproduce/ablations.h"
 #include "app/reproduce/bar_chart.h"
 #include "app/reproduce/paper_numbers.h"
+#include "app/reproduce/row_table.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/version.h"
 
@@ -16,44 +18,6 @@ namespace fovea::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// A figure by its path ("/held_out/held_out/te_mean"); NaN where there is none.
-double figure(const Json& row, const std::string& path) {
-  const Json::json_pointer pointer(path);
-  if (!row.contains(pointer)) return kNone;
-  const Json& value = row.at(pointer);
-  return value.is_number() ? value.get<double>() : kNone;
-}
-
-std::string cell(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
-
-struct Column {
-  const char* title;
-  const char* path;
-  int digits;
-  double factor = 1;
-};
-
-std::string table(const DriveResults& drive, const std::vector<Column>& columns) {
-  std::string text = "| row |", line = "| --- |";
-  for (const Column& column : columns) {
-    text += fmt::format(" {} |", column.title);
-    line += " --- |";
-  }
-  text += fmt::format("\n{}\n", line);
-  for (const Json& row : drive.rows) {
-    text += fmt::format("| {} |", row.at("row").get<std::string>());
-    for (const Column& column : columns) {
-      text += fmt::format(" {} |", cell(column.factor * figure(row, column.path), column.digits));
-    }
-    text += "\n";
-  }
-  return text;
-}
-
 // ---- charts
 
 constexpr const char* kMethods[3] = {"gicp", "icp", "plane"};
@@ -108,12 +72,21 @@ const Json* find_row(const DriveResults& drive, const std::string& name) {
   return found != drive.rows.end() ? &*found : nullptr;
 }
 
+/// The paper's variants and the presets.
+std::vector<const Json*> paper_rows(const DriveResults& drive) {
+  std::vector<const Json*> rows;
+  for (const Json& row : drive.rows) {
+    if (find_ablation(row.at("row")) == nullptr) rows.push_back(&row);
+  }
+  return rows;
+}
+
 /// One chart of ours; the name of its file.
 std::string write_chart(const DriveResults& drive, const Figure& f,
                         const std::filesystem::path& folder) {
   const BarChart chart = chart_of(f.title, f.y_label, [&](const std::string& name) {
     const Json* row = find_row(drive, name);
-    return row != nullptr ? f.factor * figure(*row, f.path) : kNone;
+    return row != nullptr ? f.factor * figure(*row, f.path) : kNoFigure;
   });
   const std::string file = fmt::format("{}-{}.svg", f.id, drive.name);
   write_text(folder / file, to_svg(chart));
@@ -128,7 +101,7 @@ std::string write_published_chart(const Figure& f, const std::filesystem::path& 
         for (const PaperRow& published : paper_table_2()) {
           if (published.name == row) return published.*sequence.*f.published;
         }
-        return kNone;
+        return kNoFigure;
       });
   const std::string file = fmt::format("{}-paper-{}.svg", f.id, name);
   write_text(folder / file, to_svg(chart));
@@ -189,32 +162,48 @@ std::string table_2(const DriveResults& drive) {
       "\nWith uncoloured points counted as black, as the paper seems to have done for its "
       "baselines, and with scans placed by the navigation\n"
       "(the only reading under which a baseline's ME is not zero):\n\n";
-  text += table(drive, {{"ME, black", "/all/in_sample/paper_like/me_mean", 4},
-                        {"TE, black", "/all/in_sample/paper_like/te_mean", 1},
-                        {"MTME, black", "/all/in_sample/paper_like/mtme", 3},
-                        {"ME, navigation", "/all/in_sample_nav/me_mean", 4},
-                        {"TE, navigation", "/all/in_sample_nav/te_mean", 1},
-                        {"MTME, navigation", "/all/in_sample_nav/mtme", 3},
-                        {"scan matching m", "/all/scan_matching/mean", 4},
-                        {"points M", "/all/map/points", 2, 1e-6}});
+  text += row_table(paper_rows(drive), {{"ME, black", "/all/in_sample/paper_like/me_mean", 4},
+                                        {"TE, black", "/all/in_sample/paper_like/te_mean", 1},
+                                        {"MTME, black", "/all/in_sample/paper_like/mtme", 3},
+                                        {"ME, navigation", "/all/in_sample_nav/me_mean", 4},
+                                        {"TE, navigation", "/all/in_sample_nav/te_mean", 1},
+                                        {"MTME, navigation", "/all/in_sample_nav/mtme", 3},
+                                        {"scan matching m", "/all/scan_matching/mean", 4},
+                                        {"points M", "/all/map/points", 2, 1e-6}});
   return text + "\n";
 }
 
 std::string held_out(const DriveResults& drive) {
   return fmt::format("### {}\n\n{}\n", drive.name,
-                     table(drive, {{"ME m", "/held_out/held_out/me_mean", 4},
-                                   {"TE", "/held_out/held_out/te_mean", 2},
-                                   {"median", "/held_out/held_out/te_median", 1},
-                                   {"within 20", "/held_out/held_out/te_within_20", 3},
-                                   {"TE, fitted gain", "/held_out/held_out/te_gain_mean", 2},
-                                   {"MTME", "/held_out/held_out/mtme", 3},
-                                   {"cover 5 cm", "/held_out/held_out/coverage_5cm", 3},
-                                   {"cover 20 cm", "/held_out/held_out/coverage_20cm", 3},
-                                   {"violations", "/held_out/held_out/free_space_violations", 4},
-                                   {"sharpness", "/held_out/held_out/sharpness", 2},
-                                   {"points M", "/held_out/map/points", 2, 1e-6},
-                                   {"frame ms p50", "/held_out/map/latency_ms/frame/p50", 0},
-                                   {"p95", "/held_out/map/latency_ms/frame/p95", 0}}));
+                     row_table(paper_rows(drive), held_out_columns()));
+}
+
+/// Rows that change one thing of the default, below the default.
+std::string ablation_tables(const DriveResults& drive) {
+  const Json* reference = find_row(drive, "default");
+  const bool simulated =
+      reference != nullptr && reference->contains(Json::json_pointer("/held_out/truth"));
+  std::vector<Column> columns = held_out_columns();
+  if (simulated) {
+    columns.insert(columns.end(), {{"pose error cm", "/held_out/truth/pose_aligned_m/mean", 1, 100},
+                                   {"accuracy mm", "/held_out/truth/accuracy_mean", 1, 1000},
+                                   {"ghosts %", "/held_out/truth/ghost_share", 2, 100}});
+  }
+  std::string text = fmt::format("### {}\n\n", drive.name), part;
+  std::vector<const Json*> rows;
+  const auto close_part = [&] {
+    if (rows.size() > 1) text += fmt::format("{}:\n\n{}\n", part, row_table(rows, columns));
+    rows.assign(reference != nullptr ? 1 : 0, reference);
+  };
+  for (const Json& row : drive.rows) {
+    const Ablation* ablation = find_ablation(row.at("row"));
+    if (ablation == nullptr) continue;
+    if (ablation->part != part) close_part();
+    part = ablation->part;
+    rows.push_back(&row);
+  }
+  close_part();
+  return text;
 }
 
 constexpr const char* kWhyTwo =
@@ -231,6 +220,12 @@ constexpr const char* kWhyTwo =
     "ghosts all count. No single figure is a win: ME falls when\n"
     "a map is fattened (free-space violations tell), TE falls when colours are blurred (sharpness "
     "tells) or hard points dropped (coverage tells).\n\n";
+
+constexpr const char* kAblations =
+    "Each row is the default preset but for one setting (`fovea map --set`), held out like the "
+    "table above. Simulated drives are scored against their\n"
+    "truth besides: mean pose error after aligning the trajectories, distance of map points to the "
+    "true surfaces, share of points of things that moved.\n\n";
 
 }  // namespace
 
@@ -267,6 +262,8 @@ std::string write_results_page(const std::vector<DriveResults>& drives, const st
       "\n{}## Held out: quality\n\nEvery 8th frame adds nothing to the map and scores it.\n\n",
       kWhyTwo);
   for (const DriveResults& drive : drives) text += held_out(drive);
+  text += fmt::format("## Ablations: one thing changed\n\n{}", kAblations);
+  for (const DriveResults& drive : drives) text += ablation_tables(drive);
   text += table_1(drives) + "## Table II: the paper's rows, in-sample\n\n";
   for (const DriveResults& drive : drives) text += table_2(drive);
   text += "## The four charts\n\nBars far above the others are cut and carry their value.\n\n";

@@ -6,8 +6,10 @@
 #include <fstream>
 
 #include "app/reports.h"
+#include "app/reproduce/ablations.h"
 #include "fovea/base/version.h"
 #include "fovea/evaluation/evaluate.h"
+#include "fovea/evaluation/evaluate_truth.h"
 #include "fovea/evaluation/scan_matching.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
@@ -19,22 +21,42 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kHoldOut = "8:4";
 
-MapperOptions options_of(const std::string& row) {
+struct RowPlan {
+  MapperOptions options;
+  PoseSource pose_source = PoseSource::kRefine;
+  bool in_sample = true;  ///< false: an ablation, of which only quality is asked
+};
+
+RowPlan plan_of(const std::string& row) {
   const std::vector<std::string> presets = preset_names();
-  if (std::find(presets.begin(), presets.end(), row) != presets.end()) return load_preset(row);
-  MapperOptions options = load_preset("default");
-  apply_variant(row, options);
-  return options;
+  if (std::find(presets.begin(), presets.end(), row) != presets.end()) return {load_preset(row)};
+  RowPlan plan{load_preset("default")};
+  if (const Ablation* ablation = find_ablation(row); ablation != nullptr) {
+    for (const std::string& setting : ablation->settings) apply_setting(setting, plan.options);
+    if (ablation->navigation_poses) plan.pose_source = PoseSource::kNavigation;
+    plan.in_sample = false;
+  } else {
+    apply_variant(row, plan.options);
+  }
+  return plan;
 }
 
 /// What figures hang on besides the drive.
-std::string fingerprint(const MapperOptions& options, const FrameSource& drive) {
+std::string fingerprint(const RowPlan& plan, const FrameSource& drive) {
   const DriveInfo& info = drive.info();
   std::vector<int> cameras;
   for (const Camera& camera : info.calibration.cameras) cameras.push_back(camera.index);
-  return fmt::format("# fovea {}\n# {}, frames {} to {}, cameras {}\n{}", version(),
+  return fmt::format("# fovea {}\n# {}, frames {} to {}, cameras {}, poses {}\n{}", version(),
                      info.path.string(), info.begin, info.end, fmt::join(cameras, ", "),
-                     to_toml(options));
+                     plan.pose_source == PoseSource::kRefine ? "refined" : "navigation",
+                     to_toml(plan.options));
+}
+
+/// The table of every frame is for `fovea evaluate`.
+Json without_frames(const std::string& report) {
+  Json json = Json::parse(report);
+  json.erase("frames");
+  return json;
 }
 
 Json score(const ScoredMap& map, const FrameSource& drive, Protocol protocol) {
@@ -43,9 +65,7 @@ Json score(const ScoredMap& map, const FrameSource& drive, Protocol protocol) {
   for (const Camera& camera : drive.info().calibration.cameras) {
     options.cameras.push_back(camera.index);
   }
-  Json json = Json::parse(to_json(evaluate(map, drive, options)));
-  json.erase("frames");  // the table of every frame is for `fovea evaluate`
-  return json;
+  return without_frames(to_json(evaluate(map, drive, options)));
 }
 
 class RowRun {
@@ -55,32 +75,47 @@ class RowRun {
       : drive_(drive), row_(row), map_file_(folder / (row + ".fovea")), stop_(stop) {}
 
   /// Null if it was stopped.
-  Json run(const MapperOptions& options) {
-    Json all = map(options, HoldOut());
+  Json run(const RowPlan& plan) {
+    Json result = {{"row", row_}, {"config", fingerprint(plan, drive_)}};
+    if (plan.in_sample) result["all"] = run_all(plan);
     if (stop_.stop_requested()) return nullptr;
-    {
-      const ScoredMap scored = load_scored_map(map_file_, {});
-      all["in_sample"] = score(scored, drive_, Protocol::kInSample);
-      if (drive_.info().navigation) {
-        all["in_sample_nav"] = score(scored, drive_, Protocol::kInSampleNavigation);
-      }
-      const ScanMatching matching = scan_matching(scored, drive_);
-      all["scan_matching"] = {
-          {"mean", matching.mean}, {"points", matching.points}, {"pairs", matching.pairs}};
-    }
-    Json held = map(options, HoldOut::parse(kHoldOut));
+    result["held_out"] = run_held_out(plan);
     if (stop_.stop_requested()) return nullptr;
-    held["held_out"] = score(load_scored_map(map_file_, {}), drive_, Protocol::kHeldOut);
     std::filesystem::remove(map_file_);
-    return {
-        {"row", row_}, {"config", fingerprint(options, drive_)}, {"all", all}, {"held_out", held}};
+    return result;
   }
 
  private:
-  Json map(const MapperOptions& options, const HoldOut& hold_out) const {
+  Json run_all(const RowPlan& plan) {
+    Json all = map(plan, HoldOut());
+    if (stop_.stop_requested()) return all;
+    const ScoredMap scored = load_scored_map(map_file_, {});
+    all["in_sample"] = score(scored, drive_, Protocol::kInSample);
+    if (drive_.info().navigation) {
+      all["in_sample_nav"] = score(scored, drive_, Protocol::kInSampleNavigation);
+    }
+    const ScanMatching matching = scan_matching(scored, drive_);
+    all["scan_matching"] = {
+        {"mean", matching.mean}, {"points", matching.points}, {"pairs", matching.pairs}};
+    return all;
+  }
+
+  Json run_held_out(const RowPlan& plan) {
+    Json held = map(plan, HoldOut::parse(kHoldOut));
+    if (stop_.stop_requested()) return held;
+    const ScoredMap scored = load_scored_map(map_file_, {});
+    held["held_out"] = score(scored, drive_, Protocol::kHeldOut);
+    if (std::filesystem::exists(drive_.info().path / "truth" / "truth.json")) {
+      held["truth"] = without_frames(to_json(evaluate_truth(scored, drive_, {})));
+    }
+    return held;
+  }
+
+  Json map(const RowPlan& plan, const HoldOut& hold_out) const {
     MapJob job;
     job.output = map_file_;
-    job.options = options;
+    job.options = plan.options;
+    job.pose_source = plan.pose_source;
     job.hold_out = hold_out;
     job.force = true;
     job.stop = stop_;
@@ -99,18 +134,20 @@ std::vector<std::string> reproduced_rows() {
   std::vector<std::string> rows = variant_names();
   rows.emplace_back("paper");
   rows.emplace_back("default");
+  for (const Ablation& row : ablations()) rows.push_back(row.name);
   return rows;
 }
 
 Json run_row(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
              const std::stop_token& stop) {
-  const MapperOptions options = options_of(row);
+  const RowPlan plan = plan_of(row);
+  if (plan.pose_source == PoseSource::kNavigation && !drive.info().navigation) return nullptr;
   const std::filesystem::path file = folder / (row + ".json");
   if (std::ifstream stream(file); stream) {
     const Json kept = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-    if (kept.is_object() && kept.value("config", "") == fingerprint(options, drive)) return kept;
+    if (kept.is_object() && kept.value("config", "") == fingerprint(plan, drive)) return kept;
   }
-  Json result = RowRun(drive, row, folder, stop).run(options);
+  Json result = RowRun(drive, row, folder, stop).run(plan);
   if (!result.is_null()) {
     OutputFile output(file, /*force=*/true);
     write_json(output, result);

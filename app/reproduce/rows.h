@@ -1,4 +1,4 @@
-// Runs rows of the paper's Table II on a drive and keeps what they measured.
+// Runs rows of the tables on a drive and keeps what they measured.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +11,16 @@
 
 namespace fovea::app {
 
-/// Rows in the order of the tables: the paper's variants, then the presets.
+/// Rows in the order of the tables: the paper's variants, the presets, the ablations.
 std::vector<std::string> reproduced_rows();
 
-/// Maps the drive as a row says, twice: all frames (scored in-sample, in both readings) and with
-/// every eighth held out, and keeps the figures in FOLDER/ROW.json; what stands there already from
-/// the same program version and configuration is taken as it is. Maps are removed again.
+/// Maps the drive as a row says, with every eighth frame held out and, but for ablations, with all
+/// frames (scored in-sample, in both readings). Keeps the figures in FOLDER/ROW.json; what stands
+/// there already from the same program version and configuration is taken as it is. Maps are
+/// removed again.
 /// @return {"row", "config", "all": {"map", "in_sample", "in_sample_nav", "scan_matching"},
-/// "held_out": {"map",
-///         "held_out"}}; null if it was stopped
+/// "held_out": {"map", "held_out", "truth" of simulated drives}}; null if it was stopped, and if
+///         the row wants navigation's poses and the drive has none
 nlohmann::ordered_json run_row(const FrameSource& drive, const std::string& row,
                                const std::filesystem::path& folder, const std::stop_token& stop);
 

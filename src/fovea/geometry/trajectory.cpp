@@ -27,6 +27,15 @@ std::optional<RigidMotion> Trajectory::at(TimeNs time) const {
                      seconds(time - p0.time) / seconds(p1.time - p0.time));
 }
 
+std::optional<RigidMotion> Trajectory::nearest(TimeNs time) const {
+  if (!at(time)) return std::nullopt;
+  const auto distance = [&](const StampedPose& p) { return std::abs(p.time - time); };
+  return std::min_element(
+             poses_.begin(), poses_.end(),
+             [&](const StampedPose& a, const StampedPose& b) { return distance(a) < distance(b); })
+      ->T_local_body;
+}
+
 std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const {
   if (poses_.size() < 2) return std::nullopt;
   // The latest pair of neighbours that is known and does not lie wholly after `time`.

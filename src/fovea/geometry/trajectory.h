@@ -29,6 +29,9 @@ class Trajectory {
   /// of the two poses there for at most kMaxExtrapolation; empty further out.
   std::optional<RigidMotion> at(TimeNs time) const;
 
+  /// The pose nearest in time, where at() has one.
+  std::optional<RigidMotion> nearest(TimeNs time) const;
+
   /// Twist per second in the body frame around `time`, from what is known by `known_until` (the
   /// last poses at or before it; a live program has no later ones). Where fewer than two poses are
   /// that early, the first two of the trajectory. Empty for a single pose.

@@ -86,7 +86,8 @@ std::vector<RayVerdict> RayFilter::filter(std::span<const Ray> scan, std::span<c
     const Owner& own = owners_[static_cast<std::size_t>(p.y) * camera.width + p.x];
     const bool is_owner = own.scan_index == static_cast<std::int32_t>(i);
     if (!is_owner && own.scan_index != kMapOwner) return RayVerdict::kShared;
-    if (is_owner && own.map_point) return RayVerdict::kOccluding;
+    if (options.occluding_test && is_owner && own.map_point) return RayVerdict::kOccluding;
+    if (!options.occluded_test) return RayVerdict::kVisible;
 
     WindowStatistics window;
     const int x_end = std::min(camera.width - 1, p.x + half);

@@ -16,9 +16,11 @@ enum class RayFilterMode {
 
 struct RayFilterOptions {
   RayFilterMode mode = RayFilterMode::kPaper;
-  int window = 5;             ///< M: edge of the pixel window, odd
-  double outlier_rate = 2.0;  ///< c: smaller rejects more
-  void validate() const;      ///< ConfigError that names the field
+  int window = 5;              ///< M: edge of the pixel window, odd
+  double outlier_rate = 2.0;   ///< c: smaller rejects more
+  bool occluding_test = true;  ///< step 1's verdict; false: a point may hide the map (ablation)
+  bool occluded_test = true;   ///< step 2's verdict; false: outliers are kept (ablation)
+  void validate() const;       ///< ConfigError that names the field
 };
 
 /// What became of a scan point.

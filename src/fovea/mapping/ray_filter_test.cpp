@@ -55,6 +55,22 @@ TEST(RayFilter, ScanPointInFrontOfAMapPointIsOccluding) {
   EXPECT_EQ(count(verdicts, RayVerdict::kOccluding), scan.size());
 }
 
+TEST(RayFilter, EachTestCanBeSwitchedOff) {
+  const Camera camera = test_camera();
+  const auto wall_in_map = wall(10, camera, 0, 200, 0, 100);
+  const auto before_it = wall(9, camera, 50, 60, 50, 60);
+  RayFilterOptions options;
+  options.occluding_test = false;
+  auto verdicts = RayFilter().filter(before_it, wall_in_map, camera, options);
+  EXPECT_EQ(count(verdicts, RayVerdict::kOccluding), 0u);
+  EXPECT_GT(count(verdicts, RayVerdict::kVisible), 0u) << "judged by the second test alone";
+
+  const std::vector<Ray> behind_it{{{100, 50}, 14.0f}};
+  EXPECT_EQ(RayFilter().filter(behind_it, wall_in_map, camera, options)[0], RayVerdict::kOccluded);
+  options.occluded_test = false;
+  EXPECT_EQ(RayFilter().filter(behind_it, wall_in_map, camera, options)[0], RayVerdict::kVisible);
+}
+
 TEST(RayFilter, NewSurfaceBesideTheMapIsKept) {
   const Camera camera = test_camera();
   const auto map = wall(10, camera, 0, 50, 0, 100);

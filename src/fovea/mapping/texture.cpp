@@ -5,9 +5,16 @@
 namespace fovea {
 namespace {
 constexpr std::size_t kGrain = 8192;
+
+Rgb sample(const Image& image, const Eigen::Vector2d& pixel, ImageSampling sampling) {
+  const bool nearest = sampling == ImageSampling::kNearest;
+  const Eigen::Vector2d at = nearest ? Eigen::Vector2d(pixel.array().round()) : pixel;
+  return to_rgb(bilinear(image, at.x(), at.y()));
 }
 
-void colour_points(PointCloud& points_cam, const View& view) {
+}  // namespace
+
+void colour_points(PointCloud& points_cam, const View& view, const TextureOptions& options) {
   const std::size_t n = points_cam.size();
   points_cam.color.assign(n, Rgb{});
   points_cam.camera.assign(n, kNoCamera);
@@ -15,7 +22,7 @@ void colour_points(PointCloud& points_cam, const View& view) {
   parallel_for(n, kGrain, [&](std::size_t i) {
     const auto pixel = view.camera.project(points_cam.position[i].cast<double>());
     if (!pixel || !view.camera.in_view(*pixel)) return;
-    points_cam.color[i] = to_rgb(bilinear(view.image, pixel->x(), pixel->y()));
+    points_cam.color[i] = sample(view.image, *pixel, options.sampling);
     points_cam.camera[i] = static_cast<std::int8_t>(view.camera.index);
   });
 }

@@ -7,6 +7,13 @@
 
 namespace fovea {
 
+/// How a colour is read between pixel centres.
+enum class ImageSampling { kBilinear, kNearest };
+
+struct TextureOptions {
+  ImageSampling sampling = ImageSampling::kBilinear;
+};
+
 /// Where a point's colour comes from.
 struct View {
   const Image& image;
@@ -14,10 +21,10 @@ struct View {
   int frame = 0;
 };
 
-/// Colours every point from the image (bilinear at its projection) and notes frame and camera;
+/// Colours every point from the image at its projection and notes frame and camera;
 /// points that do not project into the image get kNoCamera. One view, no average: averaging blurs
 /// edges.
 /// @param points_cam  camera frame, origin 0
-void colour_points(PointCloud& points_cam, const View& view);
+void colour_points(PointCloud& points_cam, const View& view, const TextureOptions& options = {});
 
 }  // namespace fovea

@@ -30,6 +30,23 @@ TEST(Texture, ColourIsTheImageAtTheProjection) {
   EXPECT_EQ(cloud.frame, (std::vector<std::int32_t>{17, 17, 17, 17}));
 }
 
+TEST(Texture, NearestSamplingTakesThePixelWhoseCentreIsNearest) {
+  Camera camera;
+  camera.width = 4;
+  camera.height = 1;
+  camera.fx = camera.fy = 1;
+  Image image(4, 1, 1);
+  image.data = {0, 100, 200, 255};
+  PointCloud cloud;
+  cloud.position = {{1.4f, 0, 1}, {1.6f, 0, 1}};
+  const TextureOptions nearest{ImageSampling::kNearest};
+  colour_points(cloud, {image, camera, 0}, nearest);
+  EXPECT_EQ(cloud.color[0].r, 100);
+  EXPECT_EQ(cloud.color[1].r, 200);
+  colour_points(cloud, {image, camera, 0});
+  EXPECT_EQ(cloud.color[0].r, 140);
+}
+
 TEST(Texture, GreyImagesGiveThreeEqualChannels) {
   Camera camera;
   camera.width = camera.height = 10;

@@ -33,6 +33,11 @@ constexpr auto names_of(RayFilterMode) {
                     EnumName<RayFilterMode>{RayFilterMode::kOff, std::string_view("off")}};
 }
 
+constexpr auto names_of(ImageSampling) {
+  return std::array{EnumName<ImageSampling>{ImageSampling::kBilinear, std::string_view("bilinear")},
+                    EnumName<ImageSampling>{ImageSampling::kNearest, std::string_view("nearest")}};
+}
+
 inline constexpr int kMaxCameras = 10;
 
 /// Slices, written as an array of [azimuth_min, azimuth_max, elevation_min, elevation_max] in
@@ -52,6 +57,7 @@ inline void visit_slices(SettingVisitor& visit, std::string_view key,
 /// Calls `visit(key, reference)` for every key; a reader assigns, a writer prints.
 inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("motion.compensate", o.compensate_motion);
+  visit("motion.interpolate_navigation", o.interpolate_navigation);
 
   RefinementOptions& r = o.refinement;
   visit("refinement.target", r.target);
@@ -102,6 +108,10 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("ray_filter.mode", o.ray_filter.mode);
   visit("ray_filter.window", o.ray_filter.window);
   visit("ray_filter.outlier_rate", o.ray_filter.outlier_rate);
+  visit("ray_filter.occluding_test", o.ray_filter.occluding_test);
+  visit("ray_filter.occluded_test", o.ray_filter.occluded_test);
+
+  visit("texture.sampling", o.texture.sampling);
 
   visit("map.tile_size", o.tile_size);
   visit("map.submap_duration", o.submap_duration);

@@ -43,7 +43,8 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
     : drive_(drive),
       options_(options),
       pose_source_(pose_source),
-      motion_model_(drive.navigation ? &*drive.navigation : nullptr),
+      motion_model_(drive.navigation ? &*drive.navigation : nullptr,
+                    options.interpolate_navigation),
       refiner_(options.refinement, drive.calibration.cameras),
       map_(options.tile_size) {
   options.validate();
@@ -133,7 +134,7 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
     return keep_visible(dense_cam, verdicts, record.figures);
   });
   clock.time("texture", [&] {
-    colour_points(visible_cam, {frame.images[camera_slot], camera, frame.index});
+    colour_points(visible_cam, {frame.images[camera_slot], camera, frame.index}, options_.texture);
   });
   clock.time("store", [&] {
     map_.add(transform_cloud(visible_cam, T_local_lidar * camera.T_cam_lidar.inverse(),
@@ -160,7 +161,8 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
       points_cam.normal.assign(points_cam.size(), Eigen::Vector3f::Zero());
       points_cam.interpolated.assign(points_cam.size(), 0);
       limit_incidence(points_cam, std::numeric_limits<double>::infinity());
-      colour_points(points_cam, {frame.images[last ? 0 : slot], camera, frame.index});
+      colour_points(points_cam, {frame.images[last ? 0 : slot], camera, frame.index},
+                    options_.texture);
       std::vector<std::uint32_t> added, unseen;
       for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
         (last || points_cam.camera[i] != kNoCamera ? added : unseen).push_back(i);

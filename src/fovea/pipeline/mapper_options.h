@@ -11,6 +11,7 @@
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
+#include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
 
 namespace fovea {
@@ -38,6 +39,8 @@ struct RefinementOptions {
 
 struct MapperOptions {
   bool compensate_motion = true;  ///< sweep motion, where the drive's scans are raw
+  /// Navigation at a scan's own stamp; false (ablation): the record nearest in time.
+  bool interpolate_navigation = true;
   RefinementOptions refinement;
   /// False (baselines): no foveal region; every point is kept, and what no camera sees is
   /// uncoloured.
@@ -47,6 +50,7 @@ struct MapperOptions {
   std::map<int, std::vector<AngularSlice>> camera_slices;
   UpsampleOptions upsample;
   RayFilterOptions ray_filter;
+  TextureOptions texture;
   double tile_size = 4.0;       ///< m
   double submap_duration = 10;  ///< s
   void validate() const;        ///< ConfigError that names the field

@@ -2,15 +2,20 @@
 
 namespace fovea {
 
+std::optional<RigidMotion> MotionModel::navigation_at(TimeNs stamp) const {
+  if (navigation_ == nullptr) return std::nullopt;
+  return interpolate_ ? navigation_->at(stamp) : navigation_->nearest(stamp);
+}
+
 MotionPrediction MotionModel::predict(TimeNs stamp, TimeNs sweep_end) const {
   MotionPrediction prediction;
   if (last_) prediction.T_local_lidar = last_->T_local_body;
 
-  const auto now = navigation_ != nullptr ? navigation_->at(stamp) : std::nullopt;
+  const auto now = navigation_at(stamp);
   if (now) {
     prediction.T_local_lidar_navigation = now;
     prediction.velocity = navigation_->velocity(stamp, sweep_end);
-    const auto then = last_ ? navigation_->at(last_->time) : std::nullopt;
+    const auto then = last_ ? navigation_at(last_->time) : std::nullopt;
     if (!last_) {
       prediction.T_local_lidar = *now;
     } else if (then) {

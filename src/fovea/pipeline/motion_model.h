@@ -20,8 +20,10 @@ struct MotionPrediction {
 /// Predicts by the navigation's motion since the last frame, or else by constant velocity.
 class MotionModel {
  public:
-  /// @param navigation  of the LiDAR, or null; must outlive the model
-  explicit MotionModel(const Trajectory* navigation) : navigation_(navigation) {}
+  /// @param navigation   of the LiDAR, or null; must outlive the model
+  /// @param interpolate  between records; false: the pose of the record nearest in time
+  explicit MotionModel(const Trajectory* navigation, bool interpolate = true)
+      : navigation_(navigation), interpolate_(interpolate) {}
 
   /// @param sweep_end  what is known later than this is not used for the velocity (live)
   MotionPrediction predict(TimeNs stamp, TimeNs sweep_end) const;
@@ -30,7 +32,10 @@ class MotionModel {
   void update(TimeNs stamp, const RigidMotion& T_local_lidar);
 
  private:
+  std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
+
   const Trajectory* navigation_;
+  bool interpolate_;
   std::optional<StampedPose> last_, before_last_;
 };
 

@@ -38,6 +38,13 @@ TEST(MotionModel, NavigationsMotionIsAppliedToTheRefinedPose) {
   EXPECT_NEAR((*next.velocity)[3], 10, 1e-9);
 }
 
+TEST(MotionModel, WithoutInterpolationTheNearestRecordCounts) {
+  const Trajectory navigation({{0, at_x(0)}, {kTenth, at_x(1)}, {2 * kTenth, at_x(2)}});
+  const MotionModel model(&navigation, /*interpolate=*/false);
+  EXPECT_NEAR(model.predict(kTenth * 6 / 10, kTenth).T_local_lidar.translation().x(), 1, 1e-12);
+  EXPECT_NEAR(model.predict(kTenth * 4 / 10, kTenth).T_local_lidar.translation().x(), 0, 1e-12);
+}
+
 TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
   const Trajectory navigation({{0, at_x(0)}, {kTenth, at_x(1)}});
   MotionModel model(&navigation);
