@@ -152,13 +152,31 @@ void TileMap::restore_tile(std::size_t submap, const TileKey& key, PointCloud ti
   submaps_[submap].tiles.emplace(key, std::move(tile));
 }
 
+void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& indices) {
+  const auto missing = [&] {
+    return std::logic_error(fmt::format("tile {} {} {} of submap {} does not exist", id.key.x,
+                                        id.key.y, id.key.z, id.submap));
+  };
+  if (id.submap >= submaps_.size()) throw missing();
+  auto& tiles = submaps_[id.submap].tiles;
+  const auto found = tiles.find(id.key);
+  if (found == tiles.end()) throw missing();
+  size_ -= found->second.size() - indices.size();
+  if (indices.empty()) {
+    tiles.erase(found);
+  } else {
+    found->second = found->second.select(indices);
+  }
+}
+
 void TileMap::for_each_tile_near(
     const Eigen::Vector3d& center_local, double radius,
-    const std::function<void(const RigidMotion&, const PointCloud&)>& f) const {
+    const std::function<void(const TileId&, const PointCloud&)>& f) const {
   const double reach = radius + kRoundingMargin * tile_size_;
   if (!(reach >= 0)) return;
   constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
-  for (const Submap& submap : submaps_) {
+  for (std::size_t id = 0; id < submaps_.size(); ++id) {
+    const Submap& submap = submaps_[id];
     const Eigen::Vector3d center = submap.T_local_submap.inverse() * center_local;
     const auto [x_first, x_last] = index_range(center.x() - reach, center.x() + reach, tile_size_);
     for (auto it = submap.tiles.lower_bound({x_first, kLowest, kLowest});
@@ -166,7 +184,7 @@ void TileMap::for_each_tile_near(
       const Eigen::Array3d low = corner(it->first).array();
       const Eigen::Array3d nearest = center.array().max(low).min(low + tile_size_);
       if ((nearest - center.array()).matrix().squaredNorm() <= reach * reach) {
-        f(submap.T_local_submap, it->second);
+        f({id, it->first}, it->second);
       }
     }
   }

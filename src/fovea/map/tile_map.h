@@ -19,6 +19,13 @@ struct TileKey {
   friend auto operator<=>(const TileKey&, const TileKey&) = default;
 };
 
+/// A tile of a map.
+struct TileId {
+  std::size_t submap = 0;
+  TileKey key;
+  friend auto operator<=>(const TileId&, const TileId&) = default;
+};
+
 /// About ten seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
@@ -54,11 +61,14 @@ class TileMap {
   /// exist, the tile does already, or its columns or origin are not those of a tile with this key.
   void restore_tile(std::size_t submap, const TileKey& key, PointCloud tile);
 
-  /// Calls f(T_local_submap, tile) for every tile that a ball of `radius` m around `center_local`
-  /// touches, in the order of submaps and keys.
-  void for_each_tile_near(
-      const Eigen::Vector3d& center_local, double radius,
-      const std::function<void(const RigidMotion&, const PointCloud&)>& f) const;
+  /// Keeps only the points at `indices` (ascending) of a tile, and drops a tile that gets empty;
+  /// std::logic_error if the tile does not exist.
+  void keep_points(const TileId& id, const std::vector<std::uint32_t>& indices);
+
+  /// Calls f for every tile that a ball of `radius` m around `center_local` touches, in the order
+  /// of submaps and keys.
+  void for_each_tile_near(const Eigen::Vector3d& center_local, double radius,
+                          const std::function<void(const TileId&, const PointCloud&)>& f) const;
 
  private:
   Eigen::Vector3d corner(const TileKey& key) const;

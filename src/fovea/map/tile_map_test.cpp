@@ -90,7 +90,7 @@ TEST(TileMap, TilesNearCoverEveryPointInTheBallAndNoTileBeyondIt) {
                                    random.uniform(-20, 20));
       const double radius = trial == 0 ? 0 : random.uniform(0, 8);
       std::set<const PointCloud*> near;
-      map.for_each_tile_near(center, radius, [&](const RigidMotion&, const PointCloud& tile) {
+      map.for_each_tile_near(center, radius, [&](const TileId&, const PointCloud& tile) {
         EXPECT_TRUE(near.insert(&tile).second) << "a tile came twice";
       });
       visited += near.size();
@@ -126,12 +126,32 @@ TEST(TileMap, TilesNearComeInTheOrderOfSubmapsAndKeys) {
     map.add(random_map_points(500, random, 5.0));
   }
   std::vector<std::pair<double, TileKey>> order;
-  map.for_each_tile_near({0, 0, 0}, 100, [&](const RigidMotion& T, const PointCloud& tile) {
+  map.for_each_tile_near({0, 0, 0}, 100, [&](const TileId& id, const PointCloud& tile) {
+    EXPECT_EQ(id.key, (TileKey{int(tile.origin.x()), int(tile.origin.y()), int(tile.origin.z())}));
     order.push_back(
-        {T.translation().x(), {int(tile.origin.x()), int(tile.origin.y()), int(tile.origin.z())}});
+        {double(id.submap), {int(tile.origin.x()), int(tile.origin.y()), int(tile.origin.z())}});
   });
   EXPECT_EQ(order.size(), map.submaps()[0].tiles.size() + map.submaps()[1].tiles.size());
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
+TEST(TileMap, KeptPointsStayAndEmptyTilesGo) {
+  Random random(7);
+  TileMap map(2.0);
+  map.add_submap(RigidMotion::Identity());
+  map.add(random_map_points(20000, random, 3.0));
+  const auto [key, before] = *map.submaps()[0].tiles.begin();
+  ASSERT_GT(before.size(), 3u);
+  const std::size_t size = map.size(), tiles = map.submaps()[0].tiles.size();
+  map.keep_points({0, key}, {0, 2});
+  expect_same_columns(map.submaps()[0].tiles.at(key), before.select({0, 2}));
+  EXPECT_EQ(map.size(), size - before.size() + 2);
+  map.keep_points({0, key}, {});
+  EXPECT_FALSE(map.submaps()[0].tiles.contains(key));
+  EXPECT_EQ(map.submaps()[0].tiles.size(), tiles - 1);
+  EXPECT_EQ(map.size(), size - before.size());
+  EXPECT_THROW(map.keep_points({0, key}, {}), std::logic_error);
+  EXPECT_THROW(map.keep_points({1, key}, {}), std::logic_error);
 }
 
 TEST(TileMap, RestoredTilesEqualTheKeptOnes) {

@@ -113,6 +113,10 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
 
   visit("texture.sampling", o.texture.sampling);
 
+  visit("moving.remove", o.moving.remove);
+  visit("moving.range", o.moving.range);
+  visit("moving.free_scans", o.moving.free_scans);
+
   visit("map.tile_size", o.tile_size);
   visit("map.submap_duration", o.submap_duration);
 }

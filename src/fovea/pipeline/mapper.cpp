@@ -46,6 +46,7 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       motion_model_(drive.navigation ? &*drive.navigation : nullptr,
                     options.interpolate_navigation),
       refiner_(options.refinement, drive.calibration.cameras),
+      moving_things_(options.moving),
       map_(options.tile_size) {
   options.validate();
 }
@@ -75,6 +76,11 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
   // Foveal processing, ray filtering and texture mapping, camera by camera.
   if (!held_out) {
     open_submap_if_due(frame.stamp, record.T_local_lidar);
+    if (options_.moving.remove) {
+      record.figures["moving_removed"] = as_figure(clock.time("filter", [&] {
+        return moving_things_.observe(map_, scan_lidar, record.T_local_lidar, frame.index);
+      }));
+    }
     if (options_.foveal_enabled) {
       for (std::size_t camera = 0; camera < drive_.calibration.cameras.size(); ++camera) {
         map_camera(scan_lidar, frame, camera, record.T_local_lidar, record, clock);
@@ -136,16 +142,29 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   clock.time("texture", [&] {
     colour_points(visible_cam, {frame.images[camera_slot], camera, frame.index}, options_.texture);
   });
-  clock.time("store", [&] {
-    map_.add(transform_cloud(visible_cam, T_local_lidar * camera.T_cam_lidar.inverse(),
-                             T_local_lidar.translation()));
-  });
+  PointCloud added_local = transform_cloud(
+      visible_cam, T_local_lidar * camera.T_cam_lidar.inverse(), T_local_lidar.translation());
+  if (options_.moving.remove) {
+    added_local = clock.time("filter", [&] { return keep_still(added_local, record.figures); });
+  }
+  clock.time("store", [&] { map_.add(added_local); });
 
   record.figures["points_foveal"] += as_figure(foveal_cam.size());
   record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
   record.figures["points_oblique"] += as_figure(oblique);
   record.figures["points_map_in_view"] += as_figure(accumulated.size());
-  record.figures["points_added"] += as_figure(visible_cam.size());
+  record.figures["points_added"] += as_figure(added_local.size());
+}
+
+PointCloud Mapper::keep_still(const PointCloud& points_local,
+                              std::map<std::string, double>& figures) const {
+  const std::vector<std::uint8_t> moving = moving_things_.marks(points_local);
+  std::vector<std::uint32_t> still;
+  for (std::uint32_t i = 0; i < moving.size(); ++i) {
+    if (moving[i] == 0) still.push_back(i);
+  }
+  figures["filter_moving"] += as_figure(moving.size() - still.size());
+  return points_local.select(still);
 }
 
 void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
@@ -190,14 +209,27 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
       submap_start_ = record.stamp;
     }
   }
-  if (pose_source_ != PoseSource::kRefine) return;
-  const std::size_t needed = std::min(targets.size(), std::size_t(refiner_.memory()));
-  for (auto it = targets.end() - std::ptrdiff_t(needed); it != targets.end(); ++it) {
-    const FrameResult frame = source.load((*it)->index);
+  for (std::size_t i = first_to_replay(targets); i < targets.size(); ++i) {
+    const FrameRecord& record = *targets[i];
+    const FrameResult frame = source.load(record.index);
     if (!std::holds_alternative<Frame>(frame)) continue;
-    refiner_.add_target(compensated(std::get<Frame>(frame).scan, (*it)->velocity),
-                        (*it)->T_local_lidar);
+    const PointCloud scan_lidar = compensated(std::get<Frame>(frame).scan, record.velocity);
+    moving_things_.replay(map_, scan_lidar, record.T_local_lidar, record.index);
+    const bool is_target = targets.size() - i <= std::size_t(refiner_.memory());
+    if (is_target && pose_source_ == PoseSource::kRefine) {
+      refiner_.add_target(scan_lidar, record.T_local_lidar);
+    }
   }
+}
+
+std::size_t Mapper::first_to_replay(const std::vector<const FrameRecord*>& targets) const {
+  const std::size_t count =
+      std::max(std::size_t(refiner_.memory()), std::size_t(MovingThings::kJudges));
+  std::size_t first = targets.size() - std::min(targets.size(), count);
+  while (first > 0 && targets[first - 1]->index > targets.back()->index - MovingThings::kMemory) {
+    --first;
+  }
+  return first;
 }
 
 }  // namespace fovea

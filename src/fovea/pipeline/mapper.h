@@ -9,6 +9,7 @@
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/motion_model.h"
+#include "fovea/pipeline/moving_things.h"
 #include "fovea/pipeline/pose_refiner.h"
 #include "fovea/pipeline/stage_clock.h"
 #include "fovea/sensor/frame_source.h"
@@ -41,9 +42,13 @@ class Mapper {
   RigidMotion pose_of(const PointCloud& scan_lidar, const MotionPrediction& motion, bool held_out,
                       const std::optional<RigidMotion>& given_pose, FrameRecord& record,
                       StageClock& clock);
+  /// Of the mapped frames of an earlier run, the first on which anything now depends.
+  std::size_t first_to_replay(const std::vector<const FrameRecord*>& targets) const;
   void open_submap_if_due(TimeNs stamp, const RigidMotion& T_local_lidar);
   void map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera,
                   const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
+  PointCloud keep_still(const PointCloud& points_local,
+                        std::map<std::string, double>& figures) const;
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
                       const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
 
@@ -53,6 +58,7 @@ class Mapper {
   MotionModel motion_model_;
   PoseRefiner refiner_;
   RayFilter ray_filter_;
+  MovingThings moving_things_;
   TileMap map_;
   std::optional<TimeNs> submap_start_;
 };

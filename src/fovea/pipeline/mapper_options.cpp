@@ -56,6 +56,7 @@ void MapperOptions::validate() const {
   }
   upsample.validate();
   ray_filter.validate();
+  moving.validate();
   if (!(tile_size >= 0.5 && tile_size <= 100)) {
     reject("a size is out of range", "map.tile_size", "give metres from 0.5 to 100");
   }
@@ -86,6 +87,7 @@ void apply_variant(std::string_view name, MapperOptions& options) {
 
   options.refinement.registration.method = method_of_variant(number);
   options.refinement.target = RegistrationTarget::kPreviousScan;
+  options.refinement.registration.robust_width = 0;
   options.refinement.voxel = 0;
   options.refinement.visible_only = !baseline;
   options.refinement.upsample_rate = baseline ? 0 : number % 4;
@@ -96,6 +98,7 @@ void apply_variant(std::string_view name, MapperOptions& options) {
   options.camera_slices.clear();
   options.ray_filter = RayFilterOptions{};  // paper mode, M = 5, c = 2
   if (baseline) options.ray_filter.mode = RayFilterMode::kOff;
+  options.moving.remove = false;
 }
 
 }  // namespace fovea

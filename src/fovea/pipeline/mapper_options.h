@@ -13,6 +13,7 @@
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
+#include "fovea/pipeline/moving_things.h"
 
 namespace fovea {
 
@@ -32,7 +33,8 @@ struct RefinementOptions {
   double max_correction_translation = 2.0;               ///< m
   double max_correction_rotation = 0.08726646259971647;  ///< rad
   GroundOptions ground;
-  RegistrationOptions registration;
+  /// With a robust kernel, so that what moves does not pull (the paper has none).
+  RegistrationOptions registration{.robust_width = 0.1};
   LocalMapOptions local_map;
   void validate() const;  ///< ConfigError that names the field
 };
@@ -51,6 +53,7 @@ struct MapperOptions {
   UpsampleOptions upsample;
   RayFilterOptions ray_filter;
   TextureOptions texture;
+  MovingOptions moving;
   double tile_size = 4.0;       ///< m
   double submap_duration = 10;  ///< s
   void validate() const;        ///< ConfigError that names the field

@@ -1,0 +1,47 @@
+// Where one scan saw a surface, and where it saw through.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fovea {
+
+/// What a scan says of a place.
+enum class Sight : std::uint8_t {
+  kUnknown,  ///< hidden, out of the scan's field of view, or without returns around it
+  kSurface,  ///< a return lies there
+  kFree,     ///< every return around its ray lies behind it
+};
+
+/// A scan's nearest returns by direction. Judges places as balls of some 0.15 m, not as points: a
+/// place is free only if every ray that passes within that distance (or within 0.75 degrees) ends
+/// well behind it, and such rays exist above and below. What is thin, and what rays graze (a roof,
+/// the road), is therefore never taken for free.
+class RangeImage {
+ public:
+  static constexpr float kMargin = 0.3f;  ///< m: a return this near in range is the place itself
+
+  /// @param scan_lidar  m, LiDAR frame, motion compensated
+  explicit RangeImage(std::span<const Eigen::Vector3f> scan_lidar);
+
+  /// @param p_lidar  m, frame of the scan's LiDAR
+  Sight sight(const Eigen::Vector3f& p_lidar) const;
+
+ private:
+  /// Nearest range and number of cells with a return in a window around each cell.
+  struct Level {
+    std::vector<float> nearest;
+    std::vector<std::uint8_t> filled;
+  };
+  static constexpr std::size_t kLevels = 3;
+  Level widened(const Level& cells, int half_width) const;
+
+  int first_row_ = 0;  // of the lowest return
+  int rows_ = 0;
+  std::array<Level, kLevels> levels_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,73 @@
+#include "fovea/mapping/moving/range_image.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace fovea {
+namespace {
+
+/// A scan of 64 rings in a round room of `radius` m with its floor 1.7 m below the sensor, and
+/// nearer returns where `nearer` has them (m; 0: none).
+template <class Nearer>
+std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer) {
+  std::vector<Eigen::Vector3f> scan;
+  for (int ring = 0; ring < 64; ++ring) {
+    const float elevation = (2.0f - 0.42f * float(ring)) * std::numbers::pi_v<float> / 180;
+    for (int k = 0; k < 2000; ++k) {
+      const float azimuth = (float(k) - 1000) * std::numbers::pi_v<float> / 1000;
+      const Eigen::Vector3f ray(std::cos(elevation) * std::cos(azimuth),
+                                std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      float range = radius / std::cos(elevation);
+      if (elevation < 0) range = std::min(range, 1.7f / -std::sin(elevation));
+      const float thing = nearer(azimuth, elevation);
+      scan.push_back(ray * (thing > 0 ? std::min(thing, range) : range));
+    }
+  }
+  return scan;
+}
+
+float nothing(float, float) { return 0; }
+
+TEST(RangeImage, SaysFreeSurfaceAndUnknown) {
+  const RangeImage image(room_scan(20, nothing));
+  EXPECT_EQ(image.sight({10, 0, -0.5f}), Sight::kFree);
+  EXPECT_EQ(image.sight({-4, -3, -0.3f}), Sight::kFree);
+  EXPECT_EQ(image.sight({20, 0, -0.5f}), Sight::kSurface);
+  EXPECT_EQ(image.sight({-19.8f, 0, -0.5f}), Sight::kSurface);
+  EXPECT_EQ(image.sight({25, 0, -0.5f}), Sight::kUnknown) << "behind the wall";
+  EXPECT_EQ(image.sight({5, 0, 3}), Sight::kUnknown) << "above the highest beam";
+  EXPECT_EQ(image.sight({0.1f, 0, 0}), Sight::kUnknown);
+}
+
+TEST(RangeImage, TheFloorIsNeverFree) {
+  const RangeImage image(room_scan(60, nothing));
+  for (float x = 3; x < 25; x += 0.37f) {
+    for (const float z : {-1.7f, -1.6f}) {
+      EXPECT_NE(image.sight({x, 1, z}), Sight::kFree) << x << " " << z;
+    }
+  }
+}
+
+TEST(RangeImage, AThinPoleIsSeenAndItsShadowUnknown) {
+  // 2 cm wide at 8 m: one ray in each ring.
+  const RangeImage image(
+      room_scan(20, [](float azimuth, float) { return std::abs(azimuth) < 0.0016f ? 8.0f : 0.0f; }));
+  EXPECT_EQ(image.sight({8, 0, -0.2f}), Sight::kSurface);
+  EXPECT_EQ(image.sight({8, 0.1f, -0.2f}), Sight::kSurface);
+  EXPECT_EQ(image.sight({12, 0, -0.2f}), Sight::kUnknown);
+  EXPECT_EQ(image.sight({8, 1, -0.2f}), Sight::kFree);
+}
+
+TEST(RangeImage, DirectionsWithoutReturnsAreUnknown) {
+  std::vector<Eigen::Vector3f> scan = room_scan(20, nothing);
+  std::erase_if(scan, [](const Eigen::Vector3f& p) { return p.x() > 0 && std::abs(p.y()) < 6; });
+  EXPECT_EQ(RangeImage(scan).sight({10, 0, -0.5f}), Sight::kUnknown);
+  EXPECT_EQ(RangeImage({}).sight({10, 0, -0.5f}), Sight::kUnknown);
+  scan.assign(3, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_EQ(RangeImage(scan).sight({10, 0, -0.5f}), Sight::kUnknown);
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,193 @@
+#include "fovea/pipeline/moving_things.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kVoxel = 0.2;  // m
+/// Fewer scans than this that saw through a place are taken for chance.
+constexpr int kMinFree = 3;
+constexpr std::size_t kVoxelGrain = 64;
+
+int voxels_per_edge(const TileMap& map) {
+  return std::max(1, static_cast<int>(std::lround(map.tile_size() / kVoxel)));
+}
+
+std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_metre, int edge) {
+  const auto index = [&](float value) {
+    return static_cast<std::uint32_t>(std::clamp(int(value * cells_per_metre), 0, edge - 1));
+  };
+  const auto n = static_cast<std::uint32_t>(edge);
+  return (index(p_tile.z()) * n + index(p_tile.y())) * n + index(p_tile.x());
+}
+
+Eigen::Vector3f center_of(std::uint32_t cell, float size, int edge) {
+  const auto n = static_cast<std::uint32_t>(edge);
+  return Eigen::Vector3f(float(cell % n), float(cell / n % n), float(cell / n / n)) * size +
+         Eigen::Vector3f::Constant(size / 2);
+}
+
+std::uint32_t aged(std::uint32_t bits, int frames) {
+  return frames < MovingThings::kMemory ? bits << frames : 0;
+}
+
+/// Scans that saw through since the last that saw something there.
+int free_since_filled(std::uint32_t filled, std::uint32_t free) {
+  return std::popcount(free & ((filled & -filled) - 1));  // of no filled bit at all: every one
+}
+
+/// Tile coordinates to those of the LiDAR, in float: what is looked at is near.
+struct TileView {
+  Eigen::Matrix3f R;
+  Eigen::Vector3f t;
+  TileView(const RigidMotion& T_lidar_submap, const Eigen::Vector3d& tile_origin)
+      : R(T_lidar_submap.linear().cast<float>()),
+        t((T_lidar_submap * tile_origin).cast<float>()) {}
+};
+
+}  // namespace
+
+void MovingOptions::validate() const {
+  if (!(range > 0 && range <= 200)) {
+    throw ConfigError("a range is out of range", "moving.range",
+                      "give metres above 0 and up to 200");
+  }
+  if (free_scans < 1 || free_scans > MovingThings::kMemory) {
+    throw ConfigError("a number of scans is out of range", "moving.free_scans", "give 1 to 32");
+  }
+}
+
+std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local) const {
+  std::vector<std::uint8_t> marks(points_local.size(), 0);
+  if (!options_.remove || scans_.size() < std::size_t(kMinFree)) return marks;
+
+  // One verdict a voxel: its first point's.
+  std::unordered_map<std::uint64_t, std::uint32_t> voxel_of_key;
+  std::vector<std::uint32_t> voxel(points_local.size()), first_point;
+  const float inverse = static_cast<float>(1 / kVoxel);
+  for (std::uint32_t i = 0; i < voxel.size(); ++i) {
+    const Eigen::Array3f cell = (points_local.position[i].array() * inverse).floor();
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      key = key << 21 | (static_cast<std::uint64_t>(std::int64_t(cell[axis])) & 0x1fffff);
+    }
+    const auto [place, is_new] = voxel_of_key.try_emplace(key, std::uint32_t(first_point.size()));
+    if (is_new) first_point.push_back(i);
+    voxel[i] = place->second;
+  }
+  std::vector<std::uint8_t> moving(first_point.size());
+  parallel_for(first_point.size(), kVoxelGrain, [&](std::size_t v) {
+    const Eigen::Vector3d p_local =
+        points_local.origin + points_local.position[first_point[v]].cast<double>();
+    int free = 0, filled = 0;
+    for (std::size_t k = scans_.size() - std::min(scans_.size(), kJudges); k < scans_.size(); ++k) {
+      const Sight sight = scans_[k].image.sight((scans_[k].T_lidar_local * p_local).cast<float>());
+      free += sight == Sight::kFree;
+      filled += sight == Sight::kSurface;
+    }
+    moving[v] = free >= kMinFree && free > filled;
+  });
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = moving[voxel[i]];
+  return marks;
+}
+
+std::vector<MovingThings::Tile> MovingThings::tiles_near(const TileMap& map,
+                                                         const Eigen::Vector3d& center_local) {
+  std::vector<Tile> tiles;
+  std::map<TileId, Block> within_reach;  // the others are forgotten
+  map.for_each_tile_near(center_local, options_.range,
+                         [&](const TileId& id, const PointCloud& points) {
+                           auto node = blocks_.extract(id);
+                           auto place = node ? within_reach.insert(std::move(node)).position
+                                             : within_reach.try_emplace(id).first;
+                           tiles.push_back({id, &points, &place->second, {}, false});
+                         });
+  blocks_ = std::move(within_reach);
+  return tiles;
+}
+
+void MovingThings::look(const TileMap& map, const Scan& scan, int frame, Tile& tile) const {
+  Block& block = *tile.block;
+  const int edge = voxels_per_edge(map);
+  const auto size = static_cast<float>(map.tile_size() / edge);
+  const int age = frame - block.frame;
+  block.frame = frame;
+  for (Voxel& voxel : block.voxels) {
+    voxel.filled = aged(voxel.filled, age);
+    voxel.free = aged(voxel.free, age);
+  }
+  // Points that came since. Those of later frames are there when scans are replayed.
+  const std::vector<std::int32_t>& point_frame = tile.points->frame;
+  for (std::size_t& i = block.known_points; i < point_frame.size() && point_frame[i] <= frame;
+       ++i) {
+    const std::uint32_t cell = cell_of(tile.points->position[i], 1 / size, edge);
+    const auto [place, is_new] =
+        block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
+    if (is_new) block.voxels.push_back({cell, 0, 0});
+    block.voxels[place->second].filled |= aged(1, frame - point_frame[i]);
+  }
+  const TileView view(scan.T_lidar_local * map.submaps()[tile.id.submap].T_local_submap,
+                      tile.points->origin);
+  for (Voxel& voxel : block.voxels) {
+    const Sight sight = scan.image.sight(view.R * center_of(voxel.cell, size, edge) + view.t);
+    if (sight == Sight::kSurface) voxel.filled |= 1;
+    if (sight == Sight::kFree) voxel.free |= 1;
+  }
+}
+
+void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
+  Block& block = *tile.block;
+  const auto gone = [&](const Voxel& voxel) {
+    return (voxel.free & 1) != 0 &&
+           free_since_filled(voxel.filled, voxel.free) >= options_.free_scans;
+  };
+  tile.shrinks = std::any_of(block.voxels.begin(), block.voxels.end(), gone);
+  if (!tile.shrinks) return;
+  const int edge = voxels_per_edge(map);
+  const auto cells_per_metre = static_cast<float>(edge / map.tile_size());
+  for (std::uint32_t i = 0; i < tile.points->size(); ++i) {
+    const std::uint32_t cell = cell_of(tile.points->position[i], cells_per_metre, edge);
+    if (!gone(block.voxels[block.place.at(cell)])) tile.kept.push_back(i);
+  }
+  std::erase_if(block.voxels, gone);
+  block.place.clear();
+  for (std::uint32_t v = 0; v < block.voxels.size(); ++v) block.place[block.voxels[v].cell] = v;
+  block.known_points = tile.kept.size();
+}
+
+std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map,
+                                                     const PointCloud& scan_lidar,
+                                                     const RigidMotion& T_local_lidar, int frame) {
+  scans_.push_back({RangeImage(scan_lidar.position), T_local_lidar.inverse()});
+  if (scans_.size() > kJudges) scans_.pop_front();
+  std::vector<Tile> tiles = tiles_near(map, T_local_lidar.translation());
+  parallel_for(tiles.size(), 1,
+               [&](std::size_t i) { look(map, scans_.back(), frame, tiles[i]); });
+  return tiles;
+}
+
+std::size_t MovingThings::observe(TileMap& map, const PointCloud& scan_lidar,
+                                  const RigidMotion& T_local_lidar, int frame) {
+  if (!options_.remove) return 0;
+  std::vector<Tile> tiles = gather(map, scan_lidar, T_local_lidar, frame);
+  parallel_for(tiles.size(), 1, [&](std::size_t i) { select_kept(map, tiles[i]); });
+  const std::size_t before = map.size();
+  for (const Tile& tile : tiles) {
+    if (tile.shrinks) map.keep_points(tile.id, tile.kept);
+    if (tile.kept.empty() && tile.shrinks) blocks_.erase(tile.id);
+  }
+  return before - map.size();
+}
+
+void MovingThings::replay(const TileMap& map, const PointCloud& scan_lidar,
+                          const RigidMotion& T_local_lidar, int frame) {
+  if (options_.remove) gather(map, scan_lidar, T_local_lidar, frame);
+}
+
+}  // namespace fovea

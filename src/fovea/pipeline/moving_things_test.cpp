@@ -1,0 +1,142 @@
+#include "fovea/pipeline/moving_things.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+/// What a standing LiDAR sees: a wall all around at 20 m, and a box face at x = `thing` (0: none),
+/// 2 m wide.
+PointCloud scan_of(float thing) {
+  PointCloud scan;
+  for (int ring = 0; ring < 64; ++ring) {
+    const float elevation = (2.0f - 0.42f * float(ring)) * std::numbers::pi_v<float> / 180;
+    for (int k = 0; k < 1800; ++k) {
+      const float azimuth = (float(k) - 900) * std::numbers::pi_v<float> / 900;
+      const Eigen::Vector3f ray(std::cos(elevation) * std::cos(azimuth),
+                                std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const Eigen::Vector3f on_face = ray * (thing / ray.x());
+      const bool hit = thing > 0 && ray.x() > 0 && std::abs(on_face.y()) < 1;
+      scan.position.push_back(hit ? on_face : Eigen::Vector3f(ray * 20));
+    }
+  }
+  return scan;
+}
+
+/// Points of a face at x, as a frame adds them to a map.
+PointCloud face_points(float x, int frame) {
+  PointCloud points;
+  for (float y = -0.9f; y < 0.9f; y += 0.05f) {
+    for (float z = -1.0f; z < 0; z += 0.05f) points.position.push_back({x, y, z});
+  }
+  const std::size_t n = points.size();
+  points.range.assign(n, x);
+  points.incidence.assign(n, 0);
+  points.color.assign(n, Rgb{});
+  points.frame.assign(n, frame);
+  points.camera.assign(n, 2);
+  points.interpolated.assign(n, 0);
+  return points;
+}
+
+const RigidMotion kHere = RigidMotion::Identity();
+
+TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
+  MovingThings things({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  map.add(face_points(10, 0));
+  const std::size_t face = map.size();
+  map.add(face_points(20, 0));  // the wall itself
+  const std::size_t all = map.size();
+  for (int frame = 1; frame <= 3; ++frame) {
+    EXPECT_EQ(things.observe(map, scan_of(0), kHere, frame), 0u) << "too few scans yet";
+  }
+  EXPECT_EQ(things.observe(map, scan_of(0), kHere, 4), face);
+  EXPECT_EQ(map.size(), all - face);
+  EXPECT_EQ(things.observe(map, scan_of(0), kHere, 5), 0u);
+}
+
+TEST(MovingThings, WhatIsSeenNowAndThenStays) {
+  MovingThings things({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  map.add(face_points(10, 0));
+  for (int frame = 1; frame < 40; ++frame) {
+    EXPECT_EQ(things.observe(map, scan_of(frame % 4 == 0 ? 10.f : 0.f), kHere, frame), 0u);
+  }
+}
+
+TEST(MovingThings, WhatIsHiddenStays) {
+  MovingThings things({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  map.add(face_points(10, 0));
+  for (int frame = 1; frame < 20; ++frame) {
+    EXPECT_EQ(things.observe(map, scan_of(6), kHere, frame), 0u);
+  }
+}
+
+TEST(MovingThings, MarksWhatCameWhereScansSawThrough) {
+  MovingThings things({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  const auto marked = [&](float x) {
+    const auto marks = things.marks(face_points(x, 9));
+    return std::count(marks.begin(), marks.end(), 1);
+  };
+  EXPECT_EQ(marked(10), 0) << "nothing is known yet";
+  for (int frame = 0; frame < 6; ++frame) things.observe(map, scan_of(0), kHere, frame);
+  EXPECT_EQ(marked(10), std::int64_t(face_points(10, 9).size()));
+  EXPECT_EQ(marked(20), 0);
+  // It stays there: after as many scans it is part of the world.
+  for (int frame = 6; frame < 12; ++frame) things.observe(map, scan_of(10), kHere, frame);
+  EXPECT_EQ(marked(10), 0);
+}
+
+TEST(MovingThings, SwitchedOffNothingGoes) {
+  MovingOptions off;
+  off.remove = false;
+  MovingThings things(off);
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  map.add(face_points(10, 0));
+  for (int frame = 1; frame < 20; ++frame) {
+    EXPECT_EQ(things.observe(map, scan_of(0), kHere, frame), 0u);
+  }
+  const auto marks = things.marks(face_points(10, 20));
+  EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 0);
+}
+
+TEST(MovingThings, ReplayedScansLeadToTheSameDecision) {
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  map.add(face_points(10, 0));
+  TileMap again = map;
+  MovingThings first({}), resumed({});
+  for (int frame = 1; frame <= 2; ++frame) first.observe(map, scan_of(0), kHere, frame);
+  for (int frame = 1; frame <= 2; ++frame) resumed.replay(again, scan_of(0), kHere, frame);
+  for (int frame = 3; frame <= 4; ++frame) {
+    EXPECT_EQ(first.observe(map, scan_of(0), kHere, frame),
+              resumed.observe(again, scan_of(0), kHere, frame));
+  }
+  EXPECT_EQ(map.size(), 0u);
+  EXPECT_EQ(again.size(), 0u);
+}
+
+TEST(MovingThings, OptionsAreChecked) {
+  MovingOptions options;
+  options.free_scans = 0;
+  EXPECT_THROW(options.validate(), ConfigError);
+  options = {};
+  options.range = -1;
+  EXPECT_THROW(options.validate(), ConfigError);
+}
+
+}  // namespace
+}  // namespace fovea
