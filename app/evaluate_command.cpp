@@ -3,12 +3,14 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/html_report/report_page.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/compare_color_rules.h"
@@ -19,7 +21,7 @@ namespace fovea::app {
 namespace {
 
 struct EvaluateArguments {
-  std::string map, protocol = "held-out", poses, hold_out, json;
+  std::string map, protocol = "held-out", poses, hold_out, json, html;
   DriveArguments drive;
   int first_frame = 0, threads = 0;
   bool truth = false, no_align = false, color_rules = false;
@@ -38,6 +40,14 @@ void check(const EvaluateArguments& arguments) {
   if (arguments.color_rules && arguments.protocol != "held-out") {
     throw CLI::ValidationError("--color-rules", "only the protocol held-out compares them");
   }
+  if (arguments.truth && !arguments.html.empty()) {
+    throw CLI::ValidationError("--html", "the page shows scans' scores, not the truth's");
+  }
+}
+
+/// What people call a file or folder.
+std::string name_of(const std::filesystem::path& path) {
+  return std::filesystem::absolute(path / "").parent_path().filename().string();
 }
 
 template <class Report>
@@ -59,6 +69,8 @@ void run(EvaluateArguments arguments) {
   options.hold_out = parse_hold_out(arguments.hold_out);
   std::optional<OutputFile> json;  // opened first: a bad path must not cost a run
   if (!arguments.json.empty()) json.emplace(arguments.json, /*force=*/true);
+  std::optional<OutputFile> html;
+  if (!arguments.html.empty()) html.emplace(arguments.html, /*force=*/true);
 
   ScoredMapOptions loading;
   if (!arguments.poses.empty()) loading.poses = arguments.poses;
@@ -76,6 +88,11 @@ void run(EvaluateArguments arguments) {
     EvaluationReport report = evaluate(map, *drive, options);
     if (arguments.color_rules) report.color_rules = compare_color_rules(map, *drive, options);
     put_report(report, json);
+    if (html) {
+      html->stream() << report_page(
+          {map, *drive, options, report, name_of(arguments.map), name_of(drive->info().path)});
+      html->commit();
+    }
   }
 }
 
@@ -119,6 +136,10 @@ void add_evaluate_command(CLI::App& app) {
   command->add_flag("--color-rules", arguments->color_rules,
                     "Also compare colour rules on the map's points, by the training frames");
   command->add_option("--json", arguments->json, "Write all figures as JSON")->type_name("FILE");
+  command
+      ->add_option("--html", arguments->html,
+                   "Write a page with pictures and charts, one file that needs no network")
+      ->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
       ->check(CLI::NonNegativeNumber);
   command->callback([arguments] { run(*arguments); });

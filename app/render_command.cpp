@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/html_report/viewpoint.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
@@ -25,40 +26,9 @@ struct RenderArguments {
   bool force = false;
 };
 
-/// Where a picture is taken from, seen from the LiDAR's place with z up.
-struct View {
-  const char* name;
-  double back, up;       ///< m
-  double pitch;          ///< rad, downwards
-  double field_of_view;  ///< rad, horizontal
-};
-constexpr std::array kViews{View{"driver", 0, 0, 4 * kDegree, 80 * kDegree},
-                            View{"behind", 9, 5, 20 * kDegree, 75 * kDegree},
-                            View{"above", -6, 28, 88 * kDegree, 70 * kDegree}};
-
-Camera view_camera(const View& view, int width, int height) {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = 0.5 * width / std::tan(0.5 * view.field_of_view);
-  camera.cx = 0.5 * (width - 1);
-  camera.cy = 0.5 * (height - 1);
-  return camera;
-}
-
-/// Level, whichever way the vehicle leans: it looks along the LiDAR's x axis, pitched down.
-RigidMotion view_pose(const View& view, const RigidMotion& T_local_lidar) {
-  const Eigen::Vector3d forward = T_local_lidar.linear().col(0);
-  const Eigen::AngleAxisd heading(std::atan2(forward.y(), forward.x()), Eigen::Vector3d::UnitZ());
-  RigidMotion T_local_view = RigidMotion::Identity();
-  T_local_view.translation() = T_local_lidar.translation();
-  T_local_view.rotate(heading);
-  T_local_view.translate(Eigen::Vector3d(-view.back, 0, view.up));
-  T_local_view.rotate(Eigen::AngleAxisd(view.pitch, Eigen::Vector3d::UnitY()));
-  RigidMotion T_view_cam = RigidMotion::Identity();  // x right, y down, z forward
-  T_view_cam.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return T_local_view * T_view_cam;
-}
+constexpr std::array kViews{Viewpoint{"driver", 0, 0, 4 * kDegree, 80 * kDegree},
+                            Viewpoint{"behind", 9, 5, 20 * kDegree, 75 * kDegree},
+                            Viewpoint{"above", -6, 28, 88 * kDegree, 70 * kDegree}};
 
 /// The frame asked for, or the middle one.
 const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string& path) {
@@ -108,10 +78,10 @@ Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
 }
 
 Image from_view(const RenderArguments& arguments, const ScoredMap& map, const FrameRecord& frame) {
-  const View& view = *std::find_if(kViews.begin(), kViews.end(),
-                                   [&](const View& v) { return v.name == arguments.view; });
-  return draw(map, view_camera(view, arguments.width, arguments.height),
-              view_pose(view, frame.T_local_lidar))
+  const Viewpoint& view = *std::find_if(
+      kViews.begin(), kViews.end(), [&](const Viewpoint& v) { return v.name == arguments.view; });
+  return draw(map, viewpoint_camera(view, arguments.width, arguments.height),
+              viewpoint_pose(view, frame.T_local_lidar))
       .image;
 }
 

@@ -35,4 +35,15 @@ double share_within(const std::vector<float>& values, float bound) {
   return static_cast<double>(within) / static_cast<double>(values.size());
 }
 
+std::vector<std::size_t> histogram(const std::vector<float>& values, float width) {
+  std::vector<std::size_t> counts;
+  for (const float value : values) {
+    if (!std::isfinite(value)) continue;
+    const auto bin = static_cast<std::size_t>(value / width);
+    if (bin >= counts.size()) counts.resize(bin + 1);
+    ++counts[bin];
+  }
+  return counts;
+}
+
 }  // namespace fovea

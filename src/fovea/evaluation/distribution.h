@@ -20,4 +20,9 @@ Distribution distribution(std::vector<float> values);
 /// Share of the values up to a bound (included); NaN if there is none.
 double share_within(const std::vector<float>& values, float bound);
 
+/// How many values lie in [0, width), [width, 2 width), ... up to the largest.
+/// @param values  none below 0; what is not finite is left out
+/// @param width   above 0
+std::vector<std::size_t> histogram(const std::vector<float>& values, float width);
+
 }  // namespace fovea

@@ -5,21 +5,11 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
-#include "fovea/evaluation/scorer.h"
+#include "fovea/evaluation/evaluation_setup.h"
 #include "fovea/evaluation/warnings.h"
 
 namespace fovea {
 namespace {
-
-void require_coloured(const ScoredMap& map) {
-  map.points_local.check();
-  const auto& camera = map.points_local.camera;
-  if (std::any_of(camera.begin(), camera.end(), [](std::int8_t c) { return c != kNoCamera; })) {
-    return;
-  }
-  throw InputError("the map has no coloured point", "evaluation",
-                   "score a map whose points have colours");
-}
 
 double share_interpolated(const ColouredPoints& map) {
   if (map.interpolated.empty()) return ErrorFigures::kNone;
@@ -39,26 +29,6 @@ std::vector<FrameScore> score_frames(Scorer& scorer, const std::vector<PlacedFra
     progress(++done, frames.size());
   });
   return scores;
-}
-
-/// What the protocol and the drive's files ask of the scorer.
-ScorerOptions scorer_options(const ScoredMap& map, const FrameSource& drive,
-                             const ProtocolOptions& options, bool blocks) {
-  ScorerOptions scoring;
-  scoring.cameras = select_cameras(map, drive.info(), options);
-  if (const auto file = find_tracklets(drive.info().path)) {
-    scoring.moving.emplace(read_tracklets(*file), map.frames);
-  }
-  if (blocks) {
-    std::vector<Camera> colouring;
-    for (const Camera& camera : drive.info().calibration.cameras) {
-      if (std::find(map.cameras.begin(), map.cameras.end(), camera.index) != map.cameras.end()) {
-        colouring.push_back(camera);
-      }
-    }
-    scoring.reach.emplace(map.frames, colouring);
-  }
-  return scoring;
 }
 
 /// The marks of points that are not hidden.
@@ -102,21 +72,16 @@ class BlockCollector {
 
 EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                           const ProtocolOptions& options, const EvaluationProgress& progress) {
-  require_coloured(map);
-  const std::vector<PlacedFrame> frames = select_frames(map, drive, options);
-  std::vector<std::pair<int, int>> blocks;
-  if (scores_held_out(options.protocol)) blocks = scored_blocks(frames, map.frames);
-  const bool in_blocks = blocks.size() < frames.size() && !blocks.empty();
-  if (!in_blocks) blocks.clear();
-  const ScorerOptions scoring = scorer_options(map, drive, options, in_blocks);
-  Scorer scorer(map, drive, scoring);
+  const EvaluationSetup setup = prepare_evaluation(map, drive, options);
+  const std::vector<PlacedFrame>& frames = setup.frames;
+  Scorer scorer(map, drive, setup.scoring);
   std::vector<FrameScore> scores = score_frames(scorer, frames, progress);
 
   EvaluationReport report;
   report.protocol = options.protocol;
   for (const Camera& camera : scorer.cameras()) report.cameras.push_back(camera.index);
   SetCollector all, visible, without_moving;
-  BlockCollector block_collector(blocks);
+  BlockCollector block_collector(setup.blocks);
   PointErrors edges, elsewhere;
   std::vector<float> distances;
   PointErrors paper_like_errors;
@@ -159,6 +124,7 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   const SetFigures figures = all.figures();
   report.figures = figures.figures;
   report.intervals = figures.intervals;
+  report.te_histogram = histogram(all.errors().color, kTeBin);
   report.visible = visible.figures();
   report.bleeding = bleeding_figures(edges, elsewhere);
   report.cross_view = scorer.cross_view();
@@ -167,9 +133,10 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   report.share_within_2mm = share_within(distances, 0.002f);
   report.stray = pose_stray(map.frames, frames);
   report.blocks = block_collector.reports();
-  if (scoring.moving) {
-    report.without_moving = MovingReport{scoring.moving->labelled(), scoring.moving->moved(),
-                                         scorer.moving_points(), without_moving.figures()};
+  if (setup.scoring.moving) {
+    report.without_moving =
+        MovingReport{setup.scoring.moving->labelled(), setup.scoring.moving->moved(),
+                     scorer.moving_points(), without_moving.figures()};
   }
   report.map_share_interpolated = share_interpolated(scorer.coloured());
   report.paper_like =

@@ -57,11 +57,16 @@ struct BleedingFigures {
   double coverage_5cm_edges = ErrorFigures::kNone, coverage_5cm_elsewhere = ErrorFigures::kNone;
 };
 
+/// Width of the bins of EvaluationReport::te_histogram.
+inline constexpr float kTeBin = 4;
+
 struct EvaluationReport {
   Protocol protocol = Protocol::kHeldOut;
   std::vector<int> cameras;
   ErrorFigures figures;     ///< of all evaluated points, against coloured map points only
   MeanIntervals intervals;  ///< of `figures`
+  /// All evaluated points by TE: [0, kTeBin), [kTeBin, 2 kTeBin), ...; not part of the JSON.
+  std::vector<std::size_t> te_histogram;
   /// Of the points that the scored camera can see, see ScanProjection::hidden; the others' colours
   /// are those of what stands before them.
   SetFigures visible;

@@ -1,6 +1,5 @@
 #include "fovea/evaluation/scan_matching.h"
 
-#include <limits>
 #include <optional>
 
 #include "fovea/base/parallel.h"
@@ -13,27 +12,15 @@ namespace {
 
 constexpr float kMaxDistance = 1.0f;  // m: farther neighbours are not pairs
 
-/// A scan's points that count, in the LiDAR's frame at the stamp; empty if it cannot be read.
-std::vector<Eigen::Vector3f> matched_points(const FrameRecord& record, const FrameSource& drive) {
+/// A frame's matched points; empty if it cannot be read.
+std::vector<Eigen::Vector3f> frame_points(const FrameRecord& record, const FrameSource& drive) {
   const DriveInfo& info = drive.info();
   if (record.index < info.begin || record.index >= info.end) return {};
   const FrameResult loaded = drive.load(record.index);
   if (std::holds_alternative<SkippedFrame>(loaded)) return {};
   const PlacedFrame placed{record.index, record.T_local_lidar, record.velocity};
-  const PointCloud scan = compensated_scan(std::get<Frame>(loaded).scan, placed, info);
-  const std::vector<std::uint8_t> ground = segment_ground(scan.position, GroundOptions{});
-  std::vector<Eigen::Vector3f> points;
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (ground[i] != 0) continue;
-    const Eigen::Vector3d p = scan.position[i].cast<double>();
-    for (const Camera& camera : info.calibration.cameras) {
-      const auto pixel = camera.project(camera.T_cam_lidar * p);
-      if (!pixel || !camera.in_view(*pixel)) continue;
-      points.push_back(scan.position[i]);
-      break;
-    }
-  }
-  return points;
+  return matched_points(compensated_scan(std::get<Frame>(loaded).scan, placed, info),
+                        info.calibration.cameras);
 }
 
 struct Sum {
@@ -46,7 +33,6 @@ struct Sum {
   }
 };
 
-/// @param T_target_source  of the two LiDARs
 Sum match(const std::vector<Eigen::Vector3f>& source, const std::vector<Eigen::Vector3f>& target,
           const RigidMotion& T_target_source) {
   if (target.empty()) return {};
@@ -64,28 +50,56 @@ Sum match(const std::vector<Eigen::Vector3f>& source, const std::vector<Eigen::V
   });
 }
 
+ScanMatching figures_of(const Sum& sum, std::size_t pairs) {
+  ScanMatching result;
+  result.points = sum.points;
+  result.pairs = pairs;
+  if (sum.points > 0) result.mean = sum.distance / static_cast<double>(sum.points);
+  return result;
+}
+
 }  // namespace
 
+std::vector<Eigen::Vector3f> matched_points(const PointCloud& scan_lidar,
+                                            const std::vector<Camera>& cameras) {
+  const std::vector<std::uint8_t> ground = segment_ground(scan_lidar.position, GroundOptions{});
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < scan_lidar.size(); ++i) {
+    if (ground[i] != 0) continue;
+    const Eigen::Vector3d p = scan_lidar.position[i].cast<double>();
+    for (const Camera& camera : cameras) {
+      const auto pixel = camera.project(camera.T_cam_lidar * p);
+      if (!pixel || !camera.in_view(*pixel)) continue;
+      points.push_back(scan_lidar.position[i]);
+      break;
+    }
+  }
+  return points;
+}
+
+ScanMatching match_scans(const std::vector<Eigen::Vector3f>& source,
+                         const std::vector<Eigen::Vector3f>& target,
+                         const RigidMotion& T_target_source) {
+  return figures_of(match(source, target, T_target_source), 1);
+}
+
 ScanMatching scan_matching(const ScoredMap& map, const FrameSource& drive) {
-  ScanMatching result;
+  std::size_t pairs = 0;
   Sum sum;
   const FrameRecord* before = nullptr;
   std::vector<Eigen::Vector3f> target;
   for (const FrameRecord& record : map.frames) {
     if (record.status != FrameStatus::kMapped) continue;
-    std::vector<Eigen::Vector3f> source = matched_points(record, drive);
+    std::vector<Eigen::Vector3f> source = frame_points(record, drive);
     if (source.empty()) continue;
     if (before != nullptr) {
       sum += match(source, target, before->T_local_lidar.inverse() * record.T_local_lidar);
-      ++result.pairs;
+      ++pairs;
     }
     before = &record;
     target = std::move(source);
   }
-  result.points = sum.points;
-  result.mean = sum.points > 0 ? sum.distance / static_cast<double>(sum.points)
-                               : std::numeric_limits<double>::quiet_NaN();
-  return result;
+  return figures_of(sum, pairs);
 }
 
 }  // namespace fovea

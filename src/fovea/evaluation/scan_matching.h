@@ -2,7 +2,10 @@
 // results).
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/sensor/frame_source.h"
@@ -10,10 +13,22 @@
 namespace fovea {
 
 struct ScanMatching {
-  double mean = 0;  ///< m, over all matched points of all pairs of frames; NaN if there is none
+  /// m, over all matched points of all pairs of frames; NaN if there is none
+  double mean = std::numeric_limits<double>::quiet_NaN();
   std::size_t points = 0;  ///< matched
   std::size_t pairs = 0;   ///< of neighbouring frames
 };
+
+/// The points of a scan that are matched: original ones without ground, in view of any of the
+/// cameras.
+/// @param scan_lidar  the whole scan, motion compensated
+std::vector<Eigen::Vector3f> matched_points(const PointCloud& scan_lidar,
+                                            const std::vector<Camera>& cameras);
+
+/// Two scans' matched points, each in its LiDAR's frame, the source placed in the target's.
+ScanMatching match_scans(const std::vector<Eigen::Vector3f>& source,
+                         const std::vector<Eigen::Vector3f>& target,
+                         const RigidMotion& T_target_source);
 
 /// Mean distance from the points of each mapped scan, placed by the map's poses, to the nearest
 /// point of the mapped scan before it: ORIGINAL points only (with interpolated ones the figure

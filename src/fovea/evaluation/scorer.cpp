@@ -90,20 +90,55 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   return score;
 }
 
-void Scorer::score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
-                        const Camera& camera, const Image& image, FrameScore& score) {
-  EvaluatedView view = evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
+Scorer::ScoredPoints Scorer::score_points(const Frame& frame, const PointCloud& scan,
+                                          const PlacedFrame& placed, const Camera& camera,
+                                          const Image& image) const {
+  ScoredPoints scored;
+  EvaluatedView& view = scored.view;
+  view = evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
   if (options_.reach) {
     const std::size_t all = view.position.size();
     view = select(view, options_.reach->reached(view.position, coloured_.origin,
                                                 placed.T_local_lidar.translation()));
-    score.unreached += all - view.position.size();
+    scored.unreached = all - view.position.size();
   }
   const NearestSamples nearest =
       nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
+  scored.gains = fit_gains(view.color, nearest.color, view.grey);
+  scored.errors = point_errors(view, nearest, scored.gains);
+  return scored;
+}
+
+SplatView Scorer::draw(const PlacedFrame& placed, const Camera& camera,
+                       const SplatOptions& options) const {
+  return splat(coloured_, spacing_, camera, camera.T_cam_lidar * placed.T_local_lidar.inverse(),
+               options);
+}
+
+std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
+  std::vector<ViewPicture> pictures;
+  const DriveInfo& info = drive_.info();
+  if (placed.index < info.begin || placed.index >= info.end) return pictures;
+  FrameResult loaded = drive_.load(placed.index);
+  if (std::holds_alternative<SkippedFrame>(loaded)) return pictures;
+  Frame& frame = std::get<Frame>(loaded);
+  const PointCloud scan = compensated_scan(frame.scan, placed, info);
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    Image& image = frame.images.at(options_.cameras[k]);
+    ScoredPoints scored = score_points(frame, scan, placed, cameras_[k], image);
+    pictures.push_back({placed.index, cameras_[k].index, std::move(image),
+                        draw(placed, cameras_[k], SplatOptions{.min_depth = kEvaluatedDepth}),
+                        std::move(scored.view), std::move(scored.errors)});
+  }
+  return pictures;
+}
+
+void Scorer::score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
+                        const Camera& camera, const Image& image, FrameScore& score) {
+  const auto [view, gains, errors, unreached] = score_points(frame, scan, placed, camera, image);
+  score.unreached += unreached;
   ViewReport report{placed.index, camera.index, {}, {}, {}};
-  report.gains = fit_gains(view.color, nearest.color, view.grey);
-  const PointErrors errors = point_errors(view, nearest, report.gains);
+  report.gains = gains;
   report.figures = summarize(errors);
   compare_with_photograph(placed, camera, image, report);
   score.errors.append(errors);
@@ -148,7 +183,7 @@ void Scorer::compare_with_photograph(const PlacedFrame& placed, const Camera& ca
   options.min_depth = kEvaluatedDepth;
   options.max_depth = kEvaluatedFar;
   const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
-  const SplatView drawn = splat(coloured_, spacing_, camera, T_cam_local, options);
+  const SplatView drawn = draw(placed, camera, options);
   report.gradients = compare_gradients(drawn, image);
   report.roughness = compare_roughness(drawn, image);
   report.pictures = compare_pictures(drawn, image);

@@ -24,6 +24,15 @@ struct FrameScore {
   std::optional<UnscoredFrame> unscored;
 };
 
+/// One scored camera at one frame, to be looked at.
+struct ViewPicture {
+  int frame = 0, camera = 0;
+  Image photograph;
+  SplatView drawn;       ///< the coloured points of the map, at all depths
+  EvaluatedView points;  ///< what was scored
+  PointErrors errors;    ///< one a point
+};
+
 struct ScorerOptions {
   std::vector<std::size_t> cameras;    ///< scored: places in the drive's calibration
   std::optional<MovingBoxes> moving;   ///< labelled boxes, where the drive has them
@@ -39,7 +48,12 @@ class Scorer {
   /// Thread-safe.
   FrameScore score(const PlacedFrame& placed);
 
+  /// The scored cameras' pictures of a frame, with the errors that score() counts; empty if the
+  /// drive cannot load it. Thread-safe.
+  std::vector<ViewPicture> pictures(const PlacedFrame& placed) const;
+
   const ColouredPoints& coloured() const { return coloured_; }
+  const std::vector<float>& spacing() const { return spacing_; }  ///< see sample_spacing
   const std::vector<Camera>& cameras() const { return cameras_; }
   FreeSpaceTest::Result free_space() const { return free_space_.result(); }
   CrossViewTest::Result cross_view() const { return cross_view_.result(); }
@@ -49,6 +63,16 @@ class Scorer {
   std::size_t moving_points() const { return coloured_.position.size() - static_.position.size(); }
 
  private:
+  struct ScoredPoints {
+    EvaluatedView view;
+    Eigen::Vector3f gains;
+    PointErrors errors;
+    std::size_t unreached = 0;
+  };
+  ScoredPoints score_points(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
+                            const Camera& camera, const Image& image) const;
+  SplatView draw(const PlacedFrame& placed, const Camera& camera,
+                 const SplatOptions& options) const;
   void score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
                   const Camera& camera, const Image& image, FrameScore& score);
   void compare_with_photograph(const PlacedFrame& placed, const Camera& camera, const Image& image,

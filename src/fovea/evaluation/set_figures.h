@@ -17,6 +17,7 @@ class SetCollector {
   /// Adds one frame's points that are in the set. @param left_out  those that are not
   void add(const PointErrors& frame, std::size_t left_out = 0);
   SetFigures figures() const;
+  const PointErrors& errors() const { return errors_; }
 
  private:
   PointErrors errors_;

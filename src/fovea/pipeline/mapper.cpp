@@ -30,13 +30,6 @@ PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>&
   return points.select(visible);
 }
 
-FovealOptions foveal_options_of(const MapperOptions& options, const Camera& camera) {
-  FovealOptions foveal = options.foveal;
-  const auto own = options.camera_slices.find(camera.index);
-  if (own != options.camera_slices.end()) foveal.slices = own->second;
-  return foveal;
-}
-
 }  // namespace
 
 Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
@@ -122,7 +115,7 @@ void Mapper::open_submap_if_due(TimeNs stamp, const RigidMotion& T_local_lidar) 
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
                         const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
   const Camera& camera = drive_.calibration.cameras[camera_slot];
-  const FovealRegion region(foveal_options_of(options_, camera), camera);
+  const FovealRegion region(foveal_options_of(options_, camera.index), camera);
   const PointCloud foveal_cam = clock.time("fovea", [&] {
     const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
     return points_cam.select(foveal_points(points_cam, region));

@@ -65,6 +65,13 @@ void MapperOptions::validate() const {
   }
 }
 
+FovealOptions foveal_options_of(const MapperOptions& options, int camera) {
+  FovealOptions foveal = options.foveal;
+  const auto own = options.camera_slices.find(camera);
+  if (own != options.camera_slices.end()) foveal.slices = own->second;
+  return foveal;
+}
+
 const std::vector<std::string>& variant_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all{"baseline-gicp", "baseline-icp", "baseline-plane"};

@@ -59,6 +59,9 @@ struct MapperOptions {
   void validate() const;        ///< ConfigError that names the field
 };
 
+/// The foveal region of a camera, with slices of its own where it has any.
+FovealOptions foveal_options_of(const MapperOptions& options, int camera);
+
 /// The rows of the paper's Table II: "baseline-gicp", "baseline-icp", "baseline-plane",
 /// "E0".."E11".
 const std::vector<std::string>& variant_names();

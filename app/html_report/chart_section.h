@@ -1,0 +1,16 @@
+// The charts of a page: where, when and how much the map errs, and how long mapping took.
+#pragma once
+
+#include <string>
+
+#include "fovea/evaluation/report.h"
+#include "fovea/evaluation/scored_map.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea::app {
+
+/// What a map of another program does not tell (latency) is left out with a sentence.
+std::string chart_section(const ScoredMap& map, const DriveInfo& drive,
+                          const EvaluationReport& report);
+
+}  // namespace fovea::app

@@ -1,0 +1,31 @@
+#include "app/html_report/viewpoint.h"
+
+#include <cmath>
+
+namespace fovea::app {
+
+Camera viewpoint_camera(const Viewpoint& view, int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = 0.5 * width / std::tan(0.5 * view.field_of_view);
+  camera.cx = 0.5 * (width - 1);
+  camera.cy = 0.5 * (height - 1);
+  return camera;
+}
+
+RigidMotion viewpoint_pose(const Viewpoint& view, const RigidMotion& T_local_lidar) {
+  const Eigen::Vector3d forward = T_local_lidar.linear().col(0);
+  const Eigen::AngleAxisd heading(std::atan2(forward.y(), forward.x()), Eigen::Vector3d::UnitZ());
+  RigidMotion T_local_view = RigidMotion::Identity();
+  T_local_view.translation() = T_local_lidar.translation();
+  T_local_view.rotate(heading);
+  T_local_view.translate(Eigen::Vector3d(-view.back, view.left, view.up));
+  T_local_view.rotate(Eigen::AngleAxisd(view.yaw, Eigen::Vector3d::UnitZ()));
+  T_local_view.rotate(Eigen::AngleAxisd(view.pitch, Eigen::Vector3d::UnitY()));
+  RigidMotion T_view_cam = RigidMotion::Identity();  // x right, y down, z forward
+  T_view_cam.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return T_local_view * T_view_cam;
+}
+
+}  // namespace fovea::app
