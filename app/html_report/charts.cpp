@@ -13,7 +13,7 @@ namespace fovea::app {
 namespace {
 
 constexpr double kWidth = 720, kHeight = 260;
-constexpr double kLeft = 58, kRight = 14, kTop = 14, kBottom = 42;
+constexpr double kLeft = 64, kRight = 14, kTop = 14, kBottom = 48;
 
 void check(const Chart& chart) {
   for (const Series& series : chart.series) {

@@ -9,9 +9,12 @@
 
 #include "app/html_report/assets.h"
 #include "app/html_report/chart_section.h"
+#include "app/html_report/close_ups.h"
 #include "app/html_report/figure_table.h"
+#include "app/html_report/foveal_pictures.h"
 #include "app/html_report/map_picture.h"
 #include "app/html_report/markup.h"
+#include "app/html_report/scan_pair.h"
 #include "app/html_report/view_section.h"
 #include "fovea/base/version.h"
 #include "fovea/evaluation/evaluation_setup.h"
@@ -172,6 +175,11 @@ std::string report_page(const PageInput& input) {
   std::vector<Part> parts;
   parts.push_back(views_part(shown, report));
   parts.push_back({"charts", "Charts", chart_section(input.map, input.drive.info(), report)});
+  const std::vector<PlacedFrame> training = training_scans(input.map, input.drive, setup.frames);
+  parts.push_back({"registration", "Registration", scan_pair_section(input.drive, training)});
+  parts.push_back({"fovea", "Foveal region", foveal_section(input.map, input.drive, training)});
+  parts.push_back({"texture", "Texture close up",
+                   close_up_section(scorer, input.drive, training, setup.frames, shown)});
   parts.push_back(figures_part(json));
   std::string sections, body;
   for (const Part& part : parts) {

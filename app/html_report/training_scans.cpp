@@ -1,0 +1,56 @@
+#include "app/html_report/training_scans.h"
+
+#include <algorithm>
+
+#include "app/html_report/markup.h"
+#include "fovea/base/errors.h"
+#include "fovea/pipeline/config.h"
+
+namespace fovea::app {
+
+std::vector<PlacedFrame> training_scans(const ScoredMap& map, const FrameSource& drive,
+                                        const std::vector<PlacedFrame>& scored) {
+  ProtocolOptions options;
+  options.protocol = Protocol::kInSample;
+  std::vector<PlacedFrame> frames;
+  try {
+    frames = select_frames(map, drive, options);
+  } catch (const InputError&) {
+    return {};  // nothing was mapped
+  }
+  if (map.statuses_known) return frames;
+  std::erase_if(frames, [&](const PlacedFrame& frame) {
+    return std::any_of(scored.begin(), scored.end(),
+                       [&](const PlacedFrame& s) { return s.index == frame.index; });
+  });
+  return frames;
+}
+
+std::optional<LoadedFrame> load_frame(const FrameSource& drive, const PlacedFrame& placed) {
+  const DriveInfo& info = drive.info();
+  if (placed.index < info.begin || placed.index >= info.end) return std::nullopt;
+  FrameResult loaded = drive.load(placed.index);
+  if (std::holds_alternative<SkippedFrame>(loaded)) return std::nullopt;
+  LoadedFrame result{std::move(std::get<Frame>(loaded)), {}};
+  result.scan_lidar = compensated_scan(result.frame.scan, placed, info);
+  return result;
+}
+
+MapperOptions options_of(const ScoredMap& map) {
+  MapperOptions options = load_preset("default");
+  const auto config = map.meta.find("config");
+  if (config == map.meta.end()) return options;
+  try {
+    apply_config_text(config->second, "the map's configuration", options);
+    options.validate();
+  } catch (const ConfigError&) {
+    return load_preset("default");  // written by another version
+  }
+  return options;
+}
+
+std::string excuse(const std::string& why) {
+  return "<p class=\"note\">" + escaped(why) + "</p>\n";
+}
+
+}  // namespace fovea::app
