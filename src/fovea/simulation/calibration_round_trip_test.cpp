@@ -42,6 +42,22 @@ TEST(SimulatedCalibration, ReaderFindsTheRig) {
             1e-12);
 }
 
+TEST(SimulatedCalibration, LeavesThePlantedRotationOut) {
+  SimulationOptions options;
+  options.camera.rotation_error = {0.01, -0.02, 0.03};
+  const Rig rig = make_rig(options);
+  const KittiCalibration calibration = read_back(rig, options);
+  for (const Camera& standing : rig.cameras) {
+    // The cameras turn round camera 0, which stays where it is.
+    const RigidMotion T_standing_written =
+        standing.T_cam_lidar * calibration.cameras.at(standing.index).T_cam_lidar.inverse();
+    const Twist error = log_se3(T_standing_written);
+    EXPECT_LT((error.head<3>() - options.camera.rotation_error).norm(), 1e-9);
+    const Eigen::Vector3d center_cam0 = rig.t[std::size_t(standing.index == 3)];
+    EXPECT_LT((T_standing_written * center_cam0 - center_cam0).norm(), 1e-9);
+  }
+}
+
 TEST(SimulatedCalibration, HasAllOfKittisCameras) {
   SimulationOptions options;
   options.camera.cameras = {{5, 0.2, false}};

@@ -1,6 +1,7 @@
 #include "fovea/simulation/rig.h"
 
 #include "fovea/base/angle.h"
+#include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
 namespace {
@@ -39,6 +40,8 @@ Rig make_rig(const SimulationOptions& options) {
   rig.T_cam0_lidar = motion(rotation(0.6, 0.4, -0.5) * R_axes, {-0.005, -0.075, -0.27});
   rig.R_rect = rotation(-0.25, -0.3, 0.35);
 
+  const Eigen::Matrix3d R_error =
+      exp_se3((Twist() << options.camera.rotation_error, 0, 0, 0).finished()).linear();
   for (const SimulatedCamera& simulated : options.camera.cameras) {
     const Eigen::Vector3d t = camera_translation(simulated);
     Camera camera;
@@ -48,8 +51,8 @@ Rig make_rig(const SimulationOptions& options) {
     camera.fx = camera.fy = options.camera.focal;
     camera.cx = options.camera.cx;
     camera.cy = options.camera.cy;
-    camera.T_cam_lidar =
-        Eigen::Translation3d(t) * motion(rig.R_rect, Eigen::Vector3d::Zero()) * rig.T_cam0_lidar;
+    camera.T_cam_lidar = Eigen::Translation3d(t) *
+                         motion(R_error * rig.R_rect, Eigen::Vector3d::Zero()) * rig.T_cam0_lidar;
     rig.cameras.push_back(camera);
     rig.t.push_back(t);
   }

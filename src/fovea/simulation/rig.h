@@ -18,7 +18,8 @@ struct Rig {
   /// Camera 0 before rectification (calib_velo_to_cam.txt).
   RigidMotion T_cam0_lidar = RigidMotion::Identity();
   Eigen::Matrix3d R_rect = Eigen::Matrix3d::Identity();  ///< of camera 0 (R_rect_00)
-  /// Rectified, with T_cam_lidar, as a reader must find them; in the options' order.
+  /// Rectified, with T_cam_lidar, as a reader must find them, but for the rotation error that the
+  /// options plant; in the options' order.
   std::vector<Camera> cameras;
   /// P_rect's fourth column is K * t, of each camera: the origin of rectified camera 0 as the
   /// camera sees it (m).

@@ -87,8 +87,9 @@ class Simulation {
     return motion_.T_world_vehicle(time) * rig_.T_vehicle_lidar;
   }
 
-  Picture picture(std::size_t k, int frame, double time) {
+  Picture picture(std::size_t k, int frame, double stamp) {
     const Camera& camera = rig_.cameras[k];
+    const double time = stamp + options_.camera.trigger_delay;
     const RigidMotion T_world_cam = T_world_lidar(time) * camera.T_cam_lidar.inverse();
     const CameraModel model(caster_, shader_, camera);
     Rendering rendering = model.render(T_world_cam, caster_.moment(time, motion_.way(time)));

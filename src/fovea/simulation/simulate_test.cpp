@@ -134,6 +134,26 @@ TEST(Simulate, ProductReadsTheDriveAndItsTruth) {
 }
 
 // Everything that is true of a drive agrees: scans, depth maps, poses, the world.
+TEST(Simulate, TriggerDelayMovesTheImagesAndNothingElse) {
+  const TemporaryFolder folder;
+  SimulationOptions options = tiny();
+  options.lidar.period = 0.04;
+  options.navigation.max_delay = 0.02;
+  options.camera.cameras.resize(1);
+  const fs::path prompt = simulate(options, folder / "prompt");
+  options.camera.trigger_delay = 0.04;  // a whole frame: image 0 is what image 1 was
+  const fs::path late = simulate(options, folder / "late");
+  const DriveTruth prompt_truth(prompt), late_truth(late);
+  const RigidMotion& expected = prompt_truth.camera(2).T_local_cam[1];
+  EXPECT_LT((late_truth.camera(2).T_local_cam[0].matrix() - expected.matrix()).norm(), 1e-9);
+  EXPECT_GT((prompt_truth.camera(2).T_local_cam[0].matrix() - expected.matrix()).norm(), 0.1);
+  EXPECT_EQ(late_truth.perfect_image(2, 0).data, prompt_truth.perfect_image(2, 1).data);
+  for (const auto& name : differences(contents(prompt), contents(late))) {
+    EXPECT_THAT(name, ::testing::AnyOf(::testing::HasSubstr("image_02"),
+                                       ::testing::HasSubstr("truth.json")));
+  }
+}
+
 TEST(Simulate, DepthMapsAgreeWithTheScan) {
   const TemporaryFolder folder;
   SimulationOptions options = tiny(Scene::kStreet, "none");

@@ -99,6 +99,10 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("camera.exposure_variation", o.camera.exposure_variation);
   visit("camera.vignetting", o.camera.vignetting);
   visit("camera.noise", o.camera.noise);
+  visit("camera.rotation_error_x", Degrees{o.camera.rotation_error.x()});
+  visit("camera.rotation_error_y", Degrees{o.camera.rotation_error.y()});
+  visit("camera.rotation_error_z", Degrees{o.camera.rotation_error.z()});
+  visit("camera.trigger_delay", o.camera.trigger_delay);
 
   NavigationOptions& n = o.navigation;
   visit("navigation.latitude", n.origin.latitude);  // degrees, as in the records

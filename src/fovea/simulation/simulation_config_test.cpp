@@ -90,6 +90,10 @@ TEST(SimulationOptions, RejectsByKey) {
   EXPECT_THAT(error([](auto& o) { o.camera.cameras = {{2, 0}, {2, 1}}; }), HasSubstr("twice"));
   EXPECT_THAT(error([](auto& o) { o.camera.cameras = {{10, 0}}; }), HasSubstr("camera.numbers"));
   EXPECT_THAT(error([](auto& o) { o.camera.width = 1 << 20; }), HasSubstr("camera.width"));
+  EXPECT_THAT(error([](auto& o) { o.camera.rotation_error.y() = 0.1; }),
+              HasSubstr("camera.rotation_error_y"));
+  EXPECT_THAT(error([](auto& o) { o.camera.trigger_delay = 0.06; }),
+              HasSubstr("camera.trigger_delay"));
   EXPECT_THAT(error([](auto& o) { o.navigation.max_delay = 0.005; }),
               HasSubstr("navigation.max_delay"));
   EXPECT_THAT(error([](auto& o) { o.navigation.max_delay = 0.13; }), HasSubstr("out of order"));
@@ -102,6 +106,8 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     SimulationOptions options = simulation_options(Scene::kCanyon, noise);
     options.camera.cameras = {{3, 0.5, false}, {0, 0.1, true}, {9, -0.3, true}};
     options.curvature = -0.0123;
+    options.camera.rotation_error = {0.3 * kDegree, -0.2 * kDegree, 0.1 * kDegree};
+    options.camera.trigger_delay = 0.02;
     SimulationOptions back;
     apply_config_text(to_toml(options), "x.toml", back);
     EXPECT_EQ(to_toml(back), to_toml(options));
@@ -110,6 +116,8 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     EXPECT_EQ(back.vehicle.sway, options.vehicle.sway);
     EXPECT_EQ(back.bends, options.bends);
     EXPECT_EQ(back.curvature, options.curvature);
+    EXPECT_EQ(back.camera.rotation_error, options.camera.rotation_error);
+    EXPECT_EQ(back.camera.trigger_delay, options.camera.trigger_delay);
     EXPECT_EQ(back.navigation.angle_noise, options.navigation.angle_noise);
     EXPECT_EQ(back.navigation.angle_walk, options.navigation.angle_walk);
     ASSERT_EQ(back.camera.cameras.size(), 3u);

@@ -87,6 +87,10 @@ void check(const CameraOptions& camera) {
   check("camera.exposure_variation", camera.exposure_variation, 0, 3);
   check("camera.vignetting", camera.vignetting, 0, 1);
   check("camera.noise", camera.noise, 0, 100, "grey levels");
+  check_degrees("camera.rotation_error_x", camera.rotation_error.x(), -5, 5);
+  check_degrees("camera.rotation_error_y", camera.rotation_error.y(), -5, 5);
+  check_degrees("camera.rotation_error_z", camera.rotation_error.z(), -5, 5);
+  check("camera.trigger_delay", camera.trigger_delay, -0.05, 0.05, "s");
 }
 
 void check(const NavigationOptions& navigation, double period) {

@@ -1,6 +1,7 @@
 // Everything that a simulated drive depends on besides the program: same options, same bytes.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,6 +68,10 @@ struct CameraOptions {
   double exposure_variation = 0.35;  ///< natural logarithm, amplitude over the drive
   double vignetting = 0.25;          ///< light lost in the image's corners
   double noise = 1.5;                ///< grey levels of 255 at half light, standard deviation
+  /// What the calibration files leave out: the cameras are turned, all as one round camera 0, by
+  /// this rotation vector in camera 0's rectified axes (rad).
+  Eigen::Vector3d rotation_error = Eigen::Vector3d::Zero();
+  double trigger_delay = 0;  ///< s, images are taken this long after the stamps say
 };
 
 struct NavigationOptions {
