@@ -47,8 +47,7 @@ struct TileView {
   Eigen::Matrix3f R;
   Eigen::Vector3f t;
   TileView(const RigidMotion& T_lidar_submap, const Eigen::Vector3d& tile_origin)
-      : R(T_lidar_submap.linear().cast<float>()),
-        t((T_lidar_submap * tile_origin).cast<float>()) {}
+      : R(T_lidar_submap.linear().cast<float>()), t((T_lidar_submap * tile_origin).cast<float>()) {}
 };
 
 }  // namespace
@@ -127,8 +126,7 @@ void MovingThings::look(const TileMap& map, const Scan& scan, int frame, Tile& t
   for (std::size_t& i = block.known_points; i < point_frame.size() && point_frame[i] <= frame;
        ++i) {
     const std::uint32_t cell = cell_of(tile.points->position[i], 1 / size, edge);
-    const auto [place, is_new] =
-        block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
+    const auto [place, is_new] = block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
     if (is_new) block.voxels.push_back({cell, 0, 0});
     block.voxels[place->second].filled |= aged(1, frame - point_frame[i]);
   }
@@ -167,8 +165,7 @@ std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map,
   scans_.push_back({RangeImage(scan_lidar.position), T_local_lidar.inverse()});
   if (scans_.size() > kJudges) scans_.pop_front();
   std::vector<Tile> tiles = tiles_near(map, T_local_lidar.translation());
-  parallel_for(tiles.size(), 1,
-               [&](std::size_t i) { look(map, scans_.back(), frame, tiles[i]); });
+  parallel_for(tiles.size(), 1, [&](std::size_t i) { look(map, scans_.back(), frame, tiles[i]); });
   return tiles;
 }
 

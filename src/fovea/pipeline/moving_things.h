@@ -1,5 +1,5 @@
-// Keeps what moves out of the map (the paper leaves it for later; docs/method.md 8): a place through
-// which scans see holds nothing, whatever another scan met there.
+// Keeps what moves out of the map (the paper leaves it for later; docs/method.md 8): a place
+// through which scans see holds nothing, whatever another scan met there.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 namespace fovea {
 
 struct MovingOptions {
-  bool remove = true;   ///< false: what moves stays, as in the paper
-  double range = 25.0;  ///< m from the LiDAR: nearer map points are looked at in every scan
-  int free_scans = 4;   ///< see through a place after it was last seen filled, and its points go
+  bool remove = true;     ///< false: what moves stays, as in the paper
+  double range = 25.0;    ///< m from the LiDAR: nearer map points are looked at in every scan
+  int free_scans = 4;     ///< see through a place after it was last seen filled, and its points go
   void validate() const;  ///< ConfigError that names the field
 };
 
@@ -24,7 +24,7 @@ struct MovingOptions {
 /// numbers, so that a run that resumes and looks at those scans again decides alike.
 class MovingThings {
  public:
-  static constexpr int kMemory = 32;           ///< frames
+  static constexpr int kMemory = 32;          ///< frames
   static constexpr std::size_t kJudges = 12;  ///< scans that judge new points: about a second
 
   explicit MovingThings(const MovingOptions& options) : options_(options) {}

@@ -60,7 +60,8 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
     nearest = std::min(nearest, r.range);
   }
   cells.filled.resize(cells.nearest.size());
-  for (std::size_t i = 0; i < cells.filled.size(); ++i) cells.filled[i] = cells.nearest[i] < kNothing;
+  for (std::size_t i = 0; i < cells.filled.size(); ++i)
+    cells.filled[i] = cells.nearest[i] < kNothing;
   for (std::size_t k = 0; k < kLevels; ++k) levels_[k] = widened(cells, kWindows[k].half_width);
 }
 
@@ -99,10 +100,10 @@ RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
 Sight RangeImage::sight(const Eigen::Vector3f& p) const {
   const float range = p.norm();
   if (!(range > kMinRange)) return Sight::kUnknown;
-  const auto window = static_cast<std::size_t>(
-      std::find_if(kWindows.begin(), kWindows.end(),
-                   [&](const Window& w) { return range >= w.range; }) -
-      kWindows.begin());
+  const auto window =
+      static_cast<std::size_t>(std::find_if(kWindows.begin(), kWindows.end(),
+                                            [&](const Window& w) { return range >= w.range; }) -
+                               kWindows.begin());
   const int half = kWindows[window].half_width;
   const int row = row_of(p.z(), range) - first_row_;
   if (row < 0 || row >= rows_) return Sight::kUnknown;

@@ -52,8 +52,8 @@ TEST(RangeImage, TheFloorIsNeverFree) {
 
 TEST(RangeImage, AThinPoleIsSeenAndItsShadowUnknown) {
   // 2 cm wide at 8 m: one ray in each ring.
-  const RangeImage image(
-      room_scan(20, [](float azimuth, float) { return std::abs(azimuth) < 0.0016f ? 8.0f : 0.0f; }));
+  const RangeImage image(room_scan(
+      20, [](float azimuth, float) { return std::abs(azimuth) < 0.0016f ? 8.0f : 0.0f; }));
   EXPECT_EQ(image.sight({8, 0, -0.2f}), Sight::kSurface);
   EXPECT_EQ(image.sight({8, 0.1f, -0.2f}), Sight::kSurface);
   EXPECT_EQ(image.sight({12, 0, -0.2f}), Sight::kUnknown);
