@@ -55,15 +55,20 @@ template <class Factor>
 RegistrationResult align(const RegistrationCloud& target, const KdTree& target_tree,
                          const RegistrationCloud& source, const RigidMotion& guess,
                          const RegistrationOptions& options) {
-  const OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
-                                   Factor::kNeedsNormals, options.converged_rotation,
-                                   options.converged_translation};
+  OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
+                             Factor::kNeedsNormals, options.converged_rotation,
+                             options.converged_translation};
   std::vector<Pair> pairs(source.points.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].source = source.points[i];
 
   RegistrationResult result;
   result.T_target_source = guess;
   while (result.iterations < options.max_iterations && !result.converged) {
+    // The kernel narrows step by step: from a poor guess the true pairs are far apart, too.
+    if (options.robust_width > 0) {
+      optimizer.robust_width =
+          std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
+    }
     find_pairs<Factor>(target, target_tree, source, result.T_target_source, options, pairs);
     const auto [T, degenerate, equations] = minimize(pairs, result.T_target_source, optimizer);
     ++result.iterations;
@@ -74,7 +79,8 @@ RegistrationResult align(const RegistrationCloud& target, const KdTree& target_t
       return result;
     }
     const Twist step = log_se3(result.T_target_source.inverse() * T);
-    result.converged = step.head<3>().norm() < options.converged_rotation &&
+    result.converged = optimizer.robust_width <= options.robust_width &&
+                       step.head<3>().norm() < options.converged_rotation &&
                        step.tail<3>().norm() < options.converged_translation;
     result.T_target_source = T;
     result.degenerate_directions = degenerate;
