@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,11 +42,6 @@ void check(const EvaluateArguments& arguments) {
   if (arguments.truth && !arguments.html.empty()) {
     throw CLI::ValidationError("--html", "the page shows scans' scores, not the truth's");
   }
-}
-
-/// What people call a file or folder.
-std::string name_of(const std::filesystem::path& path) {
-  return std::filesystem::absolute(path / "").parent_path().filename().string();
 }
 
 template <class Report>

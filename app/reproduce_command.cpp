@@ -26,11 +26,6 @@ struct ReproduceArguments {
   bool quiet = false;
 };
 
-/// A name for files: the drive's own folder.
-std::string name_of(const FrameSource& drive) {
-  return std::filesystem::absolute(drive.info().path / "").parent_path().filename().string();
-}
-
 /// Rows as asked for, in the order of the tables.
 std::vector<std::string> wanted_rows(const ReproduceArguments& arguments) {
   if (arguments.rows.empty()) return reproduced_rows();
@@ -78,11 +73,15 @@ void run(const ReproduceArguments& arguments) {
   std::vector<DriveResults> results;
   for (const auto& source : sources) {
     const DriveInfo& info = source->info();
-    DriveResults drive{name_of(*source), {}, info.end - info.begin, {}, time_upsampling(*source)};
+    DriveResults drive{
+        name_of(source->info().path), {}, info.end - info.begin, {}, time_upsampling(*source)};
     for (const Camera& camera : info.calibration.cameras) drive.cameras.push_back(camera.index);
     const std::filesystem::path folder = make_folder(output / ("rows-" + drive.name));
     for (const std::string& row : rows) {
-      nlohmann::ordered_json result = run_row(*source, row, folder, interrupt.token());
+      // One row's pictures are enough to look at.
+      const std::filesystem::path page =
+          row == "default" ? output / report_file(drive.name) : std::filesystem::path();
+      nlohmann::ordered_json result = run_row(*source, row, folder, page, interrupt.token());
       if (interrupt.token().stop_requested()) {
         fmt::print("interrupted: the rows that are done are kept; the same command goes on\n");
         return;
@@ -109,7 +108,7 @@ void add_reproduce_command(CLI::App& app) {
   command->add_option("DRIVE", arguments->drives, "Drives, one or more")->required();
   command
       ->add_option("-o,--output", arguments->output,
-                   "Folder for results.md, results.json and charts")
+                   "Folder for results.md, results.json, charts and a report page")
       ->required()
       ->type_name("DIR");
   command->add_option("--cameras", arguments->cameras, "Cameras, in turn (default: 2)")

@@ -97,6 +97,10 @@ TEST_F(Pictures, ReproduceWritesAPageAndGoesOnWhereItStopped) {
   EXPECT_EQ(json["drives"][0]["upsampling"].size(), 5u);
   EXPECT_GT(json["drives"][0]["rows"][0]["held_out"]["held_out"]["points"], 100);
 
+  const std::string report = "report-" + drive_.filename().string() + ".html";
+  EXPECT_THAT(page, HasSubstr("(" + report + ")"));
+  EXPECT_THAT(read_text(own_ / "out" / report), HasSubstr("</html>"));
+
   // A row that stands there is taken as it is.
   const auto kept = own_ / ("out/rows-" + drive_.filename().string()) / "E0.json";
   auto row = nlohmann::ordered_json::parse(read_text(kept));

@@ -130,21 +130,23 @@ std::string left_out(const std::vector<ShownView>& shown, const EvaluationReport
 
 Part views_part(const std::vector<ShownView>& shown, const EvaluationReport& report) {
   Part part{"views", "Map beside photograph", ""};
-  part.html =
-      "<p>The map drawn from where a photograph was taken that it never saw. Drag the divider, or "
-      "use the arrow keys. The heat maps show every scored LiDAR point: the difference of its "
-      "colour (TE) or its distance (ME) to the nearest map point. Black: nothing is mapped there; "
-      "the scores reach to 15 m.</p>\n"
+  if (shown.empty()) {
+    part.html = "<p>No scored view could be loaded again.</p>\n";
+    return part;
+  }
+  part.html = fmt::format(
+      "<p>The map drawn from where a photograph was taken{}. Drag the divider, or use the arrow "
+      "keys. The heat maps show every scored LiDAR point: the difference of its colour (TE) or its "
+      "distance (ME) to the nearest map point. Black: nothing is mapped there; the scores reach to "
+      "{:g} m.</p>\n{}",
+      scores_held_out(report.protocol) ? " that the map never saw" : " that it was coloured with",
+      kEvaluatedFar,
       "<div class=\"stage\" data-mode=\"slider\"><fieldset class=\"modes\" aria-label=\"Over the "
       "photograph\">"
       "<label><input type=\"radio\" name=\"mode\" value=\"slider\" checked=\"checked\"/>map</label>"
       "<label><input type=\"radio\" name=\"mode\" value=\"te\"/>colour error</label>"
       "<label><input type=\"radio\" name=\"mode\" value=\"me\"/>position error</label>"
-      "</fieldset>\n";
-  if (shown.empty()) {
-    part.html = "<p>No scored view could be loaded again.</p>\n";
-    return part;
-  }
+      "</fieldset>\n");
   part.html += view_section(shown) + "</div>\n" + left_out(shown, report);
   return part;
 }

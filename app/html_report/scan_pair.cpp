@@ -257,7 +257,8 @@ std::string scan_pair_section(const FrameSource& drive, const std::vector<Placed
       "without ground, where both agree white: the pair that {} places worst ({:.1f} cm off the "
       "map's poses). Above as guessed, below as registered to the scan before by generalised ICP, "
       "at "
-      "each rate of upsampling (the paper's E0 to E3). The window is {:g} m wide; the "
+      "each rate of upsampling (the paper's E0 to E3). The close "
+      "view is {:g} m wide; the "
       "scan-matching "
       "error counts measured points only.</p>\n{}<div class=\"strip\">\n",
       pair->target.index, pair->source.index,

@@ -7,32 +7,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/html_report/charts.h"
+#include "app/html_report/markup.h"
+
 namespace fovea::app {
 namespace {
 
 constexpr double kWidth = 560, kHeight = 300, kLeft = 64, kRight = 12, kTop = 44, kBottom = 40;
 // Distinguishable without colour vision (Okabe and Ito 2008).
 constexpr std::array kColors{"#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00"};
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
 
 /// The highest value that is drawn in full.
 double top_of(const BarChart& chart) {
@@ -47,15 +30,6 @@ double top_of(const BarChart& chart) {
   const double limit = chart.cut * values[values.size() / 2];
   const double top = *(std::upper_bound(values.begin(), values.end(), limit) - 1);
   return top > 0 ? top : 1;
-}
-
-/// A round step so that about five fit below `top`.
-double tick_step(double top) {
-  const double power = std::pow(10, std::floor(std::log10(top / 5)));
-  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
-    if (factor * power >= top / 5) return factor * power;
-  }
-  return 10 * power;
 }
 
 class Drawing {
@@ -86,7 +60,7 @@ class Drawing {
         anchor, more, escaped(what));
   }
   void axis() {
-    const double step = tick_step(top_);
+    const double step = round_step(top_, 5);
     for (double v = 0; v <= top_; v += step) {
       out_ += fmt::format(
           "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n",

@@ -229,6 +229,8 @@ constexpr const char* kAblations =
 
 }  // namespace
 
+std::string report_file(const std::string& drive) { return "report-" + drive + ".html"; }
+
 Json results_json(const std::vector<DriveResults>& drives) {
   Json json;
   json["fovea"] = version();
@@ -257,6 +259,11 @@ std::string write_results_page(const std::vector<DriveResults>& drives, const st
   for (const DriveResults& drive : drives) {
     text += fmt::format("- {}: {} frames, camera {}\n", drive.name, drive.frames,
                         fmt::join(drive.cameras, ", "));
+  }
+  for (const DriveResults& drive : drives) {
+    if (!std::filesystem::exists(folder / report_file(drive.name))) continue;
+    text += fmt::format("\nPictures of the default row, held out: [{0}]({0})\n",
+                        report_file(drive.name));
   }
   text += fmt::format(
       "\n{}## Held out: quality\n\nEvery 8th frame adds nothing to the map and scores it.\n\n",

@@ -18,10 +18,14 @@ struct DriveResults {
   std::vector<UpsamplingTime> upsampling;
 };
 
+/// Name of the file beside the page that shows the default row's held-out evaluation in pictures.
+std::string report_file(const std::string& drive);
+
 /// Everything as JSON.
 nlohmann::ordered_json results_json(const std::vector<DriveResults>& drives);
 
-/// The page in Markdown. Its charts are written beside it, into `folder`: FIGURE-DRIVE.svg.
+/// The page in Markdown. Its charts are written beside it, into `folder`: FIGURE-DRIVE.svg;
+/// the drives' report files are linked where they are there.
 /// @param command  what was typed, to stand at the top
 std::string write_results_page(const std::vector<DriveResults>& drives, const std::string& command,
                                const std::filesystem::path& folder);

@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "app/drive_arguments.h"
+#include "app/html_report/report_page.h"
 #include "app/reports.h"
 #include "app/reproduce/ablations.h"
 #include "fovea/base/version.h"
@@ -59,20 +61,28 @@ Json without_frames(const std::string& report) {
   return json;
 }
 
-Json score(const ScoredMap& map, const FrameSource& drive, Protocol protocol) {
+ProtocolOptions protocol_options(const FrameSource& drive, Protocol protocol) {
   ProtocolOptions options;
   options.protocol = protocol;
   for (const Camera& camera : drive.info().calibration.cameras) {
     options.cameras.push_back(camera.index);
   }
-  return without_frames(to_json(evaluate(map, drive, options)));
+  return options;
+}
+
+Json score(const ScoredMap& map, const FrameSource& drive, Protocol protocol) {
+  return without_frames(to_json(evaluate(map, drive, protocol_options(drive, protocol))));
 }
 
 class RowRun {
  public:
   RowRun(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
-         const std::stop_token& stop)
-      : drive_(drive), row_(row), map_file_(folder / (row + ".fovea")), stop_(stop) {}
+         std::filesystem::path page, const std::stop_token& stop)
+      : drive_(drive),
+        row_(row),
+        map_file_(folder / (row + ".fovea")),
+        page_(std::move(page)),
+        stop_(stop) {}
 
   /// Null if it was stopped.
   Json run(const RowPlan& plan) {
@@ -104,7 +114,7 @@ class RowRun {
     Json held = map(plan, HoldOut::parse(kHoldOut));
     if (stop_.stop_requested()) return held;
     const ScoredMap scored = load_scored_map(map_file_, {});
-    held["held_out"] = score(scored, drive_, Protocol::kHeldOut);
+    held["held_out"] = score_held_out(scored);
     if (std::filesystem::exists(drive_.info().path / "truth" / "truth.json")) {
       held["truth"] = without_frames(to_json(evaluate_truth(scored, drive_, {})));
     }
@@ -122,9 +132,21 @@ class RowRun {
     return {{"map", to_json(map_drive(drive_, job, [](const MapProgress&) {}))}};
   }
 
+  Json score_held_out(const ScoredMap& map) const {
+    const ProtocolOptions options = protocol_options(drive_, Protocol::kHeldOut);
+    const EvaluationReport report = evaluate(map, drive_, options);
+    if (!page_.empty()) {
+      OutputFile page(page_, /*force=*/true);
+      page.stream() << report_page(
+          {map, drive_, options, report, row_, name_of(drive_.info().path)});
+      page.commit();
+    }
+    return without_frames(to_json(report));
+  }
+
   const FrameSource& drive_;
   const std::string& row_;
-  std::filesystem::path map_file_;
+  std::filesystem::path map_file_, page_;
   std::stop_token stop_;
 };
 
@@ -139,15 +161,16 @@ std::vector<std::string> reproduced_rows() {
 }
 
 Json run_row(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
-             const std::stop_token& stop) {
+             const std::filesystem::path& page, const std::stop_token& stop) {
   const RowPlan plan = plan_of(row);
   if (plan.pose_source == PoseSource::kNavigation && !drive.info().navigation) return nullptr;
   const std::filesystem::path file = folder / (row + ".json");
-  if (std::ifstream stream(file); stream) {
+  const bool has_page = page.empty() || std::filesystem::exists(page);
+  if (std::ifstream stream(file); stream && has_page) {
     const Json kept = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
     if (kept.is_object() && kept.value("config", "") == fingerprint(plan, drive)) return kept;
   }
-  Json result = RowRun(drive, row, folder, stop).run(plan);
+  Json result = RowRun(drive, row, folder, page, stop).run(plan);
   if (!result.is_null()) {
     OutputFile output(file, /*force=*/true);
     write_json(output, result);

@@ -18,10 +18,13 @@ std::vector<std::string> reproduced_rows();
 /// frames (scored in-sample, in both readings). Keeps the figures in FOLDER/ROW.json; what stands
 /// there already from the same program version and configuration is taken as it is. Maps are
 /// removed again.
+/// @param page  where to write the page of the held-out evaluation (see report_page); empty:
+/// nowhere
 /// @return {"row", "config", "all": {"map", "in_sample", "in_sample_nav", "scan_matching"},
 /// "held_out": {"map", "held_out", "truth" of simulated drives}}; null if it was stopped, and if
 ///         the row wants navigation's poses and the drive has none
 nlohmann::ordered_json run_row(const FrameSource& drive, const std::string& row,
-                               const std::filesystem::path& folder, const std::stop_token& stop);
+                               const std::filesystem::path& folder,
+                               const std::filesystem::path& page, const std::stop_token& stop);
 
 }  // namespace fovea::app
