@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace fovea {
 namespace {
@@ -32,6 +33,12 @@ TEST(Distribution, OfNothingIsNoNumber) {
   EXPECT_TRUE(std::isnan(distribution({}).p95));
   EXPECT_TRUE(std::isnan(share_within({}, 1)));
   EXPECT_EQ(share_within({1, 2, 3, 4}, 2), 0.5);
+}
+
+TEST(Histogram, BinsAreHalfOpen) {
+  const float infinite = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(histogram({0, 3.9f, 4, 11, infinite}, 4), (std::vector<std::size_t>{2, 1, 1}));
+  EXPECT_TRUE(histogram({}, 4).empty());
 }
 
 }  // namespace

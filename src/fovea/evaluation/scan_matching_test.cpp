@@ -51,5 +51,15 @@ TEST(ScanMatching, OfNothingThereIsNone) {
   EXPECT_TRUE(std::isnan(none.mean));
 }
 
+TEST(MatchScans, MeanDistanceOfPairsUnderAMetre) {
+  const std::vector<Eigen::Vector3f> target{{0, 0, 0}, {10, 0, 0}};
+  const std::vector<Eigen::Vector3f> source{{0, 0, 0}, {10, 0.1f, 0}, {5, 0, 0}};
+  const RigidMotion T_target_source(Eigen::Translation3d(0, 0.3, 0));
+  const ScanMatching matching = match_scans(source, target, T_target_source);
+  EXPECT_EQ(matching.points, 2u);
+  EXPECT_NEAR(matching.mean, 0.35, 1e-6);
+  EXPECT_TRUE(std::isnan(match_scans(source, {}, T_target_source).mean));
+}
+
 }  // namespace
 }  // namespace fovea
