@@ -66,6 +66,8 @@ void run(const ReproduceArguments& arguments) {
   for (const std::string& drive : arguments.drives) {
     sources.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
   }
+  // All rows, wanted or not: a bad one must show at once, not after an hour.
+  for (const std::string& row : reproduced_rows()) check_row(row);
   const std::filesystem::path output = make_folder(arguments.output);
   ProgressBar bar(arguments.quiet, "rows");
   const int total = static_cast<int>(rows.size() * sources.size());

@@ -9,7 +9,7 @@ namespace {
 constexpr const char* kSlices = "foveal.slices=[[-25, 25, -20, -10], [-5, 5, -25, 25]]";
 constexpr const char* kHorizontalSlice = "foveal.slices=[[-25, 25, -20, -10]]";
 /// Half of a camera of 81 degrees.
-constexpr const char* kHalfView = "foveal.slices=[[-20, 20, -90, 90]]";
+constexpr const char* kHalfView = "foveal.slices=[[-20, 20, -89, 89]]";
 
 const char* const kParts = "Each part switched off";
 const char* const kPoses = "Poses";

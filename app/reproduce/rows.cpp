@@ -160,6 +160,8 @@ std::vector<std::string> reproduced_rows() {
   return rows;
 }
 
+void check_row(const std::string& row) { plan_of(row).options.validate(); }
+
 Json run_row(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
              const std::filesystem::path& page, const std::stop_token& stop) {
   const RowPlan plan = plan_of(row);

@@ -14,6 +14,9 @@ namespace fovea::app {
 /// Rows in the order of the tables: the paper's variants, the presets, the ablations.
 std::vector<std::string> reproduced_rows();
 
+/// ConfigError if a row's settings are not possible.
+void check_row(const std::string& row);
+
 /// Maps the drive as a row says, with every eighth frame held out and, but for ablations, with all
 /// frames (scored in-sample, in both readings). Keeps the figures in FOLDER/ROW.json; what stands
 /// there already from the same program version and configuration is taken as it is. Maps are
