@@ -51,6 +51,10 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
     fmt::print("registration failed on {} frames: their first guess was kept\n",
                summary.registrations_failed);
   }
+  if (summary.loops_closed > 0) {
+    fmt::print("loops closed: {} scans were registered to places seen before\n",
+               summary.loops_closed);
+  }
   if (summary.interrupted) {
     fmt::print("interrupted: what was mapped is saved; the same command with --resume goes on\n");
   }
@@ -75,7 +79,11 @@ void run(const MapArguments& arguments) {
     job.pose_source = PoseSource::kNavigation;
   } else if (arguments.poses != "refine") {
     job.pose_source = PoseSource::kGiven;
-    job.given_poses = read_poses(arguments.poses, source->info().begin, source->info().end);
+    const DriveInfo& info = source->info();
+    job.given_poses = read_poses(arguments.poses, info.begin, info.end);
+    if (job.given_poses.size() < std::size_t(info.end - info.begin)) {
+      job.pose_source = PoseSource::kGivenFirst;
+    }
   }
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);

@@ -17,6 +17,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"frames_held_out", summary.frames_held_out},
           {"frames_skipped", summary.frames_skipped},
           {"registrations_failed", summary.registrations_failed},
+          {"loops_closed", summary.loops_closed},
           {"points", summary.points},
           {"fps", summary.frames_per_second},
           {"peak_rss_mb", summary.peak_rss_mb},

@@ -38,13 +38,14 @@ std::optional<RigidMotion> guess(const FrameSource& drive, const PlacedFrame* be
   const DriveInfo& info = drive.info();
   const auto target_time = drive.stamp(target.index), source_time = drive.stamp(source.index);
   if (!target_time || !source_time) return std::nullopt;
-  MotionModel motion(info.navigation ? &*info.navigation : nullptr);
+  MotionModel motion(info.navigation ? &*info.navigation : nullptr, {.doubt = false});
   const auto before_time = before != nullptr ? drive.stamp(before->index) : std::nullopt;
   if (before_time) motion.update(*before_time, before->T_local_lidar);
   if (!before_time && !info.navigation) return std::nullopt;
   motion.update(*target_time, target.T_local_lidar);
   return motion.predict(*source_time, *source_time + from_seconds(info.sweep_period / 2))
-      .T_local_lidar;
+      .guesses.front()
+      .T_odom_lidar;
 }
 
 /// Of pairs whose frames follow each other, the one that is guessed worst.
@@ -176,10 +177,10 @@ std::string rate_figure(const Pair& pair, const Scans& scans, const std::vector<
   apply_variant(fmt::format("E{}", rate), options);
   PoseRefiner refiner(options.refinement, cameras);
   StageClock unused;
-  refiner.refine(scans.target.scan_lidar, pair.target.T_local_lidar, /*as_target=*/true, unused);
-  const RefinedPose refined = refiner.refine(scans.source.scan_lidar, pair.guess_T_local_lidar,
-                                             /*as_target=*/false, unused);
-  const RigidMotion T_target_source = pair.target.T_local_lidar.inverse() * refined.T_local_lidar;
+  refiner.keep(refiner.prepare(scans.target.scan_lidar, unused), pair.target.T_local_lidar, unused);
+  const RefinedPose refined =
+      refiner.refine(scans.source.scan_lidar, pair.guess_T_local_lidar, unused);
+  const RigidMotion T_target_source = pair.target.T_local_lidar.inverse() * refined.T_odom_lidar;
   const RigidMotion correction = scans.T_target_guess.inverse() * T_target_source;
 
   const auto a = drawn_points(scans.target.scan_lidar, cameras.front(), rate);

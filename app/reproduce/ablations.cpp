@@ -28,6 +28,8 @@ const std::vector<Ablation>& ablations() {
       {"no-occluding-test", kParts, {"ray_filter.occluding_test=false"}},
       {"no-occluded-test", kParts, {"ray_filter.occluded_test=false"}},
       {"no-robust-kernel", kParts, {"registration.robust_width=0"}},
+      {"no-fusion", kParts, {"fusion.enabled=false"}},
+      {"no-loop-closure", kParts, {"fusion.loop_closure=false"}},
       {"no-moving-removal", kParts, {"moving.remove=false"}},
       {"no-ray-filter", kParts, {"ray_filter.mode=off"}},
       {"no-white-zone", kParts, {"foveal.near_range=0", "foveal.far_range=120"}},

@@ -66,7 +66,7 @@ std::vector<RigidMotion> read_poses(const std::filesystem::path& file) {
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end) {
   std::vector<RigidMotion> poses = read_poses(file);
   const auto count = static_cast<int>(poses.size());
-  if (count == end - begin) return poses;
+  if (count == end - begin || (begin == 0 && count < end)) return poses;
   if (count < end) {
     throw InputError(fmt::format("{} poses for frames {} to {}", count, begin, end - 1),
                      file.string(),

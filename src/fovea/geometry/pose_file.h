@@ -14,7 +14,8 @@ namespace fovea {
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file);
 
 /// The poses of frames [begin, end): of a file with a line for each of them, or of one with a line
-/// for every frame from 0 on. InputError if it has too few lines.
+/// for every frame from 0 on. With fewer lines those of the first frames, if the range begins at
+/// frame 0; InputError if it does not: nobody knows whose they are.
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end);
 
 /// "r00 r01 r02 tx r10 ... tz", the shortest text that reads back to the same doubles.

@@ -23,6 +23,10 @@ std::optional<RigidMotion> Trajectory::at(TimeNs time) const {
   const auto after = std::upper_bound(poses_.begin() + 1, poses_.end() - 1, time,
                                       [](TimeNs t, const StampedPose& p) { return t < p.time; });
   const StampedPose &p0 = *(after - 1), &p1 = *after;
+  if (p1.time - p0.time > kMaxGap) {
+    if (time == p0.time) return p0.T_local_body;
+    return time == p1.time ? std::optional(p1.T_local_body) : std::nullopt;
+  }
   return interpolate(p0.T_local_body, p1.T_local_body,
                      seconds(time - p0.time) / seconds(p1.time - p0.time));
 }
@@ -46,6 +50,7 @@ std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const
     ++last;
   }
   const StampedPose &p0 = poses_[last - 1], &p1 = poses_[last];
+  if (p1.time - p0.time > kMaxGap) return std::nullopt;
   return Twist(log_se3(p0.T_local_body.inverse() * p1.T_local_body) / seconds(p1.time - p0.time));
 }
 

@@ -18,6 +18,8 @@ class Trajectory {
  public:
   /// How far before the first and after the last pose the constant velocity is trusted.
   static constexpr TimeNs kMaxExtrapolation = kNsPerSecond / 5;
+  /// Poses further apart than this are not interpolated: between them is an outage.
+  static constexpr TimeNs kMaxGap = kNsPerSecond;
 
   Trajectory() = default;
   /// Poses in strictly increasing time, at least one; std::invalid_argument otherwise.
@@ -26,7 +28,7 @@ class Trajectory {
   const std::vector<StampedPose>& poses() const { return poses_; }
 
   /// Pose at a time: constant twist between neighbouring poses, and beyond the ends by the velocity
-  /// of the two poses there for at most kMaxExtrapolation; empty further out.
+  /// of the two poses there for at most kMaxExtrapolation; empty further out and in an outage.
   std::optional<RigidMotion> at(TimeNs time) const;
 
   /// The pose nearest in time, where at() has one.
@@ -34,7 +36,7 @@ class Trajectory {
 
   /// Twist per second in the body frame around `time`, from what is known by `known_until` (the
   /// last poses at or before it; a live program has no later ones). Where fewer than two poses are
-  /// that early, the first two of the trajectory. Empty for a single pose.
+  /// that early, the first two of the trajectory. Empty for a single pose and in an outage.
   std::optional<Twist> velocity(TimeNs time, TimeNs known_until) const;
 
  private:

@@ -59,6 +59,20 @@ TEST(Trajectory, KeepsNanosecondsAtEpochTimes) {
   EXPECT_NEAR(trajectory.at(kStart + 1)->translation().x(), 1, 1e-9);
 }
 
+TEST(Trajectory, BridgesNoOutage) {
+  const Trajectory trajectory({{0, at_x(0)},
+                               {kNsPerSecond, at_x(1)},
+                               {11 * kNsPerSecond, at_x(50)},
+                               {12 * kNsPerSecond, at_x(52)}});
+  EXPECT_TRUE(trajectory.at(kNsPerSecond));
+  EXPECT_TRUE(trajectory.at(11 * kNsPerSecond));
+  EXPECT_FALSE(trajectory.at(kNsPerSecond + 1));
+  EXPECT_FALSE(trajectory.at(11 * kNsPerSecond - 1));
+  EXPECT_FALSE(trajectory.nearest(6 * kNsPerSecond));
+  EXPECT_FALSE(trajectory.velocity(6 * kNsPerSecond, 20 * kNsPerSecond));
+  EXPECT_NEAR(speed(trajectory, 12, 20), 2, 1e-12);
+}
+
 TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
   const Trajectory trajectory({{kNsPerSecond, at_x(7)}});
   EXPECT_EQ(x_at(trajectory, 1.1), 7);

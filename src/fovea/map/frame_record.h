@@ -17,6 +17,12 @@ const char* to_string(FrameStatus status);
 /// The status of that name, or nothing.
 std::optional<FrameStatus> frame_status(std::string_view name);
 
+/// A place of an earlier submap that a frame's scan was registered to.
+struct Revisit {
+  int submap = 0;
+  RigidMotion T_submap_lidar = RigidMotion::Identity();
+};
+
 struct FrameRecord {
   int index = 0;
   std::optional<TimeNs> stamp;
@@ -25,6 +31,11 @@ struct FrameRecord {
   /// Refined pose; of a skipped frame interpolated between its neighbours.
   RigidMotion T_local_lidar = RigidMotion::Identity();
   std::optional<RigidMotion> T_local_lidar_navigation;
+  /// Pose in the frame that never jumps (docs/method.md 2.6), and the submap whose motion in local
+  /// the frame follows; -1 of a skipped frame.
+  RigidMotion T_odom_lidar = RigidMotion::Identity();
+  int submap = -1;
+  std::optional<Revisit> revisit;
   /// Twist per second of the LiDAR that compensated its sweep; absent where nothing did.
   std::optional<Twist> velocity;
   /// Per-stage figures by name ("points_scan", "registration_iterations", "filter_occluded", ...),

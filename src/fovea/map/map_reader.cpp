@@ -17,6 +17,10 @@ namespace fs = std::filesystem;
 using sqlite::Access;
 using sqlite::Statement;
 
+constexpr const char* kFrameColumns =
+    "idx, stamp_ns, status, note, pose, navigation_pose, odom_pose, submap, revisited, "
+    "revisited_pose, velocity, figures";
+constexpr int kFrameColumnCount = 12, kStampColumn = 1, kSubmapColumn = 7, kRevisitedColumn = 8;
 constexpr const char* kRestore = "restore the map from a copy or map the drive again";
 
 void require_file(const fs::path& path) {
@@ -101,6 +105,11 @@ TileRow tile_row(const Statement& statement, const std::string& map_path) {
   return row;
 }
 
+std::optional<int> submap_number(std::int64_t value) {
+  if (value < -1 || !std::in_range<int>(value)) return std::nullopt;
+  return static_cast<int>(value);
+}
+
 FrameRecord frame_record(const Statement& row, const std::string& map_path) {
   if (!std::in_range<int>(row.integer(0))) {
     throw InputError(fmt::format("a frame has the impossible index {}", row.integer(0)), map_path,
@@ -122,11 +131,17 @@ FrameRecord frame_record(const Statement& row, const std::string& map_path) {
   if (!row.is_null(5)) {
     record.T_local_lidar_navigation = require(motion_from_text(row.text(5)), "navigation_pose");
   }
-  if (!row.is_null(6)) {
-    record.velocity = require(twist_from_text(row.text(6)), "velocity");
+  record.T_odom_lidar = require(motion_from_text(row.text(6)), "odom_pose");
+  record.submap = require(submap_number(row.integer(7)), "submap");
+  if (!row.is_null(8)) {
+    record.revisit = Revisit{require(submap_number(row.integer(8)), "revisited"),
+                             require(motion_from_text(row.text(9)), "revisited_pose")};
   }
-  record.figures = require(numbers_from_json(row.text(7)), "figures");
-  record.milliseconds = require(numbers_from_json(row.text(8)), "timings");
+  if (!row.is_null(10)) {
+    record.velocity = require(twist_from_text(row.text(10)), "velocity");
+  }
+  record.figures = require(numbers_from_json(row.text(11)), "figures");
+  record.milliseconds = require(numbers_from_json(row.text(12)), "timings");
   return record;
 }
 
@@ -152,8 +167,7 @@ MapMeta MapReader::meta() const {
 
 std::vector<FrameRecord> MapReader::frames() const {
   Statement rows(*database_->sqlite,
-                 "SELECT idx, stamp_ns, status, note, pose, navigation_pose, velocity, figures, "
-                 "timings FROM frames ORDER BY idx");
+                 fmt::format("SELECT {}, timings FROM frames ORDER BY idx", kFrameColumns));
   std::vector<FrameRecord> frames;
   while (rows.step()) frames.push_back(frame_record(rows, database_->sqlite->where()));
   return frames;
@@ -228,14 +242,19 @@ std::string MapReader::digest() const {
     if (!key.starts_with(kTimingPrefix)) digest.row(key, value);
   }
   digest.section("frames");
-  Statement frames(database,
-                   "SELECT idx, stamp_ns, status, note, pose, navigation_pose, velocity, figures "
-                   "FROM frames ORDER BY idx");
+  Statement frames(database, fmt::format("SELECT {} FROM frames ORDER BY idx", kFrameColumns));
   while (frames.step()) {
     digest.row(frames.integer(0));
-    frames.is_null(1) ? digest.null() : digest.value(frames.integer(1));
-    for (int column = 2; column < 8; ++column) {
-      frames.is_null(column) ? digest.null() : digest.value(frames.text(column));
+    for (int column = 1; column < kFrameColumnCount; ++column) {
+      const bool is_number =
+          column == kStampColumn || column == kSubmapColumn || column == kRevisitedColumn;
+      if (frames.is_null(column)) {
+        digest.null();
+      } else if (is_number) {
+        digest.value(frames.integer(column));
+      } else {
+        digest.value(frames.text(column));
+      }
     }
   }
   digest.section("submaps");

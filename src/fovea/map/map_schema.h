@@ -22,6 +22,10 @@ CREATE TABLE frames(
   note TEXT NOT NULL,
   pose TEXT NOT NULL,
   navigation_pose TEXT,
+  odom_pose TEXT NOT NULL,
+  submap INTEGER NOT NULL,
+  revisited INTEGER,
+  revisited_pose TEXT,
   velocity TEXT,
   figures TEXT NOT NULL,
   timings TEXT NOT NULL);

@@ -47,7 +47,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   const MapReader reader(folder / "a.fovea");
   const MapMeta meta = reader.meta();
   EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
-  EXPECT_EQ(meta.at("schema_version"), "1");
+  EXPECT_EQ(meta.at("schema_version"), "2");
   EXPECT_EQ(meta.size(), 6u);
   const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
   ASSERT_EQ(frames.size(), expected.size());
@@ -401,7 +401,8 @@ TEST(MapFormat, DigestIsAsStated) {
   digest.table(raw.database, "meta",
                "SELECT key, value FROM meta WHERE key NOT LIKE 'timing.%' ORDER BY key");
   digest.table(raw.database, "frames",
-               "SELECT idx, stamp_ns, status, note, pose, navigation_pose, velocity, figures "
+               "SELECT idx, stamp_ns, status, note, pose, navigation_pose, odom_pose, submap, "
+               "revisited, revisited_pose, velocity, figures "
                "FROM frames ORDER BY idx");
   digest.table(raw.database, "submaps", "SELECT id, pose FROM submaps ORDER BY id");
   digest.table(raw.database, "tiles",

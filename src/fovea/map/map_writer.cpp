@@ -49,7 +49,8 @@ void settle_old_map(const fs::path& path) {
 struct Puts {
   explicit Puts(Database& database)
       : meta(database, "INSERT OR REPLACE INTO meta VALUES(?1, ?2)"),
-        frame(database, "INSERT OR REPLACE INTO frames VALUES(?1,?2,?3,?4,?5,?6,?7,?8,?9)"),
+        frame(database,
+              "INSERT OR REPLACE INTO frames VALUES(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13)"),
         submap(database, "INSERT OR REPLACE INTO submaps VALUES(?1, ?2)"),
         tile(database,
              "INSERT OR REPLACE INTO tiles VALUES"
@@ -202,11 +203,13 @@ void SqliteMapWriter::open_published_file() {
 void SqliteMapWriter::put_frame(const FrameRecord& record) {
   const std::string what = fmt::format("frame {}: a pose or velocity", record.index);
   require_finite(record.T_local_lidar.matrix().allFinite(), what);
+  require_finite(record.T_odom_lidar.matrix().allFinite(), what);
   const std::string status = to_string(record.status);
   const std::string pose = format_pose(record.T_local_lidar);
+  const std::string odom_pose = format_pose(record.T_odom_lidar);
   const std::string figures = to_json(record.figures);
   const std::string timings = to_json(record.milliseconds);
-  std::string navigation, velocity;
+  std::string navigation, velocity, revisited;
   if (record.T_local_lidar_navigation) {
     require_finite(record.T_local_lidar_navigation->matrix().allFinite(), what);
     navigation = format_pose(*record.T_local_lidar_navigation);
@@ -214,6 +217,10 @@ void SqliteMapWriter::put_frame(const FrameRecord& record) {
   if (record.velocity) {
     require_finite(record.velocity->allFinite(), what);
     velocity = to_text(std::span<const double>(record.velocity->data(), 6));
+  }
+  if (record.revisit) {
+    require_finite(record.revisit->T_submap_lidar.matrix().allFinite(), what);
+    revisited = format_pose(record.revisit->T_submap_lidar);
   }
   write([&] {
     Statement& put = puts_->frame;
@@ -226,9 +233,13 @@ void SqliteMapWriter::put_frame(const FrameRecord& record) {
     put.bind(4, std::string_view(record.note));
     put.bind(5, std::string_view(pose));
     bind_or_null(6, navigation);
-    bind_or_null(7, velocity);
-    put.bind(8, std::string_view(figures));
-    put.bind(9, std::string_view(timings));
+    put.bind(7, std::string_view(odom_pose));
+    put.bind(8, std::int64_t{record.submap});
+    record.revisit ? put.bind(9, std::int64_t{record.revisit->submap}) : put.bind_null(9);
+    bind_or_null(10, revisited);
+    bind_or_null(11, velocity);
+    put.bind(12, std::string_view(figures));
+    put.bind(13, std::string_view(timings));
     put.run();
   });
 }

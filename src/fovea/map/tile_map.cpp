@@ -97,6 +97,16 @@ void TileMap::add_submap(const RigidMotion& T_local_submap) {
   submaps_.push_back({T_local_submap, {}});
 }
 
+void TileMap::move_submap(std::size_t submap, const RigidMotion& T_local_submap) {
+  if (submap >= submaps_.size()) {
+    throw std::logic_error(fmt::format("submap {} does not exist", submap));
+  }
+  if (!T_local_submap.matrix().allFinite()) {
+    throw std::invalid_argument("the pose of a submap is not finite");
+  }
+  submaps_[submap].T_local_submap = T_local_submap;
+}
+
 std::vector<TileKey> TileMap::add(const PointCloud& points_local) {
   if (submaps_.empty()) throw std::logic_error("points need a submap to be added to");
   if (points_local.empty()) return {};

@@ -26,7 +26,7 @@ struct TileId {
   friend auto operator<=>(const TileId&, const TileId&) = default;
 };
 
-/// About ten seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
+/// Some seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
   /// Points of each tile, submap frame, relative to the cloud's `origin` = the tile's lowest
@@ -50,6 +50,10 @@ class TileMap {
 
   /// Opens a new submap, which becomes the last.
   void add_submap(const RigidMotion& T_local_submap);
+
+  /// Puts a submap elsewhere, with all its points; std::logic_error if it does not exist,
+  /// std::invalid_argument if the pose is not finite.
+  void move_submap(std::size_t submap, const RigidMotion& T_local_submap);
 
   /// Adds points to the last submap; std::logic_error without one, if a column of a tile is
   /// missing, if intensity is there in some calls only, or if a position is not finite.

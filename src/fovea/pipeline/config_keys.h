@@ -117,8 +117,11 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("moving.range", o.moving.range);
   visit("moving.free_scans", o.moving.free_scans);
 
+  visit("fusion.enabled", o.fusion.enabled);
+  visit("fusion.loop_closure", o.fusion.loop_closure);
+
   visit("map.tile_size", o.tile_size);
-  visit("map.submap_duration", o.submap_duration);
+  visit("map.submap_duration", o.fusion.submap_duration);
 }
 
 }  // namespace fovea

@@ -49,6 +49,7 @@ const char* to_string(PoseSource source) {
     case PoseSource::kNavigation:
       return "navigation";
     case PoseSource::kGiven:
+    case PoseSource::kGivenFirst:
       return "given";
   }
   return "unknown";
@@ -158,7 +159,8 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
     } else {
       const Frame& frame = std::get<Frame>(loaded.result);
       std::optional<RigidMotion> given;
-      if (!job.given_poses.empty()) given = job.given_poses[std::size_t(frame.index - drive.begin)];
+      const auto place = static_cast<std::size_t>(frame.index - drive.begin);
+      if (place < job.given_poses.size()) given = job.given_poses[place];
       records.push_back(mapper.process(frame, job.hold_out.contains(frame.index), given));
       records.back().milliseconds["decode"] = loaded.milliseconds;
       records.back().milliseconds["frame"] = loaded.milliseconds + milliseconds_since(frame_start);
@@ -174,10 +176,16 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      "check that the drive has scans and images for the frames asked for");
   }
   const bool complete = static_cast<int>(records.size()) == total;
+  mapper.settle(records);
   interpolate_skipped_poses(records);
   store_map(*writer, meta, records, mapper.map(), complete);
 
   MapSummary summary = summarise(records, first_new, drive);
+  if (job.pose_source == PoseSource::kGivenFirst) {
+    summary.notes.push_back(
+        fmt::format("{} poses for {} frames: the frames after them are registered",
+                    job.given_poses.size(), total));
+  }
   summary.points = mapper.map().size();
   summary.interrupted = !complete;
   summary.frames_per_second =

@@ -21,7 +21,8 @@ struct MapJob {
   std::string variant;  ///< name of the row that `options` stands for, or empty
   HoldOut hold_out;
   PoseSource pose_source = PoseSource::kRefine;
-  /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven.
+  /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven, or of its first
+  /// ones (kGivenFirst).
   std::vector<RigidMotion> given_poses;
   bool force = false;    ///< overwrite `output`
   bool resume = false;   ///< go on with `output`, which an earlier run left unfinished

@@ -1,5 +1,6 @@
 #include "fovea/pipeline/map_summary.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -21,6 +22,41 @@ double peak_rss_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// Frames with a flaw of one kind.
+struct Flaw {
+  int frames = 0, first = 0;
+  void add(int index) {
+    if (frames++ == 0) first = index;
+  }
+  void note(const char* what, std::vector<std::string>& notes) const {
+    if (frames > 0) {
+      notes.push_back(fmt::format("{} frame{} (the first: {}): {}", frames, frames == 1 ? "" : "s",
+                                  first, what));
+    }
+  }
+};
+
+bool has(const FrameRecord& record, const char* figure) {
+  const auto found = record.figures.find(figure);
+  return found != record.figures.end() && found->second > 0;
+}
+
+/// What a user must know of the poses.
+void note_poses(const std::vector<FrameRecord>& records, const DriveInfo& drive,
+                std::vector<std::string>& notes) {
+  Flaw absent, jumped, degenerate;
+  for (const FrameRecord& record : records) {
+    if (record.status == FrameStatus::kSkipped) continue;
+    if (drive.navigation && !record.T_local_lidar_navigation) absent.add(record.index);
+    if (has(record, "navigation_jumped")) jumped.add(record.index);
+    if (has(record, "registration_degenerate")) degenerate.add(record.index);
+  }
+  absent.note("no GPS/INS, the scans alone tell the motion", notes);
+  jumped.note("GPS/INS moves otherwise than the scans, it counts for less from there on", notes);
+  degenerate.note("the scan leaves a direction of motion open, which is taken from the first guess",
+                  notes);
 }
 
 }  // namespace
@@ -49,12 +85,13 @@ MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_
         ++summary.frames_skipped[record.note.substr(0, record.note.find(':'))];
         break;
     }
-    const auto failed = record.figures.find("registration_failed");
-    if (failed != record.figures.end() && failed->second > 0) ++summary.registrations_failed;
+    if (has(record, "registration_failed")) ++summary.registrations_failed;
+    if (record.revisit) ++summary.loops_closed;
     if (i < first_new) continue;
     for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);
   }
   for (auto& [stage, times] : by_stage) summary.latency_ms[stage] = latency_of(std::move(times));
+  note_poses(records, drive, summary.notes);
   summary.peak_rss_mb = peak_rss_mb();
   return summary;
 }

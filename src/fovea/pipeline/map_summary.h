@@ -18,6 +18,7 @@ struct MapSummary {
   int frames_mapped = 0, frames_held_out = 0;
   std::map<std::string, int> frames_skipped;  ///< by reason
   int registrations_failed = 0;
+  int loops_closed = 0;  ///< scans registered to a place seen before
   std::size_t points = 0;
   double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
   double peak_rss_mb = 0;

@@ -30,15 +30,29 @@ PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>&
   return points.select(visible);
 }
 
+/// Poses that are given are not corrected, nor those of the paper's pairwise chain.
+bool fuses(const MapperOptions& options, PoseSource pose_source) {
+  return options.fusion.enabled && pose_source == PoseSource::kRefine &&
+         options.refinement.target == RegistrationTarget::kLocalMap;
+}
+
+FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_source) {
+  FusionOptions fusion = options.fusion;
+  fusion.enabled = fuses(options, pose_source);
+  return fusion;
+}
+
 }  // namespace
 
 Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
     : drive_(drive),
       options_(options),
       pose_source_(pose_source),
-      motion_model_(drive.navigation ? &*drive.navigation : nullptr,
-                    options.interpolate_navigation),
+      motion_model_(
+          drive.navigation ? &*drive.navigation : nullptr,
+          {.interpolate = options.interpolate_navigation, .doubt = fuses(options, pose_source)}),
       refiner_(options.refinement, drive.calibration.cameras),
+      fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
       moving_things_(options.moving),
       map_(options.tile_size) {
   options.validate();
@@ -58,20 +72,30 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
   const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
   const MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
   record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
-  if (options_.compensate_motion && !drive_.sweep_compensated) record.velocity = motion.velocity;
-  const PointCloud scan_lidar =
-      clock.time("register", [&] { return compensated(frame.scan, record.velocity); });
 
   // Pose refinement.
-  record.T_local_lidar = pose_of(scan_lidar, motion, held_out, given_pose, record, clock);
-  motion_model_.update(frame.stamp, record.T_local_lidar);
+  Placed placed = place(frame, motion, given_pose, clock);
+  const PointCloud scan_lidar = std::move(placed.scan_lidar);
+  record.velocity = placed.velocity;
+  record.note = placed.refined.note;
+  record.figures.merge(placed.refined.figures);
+  record.T_odom_lidar = placed.refined.T_odom_lidar;
+  motion_model_.update(frame.stamp, record.T_odom_lidar);
+  clock.time("register", [&] {
+    fusion_.track(record);
+    if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
+  });
+  follow_submaps();
+  if (!held_out && registers()) {
+    refiner_.keep(std::move(placed.refined.cloud), record.T_odom_lidar, clock);
+  }
 
   // Foveal processing, ray filtering and texture mapping, camera by camera.
   if (!held_out) {
-    open_submap_if_due(frame.stamp, record.T_local_lidar);
     if (options_.moving.remove) {
       record.figures["moving_removed"] = as_figure(clock.time("filter", [&] {
-        return moving_things_.observe(map_, scan_lidar, record.T_local_lidar, frame.index);
+        return moving_things_.observe(map_, scan_lidar, record.T_odom_lidar,
+                                      fusion_.T_local_odom().inverse(), frame.index);
       }));
     }
     if (options_.foveal_enabled) {
@@ -92,24 +116,48 @@ PointCloud Mapper::compensated(const PointCloud& scan, const std::optional<Twist
   return scan_lidar;
 }
 
-RigidMotion Mapper::pose_of(const PointCloud& scan_lidar, const MotionPrediction& motion,
-                            bool held_out, const std::optional<RigidMotion>& given_pose,
-                            FrameRecord& record, StageClock& clock) {
-  if (pose_source_ == PoseSource::kGiven) return given_pose.value();
-  if (pose_source_ == PoseSource::kNavigation) {
-    return motion.T_local_lidar_navigation.value_or(motion.T_local_lidar);
+Mapper::Placed Mapper::place(const Frame& frame, const MotionPrediction& motion,
+                             const std::optional<RigidMotion>& given_pose,
+                             StageClock& clock) const {
+  const bool compensates = options_.compensate_motion && !drive_.sweep_compensated;
+  std::optional<Placed> best;
+  for (const MotionGuess& guess : motion.guesses) {
+    Placed placed;
+    if (compensates) placed.velocity = guess.velocity;
+    placed.scan_lidar =
+        clock.time("register", [&] { return compensated(frame.scan, placed.velocity); });
+    if (pose_source_ == PoseSource::kNavigation) {
+      placed.refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
+    } else if (given_pose) {
+      if (registers()) placed.refined.cloud = refiner_.prepare(placed.scan_lidar, clock);
+      placed.refined.T_odom_lidar = *given_pose;
+    } else {
+      placed.refined = refiner_.refine(placed.scan_lidar, guess.T_odom_lidar, clock);
+    }
+    if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
   }
-  RefinedPose refined =
-      refiner_.refine(scan_lidar, motion.T_local_lidar, /*as_target=*/!held_out, clock);
-  record.note = std::move(refined.note);
-  record.figures.merge(refined.figures);
-  return refined.T_local_lidar;
+  return std::move(*best);
 }
 
-void Mapper::open_submap_if_due(TimeNs stamp, const RigidMotion& T_local_lidar) {
-  if (submap_start_ && seconds(stamp - *submap_start_) < options_.submap_duration) return;
-  submap_start_ = stamp;
-  map_.add_submap(T_local_lidar);
+bool Mapper::registers() const {
+  return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
+}
+
+void Mapper::follow_submaps() {
+  const std::vector<RigidMotion>& poses = fusion_.submaps();
+  for (std::size_t id = 0; id < poses.size(); ++id) {
+    if (id < map_.submaps().size()) {
+      map_.move_submap(id, poses[id]);
+    } else {
+      map_.add_submap(poses[id]);
+    }
+  }
+}
+
+void Mapper::settle(std::vector<FrameRecord>& records) const {
+  for (FrameRecord& record : records) {
+    if (record.submap >= 0) record.T_local_lidar = fusion_.T_local_lidar(record);
+  }
 }
 
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
@@ -151,7 +199,8 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
 
 PointCloud Mapper::keep_still(const PointCloud& points_local,
                               std::map<std::string, double>& figures) const {
-  const std::vector<std::uint8_t> moving = moving_things_.marks(points_local);
+  const std::vector<std::uint8_t> moving =
+      moving_things_.marks(points_local, fusion_.T_local_odom().inverse());
   std::vector<std::uint32_t> still;
   for (std::uint32_t i = 0; i < moving.size(); ++i) {
     if (moving[i] == 0) still.push_back(i);
@@ -192,37 +241,46 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
 void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
                     const FrameSource& source) {
   map_ = std::move(map);
-  std::vector<const FrameRecord*> targets;
+  const int first_looked_at = first_to_replay(records);
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
-    motion_model_.update(record.stamp.value(), record.T_local_lidar);
+    motion_model_.update(record.stamp.value(), record.T_odom_lidar);
+    FrameRecord tracked = record;
+    fusion_.track(tracked);
+    follow_submaps();
     if (record.status == FrameStatus::kHeldOut) continue;
-    targets.push_back(&record);
-    if (!submap_start_ || seconds(*record.stamp - *submap_start_) >= options_.submap_duration) {
-      submap_start_ = record.stamp;
-    }
-  }
-  for (std::size_t i = first_to_replay(targets); i < targets.size(); ++i) {
-    const FrameRecord& record = *targets[i];
+    const bool looked_at = record.index >= first_looked_at;
+    if (!looked_at && !fusion_.wants_scan()) continue;
     const FrameResult frame = source.load(record.index);
     if (!std::holds_alternative<Frame>(frame)) continue;
-    const PointCloud scan_lidar = compensated(std::get<Frame>(frame).scan, record.velocity);
-    moving_things_.replay(map_, scan_lidar, record.T_local_lidar, record.index);
-    const bool is_target = targets.size() - i <= std::size_t(refiner_.memory());
-    if (is_target && pose_source_ == PoseSource::kRefine) {
-      refiner_.add_target(scan_lidar, record.T_local_lidar);
-    }
+    replay(std::get<Frame>(frame).scan, record, looked_at);
   }
 }
 
-std::size_t Mapper::first_to_replay(const std::vector<const FrameRecord*>& targets) const {
+void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool looked_at) {
+  const PointCloud scan_lidar = compensated(scan, record.velocity);
+  if (registers()) {
+    StageClock unused;
+    RegistrationCloud cloud = refiner_.prepare(scan_lidar, unused);
+    fusion_.replay(record, cloud.points);
+    follow_submaps();
+    refiner_.keep(std::move(cloud), record.T_odom_lidar, unused);
+  }
+  if (looked_at) {
+    moving_things_.replay(map_, scan_lidar, record.T_odom_lidar, fusion_.T_local_odom().inverse(),
+                          record.index);
+  }
+}
+
+int Mapper::first_to_replay(const std::vector<FrameRecord>& records) const {
   const std::size_t count =
       std::max(std::size_t(refiner_.memory()), std::size_t(MovingThings::kJudges));
-  std::size_t first = targets.size() - std::min(targets.size(), count);
-  while (first > 0 && targets[first - 1]->index > targets.back()->index - MovingThings::kMemory) {
-    --first;
+  std::vector<int> mapped;
+  for (const FrameRecord& record : records) {
+    if (record.status == FrameStatus::kMapped) mapped.push_back(record.index);
   }
-  return first;
+  if (mapped.size() <= count) return 0;
+  return std::min(mapped[mapped.size() - count], mapped.back() - MovingThings::kMemory + 1);
 }
 
 }  // namespace fovea

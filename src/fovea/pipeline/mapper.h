@@ -17,7 +17,12 @@
 namespace fovea {
 
 /// Where poses come from.
-enum class PoseSource { kRefine, kNavigation, kGiven };
+enum class PoseSource {
+  kRefine,
+  kNavigation,
+  kGiven,
+  kGivenFirst,  ///< given for the first frames; those after them are registered
+};
 
 /// Builds a map incrementally. Feed it frames in increasing order of their stamps.
 class Mapper {
@@ -27,24 +32,35 @@ class Mapper {
 
   /// Maps one frame and returns what is to be kept of it.
   /// @param held_out    registered like any other, but adds no point, colour or registration target
-  /// @param given_pose  T_local_lidar where the pose source is kGiven
+  /// @param given_pose  T_local_lidar where the pose source is kGiven, or kGivenFirst and the frame
+  ///        is one of the first
   FrameRecord process(const Frame& frame, bool held_out,
                       const std::optional<RigidMotion>& given_pose = std::nullopt);
 
   const TileMap& map() const { return map_; }
+
+  /// Puts the frames mapped so far where their submaps are now.
+  void settle(std::vector<FrameRecord>& records) const;
 
   /// Takes up a map where an earlier run left it: its tiles, and the frames' records in order.
   /// `load` reads the latest frames again, which registration needs as targets.
   void resume(TileMap map, const std::vector<FrameRecord>& records, const FrameSource& source);
 
  private:
+  /// A frame's scan as it is mapped, and what registration said of it.
+  struct Placed {
+    PointCloud scan_lidar;
+    std::optional<Twist> velocity;
+    RefinedPose refined;
+  };
   PointCloud compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const;
-  RigidMotion pose_of(const PointCloud& scan_lidar, const MotionPrediction& motion, bool held_out,
-                      const std::optional<RigidMotion>& given_pose, FrameRecord& record,
-                      StageClock& clock);
-  /// Of the mapped frames of an earlier run, the first on which anything now depends.
-  std::size_t first_to_replay(const std::vector<const FrameRecord*>& targets) const;
-  void open_submap_if_due(TimeNs stamp, const RigidMotion& T_local_lidar);
+  Placed place(const Frame& frame, const MotionPrediction& motion,
+               const std::optional<RigidMotion>& given_pose, StageClock& clock) const;
+  bool registers() const;
+  void follow_submaps();
+  /// Index of the first frame of an earlier run whose scan targets or evidence now depend on.
+  int first_to_replay(const std::vector<FrameRecord>& records) const;
+  void replay(const PointCloud& scan, const FrameRecord& record, bool looked_at);
   void map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera,
                   const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
   PointCloud keep_still(const PointCloud& points_local,
@@ -57,10 +73,10 @@ class Mapper {
   PoseSource pose_source_;
   MotionModel motion_model_;
   PoseRefiner refiner_;
+  Fusion fusion_;
   RayFilter ray_filter_;
   MovingThings moving_things_;
   TileMap map_;
-  std::optional<TimeNs> submap_start_;
 };
 
 }  // namespace fovea

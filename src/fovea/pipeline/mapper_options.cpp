@@ -57,11 +57,9 @@ void MapperOptions::validate() const {
   upsample.validate();
   ray_filter.validate();
   moving.validate();
+  fusion.validate();
   if (!(tile_size >= 0.5 && tile_size <= 100)) {
     reject("a size is out of range", "map.tile_size", "give metres from 0.5 to 100");
-  }
-  if (!(submap_duration > 0 && submap_duration <= 1e6)) {
-    reject("a duration is out of range", "map.submap_duration", "give seconds above 0");
   }
 }
 
@@ -106,6 +104,7 @@ void apply_variant(std::string_view name, MapperOptions& options) {
   options.ray_filter = RayFilterOptions{};  // paper mode, M = 5, c = 2
   if (baseline) options.ray_filter.mode = RayFilterMode::kOff;
   options.moving.remove = false;
+  options.fusion.enabled = false;
 }
 
 }  // namespace fovea

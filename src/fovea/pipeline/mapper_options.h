@@ -13,6 +13,7 @@
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
+#include "fovea/pipeline/fusion.h"
 #include "fovea/pipeline/moving_things.h"
 
 namespace fovea {
@@ -54,9 +55,9 @@ struct MapperOptions {
   RayFilterOptions ray_filter;
   TextureOptions texture;
   MovingOptions moving;
-  double tile_size = 4.0;       ///< m
-  double submap_duration = 10;  ///< s
-  void validate() const;        ///< ConfigError that names the field
+  FusionOptions fusion;
+  double tile_size = 4.0;  ///< m
+  void validate() const;   ///< ConfigError that names the field
 };
 
 /// The foveal region of a camera, with slices of its own where it has any.

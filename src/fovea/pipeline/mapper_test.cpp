@@ -116,6 +116,68 @@ TEST(Mapper, WithoutNavigationItStartsFromRest) {
   EXPECT_LT((records[7].T_local_lidar.translation() - truth.translation()).norm(), 0.05);
 }
 
+/// A drive whose navigation is as `spoil` leaves it; the worst error of a frame's pose.
+template <class Spoil>
+double worst_error(Spoil&& spoil, std::vector<FrameRecord>* told = nullptr) {
+  SyntheticDrive drive(street_scene(), 14, 0.8);
+  std::vector<StampedPose> poses = drive.info().navigation->poses();
+  spoil(poses);
+  drive.editable_info().navigation = Trajectory(poses);
+  Mapper mapper(drive.info(), {}, PoseSource::kRefine);
+  auto records = map_frames(mapper, drive, 0, 14);
+  mapper.settle(records);
+  double worst = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const RigidMotion truth = drive.T_local_lidar[0].inverse() * drive.T_local_lidar[i];
+    const RigidMotion found = records[0].T_local_lidar.inverse() * records[i].T_local_lidar;
+    worst = std::max(worst, (found.translation() - truth.translation()).norm());
+  }
+  if (told != nullptr) *told = std::move(records);
+  return worst;
+}
+
+TEST(Mapper, SurvivesNavigationThatJumps) {
+  std::vector<FrameRecord> records;
+  EXPECT_LT(worst_error(
+                [](auto& poses) {
+                  for (std::size_t i = 6; i < poses.size(); ++i) {
+                    poses[i].T_local_body.translation().y() += 5;
+                  }
+                },
+                &records),
+            0.05);
+  EXPECT_EQ(records[6].figures.count("navigation_jumped"), 1u);
+  EXPECT_NE(records[6].note.find("navigation moves otherwise"), std::string::npos);
+  EXPECT_EQ(records[7].figures.count("navigation_jumped"), 0u);
+}
+
+TEST(Mapper, SurvivesNavigationThatFreezes) {
+  EXPECT_LT(worst_error([](auto& poses) {
+              for (std::size_t i = 6; i < poses.size(); ++i) {
+                poses[i].T_local_body = poses[5].T_local_body;
+              }
+            }),
+            0.05);
+}
+
+TEST(Mapper, SurvivesNavigationThatEnds) {
+  EXPECT_LT(worst_error([](auto& poses) { poses.resize(5); }), 0.05);
+}
+
+TEST(Mapper, WhereGivenPosesEndScansAreRegistered) {
+  SyntheticDrive drive(street_scene(), 10, 0.8);
+  drive.editable_info().navigation.reset();
+  Mapper mapper(drive.info(), {}, PoseSource::kGivenFirst);
+  std::vector<FrameRecord> records;
+  for (int i = 0; i < 10; ++i) {
+    const auto given = i < 5 ? std::optional(drive.T_local_lidar[std::size_t(i)]) : std::nullopt;
+    records.push_back(mapper.process(std::get<Frame>(drive.load(i)), false, given));
+  }
+  EXPECT_EQ(records[4].T_local_lidar.matrix(), drive.T_local_lidar[4].matrix());
+  EXPECT_LT((records[9].T_local_lidar.translation() - drive.T_local_lidar[9].translation()).norm(),
+            0.05);
+}
+
 TEST(Mapper, HeldOutFramesAddNothingButGetAPose) {
   Mapper with(street().info(), {}, PoseSource::kRefine);
   const auto records = map_frames(with, street(), 0, 6, /*held_out=*/3);
@@ -186,7 +248,7 @@ TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
   for (const auto target : {RegistrationTarget::kLocalMap, RegistrationTarget::kPreviousScan}) {
     MapperOptions options;
     options.refinement.target = target;
-    options.submap_duration = 0.25;  // several submaps
+    options.fusion.submap_duration = 0.25;  // several submaps
     Mapper whole(street().info(), options, PoseSource::kRefine);
     const auto records = map_frames(whole, street(), 0, 7, 3);
 

@@ -62,7 +62,8 @@ void MovingOptions::validate() const {
   }
 }
 
-std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local) const {
+std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
+                                              const RigidMotion& T_odom_local) const {
   std::vector<std::uint8_t> marks(points_local.size(), 0);
   if (!options_.remove || scans_.size() < std::size_t(kMinFree)) return marks;
 
@@ -82,11 +83,11 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local) co
   }
   std::vector<std::uint8_t> moving(first_point.size());
   parallel_for(first_point.size(), kVoxelGrain, [&](std::size_t v) {
-    const Eigen::Vector3d p_local =
-        points_local.origin + points_local.position[first_point[v]].cast<double>();
+    const Eigen::Vector3d p_odom =
+        T_odom_local * (points_local.origin + points_local.position[first_point[v]].cast<double>());
     int free = 0, filled = 0;
     for (std::size_t k = scans_.size() - std::min(scans_.size(), kJudges); k < scans_.size(); ++k) {
-      const Sight sight = scans_[k].image.sight((scans_[k].T_lidar_local * p_local).cast<float>());
+      const Sight sight = scans_[k].image.sight((scans_[k].T_lidar_odom * p_odom).cast<float>());
       free += sight == Sight::kFree;
       filled += sight == Sight::kSurface;
     }
@@ -111,7 +112,9 @@ std::vector<MovingThings::Tile> MovingThings::tiles_near(const TileMap& map,
   return tiles;
 }
 
-void MovingThings::look(const TileMap& map, const Scan& scan, int frame, Tile& tile) const {
+void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int frame,
+                        Tile& tile) const {
+  const Scan& scan = scans_.back();
   Block& block = *tile.block;
   const int edge = voxels_per_edge(map);
   const auto size = static_cast<float>(map.tile_size() / edge);
@@ -130,8 +133,9 @@ void MovingThings::look(const TileMap& map, const Scan& scan, int frame, Tile& t
     if (is_new) block.voxels.push_back({cell, 0, 0});
     block.voxels[place->second].filled |= aged(1, frame - point_frame[i]);
   }
-  const TileView view(scan.T_lidar_local * map.submaps()[tile.id.submap].T_local_submap,
-                      tile.points->origin);
+  const TileView view(
+      scan.T_lidar_odom * T_odom_local * map.submaps()[tile.id.submap].T_local_submap,
+      tile.points->origin);
   for (Voxel& voxel : block.voxels) {
     const Sight sight = scan.image.sight(view.R * center_of(voxel.cell, size, edge) + view.t);
     if (sight == Sight::kSurface) voxel.filled |= 1;
@@ -161,18 +165,20 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
 
 std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map,
                                                      const PointCloud& scan_lidar,
-                                                     const RigidMotion& T_local_lidar, int frame) {
-  scans_.push_back({RangeImage(scan_lidar.position), T_local_lidar.inverse()});
+                                                     const RigidMotion& T_odom_lidar,
+                                                     const RigidMotion& T_odom_local, int frame) {
+  scans_.push_back({RangeImage(scan_lidar.position), T_odom_lidar.inverse()});
   if (scans_.size() > kJudges) scans_.pop_front();
-  std::vector<Tile> tiles = tiles_near(map, T_local_lidar.translation());
-  parallel_for(tiles.size(), 1, [&](std::size_t i) { look(map, scans_.back(), frame, tiles[i]); });
+  std::vector<Tile> tiles = tiles_near(map, T_odom_local.inverse() * T_odom_lidar.translation());
+  parallel_for(tiles.size(), 1, [&](std::size_t i) { look(map, T_odom_local, frame, tiles[i]); });
   return tiles;
 }
 
 std::size_t MovingThings::observe(TileMap& map, const PointCloud& scan_lidar,
-                                  const RigidMotion& T_local_lidar, int frame) {
+                                  const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
+                                  int frame) {
   if (!options_.remove) return 0;
-  std::vector<Tile> tiles = gather(map, scan_lidar, T_local_lidar, frame);
+  std::vector<Tile> tiles = gather(map, scan_lidar, T_odom_lidar, T_odom_local, frame);
   parallel_for(tiles.size(), 1, [&](std::size_t i) { select_kept(map, tiles[i]); });
   const std::size_t before = map.size();
   for (const Tile& tile : tiles) {
@@ -183,8 +189,9 @@ std::size_t MovingThings::observe(TileMap& map, const PointCloud& scan_lidar,
 }
 
 void MovingThings::replay(const TileMap& map, const PointCloud& scan_lidar,
-                          const RigidMotion& T_local_lidar, int frame) {
-  if (options_.remove) gather(map, scan_lidar, T_local_lidar, frame);
+                          const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
+                          int frame) {
+  if (options_.remove) gather(map, scan_lidar, T_odom_lidar, T_odom_local, frame);
 }
 
 }  // namespace fovea

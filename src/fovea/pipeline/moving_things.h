@@ -31,17 +31,19 @@ class MovingThings {
 
   /// Marks (1) points of a new scan that lie where most of the latest scans saw through: something
   /// has come there since. Judged by voxels of 0.2 m.
-  std::vector<std::uint8_t> marks(const PointCloud& points_local) const;
+  /// @param T_odom_local  inverse of the motion that puts the latest submap into local
+  std::vector<std::uint8_t> marks(const PointCloud& points_local,
+                                  const RigidMotion& T_odom_local) const;
 
   /// Looks at the map through a scan and removes the points of voxels that it and the scans before
   /// see through: something was there and has gone.
   /// @return how many points were removed
-  std::size_t observe(TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
-                      int frame);
+  std::size_t observe(TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_odom_lidar,
+                      const RigidMotion& T_odom_local, int frame);
 
   /// The same without removing: scans that a map has been built from (resume).
-  void replay(const TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
-              int frame);
+  void replay(const TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_odom_lidar,
+              const RigidMotion& T_odom_local, int frame);
 
  private:
   struct Voxel {
@@ -62,15 +64,16 @@ class MovingThings {
     std::vector<std::uint32_t> kept;  // of the points, where some go
     bool shrinks = false;
   };
-  struct Scan {
+  struct Scan {  // placed in odom, where the latest scans never move
     RangeImage image;
-    RigidMotion T_lidar_local;
+    RigidMotion T_lidar_odom;
   };
   std::vector<Tile> tiles_near(const TileMap& map, const Eigen::Vector3d& center_local);
-  void look(const TileMap& map, const Scan& scan, int frame, Tile& tile) const;
+  void look(const TileMap& map, const RigidMotion& T_odom_local, int frame, Tile& tile) const;
   void select_kept(const TileMap& map, Tile& tile) const;
   std::vector<Tile> gather(const TileMap& map, const PointCloud& scan_lidar,
-                           const RigidMotion& T_local_lidar, int frame);
+                           const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
+                           int frame);
 
   MovingOptions options_;
   std::map<TileId, Block> blocks_;  // of the tiles within reach

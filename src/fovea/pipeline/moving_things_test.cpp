@@ -55,11 +55,11 @@ TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
   map.add(face_points(20, 0));  // the wall itself
   const std::size_t all = map.size();
   for (int frame = 1; frame <= 3; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(0), kHere, frame), 0u) << "too few scans yet";
+    EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, frame), 0u) << "too few scans yet";
   }
-  EXPECT_EQ(things.observe(map, scan_of(0), kHere, 4), face);
+  EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, 4), face);
   EXPECT_EQ(map.size(), all - face);
-  EXPECT_EQ(things.observe(map, scan_of(0), kHere, 5), 0u);
+  EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, 5), 0u);
 }
 
 TEST(MovingThings, WhatIsSeenNowAndThenStays) {
@@ -68,7 +68,7 @@ TEST(MovingThings, WhatIsSeenNowAndThenStays) {
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 40; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(frame % 4 == 0 ? 10.f : 0.f), kHere, frame), 0u);
+    EXPECT_EQ(things.observe(map, scan_of(frame % 4 == 0 ? 10.f : 0.f), kHere, kHere, frame), 0u);
   }
 }
 
@@ -78,7 +78,7 @@ TEST(MovingThings, WhatIsHiddenStays) {
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 20; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(6), kHere, frame), 0u);
+    EXPECT_EQ(things.observe(map, scan_of(6), kHere, kHere, frame), 0u);
   }
 }
 
@@ -87,15 +87,15 @@ TEST(MovingThings, MarksWhatCameWhereScansSawThrough) {
   TileMap map(4.0);
   map.add_submap(kHere);
   const auto marked = [&](float x) {
-    const auto marks = things.marks(face_points(x, 9));
+    const auto marks = things.marks(face_points(x, 9), kHere);
     return std::count(marks.begin(), marks.end(), 1);
   };
   EXPECT_EQ(marked(10), 0) << "nothing is known yet";
-  for (int frame = 0; frame < 6; ++frame) things.observe(map, scan_of(0), kHere, frame);
+  for (int frame = 0; frame < 6; ++frame) things.observe(map, scan_of(0), kHere, kHere, frame);
   EXPECT_EQ(marked(10), std::int64_t(face_points(10, 9).size()));
   EXPECT_EQ(marked(20), 0);
   // It stays there: after as many scans it is part of the world.
-  for (int frame = 6; frame < 12; ++frame) things.observe(map, scan_of(10), kHere, frame);
+  for (int frame = 6; frame < 12; ++frame) things.observe(map, scan_of(10), kHere, kHere, frame);
   EXPECT_EQ(marked(10), 0);
 }
 
@@ -107,9 +107,9 @@ TEST(MovingThings, SwitchedOffNothingGoes) {
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 20; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(0), kHere, frame), 0u);
+    EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, frame), 0u);
   }
-  const auto marks = things.marks(face_points(10, 20));
+  const auto marks = things.marks(face_points(10, 20), kHere);
   EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 0);
 }
 
@@ -119,11 +119,11 @@ TEST(MovingThings, ReplayedScansLeadToTheSameDecision) {
   map.add(face_points(10, 0));
   TileMap again = map;
   MovingThings first({}), resumed({});
-  for (int frame = 1; frame <= 2; ++frame) first.observe(map, scan_of(0), kHere, frame);
-  for (int frame = 1; frame <= 2; ++frame) resumed.replay(again, scan_of(0), kHere, frame);
+  for (int frame = 1; frame <= 2; ++frame) first.observe(map, scan_of(0), kHere, kHere, frame);
+  for (int frame = 1; frame <= 2; ++frame) resumed.replay(again, scan_of(0), kHere, kHere, frame);
   for (int frame = 3; frame <= 4; ++frame) {
-    EXPECT_EQ(first.observe(map, scan_of(0), kHere, frame),
-              resumed.observe(again, scan_of(0), kHere, frame));
+    EXPECT_EQ(first.observe(map, scan_of(0), kHere, kHere, frame),
+              resumed.observe(again, scan_of(0), kHere, kHere, frame));
   }
   EXPECT_EQ(map.size(), 0u);
   EXPECT_EQ(again.size(), 0u);

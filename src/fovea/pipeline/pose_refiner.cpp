@@ -64,61 +64,57 @@ RegistrationResult PoseRefiner::register_scan(const RegistrationCloud& source,
   }
   const KdTree tree(previous_->cloud.points);
   RegistrationResult result =
-      register_clouds(previous_->cloud, tree, source, previous_->T_local_lidar.inverse() * guess,
+      register_clouds(previous_->cloud, tree, source, previous_->T_odom_lidar.inverse() * guess,
                       options_.registration);
-  result.T_target_source = previous_->T_local_lidar * result.T_target_source;
+  result.T_target_source = previous_->T_odom_lidar * result.T_target_source;
   return result;
 }
 
-void PoseRefiner::keep_as_target(RegistrationCloud cloud, const RigidMotion& T_local_lidar) {
-  if (options_.target == RegistrationTarget::kLocalMap) {
-    local_map_.add(cloud, T_local_lidar);
-  } else {
-    previous_ = PreviousScan{std::move(cloud), T_local_lidar};
-  }
-}
-
-void PoseRefiner::add_target(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar) {
-  StageClock unused;
-  keep_as_target(prepare(scan_lidar, unused), T_local_lidar);
-}
-
 RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion& guess,
-                                bool as_target, StageClock& clock) {
+                                StageClock& clock) const {
   RefinedPose refined;
-  refined.T_local_lidar = guess;
-  RegistrationCloud source = prepare(scan_lidar, clock);
-  refined.figures["registration_points"] = static_cast<double>(source.points.size());
+  refined.T_odom_lidar = guess;
+  refined.cloud = prepare(scan_lidar, clock);
+  refined.figures["registration_points"] = static_cast<double>(refined.cloud.points.size());
 
   const bool has_target = options_.target == RegistrationTarget::kLocalMap ? !local_map_.empty()
                                                                            : previous_.has_value();
-  if (has_target) {
-    const RegistrationResult result =
-        clock.time("register", [&] { return register_scan(source, guess); });
-    const RigidMotion correction = guess.inverse() * result.T_target_source;
-    const double moved = correction.translation().norm();
-    const double turned = rotation_angle(correction.linear());
-    if (!result.converged) {
-      refined.note = "registration did not converge, first guess kept";
-    } else if (moved > options_.max_correction_translation ||
-               turned > options_.max_correction_rotation) {
-      refined.note = fmt::format("registration moved {:.2f} m and {:.1f} degrees, first guess kept",
-                                 moved, turned * 180 / std::numbers::pi);
-    } else {
-      refined.T_local_lidar = result.T_target_source;
-    }
-    refined.figures["registration_iterations"] = result.iterations;
-    refined.figures["registration_pairs"] = static_cast<double>(result.pairs);
-    refined.figures["registration_rms"] = result.rms_distance;
-    refined.figures["registration_degenerate"] = result.degenerate_directions;
-    refined.figures["registration_failed"] = refined.note.empty() ? 0 : 1;
-    refined.figures["correction_translation"] = moved;
-    refined.figures["correction_rotation"] = turned;
+  if (!has_target) return refined;
+  const RegistrationResult result =
+      clock.time("register", [&] { return register_scan(refined.cloud, guess); });
+  const RigidMotion correction = guess.inverse() * result.T_target_source;
+  const double moved = correction.translation().norm();
+  const double turned = rotation_angle(correction.linear());
+  if (!result.converged) {
+    refined.note = "registration did not converge, first guess kept";
+  } else if (moved > options_.max_correction_translation ||
+             turned > options_.max_correction_rotation) {
+    refined.note = fmt::format("registration moved {:.2f} m and {:.1f} degrees, first guess kept",
+                               moved, turned * 180 / std::numbers::pi);
+  } else {
+    refined.T_odom_lidar = result.T_target_source;
+    const double away = result.rms_distance / options_.registration.max_distance;
+    refined.fit = static_cast<double>(result.pairs) * std::max(0.0, 1 - away * away);
   }
-  if (as_target) {
-    clock.time("register", [&] { keep_as_target(std::move(source), refined.T_local_lidar); });
-  }
+  refined.figures["registration_iterations"] = result.iterations;
+  refined.figures["registration_pairs"] = static_cast<double>(result.pairs);
+  refined.figures["registration_rms"] = result.rms_distance;
+  refined.figures["registration_degenerate"] = result.degenerate_directions;
+  refined.figures["registration_failed"] = refined.note.empty() ? 0 : 1;
+  refined.figures["correction_translation"] = moved;
+  refined.figures["correction_rotation"] = turned;
   return refined;
+}
+
+void PoseRefiner::keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar,
+                       StageClock& clock) {
+  clock.time("register", [&] {
+    if (options_.target == RegistrationTarget::kLocalMap) {
+      local_map_.add(std::move(cloud_lidar), T_odom_lidar);
+    } else {
+      previous_ = PreviousScan{std::move(cloud_lidar), T_odom_lidar};
+    }
+  });
 }
 
 }  // namespace fovea

@@ -16,7 +16,10 @@
 namespace fovea {
 
 struct RefinedPose {
-  RigidMotion T_local_lidar = RigidMotion::Identity();
+  RegistrationCloud cloud;  ///< what was registered, LiDAR frame
+  RigidMotion T_odom_lidar = RigidMotion::Identity();
+  /// How well the scan fits: points with a counterpart, each the less the further it lies.
+  double fit = 0;
   std::string note;                       ///< why the first guess was kept; empty if it was not
   std::map<std::string, double> figures;  ///< registration_iterations, _pairs, _rms, ...
 };
@@ -26,31 +29,30 @@ class PoseRefiner {
   /// @param cameras  whose view bounds the points where options.visible_only
   PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras);
 
+  /// The points to register: in view, ground as it is, the rest upsampled, thinned; with normals.
+  RegistrationCloud prepare(const PointCloud& scan_lidar, StageClock& clock) const;
+
   /// Registers a scan from a first guess of its pose. A registration that does not converge, or
   /// ends too far from the guess, keeps the guess. The first scan keeps it too: there is no target
   /// yet.
   /// @param scan_lidar  motion compensated
-  /// @param as_target   whether later scans may be registered against this one (not if held out)
-  RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_local_lidar,
-                     bool as_target, StageClock& clock);
+  RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_odom_lidar,
+                     StageClock& clock) const;
 
-  /// Puts a scan of known pose among the targets (resume).
-  void add_target(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar);
+  /// Lets later scans be registered against this one, where it is.
+  void keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar, StageClock& clock);
 
   /// How many of the latest target scans all state depends on.
   int memory() const;
 
  private:
-  /// The points to register: in view, ground as it is, the rest upsampled, thinned; with normals.
-  RegistrationCloud prepare(const PointCloud& scan_lidar, StageClock& clock) const;
   PointCloud visible_upsampled(const PointCloud& scan_lidar) const;
   RegistrationResult register_scan(const RegistrationCloud& source,
-                                   const RigidMotion& guess_T_local_lidar) const;
-  void keep_as_target(RegistrationCloud cloud, const RigidMotion& T_local_lidar);
+                                   const RigidMotion& guess_T_odom_lidar) const;
 
   struct PreviousScan {
     RegistrationCloud cloud;
-    RigidMotion T_local_lidar;
+    RigidMotion T_odom_lidar;
   };
   RefinementOptions options_;
   std::vector<Camera> cameras_;

@@ -34,7 +34,7 @@ std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& f
     const bool images =
         std::all_of(files.images.begin(), files.images.end(),
                     [&](const NumberedFiles& camera) { return camera.contains(index); });
-    if (images && frame_stamp(info, files.stamps, index) && !files.bad_navigation.contains(index)) {
+    if (images && frame_stamp(info, files.stamps, index)) {
       return index;
     }
   }

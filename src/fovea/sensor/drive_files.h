@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,9 +18,6 @@ struct DriveFiles {
   NumberedFiles scans;
   std::vector<NumberedFiles> images;  ///< one a camera of info.calibration, in its order
   TimeStamps stamps;                  ///< unused where !info.has_time_stamps
-  /// Why a frame's own GPS/INS record cannot be used, of every frame where that is so among
-  /// [info.begin, info.end); empty where the drive has no navigation.
-  std::map<int, std::string> bad_navigation;
 };
 
 /// Scan time of a frame; empty if the drive has stamps and this one is missing, malformed or out of
@@ -29,7 +25,7 @@ struct DriveFiles {
 std::optional<TimeNs> frame_stamp(const DriveInfo& info, const TimeStamps& stamps, int index);
 
 /// First frame of the range that has a scan, every image and a stamp, as far as can be known
-/// without reading them, and is not in `bad_navigation`; empty if there is none.
+/// without reading them; empty if there is none.
 std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& files);
 
 /// The frames [first, last] of the scans, cut to the range asked for. ConfigError if nothing is

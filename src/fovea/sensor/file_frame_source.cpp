@@ -46,14 +46,7 @@ class FileFrameSource : public FrameSource {
     if (!files_.scans.contains(index)) {
       return skip(SkipReason::kMissingScan, fmt::format("no scan {} in the drive", index));
     }
-    const std::optional<TimeNs> time = stamp(index);
-    if (!time) return skip(SkipReason::kMissingStamp, why_no_stamp(index));
-    if (const auto bad = files_.bad_navigation.find(index); bad != files_.bad_navigation.end()) {
-      return skip(SkipReason::kMissingNavigation, bad->second);
-    }
-    if (info_.navigation && !info_.navigation->at(*time)) {
-      return skip(SkipReason::kMissingNavigation, "no GPS/INS record within 0.2 s of the scan");
-    }
+    if (!stamp(index)) return skip(SkipReason::kMissingStamp, why_no_stamp(index));
     for (std::size_t k = 0; k < files_.images.size(); ++k) {
       if (files_.images[k].contains(index)) continue;
       return skip(SkipReason::kMissingImage, fmt::format("no image {} of camera {}", index,

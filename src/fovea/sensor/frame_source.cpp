@@ -14,8 +14,6 @@ const char* to_string(SkipReason reason) {
       return "damaged image";
     case SkipReason::kMissingStamp:
       return "missing time stamp";
-    case SkipReason::kMissingNavigation:
-      return "missing navigation record";
   }
   return "unknown";
 }

@@ -32,7 +32,6 @@ enum class SkipReason {
   kMissingImage,
   kDamagedImage,
   kMissingStamp,
-  kMissingNavigation,
 };
 const char* to_string(SkipReason reason);
 
@@ -66,6 +65,9 @@ struct DriveInfo {
   /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR; absent
   /// where the drive has no (usable) navigation.
   std::optional<Trajectory> navigation;
+  /// Standard deviation of a coordinate (m) of each pose of `navigation` as the unit states it: 0
+  /// where it says nothing, infinite where it sees no satellite.
+  std::vector<double> navigation_accuracy;
   std::optional<GeodeticPoint> origin;  ///< of `local`; absent: the map is not georeferenced
   /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame
   /// index each from 0; empty if none. Never used by the mapper.

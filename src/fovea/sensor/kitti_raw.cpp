@@ -39,24 +39,22 @@ OxtsFolder read_oxts_folder(const NumberedFiles& files, const std::optional<Time
   return folder;
 }
 
-/// Notes the unusable records, and marks the frames of the range that have none of their own.
-void mark_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, DriveInfo& info,
-                      DriveFiles& files) {
+/// Notes the unusable records, and the frames of the range that have none of their own.
+void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const DriveFiles& files,
+                      DriveInfo& info) {
   if (!folder.why_unusable.empty()) {
-    info.notes.push_back(
-        fmt::format("{} of {} GPS/INS records cannot be used (the first: {}): their frames are "
-                    "skipped",
-                    folder.why_unusable.size(), oxts.size(), folder.why_unusable.begin()->second));
+    info.notes.push_back(fmt::format("{} of {} GPS/INS records cannot be used (the first: {})",
+                                     folder.why_unusable.size(), oxts.size(),
+                                     folder.why_unusable.begin()->second));
   }
+  std::vector<int> without;
   for (auto scan = files.scans.lower_bound(info.begin);
        scan != files.scans.end() && scan->first < info.end; ++scan) {
-    const int index = scan->first;
-    if (!oxts.contains(index)) {
-      files.bad_navigation[index] = fmt::format("no GPS/INS record {}", index);
-    } else if (const auto bad = folder.why_unusable.find(index); bad != folder.why_unusable.end()) {
-      files.bad_navigation[index] = bad->second;
-    }
+    if (!oxts.contains(scan->first)) without.push_back(scan->first);
   }
+  if (without.empty()) return;
+  info.notes.push_back(fmt::format("{} frames have no GPS/INS record (the first: {})",
+                                   without.size(), without.front()));
 }
 
 /// Fills info.navigation and info.origin, or notes why there is none.
@@ -80,13 +78,14 @@ void find_navigation(const KittiCalibration& calibration, DriveInfo& info, Drive
     return without(
         "no GPS/INS record can be used (the first: " + records.why_unusable.begin()->second + ")");
   }
-  mark_bad_records(oxts, records, info, files);
+  note_bad_records(oxts, records, files, info);
   info.calibration.T_imu_lidar = calibration.T_imu_lidar;
   const std::optional<int> first = first_usable_frame(info, files);
   const TimeNs origin_time =
       first ? *frame_stamp(info, files.stamps, *first) : records.records.front().time;
   Navigation navigation = make_navigation(records.records, *calibration.T_imu_lidar, origin_time);
   info.navigation = std::move(navigation.trajectory);
+  info.navigation_accuracy = std::move(navigation.accuracy);
   info.origin = navigation.origin;
 }
 

@@ -200,19 +200,26 @@ TEST_F(KittiRaw, SkipsFramesBeyondTheStamps) {
   write_text(stamps(), text);
   expect_skipped(kFrames - 1, SkipReason::kMissingStamp, "no time stamp in line 8");
 }
-TEST_F(KittiRaw, SkipsFramesWithoutTheirRecord) {
+TEST_F(KittiRaw, FramesWithoutTheirRecordAreNotedAndPlacedByTheirNeighbours) {
   test::fs::remove(oxts(2));
-  expect_skipped(2, SkipReason::kMissingNavigation, "no GPS/INS record 2");
+  const auto drive = open();
+  EXPECT_TRUE(std::holds_alternative<Frame>(drive->load(2)));
+  EXPECT_TRUE(drive->info().navigation->at(*drive->stamp(2)));
+  EXPECT_THAT(drive->info().notes,
+              ElementsAre(HasSubstr("1 frames have no GPS/INS record (the first: 2)")));
 }
-TEST_F(KittiRaw, SkipsFramesOfBadRecords) {
+TEST_F(KittiRaw, BadRecordsAreNotedAndNotUsed) {
   write_text(oxts(5), "nan" + test::read_text(oxts(5)).substr(15));
-  expect_skipped(5, SkipReason::kMissingNavigation, "not finite");
-  EXPECT_THAT(open()->info().notes, ElementsAre(HasSubstr("1 of 13 GPS/INS records")));
-  EXPECT_EQ(open()->info().navigation->poses().size(), 12u);
+  const auto drive = open();
+  EXPECT_TRUE(std::holds_alternative<Frame>(drive->load(5)));
+  EXPECT_THAT(drive->info().notes, ElementsAre(HasSubstr("1 of 13 GPS/INS records")));
+  EXPECT_EQ(drive->info().navigation->poses().size(), 12u);
+  EXPECT_EQ(drive->info().navigation_accuracy.size(), 12u);
 }
-TEST_F(KittiRaw, SkipsFramesWhoseRecordHasNoTime) {
+TEST_F(KittiRaw, RecordsWithoutATimeAreNotUsed) {
   edit(drive_ / "oxts/timestamps.txt", test::stamp(5, 20), "");
-  expect_skipped(5, SkipReason::kMissingNavigation, "no usable time stamp");
+  EXPECT_THAT(open()->info().notes, ElementsAre(HasSubstr("no usable time stamp")));
+  EXPECT_EQ(open()->info().navigation->poses().size(), 12u);
 }
 TEST_F(KittiRaw, BadRecordsDoNotMatterWithoutNavigation) {
   write_text(oxts(5), "");
@@ -222,12 +229,13 @@ TEST_F(KittiRaw, BadRecordsDoNotMatterWithoutNavigation) {
   EXPECT_THAT(drive->info().notes, testing::IsEmpty());
   EXPECT_TRUE(std::holds_alternative<Frame>(drive->load(5)));
 }
-TEST_F(KittiRaw, FramesFarFromEveryRecordAreSkipped) {
+TEST_F(KittiRaw, FramesFarFromEveryRecordHaveNoNavigation) {
   edit(stamps(), test::stamp(12), "2011-09-26 13:05:00.0");
   write_scan(scan(12), {{1, 1, 1, 1}});
   write_png(image(2, 12), pattern(test::kWidth, test::kHeight, 3));
   const auto drive = open();
-  EXPECT_THAT(std::get<SkippedFrame>(drive->load(12)).detail, HasSubstr("within 0.2 s"));
+  EXPECT_TRUE(std::holds_alternative<Frame>(drive->load(12)));
+  EXPECT_FALSE(drive->info().navigation->at(*drive->stamp(12)));
 }
 
 TEST_F(KittiRaw, ScansWithBadPointsLoadWithoutThem) {

@@ -1,5 +1,6 @@
 #include "fovea/sensor/navigation.h"
 
+#include <limits>
 #include <stdexcept>
 
 namespace fovea {
@@ -18,6 +19,15 @@ Trajectory lidar_trajectory(const LocalTangentPlane& local, const std::vector<St
   return Trajectory(std::move(poses));
 }
 
+std::vector<double> accuracies(const std::vector<StampedOxts>& records) {
+  std::vector<double> result;
+  for (const auto& [time, record] : records) {
+    result.push_back(record.satellites == 0 ? std::numeric_limits<double>::infinity()
+                                            : record.position_accuracy);
+  }
+  return result;
+}
+
 }  // namespace
 
 Navigation make_navigation(const std::vector<StampedOxts>& records, const RigidMotion& T_imu_lidar,
@@ -30,7 +40,8 @@ Navigation make_navigation(const std::vector<StampedOxts>& records, const RigidM
   const RigidMotion T_first_lidar =
       provisional.at(origin_time).value_or(provisional.poses().front().T_local_body);
   const GeodeticPoint origin = first.to_geodetic(T_first_lidar.translation());
-  return {lidar_trajectory(LocalTangentPlane(origin), records, T_imu_lidar), origin};
+  return {lidar_trajectory(LocalTangentPlane(origin), records, T_imu_lidar), origin,
+          accuracies(records)};
 }
 
 }  // namespace fovea

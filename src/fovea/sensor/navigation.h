@@ -19,6 +19,8 @@ struct StampedOxts {
 struct Navigation {
   Trajectory trajectory;  ///< T_local_lidar; local = east-north-up axes at `origin`
   GeodeticPoint origin;   ///< where the LiDAR was at the time asked for
+  /// Standard deviation of a coordinate (m) of each pose of the trajectory, see DriveInfo.
+  std::vector<double> accuracy;
 };
 
 /// Poses of the LiDAR at the records' times, and between them by interpolation, relative to where

@@ -1,5 +1,6 @@
 #include "fovea/sensor/oxts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fovea/base/errors.h"
@@ -11,6 +12,7 @@ namespace {
 constexpr std::size_t kFields = 30;
 constexpr double kMaxAltitude = 20'000;  // m either way: no vehicle is there
 constexpr double kMaxAngle = 7;          // rad: a full turn and some rounding
+constexpr std::size_t kPositionAccuracy = 23, kSatellites = 26;
 
 }  // namespace
 
@@ -37,7 +39,12 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
   for (std::size_t i = 3; i < 6; ++i) {
     if (std::abs(n[i]) > kMaxAngle) return "has angle " + std::to_string(n[i]) + " (rad)";
   }
-  return OxtsRecord{{n[0], n[1], n[2]}, n[3], n[4], n[5]};
+  return OxtsRecord{{n[0], n[1], n[2]},
+                    n[3],
+                    n[4],
+                    n[5],
+                    std::max(0.0, n[kPositionAccuracy]),
+                    static_cast<int>(std::clamp(n[kSatellites], 0.0, 1000.0))};
 }
 
 std::variant<OxtsRecord, std::string> read_oxts(const std::filesystem::path& file) {

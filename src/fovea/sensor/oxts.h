@@ -15,6 +15,8 @@ struct OxtsRecord {
   /// rad. Roll: positive = left side up; pitch: positive = front down; yaw: 0 = east, positive =
   /// counter-clockwise seen from above.
   double roll = 0, pitch = 0, yaw = 0;
+  double position_accuracy = 0;  ///< m, as the unit estimates it; 0: it says nothing
+  int satellites = 0;            ///< in use
 
   /// R = Rz(yaw) * Ry(pitch) * Rx(roll), from the imu (forward, left, up) to east-north-up there.
   Eigen::Matrix3d R_enu_imu() const;

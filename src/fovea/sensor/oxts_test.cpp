@@ -28,6 +28,8 @@ TEST(Oxts, ReadsPositionAndAttitude) {
   EXPECT_EQ(record.roll, 0.07);
   EXPECT_EQ(record.pitch, 0.0015);
   EXPECT_EQ(record.yaw, -0.26);
+  EXPECT_EQ(record.position_accuracy, 18);
+  EXPECT_EQ(record.satellites, 7);
 }
 
 TEST(Oxts, SaysWhyARecordCannotBeUsed) {

@@ -1,0 +1,220 @@
+#include "fovea/mapping/fusion/pose_graph.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace fovea {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr int kMaxIterations = 20;
+/// A step below this (rad and m) changes nothing that a map shows.
+constexpr double kConverged = 1e-6;
+/// Added to the diagonal, relative to a measurement of 1 rad and 1 m: nodes that nothing holds.
+constexpr double kLeastInformation = 1e-9;
+constexpr double kMaxDamping = 1e6;
+/// Squared error that one honest measurement in twenty exceeds (chi squared, six degrees).
+constexpr double kRobustWidth = 12.6;
+constexpr double kNarrowing = 4;
+
+/// A residual in standard deviations, and how it changes with the twists of its nodes: each node's
+/// pose is T * exp(twist).
+struct Term {
+  Twist error;
+  Matrix6 by_from = Matrix6::Zero(), by_to = Matrix6::Zero();
+};
+
+/// Inverse of SO(3)'s right Jacobian, to second order: residuals of a graph near its solution are
+/// small, and a damped step tolerates the rest.
+Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& w) {
+  const Eigen::Matrix3d W = hat(w);
+  return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 12;
+}
+
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+/// Rotation and translation apart (SO(3) x R^3): rotation error in the frame of `to`, translation
+/// error, too.
+Term term_of(const RelativePose& m, const std::vector<RigidMotion>& poses) {
+  const RigidMotion T_from_to = poses[m.from].inverse() * poses[m.to];
+  const Eigen::Matrix3d R_measured_to = m.T_from_to.linear().transpose() * T_from_to.linear();
+  const Eigen::Vector3d turn = rotation_vector(R_measured_to);
+  const Eigen::Matrix3d R_to_from = m.T_from_to.linear().transpose();
+  Term term;
+  term.error.head<3>() = turn;
+  term.error.tail<3>() = R_to_from * (T_from_to.translation() - m.T_from_to.translation());
+  const Eigen::Matrix3d J = inverse_right_jacobian(turn);
+  term.by_to.topLeftCorner<3, 3>() = J;
+  term.by_from.topLeftCorner<3, 3>() = -J * T_from_to.linear().transpose();
+  // Node twists turn first, then shift, in the node's own frame.
+  term.by_to.bottomRightCorner<3, 3>() = R_to_from * T_from_to.linear();
+  term.by_from.bottomLeftCorner<3, 3>() = R_to_from * hat(T_from_to.translation());
+  term.by_from.bottomRightCorner<3, 3>() = -R_to_from;
+  const Twist weight = m.sigma.cwiseInverse();
+  term.error.array() *= weight.array();
+  term.by_from = weight.asDiagonal() * term.by_from;
+  term.by_to = weight.asDiagonal() * term.by_to;
+  return term;
+}
+
+Term term_of(const AbsolutePose& m, const std::vector<RigidMotion>& poses) {
+  const RigidMotion& T = poses[m.node];
+  const Eigen::Vector3d turn = rotation_vector(m.T_local_node.linear().transpose() * T.linear());
+  Term term;
+  term.error.head<3>() = turn;
+  term.error.tail<3>() = T.translation() - m.T_local_node.translation();
+  term.by_to.topLeftCorner<3, 3>() = inverse_right_jacobian(turn);
+  term.by_to.bottomRightCorner<3, 3>() = T.linear();
+  const Twist weight = m.sigma.cwiseInverse();
+  term.error.array() *= weight.array();
+  term.by_to = weight.asDiagonal() * term.by_to;
+  return term;
+}
+
+/// Cauchy's kernel of a squared width: the cost of a squared error, and its derivative by it.
+double robust_cost(double squared, double width) { return width * std::log1p(squared / width); }
+double robust_weight(double squared, double width) { return 1 / (1 + squared / width); }
+
+RigidMotion moved(const RigidMotion& T, const Twist& twist) {
+  RigidMotion step = RigidMotion::Identity();
+  const double angle = twist.head<3>().norm();
+  if (angle > 0) {
+    step.linear() = Eigen::AngleAxisd(angle, twist.head<3>() / angle).toRotationMatrix();
+  }
+  step.translation() = twist.tail<3>();
+  RigidMotion result = T * step;
+  result.linear() = nearest_rotation(result.linear());
+  return result;
+}
+
+}  // namespace
+
+/// Normal equations H step = -b, H by its lower blocks.
+struct PoseGraph::Equations {
+  explicit Equations(std::size_t nodes) : b(Eigen::VectorXd::Zero(Eigen::Index(6 * nodes))) {}
+
+  void add_block(std::size_t row, std::size_t col, const Matrix6& block) {
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) {
+        H.emplace_back(int(6 * row) + i, int(6 * col) + j, block(i, j));
+      }
+    }
+  }
+  void add_gradient(std::size_t node, const Twist& gradient) {
+    b.segment<6>(Eigen::Index(6 * node)) += gradient;
+  }
+
+  std::vector<Eigen::Triplet<double>> H;
+  Eigen::VectorXd b;
+};
+
+std::size_t PoseGraph::add_node(const RigidMotion& T_local_node) {
+  poses_.push_back(T_local_node);
+  return poses_.size() - 1;
+}
+
+void PoseGraph::add(const RelativePose& measurement) {
+  if (measurement.from >= measurement.to || measurement.to >= poses_.size()) {
+    throw std::invalid_argument("a relative pose needs two nodes, the earlier first");
+  }
+  relative_.push_back(measurement);
+}
+
+void PoseGraph::add(const AbsolutePose& measurement) {
+  if (measurement.node >= poses_.size()) {
+    throw std::invalid_argument("an absolute pose needs a node");
+  }
+  absolute_.push_back(measurement);
+}
+
+double PoseGraph::squared_error(const RelativePose& measurement) const {
+  return term_of(measurement, poses_).error.squaredNorm();
+}
+
+double PoseGraph::cost(const std::vector<RigidMotion>& poses, double width) const {
+  double total = 0;
+  for (const RelativePose& m : relative_) {
+    const double squared = term_of(m, poses).error.squaredNorm();
+    total += m.robust ? robust_cost(squared, width) : squared;
+  }
+  for (const AbsolutePose& m : absolute_) {
+    const double squared = term_of(m, poses).error.squaredNorm();
+    total += m.robust ? robust_cost(squared, width) : squared;
+  }
+  return total;
+}
+
+PoseGraph::Equations PoseGraph::linearize(double width) const {
+  Equations equations(poses_.size());
+  for (const RelativePose& m : relative_) {
+    const Term term = term_of(m, poses_);
+    const double weight = m.robust ? robust_weight(term.error.squaredNorm(), width) : 1;
+    equations.add_block(m.from, m.from, weight * term.by_from.transpose() * term.by_from);
+    equations.add_block(m.to, m.from, weight * term.by_to.transpose() * term.by_from);
+    equations.add_block(m.to, m.to, weight * term.by_to.transpose() * term.by_to);
+    equations.add_gradient(m.from, weight * term.by_from.transpose() * term.error);
+    equations.add_gradient(m.to, weight * term.by_to.transpose() * term.error);
+  }
+  for (const AbsolutePose& m : absolute_) {
+    const Term term = term_of(m, poses_);
+    const double weight = m.robust ? robust_weight(term.error.squaredNorm(), width) : 1;
+    equations.add_block(m.node, m.node, weight * term.by_to.transpose() * term.by_to);
+    equations.add_gradient(m.node, weight * term.by_to.transpose() * term.error);
+  }
+  return equations;
+}
+
+double PoseGraph::worst_robust_error() const {
+  double worst = 0;
+  for (const RelativePose& m : relative_) {
+    if (m.robust) worst = std::max(worst, term_of(m, poses_).error.squaredNorm());
+  }
+  for (const AbsolutePose& m : absolute_) {
+    if (m.robust) worst = std::max(worst, term_of(m, poses_).error.squaredNorm());
+  }
+  return worst;
+}
+
+void PoseGraph::optimize() {
+  // A narrow kernel would not see a true measurement that is far off yet: it narrows step by step.
+  double width = worst_robust_error();
+  for (; width > kRobustWidth; width /= kNarrowing) descend(width);
+  descend(kRobustWidth);
+}
+
+void PoseGraph::descend(double width) {
+  const auto size = Eigen::Index(6 * poses_.size());
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver;
+  double best = cost(poses_, width), damping = 0;
+  for (int iteration = 0; iteration < kMaxIterations && damping < kMaxDamping; ++iteration) {
+    Equations equations = linearize(width);
+    for (int i = 0; i < size; ++i) equations.H.emplace_back(i, i, kLeastInformation + damping);
+    Eigen::SparseMatrix<double> H(size, size);
+    H.setFromTriplets(equations.H.begin(), equations.H.end());
+    solver.compute(H);
+    const Eigen::VectorXd step = solver.solve(-equations.b);
+    if (solver.info() != Eigen::Success || !step.allFinite()) return;
+
+    std::vector<RigidMotion> poses = poses_;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = moved(poses_[i], step.segment<6>(Eigen::Index(6 * i)));
+    }
+    const double error = cost(poses, width);
+    if (!(error <= best)) {
+      damping = std::max(1.0, damping * 10);
+      continue;
+    }
+    poses_ = std::move(poses);
+    best = error;
+    damping = damping > 1 ? damping / 10 : 0;
+    if (step.lpNorm<Eigen::Infinity>() < kConverged) return;
+  }
+}
+
+}  // namespace fovea

@@ -1,0 +1,165 @@
+#include "fovea/mapping/fusion/pose_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Twist sigmas(double rotation, double translation) {
+  Twist sigma;
+  sigma << Eigen::Vector3d::Constant(rotation), Eigen::Vector3d::Constant(translation);
+  return sigma;
+}
+
+RigidMotion pose(double x, double y, double yaw) {
+  RigidMotion T(Eigen::Translation3d(x, y, 0));
+  T.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return T;
+}
+
+Twist noise(Random& random, const Twist& sigma) {
+  Twist twist;
+  for (int i = 0; i < 6; ++i) twist[i] = sigma[i] * random.normal();
+  return twist;
+}
+
+/// Nodes on a circle of 60 m radius that rises and falls.
+std::vector<RigidMotion> laps(int nodes, int nodes_per_lap) {
+  std::vector<RigidMotion> poses;
+  for (int i = 0; i < nodes; ++i) {
+    const double angle = 2 * std::numbers::pi * i / nodes_per_lap;
+    RigidMotion T = pose(60 * std::cos(angle), 60 * std::sin(angle), angle + std::numbers::pi / 2);
+    T.translation().z() = 2 * std::sin(angle);
+    T.rotate(Eigen::AngleAxisd(0.03 * std::cos(angle), Eigen::Vector3d::UnitY()));
+    poses.push_back(T);
+  }
+  return poses;
+}
+
+double distance(const RigidMotion& a, const RigidMotion& b) {
+  return (a.translation() - b.translation()).norm();
+}
+
+/// Adds the chain of noisy motions; nodes start where the chain puts them.
+void add_chain(const std::vector<RigidMotion>& truth, const Twist& sigma, Random& random,
+               PoseGraph& graph) {
+  graph.add_node(truth[0]);
+  graph.add(AbsolutePose{0, truth[0], sigmas(1e-4, 1e-3)});
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const RigidMotion T = truth[i - 1].inverse() * truth[i] * exp_se3(noise(random, sigma));
+    graph.add_node(graph.poses().back() * T);
+    graph.add(RelativePose{i - 1, i, T, sigma});
+  }
+}
+
+TEST(PoseGraph, ExactMeasurementsAreMetExactly) {
+  const auto truth = laps(20, 20);
+  PoseGraph graph;
+  Random random(1);
+  for (const RigidMotion& T : truth) graph.add_node(T * exp_se3(noise(random, sigmas(0.1, 1))));
+  graph.add(AbsolutePose{0, truth[0], sigmas(0.01, 0.1)});
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    graph.add(RelativePose{i - 1, i, truth[i - 1].inverse() * truth[i], sigmas(0.01, 0.1)});
+  }
+  graph.add(RelativePose{0, 19, truth[0].inverse() * truth[19], sigmas(0.01, 0.1)});
+  graph.optimize();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_TRUE(graph.poses()[i].isApprox(truth[i], 1e-9)) << i;
+    EXPECT_TRUE(is_rotation(graph.poses()[i].linear(), 1e-12));
+  }
+}
+
+TEST(PoseGraph, TwoMeasurementsOfOneThingAreWeighted) {
+  PoseGraph graph;
+  graph.add_node(pose(0, 0, 0));
+  graph.add(AbsolutePose{0, pose(1, 0, 0), sigmas(0.1, 0.1)});
+  graph.add(AbsolutePose{0, pose(2, 0, 0.3), sigmas(0.1, 0.2)});
+  graph.optimize();
+  EXPECT_NEAR(graph.poses()[0].translation().x(), 1.2, 1e-6);  // weights 100 and 25
+  EXPECT_NEAR(rotation_angle(graph.poses()[0].linear()), 0.15, 1e-6);
+}
+
+TEST(PoseGraph, AClosedLoopTakesTheDriftOut) {
+  const auto truth = laps(60, 50);
+  PoseGraph graph;
+  Random random(7);
+  add_chain(truth, sigmas(0.3 * kDegree, 0.02), random, graph);
+  const double before = distance(graph.poses()[50], truth[50]);
+  for (std::size_t i = 50; i < 60; ++i) {
+    graph.add(RelativePose{i - 50, i, truth[i - 50].inverse() * truth[i], sigmas(1e-3, 0.02),
+                           /*robust=*/true});
+  }
+  graph.optimize();
+  EXPECT_GT(before, 0.5);
+  for (std::size_t i = 50; i < 60; ++i) {
+    const RigidMotion apart = graph.poses()[i - 50].inverse() * graph.poses()[i];
+    EXPECT_LT(distance(apart, truth[i - 50].inverse() * truth[i]), 0.05) << i;
+  }
+  EXPECT_LT(distance(graph.poses()[50], truth[50]), 0.05);
+  // In between the error is spread, not pushed elsewhere.
+  for (const std::size_t i : {12u, 25u, 37u}) {
+    EXPECT_LT(distance(graph.poses()[i], truth[i]), before) << i;
+  }
+}
+
+TEST(PoseGraph, AFalseLoopIsNotBelieved) {
+  const auto truth = laps(45, 50);
+  PoseGraph graph;
+  Random random(3);
+  add_chain(truth, sigmas(0.02 * kDegree, 0.01), random, graph);
+  const std::vector<RigidMotion> before = graph.poses();
+  const RelativePose wrong{5, 40, RigidMotion::Identity(), sigmas(1e-3, 0.05), /*robust=*/true};
+  graph.add(wrong);
+  graph.optimize();
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT(distance(graph.poses()[i], before[i]), 0.15) << i;
+  }
+  EXPECT_GT(graph.squared_error(wrong), 1000);
+}
+
+TEST(PoseGraph, PositionsBendADriftingChainTowardsThem) {
+  std::vector<RigidMotion> truth;
+  for (int i = 0; i < 100; ++i) truth.push_back(pose(20.0 * i, 0, 0));
+  PoseGraph graph;
+  Random random(11);
+  add_chain(truth, sigmas(0.1 * kDegree, 0.02), random, graph);
+  EXPECT_GT(distance(graph.poses().back(), truth.back()), 10);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    AbsolutePose position{i, truth[i], sigmas(5 * kDegree, 0.5), /*robust=*/true};
+    for (int axis = 0; axis < 3; ++axis) {
+      position.T_local_node.translation()[axis] += 0.5 * random.normal();
+    }
+    // A tenth of them are far off.
+    if (i % 10 == 3) position.T_local_node.translation().y() += 5;
+    graph.add(position);
+  }
+  graph.optimize();
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) sum += distance(graph.poses()[i], truth[i]);
+  EXPECT_LT(sum / double(truth.size()), 0.5);
+}
+
+TEST(PoseGraph, WhatNothingHoldsStays) {
+  PoseGraph graph;
+  graph.add_node(pose(1, 2, 0.1));
+  graph.add_node(pose(3, 4, 0.2));
+  graph.optimize();
+  EXPECT_TRUE(graph.poses()[1].isApprox(pose(3, 4, 0.2), 1e-12));
+}
+
+TEST(PoseGraph, RejectsNodesThatAreNotThere) {
+  PoseGraph graph;
+  graph.add_node(RigidMotion::Identity());
+  EXPECT_THROW(graph.add(RelativePose{0, 1, {}, {}}), std::invalid_argument);
+  EXPECT_THROW(graph.add(RelativePose{0, 0, {}, {}}), std::invalid_argument);
+  EXPECT_THROW(graph.add(AbsolutePose{3, {}, {}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace fovea

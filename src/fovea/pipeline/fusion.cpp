@@ -1,0 +1,148 @@
+#include "fovea/pipeline/fusion.h"
+
+#include <numbers>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+/// A vehicle that stands goes on with its submap.
+constexpr double kSubmapLength = 5;  // m, at least
+/// Odometry between the origins of neighbouring submaps: deviations of its own, by metre, and by
+/// frame whose registration failed or did not know a direction.
+constexpr double kTranslation = 0.01, kTranslationPerMetre = 0.001, kTranslationPerWeak = 0.1;  // m
+constexpr double kRotation = 0.02 * kDegree, kRotationPerMetre = 0.003 * kDegree,
+                 kRotationPerWeak = 0.1 * kDegree;
+/// Registration of a place seen again.
+constexpr double kClosureTranslation = 0.03;  // m
+constexpr double kClosureRotation = 0.05 * kDegree;
+/// Without navigation the first submap stays where it is.
+constexpr double kAnchor = 1e-4;
+
+Twist deviations(double rotation, double translation) {
+  Twist sigma;
+  sigma << Eigen::Vector3d::Constant(rotation), Eigen::Vector3d::Constant(translation);
+  return sigma;
+}
+
+bool is_weak(const FrameRecord& record) {
+  const auto above_zero = [&](const char* figure) {
+    const auto found = record.figures.find(figure);
+    return found != record.figures.end() && found->second > 0;
+  };
+  return above_zero("registration_failed") || above_zero("registration_degenerate");
+}
+
+}  // namespace
+
+void FusionOptions::validate() const {
+  if (!(submap_duration > 0 && submap_duration <= 3600)) {
+    throw ConfigError("a duration is out of range", "map.submap_duration",
+                      "give seconds above 0 and up to 3600");
+  }
+}
+
+Fusion::Fusion(const FusionOptions& options, const RegistrationOptions& registration,
+               const DriveInfo& drive)
+    : options_(options),
+      navigation_(options.enabled && drive.navigation ? &*drive.navigation : nullptr,
+                  drive.navigation_accuracy),
+      closer_(registration) {}
+
+bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
+  if (submaps_.empty()) return true;
+  const Submap& submap = submaps_.back();
+  const double moved = (T_odom_lidar.translation() - submap.T_odom_submap.translation()).norm();
+  return seconds(stamp - submap.start) >= options_.submap_duration && moved >= kSubmapLength;
+}
+
+void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar) {
+  const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
+  const auto measured = navigation_.measurement(node, stamp);
+  if (node > 0) {
+    const Submap& before = submaps_.back();
+    const double length = path_ - before.path;
+    RelativePose motion{
+        node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
+        deviations(
+            kRotation + kRotationPerMetre * length + kRotationPerWeak * weak_frames_,
+            kTranslation + kTranslationPerMetre * length + kTranslationPerWeak * weak_frames_)};
+    graph_.add(motion);
+  } else if (!measured) {
+    graph_.add(AbsolutePose{node, graph_.poses().back(), deviations(kAnchor, kAnchor)});
+  }
+  submaps_.push_back({T_odom_lidar, stamp, path_});
+  weak_frames_ = 0;
+  if (!options_.enabled) return;
+  if (measured) graph_.add(*measured);
+  graph_.optimize();
+}
+
+void Fusion::track(FrameRecord& record) {
+  const RigidMotion& T_odom_lidar = record.T_odom_lidar;
+  if (last_T_odom_lidar_) {
+    path_ += (T_odom_lidar.translation() - last_T_odom_lidar_->translation()).norm();
+  }
+  last_T_odom_lidar_ = T_odom_lidar;
+  const std::string problem = navigation_.observe(record.stamp.value(), T_odom_lidar);
+  if (!problem.empty()) {
+    record.figures["navigation_jumped"] = 1;
+    record.note += (record.note.empty() ? "" : "; ") + problem;
+  }
+  weak_frames_ += is_weak(record) ? 1 : 0;
+  if (is_due(*record.stamp, T_odom_lidar)) open_submap(*record.stamp, T_odom_lidar);
+  record.submap = static_cast<int>(submaps_.size()) - 1;
+  record.T_local_lidar = T_local_lidar(record);
+}
+
+bool Fusion::wants_scan() const {
+  return options_.enabled && options_.loop_closure && !closer_.has(submaps_.size() - 1);
+}
+
+std::vector<LoopCandidate> Fusion::candidates(const RigidMotion& T_local_lidar) const {
+  std::vector<LoopCandidate> result;
+  for (std::size_t id = 0; id + 1 < submaps_.size(); ++id) {
+    result.push_back({id, graph_.poses()[id].inverse() * T_local_lidar, path_ - submaps_[id].path});
+  }
+  return result;
+}
+
+void Fusion::look_around(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
+  if (!wants_scan()) return;
+  if (const auto closure = closer_.find(points_lidar, candidates(record.T_local_lidar))) {
+    record.revisit = Revisit{static_cast<int>(closure->submap), closure->T_submap_lidar};
+  }
+  replay(record, points_lidar);
+  record.T_local_lidar = T_local_lidar(record);
+}
+
+void Fusion::replay(const FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
+  if (!wants_scan()) return;
+  const auto submap = static_cast<std::size_t>(record.submap);
+  closer_.add(submap, points_lidar, submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar);
+  if (record.revisit) close_loop(record);
+}
+
+void Fusion::close_loop(const FrameRecord& record) {
+  const auto submap = static_cast<std::size_t>(record.submap);
+  const RigidMotion T_submap_lidar = submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar;
+  graph_.add(RelativePose{static_cast<std::size_t>(record.revisit->submap), submap,
+                          record.revisit->T_submap_lidar * T_submap_lidar.inverse(),
+                          deviations(kClosureRotation, kClosureTranslation), /*robust=*/true});
+  graph_.optimize();
+}
+
+RigidMotion Fusion::T_local_odom() const {
+  if (!options_.enabled || submaps_.empty()) return RigidMotion::Identity();
+  return graph_.poses()[submaps_.size() - 1] * submaps_.back().T_odom_submap.inverse();
+}
+
+RigidMotion Fusion::T_local_lidar(const FrameRecord& record) const {
+  if (!options_.enabled) return record.T_odom_lidar;
+  const auto submap = static_cast<std::size_t>(record.submap);
+  return graph_.poses()[submap] * (submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar);
+}
+
+}  // namespace fovea

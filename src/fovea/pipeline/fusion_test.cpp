@@ -1,0 +1,186 @@
+#include "fovea/pipeline/fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+constexpr TimeNs kTenth = kNsPerSecond / 10;
+constexpr int kLap = 300;       // frames
+constexpr double kRadius = 45;  // m: 0.94 m a frame
+
+RigidMotion true_pose(int frame) {
+  const double angle = 2 * std::numbers::pi * frame / kLap;
+  RigidMotion T(
+      Eigen::Translation3d(kRadius * std::sin(angle), kRadius * (1 - std::cos(angle)), 0));
+  T.rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+  return T;
+}
+
+/// What a LiDAR sees of pillars that stand, irregularly, along the circle, and of the ground.
+std::vector<Eigen::Vector3f> scan_at(const RigidMotion& T_local_lidar) {
+  std::vector<Eigen::Vector3f> points;
+  const RigidMotion T = T_local_lidar.inverse();
+  const auto add = [&](const Eigen::Vector3d& p_local) {
+    const Eigen::Vector3d p = T * p_local;
+    if (p.norm() < 40) points.push_back(p.cast<float>());
+  };
+  for (int pillar = 0; pillar < 80; ++pillar) {
+    Random random = Random::of_item(1, 2, std::uint64_t(pillar));
+    const double angle = 2 * std::numbers::pi * (pillar + 0.7 * random.uniform()) / 80;
+    const double radius = kRadius + (pillar % 2 == 0 ? 8 : -8) * (1 + random.uniform());
+    const Eigen::Vector2d center(radius * std::sin(angle), kRadius - radius * std::cos(angle));
+    const double size = 0.5 + random.uniform();
+    for (double s = -size; s <= size; s += 0.25) {
+      for (double z = -1.5; z < 3; z += 0.25) {
+        for (const double side : {-size, size}) {
+          add({center.x() + s, center.y() + side, z});
+          add({center.x() + side, center.y() + s, z});
+        }
+      }
+    }
+  }
+  for (double x = -40; x <= 40; x += 1) {
+    for (double y = -40; y <= 40; y += 1) {
+      const Eigen::Vector3d near = T_local_lidar * Eigen::Vector3d(x, y, 0);
+      add({std::round(near.x()), std::round(near.y()), -1.7});
+    }
+  }
+  return points;
+}
+
+/// Odometry that turns a little too far every frame.
+struct Odometry {
+  double turn;  // rad a frame too much
+  RigidMotion T_odom_lidar = RigidMotion::Identity();
+  void step(int frame) {
+    if (frame == 0) return;
+    T_odom_lidar = T_odom_lidar * (true_pose(frame - 1).inverse() * true_pose(frame)) *
+                   Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
+  }
+};
+
+std::vector<FrameRecord> drive(Fusion& fusion, double turn, int frames, bool with_scans) {
+  Odometry odometry{turn};
+  std::vector<FrameRecord> records;
+  for (int i = 0; i < frames; ++i) {
+    odometry.step(i);
+    FrameRecord record;
+    record.index = i;
+    record.stamp = i * kTenth;
+    record.T_odom_lidar = odometry.T_odom_lidar;
+    fusion.track(record);
+    if (with_scans && fusion.wants_scan()) fusion.look_around(record, scan_at(true_pose(i)));
+    records.push_back(record);
+  }
+  return records;
+}
+
+double error_of(const RigidMotion& T_local_lidar, int frame) {
+  return (T_local_lidar.translation() - true_pose(frame).translation()).norm();
+}
+
+TEST(Fusion, WithoutNavigationAndLoopsLocalIsOdom) {
+  DriveInfo info;
+  Fusion fusion({}, {}, info);
+  const auto records = drive(fusion, 1e-4, 100, /*with_scans=*/false);
+  for (const FrameRecord& record : records) {
+    EXPECT_TRUE(record.T_local_lidar.isApprox(record.T_odom_lidar, 1e-9)) << record.index;
+  }
+  // 9.9 s: a submap every 2 s.
+  EXPECT_EQ(fusion.submaps().size(), 5u);
+  EXPECT_EQ(records.back().submap, 4);
+}
+
+TEST(Fusion, AVehicleThatStandsStaysInItsSubmap) {
+  DriveInfo info;
+  Fusion fusion({}, {}, info);
+  for (int i = 0; i < 200; ++i) {
+    FrameRecord record;
+    record.stamp = i * kTenth;
+    fusion.track(record);
+  }
+  EXPECT_EQ(fusion.submaps().size(), 1u);
+}
+
+TEST(Fusion, APlaceSeenAgainClosesTheLoop) {
+  constexpr double kTurn = 1e-4;  // 1.7 degrees a lap
+  DriveInfo info;
+  Fusion open({.loop_closure = false}, {}, info), closed({}, {}, info);
+  const int frames = kLap + 40;
+  const auto drifted = drive(open, kTurn, frames, true);
+  auto records = drive(closed, kTurn, frames, true);
+  EXPECT_GT(error_of(drifted[kLap].T_local_lidar, kLap), 1.0);
+  int revisits = 0;
+  for (const FrameRecord& record : records) revisits += record.revisit.has_value();
+  EXPECT_GE(revisits, 1);
+  EXPECT_LT(error_of(records.back().T_local_lidar, frames - 1), 0.1);
+  for (int i = 0; i < frames; ++i) {
+    EXPECT_LT(error_of(closed.T_local_lidar(records[std::size_t(i)]), i), 0.4) << i;
+  }
+}
+
+TEST(Fusion, OtherPlacesAreNotTakenForOneSeenBefore) {
+  DriveInfo info;
+  Fusion fusion({}, {}, info);
+  for (const FrameRecord& record : drive(fusion, 0, kLap * 3 / 4, true)) {
+    EXPECT_FALSE(record.revisit) << record.index;
+  }
+}
+
+TEST(Fusion, NavigationHoldsALongDriveInPlace) {
+  DriveInfo info;
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 3 * kLap; ++i) {
+    Random random = Random::of_item(5, 6, std::uint64_t(i));
+    RigidMotion T = true_pose(i);
+    for (int axis = 0; axis < 3; ++axis) T.translation()[axis] += 0.03 * random.normal();
+    poses.push_back({i * kTenth, T});
+  }
+  info.navigation = Trajectory(poses);
+  info.navigation_accuracy.assign(poses.size(), 0.1);
+  Fusion fusion({.loop_closure = false}, {}, info);
+  auto records = drive(fusion, 6e-5, 3 * kLap, false);
+  const double without = error_of(records.back().T_odom_lidar, 3 * kLap - 1);
+  EXPECT_GT(without, 2);
+  double worst = 0;
+  for (int i = 0; i < 3 * kLap; ++i) {
+    worst = std::max(worst, error_of(fusion.T_local_lidar(records[std::size_t(i)]), i));
+  }
+  EXPECT_LT(worst, without / 3);
+}
+
+TEST(Fusion, SwitchedOffItLeavesAllPosesAsTheyAre) {
+  DriveInfo info;
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 100; ++i) {
+    poses.push_back({i * kTenth, RigidMotion(Eigen::Translation3d(1, 2, 3)) * true_pose(i)});
+  }
+  info.navigation = Trajectory(poses);
+  Fusion fusion({.enabled = false}, {}, info);
+  for (const FrameRecord& record : drive(fusion, 1e-3, 100, false)) {
+    EXPECT_EQ(record.T_local_lidar.matrix(), record.T_odom_lidar.matrix());
+  }
+}
+
+TEST(Fusion, ToldAgainItGoesOnAlike) {
+  DriveInfo info;
+  Fusion first({}, {}, info), again({}, {}, info);
+  const auto records = drive(first, 1e-4, kLap + 30, true);
+  for (const FrameRecord& record : records) {
+    FrameRecord tracked = record;
+    again.track(tracked);
+    if (again.wants_scan()) again.replay(record, scan_at(true_pose(record.index)));
+  }
+  ASSERT_EQ(first.submaps().size(), again.submaps().size());
+  for (std::size_t i = 0; i < first.submaps().size(); ++i) {
+    EXPECT_EQ(first.submaps()[i].matrix(), again.submaps()[i].matrix()) << i;
+  }
+}
+
+}  // namespace
+}  // namespace fovea
