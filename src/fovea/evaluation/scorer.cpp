@@ -83,10 +83,12 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   }
   const Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, info);
-  for (std::size_t k = 0; k < cameras_.size(); ++k) {
-    score_view(frame, scan, placed, cameras_[k], frame.images.at(options_.cameras[k]), score);
+  std::vector<Camera> cameras;
+  for (const Camera& camera : cameras_) cameras.push_back(camera.at_image(placed.velocity));
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    score_view(frame, scan, placed, cameras[k], frame.images.at(options_.cameras[k]), score);
   }
-  free_space_.add_scan(scan, placed.T_local_lidar, cameras_);
+  free_space_.add_scan(scan, placed.T_local_lidar, cameras);
   return score;
 }
 

@@ -74,8 +74,12 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
         return moving_things_.observe(map_, scan_lidar, record.T_local_lidar, frame.index);
       }));
     }
+    cameras_.clear();
+    for (const Camera& camera : drive_.calibration.cameras) {
+      cameras_.push_back(camera.at_image(motion.velocity));
+    }
     if (options_.foveal_enabled) {
-      for (std::size_t camera = 0; camera < drive_.calibration.cameras.size(); ++camera) {
+      for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
         map_camera(scan_lidar, frame, camera, record.T_local_lidar, record, clock);
       }
     } else {
@@ -114,7 +118,7 @@ void Mapper::open_submap_if_due(TimeNs stamp, const RigidMotion& T_local_lidar) 
 
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
                         const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
-  const Camera& camera = drive_.calibration.cameras[camera_slot];
+  const Camera& camera = cameras_[camera_slot];
   const FovealRegion region(foveal_options_of(options_, camera.index), camera);
   const PointCloud foveal_cam = clock.time("fovea", [&] {
     const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
@@ -168,7 +172,7 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
     for (std::size_t slot = 0; slot <= frame.images.size() && !rest_lidar.empty(); ++slot) {
       // Each camera colours what the ones before it have not seen; last, what none has seen.
       const bool last = slot == frame.images.size();
-      const Camera& camera = drive_.calibration.cameras[last ? 0 : slot];
+      const Camera& camera = cameras_[last ? 0 : slot];
       PointCloud points_cam = transform_cloud(rest_lidar, camera.T_cam_lidar);
       points_cam.normal.assign(points_cam.size(), Eigen::Vector3f::Zero());
       points_cam.interpolated.assign(points_cam.size(), 0);

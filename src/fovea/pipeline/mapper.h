@@ -61,6 +61,8 @@ class Mapper {
   MovingThings moving_things_;
   TileMap map_;
   std::optional<TimeNs> submap_start_;
+  /// Where the cameras were when the images of the frame at hand were taken.
+  std::vector<Camera> cameras_;
 };
 
 }  // namespace fovea
