@@ -117,6 +117,8 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("moving.range", o.moving.range);
   visit("moving.free_scans", o.moving.free_scans);
 
+  visit("calibration.check", o.check_calibration);
+
   visit("map.tile_size", o.tile_size);
   visit("map.submap_duration", o.submap_duration);
 }

@@ -106,6 +106,7 @@ void apply_variant(std::string_view name, MapperOptions& options) {
   options.ray_filter = RayFilterOptions{};  // paper mode, M = 5, c = 2
   if (baseline) options.ray_filter.mode = RayFilterMode::kOff;
   options.moving.remove = false;
+  options.check_calibration = false;
 }
 
 }  // namespace fovea

@@ -54,9 +54,10 @@ struct MapperOptions {
   RayFilterOptions ray_filter;
   TextureOptions texture;
   MovingOptions moving;
-  double tile_size = 4.0;       ///< m
-  double submap_duration = 10;  ///< s
-  void validate() const;        ///< ConfigError that names the field
+  bool check_calibration = true;  ///< look at edges of a few frames (pipeline/self_calibration.h)
+  double tile_size = 4.0;         ///< m
+  double submap_duration = 10;    ///< s
+  void validate() const;          ///< ConfigError that names the field
 };
 
 /// The foveal region of a camera, with slices of its own where it has any.
