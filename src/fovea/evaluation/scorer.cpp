@@ -126,10 +126,11 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
   Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, info);
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    const Camera camera = cameras_[k].at_image(placed.velocity);
     Image& image = frame.images.at(options_.cameras[k]);
-    ScoredPoints scored = score_points(frame, scan, placed, cameras_[k], image);
-    pictures.push_back({placed.index, cameras_[k].index, std::move(image),
-                        draw(placed, cameras_[k], SplatOptions{.min_depth = kEvaluatedDepth}),
+    ScoredPoints scored = score_points(frame, scan, placed, camera, image);
+    pictures.push_back({placed.index, camera.index, std::move(image),
+                        draw(placed, camera, SplatOptions{.min_depth = kEvaluatedDepth}),
                         std::move(scored.view), std::move(scored.errors)});
   }
   return pictures;

@@ -59,14 +59,13 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
 
 EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                      double width) {
-  return parallel_sum<EdgeScore>(
-      profiles.size(), 512, {}, [&](std::size_t begin, std::size_t end) {
-        EdgeScore score;
-        for (std::size_t i = begin; i < end; ++i) {
-          score += edge_score(profiles[i], correction, width);
-        }
-        return score;
-      });
+  return parallel_sum<EdgeScore>(profiles.size(), 512, {}, [&](std::size_t begin, std::size_t end) {
+    EdgeScore score;
+    for (std::size_t i = begin; i < end; ++i) {
+      score += edge_score(profiles[i], correction, width);
+    }
+    return score;
+  });
 }
 
 }  // namespace fovea
