@@ -21,20 +21,19 @@ constexpr double kRotationX = 0.3, kRotationY = -0.3, kDelayMs = 20;
 /// A street past a camera of half KITTI's resolution that looks somewhere else and triggers late.
 class Calibrate : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    scratch_ = new TemporaryFolder;
-  }
+  static void SetUpTestSuite() { scratch_ = new TemporaryFolder; }
   static void TearDownTestSuite() { delete scratch_; }
 
   /// "faulty" or "right", simulated when it is first asked for.
   static std::filesystem::path drive(const std::string& name) {
     const std::filesystem::path folder = *scratch_ / name;
     if (!std::filesystem::exists(folder)) {
-      const std::string faults =
-          name == "right" ? "" : fmt::format("--set camera.rotation_error_x={} --set "
-                                             "camera.rotation_error_y={} --set "
-                                             "camera.trigger_delay={}",
-                                             kRotationX, kRotationY, kDelayMs / 1e3);
+      const std::string faults = name == "right" ? ""
+                                                 : fmt::format(
+                                                       "--set camera.rotation_error_x={} --set "
+                                                       "camera.rotation_error_y={} --set "
+                                                       "camera.trigger_delay={}",
+                                                       kRotationX, kRotationY, kDelayMs / 1e3);
       EXPECT_EQ(run_fovea("simulate -o '" + folder.string() +
                           "' --frames 12 --set vehicle.speed=14 --set camera.numbers=[2] --set "
                           "camera.width=621 --set camera.height=187 --set camera.focal=360.75 "
@@ -102,10 +101,8 @@ TEST_F(Calibrate, WarnsOfAFaultAndNotWithoutOne) {
   EXPECT_LT(std::abs(double(camera.at("time_offset_ms"))), 3);
 
   ASSERT_EQ(map("faulty", "c.fovea", "--set calibration.check=false").exit_code, 0);
-  EXPECT_TRUE(nlohmann::json::parse(read_text(own_ / "report.json"))
-                  .at("map")
-                  .at("calibration")
-                  .empty());
+  EXPECT_TRUE(
+      nlohmann::json::parse(read_text(own_ / "report.json")).at("map").at("calibration").empty());
 }
 
 TEST_F(Calibrate, CorrectsWhatItFinds) {
@@ -122,13 +119,11 @@ TEST_F(Calibrate, CorrectsWhatItFinds) {
   EXPECT_EQ(corrected.at("calibration"), path("corrected.fovea"));
   EXPECT_EQ(given.at("calibration"), "drive");
   EXPECT_LT(corrected.at("te_mean"), 0.95 * double(given.at("te_mean")));
-  const auto misplaced =
-      evaluate("given.fovea", "--calibration '" + path("corrected.fovea") + "'");
+  const auto misplaced = evaluate("given.fovea", "--calibration '" + path("corrected.fovea") + "'");
   EXPECT_LT(corrected.at("te_mean"), 0.9 * double(misplaced.at("te_mean")));
   EXPECT_EQ(evaluate("corrected.fovea", "--calibration drive").at("calibration"), "drive");
-  const ProgramRun wrong =
-      run_fovea(fmt::format("evaluate '{0}' '{1}' --calibration '{0}'", path("given.fovea"),
-                            drive("faulty").string()));
+  const ProgramRun wrong = run_fovea(fmt::format("evaluate '{0}' '{1}' --calibration '{0}'",
+                                                 path("given.fovea"), drive("faulty").string()));
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.err, HasSubstr("made with --calibrate"));
 

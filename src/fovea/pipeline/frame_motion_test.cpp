@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-
 namespace fovea {
 namespace {
 
@@ -20,7 +19,8 @@ class Stamps : public FrameSource {
     info_.sweep_period = 0.1;
     if (!with_navigation) return;
     std::vector<StampedPose> poses;
-    for (int k = 0; k < 30; ++k) poses.push_back({from_seconds(0.1 * k + 0.02), pose_at(0.1 * k + 0.02)});
+    for (int k = 0; k < 30; ++k)
+      poses.push_back({from_seconds(0.1 * k + 0.02), pose_at(0.1 * k + 0.02)});
     info_.navigation.emplace(poses);
   }
   const DriveInfo& info() const override { return info_; }
@@ -52,7 +52,8 @@ TEST(FrameMotion, KnownByThePosesGiven) {
   const Stamps drive(false);
   std::vector<RigidMotion> given;
   for (int i = 10; i < 20; ++i) given.push_back(pose_at(0.1 * i));
-  for (const int index : {10, 11, 19}) expect_motion(known_motion(drive, given, index), 0.1 * index);
+  for (const int index : {10, 11, 19})
+    expect_motion(known_motion(drive, given, index), 0.1 * index);
   EXPECT_FALSE(known_motion(drive, given, 14));  // the frame before it has no stamp
   EXPECT_FALSE(known_motion(drive, {}, 12));
 }

@@ -34,8 +34,9 @@ constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // beyond it is a
 // What an unknown delay may be (s): it turns a rotation that is estimated without it.
 constexpr double kLikelyDelay = 0.02;
 // By how much edges must be seen better (mean logarithm of their strength) than by a camera that
-// looks elsewhere. Clutter's own maximum reaches 0.13, real drives 0.7 (docs/calibration.md).
-constexpr double kMinContrast = 0.4;
+// looks elsewhere: 0.7 to 1.3 on drives, up to 0.13 in clutter's own maximum and 0.46 in that of
+// edges out of the profiles' reach (docs/calibration.md).
+constexpr double kMinContrast = 0.5;
 constexpr double kElsewhere = 8;  // pixels
 
 /// Rows and columns of parameters that are held are taken out of a system of equations.

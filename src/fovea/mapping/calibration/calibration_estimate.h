@@ -1,5 +1,5 @@
 // The calibration under which a LiDAR's edges lie on the image's (after Levinson, Thrun: Automatic
-// Online Calibration of Cameras and Lasers, RSS 2013; docs/method.md 8).
+// Online Calibration of Cameras and Lasers, RSS 2013; docs/calibration.md).
 #pragma once
 
 #include <vector>
