@@ -17,7 +17,8 @@ struct Drive {
   double speed = 9;              ///< m/s
   double clutter = 1;            ///< strength of other edges, in that of the right one
   double present = 0.7;          ///< share of edges that the image shows at all
-  bool one_side = false;         ///< everything stands at one place beside the road
+  double left_end = -0.8;        ///< of the view, x / z
+  bool one_place = false;        ///< everything stands at one place beside the road
   bool same_frames = false;      ///< every frame shows what the first does
 };
 
@@ -34,8 +35,9 @@ std::vector<EdgeProfile> profiles_of(const Drive& drive, const CalibrationVector
       continue;
     }
     constexpr double kF = 700;
-    double x = random.uniform(-0.8, 0.8), y = random.uniform(-0.2, 0.2), z = random.uniform(5, 30);
-    if (drive.one_side) x = 0.5, y *= 0.1, z = 10;
+    double x = random.uniform(drive.left_end, 0.8), y = random.uniform(-0.2, 0.2),
+           z = random.uniform(5, 30);
+    if (drive.one_place) x = 0.5, y *= 0.1, z = 10;
     EdgeProfile profile;
     profile.frame = i / drive.edges;
     profile.place = {i, 0, 0};
@@ -125,10 +127,10 @@ TEST(CalibrationEstimate, AStandingVehicleShowsNoDelay) {
   }
 }
 
-// On a straight road things on one side move as by yaw: which of both it is stays open.
+// On a straight road things at one place move as by yaw: which of both it is stays open.
 TEST(CalibrationEstimate, ADelayThatLooksLikeYawIsNotTold) {
   Drive drive;
-  drive.one_side = true;
+  drive.one_place = true;
   for (const auto& truth : {planted(0, 0, 0, 20), planted(0, 0.3, 0, 0)}) {
     const CalibrationEstimate e = estimate_calibration(profiles_of(drive, truth));
     EXPECT_FALSE(e.delay_observable);
@@ -137,24 +139,26 @@ TEST(CalibrationEstimate, ADelayThatLooksLikeYawIsNotTold) {
   }
 }
 
-// A slow drive with few edges: the rotation's deviations allow for the delay that nobody knows.
+// A slow drive with few edges, all on the right: the rotation's deviations allow for the delay that
+// nobody knows.
 TEST(CalibrationEstimate, AnUnknownDelayMakesTheRotationLessSure) {
   Drive drive;
   drive.speed = 2.2;
   drive.frames = 8;
   drive.edges = 25;
   drive.present = 0.45;
+  drive.left_end = 0.3;
   int unknown = 0;
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  double square = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const CalibrationVector truth = planted(0.1, 0.2, 0, 20);
     const CalibrationEstimate e = estimate_calibration(profiles_of(drive, truth, seed));
     if (e.delay_observable || !e.rotation_observable) continue;
     ++unknown;
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(e.rotation[k], truth[k], 4 * e.rotation_sigma[k]) << k;
-    }
+    square += std::pow((e.rotation.y() - truth[1]) / e.rotation_sigma.y(), 2);
   }
-  EXPECT_GT(unknown, 1);
+  EXPECT_GT(unknown, 20);
+  EXPECT_LT(std::sqrt(square / unknown), 1.25);  // 1.8 if the delay were taken for 0
 }
 
 // Looking twice at the same things makes nothing surer.
