@@ -15,18 +15,21 @@
 #include "fovea/evaluation/compare_color_rules.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
+#include "fovea/map/map_store.h"
+#include "fovea/pipeline/stored_calibration.h"
 
 namespace fovea::app {
 namespace {
 
 struct EvaluateArguments {
-  std::string map, protocol = "held-out", poses, hold_out, json, html;
+  std::string map, protocol = "held-out", poses, hold_out, json, html, calibration;
   DriveArguments drive;
   int first_frame = 0, threads = 0;
   bool truth = false, no_align = false, color_rules = false;
 };
 
 constexpr const char* kTruth = "truth";
+constexpr const char* kDrive = "drive";  // whose calibration, where it is no map's
 
 /// What of the arguments does not go together; CLI::ValidationError.
 void check(const EvaluateArguments& arguments) {
@@ -53,6 +56,12 @@ void put_report(const Report& report, std::optional<OutputFile>& json) {
   fmt::print("{}", to_text(report));
 }
 
+/// Whose calibration to score under: the drive's or a map's.
+std::string calibration_of(const EvaluateArguments& arguments, const ScoredMap& map) {
+  if (!arguments.calibration.empty()) return arguments.calibration;
+  return has_stored_calibration(map.meta) ? arguments.map : kDrive;
+}
+
 void run(EvaluateArguments arguments) {
   arguments.truth = arguments.truth || arguments.protocol == kTruth;
   if (arguments.truth) arguments.protocol = kTruth;
@@ -75,11 +84,17 @@ void run(EvaluateArguments arguments) {
   } else {
     arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));
   }
-  const auto drive = arguments.drive.open();
+  auto drive = arguments.drive.open();
+  const std::string calibration = calibration_of(arguments, map);
+  if (calibration != kDrive) {
+    const MapMeta meta = calibration == arguments.map ? map.meta : MapReader(calibration).meta();
+    drive = with_stored_calibration(std::move(drive), meta, calibration);
+  }
   if (arguments.truth) {
     put_report(evaluate_truth(map, *drive, {.align = !arguments.no_align}), json);
   } else {
     EvaluationReport report = evaluate(map, *drive, options);
+    report.calibration = calibration;
     if (arguments.color_rules) report.color_rules = compare_color_rules(map, *drive, options);
     put_report(report, json);
     if (html) {
@@ -129,6 +144,11 @@ void add_evaluate_command(CLI::App& app) {
       ->type_name("SPEC");
   command->add_flag("--color-rules", arguments->color_rules,
                     "Also compare colour rules on the map's points, by the training frames");
+  command
+      ->add_option("--calibration", arguments->calibration,
+                   "Score under the calibration of the drive, or under the corrected one of a map "
+                   "(default: MAP's, if it was made with --calibrate)")
+      ->type_name("drive|FILE.fovea");
   command->add_option("--json", arguments->json, "Write all figures as JSON")->type_name("FILE");
   command
       ->add_option("--html", arguments->html,

@@ -27,7 +27,7 @@ struct MapArguments {
   std::string output, preset = "default", config, hold_out, poses = "refine", variant, report;
   std::vector<std::string> settings;
   int threads = 0;
-  bool resume = false, force = false, quiet = false;
+  bool calibrate = false, resume = false, force = false, quiet = false;
 };
 
 MapperOptions resolve_options(const MapArguments& arguments) {
@@ -55,6 +55,7 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
     fmt::print("loops closed: {} scans were registered to places seen before\n",
                summary.loops_closed);
   }
+  for (const std::string& line : calibration_lines(summary)) fmt::print("{}\n", line);
   if (summary.interrupted) {
     fmt::print("interrupted: what was mapped is saved; the same command with --resume goes on\n");
   }
@@ -68,6 +69,7 @@ void run(const MapArguments& arguments) {
   job.options = resolve_options(arguments);
   job.variant = arguments.variant;
   job.hold_out = parse_hold_out(arguments.hold_out);
+  job.calibrate = arguments.calibrate;
   job.force = arguments.force;
   job.resume = arguments.resume;
   job.stop = interrupt.token();
@@ -130,6 +132,9 @@ void add_map_command(CLI::App& app) {
       ->check(CLI::IsMember(variant_names()));
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
       ->check(CLI::NonNegativeNumber);
+  command->add_flag("--calibrate", arguments->calibrate,
+                    "First estimate rotation and delay of the cameras from the drive's edges, and "
+                    "map under them");
   command->add_flag("--resume", arguments->resume, "Go on with an unfinished map");
   command->add_flag("--force", arguments->force, "Overwrite the map");
   command->add_option("--report", arguments->report, "Write figures as JSON")

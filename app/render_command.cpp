@@ -14,6 +14,7 @@
 #include "fovea/base/output_file.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
+#include "fovea/pipeline/stored_calibration.h"
 #include "fovea/simulation/png_encode.h"
 
 namespace fovea::app {
@@ -55,8 +56,11 @@ SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_
 Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
                         const FrameRecord& frame) {
   const DriveArguments drive_arguments{arguments.drive, "", std::to_string(arguments.camera)};
-  const auto drive = drive_arguments.open();
-  const Camera& camera = drive->info().calibration.cameras.at(0);
+  auto drive = drive_arguments.open();
+  if (has_stored_calibration(map.meta)) {
+    drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
+  }
+  const Camera camera = drive->info().calibration.cameras.at(0).at_image(frame.velocity);
   const FrameResult loaded = drive->load(frame.index);
   if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
     throw InputError(fmt::format("frame {} cannot be read ({})", skipped->index, skipped->detail),

@@ -1,13 +1,83 @@
 #include "app/reports.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
+#include "fovea/base/angle.h"
+
 namespace fovea::app {
+namespace {
+
+nlohmann::ordered_json to_json(const std::vector<CameraCalibration>& cameras, bool applied) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [number, e] : cameras) {
+    nlohmann::ordered_json camera{{"camera", number},
+                                  {"applied", applied && e.rotation_observable},
+                                  {"frames", e.frames},
+                                  {"edges", e.edges},
+                                  {"rotation_deg", nullptr},
+                                  {"rotation_sigma_deg", nullptr},
+                                  {"time_offset_ms", nullptr},
+                                  {"time_offset_sigma_ms", nullptr},
+                                  {"pixels", nullptr},
+                                  {"pixels_sigma", nullptr},
+                                  {"off_by_a_pixel", e.off_by_a_pixel()}};
+    if (e.rotation_observable) {
+      const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;
+      camera["rotation_deg"] = {r.x(), r.y(), r.z()};
+      camera["rotation_sigma_deg"] = {s.x(), s.y(), s.z()};
+      camera["pixels"] = e.pixels;
+      camera["pixels_sigma"] = e.pixels_sigma;
+    }
+    if (e.delay_observable) {
+      camera["time_offset_ms"] = 1e3 * e.delay;
+      camera["time_offset_sigma_ms"] = 1e3 * e.delay_sigma;
+    }
+    list.push_back(camera);
+  }
+  return list;
+}
+
+/// "rotation 0.30 0.00 -0.01 degrees (+-0.01 0.00 0.02), images 19.6 ms late (+-0.2)".
+std::string figures_of(const CalibrationEstimate& e) {
+  const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;
+  const std::string rotation =
+      fmt::format("rotation {:.3f} {:.3f} {:.3f} degrees (+-{:.3f} {:.3f} {:.3f})", r.x(), r.y(),
+                  r.z(), s.x(), s.y(), s.z());
+  if (!e.delay_observable) return rotation + ", time offset not observable";
+  return fmt::format("{}, images {:.1f} ms late (+-{:.1f})", rotation, 1e3 * e.delay,
+                     1e3 * e.delay_sigma);
+}
+
+std::string calibration_line(int camera, const CalibrationEstimate& e, bool applied) {
+  if (!e.rotation_observable) {
+    return fmt::format(
+        "camera {}: calibration not observable ({} edges in {} frames), it stays as given", camera,
+        e.edges, e.frames);
+  }
+  const std::string edges =
+      fmt::format("edges {} {:.1f} pixels off the LiDAR's", applied ? "lay" : "lie", e.pixels);
+  if (applied) return fmt::format("camera {}: corrected, {}: {}", camera, edges, figures_of(e));
+  if (!e.off_by_a_pixel()) return fmt::format("camera {}: {}: {}", camera, edges, figures_of(e));
+  return fmt::format("warning: camera {}: {}: {}; --calibrate corrects this", camera, edges,
+                     figures_of(e));
+}
+
+}  // namespace
+
+std::vector<std::string> calibration_lines(const MapSummary& summary) {
+  std::vector<std::string> lines;
+  for (const auto& [camera, estimate] : summary.calibration) {
+    lines.push_back(calibration_line(camera, estimate, summary.calibrated));
+  }
+  return lines;
+}
 
 nlohmann::ordered_json to_json(const MapSummary& summary) {
   nlohmann::ordered_json latency;
-  for (const char* stage :
-       {"decode", "upsample", "register", "fovea", "filter", "texture", "store", "frame"}) {
+  for (const char* stage : {"decode", "upsample", "register", "fovea", "filter", "texture", "store",
+                            "calibration", "frame"}) {
     // A stage that never ran (say, the filter of a baseline) took no time.
     const auto found = summary.latency_ms.find(stage);
     const StageLatency l = found != summary.latency_ms.end() ? found->second : StageLatency{};
@@ -23,6 +93,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"peak_rss_mb", summary.peak_rss_mb},
           {"interrupted", summary.interrupted},
           {"latency_ms", latency},
+          {"calibration", to_json(summary.calibration, summary.calibrated)},
           {"notes", summary.notes}};
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "fovea/base/output_file.h"
 #include "fovea/pipeline/map_drive.h"
@@ -10,6 +12,10 @@ namespace fovea::app {
 
 /// The "map" object of a report.
 nlohmann::ordered_json to_json(const MapSummary& summary);
+
+/// What to tell of the cameras' calibration, a line each; a warning where edges lie over a pixel
+/// off.
+std::vector<std::string> calibration_lines(const MapSummary& summary);
 
 /// Writes indented JSON and commits the file.
 void write_json(OutputFile& file, const nlohmann::ordered_json& json);

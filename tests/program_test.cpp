@@ -160,6 +160,13 @@ TEST_F(Program, SameDigestAtAnyThreadCountAndAfterResume) {
   }
 }
 
+// Without navigation and poses nothing says how the vehicle moves.
+TEST_F(Program, CalibratingNeedsToKnowTheMotion) {
+  const auto damaged = damaged_drive();
+  std::filesystem::remove_all(damaged / "oxts");
+  expect_failure(map(damaged, "--calibrate"), "--poses FILE");
+}
+
 TEST_F(Program, ResumeRefusesOtherSettings) {
   ASSERT_EQ(map(drive_).exit_code, 0);
   const ProgramRun run = map(drive_, "--resume --set upsample.rate=1");

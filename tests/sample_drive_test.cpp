@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/kitti_sample.h"
@@ -40,6 +41,11 @@ TEST_F(SampleDrive, DefaultPresetOnHeldOutFrames) {
   EXPECT_EQ(json["map"]["frames_held_out"], 6);
   EXPECT_EQ(json["map"]["registrations_failed"], 0);
   EXPECT_LT(json["map"]["peak_rss_mb"], 1024);
+  // KITTI's calibration is good to a pixel, and scanner and cameras are triggered together.
+  const auto& calibration = json["map"]["calibration"].at(0);
+  EXPECT_EQ(calibration["off_by_a_pixel"], false);
+  for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(double(calibration["rotation_deg"].at(k))), 0.15);
+  EXPECT_LT(std::abs(double(calibration["time_offset_ms"])), 5);
   const auto& scores = json["evaluate"];
   EXPECT_LE(scores["te_mean"], 26.5);
   EXPECT_LE(scores["me_mean"], 0.035);

@@ -69,7 +69,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   const PlacedFrame& placed = training[training.size() / 2];
   const std::optional<LoadedFrame> loaded = load_frame(drive, placed);
   if (!loaded) return excuse("The frame could not be loaded again.");
-  const Camera& camera = drive.info().calibration.cameras.front();
+  const Camera camera = drive.info().calibration.cameras.front().at_image(placed.velocity);
   const MapperOptions options = options_of(map);
   const FovealOptions foveal = foveal_options_of(options, camera.index);
   const FovealRegion region(foveal, camera);

@@ -70,8 +70,9 @@ std::vector<HeldOutView> load_held_out(const Comparison& c) {
     const PointCloud scan = compensated_scan(frame.scan, placed, info);
     for (const std::size_t place : c.places) {
       HeldOutView held_out;
-      held_out.view = evaluated_view(frame.scan, scan, placed, info.calibration.cameras[place],
-                                     frame.images.at(place), c.points.origin);
+      const Camera camera = info.calibration.cameras[place].at_image(placed.velocity);
+      held_out.view =
+          evaluated_view(frame.scan, scan, placed, camera, frame.images.at(place), c.points.origin);
       for (const Eigen::Vector3f& p : held_out.view.position) {
         const KdTree::Neighbor neighbor = tree.nearest(p);
         held_out.nearest.push_back(neighbor.index);
@@ -226,7 +227,8 @@ std::map<ColorRule, GradientSums> compare_sharpness(const Comparison& c, RuleCol
       parallel_for(count, 1, [&](std::size_t i) {
         for (const std::size_t place : c.places) {
           if (images[i].empty()) continue;
-          const Camera& camera = info.calibration.cameras[place];
+          const Camera camera =
+              info.calibration.cameras[place].at_image(c.scored[begin + i].velocity);
           const RigidMotion T_cam_local =
               camera.T_cam_lidar * c.scored[begin + i].T_local_lidar.inverse();
           parts[i] += compare_gradients(splat(colors.points, spacing, camera, T_cam_local, options),

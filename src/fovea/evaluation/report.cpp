@@ -127,6 +127,7 @@ std::string to_json(const EvaluationReport& report) {
   json["protocol"] = to_string(report.protocol);
   json["explanation"] = explanation(report.protocol);
   json["cameras"] = report.cameras;
+  json["calibration"] = report.calibration;
   put_figures(json, report.figures);
   put_intervals(json, report.intervals);
   json["free_space_violations"] = report.free_space.share();
@@ -169,6 +170,9 @@ std::string to_text(const EvaluationReport& report) {
   std::string text = fmt::format("{}, camera {}: {} points of {} frames ({} skipped)\n",
                                  to_string(report.protocol), fmt::join(report.cameras, ", "),
                                  f.points, report.frames, report.skipped.size());
+  if (report.calibration != "drive") {
+    text += fmt::format("under the calibration of {}\n", report.calibration);
+  }
   const auto row = [&](std::string_view name, std::string_view value, std::string_view more = "") {
     text += fmt::format("  {:<22}{:>10}  {}\n", name, value, more);
   };

@@ -63,6 +63,8 @@ inline constexpr float kTeBin = 4;
 struct EvaluationReport {
   Protocol protocol = Protocol::kHeldOut;
   std::vector<int> cameras;
+  /// Whose calibration the points were projected by: "drive", or a map that corrected it.
+  std::string calibration = "drive";
   ErrorFigures figures;     ///< of all evaluated points, against coloured map points only
   MeanIntervals intervals;  ///< of `figures`
   /// All evaluated points by TE: [0, kTeBin), [kTeBin, 2 kTeBin), ...; not part of the JSON.

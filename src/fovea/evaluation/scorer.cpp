@@ -83,10 +83,12 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   }
   const Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, info);
-  for (std::size_t k = 0; k < cameras_.size(); ++k) {
-    score_view(frame, scan, placed, cameras_[k], frame.images.at(options_.cameras[k]), score);
+  std::vector<Camera> cameras;
+  for (const Camera& camera : cameras_) cameras.push_back(camera.at_image(placed.velocity));
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    score_view(frame, scan, placed, cameras[k], frame.images.at(options_.cameras[k]), score);
   }
-  free_space_.add_scan(scan, placed.T_local_lidar, cameras_);
+  free_space_.add_scan(scan, placed.T_local_lidar, cameras);
   return score;
 }
 
@@ -124,10 +126,11 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
   Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, info);
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    const Camera camera = cameras_[k].at_image(placed.velocity);
     Image& image = frame.images.at(options_.cameras[k]);
-    ScoredPoints scored = score_points(frame, scan, placed, cameras_[k], image);
-    pictures.push_back({placed.index, cameras_[k].index, std::move(image),
-                        draw(placed, cameras_[k], SplatOptions{.min_depth = kEvaluatedDepth}),
+    ScoredPoints scored = score_points(frame, scan, placed, camera, image);
+    pictures.push_back({placed.index, camera.index, std::move(image),
+                        draw(placed, camera, SplatOptions{.min_depth = kEvaluatedDepth}),
                         std::move(scored.view), std::move(scored.errors)});
   }
   return pictures;

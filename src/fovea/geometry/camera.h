@@ -15,6 +15,7 @@ struct Camera {
   int width = 0, height = 0;
   double fx = 0, fy = 0, cx = 0, cy = 0;
   RigidMotion T_cam_lidar = RigidMotion::Identity();
+  double image_delay = 0;  ///< s, images are taken this long after their scan's stamp
 
   /// Points nearer than this to the camera's plane are never projected (m).
   static constexpr double kMinDepth = 0.1;
@@ -27,6 +28,16 @@ struct Camera {
   /// Whether a colour can be interpolated there: 0 <= u <= width - 1 and 0 <= v <= height - 1.
   bool in_view(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0 && pixel.x() <= width - 1 && pixel.y() >= 0 && pixel.y() <= height - 1;
+  }
+  /// The camera where it was when the image was taken, against the LiDAR frame at the scan's stamp.
+  /// @param velocity  twist per second of the LiDAR in its own frame; absent: as if it stood
+  Camera at_image(const std::optional<Twist>& velocity) const {
+    Camera moved = *this;
+    if (velocity && image_delay != 0) {
+      moved.T_cam_lidar = T_cam_lidar * exp_se3(-image_delay * *velocity);
+    }
+    moved.image_delay = 0;
+    return moved;
   }
   /// Camera centre in the LiDAR frame.
   Eigen::Vector3d center_lidar() const { return T_cam_lidar.inverse().translation(); }

@@ -44,5 +44,22 @@ TEST(Camera, ViewEndsAtTheOutermostPixelCentres) {
   EXPECT_FALSE(camera.in_view({0, std::numeric_limits<double>::quiet_NaN()}));
 }
 
+// Half a second after the stamp the LiDAR is 5 m further on: what was 20 m ahead is 15 m ahead.
+TEST(Camera, StandsWhereItWasWhenTheImageWasTaken) {
+  Camera camera;
+  camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  camera.image_delay = 0.5;
+  const Twist forward = (Twist() << 0, 0, 0, 10, 0, 0).finished();
+  const Eigen::Vector3d ahead(20, 1, 0);
+  const Camera at_image = camera.at_image(forward);
+  EXPECT_LT((at_image.T_cam_lidar * ahead - Eigen::Vector3d(-1, 0, 15)).norm(), 1e-12);
+  EXPECT_EQ(at_image.image_delay, 0);
+  EXPECT_LT((camera.at_image(std::nullopt).T_cam_lidar * ahead - Eigen::Vector3d(-1, 0, 20)).norm(),
+            1e-12);
+  // Turning left by 0.2 rad a second: straight ahead moves to the right.
+  const Twist left = (Twist() << 0, 0, 0.2, 0, 0, 0).finished();
+  EXPECT_GT((camera.at_image(left).T_cam_lidar * Eigen::Vector3d(20, 0, 0)).x(), 1.9);
+}
+
 }  // namespace
 }  // namespace fovea

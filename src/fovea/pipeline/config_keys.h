@@ -119,6 +119,7 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
 
   visit("fusion.enabled", o.fusion.enabled);
   visit("fusion.loop_closure", o.fusion.loop_closure);
+  visit("calibration.check", o.check_calibration);
 
   visit("map.tile_size", o.tile_size);
   visit("map.submap_duration", o.fusion.submap_duration);

@@ -10,6 +10,8 @@
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/frame_prefetcher.h"
+#include "fovea/pipeline/self_calibration.h"
+#include "fovea/pipeline/stored_calibration.h"
 
 namespace fovea {
 namespace {
@@ -69,6 +71,7 @@ MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   meta["hold_out"] = job.hold_out.spec();
   meta["poses"] = to_string(job.pose_source);
   meta["variant"] = job.variant;
+  meta["calibration"] = job.calibrate ? "corrected" : "as given";
   meta["config"] = to_toml(job.options);
   meta["map.tile_size"] = fmt::format("{}", job.options.tile_size);
   meta["georeferenced"] = drive.origin ? "1" : "0";
@@ -126,20 +129,68 @@ void store_map(MapWriter& writer, const MapMeta& meta, const std::vector<FrameRe
   writer.commit();
 }
 
+bool has_sweep_motion(const DriveInfo& drive, const MapJob& job) {
+  return job.options.compensate_motion && !drive.sweep_compensated;
+}
+
+std::vector<CameraCalibration> calibrate(const FrameSource& source, const MapJob& job) {
+  CalibrationJob calibration;
+  calibration.compensate = has_sweep_motion(source.info(), job);
+  calibration.usable = [&](int index) { return !job.hold_out.contains(index); };
+  calibration.motion = [&](int index) { return known_motion(source, job.given_poses, index); };
+  return calibrate(source, calibration);
+}
+
+/// Where asked for, corrects the drive's calibration and puts the correction into the meta data.
+std::vector<CameraCalibration> correct_calibration(const FrameSource& source, const MapJob& job,
+                                                   DriveInfo& drive, MapMeta& meta) {
+  if (!job.calibrate) return {};
+  std::vector<CameraCalibration> correction = calibrate(source, job);
+  drive.calibration = corrected(drive.calibration, correction);
+  store_calibration(correction, meta);
+  return correction;
+}
+
+void check_calibration(CalibrationCheck& check, const Frame& frame,
+                       std::vector<FrameRecord>& records) {
+  const Clock::time_point start = Clock::now();
+  if (const auto motion = mapped_motion(records)) check.add(frame, *motion);
+  records.back().milliseconds["calibration"] = milliseconds_since(start);
+}
+
+/// InputError if the drive does not say of its motion what the job has to know.
+void require_motion(const DriveInfo& drive, const MapJob& job) {
+  if (job.pose_source == PoseSource::kNavigation && !drive.navigation) {
+    throw InputError("the drive has no navigation to take poses from", drive.path.string(),
+                     "let registration find them (--poses refine)");
+  }
+  if (job.calibrate && !drive.navigation && job.given_poses.empty()) {
+    throw InputError("nothing says how the vehicle moves, which a calibration needs",
+                     drive.path.string(), "give poses (--poses FILE) or map without --calibrate");
+  }
+}
+
+void require_mapped(const std::vector<FrameRecord>& records, const DriveInfo& drive) {
+  if (std::none_of(records.begin(), records.end(),
+                   [](const FrameRecord& r) { return r.status != FrameStatus::kSkipped; })) {
+    throw InputError("no frame could be mapped",
+                     records.empty() ? drive.path.string() : records.front().note,
+                     "check that the drive has scans and images for the frames asked for");
+  }
+}
+
 }  // namespace
 
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress) {
   const Clock::time_point start = Clock::now();
-  const DriveInfo& drive = source.info();
-  if (job.pose_source == PoseSource::kNavigation && !drive.navigation) {
-    throw InputError("the drive has no navigation to take poses from", drive.path.string(),
-                     "let registration find them (--poses refine)");
-  }
-  const MapMeta meta = describe(drive, job);
+  DriveInfo drive = source.info();
+  require_motion(drive, job);
+  MapMeta meta = describe(drive, job);
   const auto writer =
       job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force);
 
+  const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
   Mapper mapper(drive, job.options, job.pose_source);
   std::vector<FrameRecord> records;
   if (job.resume) {
@@ -150,6 +201,10 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   const std::size_t first_new = records.size();
   const int total = drive.end - drive.begin;
 
+  std::optional<CalibrationCheck> check;
+  if (job.options.check_calibration && !job.calibrate) {
+    check.emplace(drive, has_sweep_motion(drive, job));
+  }
   FramePrefetcher frames(source, drive.begin + static_cast<int>(first_new), drive.end);
   while (static_cast<int>(records.size()) < total && !job.stop.stop_requested()) {
     const LoadedFrame loaded = frames.take();
@@ -162,6 +217,9 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
       const auto place = static_cast<std::size_t>(frame.index - drive.begin);
       if (place < job.given_poses.size()) given = job.given_poses[place];
       records.push_back(mapper.process(frame, job.hold_out.contains(frame.index), given));
+      if (check && check->wants(frame.index) && !job.hold_out.contains(frame.index)) {
+        check_calibration(*check, frame, records);
+      }
       records.back().milliseconds["decode"] = loaded.milliseconds;
       records.back().milliseconds["frame"] = loaded.milliseconds + milliseconds_since(frame_start);
     }
@@ -169,12 +227,7 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
       progress({static_cast<int>(records.size()), total, mapper.map().size(), &records.back()});
     }
   }
-  if (std::none_of(records.begin(), records.end(),
-                   [](const FrameRecord& r) { return r.status != FrameStatus::kSkipped; })) {
-    throw InputError("no frame could be mapped",
-                     records.empty() ? drive.path.string() : records.front().note,
-                     "check that the drive has scans and images for the frames asked for");
-  }
+  require_mapped(records, drive);
   const bool complete = static_cast<int>(records.size()) == total;
   mapper.settle(records);
   interpolate_skipped_poses(records);
@@ -188,6 +241,8 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   }
   summary.points = mapper.map().size();
   summary.interrupted = !complete;
+  summary.calibration = check ? check->estimates() : correction;
+  summary.calibrated = job.calibrate;
   summary.frames_per_second =
       double(records.size() - first_new) / (milliseconds_since(start) / 1000);
   return summary;

@@ -24,9 +24,10 @@ struct MapJob {
   /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven, or of its first
   /// ones (kGivenFirst).
   std::vector<RigidMotion> given_poses;
-  bool force = false;    ///< overwrite `output`
-  bool resume = false;   ///< go on with `output`, which an earlier run left unfinished
-  std::stop_token stop;  ///< ends after the frame at hand; what was mapped is committed
+  bool calibrate = false;  ///< correct the calibration first (pipeline/self_calibration.h)
+  bool force = false;      ///< overwrite `output`
+  bool resume = false;     ///< go on with `output`, which an earlier run left unfinished
+  std::stop_token stop;    ///< ends after the frame at hand; what was mapped is committed
 };
 
 struct MapProgress {

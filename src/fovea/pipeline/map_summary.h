@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/pipeline/self_calibration.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
@@ -25,6 +26,9 @@ struct MapSummary {
   std::map<std::string, StageLatency> latency_ms;
   bool interrupted = false;
   std::vector<std::string> notes;
+  /// What the calibration lacks, a camera each; `calibrated`: what has been added to it.
+  std::vector<CameraCalibration> calibration;
+  bool calibrated = false;
   int skipped() const;
 };
 

@@ -76,7 +76,7 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
   // Pose refinement.
   Placed placed = place(frame, motion, given_pose, clock);
   const PointCloud scan_lidar = std::move(placed.scan_lidar);
-  record.velocity = placed.velocity;
+  if (compensates()) record.velocity = placed.velocity;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
   record.T_odom_lidar = placed.refined.T_odom_lidar;
@@ -98,8 +98,12 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
                                       fusion_.T_local_odom().inverse(), frame.index);
       }));
     }
+    cameras_.clear();
+    for (const Camera& camera : drive_.calibration.cameras) {
+      cameras_.push_back(camera.at_image(placed.velocity));
+    }
     if (options_.foveal_enabled) {
-      for (std::size_t camera = 0; camera < drive_.calibration.cameras.size(); ++camera) {
+      for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
         map_camera(scan_lidar, frame, camera, record.T_local_lidar, record, clock);
       }
     } else {
@@ -119,13 +123,13 @@ PointCloud Mapper::compensated(const PointCloud& scan, const std::optional<Twist
 Mapper::Placed Mapper::place(const Frame& frame, const MotionPrediction& motion,
                              const std::optional<RigidMotion>& given_pose,
                              StageClock& clock) const {
-  const bool compensates = options_.compensate_motion && !drive_.sweep_compensated;
   std::optional<Placed> best;
   for (const MotionGuess& guess : motion.guesses) {
     Placed placed;
-    if (compensates) placed.velocity = guess.velocity;
-    placed.scan_lidar =
-        clock.time("register", [&] { return compensated(frame.scan, placed.velocity); });
+    placed.velocity = guess.velocity;
+    placed.scan_lidar = clock.time("register", [&] {
+      return compensated(frame.scan, compensates() ? guess.velocity : std::nullopt);
+    });
     if (pose_source_ == PoseSource::kNavigation) {
       placed.refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
     } else if (given_pose) {
@@ -138,6 +142,8 @@ Mapper::Placed Mapper::place(const Frame& frame, const MotionPrediction& motion,
   }
   return std::move(*best);
 }
+
+bool Mapper::compensates() const { return options_.compensate_motion && !drive_.sweep_compensated; }
 
 bool Mapper::registers() const {
   return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
@@ -162,7 +168,7 @@ void Mapper::settle(std::vector<FrameRecord>& records) const {
 
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
                         const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
-  const Camera& camera = drive_.calibration.cameras[camera_slot];
+  const Camera& camera = cameras_[camera_slot];
   const FovealRegion region(foveal_options_of(options_, camera.index), camera);
   const PointCloud foveal_cam = clock.time("fovea", [&] {
     const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
@@ -217,7 +223,7 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
     for (std::size_t slot = 0; slot <= frame.images.size() && !rest_lidar.empty(); ++slot) {
       // Each camera colours what the ones before it have not seen; last, what none has seen.
       const bool last = slot == frame.images.size();
-      const Camera& camera = drive_.calibration.cameras[last ? 0 : slot];
+      const Camera& camera = cameras_[last ? 0 : slot];
       PointCloud points_cam = transform_cloud(rest_lidar, camera.T_cam_lidar);
       points_cam.normal.assign(points_cam.size(), Eigen::Vector3f::Zero());
       points_cam.interpolated.assign(points_cam.size(), 0);

@@ -56,6 +56,7 @@ class Mapper {
   PointCloud compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const;
   Placed place(const Frame& frame, const MotionPrediction& motion,
                const std::optional<RigidMotion>& given_pose, StageClock& clock) const;
+  bool compensates() const;
   bool registers() const;
   void follow_submaps();
   /// Index of the first frame of an earlier run whose scan targets or evidence now depend on.
@@ -77,6 +78,8 @@ class Mapper {
   RayFilter ray_filter_;
   MovingThings moving_things_;
   TileMap map_;
+  /// Where the cameras were when the images of the frame at hand were taken.
+  std::vector<Camera> cameras_;
 };
 
 }  // namespace fovea

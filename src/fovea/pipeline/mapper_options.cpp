@@ -105,6 +105,7 @@ void apply_variant(std::string_view name, MapperOptions& options) {
   if (baseline) options.ray_filter.mode = RayFilterMode::kOff;
   options.moving.remove = false;
   options.fusion.enabled = false;
+  options.check_calibration = false;
 }
 
 }  // namespace fovea

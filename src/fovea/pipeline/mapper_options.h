@@ -56,8 +56,9 @@ struct MapperOptions {
   TextureOptions texture;
   MovingOptions moving;
   FusionOptions fusion;
-  double tile_size = 4.0;  ///< m
-  void validate() const;   ///< ConfigError that names the field
+  bool check_calibration = true;  ///< look at edges of a few frames (pipeline/self_calibration.h)
+  double tile_size = 4.0;         ///< m
+  void validate() const;          ///< ConfigError that names the field
 };
 
 /// The foveal region of a camera, with slices of its own where it has any.

@@ -1,0 +1,227 @@
+#include "fovea/mapping/calibration/calibration_estimate.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "fovea/base/angle.h"
+#include "fovea/mapping/calibration/edge_score.h"
+
+namespace fovea {
+namespace {
+
+using Vector = CalibrationVector;
+using Matrix = CalibrationMatrix;
+using Free = std::array<bool, 6>;  // what is estimated; the others are held at 0
+
+// Standard deviations of the Gaussian that image edges are seen through, pixels: coarse to fine.
+constexpr std::array<double, 5> kWidths{8, 4, 2, 1, 0.5};
+constexpr int kMaxIterations = 60;
+constexpr double kConverged = 1e-3;  // pixels
+constexpr int kDelay = 3;
+// A parameter with less than this share of the best one's curvature moves no edge.
+constexpr double kLeastCurvature = 1e-4;
+
+constexpr int kMinFrames = 5;
+constexpr std::size_t kMinEdges = 200;
+constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxDelaySigma = 0.004;
+// A vehicle that hardly moves shows no delay: pixels a second that edges move, RMS.
+constexpr double kMinFlow = 40;
+constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // beyond it is a wrong maximum
+// What an unknown delay may be (s): it turns a rotation that is estimated without it.
+constexpr double kLikelyDelay = 0.02;
+// By how much edges must be seen better (mean logarithm of their strength) than by a camera that
+// looks elsewhere: 0.7 to 1.3 on drives, up to 0.13 in clutter's own maximum and 0.46 in that of
+// edges out of the profiles' reach (docs/calibration.md).
+constexpr double kMinContrast = 0.5;
+constexpr double kElsewhere = 8;  // pixels
+
+/// Rows and columns of parameters that are held are taken out of a system of equations.
+Matrix only(const Free& free, Matrix m) {
+  const double largest = m.diagonal().maxCoeff();
+  for (int k = 0; k < 6; ++k) {
+    if (free[static_cast<std::size_t>(k)]) continue;
+    m.row(k).setZero();
+    m.col(k).setZero();
+    m(k, k) = largest;
+  }
+  return m;
+}
+
+Vector only(const Free& free, Vector v) {
+  for (int k = 0; k < 6; ++k) {
+    if (!free[static_cast<std::size_t>(k)]) v[k] = 0;
+  }
+  return v;
+}
+
+bool positive(const Matrix& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] > 1e-6 * eigen.eigenvalues()[5];
+}
+
+/// Climbs from no correction to the maximum of the score, coarse to fine. Newton's steps; where
+/// they lead down or the score is not concave, the maximum of the paraboloid below it, which never
+/// lies lower.
+Vector climb(const std::vector<EdgeProfile>& profiles, const Free& free) {
+  Vector x = Vector::Zero();
+  for (const double width : kWidths) {
+    for (int i = 0; i < kMaxIterations; ++i) {
+      const EdgeScore score = edge_score(profiles, x, width);
+      const Vector gradient = only(free, score.gradient);
+      const Matrix curvature = only(free, score.curvature), bound = only(free, score.bound);
+      if (!(bound.diagonal().maxCoeff() > 0)) return x;  // nothing in sight
+      Vector step =
+          (bound + 1e-9 * bound.diagonal().maxCoeff() * Matrix::Identity()).ldlt().solve(gradient);
+      if (positive(curvature)) {
+        const Vector newton = curvature.ldlt().solve(gradient);
+        if (edge_score(profiles, x + newton, width).value >= score.value) step = newton;
+      }
+      x += step;
+      if (step.norm() < kConverged) break;
+    }
+  }
+  return x;
+}
+
+/// Scatter of the sums of gradients over groups of edges that err together; enlarged as the
+/// variance of a mean of few is.
+template <class Key>
+Matrix scatter_by(const std::vector<EdgeProfile>& profiles, const Free& free, const Vector& x,
+                  Key&& key) {
+  std::map<std::decay_t<decltype(key(profiles.front()))>, Vector> sums;
+  for (const EdgeProfile& profile : profiles) {
+    sums.try_emplace(key(profile), Vector::Zero()).first->second +=
+        only(free, edge_score(profile, x, kWidths.back()).gradient);
+  }
+  Matrix scatter = Matrix::Zero();
+  for (const auto& [group, sum] : sums) scatter += sum * sum.transpose();
+  const double n = static_cast<double>(sums.size());
+  return n / std::max(n - 1, 1.0) * scatter;
+}
+
+/// Covariance of the maximum, H^-1 S H^-1 (H: curvature, S: scatter of the gradients there). Edges
+/// of one frame err together, and so do those of one thing in all frames: S is the sum of both.
+Matrix covariance(const std::vector<EdgeProfile>& profiles, const Free& free, const Vector& x,
+                  const Matrix& curvature) {
+  const Matrix inverse = only(free, curvature).inverse();
+  const Matrix scatter =
+      scatter_by(profiles, free, x, [](const EdgeProfile& p) { return p.frame; }) +
+      scatter_by(profiles, free, x, [](const EdgeProfile& p) { return p.place; });
+  Matrix result = inverse * scatter * inverse;
+  if (!free[kDelay]) {
+    const Vector turned = inverse * only(free, Vector(curvature.col(kDelay))) *
+                          (kLikelyDelay / calibration_unit()[kDelay]);
+    result += turned * turned.transpose();
+  }
+  return result;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void describe_pixels(const std::vector<EdgeProfile>& profiles, const Vector& x, const Matrix& cov,
+                     CalibrationEstimate& estimate) {
+  std::vector<double> ways, sigmas;
+  for (const EdgeProfile& profile : profiles) {
+    const Eigen::Matrix<double, 2, 4> J =
+        profile.J.cast<double>() * calibration_unit().head<4>().asDiagonal();
+    ways.push_back((J * x.head<4>()).norm());
+    sigmas.push_back(std::sqrt((J * cov.topLeftCorner<4, 4>() * J.transpose()).trace()));
+  }
+  estimate.pixels = median(std::move(ways));
+  estimate.pixels_sigma = median(std::move(sigmas));
+}
+
+/// Whether edges are seen so much better than elsewhere that chance did not make the maximum.
+bool stands_out(const std::vector<EdgeProfile>& profiles, const Vector& x, double value) {
+  double elsewhere = 0;
+  for (const auto& [axis, sign] : {std::pair{0, -1}, {0, 1}, {1, -1}, {1, 1}}) {
+    const Vector other = x + sign * kElsewhere * Vector::Unit(axis);
+    elsewhere += edge_score(profiles, other, kWidths.back()).value / 4;
+  }
+  return value - elsewhere > kMinContrast * static_cast<double>(profiles.size());
+}
+
+enum class Outcome { kFound, kDelayUnobservable, kNothing };
+
+/// Fills in all but the counts, where found.
+Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
+                     CalibrationEstimate& estimate) {
+  const Vector x = climb(profiles, free);
+  const EdgeScore score = edge_score(profiles, x, kWidths.back());
+  const bool with_delay = free[kDelay];
+  const Outcome failure = with_delay ? Outcome::kDelayUnobservable : Outcome::kNothing;
+  if (!positive(only(free, score.curvature))) return failure;
+  const Matrix cov = covariance(profiles, free, x, score.curvature);
+  const Vector sigma = cov.diagonal().cwiseMax(0).cwiseSqrt().cwiseProduct(calibration_unit());
+  const Vector found = x.cwiseProduct(calibration_unit());
+  if (with_delay && (sigma[kDelay] > kMaxDelaySigma || std::abs(found[kDelay]) > kMaxDelay)) {
+    return failure;
+  }
+  if (sigma.head<3>().maxCoeff() > kMaxRotationSigma || found.head<3>().norm() > kMaxRotation ||
+      !stands_out(profiles, x, score.value)) {
+    return Outcome::kNothing;
+  }
+  estimate.rotation_observable = true;
+  estimate.rotation = found.head<3>();
+  estimate.rotation_sigma = sigma.head<3>();
+  estimate.delay_observable = with_delay;
+  estimate.delay = with_delay ? found[kDelay] : 0;
+  estimate.delay_sigma = with_delay ? sigma[kDelay] : 0;
+  describe_pixels(profiles, x, cov, estimate);
+  return Outcome::kFound;
+}
+
+/// What moves edges at all.
+Free movable(const std::vector<EdgeProfile>& profiles) {
+  const Matrix bound = edge_score(profiles, Vector::Zero(), kWidths.front()).bound;
+  Free free{};
+  for (int k = 0; k < 6; ++k) {
+    free[static_cast<std::size_t>(k)] = bound(k, k) > kLeastCurvature * bound.diagonal().maxCoeff();
+  }
+  double flow2 = 0;
+  for (const EdgeProfile& profile : profiles) flow2 += profile.J.col(kDelay).squaredNorm();
+  free[kDelay] = flow2 > kMinFlow * kMinFlow * static_cast<double>(profiles.size());
+  return free;
+}
+
+int count_frames(const std::vector<EdgeProfile>& profiles) {
+  int count = 0, last = -1;
+  for (const EdgeProfile& profile : profiles) {
+    if (count == 0 || profile.frame != last) ++count;
+    last = profile.frame;
+  }
+  return count;
+}
+
+}  // namespace
+
+CalibrationEstimate estimate_calibration(const std::vector<EdgeProfile>& profiles) {
+  CalibrationEstimate estimate;
+  estimate.frames = count_frames(profiles);
+  estimate.edges = profiles.size();
+  if (estimate.frames < kMinFrames || estimate.edges < kMinEdges) return estimate;
+  Free free = movable(profiles);
+  if (try_estimate(profiles, free, estimate) == Outcome::kDelayUnobservable) {
+    free[kDelay] = false;
+    try_estimate(profiles, free, estimate);
+  }
+  return estimate;
+}
+
+Camera corrected(const Camera& camera, const CalibrationEstimate& estimate) {
+  Camera right = camera;
+  right.T_cam_lidar =
+      exp_se3((Twist() << estimate.rotation, 0, 0, 0).finished()) * camera.T_cam_lidar;
+  right.image_delay += estimate.delay;
+  return right;
+}
+
+}  // namespace fovea

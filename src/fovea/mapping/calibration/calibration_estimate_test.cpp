@@ -1,0 +1,237 @@
+#include "fovea/mapping/calibration/calibration_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "fovea/base/angle.h"
+#include "fovea/base/parallel.h"
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+struct Drive {
+  int frames = 20, edges = 100;  ///< a frame
+  double speed = 9;              ///< m/s
+  double clutter = 1;            ///< strength of other edges, in that of the right one
+  double present = 0.7;          ///< share of edges that the image shows at all
+  double left_end = -0.8;        ///< of the view, x / z
+  bool one_place = false;        ///< everything stands at one place beside the road
+  bool same_frames = false;      ///< every frame shows what the first does
+};
+
+/// Profiles of things spread over the view of a camera that drives forward, whose images show the
+/// edge where `truth` puts it, a pixel wide, and clutter anywhere.
+std::vector<EdgeProfile> profiles_of(const Drive& drive, const CalibrationVector& truth,
+                                     std::uint64_t seed = 1) {
+  Random random(seed);
+  std::vector<EdgeProfile> profiles;
+  for (int i = 0; i < drive.frames * drive.edges; ++i) {
+    if (drive.same_frames && i >= drive.edges) {
+      profiles.push_back(profiles[static_cast<std::size_t>(i % drive.edges)]);
+      profiles.back().frame = i / drive.edges;
+      continue;
+    }
+    constexpr double kF = 700;
+    double x = random.uniform(drive.left_end, 0.8), y = random.uniform(-0.2, 0.2),
+           z = random.uniform(5, 30);
+    if (drive.one_place) x = 0.5, y *= 0.1, z = 10;
+    EdgeProfile profile;
+    profile.frame = i / drive.edges;
+    profile.place = {i, 0, 0};
+    profile.J << static_cast<float>(kF * x * y), static_cast<float>(-kF * (1 + x * x)),
+        static_cast<float>(kF * y), static_cast<float>(kF * x / z * -drive.speed * -1),
+        static_cast<float>(kF * (1 + y * y)), static_cast<float>(-kF * x * y),
+        static_cast<float>(-kF * x), static_cast<float>(kF * y / z * drive.speed);
+    const bool level = random.uniform() < 0.4;
+    const double angle = random.uniform(-0.4, 0.4) + (level ? std::numbers::pi / 2 : 0);
+    const Eigen::Vector2f along(static_cast<float>(std::cos(angle)),
+                                static_cast<float>(std::sin(angle)));
+    profile.J_along << (along.transpose() * profile.J).transpose(), level ? 0.0f : 1.0f,
+        level ? along.y() : 0.0f;
+    profile.half_gap = 1.0f;
+    const double place = profile.J_along.cast<double>().dot(truth) + random.uniform(-1, 1);
+    const bool shown = random.uniform() < drive.present;
+    float sum = 0.5f;
+    for (int k = 0; k < EdgeProfile::kSize; ++k) {
+      const double away = k - EdgeProfile::kReach - place;
+      const double strength = (shown ? std::exp(-away * away / 2) : 0) +
+                              (random.uniform() < 0.1 ? drive.clutter * random.uniform() : 0);
+      profile.strength[std::size_t(k)] = static_cast<float>(strength);
+      sum += profile.strength[std::size_t(k)];
+    }
+    for (float& strength : profile.strength) strength /= sum;
+    profiles.push_back(profile);
+  }
+  return profiles;
+}
+
+CalibrationVector planted(double x, double y, double z, double ms) {
+  return (CalibrationVector() << x * kDegree, y * kDegree, z * kDegree, 1e-3 * ms, 0.6, -0.8)
+      .finished();
+}
+
+TEST(CalibrationEstimate, FindsWhatIsPlantedWithinItsOwnSigmas) {
+  for (const auto& truth :
+       {planted(0, 0, 0, 0), planted(0.3, 0, 0, 0), planted(0, -0.3, 0, 0), planted(0, 0, 0.3, 0),
+        planted(0, 0, 0, 20), planted(0.3, 0.3, -0.3, -20)}) {
+    const CalibrationEstimate e = estimate_calibration(profiles_of({}, truth));
+    ASSERT_TRUE(e.rotation_observable && e.delay_observable);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(e.rotation[k], truth[k], 4 * e.rotation_sigma[k]) << k;
+      EXPECT_GT(e.rotation_sigma[k], 1e-3 * kDegree);
+      EXPECT_LT(e.rotation_sigma[k], 0.04 * kDegree);
+    }
+    EXPECT_NEAR(e.delay, truth[3], 4 * e.delay_sigma);
+    EXPECT_LT(e.delay_sigma, 1e-3);
+    EXPECT_EQ(e.frames, 20);
+    EXPECT_EQ(e.edges, 2000u);
+    EXPECT_EQ(e.off_by_a_pixel(), truth.head<4>().norm() > 0) << truth.transpose();
+  }
+}
+
+// Sigmas say how far estimates scatter: over 30 drives their errors, in sigmas, have a spread of 1.
+TEST(CalibrationEstimate, SigmasAreTheScatter) {
+  Drive drive;
+  drive.frames = 15;
+  drive.edges = 40;
+  const CalibrationVector truth = planted(0.1, -0.1, 0.1, 5);
+  Eigen::Vector4d square = Eigen::Vector4d::Zero();
+  constexpr int kDrives = 30;
+  for (int i = 0; i < kDrives; ++i) {
+    const CalibrationEstimate e =
+        estimate_calibration(profiles_of(drive, truth, 100 + static_cast<std::uint64_t>(i)));
+    ASSERT_TRUE(e.delay_observable);
+    for (int k = 0; k < 3; ++k) {
+      square[k] += std::pow((e.rotation[k] - truth[k]) / e.rotation_sigma[k], 2);
+    }
+    square[3] += std::pow((e.delay - truth[3]) / e.delay_sigma, 2);
+  }
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_GT(std::sqrt(square[k] / kDrives), 0.6) << k;
+    EXPECT_LT(std::sqrt(square[k] / kDrives), 1.6) << k;
+  }
+}
+
+TEST(CalibrationEstimate, AStandingVehicleShowsNoDelay) {
+  for (const double speed : {0.0, 0.05}) {
+    Drive drive;
+    drive.speed = speed;
+    const CalibrationEstimate e = estimate_calibration(profiles_of(drive, planted(0, 0.3, 0, 20)));
+    EXPECT_TRUE(e.rotation_observable);
+    EXPECT_FALSE(e.delay_observable);
+    EXPECT_EQ(e.delay, 0);
+    EXPECT_NEAR(e.rotation.y(), 0.3 * kDegree, 0.05 * kDegree);
+  }
+}
+
+// On a straight road things at one place move as by yaw: which of both it is stays open.
+TEST(CalibrationEstimate, ADelayThatLooksLikeYawIsNotTold) {
+  Drive drive;
+  drive.one_place = true;
+  for (const auto& truth : {planted(0, 0, 0, 20), planted(0, 0.3, 0, 0)}) {
+    const CalibrationEstimate e = estimate_calibration(profiles_of(drive, truth));
+    EXPECT_FALSE(e.delay_observable);
+    EXPECT_EQ(e.delay, 0);
+    EXPECT_FALSE(e.off_by_a_pixel());
+  }
+}
+
+// A slow drive with few edges, all on the right: the rotation's deviations allow for the delay that
+// nobody knows.
+TEST(CalibrationEstimate, AnUnknownDelayMakesTheRotationLessSure) {
+  Drive drive;
+  drive.speed = 2.2;
+  drive.frames = 8;
+  drive.edges = 25;
+  drive.present = 0.45;
+  drive.left_end = 0.3;
+  int unknown = 0;
+  double square = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const CalibrationVector truth = planted(0.1, 0.2, 0, 20);
+    const CalibrationEstimate e = estimate_calibration(profiles_of(drive, truth, seed));
+    if (e.delay_observable || !e.rotation_observable) continue;
+    ++unknown;
+    square += std::pow((e.rotation.y() - truth[1]) / e.rotation_sigma.y(), 2);
+  }
+  EXPECT_GT(unknown, 20);
+  EXPECT_LT(std::sqrt(square / unknown), 1.25);  // 1.8 if the delay were taken for 0
+}
+
+// Looking twice at the same things makes nothing surer.
+TEST(CalibrationEstimate, SigmasCountThingsAndNotFrames) {
+  Drive once, again;
+  again.edges = once.frames * once.edges;
+  again.frames = 10;
+  again.same_frames = true;
+  const CalibrationVector truth = planted(0.1, -0.1, 0.1, 5);
+  const CalibrationEstimate a = estimate_calibration(profiles_of(once, truth));
+  const CalibrationEstimate b = estimate_calibration(profiles_of(again, truth));
+  ASSERT_TRUE(a.delay_observable && b.delay_observable);
+  EXPECT_EQ(b.edges, 10 * a.edges);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(a.rotation[k], b.rotation[k], 1e-6);
+    EXPECT_GT(b.rotation_sigma[k], 0.5 * a.rotation_sigma[k]);
+  }
+  EXPECT_GT(b.delay_sigma, 0.5 * a.delay_sigma);
+}
+
+TEST(CalibrationEstimate, TooLittleShowsNothing) {
+  const CalibrationVector truth = planted(0.3, 0, 0, 0);
+  Drive few_frames, few_edges, blank;
+  few_frames.frames = 4;
+  few_edges.edges = 5;
+  blank.present = blank.clutter = 0;
+  for (const auto& profiles : {std::vector<EdgeProfile>{}, profiles_of(few_frames, truth),
+                               profiles_of(few_edges, truth), profiles_of(blank, truth)}) {
+    const CalibrationEstimate e = estimate_calibration(profiles);
+    EXPECT_FALSE(e.rotation_observable || e.delay_observable);
+    EXPECT_EQ(e.rotation.norm() + std::abs(e.delay) + e.pixels, 0);
+    EXPECT_FALSE(e.off_by_a_pixel());
+  }
+}
+
+// Nothing but clutter: whatever its maximum is, it is not told as a fault.
+TEST(CalibrationEstimate, ClutterAloneIsNoFault) {
+  Drive drive;
+  drive.present = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_FALSE(
+        estimate_calibration(profiles_of(drive, planted(0, 0, 0, 0), seed)).off_by_a_pixel());
+  }
+}
+
+TEST(CalibrationEstimate, SameAtAnyNumberOfThreads) {
+  const auto profiles = profiles_of({}, planted(0.1, 0.2, -0.3, 8));
+  CalibrationEstimate one, two;
+  {
+    const ThreadLimit limit(1);
+    one = estimate_calibration(profiles);
+  }
+  {
+    const ThreadLimit limit(2);
+    two = estimate_calibration(profiles);
+  }
+  EXPECT_EQ(one.rotation, two.rotation);
+  EXPECT_EQ(one.delay, two.delay);
+  EXPECT_EQ(one.delay_sigma, two.delay_sigma);
+}
+
+TEST(CalibrationEstimate, CorrectsACamera) {
+  Camera camera;
+  camera.T_cam_lidar.translation() = Eigen::Vector3d(1, 2, 3);
+  camera.image_delay = 0.01;
+  CalibrationEstimate estimate;
+  estimate.rotation = {0, 0, std::numbers::pi / 2};
+  estimate.delay = 0.02;
+  const Camera right = corrected(camera, estimate);
+  EXPECT_LT((right.T_cam_lidar * Eigen::Vector3d::Zero() - Eigen::Vector3d(-2, 1, 3)).norm(),
+            1e-12);
+  EXPECT_NEAR(right.image_delay, 0.03, 1e-15);
+}
+
+}  // namespace
+}  // namespace fovea

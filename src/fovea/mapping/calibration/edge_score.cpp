@@ -1,0 +1,71 @@
+#include "fovea/mapping/calibration/edge_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/base/parallel.h"
+
+namespace fovea {
+namespace {
+
+// Strength that an edge has where the image shows none: things may end before others of their
+// colour.
+constexpr double kFloor = 0.003;
+
+}  // namespace
+
+const CalibrationVector& calibration_unit() {
+  static const CalibrationVector unit =
+      (CalibrationVector() << 0.0014, 0.0014, 0.01, 0.01, 1, 1).finished();
+  return unit;
+}
+
+EdgeScore& EdgeScore::operator+=(const EdgeScore& other) {
+  value += other.value;
+  gradient += other.gradient;
+  curvature += other.curvature;
+  bound += other.bound;
+  return *this;
+}
+
+EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correction,
+                     double width) {
+  const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
+  const double place = J.dot(correction);
+  // The thing ends anywhere in the gap: a uniform distribution's variance.
+  const double variance = width * width + profile.half_gap * profile.half_gap / 3.0;
+  const double reach = 3 * std::sqrt(variance);
+  const double first = std::max<double>(-EdgeProfile::kReach, std::ceil(place - reach));
+  const double last = std::min<double>(EdgeProfile::kReach, std::floor(place + reach));
+  double mass = 0, moment = 0, square = 0;
+  for (double k = first; k <= last; ++k) {
+    const double away = k - place;
+    const double seen = profile.strength[static_cast<std::size_t>(k + EdgeProfile::kReach)] *
+                        std::exp(-away * away / (2 * variance));
+    mass += seen;
+    moment += seen * away;
+    square += seen * away * away;
+  }
+  const double likelihood = mass + kFloor, slope = moment / variance / likelihood;
+  const CalibrationMatrix JJ = J * J.transpose();
+  EdgeScore score;
+  score.value = std::log(likelihood);
+  score.gradient = J * slope;
+  score.curvature =
+      JJ * ((mass / variance - square / (variance * variance)) / likelihood + slope * slope);
+  score.bound = JJ * (mass / variance / likelihood);
+  return score;
+}
+
+EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
+                     double width) {
+  return parallel_sum<EdgeScore>(profiles.size(), 512, {}, [&](std::size_t begin, std::size_t end) {
+    EdgeScore score;
+    for (std::size_t i = begin; i < end; ++i) {
+      score += edge_score(profiles[i], correction, width);
+    }
+    return score;
+  });
+}
+
+}  // namespace fovea

@@ -1,0 +1,98 @@
+#include "fovea/mapping/calibration/lidar_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fovea/base/angle.h"
+
+namespace fovea {
+namespace {
+
+// Beams further apart say too little about where between them the thing ends.
+constexpr float kMaxRingStep = 0.3f * float(kDegree), kMinElevationStep = 0.2f * float(kDegree),
+                kMaxElevationStep = 0.75f * float(kDegree);
+// Points this near in azimuth lie above each other: a firing's width.
+constexpr float kColumn = 0.2f * float(kDegree);
+// A jump: more than this, and more than this share of the near range. Between rings the ground's
+// own spacing grows with the square of the range: r^2 * 0.0058 / 1.73 m, 13 % at 40 m.
+constexpr float kMinJump = 0.5f, kRelativeJump = 0.1f, kRelativeJumpAbove = 0.2f;
+
+struct Beam {
+  Eigen::Vector3f direction;
+  float range = 0;
+};
+
+Beam beam_of(const Eigen::Vector3f& p) {
+  const float range = p.norm();
+  return {p / std::max(range, 1e-6f), range};
+}
+
+void add_if_edge(const Beam& a, const Beam& b, float max_step, float relative_jump, float max_range,
+                 bool between_rings, LidarEdges& edges) {
+  const Beam &near = a.range < b.range ? a : b, &far = a.range < b.range ? b : a;
+  if (near.range > max_range || near.range < 1) return;
+  if (far.range - near.range < std::max(kMinJump, relative_jump * near.range)) return;
+  if ((near.direction - far.direction).norm() > max_step) return;
+  edges.inside.position.emplace_back(near.direction * near.range);
+  edges.outside.position.emplace_back(far.direction * near.range);
+  edges.between_rings.push_back(between_rings ? 1 : 0);
+}
+
+/// Beams to what is in view, in the scan's order.
+std::vector<Beam> beams_in_view(const PointCloud& scan_lidar, const Camera& camera) {
+  const Eigen::Matrix3f R = camera.T_cam_lidar.linear().cast<float>();
+  const Eigen::Vector3f t = camera.T_cam_lidar.translation().cast<float>();
+  // Twice the view: edges move, and what lies beside them must be there.
+  const float right = static_cast<float>(camera.width / camera.fx),
+              down = static_cast<float>(camera.height / camera.fy);
+  std::vector<Beam> beams;
+  for (const Eigen::Vector3f& p : scan_lidar.position) {
+    const Eigen::Vector3f p_cam = R * p + t;
+    if (p_cam.z() < 1 || std::abs(p_cam.x()) > right * p_cam.z() ||
+        std::abs(p_cam.y()) > down * p_cam.z()) {
+      continue;
+    }
+    beams.push_back(beam_of(p));
+  }
+  return beams;
+}
+
+void add_edges_along_rings(const std::vector<Beam>& beams, float max_range, LidarEdges& edges) {
+  for (std::size_t i = 1; i < beams.size(); ++i) {
+    add_if_edge(beams[i - 1], beams[i], kMaxRingStep, kRelativeJump, max_range, false, edges);
+  }
+}
+
+void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, LidarEdges& edges) {
+  const auto columns = static_cast<std::size_t>(std::ceil(2 * std::numbers::pi_v<float> / kColumn));
+  std::vector<std::vector<std::uint32_t>> by_column(columns);
+  for (std::uint32_t i = 0; i < beams.size(); ++i) {
+    const float azimuth = std::atan2(beams[i].direction.y(), beams[i].direction.x());
+    const auto column = static_cast<std::size_t>((azimuth + std::numbers::pi_v<float>) / kColumn);
+    by_column[std::min(column, columns - 1)].push_back(i);
+  }
+  for (std::vector<std::uint32_t>& above : by_column) {
+    std::stable_sort(above.begin(), above.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return beams[a].direction.z() > beams[b].direction.z();
+    });
+    for (std::size_t k = 1; k < above.size(); ++k) {
+      const Beam &a = beams[above[k - 1]], &b = beams[above[k]];
+      // Two firings of one ring may share a column.
+      if (a.direction.z() - b.direction.z() < kMinElevationStep) continue;
+      add_if_edge(a, b, kMaxElevationStep, kRelativeJumpAbove, max_range, true, edges);
+    }
+  }
+}
+
+}  // namespace
+
+LidarEdges find_lidar_edges(const PointCloud& scan_lidar, const Camera& camera, double max_range) {
+  LidarEdges edges;
+  const std::vector<Beam> beams = beams_in_view(scan_lidar, camera);
+  add_edges_along_rings(beams, static_cast<float>(max_range), edges);
+  add_edges_between_rings(beams, static_cast<float>(max_range), edges);
+  return edges;
+}
+
+}  // namespace fovea

@@ -1,0 +1,44 @@
+#include "fovea/pipeline/frame_motion.h"
+
+namespace fovea {
+namespace {
+
+std::optional<FrameMotion> between(const RigidMotion& here, TimeNs stamp, const RigidMotion& other,
+                                   TimeNs other_stamp) {
+  if (stamp == other_stamp) return std::nullopt;
+  return FrameMotion{here, log_se3(here.inverse() * other) / seconds(other_stamp - stamp)};
+}
+
+}  // namespace
+
+std::optional<FrameMotion> known_motion(const FrameSource& source,
+                                        const std::vector<RigidMotion>& given_poses, int index) {
+  const DriveInfo& drive = source.info();
+  const auto stamp = source.stamp(index);
+  if (!stamp) return std::nullopt;
+  if (drive.navigation) {
+    const auto pose = drive.navigation->at(*stamp);
+    const auto velocity =
+        drive.navigation->velocity(*stamp, *stamp + from_seconds(drive.sweep_period / 2));
+    if (!pose || !velocity) return std::nullopt;
+    return FrameMotion{*pose, *velocity};
+  }
+  const int other = index > drive.begin ? index - 1 : index + 1;
+  const auto poses_end = drive.begin + static_cast<int>(given_poses.size());
+  if (other >= std::min(poses_end, drive.end) || index >= poses_end) return std::nullopt;
+  const auto other_stamp = source.stamp(other);
+  if (!other_stamp) return std::nullopt;
+  return between(given_poses.at(std::size_t(index - drive.begin)), *stamp,
+                 given_poses.at(std::size_t(other - drive.begin)), *other_stamp);
+}
+
+std::optional<FrameMotion> mapped_motion(const std::vector<FrameRecord>& records) {
+  const FrameRecord& latest = records.back();
+  if (latest.velocity) return FrameMotion{latest.T_local_lidar, *latest.velocity};
+  if (records.size() < 2) return std::nullopt;
+  const FrameRecord& before = records[records.size() - 2];
+  if (before.status == FrameStatus::kSkipped) return std::nullopt;
+  return between(latest.T_local_lidar, *latest.stamp, before.T_local_lidar, *before.stamp);
+}
+
+}  // namespace fovea

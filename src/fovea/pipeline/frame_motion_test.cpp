@@ -1,0 +1,82 @@
+#include "fovea/pipeline/frame_motion.h"
+
+#include <gtest/gtest.h>
+
+namespace fovea {
+namespace {
+
+/// Forward at 8 m/s while turning left: a constant twist.
+const Twist kTwist = (Twist() << 0, 0, 0.2, 8, 0, 0).finished();
+
+RigidMotion pose_at(double s) { return exp_se3(s * kTwist); }
+
+/// A drive of frames a tenth of a second apart that has nothing but stamps.
+class Stamps : public FrameSource {
+ public:
+  explicit Stamps(bool with_navigation) {
+    info_.begin = 10;
+    info_.end = 20;
+    info_.sweep_period = 0.1;
+    if (!with_navigation) return;
+    std::vector<StampedPose> poses;
+    for (int k = 0; k < 30; ++k)
+      poses.push_back({from_seconds(0.1 * k + 0.02), pose_at(0.1 * k + 0.02)});
+    info_.navigation.emplace(poses);
+  }
+  const DriveInfo& info() const override { return info_; }
+  FrameResult load(int index) const override {
+    return SkippedFrame{index, SkipReason::kMissingScan, ""};
+  }
+  std::optional<TimeNs> stamp(int index) const override {
+    if (index == 13) return std::nullopt;
+    return from_seconds(0.1 * index);
+  }
+
+ private:
+  DriveInfo info_;
+};
+
+void expect_motion(const std::optional<FrameMotion>& motion, double s) {
+  ASSERT_TRUE(motion);
+  EXPECT_LT((motion->velocity - kTwist).norm(), 1e-6);
+  EXPECT_TRUE(motion->T_local_lidar.isApprox(pose_at(s), 1e-9));
+}
+
+TEST(FrameMotion, KnownByNavigation) {
+  const Stamps drive(true);
+  expect_motion(known_motion(drive, {}, 12), 1.2);
+  EXPECT_FALSE(known_motion(drive, {}, 13));  // no stamp
+}
+
+TEST(FrameMotion, KnownByThePosesGiven) {
+  const Stamps drive(false);
+  std::vector<RigidMotion> given;
+  for (int i = 10; i < 20; ++i) given.push_back(pose_at(0.1 * i));
+  for (const int index : {10, 11, 19})
+    expect_motion(known_motion(drive, given, index), 0.1 * index);
+  EXPECT_FALSE(known_motion(drive, given, 14));  // the frame before it has no stamp
+  EXPECT_FALSE(known_motion(drive, {}, 12));
+}
+
+TEST(FrameMotion, OfTheLatestMappedFrame) {
+  const auto record = [](int index) {
+    FrameRecord r;
+    r.index = index;
+    r.stamp = from_seconds(0.1 * index);
+    r.T_local_lidar = pose_at(0.1 * index);
+    return r;
+  };
+  std::vector<FrameRecord> records{record(10)};
+  EXPECT_FALSE(mapped_motion(records));  // nothing to compare with
+  records.push_back(record(11));
+  expect_motion(mapped_motion(records), 1.1);
+  // That by which its sweep was compensated comes first.
+  records.back().velocity = 2 * kTwist;
+  EXPECT_EQ(mapped_motion(records)->velocity, Twist(2 * kTwist));
+  records.back().velocity.reset();
+  records.front().status = FrameStatus::kSkipped;
+  EXPECT_FALSE(mapped_motion(records));
+}
+
+}  // namespace
+}  // namespace fovea

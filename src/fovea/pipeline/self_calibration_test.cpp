@@ -1,0 +1,58 @@
+#include "fovea/pipeline/self_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include "fovea/base/angle.h"
+
+namespace fovea {
+namespace {
+
+DriveInfo drive_of(int frames) {
+  DriveInfo drive;
+  drive.begin = 100;
+  drive.end = 100 + frames;
+  drive.calibration.cameras.resize(2);
+  drive.calibration.cameras[0].index = 2;
+  drive.calibration.cameras[1].index = 3;
+  return drive;
+}
+
+TEST(CalibrationCheck, LooksAtFewFramesSpreadOverTheDrive) {
+  for (const int frames : {1, 7, 40, 400, 10000}) {
+    const DriveInfo drive = drive_of(frames);
+    CalibrationCheck check(drive, true);
+    std::vector<int> looked_at;
+    for (int index = drive.begin; index < drive.end; ++index) {
+      if (!check.wants(index)) continue;
+      Frame frame;
+      frame.index = index;
+      frame.images.resize(2);
+      check.add(frame, {});
+      looked_at.push_back(index);
+    }
+    EXPECT_LE(looked_at.size(), std::size_t(CalibrationCheck::kFrames));
+    if (frames < 40) continue;
+    EXPECT_GE(looked_at.size(), std::size_t(CalibrationCheck::kFrames - 1));
+    EXPECT_GT(looked_at.back(), drive.end - frames / 8);
+    // Frames without edges show nothing.
+    const auto found = check.estimates();
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(found[1].camera, 3);
+    EXPECT_FALSE(found[1].estimate.rotation_observable || found[1].estimate.delay_observable);
+  }
+}
+
+TEST(SelfCalibration, CorrectsEachCameraByItsOwnEstimate) {
+  const DriveInfo drive = drive_of(10);
+  std::vector<CameraCalibration> found(2);
+  found[1].estimate.rotation.z() = 1 * kDegree;
+  found[1].estimate.delay = 0.02;
+  const Calibration right = corrected(drive.calibration, found);
+  EXPECT_TRUE(right.cameras[0].T_cam_lidar.isApprox(RigidMotion::Identity(), 0));
+  EXPECT_EQ(right.cameras[0].image_delay, 0);
+  EXPECT_NEAR(log_se3(right.cameras[1].T_cam_lidar)[2], 1 * kDegree, 1e-12);
+  EXPECT_EQ(right.cameras[1].image_delay, 0.02);
+}
+
+}  // namespace
+}  // namespace fovea
