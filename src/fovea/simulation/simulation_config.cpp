@@ -76,6 +76,9 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("vehicle.weave", o.vehicle.weave);
   visit("vehicle.sway", Degrees{o.vehicle.sway});
   visit("vehicle.heave", o.vehicle.heave);
+  visit("vehicle.stop_at", o.vehicle.stop_at);
+  visit("vehicle.stop_braking", o.vehicle.stop_braking);
+  visit("vehicle.stop_duration", o.vehicle.stop_duration);
 
   visit("street.bends", Degrees{o.bends});
   visit("street.curvature", o.curvature);

@@ -50,6 +50,9 @@ void check(const VehicleOptions& vehicle) {
   check("vehicle.weave", vehicle.weave, 0, 1, "m");
   check_degrees("vehicle.sway", vehicle.sway, 0, 10);
   check("vehicle.heave", vehicle.heave, 0, 0.5, "m");
+  check("vehicle.stop_at", vehicle.stop_at, -1, 1e5, "s");
+  check("vehicle.stop_braking", vehicle.stop_braking, 0.5, 60, "s");
+  check("vehicle.stop_duration", vehicle.stop_duration, 0, 3600, "s");
 }
 
 void check(const LidarOptions& lidar) {

@@ -37,6 +37,9 @@ struct VehicleOptions {
   double weave = 0.25;            ///< m, sideways in the lane
   double sway = 0.25 * kDegree;   ///< rad, amplitude of roll and pitch
   double heave = 0.01;            ///< m, up and down on the springs
+  double stop_at = -1;        ///< s from frame 0's stamp when it begins to brake; negative: never
+  double stop_braking = 2.5;  ///< s until it stands, and as long to speed up again
+  double stop_duration = 5;   ///< s that it stands
 };
 
 /// HDL-64E S2: 32 beams from +2 to -8.33 degrees and 32 from -8.83 to -24.33, turning clockwise.

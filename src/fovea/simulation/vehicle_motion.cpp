@@ -1,5 +1,6 @@
 #include "fovea/simulation/vehicle_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,6 +56,18 @@ constexpr Wave kRoll{{0.65, 0.35}, {3.1, 1.7}};
 constexpr Wave kPitch{{0.65, 0.35}, {2.7, 1.5}};
 constexpr Wave kHeave{{0.6, 0.4}, {2.3, 1.3}};
 
+/// The time that a vehicle which never stops needs for the same way: its clock slows down evenly
+/// until it stands, and speeds up again as evenly.
+double moving_time(const VehicleOptions& options, double time) {
+  const double braking = options.stop_braking, begin = options.stop_at;
+  if (begin < 0 || time <= begin) return time;
+  const double slowing = std::min(time - begin, braking);
+  const double starting = std::clamp(time - begin - braking - options.stop_duration, 0.0, braking);
+  const double after = std::max(0.0, time - begin - 2 * braking - options.stop_duration);
+  return begin + slowing - slowing * slowing / (2 * braking) + starting * starting / (2 * braking) +
+         after;
+}
+
 enum Phase { kOfSpeed = 0, kOfWeave = 2, kOfRoll = 4, kOfPitch = 6, kOfHeave = 8 };
 
 }  // namespace
@@ -68,6 +81,7 @@ VehicleMotion::VehicleMotion(const Path& path, double lane_offset, const Vehicle
 }
 
 double VehicleMotion::way(double time) const {
+  time = moving_time(options_, time);
   return options_.speed *
          (time + options_.speed_variation * kSpeed.integral(time, &phases_[kOfSpeed]));
 }

@@ -22,7 +22,7 @@ class VehicleMotion {
   /// World: x, y as the path's, z up, the road at 0. Vehicle: forward, left, up, on the road below
   /// the LiDAR. `time` in seconds from frame 0's stamp.
   RigidMotion T_world_vehicle(double time) const;
-  /// Way along the path (m), 0 at time 0; increases with time.
+  /// Way along the path (m), 0 at time 0; never decreases.
   double way(double time) const;
 
  private:

@@ -55,6 +55,24 @@ TEST(VehicleMotion, WayIncreasesAtTheMeanSpeed) {
   }
 }
 
+TEST(VehicleMotion, StopsAndGoesOn) {
+  const Path path = bends(0);
+  VehicleOptions options = steady();
+  options.stop_at = 2;
+  options.stop_braking = 3;
+  options.stop_duration = 4;
+  const VehicleMotion motion(path, 0, options, 1);
+  EXPECT_DOUBLE_EQ(motion.way(2), 18);
+  EXPECT_DOUBLE_EQ(motion.way(5), 18 + 9 * 1.5);  // the mean of 9 and 0 m/s for 3 s
+  EXPECT_DOUBLE_EQ(motion.way(9), motion.way(5));
+  EXPECT_DOUBLE_EQ(motion.way(12), motion.way(9) + 9 * 1.5);
+  EXPECT_DOUBLE_EQ(motion.way(13), motion.way(12) + 9);
+  for (double t = 0; t < 15; t += 0.01) {  // 3 m/s^2
+    const double change = (motion.way(t + 0.02) - 2 * motion.way(t + 0.01) + motion.way(t)) / 1e-4;
+    EXPECT_LT(std::abs(change), 3.001) << t;
+  }
+}
+
 TEST(VehicleMotion, PointsWhereItGoes) {
   const Path path = bends(0.3);
   VehicleOptions options;
