@@ -45,11 +45,13 @@ NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, co
   constexpr std::size_t kGrain = 2048;
   NearestSamples found{std::vector<float>(positions.size()),
                        std::vector<Eigen::Vector3f>(positions.size()),
-                       std::vector<std::uint8_t>(interpolated.empty() ? 0 : positions.size())};
+                       std::vector<std::uint8_t>(interpolated.empty() ? 0 : positions.size()),
+                       std::vector<std::uint32_t>(positions.size())};
   parallel_for(positions.size(), kGrain, [&](std::size_t i) {
     const KdTree::Neighbor nearest = tree.nearest(positions[i]);
     found.distance[i] = std::sqrt(nearest.squared_distance);
     found.color[i] = to_float(color[nearest.index]);
+    found.index[i] = static_cast<std::uint32_t>(nearest.index);
     if (!interpolated.empty()) found.interpolated[i] = interpolated[nearest.index];
   });
   return found;

@@ -31,6 +31,7 @@ struct NearestSamples {
   std::vector<Eigen::Vector3f> color;  ///< 0-255
   /// 1 if made by upsampling, 0 if measured; empty where the map does not say.
   std::vector<std::uint8_t> interpolated = {};
+  std::vector<std::uint32_t> index = {};  ///< of the nearest point
 };
 /// @param tree          of the map's points, in the frame and origin of `positions`; not empty
 /// @param color         of the same points

@@ -72,6 +72,11 @@ void put_structure(Json& json, const EvaluationReport& report) {
                       {"te_elsewhere", bleeding.te_elsewhere},
                       {"coverage_5cm_edges", bleeding.coverage_5cm_edges},
                       {"coverage_5cm_elsewhere", bleeding.coverage_5cm_elsewhere}};
+  const ErrorSplit& split = report.split;
+  json["split"] = {{"points", split.points},
+                   {"te_mean", split.mean(split.total)},
+                   {"te_sampling", split.mean(split.sampling)},
+                   {"te_same_place", split.mean(split.same_place)}};
   json["consistency"] = {{"roughness", report.roughness.roughness()},
                          {"roughness_patches", report.roughness.patches},
                          {"cross_view_rms", report.cross_view.map},
@@ -205,6 +210,9 @@ std::string to_text(const EvaluationReport& report) {
   row("TE at depth edges", number(b.te_edges, 2),
       fmt::format("elsewhere {:.2f}; coverage 5 cm {:.3f}, elsewhere {:.3f}; {} points",
                   b.te_elsewhere, b.coverage_5cm_edges, b.coverage_5cm_elsewhere, b.points_edges));
+  const ErrorSplit& s = report.split;
+  row("TE of sampling", number(s.mean(s.sampling), 2),
+      fmt::format("by the nearest point's distance; {:.2f} by its colour", s.mean(s.same_place)));
   row("roughness", number(report.roughness.roughness(), 2),
       fmt::format("on {} smooth patches", report.roughness.patches));
   row("cross-view RMS", number(report.cross_view.map, 2),

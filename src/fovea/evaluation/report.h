@@ -7,6 +7,7 @@
 
 #include "fovea/evaluation/color_rules_report.h"
 #include "fovea/evaluation/consistency.h"
+#include "fovea/evaluation/error_split.h"
 #include "fovea/evaluation/free_space.h"
 #include "fovea/evaluation/map_geometry.h"
 #include "fovea/evaluation/metrics.h"
@@ -76,6 +77,7 @@ struct EvaluationReport {
   std::vector<BlockReport> blocks;  ///< where held-out frames follow each other, else empty
   std::size_t unreached = 0;  ///< points left out with blocks: no training frame could see them
   BleedingFigures bleeding;
+  ErrorSplit split;
   RoughnessSums roughness;
   CrossViewTest::Result cross_view;
   PlaneThickness thickness;

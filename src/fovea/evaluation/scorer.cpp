@@ -104,8 +104,9 @@ Scorer::ScoredPoints Scorer::score_points(const Frame& frame, const PointCloud& 
                                                 placed.T_local_lidar.translation()));
     scored.unreached = all - view.position.size();
   }
-  const NearestSamples nearest =
+  scored.nearest =
       nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
+  const NearestSamples& nearest = scored.nearest;
   scored.gains = fit_gains(view.color, nearest.color, view.grey);
   scored.errors = point_errors(view, nearest, scored.gains);
   return scored;
@@ -138,7 +139,8 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
 
 void Scorer::score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
                         const Camera& camera, const Image& image, FrameScore& score) {
-  const auto [view, gains, errors, unreached] = score_points(frame, scan, placed, camera, image);
+  const auto [view, gains, errors, unreached, nearest] =
+      score_points(frame, scan, placed, camera, image);
   score.unreached += unreached;
   ViewReport report{placed.index, camera.index, {}, {}, {}};
   report.gains = gains;
@@ -146,6 +148,8 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   compare_with_photograph(placed, camera, image, report);
   score.errors.append(errors);
   mark_points(view, scan, camera, score);
+  score.split.append(
+      split_errors(view, nearest_in(placed, camera, nearest), nearest.color, camera, image));
   if (static_tree_) score_without_moving(view, scan, score);
   if (all_tree_) {
     const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);
@@ -154,6 +158,18 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   }
   score.positions.insert(score.positions.end(), view.position.begin(), view.position.end());
   score.views.push_back(report);
+}
+
+std::vector<Eigen::Vector3d> Scorer::nearest_in(const PlacedFrame& placed, const Camera& camera,
+                                                const NearestSamples& nearest) const {
+  const RigidMotion T_cam_map =
+      camera.T_cam_lidar * placed.T_local_lidar.inverse() * Eigen::Translation3d(coloured_.origin);
+  std::vector<Eigen::Vector3d> p_cam;
+  p_cam.reserve(nearest.index.size());
+  for (const std::uint32_t i : nearest.index) {
+    p_cam.push_back(T_cam_map * coloured_.position[i].cast<double>());
+  }
+  return p_cam;
 }
 
 void Scorer::score_without_moving(const EvaluatedView& view, const PointCloud& scan,

@@ -20,6 +20,7 @@ struct FrameScore {
   PointErrors errors_without_moving;       ///< of the points outside moved boxes
   std::vector<Eigen::Vector3f> positions;  ///< of the points, in the map's float frame
   std::size_t unreached = 0;               ///< points that no training frame could see
+  ErrorSplit split;
   std::vector<ViewReport> views;
   std::optional<UnscoredFrame> unscored;
 };
@@ -68,6 +69,7 @@ class Scorer {
     Eigen::Vector3f gains;
     PointErrors errors;
     std::size_t unreached = 0;
+    NearestSamples nearest;
   };
   ScoredPoints score_points(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
                             const Camera& camera, const Image& image) const;
@@ -77,6 +79,9 @@ class Scorer {
                   const Camera& camera, const Image& image, FrameScore& score);
   void compare_with_photograph(const PlacedFrame& placed, const Camera& camera, const Image& image,
                                ViewReport& report);
+  /// Positions of the nearest map points in the camera's frame.
+  std::vector<Eigen::Vector3d> nearest_in(const PlacedFrame& placed, const Camera& camera,
+                                          const NearestSamples& nearest) const;
   void score_without_moving(const EvaluatedView& view, const PointCloud& scan,
                             FrameScore& score) const;
   void leave_out_moving(const std::vector<FrameRecord>& frames);
