@@ -164,6 +164,32 @@ TEST(Mapper, SurvivesNavigationThatEnds) {
   EXPECT_LT(worst_error([](auto& poses) { poses.resize(5); }), 0.05);
 }
 
+TEST(Mapper, SurvivesScansWithHalfTheirBeams) {
+  SyntheticDrive drive(street_scene(), 12, 0.8);
+  drive.editable_info().navigation.reset();
+  Mapper mapper(drive.info(), {}, PoseSource::kRefine);
+  double worst = 0;
+  for (int i = 0; i < 12; ++i) {
+    drive.beams = i % 3 == 2 ? 24 : 48;
+    const FrameRecord record = mapper.process(std::get<Frame>(drive.load(i)), false);
+    const RigidMotion truth =
+        drive.T_local_lidar[0].inverse() * drive.T_local_lidar[std::size_t(i)];
+    worst = std::max(worst, (record.T_local_lidar.translation() - truth.translation()).norm());
+    EXPECT_EQ(record.note, "") << i;
+  }
+  EXPECT_LT(worst, 0.08);
+}
+
+TEST(Mapper, AVehicleThatStandsStaysWhereItIs) {
+  SyntheticDrive drive(street_scene(), 30, 0);
+  for (RigidMotion& T : drive.T_local_lidar) T = RigidMotion::Identity();
+  drive.editable_info().navigation.reset();
+  Mapper mapper(drive.info(), {}, PoseSource::kRefine);
+  const auto records = map_frames(mapper, drive, 0, 30);
+  EXPECT_LT(records.back().T_local_lidar.translation().norm(), 0.005);
+  EXPECT_EQ(mapper.map().submaps().size(), 1u);
+}
+
 TEST(Mapper, WhereGivenPosesEndScansAreRegistered) {
   SyntheticDrive drive(street_scene(), 10, 0.8);
   drive.editable_info().navigation.reset();

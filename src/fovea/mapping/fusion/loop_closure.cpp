@@ -47,14 +47,15 @@ Fit fit_of(const RegistrationCloud& target, const KdTree& tree, const Registrati
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   std::size_t standing = 0, paired = 0, on_plane = 0;
   for (std::size_t i = 0; i < source.points.size(); ++i) {
-    if (std::abs(source.normals[i].z()) > kFlat) continue;
+    if (source.normals[i].isZero() || std::abs(source.normals[i].z()) > kFlat) continue;
     ++standing;
     const Eigen::Vector3f p = R * source.points[i] + t;
     const KdTree::Neighbor nearest = tree.nearest(p, kPairDistance);
     if (!std::isfinite(nearest.squared_distance)) continue;
     ++paired;
-    const float away = target.normals[nearest.index].dot(p - target.points[nearest.index]);
-    on_plane += std::abs(away) < kOnPlane;
+    const Eigen::Vector3f& normal = target.normals[nearest.index];
+    const float away = normal.dot(p - target.points[nearest.index]);
+    on_plane += !normal.isZero() && std::abs(away) < kOnPlane;
   }
   const auto share = [](std::size_t part, std::size_t of) {
     return of > 0 ? double(part) / double(of) : 0;
