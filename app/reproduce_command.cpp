@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,22 @@ std::string command_line(const ReproduceArguments& arguments) {
   return text;
 }
 
+/// What the user calls the drives: simulated ones all have the same folder inside. A name that
+/// comes again gets a number.
+std::vector<std::string> drive_names(const std::vector<std::string>& drives) {
+  std::vector<std::string> names;
+  for (const std::string& drive : drives) {
+    const std::string name = name_of(drive);
+    const auto before = [&](const std::string& wanted) {
+      return std::find(names.begin(), names.end(), wanted) != names.end();
+    };
+    std::string unique = name;
+    for (int i = 2; before(unique); ++i) unique = fmt::format("{}-{}", name, i);
+    names.push_back(unique);
+  }
+  return names;
+}
+
 std::filesystem::path make_folder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
@@ -72,11 +89,12 @@ void run(const ReproduceArguments& arguments) {
   ProgressBar bar(arguments.quiet, "rows");
   const int total = static_cast<int>(rows.size() * sources.size());
   int done = 0;
+  const std::vector<std::string> names = drive_names(arguments.drives);
   std::vector<DriveResults> results;
-  for (const auto& source : sources) {
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const auto& source = sources[i];
     const DriveInfo& info = source->info();
-    DriveResults drive{
-        name_of(source->info().path), {}, info.end - info.begin, {}, time_upsampling(*source)};
+    DriveResults drive{names[i], {}, info.end - info.begin, {}, time_upsampling(*source)};
     for (const Camera& camera : info.calibration.cameras) drive.cameras.push_back(camera.index);
     const std::filesystem::path folder = make_folder(output / ("rows-" + drive.name));
     for (const std::string& row : rows) {

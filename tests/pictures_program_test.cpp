@@ -110,6 +110,19 @@ TEST_F(Pictures, ReproduceWritesAPageAndGoesOnWhereItStopped) {
   EXPECT_THAT(read_text(own_ / "out/results.md"), HasSubstr("123.25"));
 }
 
+// Simulated drives all have the same folder inside; each must keep its own rows.
+TEST_F(Pictures, ReproduceTellsDrivesOfOneNameApart) {
+  const std::string drive = " '" + drive_.string() + "'";
+  const ProgramRun run = run_fovea("reproduce" + drive + drive + " -o '" + (own_ / "two").string() +
+                                   "' --rows E0 --quiet");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto drives = nlohmann::json::parse(read_text(own_ / "two/results.json"))["drives"];
+  const std::string name = drive_.filename().string();
+  EXPECT_EQ(drives[0]["name"], name);
+  EXPECT_EQ(drives[1]["name"], name + "-2");
+  EXPECT_TRUE(std::filesystem::exists(own_ / "two" / ("rows-" + name + "-2") / "E0.json"));
+}
+
 TEST_F(Pictures, ReproduceRefusesAFolderThatCannotBe) {
   std::ofstream(own_ / "file") << "x";
   const ProgramRun run = run_fovea("reproduce '" + drive_.string() + "' -o '" +

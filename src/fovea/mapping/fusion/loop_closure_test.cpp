@@ -65,8 +65,8 @@ TEST_F(LoopCloserTest, AnotherPlaceIsRefused) {
 }
 
 TEST_F(LoopCloserTest, TheNextBestCandidateHasItsTurn) {
-  const auto closure = closer_.find(scan_of(1, again_), {{1, again_ * pose(2, 0, 0), 500},
-                                                         {0, again_ * pose(-2, 3, 0), 500}});
+  const auto closure = closer_.find(
+      scan_of(1, again_), {{1, again_ * pose(2, 0, 0), 500}, {0, again_ * pose(-2, 3, 0), 500}});
   ASSERT_TRUE(closure);
   EXPECT_EQ(closure->submap, 1u);
 }
