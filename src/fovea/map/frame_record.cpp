@@ -22,4 +22,9 @@ std::optional<FrameStatus> frame_status(std::string_view name) {
   return std::nullopt;
 }
 
+bool FrameRecord::has(const std::string& figure) const {
+  const auto found = figures.find(figure);
+  return found != figures.end() && found->second > 0;
+}
+
 }  // namespace fovea

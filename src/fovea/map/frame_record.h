@@ -43,6 +43,9 @@ struct FrameRecord {
   std::map<std::string, double> figures;
   /// Wall time by stage name, ms; not part of the digest.
   std::map<std::string, double> milliseconds;
+
+  /// Whether a figure is there and above zero.
+  bool has(const std::string& figure) const;
 };
 
 }  // namespace fovea

@@ -1,13 +1,11 @@
 #include "fovea/pipeline/fusion.h"
 
-#include <numbers>
-
+#include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 
 namespace fovea {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 /// A vehicle that stands goes on with its submap.
 constexpr double kSubmapLength = 5;  // m, at least
 /// Odometry between the origins of neighbouring submaps: deviations of its own, by metre, and by
@@ -28,11 +26,7 @@ Twist deviations(double rotation, double translation) {
 }
 
 bool is_weak(const FrameRecord& record) {
-  const auto above_zero = [&](const char* figure) {
-    const auto found = record.figures.find(figure);
-    return found != record.figures.end() && found->second > 0;
-  };
-  return above_zero("registration_failed") || above_zero("registration_degenerate");
+  return record.has("registration_failed") || record.has("registration_degenerate");
 }
 
 }  // namespace
@@ -64,12 +58,11 @@ void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar) {
   if (node > 0) {
     const Submap& before = submaps_.back();
     const double length = path_ - before.path;
-    RelativePose motion{
+    graph_.add(RelativePose{
         node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
         deviations(
             kRotation + kRotationPerMetre * length + kRotationPerWeak * weak_frames_,
-            kTranslation + kTranslationPerMetre * length + kTranslationPerWeak * weak_frames_)};
-    graph_.add(motion);
+            kTranslation + kTranslationPerMetre * length + kTranslationPerWeak * weak_frames_)});
   } else if (!measured) {
     graph_.add(AbsolutePose{node, graph_.poses().back(), deviations(kAnchor, kAnchor)});
   }
@@ -121,15 +114,19 @@ void Fusion::look_around(FrameRecord& record, const std::vector<Eigen::Vector3f>
 void Fusion::replay(const FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
   if (!wants_scan()) return;
   const auto submap = static_cast<std::size_t>(record.submap);
-  closer_.add(submap, points_lidar, submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar);
+  closer_.add(submap, points_lidar, T_submap_lidar(record));
   if (record.revisit) close_loop(record);
+}
+
+RigidMotion Fusion::T_submap_lidar(const FrameRecord& record) const {
+  const auto submap = static_cast<std::size_t>(record.submap);
+  return submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar;
 }
 
 void Fusion::close_loop(const FrameRecord& record) {
   const auto submap = static_cast<std::size_t>(record.submap);
-  const RigidMotion T_submap_lidar = submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar;
   graph_.add(RelativePose{static_cast<std::size_t>(record.revisit->submap), submap,
-                          record.revisit->T_submap_lidar * T_submap_lidar.inverse(),
+                          record.revisit->T_submap_lidar * T_submap_lidar(record).inverse(),
                           deviations(kClosureRotation, kClosureTranslation), /*robust=*/true});
   graph_.optimize();
 }
@@ -142,7 +139,7 @@ RigidMotion Fusion::T_local_odom() const {
 RigidMotion Fusion::T_local_lidar(const FrameRecord& record) const {
   if (!options_.enabled) return record.T_odom_lidar;
   const auto submap = static_cast<std::size_t>(record.submap);
-  return graph_.poses()[submap] * (submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar);
+  return graph_.poses()[submap] * T_submap_lidar(record);
 }
 
 }  // namespace fovea

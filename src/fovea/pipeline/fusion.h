@@ -58,6 +58,7 @@ class Fusion {
   };
   bool is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const;
   void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar);
+  RigidMotion T_submap_lidar(const FrameRecord& record) const;
   void close_loop(const FrameRecord& record);
   std::vector<LoopCandidate> candidates(const RigidMotion& T_local_lidar) const;
 

@@ -38,11 +38,6 @@ struct Flaw {
   }
 };
 
-bool has(const FrameRecord& record, const char* figure) {
-  const auto found = record.figures.find(figure);
-  return found != record.figures.end() && found->second > 0;
-}
-
 /// What a user must know of the poses.
 void note_poses(const std::vector<FrameRecord>& records, const DriveInfo& drive,
                 std::vector<std::string>& notes) {
@@ -50,8 +45,8 @@ void note_poses(const std::vector<FrameRecord>& records, const DriveInfo& drive,
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
     if (drive.navigation && !record.T_local_lidar_navigation) absent.add(record.index);
-    if (has(record, "navigation_jumped")) jumped.add(record.index);
-    if (has(record, "registration_degenerate")) degenerate.add(record.index);
+    if (record.has("navigation_jumped")) jumped.add(record.index);
+    if (record.has("registration_degenerate")) degenerate.add(record.index);
   }
   absent.note("no GPS/INS, the scans alone tell the motion", notes);
   jumped.note("GPS/INS moves otherwise than the scans, it counts for less from there on", notes);
@@ -85,7 +80,7 @@ MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_
         ++summary.frames_skipped[record.note.substr(0, record.note.find(':'))];
         break;
     }
-    if (has(record, "registration_failed")) ++summary.registrations_failed;
+    if (record.has("registration_failed")) ++summary.registrations_failed;
     if (record.revisit) ++summary.loops_closed;
     if (i < first_new) continue;
     for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);

@@ -1,14 +1,13 @@
 #include "fovea/pipeline/motion_model.h"
 
-#include <numbers>
+#include "fovea/base/angle.h"
 
 namespace fovea {
 namespace {
 
 /// How far a frame's motion may differ from the last one's: no vehicle accelerates or turns in
 /// faster, and registration and GPS are better than the constants.
-constexpr double kAcceleration = 10, kShift = 0.2;  // m/s^2, m
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kAcceleration = 10, kShift = 0.2;                  // m/s^2, m
 constexpr double kTurnRate = 100 * kDegree, kTurn = 1.5 * kDegree;  // rad/s^2, rad
 
 bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {

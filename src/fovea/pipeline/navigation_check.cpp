@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "fovea/base/angle.h"
 
 namespace fovea {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 /// Navigation that moves otherwise than the scans by more than this between two frames (m), and
 /// this share of the path in an outage, has jumped.
 constexpr double kJump = 0.3;
