@@ -4,145 +4,51 @@
 
 #include <array>
 #include <cmath>
-#include <optional>
-#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
 #include "fovea/base/errors.h"
-#include "fovea/mapping/delaunay.h"
+#include "fovea/mapping/image_mesh.h"
 
 namespace fovea {
 namespace {
-
-// Grid lines a pixel: far finer than a LiDAR measures, and 2^19 pixels still are on the grid.
-constexpr double kGridPerPixel = 1024;
 
 // A point that is not its pixel's vertex has that vertex's normal if it is at most this far away
 // (m).
 constexpr float kSameSurface = 0.05f;
 
-constexpr std::int32_t kNoVertex = -1;
-
-// The cloud's projection, triangulated. Columns are by vertex: measured ones first, then
-// interpolated.
-struct ImageMesh {
-  DelaunayTriangulation triangulation;
-  std::vector<Eigen::Vector3f> position;
+// The mesh with what upsampling adds to it; columns are by vertex.
+struct DenseMesh : ImageMesh {
+  using ImageMesh::ImageMesh;
   std::vector<Eigen::Vector3f> normal;
-  std::vector<std::int32_t> vertex_of_point;  // by point of the cloud; kNoVertex far from the image
-  std::vector<std::uint32_t> point_of_vertex;            // by measured vertex
   std::vector<DelaunayTriangulation::Vertices> corners;  // by interpolated vertex: of its triangle
 };
 
-class Projection {
- public:
-  Projection(const Camera& camera, const Eigen::Vector3d& origin)
-      : camera_(camera), origin_(origin) {}
-
-  Eigen::Vector3d from_camera(const Eigen::Vector3f& position) const {
-    return origin_ + position.cast<double>();
-  }
-  // Empty for what is not in front of the camera or beyond the grid.
-  std::optional<GridPoint> operator()(const Eigen::Vector3f& position) const {
-    const auto pixel = camera_.project(from_camera(position));
-    if (!pixel) return std::nullopt;
-    const double x = std::floor(kGridPerPixel * pixel->x() + 0.5);
-    const double y = std::floor(kGridPerPixel * pixel->y() + 0.5);
-    constexpr double kMax = kMaxGridCoordinate;
-    if (!(std::abs(x) <= kMax && std::abs(y) <= kMax)) return std::nullopt;
-    return GridPoint{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
-  }
-
- private:
-  const Camera& camera_;
-  Eigen::Vector3d origin_;
-};
-
-ImageMesh triangulate_projection(const PointCloud& points, const Projection& project) {
-  ImageMesh mesh;
-  std::vector<GridPoint> pixels;
-  std::vector<std::uint32_t> point_of_pixel;
-  pixels.reserve(points.size());
-  point_of_pixel.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (const auto pixel = project(points.position[i])) {
-      pixels.push_back(*pixel);
-      point_of_pixel.push_back(i);
-    } else if (!(project.from_camera(points.position[i]).z() > Camera::kMinDepth)) {
-      throw std::invalid_argument(
-          fmt::format("upsample: point {} is not in front of the camera", i));
-    }
-  }
-  const std::vector<std::int32_t> vertices = mesh.triangulation.insert(pixels);
-
-  const auto squared_range = [&](std::uint32_t point) {
-    return project.from_camera(points.position[point]).squaredNorm();
-  };
-  constexpr std::uint32_t kNoPoint = ~0u;
-  mesh.vertex_of_point.assign(points.size(), kNoVertex);
-  mesh.point_of_vertex.assign(mesh.triangulation.points().size(), kNoPoint);
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    std::uint32_t& nearest = mesh.point_of_vertex[vertices[i]];
-    if (nearest == kNoPoint || squared_range(point_of_pixel[i]) < squared_range(nearest)) {
-      nearest = point_of_pixel[i];
-    }
-    mesh.vertex_of_point[point_of_pixel[i]] = vertices[i];
-  }
-  mesh.position.reserve(mesh.point_of_vertex.size());
-  for (const std::uint32_t point : mesh.point_of_vertex) {
-    mesh.position.push_back(points.position[point]);
-  }
-  return mesh;
-}
-
-bool edges_below(const ImageMesh& mesh, const DelaunayTriangulation::Vertices& corners,
-                 float max_edge_squared) {
-  const Eigen::Vector3f &a = mesh.position[corners[0]], &b = mesh.position[corners[1]],
-                        &c = mesh.position[corners[2]];
-  return (a - b).squaredNorm() < max_edge_squared && (b - c).squaredNorm() < max_edge_squared &&
-         (c - a).squaredNorm() < max_edge_squared;
-}
-
-// Normal of a triangle, towards the camera; its length is twice the area.
-Eigen::Vector3f area_normal(const ImageMesh& mesh, const DelaunayTriangulation::Vertices& corners,
-                            const Projection& project) {
-  const Eigen::Vector3f &a = mesh.position[corners[0]], &b = mesh.position[corners[1]],
-                        &c = mesh.position[corners[2]];
-  const Eigen::Vector3f normal = (b - a).cross(c - a);
-  return normal.dot(project.from_camera(a).cast<float>()) > 0 ? -normal : normal;
-}
-
-Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
-  const float length = v.norm();
-  return length > 0 ? Eigen::Vector3f(v / length) : Eigen::Vector3f::Zero();
-}
-
-void find_normals(ImageMesh& mesh, const Projection& project, float max_edge_squared) {
+void find_normals(DenseMesh& mesh, const GridProjection& project, float max_edge_squared) {
   mesh.normal.assign(mesh.position.size(), Eigen::Vector3f::Zero());
   for (std::size_t t = 0; t < mesh.triangulation.triangle_count(); ++t) {
     if (!mesh.triangulation.is_finite(t)) continue;
     const auto corners = mesh.triangulation.vertices(t);
-    if (!edges_below(mesh, corners, max_edge_squared)) continue;
-    const Eigen::Vector3f normal = area_normal(mesh, corners, project);
+    if (!mesh.edges_below(corners, max_edge_squared)) continue;
+    const Eigen::Vector3f normal = mesh.area_normal(corners, project);
     for (const std::int32_t corner : corners) mesh.normal[corner] += normal;
   }
   for (Eigen::Vector3f& normal : mesh.normal) normal = unit_or_zero(normal);
 }
 
-Eigen::Vector3f centroid(const ImageMesh& mesh, const DelaunayTriangulation::Vertices& corners) {
+Eigen::Vector3f centroid(const DenseMesh& mesh, const DelaunayTriangulation::Vertices& corners) {
   return (mesh.position[corners[0]] + mesh.position[corners[1]] + mesh.position[corners[2]]) / 3.f;
 }
 
 // One rate: the centroids of all triangles that there are now.
-void insert_centroids(ImageMesh& mesh, const Projection& project, float max_edge_squared) {
+void insert_centroids(DenseMesh& mesh, const GridProjection& project, float max_edge_squared) {
   std::vector<GridPoint> pixels;
   std::vector<std::int32_t> triangles;
   std::vector<DelaunayTriangulation::Vertices> corners;
   for (std::size_t t = 0; t < mesh.triangulation.triangle_count(); ++t) {
     if (!mesh.triangulation.is_finite(t)) continue;
     const auto candidate = mesh.triangulation.vertices(t);
-    if (!edges_below(mesh, candidate, max_edge_squared)) continue;
+    if (!mesh.edges_below(candidate, max_edge_squared)) continue;
     const auto pixel = project(centroid(mesh, candidate));
     if (!pixel) continue;
     pixels.push_back(*pixel);
@@ -151,7 +57,7 @@ void insert_centroids(ImageMesh& mesh, const Projection& project, float max_edge
   }
   for (const std::uint32_t i : mesh.triangulation.insert(pixels, triangles)) {
     mesh.position.push_back(centroid(mesh, corners[i]));
-    mesh.normal.push_back(unit_or_zero(area_normal(mesh, corners[i], project)));
+    mesh.normal.push_back(unit_or_zero(mesh.area_normal(corners[i], project)));
     mesh.corners.push_back(corners[i]);
   }
 }
@@ -171,11 +77,11 @@ void extend(std::vector<T>& column, const std::vector<std::array<std::uint32_t, 
   }
 }
 
-std::vector<Eigen::Vector3f> normals_of_points(const PointCloud& points, const ImageMesh& mesh) {
+std::vector<Eigen::Vector3f> normals_of_points(const PointCloud& points, const DenseMesh& mesh) {
   std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::int32_t vertex = mesh.vertex_of_point[i];
-    if (vertex != kNoVertex &&
+    if (vertex != ImageMesh::kNoVertex &&
         (points.position[i] - mesh.position[vertex]).norm() <= kSameSurface) {
       normals[i] = mesh.normal[vertex];
     }
@@ -183,7 +89,7 @@ std::vector<Eigen::Vector3f> normals_of_points(const PointCloud& points, const I
   return normals;
 }
 
-PointCloud to_cloud(const PointCloud& points, const ImageMesh& mesh) {
+PointCloud to_cloud(const PointCloud& points, const DenseMesh& mesh) {
   const std::size_t measured = mesh.point_of_vertex.size();
   const auto point_of = [&](std::int32_t vertex) -> std::uint32_t {
     const auto v = static_cast<std::size_t>(vertex);
@@ -229,10 +135,10 @@ PointCloud upsample(const PointCloud& points_cam, const Camera& camera,
                     const UpsampleOptions& options) {
   options.validate();
   points_cam.check();
-  const Projection project(camera, points_cam.origin);
+  const GridProjection project(camera, points_cam.origin);
   const auto max_edge_squared = static_cast<float>(options.max_edge * options.max_edge);
 
-  ImageMesh mesh = triangulate_projection(points_cam, project);
+  DenseMesh mesh(points_cam, project);
   find_normals(mesh, project, max_edge_squared);
   for (int i = 0; i < options.rate; ++i) insert_centroids(mesh, project, max_edge_squared);
   return to_cloud(points_cam, mesh);
