@@ -30,6 +30,9 @@ inline PointCloud random_map_points(std::size_t count, Random& random, double ha
     points.frame.push_back(static_cast<std::int32_t>(i));
     points.camera.push_back(i % 3 == 0 ? kNoCamera : std::int8_t{2});
     points.interpolated.push_back(static_cast<std::uint8_t>(bits >> 24 & 1));
+    points.views.push_back(i % 3 == 0 ? 0 : static_cast<std::uint8_t>(bits >> 32));
+    points.spread.push_back(static_cast<std::uint8_t>(bits >> 40));
+    points.weight.push_back(static_cast<std::uint16_t>(bits >> 48));
   }
   return points;
 }
@@ -43,6 +46,9 @@ inline PointCloud one_point_each(const std::vector<Eigen::Vector3f>& positions) 
   points.color.assign(positions.size(), {1, 2, 3});
   points.camera.assign(positions.size(), 2);
   points.interpolated.assign(positions.size(), 0);
+  points.views.assign(positions.size(), 1);
+  points.spread.assign(positions.size(), 0);
+  points.weight.assign(positions.size(), 1);
   for (std::size_t i = 0; i < positions.size(); ++i) points.frame.push_back(int(i));
   return points;
 }

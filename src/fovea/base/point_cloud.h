@@ -28,6 +28,9 @@ struct PointCloud {
   std::vector<std::int32_t> frame;         ///< frame index the point comes from
   std::vector<std::int8_t> camera;         ///< camera that coloured it, or kNoCamera
   std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling, 0 if measured
+  std::vector<std::uint8_t> views;         ///< images that gave the colour; 255: or more
+  std::vector<std::uint8_t> spread;        ///< RMS of their differences from it, grey values
+  std::vector<std::uint16_t> weight;       ///< sum of their weights (mapping/color_fusion.h)
 
   std::size_t size() const { return position.size(); }
   bool empty() const { return position.empty(); }
@@ -53,6 +56,9 @@ void for_each_optional_column(Cloud& cloud, F&& f) {
   f("frame", cloud.frame);
   f("camera", cloud.camera);
   f("interpolated", cloud.interpolated);
+  f("views", cloud.views);
+  f("spread", cloud.spread);
+  f("weight", cloud.weight);
 }
 
 /// Calls `f(name, column_a, column_b)` for each optional column of two clouds.
@@ -66,6 +72,9 @@ void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("frame", a.frame, b.frame);
   f("camera", a.camera, b.camera);
   f("interpolated", a.interpolated, b.interpolated);
+  f("views", a.views, b.views);
+  f("spread", a.spread, b.spread);
+  f("weight", a.weight, b.weight);
 }
 
 }  // namespace fovea

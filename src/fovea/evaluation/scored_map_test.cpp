@@ -192,6 +192,9 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
     points.range.assign(2, 1);
     points.incidence.assign(2, 0);
     points.interpolated = {0, 1};
+    points.views = {1, 1};
+    points.spread = {0, 0};
+    points.weight = {1, 1};
     tiles.add(points);
     writer->put_submap(0, tiles.submaps()[0].T_local_submap);
     for (const auto& [key, tile] : tiles.submaps()[0].tiles) writer->put_tile(0, key, tile);

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "fovea/base/errors.h"
-#include "fovea/evaluation/scan_projection.h"
+#include "fovea/mapping/scan_projection.h"
 
 namespace fovea {
 namespace {

@@ -42,7 +42,8 @@ std::string header(const MapMeta& meta, std::size_t points, const PlyOptions& op
   for (const char* axis : {"x", "y", "z"}) text += fmt::format("property {} {}\n", real, axis);
   return text +
          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty char camera\n"
-         "property int frame\nproperty float range\nproperty uchar interpolated\nend_header\n";
+         "property int frame\nproperty float range\nproperty uchar interpolated\n"
+         "property uchar views\nproperty uchar spread\nend_header\n";
 }
 
 /// Packs values one behind the other, as PLY wants them.
@@ -82,6 +83,8 @@ std::size_t pack_tile(const PointCloud& tile, const RigidMotion& T_local_submap,
     packer.put(tile.frame[i]);
     packer.put(tile.range[i]);
     packer.put(tile.interpolated[i]);
+    packer.put(tile.views[i]);
+    packer.put(tile.spread[i]);
     ++packed;
   }
   return packed;

@@ -99,9 +99,12 @@ TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
   const PlyFigures figures = write();
   const Ply ply(folder_ / "a.ply");
   const std::vector<std::pair<std::string, std::string>> expected_properties = {
-      {"x", "float"},     {"y", "float"},           {"z", "float"},     {"red", "uchar"},
-      {"green", "uchar"}, {"blue", "uchar"},        {"camera", "char"}, {"frame", "int"},
-      {"range", "float"}, {"interpolated", "uchar"}};
+      {"x", "float"},     {"y", "float"},
+      {"z", "float"},     {"red", "uchar"},
+      {"green", "uchar"}, {"blue", "uchar"},
+      {"camera", "char"}, {"frame", "int"},
+      {"range", "float"}, {"interpolated", "uchar"},
+      {"views", "uchar"}, {"spread", "uchar"}};
   EXPECT_EQ(ply.properties, expected_properties);
   EXPECT_EQ(ply.comments[0], std::string("fovea ") + version());
   EXPECT_THAT(ply.comments,
@@ -123,6 +126,8 @@ TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
     EXPECT_EQ(at("frame"), tile.frame[i]);
     EXPECT_EQ(at("range"), tile.range[i]);
     EXPECT_EQ(at("interpolated"), tile.interpolated[i]);
+    EXPECT_EQ(at("views"), tile.views[i]);
+    EXPECT_EQ(at("spread"), tile.spread[i]);
     ++row;
   });
   EXPECT_EQ(row, ply.count);

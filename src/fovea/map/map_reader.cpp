@@ -205,7 +205,8 @@ void MapReader::for_each_tile(
   const std::size_t submap_count = submaps().size();
   Statement rows(database,
                  "SELECT submap, x, y, z, points, colored, origin_x, origin_y, origin_z, position, "
-                 "color, camera, frame, range, incidence, interpolated, intensity, checksum "
+                 "color, camera, frame, range, incidence, interpolated, views, spread, weight, "
+                 "intensity, checksum "
                  "FROM tiles ORDER BY submap, x, y, z");
   TileDecoder decoder;
   while (rows.step()) {

@@ -49,6 +49,9 @@ CREATE TABLE tiles(
   range BLOB NOT NULL,
   incidence BLOB NOT NULL,
   interpolated BLOB NOT NULL,
+  views BLOB NOT NULL,
+  spread BLOB NOT NULL,
+  weight BLOB NOT NULL,
   intensity BLOB,
   checksum INTEGER NOT NULL,
   PRIMARY KEY(submap, x, y, z));

@@ -15,7 +15,7 @@
 namespace fovea {
 
 /// Version of the schema; a file of another version is refused.
-inline constexpr int kMapSchemaVersion = 2;
+inline constexpr int kMapSchemaVersion = 3;
 
 using MapMeta = std::map<std::string, std::string>;
 

@@ -308,9 +308,9 @@ TEST(MapReader, RefusesWhatIsNoMap) {
 TEST(MapReader, RefusesOtherVersions) {
   const TemporaryFolder folder;
   write_sample_map(folder / "a.fovea");
-  run_sql(folder / "a.fovea", "PRAGMA user_version=3");
+  run_sql(folder / "a.fovea", "PRAGMA user_version=4");
   EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
-              AllOf(HasSubstr("format version 3"), HasSubstr("newer Fovea")));
+              AllOf(HasSubstr("format version 4"), HasSubstr("newer Fovea")));
   EXPECT_THROW(MapWriter::open(folder / "a.fovea"), InputError);
   run_sql(folder / "a.fovea", "PRAGMA user_version=0");
   EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),

@@ -54,7 +54,8 @@ struct Puts {
         submap(database, "INSERT OR REPLACE INTO submaps VALUES(?1, ?2)"),
         tile(database,
              "INSERT OR REPLACE INTO tiles VALUES"
-             "(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,?17,?18)") {}
+             "(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,?17,?18,?19,"
+             "?20,?21)") {}
   Statement meta, frame, submap, tile;
 };
 

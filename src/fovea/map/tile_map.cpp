@@ -42,6 +42,9 @@ void append_columns(const PointCloud& points, const std::vector<std::uint32_t>& 
   gather(points.frame, tile.frame);
   gather(points.camera, tile.camera);
   gather(points.interpolated, tile.interpolated);
+  gather(points.views, tile.views);
+  gather(points.spread, tile.spread);
+  gather(points.weight, tile.weight);
   if (!points.intensity.empty()) gather(points.intensity, tile.intensity);
 }
 
@@ -69,6 +72,9 @@ void check_tile_columns(const PointCloud& cloud) {
   require("frame", cloud.frame);
   require("camera", cloud.camera);
   require("interpolated", cloud.interpolated);
+  require("views", cloud.views);
+  require("spread", cloud.spread);
+  require("weight", cloud.weight);
 }
 
 TileMap::TileMap(double tile_size) : tile_size_(tile_size) {
@@ -162,21 +168,28 @@ void TileMap::restore_tile(std::size_t submap, const TileKey& key, PointCloud ti
   submaps_[submap].tiles.emplace(key, std::move(tile));
 }
 
-void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& indices) {
-  const auto missing = [&] {
-    return std::logic_error(fmt::format("tile {} {} {} of submap {} does not exist", id.key.x,
-                                        id.key.y, id.key.z, id.submap));
-  };
-  if (id.submap >= submaps_.size()) throw missing();
-  auto& tiles = submaps_[id.submap].tiles;
-  const auto found = tiles.find(id.key);
-  if (found == tiles.end()) throw missing();
-  size_ -= found->second.size() - indices.size();
-  if (indices.empty()) {
-    tiles.erase(found);
-  } else {
-    found->second = found->second.select(indices);
+PointCloud& TileMap::existing_tile(const TileId& id) {
+  if (id.submap < submaps_.size()) {
+    const auto found = submaps_[id.submap].tiles.find(id.key);
+    if (found != submaps_[id.submap].tiles.end()) return found->second;
   }
+  throw std::logic_error(fmt::format("tile {} {} {} of submap {} does not exist", id.key.x,
+                                     id.key.y, id.key.z, id.submap));
+}
+
+void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& indices) {
+  PointCloud& tile = existing_tile(id);
+  size_ -= tile.size() - indices.size();
+  if (indices.empty()) {
+    submaps_[id.submap].tiles.erase(id.key);
+  } else {
+    tile = tile.select(indices);
+  }
+}
+
+TileColors TileMap::colors(const TileId& id) {
+  PointCloud& tile = existing_tile(id);
+  return {tile.color, tile.views, tile.spread, tile.weight};
 }
 
 void TileMap::for_each_tile_near(

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
@@ -30,9 +31,16 @@ struct TileId {
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
   /// Points of each tile, submap frame, relative to the cloud's `origin` = the tile's lowest
-  /// corner. Columns range, incidence, color, frame, camera, interpolated are always there;
-  /// intensity in all tiles of a map or in none; normals are not kept.
+  /// corner. Columns range, incidence, color, frame, camera, interpolated, views, spread and
+  /// weight are always there; intensity in all tiles of a map or in none; normals are not kept.
   std::map<TileKey, PointCloud> tiles;
+};
+
+/// What tells of the points' colours in a tile, to be changed in place.
+struct TileColors {
+  std::span<Rgb> color;
+  std::span<std::uint8_t> views, spread;
+  std::span<std::uint16_t> weight;
 };
 
 /// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a
@@ -69,6 +77,10 @@ class TileMap {
   /// std::logic_error if the tile does not exist.
   void keep_points(const TileId& id, const std::vector<std::uint32_t>& indices);
 
+  /// The colours of a tile; std::logic_error if it does not exist. For two tiles at a time from two
+  /// threads.
+  TileColors colors(const TileId& id);
+
   /// Calls f for every tile that a ball of `radius` m around `center_local` touches, in the order
   /// of submaps and keys.
   void for_each_tile_near(const Eigen::Vector3d& center_local, double radius,
@@ -76,6 +88,7 @@ class TileMap {
 
  private:
   Eigen::Vector3d corner(const TileKey& key) const;
+  PointCloud& existing_tile(const TileId& id);
   void require_same_columns(const PointCloud& cloud);
 
   double tile_size_;

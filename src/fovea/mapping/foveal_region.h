@@ -19,7 +19,7 @@ struct AngularSlice {
 struct FovealOptions {
   double near_range =
       3.0;  ///< m from the LiDAR: nearer is the near blind zone (the vehicle itself)
-  double far_range = 15.0;  ///< m from the LiDAR: from here on is the far blind zone
+  double far_range = 18.0;  ///< m from the LiDAR: from here on is the far blind zone
   /// Union of slices that is processed; empty: the whole view of the camera.
   std::vector<AngularSlice> slices;
   /// Largest angle between view ray and surface normal (paper: "beyond about 70 degrees no fine

@@ -32,8 +32,8 @@ bool contains(const FovealOptions& options, const Eigen::Vector3f& p_cam,
 TEST(FovealRegion, WhiteZoneLiesBetweenTheBlindZones) {
   EXPECT_FALSE(contains({}, {0, 0, 2.9f}));
   EXPECT_TRUE(contains({}, {0, 0, 3.1f}));
-  EXPECT_TRUE(contains({}, {0, 0, 14.9f}));
-  EXPECT_FALSE(contains({}, {0, 0, 15.1f}));
+  EXPECT_TRUE(contains({}, {0, 0, 17.9f}));
+  EXPECT_FALSE(contains({}, {0, 0, 18.1f}));
 }
 
 TEST(FovealRegion, RangeIsMeasuredFromTheLidar) {
@@ -41,7 +41,7 @@ TEST(FovealRegion, RangeIsMeasuredFromTheLidar) {
   camera.T_cam_lidar.translation() =
       Eigen::Vector3d(0, 0, -1);  // the LiDAR is 1 m behind the camera
   EXPECT_TRUE(contains({}, {0, 0, 2.1f}, camera));
-  EXPECT_FALSE(contains({}, {0, 0, 14.1f}, camera));
+  EXPECT_FALSE(contains({}, {0, 0, 17.1f}, camera));
 }
 
 TEST(FovealRegion, NothingOutsideTheImageOrBehind) {

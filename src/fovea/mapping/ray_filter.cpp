@@ -77,7 +77,7 @@ void RayFilter::assign_owners(std::span<const Ray> scan, std::span<const Ray> ma
 std::vector<RayVerdict> RayFilter::filter(std::span<const Ray> scan, std::span<const Ray> map,
                                           const Camera& camera, const RayFilterOptions& options) {
   std::vector<RayVerdict> verdicts(scan.size(), RayVerdict::kVisible);
-  if (options.mode == RayFilterMode::kOff) return verdicts;
+  if (options.mode != RayFilterMode::kPaper) return verdicts;
   assign_owners(scan, map, camera);
 
   const int half = options.window / 2;

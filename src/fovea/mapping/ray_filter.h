@@ -11,6 +11,7 @@ namespace fovea {
 
 enum class RayFilterMode {
   kPaper,  ///< both tests, as in the paper
+  kScan,   ///< scan points that the camera cannot see go (scan_projection.h); new detail stays
   kOff,    ///< every point is kept
 };
 
@@ -49,7 +50,7 @@ struct Ray {
 /// windows of five or fewer rays reject nothing.
 class RayFilter {
  public:
-  /// Verdict on each scan ray.
+  /// Verdict on each scan ray; all are visible unless the mode is kPaper.
   std::vector<RayVerdict> filter(std::span<const Ray> scan, std::span<const Ray> map,
                                  const Camera& camera, const RayFilterOptions& options);
 

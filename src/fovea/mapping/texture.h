@@ -10,8 +10,17 @@ namespace fovea {
 /// How a colour is read between pixel centres.
 enum class ImageSampling { kBilinear, kNearest };
 
+/// Which views a point's colour is of.
+enum class TextureViews {
+  kFirst,  ///< the one that the point came with, as in the paper
+  kMean,   ///< all that see it, fused (mapping/color_fusion.h)
+};
+
 struct TextureOptions {
-  ImageSampling sampling = ImageSampling::kBilinear;
+  TextureViews views = TextureViews::kFirst;
+  double footprint = 0.02;  ///< of kMean: edge of the patch whose mean colour a view gives (m)
+  ImageSampling sampling = ImageSampling::kBilinear;  ///< of kFirst
+  void validate() const;                              ///< ConfigError that names the field
 };
 
 /// Where a point's colour comes from.

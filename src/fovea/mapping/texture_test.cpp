@@ -39,7 +39,7 @@ TEST(Texture, NearestSamplingTakesThePixelWhoseCentreIsNearest) {
   image.data = {0, 100, 200, 255};
   PointCloud cloud;
   cloud.position = {{1.4f, 0, 1}, {1.6f, 0, 1}};
-  const TextureOptions nearest{ImageSampling::kNearest};
+  const TextureOptions nearest{.sampling = ImageSampling::kNearest};
   colour_points(cloud, {image, camera, 0}, nearest);
   EXPECT_EQ(cloud.color[0].r, 100);
   EXPECT_EQ(cloud.color[1].r, 200);

@@ -30,12 +30,18 @@ constexpr auto names_of(GroundMethod) {
 }
 constexpr auto names_of(RayFilterMode) {
   return std::array{EnumName<RayFilterMode>{RayFilterMode::kPaper, std::string_view("paper")},
+                    EnumName<RayFilterMode>{RayFilterMode::kScan, std::string_view("scan")},
                     EnumName<RayFilterMode>{RayFilterMode::kOff, std::string_view("off")}};
 }
 
 constexpr auto names_of(ImageSampling) {
   return std::array{EnumName<ImageSampling>{ImageSampling::kBilinear, std::string_view("bilinear")},
                     EnumName<ImageSampling>{ImageSampling::kNearest, std::string_view("nearest")}};
+}
+
+constexpr auto names_of(TextureViews) {
+  return std::array{EnumName<TextureViews>{TextureViews::kFirst, std::string_view("first")},
+                    EnumName<TextureViews>{TextureViews::kMean, std::string_view("mean")}};
 }
 
 inline constexpr int kMaxCameras = 10;
@@ -102,6 +108,11 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
     if (!slices.empty()) o.camera_slices[camera] = std::move(slices);
   }
 
+  visit("surface.spacing", o.surface.spacing);
+  visit("surface.max_edge", o.surface.max_edge);
+  visit("surface.planar_edge", o.surface.planar_edge);
+  visit("surface.planar_angle", Degrees{o.surface.planar_angle});
+
   visit("upsample.rate", o.upsample.rate);
   visit("upsample.max_edge", o.upsample.max_edge);
 
@@ -111,6 +122,8 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("ray_filter.occluding_test", o.ray_filter.occluding_test);
   visit("ray_filter.occluded_test", o.ray_filter.occluded_test);
 
+  visit("texture.views", o.texture.views);
+  visit("texture.footprint", o.texture.footprint);
   visit("texture.sampling", o.texture.sampling);
 
   visit("moving.remove", o.moving.remove);

@@ -4,13 +4,18 @@
 #include <limits>
 
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/texture.h"
+#include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/foveal_query.h"
+#include "fovea/pipeline/map_colors.h"
 #include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
 namespace {
+
+/// Samples lie at most this far beyond the foveal region (m).
+constexpr double kMargin = 1.0;
+constexpr double kFinestSpacing = 0.005;  // m
 
 double as_figure(std::size_t count) { return static_cast<double>(count); }
 
@@ -54,7 +59,8 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       refiner_(options.refinement, drive.calibration.cameras),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
       moving_things_(options.moving),
-      map_(options.tile_size) {
+      map_(options.tile_size),
+      occupancy_(options.tile_size, std::max(options.surface.spacing, kFinestSpacing)) {
   options.validate();
 }
 
@@ -166,40 +172,83 @@ void Mapper::settle(std::vector<FrameRecord>& records) const {
   }
 }
 
+PointCloud Mapper::foveal_part(const PointCloud& scan_lidar, const FovealRegion& region,
+                               FrameRecord& record, StageClock& clock) const {
+  const Camera& camera = region.camera();
+  PointCloud foveal_cam = clock.time("fovea", [&] {
+    const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
+    return points_cam.select(foveal_points(points_cam, region));
+  });
+  record.figures["points_foveal"] += as_figure(foveal_cam.size());
+  if (options_.ray_filter.mode != RayFilterMode::kScan) return foveal_cam;
+  return clock.time("filter", [&] {
+    const ScanProjection projection(scan_lidar, camera);
+    std::vector<std::uint32_t> seen;
+    for (std::uint32_t i = 0; i < foveal_cam.size(); ++i) {
+      const Eigen::Vector3d p = foveal_cam.position[i].cast<double>();
+      if (!projection.hidden(camera.project(p).value(), p.norm())) seen.push_back(i);
+    }
+    record.figures["filter_hidden"] += as_figure(foveal_cam.size() - seen.size());
+    return foveal_cam.select(seen);
+  });
+}
+
+PointCloud Mapper::densified(const PointCloud& foveal_cam, const Camera& camera,
+                             const RigidMotion& T_local_cam, StageClock& clock) {
+  return clock.time("upsample", [&] {
+    if (options_.surface.spacing == 0) return upsample(foveal_cam, camera, options_.upsample);
+    occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
+    const SampleGrid grid{map_.submaps().back().T_local_submap.inverse() * T_local_cam,
+                          occupancy_.cell(),
+                          [&](const Eigen::Vector3d& p_grid) { return occupancy_.taken(p_grid); }};
+    return sample_surfaces(foveal_cam, camera, options_.surface, grid);
+  });
+}
+
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
                         const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
   const Camera& camera = cameras_[camera_slot];
   const FovealRegion region(foveal_options_of(options_, camera.index), camera);
-  const PointCloud foveal_cam = clock.time("fovea", [&] {
-    const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
-    return points_cam.select(foveal_points(points_cam, region));
-  });
-  PointCloud dense_cam =
-      clock.time("upsample", [&] { return upsample(foveal_cam, camera, options_.upsample); });
+  const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
+  const PointCloud foveal_cam = foveal_part(scan_lidar, region, record, clock);
+  PointCloud dense_cam = densified(foveal_cam, camera, T_local_cam, clock);
   const std::size_t oblique = clock.time(
       "fovea", [&] { return limit_incidence(dense_cam, options_.foveal.max_incidence); });
+  record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
+  record.figures["points_oblique"] += as_figure(oblique);
 
-  const std::vector<Ray> accumulated =
-      clock.time("filter", [&] { return map_rays(map_, region, T_local_lidar); });
   PointCloud visible_cam = clock.time("filter", [&] {
+    if (options_.ray_filter.mode != RayFilterMode::kPaper) return std::move(dense_cam);
+    const std::vector<Ray> accumulated = map_rays(map_, region, T_local_lidar);
+    record.figures["points_map_in_view"] += as_figure(accumulated.size());
     const auto verdicts =
         ray_filter_.filter(rays_of(dense_cam, camera), accumulated, camera, options_.ray_filter);
     return keep_visible(dense_cam, verdicts, record.figures);
   });
   clock.time("texture", [&] {
-    colour_points(visible_cam, {frame.images[camera_slot], camera, frame.index}, options_.texture);
+    if (options_.texture.views == TextureViews::kFirst) {
+      colour_points(visible_cam, {frame.images[camera_slot], camera, frame.index},
+                    options_.texture);
+      return;
+    }
+    const ImagePyramid image(frame.images[camera_slot]);
+    const MapView view{image, region, T_local_cam.inverse(), frame.index,
+                       options_.texture.footprint};
+    record.figures["points_recoloured"] +=
+        as_figure(recolour(map_, view, visible_cam, T_local_lidar.translation()));
+    colour_new_points(visible_cam, view);
   });
-  PointCloud added_local = transform_cloud(
-      visible_cam, T_local_lidar * camera.T_cam_lidar.inverse(), T_local_lidar.translation());
+  PointCloud added_local = transform_cloud(visible_cam, T_local_cam, T_local_lidar.translation());
   if (options_.moving.remove) {
     added_local = clock.time("filter", [&] { return keep_still(added_local, record.figures); });
   }
-  clock.time("store", [&] { map_.add(added_local); });
-
-  record.figures["points_foveal"] += as_figure(foveal_cam.size());
-  record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
-  record.figures["points_oblique"] += as_figure(oblique);
-  record.figures["points_map_in_view"] += as_figure(accumulated.size());
+  clock.time("store", [&] {
+    // The cells' record of the map must not miss what goes before the next frame.
+    map_.add(added_local);
+    if (options_.surface.spacing > 0) {
+      occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
+    }
+  });
   record.figures["points_added"] += as_figure(added_local.size());
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/map/occupancy.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/pipeline/mapper_options.h"
@@ -64,6 +65,13 @@ class Mapper {
   void replay(const PointCloud& scan, const FrameRecord& record, bool looked_at);
   void map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera,
                   const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
+  /// The points of a scan in the foveal region; where the ray filter says so, without those that
+  /// other points hide from the camera.
+  PointCloud foveal_part(const PointCloud& scan_lidar, const FovealRegion& region,
+                         FrameRecord& record, StageClock& clock) const;
+  /// The foveal points and what is sampled between them.
+  PointCloud densified(const PointCloud& foveal_cam, const Camera& camera,
+                       const RigidMotion& T_local_cam, StageClock& clock);
   PointCloud keep_still(const PointCloud& points_local,
                         std::map<std::string, double>& figures) const;
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
@@ -78,6 +86,7 @@ class Mapper {
   RayFilter ray_filter_;
   MovingThings moving_things_;
   TileMap map_;
+  Occupancy occupancy_;
   /// Where the cameras were when the images of the frame at hand were taken.
   std::vector<Camera> cameras_;
 };

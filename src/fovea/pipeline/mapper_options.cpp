@@ -57,6 +57,8 @@ void MapperOptions::validate() const {
   upsample.validate();
   ray_filter.validate();
   moving.validate();
+  surface.validate();
+  texture.validate();
   fusion.validate();
   if (!(tile_size >= 0.5 && tile_size <= 100)) {
     reject("a size is out of range", "map.tile_size", "give metres from 0.5 to 100");
@@ -96,12 +98,15 @@ void apply_variant(std::string_view name, MapperOptions& options) {
   options.refinement.voxel = 0;
   options.refinement.visible_only = !baseline;
   options.refinement.upsample_rate = baseline ? 0 : number % 4;
+  options.surface.spacing = 0;
   options.upsample.rate = options.refinement.upsample_rate;
 
   options.foveal_enabled = !baseline;
-  options.foveal = FovealOptions{};  // white zone 3-15 m, whole camera view, no incidence limit
+  options.foveal = FovealOptions{};  // whole camera view, no incidence limit
+  options.foveal.far_range = 15;
   options.camera_slices.clear();
   options.ray_filter = RayFilterOptions{};  // paper mode, M = 5, c = 2
+  options.texture.views = TextureViews::kFirst;
   if (baseline) options.ray_filter.mode = RayFilterMode::kOff;
   options.moving.remove = false;
   options.fusion.enabled = false;

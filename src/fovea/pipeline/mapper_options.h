@@ -11,6 +11,7 @@
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
+#include "fovea/mapping/surface_samples.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/fusion.h"
@@ -51,9 +52,10 @@ struct MapperOptions {
   FovealOptions foveal;
   /// Slices of single cameras by number, in place of foveal.slices.
   std::map<int, std::vector<AngularSlice>> camera_slices;
-  UpsampleOptions upsample;
-  RayFilterOptions ray_filter;
-  TextureOptions texture;
+  SurfaceOptions surface;
+  UpsampleOptions upsample;  ///< where surface.spacing is 0, as in the paper
+  RayFilterOptions ray_filter{.mode = RayFilterMode::kScan};
+  TextureOptions texture{.views = TextureViews::kMean};
   MovingOptions moving;
   FusionOptions fusion;
   bool check_calibration = true;  ///< look at edges of a few frames (pipeline/self_calibration.h)

@@ -46,6 +46,7 @@ const SyntheticDrive& street() {
 // Noise-free scans at true poses, nothing interpolated: what remains is frames and half pixels.
 TEST(Mapper, TruePosesGiveTheTrueSurfaceAndColours) {
   MapperOptions options;
+  options.surface.spacing = 0;
   options.upsample.rate = 0;
   Mapper mapper(street().info(), options, PoseSource::kNavigation);
   map_frames(mapper, street(), 0, 4);
@@ -81,7 +82,7 @@ TEST(Mapper, OnlyTheWhiteZoneIsTextured) {
   for (const MapPoint& point : points_of(mapper.map())) {
     const double range = (street().T_local_lidar[0].inverse() * point.p_local).norm();
     ASSERT_GT(range, 2.7);  // an interpolated point may lie a little inside its triangle's chord
-    ASSERT_LT(range, 15.0);
+    ASSERT_LT(range, 18.0);
   }
 }
 

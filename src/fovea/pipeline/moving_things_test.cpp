@@ -41,6 +41,9 @@ PointCloud face_points(float x, int frame) {
   points.frame.assign(n, frame);
   points.camera.assign(n, 2);
   points.interpolated.assign(n, 0);
+  points.views.assign(n, 1);
+  points.spread.assign(n, 0);
+  points.weight.assign(n, 1);
   return points;
 }
 

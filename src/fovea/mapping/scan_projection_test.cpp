@@ -1,6 +1,6 @@
 // A box before a wall, seen by a LiDAR and by a camera beside it: which points the camera sees is
 // known exactly.
-#include "fovea/evaluation/scan_projection.h"
+#include "fovea/mapping/scan_projection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fovea/evaluation/scan_projection.h"
+#include "fovea/mapping/scan_projection.h"
 
 #include <algorithm>
 #include <cmath>

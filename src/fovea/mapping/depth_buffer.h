@@ -1,0 +1,32 @@
+// What stands in front, as a camera sees it: the nearest depth by pixel of surface samples.
+#pragma once
+
+#include <vector>
+
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+/// At half the image's resolution: what it decides is a matter of samples, not of pixels.
+class DepthBuffer {
+ public:
+  /// A surface this far behind the front one is not taken for the same: metres, and share of depth.
+  static constexpr float kBehind = 0.1f, kBehindShare = 0.02f;
+
+  explicit DepthBuffer(const Camera& camera);
+
+  /// Puts a sample into the buffer.
+  /// @param pixel   projection, inside the image
+  /// @param depth   m along the optical axis
+  /// @param radius  of the surface that the sample stands for, pixels of the image
+  void add(const Eigen::Vector2f& pixel, float depth, float radius);
+
+  /// Whether something added stands in front of a point there.
+  bool hides(const Eigen::Vector2f& pixel, float depth) const;
+
+ private:
+  int width_, height_;
+  std::vector<float> depth_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,246 @@
+#include "fovea/mapping/surface_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/geometry/cell_brick.h"
+#include "fovea/mapping/image_mesh.h"
+
+namespace fovea {
+namespace {
+
+using Vertices = DelaunayTriangulation::Vertices;
+constexpr std::size_t kGrain = 512;  // triangles
+/// Rounds of averaging normals over neighbours: ranges are noisy, and triangles small.
+constexpr int kSmoothing = 2;
+
+/// The triangles that are surface, and its normals at their corners.
+struct Surface {
+  ImageMesh mesh;
+  std::vector<Vertices> triangles;
+  std::vector<Eigen::Vector3f> area;    // by triangle: its normal, as long as twice its area
+  std::vector<Eigen::Vector3f> normal;  // by vertex; zero without a triangle
+};
+
+std::size_t neighbor(const ImageMesh& mesh, std::size_t triangle, int corner) {
+  return static_cast<std::size_t>(mesh.triangulation.neighbor(triangle, corner));
+}
+
+/// Normals of all triangles that may be surface, each with its neighbours': areas as vectors, whose
+/// noise is that of the rim alone. Zero for the others.
+std::vector<Eigen::Vector3f> patch_normals(const ImageMesh& mesh,
+                                           const std::vector<Eigen::Vector3f>& area) {
+  std::vector<Eigen::Vector3f> patch(area.size(), Eigen::Vector3f::Zero());
+  for (std::size_t t = 0; t < area.size(); ++t) {
+    if (area[t].isZero(0)) continue;
+    patch[t] = area[t];
+    for (int corner = 0; corner < 3; ++corner) patch[t] += area[neighbor(mesh, t, corner)];
+    patch[t] = unit_or_zero(patch[t]);
+  }
+  return patch;
+}
+
+void find_triangles(const GridProjection& project, const SurfaceOptions& options,
+                    Surface& surface) {
+  const ImageMesh& mesh = surface.mesh;
+  const auto squared = [](double edge) { return static_cast<float>(edge * edge); };
+  const float longest = squared(std::max(options.max_edge, options.planar_edge));
+  std::vector<Eigen::Vector3f> area(mesh.triangulation.triangle_count(), Eigen::Vector3f::Zero());
+  for (std::size_t t = 0; t < area.size(); ++t) {
+    if (!mesh.triangulation.is_finite(t)) continue;
+    const Vertices& corners = mesh.triangulation.vertices(t);
+    if (mesh.edges_below(corners, longest)) area[t] = mesh.area_normal(corners, project);
+  }
+  const std::vector<Eigen::Vector3f> patch = patch_normals(mesh, area);
+  const auto cos_angle = static_cast<float>(std::cos(options.planar_angle));
+  const auto is_flat = [&](std::size_t t) {
+    return patch[t].dot(patch[neighbor(mesh, t, 0)]) > cos_angle &&
+           patch[t].dot(patch[neighbor(mesh, t, 1)]) > cos_angle &&
+           patch[t].dot(patch[neighbor(mesh, t, 2)]) > cos_angle;
+  };
+  for (std::size_t t = 0; t < area.size(); ++t) {
+    if (area[t].isZero(0)) continue;
+    const Vertices& corners = mesh.triangulation.vertices(t);
+    if (!mesh.edges_below(corners, squared(options.max_edge)) && !is_flat(t)) continue;
+    surface.triangles.push_back(corners);
+    surface.area.push_back(area[t]);
+  }
+}
+
+void find_normals(Surface& surface) {
+  std::vector<Eigen::Vector3f>& normal = surface.normal;
+  normal.assign(surface.mesh.position.size(), Eigen::Vector3f::Zero());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const std::int32_t corner : surface.triangles[t]) normal[corner] += surface.area[t];
+  }
+  for (Eigen::Vector3f& n : normal) n = unit_or_zero(n);
+  for (int round = 0; round < kSmoothing; ++round) {
+    std::vector<Eigen::Vector3f> sum = normal;
+    for (const auto& [a, b, c] : surface.triangles) {
+      const Eigen::Vector3f together = normal[a] + normal[b] + normal[c];
+      for (const std::int32_t corner : {a, b, c}) sum[corner] += together;
+    }
+    for (std::size_t v = 0; v < sum.size(); ++v) normal[v] = unit_or_zero(sum[v]);
+  }
+}
+
+Eigen::Vector3f normal_of(const Surface& surface, std::size_t triangle) {
+  const auto& [a, b, c] = surface.triangles[triangle];
+  return unit_or_zero(surface.normal[a] + surface.normal[b] + surface.normal[c]);
+}
+
+/// Calls f(p) at the centres of cells that fall onto a triangle when looked at along `axis`.
+template <class F>
+void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, int axis, double cell, F&& f) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  if (!(std::abs(n[axis]) > 1e-3 * n.norm())) return;  // seen from its edge
+  const double slope_u = -n[u] / n[axis], slope_v = -n[v] / n[axis];
+  const auto first_center = [&](double low) { return std::ceil(low / cell - 0.5); };
+  const auto [v_low, v_high] = std::minmax({corner[0][v], corner[1][v], corner[2][v]});
+  const double rows = first_center(v_high);
+  for (double row = first_center(v_low); row < rows; ++row) {
+    const double at_v = (row + 0.5) * cell;
+    double u_low = std::numeric_limits<double>::infinity(), u_high = -u_low;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d &a = corner[i], &b = corner[(i + 1) % 3];
+      if ((a[v] <= at_v) == (b[v] <= at_v)) continue;
+      const double crossing = a[u] + (at_v - a[v]) / (b[v] - a[v]) * (b[u] - a[u]);
+      u_low = std::min(u_low, crossing);
+      u_high = std::max(u_high, crossing);
+    }
+    const double columns = first_center(u_high);
+    for (double column = first_center(u_low); column < columns; ++column) {
+      Eigen::Vector3d p;
+      p[u] = (column + 0.5) * cell;
+      p[v] = at_v;
+      p[axis] = corner[0][axis] + slope_u * (p[u] - corner[0][u]) + slope_v * (p[v] - corner[0][v]);
+      f(p);
+    }
+  }
+}
+
+struct Sample {
+  Eigen::Vector3d p_grid;
+  std::uint32_t triangle;
+};
+
+/// By chunks of triangles.
+std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const SampleGrid& grid) {
+  const std::size_t count = surface.triangles.size();
+  std::vector<std::vector<Sample>> chunks((count + kGrain - 1) / kGrain);
+  const Eigen::Matrix3f R_grid_cam = grid.T_grid_cam.linear().cast<float>();
+  parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      std::array<Eigen::Vector3d, 3> corner;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto vertex = static_cast<std::size_t>(surface.triangles[t][i]);
+        corner[i] = grid.T_grid_cam * surface.mesh.position[vertex].cast<double>();
+      }
+      Eigen::Index axis;
+      (R_grid_cam * normal_of(surface, t)).cwiseAbs().maxCoeff(&axis);
+      for_each_center(corner, static_cast<int>(axis), grid.cell, [&](const Eigen::Vector3d& p) {
+        if (grid.taken(p)) return;
+        chunks[begin / kGrain].push_back({p, static_cast<std::uint32_t>(t)});
+      });
+    }
+  });
+  return chunks;
+}
+
+/// Gathers points whose cells are free.
+class FreeCells {
+ public:
+  explicit FreeCells(const SampleGrid& grid) : grid_(grid) {}
+  /// Whether nothing gathered before lies in the cell.
+  bool claim(const Eigen::Vector3d& p_grid) {
+    return cells_.mark((p_grid.array() / grid_.cell).floor().cast<int>());
+  }
+  bool claim_untaken(const Eigen::Vector3d& p_grid) {
+    return !grid_.taken(p_grid) && claim(p_grid);
+  }
+
+ private:
+  const SampleGrid& grid_;
+  CellSet cells_;
+};
+
+PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
+                           const SampleGrid& grid, FreeCells& cells) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
+    if (cells.claim_untaken(grid.T_grid_cam * points_cam.position[i].cast<double>())) {
+      kept.push_back(i);
+    }
+  }
+  PointCloud points = points_cam.select(kept);
+  points.normal.clear();
+  for (const std::uint32_t i : kept) {
+    const std::int32_t vertex = surface.mesh.vertex_of_point[i];
+    points.normal.push_back(vertex == ImageMesh::kNoVertex
+                                ? Eigen::Vector3f::Zero()
+                                : surface.normal[static_cast<std::size_t>(vertex)]);
+  }
+  points.interpolated.assign(kept.size(), 0);
+  return points;
+}
+
+float mean_intensity(const PointCloud& points, const Surface& surface, std::size_t triangle) {
+  float sum = 0;
+  for (const std::int32_t vertex : surface.triangles[triangle]) {
+    sum += points.intensity[surface.mesh.point_of_vertex[static_cast<std::size_t>(vertex)]];
+  }
+  return sum / 3;
+}
+
+}  // namespace
+
+void SurfaceOptions::validate() const {
+  if (!(spacing == 0 || (spacing >= 0.005 && spacing <= 1))) {
+    throw ConfigError("the spacing of samples is out of range", "surface.spacing",
+                      "give metres from 0.005 to 1, or 0 for the paper's upsampling");
+  }
+  for (const auto& [edge, key] :
+       {std::pair(max_edge, "surface.max_edge"), std::pair(planar_edge, "surface.planar_edge")}) {
+    if (!(edge > 0 && edge <= 100)) {
+      throw ConfigError("the longest edge of a triangle is out of range", key,
+                        "give metres above 0 and up to 100");
+    }
+  }
+  if (!(planar_angle >= 0 && planar_angle <= 1.5707963267948966)) {
+    throw ConfigError("an angle is out of range", "surface.planar_angle", "give 0 to 90 degrees");
+  }
+}
+
+PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
+                           const SurfaceOptions& options, const SampleGrid& grid) {
+  options.validate();
+  points_cam.check();
+  const GridProjection project(camera, points_cam.origin);
+  Surface surface{ImageMesh(points_cam, project), {}, {}, {}};
+  find_triangles(project, options, surface);
+  find_normals(surface);
+  const std::vector<std::vector<Sample>> samples = sample_triangles(surface, grid);
+
+  FreeCells cells(grid);
+  PointCloud points = measured_points(points_cam, surface, grid, cells);
+  const RigidMotion T_cam_grid = grid.T_grid_cam.inverse();
+  for (const std::vector<Sample>& chunk : samples) {
+    for (const Sample& sample : chunk) {
+      if (!cells.claim(sample.p_grid)) continue;
+      points.position.push_back((T_cam_grid * sample.p_grid).cast<float>());
+      points.normal.push_back(normal_of(surface, sample.triangle));
+      points.interpolated.push_back(1);
+      if (!points_cam.intensity.empty()) {
+        points.intensity.push_back(mean_intensity(points_cam, surface, sample.triangle));
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace fovea

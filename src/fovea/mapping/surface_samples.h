@@ -1,0 +1,45 @@
+// Samples of the surfaces that a camera sees, on a regular grid: as finely as the map is to be
+// (goes past the paper; docs/method.md 3).
+#pragma once
+
+#include <functional>
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+struct SurfaceOptions {
+  double spacing = 0.02;     ///< of the samples, m; 0: the paper's upsampling in their place
+  double max_edge = 0.3;     ///< tau: a triangle of shorter edges is surface (m)
+  double planar_edge = 1.0;  ///< longest edge where the surface is flat (m)
+  double planar_angle = 0.3490658503988659;  ///< between normals of neighbours there, rad
+  void validate() const;                     ///< ConfigError that names the field
+};
+
+/// The grid that samples lie on.
+struct SampleGrid {
+  RigidMotion T_grid_cam;
+  double cell = 0;  ///< edge of its cubes, m
+  /// Whether there is a point already in the cell of this one; called from many threads.
+  std::function<bool(const Eigen::Vector3d& p_grid)> taken;
+};
+
+/// Samples the triangles between the projected points (2D Delaunay, as upsample() has them).
+///
+/// A triangle is surface if its edges are shorter than max_edge. Rings of a LiDAR fall onto the far
+/// ground more than that apart: one of edges up to planar_edge is surface, too, if it and its three
+/// neighbours lie in a plane. At an edge of depth one of the three does not: it belongs to what is
+/// before or behind the gap.
+///
+/// Each triangle is looked at along the axis of the grid nearest to its normal, and sampled where
+/// centres of cells fall onto it: samples of all frames and triangles have the same places.
+///
+/// @param points_cam  camera frame, origin 0, all more than Camera::kMinDepth in front of it
+/// @return the input points, in their order, then the samples (intensity: mean of the corners'),
+///         without those in taken cells, and one for each cell; columns as upsample() gives them,
+///         and normals smoothed over neighbouring triangles
+PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
+                           const SurfaceOptions& options, const SampleGrid& grid);
+
+}  // namespace fovea
