@@ -152,7 +152,7 @@ Model make_car(const Palette& palette, int body, int plate) {
     for (const double y : {-track, track}) add_wheel(make, palette, x, y, radius);
   }
   add_trim(make, palette, stations, plate);
-  return {"car", make.take(), 3.4};
+  return {"car", make.take(), 3.4, body == 2 ? "Van" : "Car"};
 }
 
 }  // namespace fovea

@@ -295,7 +295,7 @@ TEST(LidarModel, MovingThingsAreMetWhereTheyAreWhenTheBeamFires) {
   drive.material(0.5f);
   MeshBuilder make;
   make.box({-1, -4, 0}, {1, 4, 3});
-  drive.scenery.add(Model{"lorry", make.take(), 6});
+  drive.scenery.add(Model{"lorry", make.take(), 6, {}});
   drive.scenery.moving = [=](double time, double /*way*/) {
     Placement lorry;
     lorry.T_world_model.translation() = Vector3d(kAt, 1 + kSpeed * time, 0);

@@ -31,7 +31,7 @@ Model make_lamp(const Palette& p) {
   make.box({-0.14, 1.3, 6.44}, {0.14, 1.9, 6.56});
   make.material = p.headlight;
   make.box({-0.10, 1.36, 6.41}, {0.10, 1.84, 6.44});
-  return {"lamp post", make.take(), 7.2};
+  return {"lamp post", make.take(), 7.2, {}};
 }
 
 Model make_bin(const Palette& p) {
@@ -41,7 +41,7 @@ Model make_bin(const Palette& p) {
   make.material = p.dark_metal;
   make.box({-0.31, -0.31, 1.02}, {0.31, 0.31, 1.09});
   make.bar({-0.22, -0.33, 0.09}, {-0.22, 0.33, 0.09}, 0.08, 0.08, 10);
-  return {"bin", make.take(), 1.3};
+  return {"bin", make.take(), 1.3, {}};
 }
 
 Model make_bollard(const Palette& p) {
@@ -52,7 +52,7 @@ Model make_bollard(const Palette& p) {
   make.bar({0, 0, 0.72}, {0, 0, 0.82}, 0.063, 0.063, 10);
   make.material = p.dark_metal;
   make.ball({0, 0, 0.92}, {0.075, 0.075, 0.07}, 10);
-  return {"bollard", make.take(), 1.1};
+  return {"bollard", make.take(), 1.1, {}};
 }
 
 Model make_bench(const Palette& p) {
@@ -66,7 +66,7 @@ Model make_bench(const Palette& p) {
     make.box({x - 0.03, -0.22, 0}, {x + 0.03, 0.28, 0.44});
     make.box({x - 0.03, 0.30, 0.2}, {x + 0.03, 0.34, 0.95});
   }
-  return {"bench", make.take(), 1.5};
+  return {"bench", make.take(), 1.5, {}};
 }
 
 Model make_hydrant(const Palette& p) {
@@ -75,7 +75,7 @@ Model make_hydrant(const Palette& p) {
   make.bar({0, 0, 0}, {0, 0, 0.6}, 0.12, 0.11, 12);
   make.ball({0, 0, 0.62}, {0.13, 0.13, 0.14}, 12);
   make.bar({-0.2, 0, 0.42}, {0.2, 0, 0.42}, 0.06, 0.06, 10);
-  return {"hydrant", make.take(), 0.9};
+  return {"hydrant", make.take(), 0.9, {}};
 }
 
 Model make_table(const Palette& p) {
@@ -93,14 +93,14 @@ Model make_table(const Palette& p) {
         make.bar({x + dx, y, 0}, {x + dx, y, 0.42}, 0.015, 0.015, 5);
     }
   }
-  return {"cafe table", make.take(), 1.4};
+  return {"cafe table", make.take(), 1.4, {}};
 }
 
 Model make_planter(const Palette& p) {
   MeshBuilder make;
   make.material = p.wood;
   make.box({-0.6, -0.25, 0}, {0.6, 0.25, 0.45});
-  Model planter{"planter", make.take(), 1.5};
+  Model planter{"planter", make.take(), 1.5, {}};
   for (const double x : {-0.3, 0.3}) {
     Eigen::Affine3d T(Eigen::Translation3d(x, 0, 0.4));
     T.scale(0.5);
@@ -122,7 +122,7 @@ Model make_sign(const Palette& p, std::size_t name) {
   make.box({0.05, -0.16, 2.42}, {0.054, 0.16, 2.48});
   make.material = p.street_signs[name % p.street_signs.size()];
   add_board(make, {0.04, 0, 1.85}, kStreetSign);
-  return {"sign", make.take(), 3.0};
+  return {"sign", make.take(), 3.0, {}};
 }
 
 Model make_fence(const Palette& p) {
@@ -134,7 +134,7 @@ Model make_fence(const Palette& p) {
     make.box({x - 0.008, -0.008, 0.05}, {x + 0.008, 0.008, 1.15});
   }
   make.box({-0.03, -0.03, 0}, {0.03, 0.03, 1.2});
-  return {"fence", make.take(), 2.5};
+  return {"fence", make.take(), 2.5, {}};
 }
 
 Model make_fountain(const Palette& p) {
@@ -155,7 +155,7 @@ Model make_fountain(const Palette& p) {
   make.ball({0, 0, 2.5}, {0.5, 0.5, 0.5}, 20);
   make.material = p.glass;  // water
   make.bar({0, 0, 0}, {0, 0, 0.3}, 2.7, 2.7, kSides);
-  return {"fountain", make.take(), 4.2};
+  return {"fountain", make.take(), 4.2, {}};
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ Model make_pedestrian(const Palette& palette, int variant) {
   add_leg(make, palette, hips + Vector3d(0, -0.10, 0), {-0.1 * stride, -0.10, 0.48},
           {-stride, -0.10, 0.06});
   add_upper_body(make, palette, hips, 0.03, {0.10, 0.28, 0.0});
-  return {"pedestrian", make.take(), 2.0};
+  return {"pedestrian", make.take(), 2.0, "Pedestrian"};
 }
 
 Model make_cyclist(const Palette& palette, int /*variant*/) {
@@ -81,7 +81,7 @@ Model make_cyclist(const Palette& palette, int /*variant*/) {
   add_leg(make, palette, hips + Vector3d(0, 0.10, 0), {0.22, 0.11, 0.80}, {0.05, 0.11, 0.42});
   add_leg(make, palette, hips + Vector3d(0, -0.10, 0), {0.16, -0.11, 0.62}, {-0.05, -0.11, 0.22});
   add_upper_body(make, palette, hips, 0.28, {0.56, 0.24, 0.03});
-  return {"cyclist", make.take(), 2.2};
+  return {"cyclist", make.take(), 2.2, "Cyclist"};
 }
 
 }  // namespace fovea

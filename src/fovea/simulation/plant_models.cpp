@@ -56,7 +56,7 @@ Model make_tree(const Palette& palette, int variant) {
   for (const auto& [center, size] : balls) {
     add_leaves(make, random, center, size, static_cast<int>(260 * size * size), 0.13, leaf);
   }
-  return {"tree", make.take(), 7.5};
+  return {"tree", make.take(), 7.5, {}};
 }
 
 Model make_bush(const Palette& palette, int variant) {
@@ -73,7 +73,7 @@ Model make_bush(const Palette& palette, int variant) {
     const Vector3d center(random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), 0.45);
     add_leaves(make, random, center, 0.45, 150, 0.06, leaf);
   }
-  return {"bush", make.take(), 1.6};
+  return {"bush", make.take(), 1.6, {}};
 }
 
 }  // namespace fovea

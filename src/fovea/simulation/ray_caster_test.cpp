@@ -203,7 +203,7 @@ class LivelyYard : public Yard {
     make.material = Palette::kPaint;
     make.box({-1, -0.5, 0}, {1, 0.5, 1});
     make.material = 0;
-    add(Model{"crate", make.take(), 1.5});
+    add(Model{"crate", make.take(), 1.5, {}});
     moving = [](double time, double /*way*/) {
       Placement crate;
       crate.T_world_model.translation() = kFar + Vector3d(3 * time, -15, 0.5);

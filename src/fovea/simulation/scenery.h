@@ -21,6 +21,7 @@ struct Model {
   std::string kind;   ///< "parked car", "tree", ...
   TriangleMesh mesh;  ///< surface ids are the placement's
   double radius = 0;  ///< of a ball around the origin that holds it (m)
+  std::string label;  ///< what KITTI's tracklets call it ("Car", ...); empty where they do not
 };
 
 /// A model put somewhere.
@@ -38,6 +39,7 @@ TriangleMesh placed_mesh(const Model& model, const Placement& placement);
 struct Chunk {
   TriangleMesh mesh_world;
   std::map<std::uint32_t, std::string> surfaces;  ///< kind of each surface id in it
+  std::vector<Placement> standing;                ///< the models in it that have a label
 };
 
 /// Where a chunk lies, known before it is built.

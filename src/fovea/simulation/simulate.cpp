@@ -11,6 +11,7 @@
 #include "fovea/simulation/drive_writer.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/simulation_config.h"
+#include "fovea/simulation/tracklet_labels.h"
 #include "fovea/simulation/world_export.h"
 
 namespace fovea {
@@ -48,7 +49,8 @@ class Simulation {
         motion_(scenery_->path(), scenery_->lane_offset(), options.vehicle, options.seed),
         rig_(make_rig(options)),
         caster_(*scenery_),
-        shader_(caster_, options.light) {
+        shader_(caster_, options.light),
+        labels_(*scenery_, motion_, rig_) {
     T_world_local_.translation() = T_world_lidar(0).translation();
     camera_poses_.resize(rig_.cameras.size());
     exposures_.resize(rig_.cameras.size());
@@ -63,6 +65,7 @@ class Simulation {
 
     const SimulatedScan scan =
         simulate_scan(caster_, motion_, rig_, options_.lidar, options_.seed, frame, time);
+    labels_.add(frame, time, scan, caster_);
     std::vector<Picture> pictures;
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k)
       pictures.push_back(picture(k, frame, time));
@@ -72,6 +75,7 @@ class Simulation {
   std::filesystem::path finish() {
     write_drive_texts(rig_, simulate_navigation(motion_, rig_, T_world_local_, options_), options_,
                       writer_);
+    writer_.write_text("tracklet_labels.xml", tracklets_text(labels_.tracks()));
     write_truth_texts();
     write_world(export_world(*scenery_, chunks_, T_world_local_.inverse()), writer_.truth_folder());
     return writer_.finish();
@@ -159,6 +163,7 @@ class Simulation {
   Rig rig_;
   RayCaster caster_;
   Shader shader_;
+  TrackletLabels labels_;
   RigidMotion T_world_local_ = RigidMotion::Identity();
   std::set<std::uint32_t> chunks_;  // seen so far
   std::string lidar_poses_;

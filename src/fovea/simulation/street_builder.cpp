@@ -65,6 +65,7 @@ class StreetMaker {
         begin_surface(kind != nullptr ? kind : models_.models[model].kind.c_str());
     const Placement placement{model, axis_.frame(begin_ + s, d, z, turn), paint, surface};
     make_.append(placed_mesh(models_.models[model], placement));
+    if (!models_.models[model].label.empty()) chunk_.standing.push_back(placement);
   }
 
   /// A strip of ground from d0 to d1 (d0 < d1), its texture (across, along) the street.

@@ -42,7 +42,7 @@ class TestScenery : public Scenery {
   }
   Chunk chunk(std::uint32_t id) const override {
     ++built;
-    return {chunks_.at(id).second, {}};
+    return {chunks_.at(id).second, {}, {}};
   }
   std::vector<Placement> movers(double time, double way) const override {
     return moving ? moving(time, way) : std::vector<Placement>{};
