@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
+#include "app/html_report/truth_page.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/compare_color_rules.h"
@@ -41,9 +42,6 @@ void check(const EvaluateArguments& arguments) {
   }
   if (arguments.color_rules && arguments.protocol != "held-out") {
     throw CLI::ValidationError("--color-rules", "only the protocol held-out compares them");
-  }
-  if (arguments.truth && !arguments.html.empty()) {
-    throw CLI::ValidationError("--html", "the page shows scans' scores, not the truth's");
   }
 }
 
@@ -91,7 +89,14 @@ void run(EvaluateArguments arguments) {
     drive = with_stored_calibration(std::move(drive), meta, calibration);
   }
   if (arguments.truth) {
-    put_report(evaluate_truth(map, *drive, {.align = !arguments.no_align}), json);
+    const TruthEvaluation evaluation =
+        evaluate_truth_points(map, *drive, {.align = !arguments.no_align});
+    put_report(evaluation.report, json);
+    if (html) {
+      html->stream() << truth_page(
+          {map, *drive, evaluation, name_of(arguments.map), name_of(drive->info().path)});
+      html->commit();
+    }
   } else {
     EvaluationReport report = evaluate(map, *drive, options);
     report.calibration = calibration;

@@ -10,18 +10,13 @@
 
 #include "app/html_report/charts.h"
 #include "app/html_report/markup.h"
+#include "app/html_report/page_layout.h"
 #include "app/html_report/trajectory_chart.h"
 
 namespace fovea::app {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::string panel(const std::string& title, const std::string& text, const std::string& chart) {
-  if (chart.empty()) return "";
-  return fmt::format("<div class=\"panel\"><h3>{}</h3><p class=\"note\">{}</p>\n{}</div>\n",
-                     escaped(title), text, chart);
-}
 
 /// A figure of every view, a series a camera.
 Chart by_frame(const EvaluationReport& report, const std::string& name, const std::string& unit,
@@ -72,18 +67,6 @@ Chart latency(const ScoredMap& map, const DriveInfo& drive) {
   return chart;
 }
 
-std::string latency_panel(const ScoredMap& map, const DriveInfo& drive) {
-  const Chart chart = latency(map, drive);
-  if (chart.x.empty()) {
-    return "<div class=\"panel\"><h3>Time of each frame</h3><p class=\"note\">The map does not say "
-           "how long its frames took: only Fovea's own maps do.</p></div>\n";
-  }
-  return panel("Time of each frame",
-               "Wall time of the stages while the map was made. Decoding runs beside the other "
-               "stages; held-out frames end after registration.",
-               stacked_chart(chart));
-}
-
 std::string histogram_panel(const EvaluationReport& report) {
   Histogram histogram;
   histogram.title = "Scored points by TE";
@@ -92,26 +75,40 @@ std::string histogram_panel(const EvaluationReport& report) {
   histogram.width = kTeBin;
   histogram.mean = report.figures.te_mean;
   histogram.median = report.figures.te_median;
-  return panel("How wrong are the colours?",
-               fmt::format("All {} scored points by TE; the last bar is the worst percent.",
-                           count(report.figures.points)),
-               histogram_chart(histogram));
+  return chart_panel("How wrong are the colours?",
+                     fmt::format("All {} scored points by TE; the last bar is the worst percent.",
+                                 count(report.figures.points)),
+                     histogram_chart(histogram));
 }
 
 }  // namespace
 
+std::string latency_panel(const ScoredMap& map, const DriveInfo& drive) {
+  const Chart chart = latency(map, drive);
+  if (chart.x.empty()) {
+    return "<div class=\"panel\"><h3>Time of each frame</h3><p class=\"note\">The map does not say "
+           "how long its frames took: only Fovea's own maps do.</p></div>\n";
+  }
+  return chart_panel(
+      "Time of each frame",
+      "Wall time of the stages while the map was made. Decoding runs beside the other "
+      "stages; held-out frames end after registration.",
+      stacked_chart(chart));
+}
+
 std::string chart_section(const ScoredMap& map, const DriveInfo& drive,
                           const EvaluationReport& report) {
   const bool north_up = drive.origin.has_value() && map.statuses_known;
-  std::string html = panel(
+  std::string html = chart_panel(
       "The drive from above",
       "Refined poses as a line, GPS/INS dashed where the map has it; the scored frames as dots, "
       "darker is better. A dot leads to its picture.",
       trajectory_chart(map.frames, report, north_up));
   html += "<div class=\"pair\" style=\"margin-top:1rem\">\n";
-  html += panel("TE, frame by frame", "Mean difference of colour.",
-                line_chart(by_frame(report, "TE", "", [](const auto& f) { return f.te_mean; })));
-  html += panel(
+  html +=
+      chart_panel("TE, frame by frame", "Mean difference of colour.",
+                  line_chart(by_frame(report, "TE", "", [](const auto& f) { return f.te_mean; })));
+  html += chart_panel(
       "ME, frame by frame", "Mean distance to the nearest map point.",
       line_chart(by_frame(report, "ME", " cm", [](const auto& f) { return 100 * f.me_mean; })));
   html += histogram_panel(report) + latency_panel(map, drive) + "</div>\n";

@@ -13,4 +13,7 @@ namespace fovea::app {
 std::string chart_section(const ScoredMap& map, const DriveInfo& drive,
                           const EvaluationReport& report);
 
+/// Time of the stages of each frame in a box; a sentence where the map does not tell.
+std::string latency_panel(const ScoredMap& map, const DriveInfo& drive);
+
 }  // namespace fovea::app

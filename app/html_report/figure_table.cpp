@@ -112,35 +112,38 @@ const std::map<std::string, const char*>& explanations() {
   return all;
 }
 
-struct Group {
-  const char* key;  ///< in the JSON; "" for what stands at the top
-  const char* title;
-  const char* text;
-};
-constexpr std::array kGroups{
-    Group{"", "All scored points", "Every figure against coloured map points only."},
-    Group{"intervals_95", "95% intervals", "Points of a frame err together, so frames are drawn."},
-    Group{"visible", "Visible points",
-          "Without the points that the camera cannot see because LiDAR and camera stand apart."},
-    Group{"without_moving", "Without what moved",
-          "Without the boxes of objects that moved, where the drive has labels."},
-    Group{"bleeding", "Bleeding at edges of depth", "Points within 5 pixels of an edge."},
-    Group{"split", "Place and colour", "What of TE comes from the nearest point's distance."},
-    Group{"consistency", "Consistency of colours", ""},
-    Group{"geometry", "Geometry", "Precision, recall and F-score within 5, 10 and 20 cm."},
-    Group{"pictures", "Pictures", "The map drawn into the scored views."},
-    Group{"pose_stray", "Stray of poses",
-          "Poses fitted to held-out colours would leave the course."},
-    Group{"worst_frame", "Worst frame", ""},
-    Group{"blocks", "Blocks of held-out frames",
-          "Scored where a training frame's white zone reached."},
-    Group{"color_rules", "Colour rules", "The same points, coloured again by each rule."},
-    Group{"paper_like", "As the paper's baselines",
-          "Nearest among all map points, uncoloured ones counting as black."},
-};
+const std::vector<FigureGroup>& groups() {
+  static const std::vector<FigureGroup> all{
+      {"", "All scored points", "Every figure against coloured map points only."},
+      {"intervals_95", "95% intervals", "Points of a frame err together, so frames are drawn."},
+      {"visible", "Visible points",
+       "Without the points that the camera cannot see because LiDAR and camera stand apart."},
+      {"without_moving", "Without what moved",
+       "Without the boxes of objects that moved, where the drive has labels."},
+      {"bleeding", "Bleeding at edges of depth", "Points within 5 pixels of an edge."},
+      {"split", "Place and colour", "What of TE comes from the nearest point's distance."},
+      {"consistency", "Consistency of colours", ""},
+      {"geometry", "Geometry", "Precision, recall and F-score within 5, 10 and 20 cm."},
+      {"pictures", "Pictures", "The map drawn into the scored views."},
+      {"pose_stray", "Stray of poses", "Poses fitted to held-out colours would leave the course."},
+      {"worst_frame", "Worst frame", ""},
+      {"blocks", "Blocks of held-out frames",
+       "Scored where a training frame's white zone reached."},
+      {"color_rules", "Colour rules", "The same points, coloured again by each rule."},
+      {"paper_like", "As the paper's baselines",
+       "Nearest among all map points, uncoloured ones counting as black."},
+  };
+  return all;
+}
 
-bool is_group(const std::string& key) {
-  return std::any_of(kGroups.begin(), kGroups.end(), [&](const Group& g) { return key == g.key; });
+bool begins_so(const FigureGroup& group, const std::string& name) {
+  return group.key.ends_with('_') && name.starts_with(group.key);
+}
+
+bool is_grouped(const std::vector<FigureGroup>& groups, const std::string& name) {
+  return std::any_of(groups.begin(), groups.end(), [&](const FigureGroup& group) {
+    return name == group.key || begins_so(group, name);
+  });
 }
 
 std::string shown(const Json& value) {
@@ -162,60 +165,91 @@ bool is_figure(const Json& value) {
   return scalar(value) || (value.is_array() && value.size() == 2 && scalar(value[0]));
 }
 
-void put_row(std::string& html, const std::string& key, const Json& value) {
-  const std::string name = key.substr(key.rfind('.') + 1);
-  std::string text = shown(value);
-  if (name == "shift" && value.size() == 2)
-    text = fmt::format("({}, {})", value[0].dump(), value[1].dump());
-  html += fmt::format(
-      "<tr data-key=\"{}\" data-value=\"{}\"><th scope=\"row\"><code>{}</code></th><td>{}</td>"
-      "<td>{}</td></tr>\n",
-      escaped(key), escaped(value.dump()), escaped(name), text, escaped(explain_figure(key)));
-}
+/// Rows of one report's tables.
+class Rows {
+ public:
+  explicit Rows(const std::function<std::string(const std::string&)>& explain)
+      : explain_(explain) {}
 
-/// Rows of the figures in an object; of lists in it, of each entry in turn.
-void put_rows(std::string& html, const std::string& prefix, const Json& object) {
-  for (const auto& [name, value] : object.items()) {
-    const std::string key = prefix.empty() ? name : prefix + "." + name;
-    if (is_figure(value)) {
-      put_row(html, key, value);
-    } else if (name == "intervals_95" || (name == "list" && !value.empty())) {
-      put_rows(html, key, value);
-    } else if (!prefix.empty() && value.is_object()) {
-      html +=
-          fmt::format("<tr class=\"part\"><th colspan=\"3\">{}</th></tr>\n",
-                      escaped(value.contains("rule") ? value["rule"].get<std::string>() : name));
-      put_rows(html, key, value);
+  void add(const std::string& key, const Json& value) {
+    const std::string name = key.substr(key.rfind('.') + 1);
+    std::string text = shown(value);
+    if (name == "shift" && value.size() == 2)
+      text = fmt::format("({}, {})", value[0].dump(), value[1].dump());
+    html_ += fmt::format(
+        "<tr data-key=\"{}\" data-value=\"{}\"><th scope=\"row\"><code>{}</code></th><td>{}</td>"
+        "<td>{}</td></tr>\n",
+        escaped(key), escaped(value.dump()), escaped(name), text, escaped(explain_(key)));
+  }
+  void add_heading(const std::string& text) {
+    html_ += fmt::format("<tr class=\"part\"><th colspan=\"3\">{}</th></tr>\n", escaped(text));
+  }
+  /// Of the figures in an object; of lists in it, of each entry in turn.
+  void add_all(const std::string& prefix, const Json& object) {
+    for (const auto& [name, value] : object.items()) {
+      const std::string key = prefix.empty() ? name : prefix + "." + name;
+      if (is_figure(value)) {
+        add(key, value);
+      } else if (name == "intervals_95" || (name == "list" && !value.empty())) {
+        add_all(key, value);
+      } else if (!prefix.empty() && value.is_object()) {
+        add_heading(value.contains("rule") ? value["rule"].get<std::string>() : name);
+        add_all(key, value);
+      }
     }
   }
-}
-
-std::string group_html(const Group& group, const Json& report) {
-  const std::string key = group.key;
-  Json part;
-  if (key.empty()) {
+  /// Of all that begins as a group does; objects with a heading.
+  void add_beginning(const FigureGroup& group, const Json& report) {
     for (const auto& [name, value] : report.items()) {
-      if (is_figure(value) && !is_group(name) && name != "cameras") part[name] = value;
+      if (!begins_so(group, name)) continue;
+      if (is_figure(value)) {
+        add(name, value);
+      } else if (value.is_object()) {
+        const std::string what = explain_(name);
+        add_heading(what.empty() ? name : name + ": " + what);
+        add_all(name, value);
+      }
     }
-  } else if (report.contains(key)) {
-    part = report[key];
   }
-  if (part.is_null() || part.empty()) return "";
-  std::string html = fmt::format(
-      "<details{}><summary>{} <small>{}</small></summary>\n<table class=\"figures\"><thead><tr>"
-      "<th>figure</th><th>value</th><th>meaning</th></tr></thead><tbody>\n",
-      key.empty() ? " open=\"open\"" : "", escaped(group.title), escaped(group.text));
-  if (part.is_array()) {
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      put_rows(html, key, Json{{std::to_string(i), part[i]}});
-    }
-  } else {
-    put_rows(html, key, part);
-  }
-  return html + "</tbody></table></details>\n";
-}
+  const std::string& html() const { return html_; }
+
+ private:
+  const std::function<std::string(const std::string&)>& explain_;
+  std::string html_;
+};
 
 }  // namespace
+
+std::string figure_tables(const Json& report, const std::vector<FigureGroup>& groups,
+                          const std::function<std::string(const std::string& key)>& explain) {
+  std::string html;
+  for (const FigureGroup& group : groups) {
+    Rows rows(explain);
+    if (group.key.empty()) {
+      Json top;
+      for (const auto& [name, value] : report.items()) {
+        if (is_figure(value) && !is_grouped(groups, name) && name != "cameras") top[name] = value;
+      }
+      rows.add_all("", top);
+    } else if (group.key.ends_with('_')) {
+      rows.add_beginning(group, report);
+    } else if (report.contains(group.key)) {
+      const Json& part = report[group.key];
+      for (std::size_t i = 0; part.is_array() && i < part.size(); ++i) {
+        rows.add_all(group.key, Json{{std::to_string(i), part[i]}});
+      }
+      if (part.is_object()) rows.add_all(group.key, part);
+    }
+    if (rows.html().empty()) continue;
+    html += fmt::format(
+        "<details{}><summary>{} <small>{}</small></summary>\n<table class=\"figures\"><thead><tr>"
+        "<th>figure</th><th>value</th><th>meaning</th></tr></thead><tbody>\n{}"
+        "</tbody></table></details>\n",
+        html.empty() ? " open=\"open\"" : "", escaped(group.title), escaped(group.text),
+        rows.html());
+  }
+  return html;
+}
 
 std::string explain_figure(const std::string& key) {
   const auto& all = explanations();
@@ -238,9 +272,7 @@ std::string explain_figure(const std::string& key) {
 }
 
 std::string figure_tables(const Json& report) {
-  std::string html;
-  for (const Group& group : kGroups) html += group_html(group, report);
-  return html;
+  return figure_tables(report, groups(), explain_figure);
 }
 
 std::string view_table(const Json& report) {

@@ -8,19 +8,24 @@
 
 namespace fovea::app {
 
-std::string hero_picture(const ScoredMap& map, const Scorer& scorer) {
+std::string picture_from_behind(const ColouredPoints& points, const std::vector<float>& spacing,
+                                const RigidMotion& T_local_lidar, const std::string& alt) {
   constexpr Viewpoint kBehind{"behind", 9, 5, 20 * kDegree, 75 * kDegree};
   constexpr int kWidth = 1280, kHeight = 620, kQuality = 80;
-  if (map.frames.empty()) return "";
-  const FrameRecord& middle = map.frames[map.frames.size() / 2];
   const Camera camera = viewpoint_camera(kBehind, kWidth, kHeight);
   const SplatView drawn =
-      splat(scorer.coloured(), scorer.spacing(), camera,
-            viewpoint_pose(kBehind, middle.T_local_lidar).inverse(), {.max_radius = 20});
-  return fmt::format(
-      "<img alt=\"The map from behind the vehicle at frame {}\" width=\"{}\" height=\"{}\" "
-      "src=\"{}\"/>",
-      middle.index, kWidth, kHeight, jpeg_uri(drawn.image, kQuality));
+      splat(points, spacing, camera, viewpoint_pose(kBehind, T_local_lidar).inverse(),
+            {.max_radius = 20});
+  return fmt::format("<img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"{}\"/>", escaped(alt),
+                     kWidth, kHeight, jpeg_uri(drawn.image, kQuality));
+}
+
+std::string hero_picture(const ScoredMap& map, const Scorer& scorer) {
+  if (map.frames.empty()) return "";
+  const FrameRecord& middle = map.frames[map.frames.size() / 2];
+  return picture_from_behind(
+      scorer.coloured(), scorer.spacing(), middle.T_local_lidar,
+      fmt::format("The map from behind the vehicle at frame {}", middle.index));
 }
 
 }  // namespace fovea::app

@@ -7,42 +7,19 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/html_report/assets.h"
 #include "app/html_report/chart_section.h"
 #include "app/html_report/close_ups.h"
 #include "app/html_report/figure_table.h"
 #include "app/html_report/foveal_pictures.h"
 #include "app/html_report/map_picture.h"
 #include "app/html_report/markup.h"
+#include "app/html_report/page_layout.h"
 #include "app/html_report/scan_pair.h"
 #include "app/html_report/view_section.h"
-#include "fovea/base/version.h"
 #include "fovea/evaluation/evaluation_setup.h"
 
 namespace fovea::app {
 namespace {
-
-/// A part of the page with its place in the navigation.
-struct Part {
-  std::string id, title, html;
-};
-
-/// The template with every {{name}} replaced; std::logic_error for a name that is not given.
-std::string filled(std::string_view page,
-                   const std::vector<std::pair<std::string, std::string>>& values) {
-  std::string text;
-  for (std::size_t at = page.find("{{"); at != std::string_view::npos; at = page.find("{{")) {
-    const std::size_t end = page.find("}}", at);
-    const std::string_view name = page.substr(at + 2, end - at - 2);
-    const auto value = std::find_if(values.begin(), values.end(),
-                                    [&](const auto& pair) { return pair.first == name; });
-    if (value == values.end()) throw std::logic_error("the page asks for " + std::string(name));
-    text += page.substr(0, at);
-    text += value->second;
-    page.remove_prefix(end + 2);
-  }
-  return text + std::string(page);
-}
 
 std::string warnings_html(const EvaluationReport& report) {
   if (report.warnings.empty()) {
@@ -63,27 +40,25 @@ std::string warnings_html(const EvaluationReport& report) {
 std::string cards_html(const EvaluationReport& report) {
   const ErrorFigures& f = report.figures;
   std::string html;
-  const auto card = [&](const char* name, const std::string& value, const std::string& more) {
-    html += fmt::format(
-        "<div class=\"card\"><span class=\"name\">{}</span><b>{}</b><span>{}</span></div>\n", name,
-        escaped(value), escaped(more));
+  const auto put = [&](const char* name, const std::string& value, const std::string& more) {
+    html += card(name, value, more);
   };
-  card("Texture error TE", fmt::format("{:.2f}", f.te_mean),
-       fmt::format("95%: {:.2f} to {:.2f}; median {:.1f}", report.intervals.te.low,
-                   report.intervals.te.high, f.te_median));
-  card("Position error ME", fmt::format("{:.2f} cm", 100 * f.me_mean),
-       fmt::format("95%: {:.2f} to {:.2f}", 100 * report.intervals.me.low,
-                   100 * report.intervals.me.high));
-  card("Colour within 20", fmt::format("{:.1f}%", 100 * f.te_within_20),
-       fmt::format("of {} points", count(f.points)));
-  card("Covered within 5 cm", fmt::format("{:.1f}%", 100 * f.coverage_5cm),
-       fmt::format("{:.1f}% within 20 cm", 100 * f.coverage_20cm));
-  card("Detail", number(report.gradients.detail(), 3),
-       "sharpness " + number(report.gradients.sharpness(), 3));
-  card("PSNR", number(report.pictures.psnr_covered(), 4) + " dB",
-       "SSIM " + number(report.pictures.mean_ssim_covered(), 3) + " where drawn");
-  card("Map", count(report.map_points_coloured),
-       fmt::format("coloured points, {:.0f} a square metre", report.density_per_m2));
+  put("Texture error TE", fmt::format("{:.2f}", f.te_mean),
+      fmt::format("95%: {:.2f} to {:.2f}; median {:.1f}", report.intervals.te.low,
+                  report.intervals.te.high, f.te_median));
+  put("Position error ME", fmt::format("{:.2f} cm", 100 * f.me_mean),
+      fmt::format("95%: {:.2f} to {:.2f}", 100 * report.intervals.me.low,
+                  100 * report.intervals.me.high));
+  put("Colour within 20", fmt::format("{:.1f}%", 100 * f.te_within_20),
+      fmt::format("of {} points", count(f.points)));
+  put("Covered within 5 cm", fmt::format("{:.1f}%", 100 * f.coverage_5cm),
+      fmt::format("{:.1f}% within 20 cm", 100 * f.coverage_20cm));
+  put("Detail", number(report.gradients.detail(), 3),
+      "sharpness " + number(report.gradients.sharpness(), 3));
+  put("PSNR", number(report.pictures.psnr_covered(), 4) + " dB",
+      "SSIM " + number(report.pictures.mean_ssim_covered(), 3) + " where drawn");
+  put("Map", count(report.map_points_coloured),
+      fmt::format("coloured points, {:.0f} a square metre", report.density_per_m2));
   return html;
 }
 
@@ -138,16 +113,10 @@ Part views_part(const std::vector<ShownView>& shown, const EvaluationReport& rep
       "<p>The map drawn from where a photograph was taken{}. Drag the divider, or use the arrow "
       "keys. The heat maps show every scored LiDAR point: the difference of its colour (TE) or its "
       "distance (ME) to the nearest map point. Black: nothing is mapped there; the scores reach to "
-      "{:g} m.</p>\n{}",
+      "{:g} m.</p>\n",
       scores_held_out(report.protocol) ? " that the map never saw" : " that it was coloured with",
-      kEvaluatedFar,
-      "<div class=\"stage\" data-mode=\"slider\"><fieldset class=\"modes\" aria-label=\"Over the "
-      "photograph\">"
-      "<label><input type=\"radio\" name=\"mode\" value=\"slider\" checked=\"checked\"/>map</label>"
-      "<label><input type=\"radio\" name=\"mode\" value=\"te\"/>colour error</label>"
-      "<label><input type=\"radio\" name=\"mode\" value=\"me\"/>position error</label>"
-      "</fieldset>\n");
-  part.html += view_section(shown) + "</div>\n" + left_out(shown, report);
+      kEvaluatedFar);
+  part.html += stage(view_section(shown)) + left_out(shown, report);
   return part;
 }
 
@@ -183,28 +152,10 @@ std::string report_page(const PageInput& input) {
   parts.push_back({"texture", "Texture close up",
                    close_up_section(scorer, input.drive, training, setup.frames, shown)});
   parts.push_back(figures_part(json));
-  std::string sections, body;
-  for (const Part& part : parts) {
-    sections += fmt::format("<a href=\"#{}\">{}</a>", part.id, escaped(part.title));
-    body += fmt::format("<section class=\"part\" id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", part.id,
-                        escaped(part.title), part.html);
-  }
-  const std::string title = escaped(fmt::format("{} against {}", input.map_name, input.drive_name));
-  return filled(kPageHtml, {{"version", escaped(version())},
-                            {"title", title},
-                            {"css", std::string(kPageCss)},
-                            {"js", std::string(kPageJs)},
-                            {"hero", hero_picture(input.map, scorer)},
-                            {"map", escaped(input.map_name)},
-                            {"drive", escaped(input.drive_name)},
-                            {"protocol", to_string(report.protocol)},
-                            {"cameras", fmt::format("{}", fmt::join(report.cameras, ", "))},
-                            {"frames", frames_text(report)},
-                            {"warnings", warnings_html(report)},
-                            {"explanation", escaped(explanation(report.protocol))},
-                            {"cards", cards_html(report)},
-                            {"sections", sections},
-                            {"body", body}});
+  return page_text({input.map_name, input.drive_name, to_string(report.protocol),
+                    frames_text(report), explanation(report.protocol), "docs/method.md, section 7",
+                    report.cameras, hero_picture(input.map, scorer), warnings_html(report),
+                    cards_html(report), std::move(parts)});
 }
 
 }  // namespace fovea::app

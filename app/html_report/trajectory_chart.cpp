@@ -76,49 +76,56 @@ std::string scale_bar(const Ground& ground) {
 
 }  // namespace
 
-std::string trajectory_chart(const std::vector<FrameRecord>& frames, const EvaluationReport& report,
-                             bool north_up) {
-  std::vector<Eigen::Vector2d> refined, navigation;
-  for (const FrameRecord& frame : frames) {
-    refined.emplace_back(frame.T_local_lidar.translation().head<2>());
-    if (frame.T_local_lidar_navigation) {
-      navigation.emplace_back(frame.T_local_lidar_navigation->translation().head<2>());
-    }
-  }
-  if (refined.size() < 2) return "";
-  std::vector<Eigen::Vector2d> all = refined;
-  all.insert(all.end(), navigation.begin(), navigation.end());
+std::string ground_track_chart(const GroundTrack& track, const ErrorScale& scale) {
+  if (track.line.size() < 2) return "";
+  std::vector<Eigen::Vector2d> all = track.line;
+  all.insert(all.end(), track.dashed.begin(), track.dashed.end());
   const Ground ground(all);
   std::string svg = fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"The drive from "
       "above\">\n",
       kWidth, ground.height());
-  if (!navigation.empty()) {
-    svg += fmt::format("<path class=\"navigation\" d=\"{}\"/>\n", path_of(navigation, ground));
+  if (!track.dashed.empty()) {
+    svg += fmt::format("<path class=\"navigation\" d=\"{}\"/>\n", path_of(track.dashed, ground));
   }
-  svg += fmt::format("<path class=\"track\" d=\"{}\"/>\n", path_of(refined, ground));
-  const std::map<int, double> te = te_by_frame(report);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto scored = te.find(frames[i].index);
-    if (scored == te.end()) continue;
-    const Eigen::Vector2d q = ground.at(refined[i]);
+  svg += fmt::format("<path class=\"track\" d=\"{}\"/>\n", path_of(track.line, ground));
+  for (const GroundTrack::Spot& spot : track.spots) {
+    const Eigen::Vector2d q = ground.at(spot.place);
     svg += fmt::format(
         "<circle class=\"spot h{}\" data-at=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\">"
-        "<title>frame {}: TE {:.1f}</title></circle>\n",
-        kTeScale.class_of(scored->second), frames[i].index, q.x(), q.y(), te.size() > 60 ? 4 : 7,
-        frames[i].index, scored->second);
+        "<title>{}</title></circle>\n",
+        scale.class_of(spot.value), spot.frame, q.x(), q.y(), track.spots.size() > 60 ? 4 : 7,
+        escaped(spot.hint));
   }
-  const Eigen::Vector2d start = ground.at(refined.front());
+  const Eigen::Vector2d start = ground.at(track.line.front());
   svg += fmt::format(
       "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">start</text>\n",
       std::clamp(start.x(), 20.0, kWidth - 20), std::max(12.0, start.y() - 13));
-  if (north_up) {
+  if (track.north_up) {
     svg += fmt::format(
         "<path class=\"axis\" d=\"M{0} 30V10l-4 7m4 -7l4 7\"/>"
         "<text class=\"label\" x=\"{0}\" y=\"42\" text-anchor=\"middle\">N</text>\n",
         kWidth - 18);
   }
   return svg + scale_bar(ground) + "</svg>\n";
+}
+
+std::string trajectory_chart(const std::vector<FrameRecord>& frames, const EvaluationReport& report,
+                             bool north_up) {
+  GroundTrack track;
+  track.north_up = north_up;
+  const std::map<int, double> te = te_by_frame(report);
+  for (const FrameRecord& frame : frames) {
+    track.line.emplace_back(frame.T_local_lidar.translation().head<2>());
+    if (frame.T_local_lidar_navigation) {
+      track.dashed.emplace_back(frame.T_local_lidar_navigation->translation().head<2>());
+    }
+    if (const auto scored = te.find(frame.index); scored != te.end()) {
+      track.spots.push_back({frame.index, track.line.back(), scored->second,
+                             fmt::format("frame {}: TE {:.1f}", frame.index, scored->second)});
+    }
+  }
+  return ground_track_chart(track, kTeScale);
 }
 
 }  // namespace fovea::app

@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kPhotographQuality = 85, kDrawnQuality = 80;
 
-std::string name_of(const ViewReport& view) {
-  return fmt::format("frame {}, camera {}", view.frame, view.camera);
-}
-
 std::array<double, kErrorClasses> shares(const std::vector<float>& values,
                                          const ErrorScale& scale) {
   std::array<double, kErrorClasses> share{};
@@ -30,62 +26,69 @@ std::vector<float> in_centimetres(std::vector<float> metres) {
   return metres;
 }
 
-std::string heat_layer(const char* type, const ViewPicture& picture,
-                       const std::vector<float>& values, const ErrorScale& scale) {
+std::string heat_layer(const char* type, const ViewPanel& view, const std::vector<float>& values,
+                       const ErrorScale& scale) {
   return fmt::format(
       "<svg class=\"heat {}\" viewBox=\"-0.5 -0.5 {} {}\" aria-hidden=\"true\">\n{}</svg>\n", type,
-      picture.photograph.width, picture.photograph.height,
-      heat_paths(picture.points.pixel, values, scale));
+      view.photograph.width, view.photograph.height, heat_paths(view.pixels, values, scale));
 }
 
-std::string facts(const ViewReport& view) {
-  const ErrorFigures& f = view.figures;
+std::string facts_html(const ViewPanel& view) {
   std::string html = "<dl class=\"facts\">";
-  const auto fact = [&](const char* name, const std::string& value) {
-    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", name, value);
-  };
-  fact("scored points", count(f.points));
-  fact("TE mean", fmt::format("{:.2f}", f.te_mean));
-  fact("TE median", fmt::format("{:.2f}", f.te_median));
-  fact("within 20", fmt::format("{:.1f}%", 100 * f.te_within_20));
-  fact("ME mean", fmt::format("{:.1f} cm", 100 * f.me_mean));
-  fact("within 5 cm", fmt::format("{:.1f}%", 100 * f.coverage_5cm));
-  fact("PSNR", number(view.pictures.psnr_covered(), 4) + " dB");
-  fact("SSIM", number(view.pictures.mean_ssim_covered(), 3));
+  for (const auto& [name, value] : view.facts) {
+    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escaped(name), escaped(value));
+  }
   return html + "</dl>\n";
 }
 
-std::string panel(std::size_t index, const ShownView& view) {
-  const ViewPicture& picture = view.picture;
-  const std::string name = name_of(view.report);
-  const std::vector<float> me = in_centimetres(picture.errors.position);
-  std::string html = fmt::format(
-      "<article class=\"view\" id=\"view-{}\" data-frame=\"{}\">\n<h3>{}{}</h3>\n", index,
-      view.report.frame, static_cast<char>(std::toupper(name[0])) + name.substr(1),
-      index == 0 ? " <span class=\"tag\">the worst of all</span>" : "");
+std::string panel(std::size_t index, const ViewPanel& view) {
+  const std::string name = fmt::format("frame {}, camera {}", view.frame, view.camera);
+  const std::string shown_first = escaped(view.photograph_name);
+  std::string html =
+      fmt::format("<article class=\"view\" id=\"view-{}\" data-frame=\"{}\">\n<h3>F{}{}</h3>\n",
+                  index, view.frame, name.substr(1),
+                  view.tag.empty() ? "" : " <span class=\"tag\">" + escaped(view.tag) + "</span>");
   html += fmt::format(
       "<div class=\"compare\" style=\"aspect-ratio:{} / {}\">\n"
-      "<img class=\"photograph\" alt=\"Photograph of {}\" src=\"{}\"/>\n"
+      "<img class=\"photograph\" alt=\"The {} of {}\" src=\"{}\"/>\n"
       "<img class=\"drawn\" alt=\"The map drawn from the same place\" src=\"{}\"/>\n",
-      picture.photograph.width, picture.photograph.height, name,
-      jpeg_uri(picture.photograph, kPhotographQuality),
-      jpeg_uri(picture.drawn.image, kDrawnQuality));
-  html += heat_layer("te", picture, picture.errors.color, kTeScale);
-  html += heat_layer("me", picture, me, kMeScale);
-  html +=
-      "<span class=\"side left\">photograph</span><span class=\"side right\">map</span>\n"
-      "<div class=\"divider\"></div>\n";
+      view.photograph.width, view.photograph.height, shown_first, name,
+      jpeg_uri(view.photograph, kPhotographQuality), jpeg_uri(view.drawn, kDrawnQuality));
+  html += heat_layer("te", view, view.color, view.color_scale);
+  html += heat_layer("me", view, view.position, view.position_scale);
   html += fmt::format(
+      "<span class=\"side left\">{0}</span><span class=\"side right\">map</span>\n"
+      "<div class=\"divider\"></div>\n"
       "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"1\" "
-      "aria-label=\"Share of the photograph, {}\"/>\n</div>\n",
-      name);
+      "aria-label=\"Share of the {0}, {1}\"/>\n</div>\n",
+      shown_first, name);
   html += fmt::format("<div class=\"scale te\">{}</div><div class=\"scale me\">{}</div>\n",
-                      legend(kTeScale, shares(picture.errors.color, kTeScale)),
-                      legend(kMeScale, shares(me, kMeScale)));
-  return html + facts(view.report) + "</article>\n";
+                      legend(view.color_scale, shares(view.color, view.color_scale)),
+                      legend(view.position_scale, shares(view.position, view.position_scale)));
+  return html + facts_html(view) + "</article>\n";
+}
+
+std::vector<std::pair<std::string, std::string>> facts(const ViewReport& view) {
+  const ErrorFigures& f = view.figures;
+  return {{"scored points", count(f.points)},
+          {"TE mean", fmt::format("{:.2f}", f.te_mean)},
+          {"TE median", fmt::format("{:.2f}", f.te_median)},
+          {"within 20", fmt::format("{:.1f}%", 100 * f.te_within_20)},
+          {"ME mean", fmt::format("{:.1f} cm", 100 * f.me_mean)},
+          {"within 5 cm", fmt::format("{:.1f}%", 100 * f.coverage_5cm)},
+          {"PSNR", number(view.pictures.psnr_covered(), 4) + " dB"},
+          {"SSIM", number(view.pictures.mean_ssim_covered(), 3)}};
 }
 
 }  // namespace
+
+std::vector<std::size_t> evenly_spread(std::size_t count, std::size_t room) {
+  std::vector<std::size_t> places(std::min(room, count));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places[i] = places.size() == 1 ? 0 : i * (count - 1) / (places.size() - 1);
+  }
+  return places;
+}
 
 std::vector<const ViewReport*> choose_views(const EvaluationReport& report, std::size_t most) {
   std::vector<const ViewReport*> chosen, others;
@@ -95,10 +98,8 @@ std::vector<const ViewReport*> choose_views(const EvaluationReport& report, std:
   for (const ViewReport& view : report.views) {
     if (&view != worst && view.figures.points > 0) others.push_back(&view);
   }
-  const std::size_t room = std::min(most - 1, others.size());
-  for (std::size_t i = 0; i < room; ++i) {
-    // The first and the last among them, where there is room for two.
-    chosen.push_back(others[room == 1 ? 0 : i * (others.size() - 1) / (room - 1)]);
+  for (const std::size_t place : evenly_spread(others.size(), most - 1)) {
+    chosen.push_back(others[place]);
   }
   return chosen;
 }
@@ -124,22 +125,36 @@ std::string heat_paths(const std::vector<Eigen::Vector2d>& pixels, const std::ve
   return svg;
 }
 
-std::string view_section(const std::vector<ShownView>& views) {
-  double highest = 0;
-  for (const ShownView& view : views) highest = std::max(highest, view.report.figures.te_mean);
+std::string view_panels(const std::vector<ViewPanel>& views) {
   std::string html = "<div class=\"picker\" role=\"group\" aria-label=\"Views\">\n";
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const ViewReport& view = views[i].report;
+    const ViewPanel& view = views[i];
     html += fmt::format(
         "<button type=\"button\" data-view=\"{}\" data-frame=\"{}\" aria-pressed=\"{}\">"
-        "<b>{}</b><span>camera {}</span><i style=\"width:{:.0f}%\"></i><span>TE {:.1f}</span>"
+        "<b>{}</b><span>camera {}</span><i style=\"width:{:.0f}%\"></i><span>{}</span>"
         "</button>\n",
-        i, view.frame, i == 0 ? "true" : "false", view.frame, view.camera,
-        highest > 0 ? 100 * view.figures.te_mean / highest : 0, view.figures.te_mean);
+        i, view.frame, i == 0 ? "true" : "false", view.frame, view.camera, 100 * view.bar,
+        escaped(view.button));
   }
   html += "</div>\n";
   for (std::size_t i = 0; i < views.size(); ++i) html += panel(i, views[i]);
   return html;
+}
+
+std::string view_section(const std::vector<ShownView>& views) {
+  double highest = 0;
+  for (const ShownView& view : views) highest = std::max(highest, view.report.figures.te_mean);
+  std::vector<ViewPanel> panels;
+  for (const ShownView& view : views) {
+    const double te = view.report.figures.te_mean;
+    panels.push_back({view.report.frame, view.report.camera, view.picture.photograph,
+                      view.picture.drawn.image, "photograph",
+                      panels.empty() ? "the worst of all" : "", view.picture.points.pixel,
+                      view.picture.errors.color, in_centimetres(view.picture.errors.position),
+                      kTeScale, kMeScale, fmt::format("TE {:.1f}", te),
+                      highest > 0 ? te / highest : 0, facts(view.report)});
+  }
+  return view_panels(panels);
 }
 
 }  // namespace fovea::app

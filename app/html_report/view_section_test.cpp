@@ -41,6 +41,15 @@ TEST(ChooseViews, SpreadsEvenlyWhereThereAreTooMany) {
   EXPECT_EQ(choose_views(report_of(te)).size(), kMaxViews);
 }
 
+TEST(EvenlySpread, HasTheFirstAndTheLast) {
+  using Places = std::vector<std::size_t>;
+  EXPECT_EQ(evenly_spread(9, 3), (Places{0, 4, 8}));
+  EXPECT_EQ(evenly_spread(3, 9), (Places{0, 1, 2}));
+  EXPECT_EQ(evenly_spread(9, 1), (Places{0}));
+  EXPECT_EQ(evenly_spread(9, 0), Places{});
+  EXPECT_EQ(evenly_spread(0, 3), Places{});
+}
+
 TEST(ErrorScale, ClassesAreHalfOpen) {
   EXPECT_EQ(kTeScale.class_of(0), 0u);
   EXPECT_EQ(kTeScale.class_of(4.99), 0u);

@@ -1,5 +1,7 @@
 #include "fovea/evaluation/evaluate_truth.h"
 
+#include <unordered_map>
+
 #include "fovea/base/errors.h"
 #include "fovea/evaluation/metrics.h"
 #include "fovea/evaluation/truth_colors.h"
@@ -43,7 +45,25 @@ void put_poses(const std::vector<PosePair>& pairs, const RigidMotion& T_true_map
   report.pose_drift_percent = distribution(drift_percent(pairs, kDriftLength));
   const PoseErrors& used = report.aligned ? aligned : as_given;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    report.frames.push_back({pairs[i].frame, used.position_m[i], used.rotation_deg[i]});
+    report.frames.push_back({pairs[i].frame, used.position_m[i], used.rotation_deg[i], {}, {}});
+  }
+}
+
+/// Ghosts of the whole map and of each frame.
+void put_ghosts(const PointCloud& points, const std::vector<std::uint8_t>& is_ghost,
+                TruthReport& report) {
+  std::unordered_map<int, TruthFrame*> frames;
+  for (TruthFrame& frame : report.frames) {
+    frame.points = frame.ghosts = 0;
+    frames[frame.frame] = &frame;
+  }
+  report.ghosts = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    *report.ghosts += is_ghost[i];
+    const auto frame = frames.find(points.frame[i]);
+    if (frame == frames.end()) continue;
+    ++*frame->second->points;
+    *frame->second->ghosts += is_ghost[i];
   }
 }
 
@@ -73,8 +93,8 @@ void put_upsampling(UpsamplingErrors errors, TruthReport& report) {
 
 }  // namespace
 
-TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
-                           const TruthOptions& options) {
+TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& drive,
+                                      const TruthOptions& options) {
   map.points_local.check();
   const DriveTruth truth(drive.info().path);
   const std::vector<PosePair> pairs = pose_pairs(map.frames, truth);
@@ -97,7 +117,7 @@ TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
   std::vector<std::uint8_t> is_ghost(points.size(), 0);
   if (!points.frame.empty()) {
     is_ghost = find_ghosts(points, pairs, truth);
-    report.ghosts = static_cast<std::size_t>(std::count(is_ghost.begin(), is_ghost.end(), 1));
+    put_ghosts(points, is_ghost, report);
   }
 
   const RigidMotion& T_true_map = options.align ? aligned : as_given;
@@ -111,7 +131,7 @@ TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
                      "write the drive anew with 'fovea simulate'");
   }
   const SurfaceIndex surfaces(world.mesh_local);
-  const SurfaceMatches matches = match_surfaces(points, world, surfaces);
+  SurfaceMatches matches = match_surfaces(points, world, surfaces);
   put_accuracy(matches, is_ghost, points.interpolated, report);
   report.shares = surface_shares(matches.distance, points.position,
                                  seen_surface(truth, pairs, cameras, origin_true));
@@ -127,7 +147,14 @@ TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
     report.color_view_matte = figures(view.matte);
   }
   put_upsampling(upsampling_errors(truth, pairs, cameras, surfaces), report);
-  return report;
+  return {
+      std::move(report), std::move(points), std::move(matches.distance), std::move(is_ghost), pairs,
+      T_true_map};
+}
+
+TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
+                           const TruthOptions& options) {
+  return evaluate_truth_points(map, drive, options).report;
 }
 
 }  // namespace fovea

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fovea/evaluation/scored_map.h"
+#include "fovea/evaluation/truth_poses.h"
 #include "fovea/evaluation/truth_report.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -13,9 +14,23 @@ struct TruthOptions {
   bool align = true;
 };
 
+/// A report with what pictures of it need. Points are the map's coloured ones, in the truth's local
+/// frame, laid over it as the report says.
+struct TruthEvaluation {
+  TruthReport report;
+  PointCloud points_true;
+  std::vector<float> distance;         ///< of each point to the nearest true surface (m)
+  std::vector<std::uint8_t> is_ghost;  ///< 1 for points on things that moved; see find_ghosts
+  std::vector<PosePair> poses;
+  RigidMotion T_true_map = RigidMotion::Identity();
+};
+
 /// Every figure; the scored cameras are those that the drive was opened with. The report does not
 /// depend on the number of threads. InputError if the drive has no truth or it is damaged, if it
 /// knows none of the map's frames, or if the map has no coloured point.
+TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& drive,
+                                      const TruthOptions& options);
+/// The report alone.
 TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
                            const TruthOptions& options);
 

@@ -172,6 +172,26 @@ TEST(EvaluateTruthScene, PointsAtEdgesAndHiddenOnesHaveNoViewColor) {
   EXPECT_LT(report.color_view.raw.mean, 2);
 }
 
+TEST_F(EvaluateTruth, TheWorstFrameIsTheFarthestOff) {
+  ScoredMap map = scene_->map(WallScene::map(0.1));
+  map.frames[3].T_local_lidar.translation().z() += 0.2;
+  map.frames[5].T_local_lidar.translation().z() -= 0.1;
+  const TruthEvaluation evaluation = evaluate_truth_points(map, scene_->drive(), {});
+  const TruthFrame* worst = worst_frame(evaluation.report);
+  ASSERT_NE(worst, nullptr);
+  EXPECT_EQ(worst->frame, 3);
+  EXPECT_NEAR(worst->position_m, 0.2, 0.03);  // the alignment takes up some of it
+  const auto json = nlohmann::json::parse(to_json(evaluation.report));
+  EXPECT_EQ(json.at("worst_frame").at("frame"), 3);
+  EXPECT_EQ(json.at("worst_frame").at("pose_m"), worst->position_m);
+  EXPECT_EQ(worst_frame(TruthReport{}), nullptr);
+  // What pictures need: an entry a coloured point, a pose a frame.
+  EXPECT_EQ(evaluation.distance.size(), evaluation.points_true.size());
+  EXPECT_EQ(evaluation.is_ghost.size(), evaluation.points_true.size());
+  EXPECT_EQ(evaluation.poses.size(), 9u);
+  EXPECT_EQ(to_json(evaluation.report), to_json(evaluate(map)));
+}
+
 TEST(EvaluateTruthScene, PointsOnWhatMovedAreGhosts) {
   const TruthScene scene(3);
   scene.write_returns(1, TruthScene::returns(1, /*board=*/true));
@@ -189,6 +209,12 @@ TEST(EvaluateTruthScene, PointsOnWhatMovedAreGhosts) {
   ScoredMap map = scene.map(points);
   const TruthReport report = evaluate_truth(map, scene.drive(), {});
   EXPECT_EQ(report.ghosts, board.size() - 1);
+  ASSERT_EQ(report.frames.size(), 3u);
+  EXPECT_EQ(report.frames[1].ghosts, board.size() - 1);
+  EXPECT_EQ(report.frames[2].ghosts, 0u);
+  std::size_t of_frames = 0;
+  for (const TruthFrame& frame : report.frames) of_frames += frame.points.value();
+  EXPECT_EQ(of_frames, points.size());
   EXPECT_EQ(report.accuracy.count, on_wall + 1);
   EXPECT_NEAR(report.accuracy.max, 3, 1e-5);
   EXPECT_NEAR(report.shares.precision[3], double(on_wall) / double(points.size()), 1e-9);
@@ -198,6 +224,7 @@ TEST(EvaluateTruthScene, PointsOnWhatMovedAreGhosts) {
   map.points_local.frame.clear();
   const TruthReport unknown = evaluate_truth(map, scene.drive(), {});
   EXPECT_FALSE(unknown.ghosts);
+  EXPECT_FALSE(unknown.frames[0].points);
   EXPECT_EQ(unknown.color_view.raw.count, 0u);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace fovea {
@@ -58,13 +59,32 @@ Json color_json(const ColorFigures& figures) {
           {"gain_within_20", figures.gain_within_20}};
 }
 
+Json or_null(const std::optional<std::size_t>& count) {
+  return count ? Json(*count) : Json(nullptr);
+}
+
+Json frame_json(const TruthFrame& f) {
+  return {{"frame", f.frame},
+          {"pose_m", f.position_m},
+          {"pose_deg", f.rotation_deg},
+          {"points", or_null(f.points)},
+          {"ghosts", or_null(f.ghosts)}};
+}
+
+}  // namespace
+
 double ghost_share(const TruthReport& report) {
   return report.ghosts
              ? static_cast<double>(*report.ghosts) / static_cast<double>(report.map_points_coloured)
              : Distribution::kNone;
 }
 
-}  // namespace
+const TruthFrame* worst_frame(const TruthReport& report) {
+  const auto worst = std::max_element(
+      report.frames.begin(), report.frames.end(),
+      [](const TruthFrame& a, const TruthFrame& b) { return a.position_m < b.position_m; });
+  return worst == report.frames.end() ? nullptr : &*worst;
+}
 
 std::string to_json(const TruthReport& report) {
   Json json;
@@ -85,18 +105,17 @@ std::string to_json(const TruthReport& report) {
   json["color_albedo_matte"] = color_json(report.color_albedo_matte);
   json["color_view"] = color_json(report.color_view);
   json["color_view_matte"] = color_json(report.color_view_matte);
-  json["ghosts"] = report.ghosts ? Json(*report.ghosts) : Json(nullptr);
+  json["ghosts"] = or_null(report.ghosts);
   json["ghost_share"] = ghost_share(report);
   put_distances(json, "upsampling", report.upsampling.error);
   json["upsampling_hidden"] = report.upsampling.hidden;
   json["upsampling_recovered_5cm"] = report.upsampling.recovered;
   json["upsampling_frames"] = report.upsampling.frames;
   json["frames_compared"] = report.frames.size();
+  const TruthFrame* worst = worst_frame(report);
+  json["worst_frame"] = worst != nullptr ? frame_json(*worst) : Json(nullptr);
   json["frames"] = Json::array();
-  for (const FramePoseError& f : report.frames) {
-    json["frames"].push_back(
-        {{"frame", f.frame}, {"pose_m", f.position_m}, {"pose_deg", f.rotation_deg}});
-  }
+  for (const TruthFrame& f : report.frames) json["frames"].push_back(frame_json(f));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -117,6 +136,10 @@ std::string to_text(const TruthReport& report) {
   poses("pose, frame to frame", report.pose_relative);
   row("drift over 10 m", fmt::format("mean {:.3f}%, max {:.3f}%", report.pose_drift_percent.mean,
                                      report.pose_drift_percent.max));
+  if (const TruthFrame* worst = worst_frame(report)) {
+    row("worst frame", fmt::format("{}: {:.4f} m {:.4f} deg", worst->frame, worst->position_m,
+                                   worst->rotation_deg));
+  }
   const auto distances = [&](std::string_view name, const Distribution& d) {
     row(name, fmt::format("mean {:.4f} m, median {:.4f}, 95% {:.4f}, max {:.3f}, {} points", d.mean,
                           d.median, d.p95, d.max, d.count));

@@ -29,10 +29,13 @@ struct UpsamplingFigures {
   std::size_t frames = 0;
 };
 
-/// Pose errors of one frame, under the alignment that the report uses.
-struct FramePoseError {
+/// One frame: pose errors under the alignment that the report uses, and what of its points moved.
+struct TruthFrame {
   int frame = 0;
   double position_m = 0, rotation_deg = 0;
+  /// Coloured map points that came from it, and the ghosts among them; unknown where points do not
+  /// name their frame.
+  std::optional<std::size_t> points, ghosts;
 };
 
 struct TruthReport {
@@ -51,8 +54,13 @@ struct TruthReport {
   ColorFigures color_albedo, color_albedo_matte, color_view, color_view_matte;
   std::optional<std::size_t> ghosts;  ///< unknown where points do not name their frame
   UpsamplingFigures upsampling;
-  std::vector<FramePoseError> frames;
+  std::vector<TruthFrame> frames;
 };
+
+/// Share of the coloured map points that are ghosts; NaN where that is not known.
+double ghost_share(const TruthReport& report);
+/// The frame whose position is farthest off, the first of equal ones; null if there is no frame.
+const TruthFrame* worst_frame(const TruthReport& report);
 
 /// JSON text, the same bytes for the same report; figures that do not exist are null.
 std::string to_json(const TruthReport& report);
