@@ -22,7 +22,7 @@ namespace {
 
 struct ReproduceArguments {
   std::vector<std::string> drives, rows;
-  std::string output, cameras, frames;
+  std::string output, cameras, frames, mls;
   int threads = 0;
   bool quiet = false;
 };
@@ -46,6 +46,9 @@ std::string command_line(const ReproduceArguments& arguments) {
   text += " -o " + std::filesystem::path(arguments.output).filename().string();
   if (!arguments.cameras.empty()) text += " --cameras " + arguments.cameras;
   if (!arguments.frames.empty()) text += " --frames " + arguments.frames;
+  if (!arguments.mls.empty()) {
+    text += " --mls " + std::filesystem::path(arguments.mls).filename().string();
+  }
   return text;
 }
 
@@ -85,6 +88,8 @@ void run(const ReproduceArguments& arguments) {
   }
   // All rows, wanted or not: a bad one must show at once, not after an hour.
   for (const std::string& row : reproduced_rows()) check_row(row);
+  std::optional<MlsTimes> mls;
+  if (!arguments.mls.empty()) mls = read_mls_times(arguments.mls);
   const std::filesystem::path output = make_folder(arguments.output);
   ProgressBar bar(arguments.quiet, "rows");
   const int total = static_cast<int>(rows.size() * sources.size());
@@ -113,7 +118,7 @@ void run(const ReproduceArguments& arguments) {
   }
   OutputFile json(output / "results.json", /*force=*/true),
       page(output / "results.md", /*force=*/true);
-  page.stream() << write_results_page(results, command_line(arguments), output);
+  page.stream() << write_results_page(results, mls, command_line(arguments), output);
   write_json(json, results_json(results));
   page.commit();
   if (!arguments.quiet) fmt::print("{}\n", (output / "results.md").string());
@@ -138,6 +143,10 @@ void add_reproduce_command(CLI::App& app) {
   command->add_option("--rows", arguments->rows, "Only these rows (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember(reproduced_rows()));
+  command
+      ->add_option("--mls", arguments->mls,
+                   "Times of PCL's moving least squares for Table I, from upsampling_bench --json")
+      ->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

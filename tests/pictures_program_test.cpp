@@ -110,6 +110,50 @@ TEST_F(Pictures, ReproduceWritesAPageAndGoesOnWhereItStopped) {
   EXPECT_THAT(read_text(own_ / "out/results.md"), HasSubstr("123.25"));
 }
 
+/// What upsampling_bench --json writes, with times that nobody measured.
+nlohmann::json mls_times() {
+  nlohmann::json json{{"drive", "d"}, {"runs", 5}, {"search_radius", 0.3}, {"polynomial_order", 1}};
+  for (const int points : {10'000, 30'000, 90'000, 180'000, 450'000}) {
+    nlohmann::json column{{"points", points}, {"rate", 1}};
+    for (const int threads : {1, 2}) {
+      for (const char* method : {"fovea", "local plane"}) {
+        column["results"].push_back({{"method", method},
+                                     {"threads", threads},
+                                     {"given", points / 2},
+                                     {"produced", points + 1},
+                                     {"seconds", points * 1e-6 / threads},
+                                     {"times_fovea", 2.5}});
+      }
+    }
+    json["columns"].push_back(column);
+  }
+  return json;
+}
+
+TEST_F(Pictures, ReproduceShowsMeasuredTimesOfMovingLeastSquares) {
+  const std::string file = (own_ / "mls.json").string();
+  std::ofstream(file) << mls_times().dump();
+  const std::string command = "reproduce '" + drive_.string() + "' -o '" + (own_ / "mls").string() +
+                              "' --rows E0 --quiet --mls '" + file + "'";
+  const ProgramRun run = run_fovea(command);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string page = read_text(own_ / "mls/results.md");
+  EXPECT_THAT(page,
+              HasSubstr("| PCL's MLS, local plane, d | 10.0 | 30.0 | 90.0 | 180.0 | 450.0 |"));
+  EXPECT_THAT(page, HasSubstr("| 5000, 10001, 2.5 |"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("MLS, fovea")));
+
+  auto damaged = mls_times();
+  damaged["columns"][3]["results"].clear();
+  for (const std::string& text : {damaged.dump(), std::string("{}"), std::string("nothing")}) {
+    std::ofstream(file) << text;
+    const ProgramRun wrong = run_fovea(command);
+    EXPECT_EQ(wrong.exit_code, 1) << text;
+    EXPECT_THAT(wrong.err, HasSubstr("mls.json"));
+    EXPECT_EQ(std::count(wrong.err.begin(), wrong.err.end(), '\n'), 1) << wrong.err;
+  }
+}
+
 // Simulated drives all have the same folder inside; each must keep its own rows.
 TEST_F(Pictures, ReproduceTellsDrivesOfOneNameApart) {
   const std::string drive = " '" + drive_.string() + "'";

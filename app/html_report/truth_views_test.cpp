@@ -42,8 +42,7 @@ TEST(PointsInView, HasWhatTheMapShowsOneACell) {
   EXPECT_EQ(view.pixels[0], Eigen::Vector2d(30, 15));
   EXPECT_EQ(view.depth[0], 4);
   // Two in one cell (of pixels 30 to 35): the one next to its middle.
-  EXPECT_EQ(view_of(points_at({{0, 0, 4}, {0.3f, 0, 4}})).index,
-            (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(view_of(points_at({{0, 0, 4}, {0.3f, 0, 4}})).index, (std::vector<std::uint32_t>{1}));
 }
 
 TEST(PerfectColorErrors, AreLeftAfterTheGainOfPointsOnSurfaces) {

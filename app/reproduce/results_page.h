@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/reproduce/mls_times.h"
 #include "app/reproduce/upsampling_times.h"
 
 namespace fovea::app {
@@ -26,8 +28,10 @@ nlohmann::ordered_json results_json(const std::vector<DriveResults>& drives);
 
 /// The page in Markdown. Its charts are written beside it, into `folder`: FIGURE-DRIVE.svg;
 /// the drives' report files are linked where they are there.
+/// @param mls      for Table I, where it was measured
 /// @param command  what was typed, to stand at the top
-std::string write_results_page(const std::vector<DriveResults>& drives, const std::string& command,
+std::string write_results_page(const std::vector<DriveResults>& drives,
+                               const std::optional<MlsTimes>& mls, const std::string& command,
                                const std::filesystem::path& folder);
 
 }  // namespace fovea::app

@@ -16,9 +16,11 @@ namespace {
 constexpr int kMaxRate = 5;
 constexpr int kRuns = 7;
 
-/// Points of the middle scan in view of the camera, in its frame, shuffled.
-PointCloud scan_in_view(const FrameSource& drive, const Camera& camera) {
+}  // namespace
+
+PointCloud shuffled_scan(const FrameSource& drive) {
   const DriveInfo& info = drive.info();
+  const Camera& camera = info.calibration.cameras.at(0);
   for (int index = (info.begin + info.end) / 2; index < info.end; ++index) {
     const FrameResult loaded = drive.load(index);
     if (std::holds_alternative<SkippedFrame>(loaded)) continue;
@@ -38,6 +40,8 @@ PointCloud scan_in_view(const FrameSource& drive, const Camera& camera) {
   throw InputError("no frame of the drive can be read", info.path.string(), "check its files");
 }
 
+namespace {
+
 /// `count` of the shuffled points, in the order of a scan's rings as near as can be told.
 PointCloud first_points(const PointCloud& shuffled, std::size_t count) {
   std::vector<std::uint32_t> indices(count);
@@ -45,7 +49,7 @@ PointCloud first_points(const PointCloud& shuffled, std::size_t count) {
   return shuffled.select(indices);
 }
 
-UpsamplingTime time_one(const PointCloud& shuffled, const Camera& camera, int wanted) {
+UpsamplingCase case_of(const PointCloud& shuffled, const Camera& camera, int wanted) {
   UpsampleOptions options;
   const auto produced = [&](std::size_t count) {
     return upsample(first_points(shuffled, count), camera, options).size();
@@ -59,12 +63,17 @@ UpsamplingTime time_one(const PointCloud& shuffled, const Camera& camera, int wa
     const std::size_t middle = low + (high - low) / 2;
     (produced(middle) < goal ? low : high) = middle;
   }
-  const PointCloud points = first_points(shuffled, high);
-  UpsamplingTime time{wanted, points.size(), 0, options.rate, 0};
+  return {wanted, options.rate, first_points(shuffled, high)};
+}
+
+UpsamplingTime time_one(const UpsamplingCase& given, const Camera& camera) {
+  UpsampleOptions options;
+  options.rate = given.rate;
+  UpsamplingTime time{given.wanted, given.points_cam.size(), 0, given.rate, 0};
   std::vector<double> seconds;
   for (int run = 0; run < kRuns; ++run) {
     const auto start = std::chrono::steady_clock::now();
-    time.points = upsample(points, camera, options).size();
+    time.points = upsample(given.points_cam, camera, options).size();
     seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
@@ -75,13 +84,21 @@ UpsamplingTime time_one(const PointCloud& shuffled, const Camera& camera, int wa
 
 }  // namespace
 
+std::vector<UpsamplingCase> upsampling_cases(const FrameSource& drive) {
+  const Camera& camera = drive.info().calibration.cameras.at(0);
+  const PointCloud shuffled = shuffled_scan(drive);
+  std::vector<UpsamplingCase> cases;
+  for (const PaperUpsampling& column : paper_table_1()) {
+    cases.push_back(case_of(shuffled, camera, column.points));
+  }
+  return cases;
+}
+
 std::vector<UpsamplingTime> time_upsampling(const FrameSource& drive) {
   const ThreadLimit one(1);
-  const Camera& camera = drive.info().calibration.cameras.at(0);
-  const PointCloud shuffled = scan_in_view(drive, camera);
   std::vector<UpsamplingTime> times;
-  for (const PaperUpsampling& column : paper_table_1()) {
-    times.push_back(time_one(shuffled, camera, column.points));
+  for (const UpsamplingCase& given : upsampling_cases(drive)) {
+    times.push_back(time_one(given, drive.info().calibration.cameras.at(0)));
   }
   return times;
 }

@@ -4,9 +4,26 @@
 #include <cstddef>
 #include <vector>
 
+#include "fovea/base/point_cloud.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea::app {
+
+/// What one column upsamples.
+struct UpsamplingCase {
+  int wanted = 0;  ///< points to be produced, the paper's column
+  int rate = 0;
+  PointCloud points_cam;  ///< measured, in the camera's frame
+};
+
+/// Of the drive's middle scan in its first camera's view: the lowest rate that gives as many points
+/// as a column wants, and as few points of the scan (drawn with a fixed seed) as that takes. Fewer
+/// where the scan does not give as many at the highest rate.
+std::vector<UpsamplingCase> upsampling_cases(const FrameSource& drive);
+
+/// All points of that scan in view, in the camera's frame, in the same order of drawing: a case's
+/// points are the first of them.
+PointCloud shuffled_scan(const FrameSource& drive);
 
 struct UpsamplingTime {
   int wanted = 0;          ///< points to be produced, the paper's column
@@ -16,10 +33,7 @@ struct UpsamplingTime {
   double seconds = 0;  ///< median of some runs, on one thread
 };
 
-/// Upsamples the drive's middle scan in its first camera's view to about as many points as each
-/// column of the paper's table: the lowest rate that gives as many, of as many points of the scan
-/// (drawn with a fixed seed) as it takes. Fewer where the scan does not give as many at the highest
-/// rate.
+/// Upsamples the cases of a drive.
 std::vector<UpsamplingTime> time_upsampling(const FrameSource& drive);
 
 }  // namespace fovea::app
