@@ -29,8 +29,8 @@ std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_metre, int 
 
 Eigen::Vector3f center_of(std::uint32_t cell, float size, int edge) {
   const auto n = static_cast<std::uint32_t>(edge);
-  return Eigen::Vector3f(float(cell % n), float(cell / n % n), float(cell / n / n)) * size +
-         Eigen::Vector3f::Constant(size / 2);
+  const std::uint32_t x = cell % n, y = cell / n % n, z = cell / n / n;
+  return Eigen::Vector3f(float(x), float(y), float(z)) * size + Eigen::Vector3f::Constant(size / 2);
 }
 
 std::uint32_t aged(std::uint32_t bits, int frames) {

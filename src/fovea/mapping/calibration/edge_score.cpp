@@ -35,12 +35,16 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
   // The thing ends anywhere in the gap: a uniform distribution's variance.
   const double variance = width * width + profile.half_gap * profile.half_gap / 3.0;
   const double reach = 3 * std::sqrt(variance);
-  const double first = std::max<double>(-EdgeProfile::kReach, std::ceil(place - reach));
-  const double last = std::min<double>(EdgeProfile::kReach, std::floor(place + reach));
+  // A profile that lies out of reach has no pixel between the two.
+  constexpr int kReach = EdgeProfile::kReach;
+  const auto first =
+      static_cast<int>(std::clamp<double>(std::ceil(place - reach), -kReach, kReach + 1));
+  const auto last =
+      static_cast<int>(std::clamp<double>(std::floor(place + reach), -kReach - 1, kReach));
   double mass = 0, moment = 0, square = 0;
-  for (double k = first; k <= last; ++k) {
+  for (int k = first; k <= last; ++k) {
     const double away = k - place;
-    const double seen = profile.strength[static_cast<std::size_t>(k + EdgeProfile::kReach)] *
+    const double seen = profile.strength[static_cast<std::size_t>(k + kReach)] *
                         std::exp(-away * away / (2 * variance));
     mass += seen;
     moment += seen * away;

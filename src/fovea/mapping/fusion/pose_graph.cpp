@@ -183,8 +183,12 @@ double PoseGraph::worst_robust_error() const {
 
 void PoseGraph::optimize() {
   // A narrow kernel would not see a true measurement that is far off yet: it narrows step by step.
+  if (poses_.empty()) return;
   double width = worst_robust_error();
-  for (; width > kRobustWidth; width /= kNarrowing) descend(width);
+  while (std::isfinite(width) && width > kRobustWidth) {
+    descend(width);
+    width /= kNarrowing;
+  }
   descend(kRobustWidth);
 }
 

@@ -153,6 +153,28 @@ TEST(PoseGraph, WhatNothingHoldsStays) {
   EXPECT_TRUE(graph.poses()[1].isApprox(pose(3, 4, 0.2), 1e-12));
 }
 
+TEST(PoseGraph, NothingIsOptimisedToNothing) {
+  PoseGraph graph;
+  graph.optimize();
+  EXPECT_TRUE(graph.poses().empty());
+}
+
+// Narrowing the kernel step by step from an infinite error would never end.
+TEST(PoseGraph, AnInfiniteErrorEnds) {
+  PoseGraph graph;
+  RigidMotion far = RigidMotion::Identity();
+  far.translation().x() = 1e200;
+  graph.add_node(RigidMotion::Identity());
+  graph.add_node(far);
+  RelativePose loop;
+  loop.from = 0;
+  loop.to = 1;
+  loop.robust = true;
+  graph.add(loop);
+  graph.optimize();
+  EXPECT_EQ(graph.poses().size(), 2u);
+}
+
 TEST(PoseGraph, RejectsNodesThatAreNotThere) {
   PoseGraph graph;
   graph.add_node(RigidMotion::Identity());
