@@ -188,7 +188,7 @@ std::string stacked_chart(const Chart& chart) {
     for (std::size_t i = 0; i < chart.x.size(); ++i) {
       const double ceiling = floor[i] + value_of(chart.series[s].values[i]);
       up += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", plot.x(chart.x[i]), plot.y(ceiling));
-      back = fmt::format("L{:.1f} {:.1f}", plot.x(chart.x[i]), plot.y(floor[i])) + back;
+      back.insert(0, fmt::format("L{:.1f} {:.1f}", plot.x(chart.x[i]), plot.y(floor[i])));
       floor[i] = ceiling;
     }
     plot.add(fmt::format("<path class=\"area s{}\" d=\"{}{}Z\"/>\n", s, up, back));

@@ -44,8 +44,9 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
   double mass = 0, moment = 0, square = 0;
   for (int k = first; k <= last; ++k) {
     const double away = k - place;
-    const double seen = profile.strength[static_cast<std::size_t>(k + kReach)] *
-                        std::exp(-away * away / (2 * variance));
+    const int pixel = k + kReach;
+    const double seen =
+        profile.strength[static_cast<std::size_t>(pixel)] * std::exp(-away * away / (2 * variance));
     mass += seen;
     moment += seen * away;
     square += seen * away * away;
