@@ -15,7 +15,7 @@ constexpr double kBleeding = 3;       // TE at edges over elsewhere
 constexpr double kThickness = 0.035;  // m
 constexpr double kFreeSpace = 0.1;
 constexpr double kSharpness = 0.6;
-constexpr double kDetail = 0.3;
+constexpr double kDetail = 0.25;
 constexpr double kStrayTimes = 3, kStrayMetres = 0.05;
 
 }  // namespace
