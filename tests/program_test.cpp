@@ -111,13 +111,15 @@ TEST_F(Program, MapsInfoExportEvaluate) {
   ASSERT_EQ(cloud.exit_code, 0) << cloud.err;
   const auto cloud_score = nlohmann::json::parse(read_text(scores));
   // A cloud knows no sweep velocities: they come from its poses, and differ a little.
-  EXPECT_NEAR(cloud_score.at("me_mean"), score.at("me_mean"), 2e-4);
+  EXPECT_NEAR(cloud_score.at("me_mean"), score.at("me_mean"), 5e-4);
   EXPECT_NEAR(cloud_score.at("te_mean"), score.at("te_mean"), 0.1);
 }
 
 TEST_F(Program, TheWrittenDriveIsReadBackToTheTruth) {
   // Calibration, geodesy, stamps, poses: with true poses every map point lies on a surface.
-  ASSERT_EQ(map(drive_, "--poses navigation --set upsample.rate=0 --set motion.compensate=false")
+  ASSERT_EQ(map(drive_,
+                "--poses navigation --set surface.spacing=0 --set upsample.rate=0 --set "
+                "motion.compensate=false")
                 .exit_code,
             0);
   const auto ply = own_ / "map.ply";

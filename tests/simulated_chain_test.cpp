@@ -24,9 +24,10 @@ namespace {
 struct Chain {
   explicit Chain(const SimulationOptions& options_) : options(options_) {
     folder = simulate(options, own / "drive");
-    const ProgramRun run = run_fovea(
-        "map '" + folder.string() + "' -o '" + (own / "map.fovea").string() + "' --poses '" +
-        (folder / "truth/poses.txt").string() + "' --set upsample.rate=0 --quiet");
+    const ProgramRun run =
+        run_fovea("map '" + folder.string() + "' -o '" + (own / "map.fovea").string() +
+                  "' --poses '" + (folder / "truth/poses.txt").string() +
+                  "' --set surface.spacing=0 --set upsample.rate=0 --quiet");
     EXPECT_EQ(run.exit_code, 0) << run.err;
     map = MapReader(own / "map.fovea").all_points_local();
   }

@@ -11,6 +11,7 @@
 #include "fovea/evaluation/splat.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/foveal_region.h"
+#include "fovea/mapping/surface_samples.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
 
@@ -61,6 +62,20 @@ std::string figure(const ColouredPoints& points, const std::vector<float>& spaci
       escaped(alt), kWidth, kHeight, jpeg_uri(drawn.image, kQuality), caption);
 }
 
+/// As the map's options say, without a map that would have some of it already.
+PointCloud densified(const PointCloud& measured_cam, const Camera& camera,
+                     const MapperOptions& options) {
+  if (options.surface.spacing == 0) return upsample(measured_cam, camera, options.upsample);
+  const SampleGrid grid{camera.T_cam_lidar.inverse(), options.surface.spacing,
+                        [](const Eigen::Vector3d&) { return false; }};
+  return sample_surfaces(measured_cam, camera, options.surface, grid);
+}
+
+std::string what_upsampled(const MapperOptions& options) {
+  return options.surface.spacing == 0 ? fmt::format("at rate {}", options.upsample.rate)
+                                      : fmt::format("every {:g} cm", 100 * options.surface.spacing);
+}
+
 }  // namespace
 
 std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
@@ -77,7 +92,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   const PointCloud all_cam = transform_cloud(loaded->scan_lidar, camera.T_cam_lidar);
   const PointCloud measured_cam = all_cam.select(foveal_points(all_cam, region));
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
-  PointCloud dense_cam = upsample(measured_cam, camera, options.upsample);
+  PointCloud dense_cam = densified(measured_cam, camera, options);
   limit_incidence(dense_cam, foveal.max_incidence);
   colour_points(dense_cam, {loaded->frame.images.front(), camera, placed.index});
 
@@ -94,10 +109,10 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   html += figure(as_coloured(measured, range_colors(measured, foveal)),
                  std::vector<float>(measured.size(), kDot), "Measured points",
                  fmt::format("<b>As measured</b>: {} points", count(measured.size())));
-  html += figure(as_coloured(dense, range_colors(dense, foveal)),
-                 std::vector<float>(dense.size(), kDot), "Upsampled points",
-                 fmt::format("<b>Upsampled</b> at rate {}: {} points", options.upsample.rate,
-                             count(dense.size())));
+  html += figure(
+      as_coloured(dense, range_colors(dense, foveal)), std::vector<float>(dense.size(), kDot),
+      "Upsampled points",
+      fmt::format("<b>Upsampled</b> {}: {} points", what_upsampled(options), count(dense.size())));
   html += figure(as_coloured(dense, dense.color), sample_spacing(dense.position), "Textured points",
                  "<b>Textured</b> from the photograph");
   return html + "</div>\n";
