@@ -38,20 +38,22 @@ struct Flaw {
   }
 };
 
-/// What a user must know of the poses.
-void note_poses(const std::vector<FrameRecord>& records, const DriveInfo& drive,
+/// What a user must know of poses and images.
+void note_flaws(const std::vector<FrameRecord>& records, const DriveInfo& drive,
                 std::vector<std::string>& notes) {
-  Flaw absent, jumped, degenerate;
+  Flaw absent, jumped, degenerate, blank;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
     if (drive.navigation && !record.T_local_lidar_navigation) absent.add(record.index);
     if (record.has("navigation_jumped")) jumped.add(record.index);
     if (record.has("registration_degenerate")) degenerate.add(record.index);
+    if (record.has("images_blank")) blank.add(record.index);
   }
   absent.note("no GPS/INS, the scans alone tell the motion", notes);
   jumped.note("GPS/INS moves otherwise than the scans, it counts for less from there on", notes);
   degenerate.note("the scan leaves a direction of motion open, which is taken from the first guess",
                   notes);
+  blank.note("an image shows nothing but black or white and colours no point", notes);
 }
 
 }  // namespace
@@ -86,7 +88,7 @@ MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_
     for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);
   }
   for (auto& [stage, times] : by_stage) summary.latency_ms[stage] = latency_of(std::move(times));
-  note_poses(records, drive, summary.notes);
+  note_flaws(records, drive, summary.notes);
   summary.peak_rss_mb = peak_rss_mb();
   return summary;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/foveal_query.h"
@@ -110,6 +111,10 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
     }
     if (options_.foveal_enabled) {
       for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+        if (is_blank(frame.images[camera])) {
+          ++record.figures["images_blank"];
+          continue;
+        }
         map_camera(scan_lidar, frame, camera, record.T_local_lidar, record, clock);
       }
     } else {

@@ -86,6 +86,32 @@ TEST(Mapper, OnlyTheWhiteZoneIsTextured) {
   }
 }
 
+// A lens that is covered for three frames: no point turns black, and the drive goes on.
+TEST(Mapper, BlankImagesColourNothing) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  std::size_t before = 0;
+  for (int i = 0; i < 6; ++i) {
+    Frame frame = std::get<Frame>(street().load(i));
+    const bool covered = i >= 2 && i < 5;
+    if (covered) std::fill(frame.images[0].data.begin(), frame.images[0].data.end(), 3);
+    const FrameRecord record = mapper.process(frame, false);
+    EXPECT_EQ(record.has("images_blank"), covered);
+    EXPECT_EQ(record.status, FrameStatus::kMapped);
+    if (covered) {
+      EXPECT_EQ(mapper.map().size(), before);
+    } else {
+      EXPECT_GT(mapper.map().size(), before);
+    }
+    before = mapper.map().size();
+  }
+  double color_error = 0;
+  const auto points = points_of(mapper.map());
+  for (const MapPoint& point : points) {
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_LT(color_error / double(points.size()), 4.0);
+}
+
 // The registration is given a wrong speed (navigation scaled by 0.9) and must find the true steps.
 TEST(Mapper, RefinementCorrectsTheNavigation) {
   SyntheticDrive drive(street_scene(), 8, 0.8);
