@@ -29,10 +29,20 @@ void DepthBuffer::add(const Eigen::Vector2f& pixel, float depth, float radius) {
   }
 }
 
-bool DepthBuffer::hides(const Eigen::Vector2f& pixel, float depth) const {
+float DepthBuffer::depth_at(const Eigen::Vector2f& pixel) const {
   const auto x = static_cast<std::size_t>(pixel.x() / 2 + 0.5f);
   const auto y = static_cast<std::size_t>(pixel.y() / 2 + 0.5f);
-  return depth > depth_[y * static_cast<std::size_t>(width_) + x] + kBehind + kBehindShare * depth;
+  return depth_[y * static_cast<std::size_t>(width_) + x];
+}
+
+bool DepthBuffer::hides(const Eigen::Vector2f& pixel, float depth) const {
+  return depth > depth_at(pixel) + kBehind + kBehindShare * depth;
+}
+
+bool DepthBuffer::is_hidden_by(const Eigen::Vector2f& pixel, float depth) const {
+  const float front = depth_at(pixel);
+  return front != std::numeric_limits<float>::infinity() &&
+         front - depth > std::max(kBefore, kBeforeShare * depth);
 }
 
 }  // namespace fovea

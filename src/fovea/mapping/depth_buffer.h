@@ -12,6 +12,8 @@ class DepthBuffer {
  public:
   /// A surface this far behind the front one is not taken for the same: metres, and share of depth.
   static constexpr float kBehind = 0.1f, kBehindShare = 0.02f;
+  /// A point this far before it, and this share of its own depth, is not.
+  static constexpr float kBefore = 0.3f, kBeforeShare = 0.05f;
 
   explicit DepthBuffer(const Camera& camera);
 
@@ -24,7 +26,11 @@ class DepthBuffer {
   /// Whether something added stands in front of a point there.
   bool hides(const Eigen::Vector2f& pixel, float depth) const;
 
+  /// Whether a point there would stand before all that was added: no part of its surface.
+  bool is_hidden_by(const Eigen::Vector2f& pixel, float depth) const;
+
  private:
+  float depth_at(const Eigen::Vector2f& pixel) const;
   int width_, height_;
   std::vector<float> depth_;
 };

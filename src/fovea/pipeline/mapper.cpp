@@ -36,6 +36,17 @@ PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>&
   return points.select(visible);
 }
 
+/// The points that are not marked; `left_out` counts the others.
+PointCloud without(const PointCloud& points, const std::vector<std::uint8_t>& marks,
+                   double& left_out) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < marks.size(); ++i) {
+    if (marks[i] == 0) kept.push_back(i);
+  }
+  left_out += as_figure(marks.size() - kept.size());
+  return points.select(kept);
+}
+
 /// Poses that are given are not corrected, nor those of the paper's pairwise chain.
 bool fuses(const MapperOptions& options, PoseSource pose_source) {
   return options.fusion.enabled && pose_source == PoseSource::kRefine &&
@@ -210,6 +221,15 @@ PointCloud Mapper::densified(const PointCloud& foveal_cam, const Camera& camera,
   });
 }
 
+PointCloud Mapper::filter_rays(const PointCloud& dense_cam, const FovealRegion& region,
+                               const RigidMotion& T_local_lidar, FrameRecord& record) {
+  const std::vector<Ray> accumulated = map_rays(map_, region, T_local_lidar);
+  record.figures["points_map_in_view"] += as_figure(accumulated.size());
+  const auto verdicts = ray_filter_.filter(rays_of(dense_cam, region.camera()), accumulated,
+                                           region.camera(), options_.ray_filter);
+  return keep_visible(dense_cam, verdicts, record.figures);
+}
+
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
                         const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
   const Camera& camera = cameras_[camera_slot];
@@ -222,30 +242,45 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
   record.figures["points_oblique"] += as_figure(oblique);
 
+  std::optional<SeenMap> seen;
+  if (options_.ray_filter.mode == RayFilterMode::kScan ||
+      options_.texture.views == TextureViews::kMean) {
+    const bool on_grid = options_.surface.spacing > 0;
+    clock.time("filter", [&] {
+      seen.emplace(map_, region, T_local_cam.inverse(),
+                   on_grid ? occupancy_.cell() : options_.texture.footprint);
+    });
+  }
   PointCloud visible_cam = clock.time("filter", [&] {
-    if (options_.ray_filter.mode != RayFilterMode::kPaper) return std::move(dense_cam);
-    const std::vector<Ray> accumulated = map_rays(map_, region, T_local_lidar);
-    record.figures["points_map_in_view"] += as_figure(accumulated.size());
-    const auto verdicts =
-        ray_filter_.filter(rays_of(dense_cam, camera), accumulated, camera, options_.ray_filter);
-    return keep_visible(dense_cam, verdicts, record.figures);
+    switch (options_.ray_filter.mode) {
+      case RayFilterMode::kPaper:
+        return filter_rays(dense_cam, region, T_local_lidar, record);
+      case RayFilterMode::kScan:
+        return without(dense_cam, seen->marks_before(dense_cam),
+                       record.figures["filter_occluding"]);
+      case RayFilterMode::kOff:
+        break;
+    }
+    return dense_cam;
   });
   clock.time("texture", [&] {
+    const Image& image = frame.images[camera_slot];
     if (options_.texture.views == TextureViews::kFirst) {
-      colour_points(visible_cam, {frame.images[camera_slot], camera, frame.index},
-                    options_.texture);
+      colour_points(visible_cam, {image, camera, frame.index}, options_.texture);
       return;
     }
-    const ImagePyramid image(frame.images[camera_slot]);
-    const MapView view{image, region, T_local_cam.inverse(), frame.index,
-                       options_.texture.footprint};
-    record.figures["points_recoloured"] +=
-        as_figure(recolour(map_, view, visible_cam, T_local_lidar.translation()));
+    const ImagePyramid pyramid(image);
+    const ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
+    record.figures["points_recoloured"] += as_figure(seen->recolour(map_, view, dense_cam));
     colour_new_points(visible_cam, view);
   });
   PointCloud added_local = transform_cloud(visible_cam, T_local_cam, T_local_lidar.translation());
   if (options_.moving.remove) {
-    added_local = clock.time("filter", [&] { return keep_still(added_local, record.figures); });
+    added_local = clock.time("filter", [&] {
+      return without(added_local,
+                     moving_things_.marks(added_local, fusion_.T_local_odom().inverse()),
+                     record.figures["filter_moving"]);
+    });
   }
   clock.time("store", [&] {
     // The cells' record of the map must not miss what goes before the next frame.
@@ -255,18 +290,6 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
     }
   });
   record.figures["points_added"] += as_figure(added_local.size());
-}
-
-PointCloud Mapper::keep_still(const PointCloud& points_local,
-                              std::map<std::string, double>& figures) const {
-  const std::vector<std::uint8_t> moving =
-      moving_things_.marks(points_local, fusion_.T_local_odom().inverse());
-  std::vector<std::uint32_t> still;
-  for (std::uint32_t i = 0; i < moving.size(); ++i) {
-    if (moving[i] == 0) still.push_back(i);
-  }
-  figures["filter_moving"] += as_figure(moving.size() - still.size());
-  return points_local.select(still);
 }
 
 void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,

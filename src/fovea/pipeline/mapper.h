@@ -72,8 +72,9 @@ class Mapper {
   /// The foveal points and what is sampled between them.
   PointCloud densified(const PointCloud& foveal_cam, const Camera& camera,
                        const RigidMotion& T_local_cam, StageClock& clock);
-  PointCloud keep_still(const PointCloud& points_local,
-                        std::map<std::string, double>& figures) const;
+  /// What the paper's ray filter leaves.
+  PointCloud filter_rays(const PointCloud& dense_cam, const FovealRegion& region,
+                         const RigidMotion& T_local_lidar, FrameRecord& record);
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
                       const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
 
