@@ -30,18 +30,31 @@ std::size_t neighbor(const ImageMesh& mesh, std::size_t triangle, int corner) {
   return static_cast<std::size_t>(mesh.triangulation.neighbor(triangle, corner));
 }
 
-/// Normals of all triangles that may be surface, each with its neighbours': areas as vectors, whose
-/// noise is that of the rim alone. Zero for the others.
-std::vector<Eigen::Vector3f> patch_normals(const ImageMesh& mesh,
-                                           const std::vector<Eigen::Vector3f>& area) {
-  std::vector<Eigen::Vector3f> patch(area.size(), Eigen::Vector3f::Zero());
-  for (std::size_t t = 0; t < area.size(); ++t) {
-    if (area[t].isZero(0)) continue;
-    patch[t] = area[t];
-    for (int corner = 0; corner < 3; ++corner) patch[t] += area[neighbor(mesh, t, corner)];
-    patch[t] = unit_or_zero(patch[t]);
+/// Normal of a triangle together with its neighbours but one: of areas as vectors, whose noise is
+/// that of the rim alone.
+Eigen::Vector3f patch_normal(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area,
+                             std::size_t triangle, std::size_t without) {
+  Eigen::Vector3f sum = area[triangle];
+  for (int corner = 0; corner < 3; ++corner) {
+    const std::size_t beyond = neighbor(mesh, triangle, corner);
+    if (beyond != without) sum += area[beyond];
   }
-  return patch;
+  return unit_or_zero(sum);
+}
+
+/// Whether the surface goes on straight across each edge of a triangle. The patches on either side
+/// have no triangle in common: across a gap in depth triangles are large, and would outweigh the
+/// small ones of the surface at its rim.
+bool is_flat(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area, std::size_t triangle,
+             float cos_angle) {
+  for (int corner = 0; corner < 3; ++corner) {
+    const std::size_t beyond = neighbor(mesh, triangle, corner);
+    if (area[beyond].isZero(0)) return false;
+    const float cos_fold =
+        patch_normal(mesh, area, triangle, beyond).dot(patch_normal(mesh, area, beyond, triangle));
+    if (!(cos_fold > cos_angle)) return false;
+  }
+  return true;
 }
 
 void find_triangles(const GridProjection& project, const SurfaceOptions& options,
@@ -55,17 +68,14 @@ void find_triangles(const GridProjection& project, const SurfaceOptions& options
     const Vertices& corners = mesh.triangulation.vertices(t);
     if (mesh.edges_below(corners, longest)) area[t] = mesh.area_normal(corners, project);
   }
-  const std::vector<Eigen::Vector3f> patch = patch_normals(mesh, area);
   const auto cos_angle = static_cast<float>(std::cos(options.planar_angle));
-  const auto is_flat = [&](std::size_t t) {
-    return patch[t].dot(patch[neighbor(mesh, t, 0)]) > cos_angle &&
-           patch[t].dot(patch[neighbor(mesh, t, 1)]) > cos_angle &&
-           patch[t].dot(patch[neighbor(mesh, t, 2)]) > cos_angle;
-  };
   for (std::size_t t = 0; t < area.size(); ++t) {
     if (area[t].isZero(0)) continue;
     const Vertices& corners = mesh.triangulation.vertices(t);
-    if (!mesh.edges_below(corners, squared(options.max_edge)) && !is_flat(t)) continue;
+    if (!mesh.edges_below(corners, squared(options.max_edge)) &&
+        !is_flat(mesh, area, t, cos_angle)) {
+      continue;
+    }
     surface.triangles.push_back(corners);
     surface.area.push_back(area[t]);
   }

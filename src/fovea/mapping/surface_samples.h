@@ -13,7 +13,7 @@ struct SurfaceOptions {
   double spacing = 0.02;     ///< of the samples, m; 0: the paper's upsampling in their place
   double max_edge = 0.3;     ///< tau: a triangle of shorter edges is surface (m)
   double planar_edge = 1.0;  ///< longest edge where the surface is flat (m)
-  double planar_angle = 0.3490658503988659;  ///< between normals of neighbours there, rad
+  double planar_angle = 0.5235987755982988;  ///< between normals on two sides of an edge there, rad
   void validate() const;                     ///< ConfigError that names the field
 };
 
@@ -28,9 +28,9 @@ struct SampleGrid {
 /// Samples the triangles between the projected points (2D Delaunay, as upsample() has them).
 ///
 /// A triangle is surface if its edges are shorter than max_edge. Rings of a LiDAR fall onto the far
-/// ground more than that apart: one of edges up to planar_edge is surface, too, if it and its three
-/// neighbours lie in a plane. At an edge of depth one of the three does not: it belongs to what is
-/// before or behind the gap.
+/// ground more than that apart: one of edges up to planar_edge is surface, too, if the surface goes
+/// on straight across each of its edges. Across a gap in depth it does not: one of the edges there
+/// belongs to what is before or behind.
 ///
 /// Each triangle is looked at along the axis of the grid nearest to its normal, and sampled where
 /// centres of cells fall onto it: samples of all frames and triangles have the same places.
