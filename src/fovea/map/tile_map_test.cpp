@@ -196,5 +196,33 @@ TEST(TileMap, RefusesWhatATileCannotHold) {
   EXPECT_THROW(map.add(bad), std::logic_error);
 }
 
+TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
+  Random random(21);
+  TileMap map(1.0);
+  map.add_submap(exp_se3((Twist() << 0.1, 0.2, 0.3, 4, 5, 6).finished()));
+  map.add_submap(RigidMotion::Identity());
+  map.add(random_map_points(300, random, 1.5));
+  const TileId id{1, {-1, 0, -1}};
+  const PointCloud before = map.submaps()[1].tiles.at(id.key);
+  const PointCloud other = map.submaps()[1].tiles.at({0, 0, 0});
+  const TileColors colors = map.colors(id);
+  ASSERT_GT(before.size(), 5u);
+  ASSERT_EQ(colors.color.size(), before.size());
+  ASSERT_EQ(colors.views.size(), before.size());
+  ASSERT_EQ(colors.spread.size(), before.size());
+  ASSERT_EQ(colors.weight.size(), before.size());
+  PointCloud expected = before;
+  expected.color[4] = colors.color[4] = {9, 8, 7};
+  expected.views[3] = colors.views[3] = 77;
+  expected.spread[2] = colors.spread[2] = 66;
+  expected.weight[1] = colors.weight[1] = 55'555;
+  expect_same_columns(map.submaps()[1].tiles.at(id.key), expected);
+  expect_same_columns(map.submaps()[1].tiles.at({0, 0, 0}), other);
+  EXPECT_EQ(map.size(), 300u);
+  EXPECT_THROW(map.colors({0, id.key}), std::logic_error);
+  EXPECT_THROW(map.colors({1, {50, 0, 0}}), std::logic_error);
+  EXPECT_THROW(map.colors({2, id.key}), std::logic_error);
+}
+
 }  // namespace
 }  // namespace fovea
