@@ -1,0 +1,201 @@
+#include "fovea/mapping/color_fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+struct SeenView {
+  Eigen::Vector3f color;
+  std::uint16_t weight;
+};
+
+/// What no rounding would give.
+struct Exact {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double deviation = 0;
+};
+
+Exact exact(const std::vector<SeenView>& views) {
+  Exact result;
+  double weight = 0;
+  for (const SeenView& view : views) {
+    result.mean += view.weight * view.color.cast<double>();
+    weight += view.weight;
+  }
+  result.mean /= weight;
+  double sum = 0;
+  for (const SeenView& view : views) {
+    sum += view.weight * (view.color.cast<double>() - result.mean).squaredNorm() / 3;
+  }
+  result.deviation = std::sqrt(sum / weight);
+  return result;
+}
+
+FusedColor fuse_all(const std::vector<SeenView>& views, std::uint64_t seed) {
+  Random random(seed);
+  FusedColor fused;
+  for (const SeenView& view : views) fused = fuse(fused, view.color, view.weight, random.next());
+  return fused;
+}
+
+/// Means over many points that see the same.
+struct Average {
+  Eigen::Vector3d color = Eigen::Vector3d::Zero();
+  double spread = 0;
+  double deviation = 0;  // of a point's colour from the average, RMS of channels
+};
+
+Average average(const std::vector<SeenView>& views, int points) {
+  Average result;
+  std::vector<Eigen::Vector3d> colors;
+  for (int i = 0; i < points; ++i) {
+    const FusedColor fused = fuse_all(views, std::uint64_t(i) * 977 + 5);
+    colors.push_back(to_float(fused.color).cast<double>());
+    result.color += colors.back() / points;
+    result.spread += double(fused.spread) / points;
+  }
+  for (const Eigen::Vector3d& color : colors) {
+    result.deviation += (color - result.color).squaredNorm() / (3.0 * points);
+  }
+  result.deviation = std::sqrt(result.deviation);
+  return result;
+}
+
+std::vector<SeenView> random_views(std::size_t count, double sigma, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<SeenView> views;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d color(90.3 + sigma * random.normal(), 120.8 + sigma * random.normal(),
+                                60.5 + sigma * random.normal());
+    views.push_back({color.cast<float>(), static_cast<std::uint16_t>(5 + random.below(20))});
+  }
+  // The first view's colour is rounded to the nearest: not what is measured here.
+  views[0].color = to_float(to_rgb(views[0].color));
+  return views;
+}
+
+TEST(ColorFusion, TheFirstViewIsTheColour) {
+  const FusedColor fused = fuse({}, {10.4f, 200.6f, 300.f}, 17, ~std::uint64_t{0});
+  EXPECT_EQ(fused.color, (Rgb{10, 201, 255}));
+  EXPECT_EQ(fused.views, 1);
+  EXPECT_EQ(fused.spread, 0);
+  EXPECT_EQ(fused.weight, 17);
+}
+
+TEST(ColorFusion, TwoViewsGiveTheWeightedMeanAndDeviation) {
+  const FusedColor first = fuse({}, {100, 50, 200}, 10, 0);
+  const FusedColor fused = fuse(first, {140, 50, 160}, 30, 0);
+  EXPECT_EQ(fused.color, (Rgb{130, 50, 170}));
+  EXPECT_EQ(fused.views, 2);
+  EXPECT_EQ(fused.weight, 40);
+  // Channels deviate by 17.32, 0 and 17.32: 14.14 together, rounded down without noise, ...
+  EXPECT_EQ(fused.spread, 14);
+  EXPECT_EQ(fuse(first, {140, 50, 160}, 30, ~std::uint64_t{0}).spread, 15);  // ... or up
+}
+
+TEST(ColorFusion, RoundsUpWithTheProbabilityOfTheFraction) {
+  const FusedColor first = fuse({}, {100, 100, 100}, 10, 0);
+  Random random(1);
+  int up = 0;
+  constexpr int kDraws = 20'000;
+  for (int i = 0; i < kDraws; ++i) {
+    const Rgb color = fuse(first, {103, 103, 103}, 1, random.next()).color;  // mean 100.27
+    for (const int channel : {color.r, color.g, color.b}) {
+      ASSERT_TRUE(channel == 100 || channel == 101);
+      up += channel - 100;
+    }
+  }
+  EXPECT_NEAR(up / (3.0 * kDraws), 3.0 / 11, 0.008);  // 4 standard deviations
+}
+
+// Steps of the late views are far below one grey value; rounding to the nearest would lose them.
+TEST(ColorFusion, TheAverageOverPointsIsTheWeightedMean) {
+  for (const std::size_t count : {2u, 5u, 20u, 200u}) {
+    for (const double sigma : {3.0, 10.0}) {
+      const std::vector<SeenView> views = random_views(count, sigma, count);
+      const Exact truth = exact(views);
+      const Average fused = average(views, 20'000);
+      EXPECT_LT((fused.color - truth.mean).cwiseAbs().maxCoeff(), 0.05) << count << " " << sigma;
+      EXPECT_NEAR(fused.spread, truth.deviation, 0.05 * sigma + 0.2) << count << " " << sigma;
+    }
+  }
+}
+
+// A step of |d| / n grey values is rounded with a variance of at most that; views after it shrink
+// its error in proportion: |d| / 2 in all, however many views there are.
+TEST(ColorFusion, RoundingNoiseDoesNotGrowWithTheViews) {
+  for (const std::size_t count : {5u, 30u, 250u}) {
+    const double sigma = 8, mean_difference = sigma * std::sqrt(2 / 3.14159265);
+    const Average fused = average(random_views(count, sigma, count), 5'000);
+    EXPECT_GT(fused.deviation, 0.2) << count;
+    EXPECT_LT(fused.deviation, std::sqrt(mean_difference / 2) + 0.3) << count;
+  }
+}
+
+TEST(ColorFusion, LateChangesStillArrive) {
+  std::vector<SeenView> views(50, {{80, 80, 80}, 10});
+  views.resize(100, {{120, 120, 120}, 10});
+  const Average fused = average(views, 10'000);
+  EXPECT_NEAR(fused.color.x(), 100, 0.05);
+  EXPECT_NEAR(fused.spread, 20, 0.3);
+}
+
+TEST(ColorFusion, OneColourStays) {
+  const FusedColor fused = fuse_all(std::vector<SeenView>(300, {{0, 255, 128}, 13}), 3);
+  EXPECT_EQ(fused.color, (Rgb{0, 255, 128}));
+  EXPECT_EQ(fused.spread, 0);
+}
+
+TEST(ColorFusion, ViewsAndWeightsSaturate) {
+  FusedColor fused;
+  Random random(2);
+  for (int i = 1; i <= 2000; ++i) {
+    fused = fuse(fused, {50, 60, 70}, 100, random.next());
+    ASSERT_EQ(fused.views, std::min(i, 255));
+    ASSERT_EQ(fused.weight, std::min(100 * i, 65535));
+  }
+  EXPECT_EQ(fused.color, (Rgb{50, 60, 70}));
+  // From there on the latest views count as if all weights before were the most there can be.
+  Average average_color;
+  constexpr int kPoints = 20'000;
+  for (int i = 0; i < kPoints; ++i) {
+    average_color.color +=
+        to_float(fuse(fused, {250, 60, 70}, 100, random.next()).color).cast<double>() / kPoints;
+  }
+  EXPECT_NEAR(average_color.color.x(), 50 + 200 * 100.0 / 65535, 0.02);
+}
+
+TEST(ColorFusion, ColoursStayInRange) {
+  Random random(4);
+  for (int i = 0; i < 2000; ++i) {
+    const FusedColor before{{255, 0, 255}, 3, 255, 30};
+    const FusedColor fused = fuse(before, {255, 0, 0}, 10, random.next());
+    ASSERT_EQ(fused.color.r, 255);
+    ASSERT_EQ(fused.color.g, 0);
+    ASSERT_NEAR(fused.color.b, 191.25, 1);
+  }
+}
+
+TEST(ViewWeight, FallsWithTheDistance) {
+  EXPECT_EQ(view_weight(1), 100);
+  EXPECT_EQ(view_weight(4), 25);
+  EXPECT_EQ(view_weight(15), 7);
+  std::uint16_t last = view_weight(0);
+  EXPECT_EQ(last, 100);
+  for (double distance = 0.1; distance < 500; distance *= 1.07) {
+    const std::uint16_t weight = view_weight(distance);
+    ASSERT_LE(weight, last);
+    ASSERT_GE(weight, 1);
+    last = weight;
+  }
+  EXPECT_EQ(last, 1);
+}
+
+}  // namespace
+}  // namespace fovea
