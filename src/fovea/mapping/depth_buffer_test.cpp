@@ -1,0 +1,107 @@
+#include "fovea/mapping/depth_buffer.h"
+
+#include <gtest/gtest.h>
+
+namespace fovea {
+namespace {
+
+Camera camera_of(int width, int height) {
+  Camera camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = 100;
+  camera.cx = (width - 1) / 2.0;
+  camera.cy = (height - 1) / 2.0;
+  return camera;
+}
+
+TEST(DepthBuffer, HidesNothingWhereNothingStands) {
+  const DepthBuffer buffer(camera_of(100, 50));
+  EXPECT_FALSE(buffer.hides({0, 0}, 1000.f));
+  EXPECT_FALSE(buffer.hides({99, 49}, 1000.f));
+}
+
+TEST(DepthBuffer, HidesWhatIsBehindAndNotWhatIsBesideOrInFront) {
+  DepthBuffer buffer(camera_of(100, 50));
+  buffer.add({40, 20}, 5, 6);
+  const float margin = DepthBuffer::kBehind + DepthBuffer::kBehindShare * 5.2f;
+  EXPECT_FALSE(buffer.hides({40, 20}, 4));
+  EXPECT_FALSE(buffer.hides({40, 20}, 5));
+  EXPECT_FALSE(buffer.hides({40, 20}, 5 + margin - 0.02f));
+  EXPECT_TRUE(buffer.hides({40, 20}, 5 + margin + 0.02f));
+  EXPECT_TRUE(buffer.hides({40, 20}, 100));
+  for (const Eigen::Vector2f& inside :
+       {Eigen::Vector2f(45, 20), {35, 20}, {40, 25}, {40, 15}, {45, 25}}) {
+    EXPECT_TRUE(buffer.hides(inside, 8)) << inside.transpose();
+  }
+  for (const Eigen::Vector2f& beside :
+       {Eigen::Vector2f(48, 20), {32, 20}, {40, 28}, {40, 12}, {90, 40}}) {
+    EXPECT_FALSE(buffer.hides(beside, 8)) << beside.transpose();
+  }
+}
+
+TEST(DepthBuffer, TheNearestStandsInFront) {
+  DepthBuffer buffer(camera_of(100, 50));
+  buffer.add({40, 20}, 5, 2);
+  buffer.add({40, 20}, 3, 2);
+  buffer.add({40, 20}, 9, 2);
+  EXPECT_TRUE(buffer.hides({40, 20}, 4));
+  EXPECT_FALSE(buffer.hides({40, 20}, 3.1f));
+}
+
+TEST(DepthBuffer, ASampleCoversAtLeastItsOwnPixel) {
+  DepthBuffer buffer(camera_of(100, 50));
+  for (float u = 0; u <= 99; u += 0.37f) {
+    for (float v = 0; v <= 49; v += 1.13f) {
+      DepthBuffer alone(camera_of(100, 50));
+      alone.add({u, v}, 2, 0);
+      ASSERT_TRUE(alone.hides({u, v}, 3)) << u << " " << v;
+    }
+  }
+}
+
+TEST(DepthBuffer, CornersOfEvenAndOddImagesAreInside) {
+  for (const auto& [width, height] : {std::pair(100, 50), {101, 51}, {1, 1}, {2, 3}}) {
+    for (const float u : {0.f, float(width - 1)}) {
+      for (const float v : {0.f, float(height - 1)}) {
+        for (const float radius : {0.f, 3.f, 100.f}) {
+          DepthBuffer buffer(camera_of(width, height));
+          buffer.add({u, v}, 2, radius);
+          ASSERT_TRUE(buffer.hides({u, v}, 3));
+          ASSERT_FALSE(buffer.hides({u, v}, 2));
+        }
+      }
+    }
+  }
+}
+
+// A ground seen at a grazing angle, sampled every 2 cm: it does not hide itself, though discs of
+// near samples reach over farther ones; and it hides what lies under it.
+TEST(DepthBuffer, ASlantSurfaceDoesNotHideItself) {
+  Camera camera = camera_of(1242, 375);
+  camera.fx = camera.fy = 720;
+  DepthBuffer buffer(camera);
+  constexpr double kHeight = 1.65;
+  const auto pixel_of = [&](double x, double y, double z) -> Eigen::Vector2f {
+    return camera.project({x, y, z})->cast<float>();
+  };
+  std::vector<std::pair<Eigen::Vector2f, float>> samples;
+  for (double z = 5; z < 15; z += 0.02) {
+    for (double x = -2; x <= 2; x += 0.02) {
+      const Eigen::Vector2f pixel = pixel_of(x, kHeight, z);
+      if (!camera.in_view(pixel.cast<double>())) continue;
+      samples.emplace_back(pixel, static_cast<float>(z));
+      buffer.add(pixel, samples.back().second, static_cast<float>(0.75 * 0.02 * camera.fx / z));
+    }
+  }
+  ASSERT_GT(samples.size(), 50'000u);
+  std::size_t hidden = 0;
+  for (const auto& [pixel, depth] : samples) hidden += buffer.hides(pixel, depth);
+  EXPECT_LT(double(hidden), 0.01 * double(samples.size()));
+  for (double z = 7; z < 11; z += 0.1) {
+    EXPECT_TRUE(buffer.hides(pixel_of(0.3, kHeight * 1.3, z * 1.3), static_cast<float>(z * 1.3)));
+  }
+}
+
+}  // namespace
+}  // namespace fovea
