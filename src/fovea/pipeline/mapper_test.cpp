@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "../../../tests/sample_map.h"
 #include "../../../tests/synthetic_drive.h"
 #include "fovea/base/parallel.h"
 
@@ -36,6 +39,44 @@ std::vector<FrameRecord> map_frames(Mapper& mapper, const SyntheticDrive& drive,
     records.push_back(mapper.process(std::get<Frame>(drive.load(i)), i == held_out));
   }
   return records;
+}
+
+/// Bit for bit, colours and what tells of them included.
+void expect_same_maps(const TileMap& a, const TileMap& b) {
+  ASSERT_EQ(a.submaps().size(), b.submaps().size());
+  for (std::size_t id = 0; id < a.submaps().size(); ++id) {
+    const Submap &left = a.submaps()[id], &right = b.submaps()[id];
+    EXPECT_EQ(left.T_local_submap.matrix(), right.T_local_submap.matrix());
+    ASSERT_EQ(left.tiles.size(), right.tiles.size());
+    for (const auto& [key, tile] : left.tiles) {
+      ASSERT_TRUE(right.tiles.contains(key));
+      expect_same_columns(tile, right.tiles.at(key));
+    }
+  }
+}
+
+/// The street, its walls not on borders of the map's cells: there rounding decides between two.
+Scene street_off_borders() {
+  Scene scene = street_scene();
+  const Eigen::Vector3d shift(0.007, 0.006, 0.003);
+  for (Box& box : scene.boxes) box.min += shift, box.max += shift;
+  return scene;
+}
+
+/// Points that are in the cell of another one.
+std::size_t crowded_points(const TileMap& map, double cell) {
+  std::size_t crowded = 0;
+  for (const Submap& submap : map.submaps()) {
+    std::set<std::array<std::int64_t, 3>> cells;
+    for (const auto& [key, tile] : submap.tiles) {
+      for (const Eigen::Vector3f& position : tile.position) {
+        const Eigen::Array3d at = ((tile.origin + position.cast<double>()) / cell).array().floor();
+        crowded += !cells.insert({std::int64_t(at.x()), std::int64_t(at.y()), std::int64_t(at.z())})
+                        .second;
+      }
+    }
+  }
+  return crowded;
 }
 
 const SyntheticDrive& street() {
@@ -74,6 +115,86 @@ TEST(Mapper, UpsampledPointsStayOnTheSurface) {
   EXPECT_GT(interpolated, points.size() / 4);
   EXPECT_LT(double(off) / double(points.size()), 0.02);  // chords across corners, shorter than tau
   EXPECT_GT(records[0].figures.at("points_upsampled"), 2 * records[0].figures.at("points_foveal"));
+}
+
+TEST(Mapper, ManyViewsGiveTrueColoursAtOnePointACell) {
+  const SyntheticDrive drive(street_off_borders(), 8, 0.8);
+  Mapper mapper(drive.info(), {}, PoseSource::kNavigation);
+  const auto records = map_frames(mapper, drive, 0, 8);
+  double color_error = 0, views = 0;
+  std::size_t wrong = 0, count = 0;
+  for (const auto& [key, tile] : mapper.map().submaps()[0].tiles) {
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      const Eigen::Vector3d p_local = mapper.map().submaps()[0].T_local_submap *
+                                      (tile.origin + tile.position[i].cast<double>());
+      const float error = (to_float(tile.color[i]) - synthetic_color(p_local)).norm();
+      color_error += error;
+      wrong += error > 15;  // a quarter of a metre off
+      views += tile.views[i];
+      ++count;
+      ASSERT_GE(tile.views[i], 1);
+      ASSERT_LE(tile.views[i], 8);
+      ASSERT_GE(tile.weight[i], tile.views[i]);
+    }
+  }
+  ASSERT_EQ(count, mapper.map().size());
+  EXPECT_LT(color_error / double(count), 2.0);
+  EXPECT_LT(double(wrong), 0.02 * double(count));
+  EXPECT_GT(views / double(count), 2.0);
+  EXPECT_GT(records[7].figures.at("points_recoloured"), 10'000);
+  EXPECT_LT(double(crowded_points(mapper.map(), 4.0 / 200)), 1e-3 * double(count));
+}
+
+// The same scan and image again: nothing is new, and every point is seen again.
+TEST(Mapper, AScanOfWhatIsMappedAddsViewsAndNoPoints) {
+  SyntheticDrive drive(street_off_borders(), 10, 0);
+  for (RigidMotion& T : drive.T_local_lidar) T = RigidMotion::Identity();
+  Mapper mapper(drive.info(), {}, PoseSource::kGiven);
+  std::size_t after_first = 0;
+  for (int i = 0; i < 10; ++i) {
+    mapper.process(std::get<Frame>(drive.load(i)), false, RigidMotion::Identity());
+    if (i == 0) after_first = mapper.map().size();
+  }
+  ASSERT_GT(after_first, 50'000u);
+  // A point within rounding of its cell's border may be looked for beside it.
+  EXPECT_LE(mapper.map().size(), after_first + after_first / 1000);
+  std::size_t seen_again = 0;
+  for (const auto& [key, tile] : mapper.map().submaps()[0].tiles) {
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      ASSERT_LE(tile.views[i], 10);
+      seen_again += tile.views[i] == 10;
+      if (tile.views[i] == 10) {
+        ASSERT_LE(tile.spread[i], 1);
+      }
+    }
+  }
+  EXPECT_GT(double(seen_again), 0.6 * double(after_first));
+}
+
+TEST(Mapper, SamplesPassAnyRayFilter) {
+  std::map<RayFilterMode, std::size_t> sizes;
+  for (const RayFilterMode mode :
+       {RayFilterMode::kPaper, RayFilterMode::kScan, RayFilterMode::kOff}) {
+    MapperOptions options;
+    options.ray_filter.mode = mode;
+    Mapper mapper(street().info(), options, PoseSource::kNavigation);
+    const auto records = map_frames(mapper, street(), 0, 3);
+    std::size_t off = 0;
+    double color_error = 0;
+    const auto points = points_of(mapper.map());
+    for (const MapPoint& point : points) {
+      off += street().scene.distance(point.p_local) > 0.02;
+      color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+    }
+    EXPECT_LT(double(off), 0.02 * double(points.size())) << int(mode);
+    EXPECT_LT(color_error / double(points.size()), 3.0) << int(mode);
+    EXPECT_EQ(records[2].figures.contains("filter_hidden"), mode == RayFilterMode::kScan);
+    EXPECT_EQ(records[2].figures.contains("filter_visible"), mode == RayFilterMode::kPaper);
+    sizes[mode] = points.size();
+  }
+  EXPECT_GT(sizes[RayFilterMode::kPaper], 20'000u);
+  EXPECT_LT(sizes[RayFilterMode::kPaper], sizes[RayFilterMode::kOff]);
+  EXPECT_LE(sizes[RayFilterMode::kScan], sizes[RayFilterMode::kOff]);
 }
 
 TEST(Mapper, OnlyTheWhiteZoneIsTextured) {
@@ -312,10 +433,7 @@ TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
     const auto after = map_frames(second, street(), 4, 7, 3);
 
     EXPECT_EQ(records[6].T_local_lidar.matrix(), after[2].T_local_lidar.matrix());
-    const auto a = points_of(whole.map()), b = points_of(second.map());
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].p_local, b[i].p_local);
-    EXPECT_EQ(whole.map().submaps().size(), second.map().submaps().size());
+    expect_same_maps(whole.map(), second.map());
   }
 }
 
