@@ -190,8 +190,8 @@ TEST(SurfaceSamples, GroundBetweenDistantRingsIsFilled) {
     EXPECT_NEAR(density(points, 8.5, 10), 1, noise == 0 ? 0.002 : 0.05) << noise;
     EXPECT_NEAR(density(points, 12, 14), 1, noise == 0 ? 0.002 : 0.05) << noise;
     EXPECT_LT(density(points, 16, 18), 0.05) << noise;
-    const PointCloud tau_alone =
-        sample_surfaces(measured, test_camera(), {.planar_edge = 0.1}, plain_grid());
+    const PointCloud tau_alone = sample_surfaces(
+        measured, test_camera(), {.max_edge = 0.3, .planar_edge = 0.1}, plain_grid());
     EXPECT_LT(density(tau_alone, 9, 14), 0.05) << noise;
   }
 }
@@ -199,7 +199,7 @@ TEST(SurfaceSamples, GroundBetweenDistantRingsIsFilled) {
 // What lies between a board and the wall behind it was never measured.
 TEST(SurfaceSamples, NothingIsSampledBetweenABoardAndTheWallBehind) {
   for (const double azimuth_step : {0.17, 0.09, 0.4}) {
-    for (double gap = 0.32; gap < 1.1; gap += 0.06) {
+    for (double gap = 0.42; gap < 1.1; gap += 0.06) {
       const Box board{{-1.03, -0.12, 6}, {0.91, 0.57, 6.01}};
       const Scene scene{{board, wall_at(6 + gap)}};
       const PointCloud measured = scan(scene, {.step = 0.3, .azimuth_step = azimuth_step});

@@ -43,19 +43,23 @@ FovealOptions white_zone(double near_range, double far_range = 18) {
 /// A view of one colour (of one's choice) from a place in the local frame, which is the camera's.
 struct TestView {
   ImagePyramid image;
+  Camera camera;
   FovealRegion region;
-  MapView view;
+  RigidMotion T_cam_local;
+  ColorView view;
 
-  explicit TestView(const Image& picture, const RigidMotion& T_cam_local = RigidMotion::Identity(),
+  explicit TestView(const Image& picture, const RigidMotion& T_cam_local_ = RigidMotion::Identity(),
                     const FovealOptions& options = white_zone(1), int frame = 7)
       : image(picture),
-        region(options, test_camera()),
-        view{image, region, T_cam_local, frame, kSpacing} {}
+        camera(test_camera()),
+        region(options, camera),
+        T_cam_local(T_cam_local_),
+        view{image, camera, frame, kSpacing} {}
   TestView(const TestView&) = delete;
   TestView& operator=(const TestView&) = delete;
 
   std::size_t recolour(TileMap& map, const PointCloud& new_points_cam = {}) const {
-    return fovea::recolour(map, view, new_points_cam, view.T_cam_local.inverse().translation());
+    return SeenMap(map, region, T_cam_local, kSpacing).recolour(map, view, new_points_cam);
   }
 };
 
@@ -251,6 +255,22 @@ TEST(Recolour, WhatIsOutsideTheRegionHidesToo) {
   map.add(new_points(wall(2, -1, 1, -0.3, 0.3)));
   const TestView view(image_of({200, 200, 200}), RigidMotion::Identity(), white_zone(4));
   EXPECT_EQ(view.recolour(map), 0u);
+}
+
+// Something comes between the camera and a wall that is in the map: in front of it by more than
+// 30 cm and 5 %.
+TEST(SeenMap, MarksWhatStandsBeforeTheMap) {
+  const Camera camera = test_camera();
+  const FovealRegion region(white_zone(1), camera);
+  const TileMap map = map_of(wall(8, -1, 1, -0.5, 0.5));
+  const SeenMap seen(map, region, RigidMotion::Identity(), kSpacing);
+  PointCloud points;
+  points.position = {{0, 0, 5},       {0.2f, 0.1f, 7.5f}, {0, 0, 7.7f}, {0, 0, 8},
+                     {0, 0, 8.5f},    {-0.3f, 0, 3},      {2, 0, 5},  // beside the wall
+                     {0.4f, -0.2f, 4}};
+  EXPECT_EQ(seen.marks_before(points), (std::vector<std::uint8_t>{1, 1, 0, 0, 0, 1, 0, 1}));
+  EXPECT_EQ(SeenMap(TileMap(), region, RigidMotion::Identity(), kSpacing).marks_before(points),
+            std::vector<std::uint8_t>(8, 0));
 }
 
 TEST(Recolour, AnEmptyMapAndAViewOfNothingAreNormal) {
