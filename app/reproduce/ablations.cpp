@@ -61,7 +61,6 @@ const std::vector<Ablation>& ablations() {
       {"pair-distance-2", kPoses, {"registration.max_distance=2"}},
       {"ground-ransac", kPoses, {"ground.method=ransac"}},
 
-      {"spacing-0.01", kDense, {"surface.spacing=0.01", "texture.footprint=0.01"}},
       {"spacing-0.015", kDense, {"surface.spacing=0.015", "texture.footprint=0.015"}},
       {"spacing-0.03", kDense, {"surface.spacing=0.03", "texture.footprint=0.03"}},
       {"spacing-0.04", kDense, {"surface.spacing=0.04", "texture.footprint=0.04"}},
