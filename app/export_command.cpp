@@ -15,7 +15,7 @@ namespace fovea::app {
 namespace {
 
 struct ExportArguments {
-  std::string map, output, format;
+  std::string map, output, format, where;
   PlyOptions ply;
   bool quiet = false;
 };
@@ -29,19 +29,23 @@ std::string format_of(const ExportArguments& arguments) {
                              "give ply or kitti-poses: the output's ending names neither");
 }
 
-void run(const ExportArguments& arguments) {
+void run(ExportArguments& arguments) {
   const std::string format = format_of(arguments);
   const MapReader map(arguments.map);
   if (format == "kitti-poses") {
     write_kitti_poses(map.frames(), arguments.output, arguments.ply.force);
     return;
   }
+  if (!arguments.where.empty()) arguments.ply.where = PointFilter::parse(arguments.where);
   const PlyFigures figures = write_ply(map, arguments.output, arguments.ply);
   if (arguments.quiet) return;
   fmt::print("{}: {} points\n", arguments.output, figures.points);
   if (figures.uncolored_left_out > 0) {
     fmt::print("left out: {} points that no camera coloured (--uncolored keeps them)\n",
                figures.uncolored_left_out);
+  }
+  if (figures.filtered_out > 0) {
+    fmt::print("left out: {} points that do not meet --where\n", figures.filtered_out);
   }
 }
 
@@ -60,6 +64,10 @@ void add_export_command(CLI::App& app) {
   command->add_flag("--double", arguments->ply.double_positions, "PLY positions as double");
   command->add_flag("--uncolored", arguments->ply.include_uncolored,
                     "PLY: also points that no camera coloured");
+  command->add_option(
+      "--where", arguments->where,
+      "PLY: only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "
+      "views, spread, range, incidence (degrees), frame, camera, interpolated, intensity");
   command->add_flag("--force", arguments->ply.force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });

@@ -61,6 +61,20 @@ class Packer {
   std::string& bytes_;
 };
 
+bool is_chosen(const PointCloud& tile, std::size_t index, const PlyOptions& options) {
+  return (options.include_uncolored || tile.camera[index] != kNoCamera) &&
+         options.where.matches(tile, index);
+}
+
+/// How many points pass, where only a look at each tells.
+std::size_t count_chosen(const MapReader& map, const PlyOptions& options) {
+  std::size_t count = 0;
+  map.for_each_tile([&](std::size_t, const TileKey&, const PointCloud& tile) {
+    for (std::size_t i = 0; i < tile.size(); ++i) count += is_chosen(tile, i, options);
+  });
+  return count;
+}
+
 /// Appends the chosen points of a tile to `bytes`; returns how many they are.
 std::size_t pack_tile(const PointCloud& tile, const RigidMotion& T_local_submap,
                       const PlyOptions& options, std::string& bytes) {
@@ -68,7 +82,7 @@ std::size_t pack_tile(const PointCloud& tile, const RigidMotion& T_local_submap,
   std::size_t packed = 0;
   for (std::size_t i = 0; i < tile.size(); ++i) {
     const bool colored = tile.camera[i] != kNoCamera;
-    if (!colored && !options.include_uncolored) continue;
+    if (!is_chosen(tile, i, options)) continue;
     const Eigen::Vector3d p_local =
         T_local_submap * (tile.origin + tile.position[i].cast<double>());
     for (const double coordinate : p_local) {
@@ -97,8 +111,10 @@ PlyFigures write_ply(const MapReader& map, const std::filesystem::path& path,
   OutputFile file(path, options.force);
   const std::size_t total = map.size();
   PlyFigures figures;
-  figures.points = options.include_uncolored ? total : map.colored_size();
-  figures.uncolored_left_out = total - figures.points;
+  const std::size_t unfiltered = options.include_uncolored ? total : map.colored_size();
+  figures.points = options.where.empty() ? unfiltered : count_chosen(map, options);
+  figures.uncolored_left_out = total - unfiltered;
+  figures.filtered_out = unfiltered - figures.points;
   file.stream() << header(map.meta(), figures.points, options);
 
   const std::vector<RigidMotion> T_local_submap = map.submaps();

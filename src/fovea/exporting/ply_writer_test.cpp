@@ -95,6 +95,25 @@ class PlyWriter : public testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(PlyWriter, OnlyPointsThatMeetTheConditions) {
+  const PlyFigures all = write();
+  PlyOptions options;
+  options.where = PointFilter::parse("views >= 100 and range < 9");
+  options.force = true;
+  const PlyFigures some = write(options);
+  std::size_t expected = 0;
+  for_each_sample_point([&](const Eigen::Vector3d&, const PointCloud& tile, std::size_t i) {
+    expected += tile.camera[i] != kNoCamera && tile.views[i] >= 100 && tile.range[i] < 9;
+  });
+  EXPECT_EQ(some.points, expected);
+  EXPECT_GT(expected, 0u);
+  EXPECT_EQ(some.filtered_out, all.points - expected);
+  EXPECT_EQ(some.uncolored_left_out, all.uncolored_left_out);
+  const Ply ply(folder_ / "a.ply");
+  EXPECT_EQ(ply.count, expected);
+  for (const double views : ply.columns.at("views")) EXPECT_GE(views, 100);
+}
+
 TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
   const PlyFigures figures = write();
   const Ply ply(folder_ / "a.ply");

@@ -1,0 +1,118 @@
+#include "fovea/map/point_filter.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fovea/base/angle.h"
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+using Value = double (*)(const PointCloud&, std::size_t);
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::array<std::pair<std::string_view, Value>, 8> kFields = {{
+    {"views", [](const PointCloud& p, std::size_t i) { return double(p.views[i]); }},
+    {"spread", [](const PointCloud& p, std::size_t i) { return double(p.spread[i]); }},
+    {"range", [](const PointCloud& p, std::size_t i) { return double(p.range[i]); }},
+    {"incidence",
+     [](const PointCloud& p, std::size_t i) { return double(p.incidence[i]) / kDegree; }},
+    {"frame", [](const PointCloud& p, std::size_t i) { return double(p.frame[i]); }},
+    {"camera", [](const PointCloud& p, std::size_t i) { return double(p.camera[i]); }},
+    {"interpolated", [](const PointCloud& p, std::size_t i) { return double(p.interpolated[i]); }},
+    {"intensity",
+     [](const PointCloud& p, std::size_t i) {
+       return p.intensity.empty() ? kNone : double(p.intensity[i]);
+     }},
+}};
+
+constexpr std::string_view kBlanks = " \t";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+[[noreturn]] void reject(std::string_view condition) {
+  throw ConfigError(fmt::format("the condition '{}' is not understood", condition), "--where",
+                    "write FIELD OPERATOR NUMBER, joined by 'and', e.g. \"views >= 2 and range < "
+                    "10\"; fields are views, spread, range, incidence, frame, camera, "
+                    "interpolated, intensity");
+}
+
+}  // namespace
+
+bool PointFilter::Condition::holds(double v) const {
+  switch (op) {
+    case Operator::kLess:
+      return v < number;
+    case Operator::kLessEqual:
+      return v <= number;
+    case Operator::kGreater:
+      return v > number;
+    case Operator::kGreaterEqual:
+      return v >= number;
+    case Operator::kEqual:
+      return v == number;
+    case Operator::kNotEqual:
+      return !std::isnan(v) && v != number;
+  }
+  return false;
+}
+
+PointFilter::Condition PointFilter::parse_condition(const std::string& text) {
+  const std::size_t at = text.find_first_of("<>=!");
+  if (at == std::string::npos) reject(text);
+  const std::size_t end = std::min(text.find_first_not_of("<>=!", at), text.size());
+  const std::string_view field = trimmed(std::string_view(text).substr(0, at));
+  const std::string_view sign = std::string_view(text).substr(at, end - at);
+  const std::string_view number = trimmed(std::string_view(text).substr(end));
+
+  constexpr std::array<std::pair<std::string_view, Operator>, 7> kOperators = {
+      {{"<", Operator::kLess},
+       {"<=", Operator::kLessEqual},
+       {">", Operator::kGreater},
+       {">=", Operator::kGreaterEqual},
+       {"==", Operator::kEqual},
+       {"=", Operator::kEqual},
+       {"!=", Operator::kNotEqual}}};
+  const auto named = [](std::string_view name) {
+    return [name](const auto& entry) { return entry.first == name; };
+  };
+  const auto found_field = std::find_if(kFields.begin(), kFields.end(), named(field));
+  const auto found_sign = std::find_if(kOperators.begin(), kOperators.end(), named(sign));
+  double value = 0;
+  const auto [last, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  const bool is_number =
+      error == std::errc{} && last == number.data() + number.size() && std::isfinite(value);
+  if (found_field == kFields.end() || found_sign == kOperators.end() || !is_number) reject(text);
+  return {found_field->second, found_sign->second, value};
+}
+
+PointFilter PointFilter::parse(std::string_view text) {
+  constexpr std::string_view kAnd = " and ";
+  PointFilter filter;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(kAnd, begin), text.size());
+    filter.conditions_.push_back(
+        parse_condition(std::string(trimmed(text.substr(begin, end - begin)))));
+    begin = end + (end == text.size() ? 1 : kAnd.size());
+  }
+  return filter;
+}
+
+bool PointFilter::matches(const PointCloud& tile, std::size_t index) const {
+  return std::all_of(conditions_.begin(), conditions_.end(), [&](const Condition& condition) {
+    return condition.holds(condition.value(tile, index));
+  });
+}
+
+}  // namespace fovea
