@@ -1,5 +1,9 @@
 #include "fovea/pipeline/map_colors.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/color_fusion.h"
@@ -24,10 +28,34 @@ float pixels(double length, const Camera& camera, float depth) {
 }
 
 Eigen::Vector3f color_at(const ColorView& view, const Eigen::Vector2f& pixel, float depth) {
-  return view.image.at(pixel.x(), pixel.y(), pixels(view.footprint, view.camera, depth));
+  return view.gain *
+         view.image.at(pixel.x(), pixel.y(), pixels(view.footprint, view.camera, depth)).array();
+}
+
+/// Of the exposure: every how many points in view are asked, how many must tell at least, and which
+/// grey values do (darker ones are noise, brighter ones saturated).
+constexpr std::size_t kExposureStep = 16, kMinExposurePoints = 300;
+constexpr float kDark = 12, kBright = 240;
+/// Logarithm of the gain that is off, and the share of it that is undone.
+constexpr float kOffGain = 0.34f, kUndone = 0.9f;
+
+bool tells_exposure(const Eigen::Vector3f& color) {
+  return color.minCoeff() > kDark && color.maxCoeff() < kBright;
+}
+
+float median(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace
+
+bool is_exposure_off(const Eigen::Array3f& gain_to_map) {
+  return std::abs(gain_to_map.log().mean()) > kOffGain;
+}
+
+Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map) { return gain_to_map.pow(kUndone); }
 
 void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   const std::size_t n = points_cam.size();
@@ -93,6 +121,24 @@ std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) co
     marks[i] = camera.in_view(pixel.cast<double>()) && front_.is_hidden_by(pixel, p.z());
   });
   return marks;
+}
+
+Eigen::Array3f SeenMap::gain_to_map(const TileMap& map, const ColorView& view) const {
+  std::array<std::vector<float>, 3> logs;
+  for (const Tile& tile : tiles_) {
+    const PointCloud& points = map.submaps()[tile.id.submap].tiles.at(tile.id.key);
+    for (std::size_t k = 0; k < tile.seen.size(); k += kExposureStep) {
+      const Point& point = tile.seen[k];
+      if (!point.in_region || points.views[point.index] < 2) continue;
+      if (front_.hides(point.pixel, point.depth)) continue;
+      const Eigen::Vector3f known = to_float(points.color[point.index]);
+      const Eigen::Vector3f seen = color_at(view, point.pixel, point.depth);
+      if (!tells_exposure(known) || !tells_exposure(seen)) continue;
+      for (int c = 0; c < 3; ++c) logs[std::size_t(c)].push_back(std::log(known[c] / seen[c]));
+    }
+  }
+  if (logs[0].size() < kMinExposurePoints) return Eigen::Array3f::Ones();
+  return Eigen::Array3f(median(logs[0]), median(logs[1]), median(logs[2])).exp();
 }
 
 std::size_t SeenMap::recolour(TileMap& map, const ColorView& view,

@@ -15,7 +15,17 @@ struct ColorView {
   const Camera& camera;
   int frame = 0;
   double footprint = 0.02;  ///< m: edge of the patch of surface whose mean colour a point gets
+  /// By which the image's colours are multiplied, a channel.
+  Eigen::Array3f gain = Eigen::Array3f::Ones();
 };
+
+/// Whether an image's exposure is so far off the map's that its colours must not be mixed with
+/// those of others: by over 40 %. What automatic exposure does from frame to frame is less.
+bool is_exposure_off(const Eigen::Array3f& gain_to_map);
+
+/// The gain under which such an image colours new points: nine tenths of the way to the map's
+/// exposure, so that light that changes for good is followed within seconds.
+Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map);
 
 /// Gives new points, all in view, the view's colours, as their first ones.
 /// @param points_cam  camera frame; columns frame, camera and those of the colour are set
@@ -33,6 +43,10 @@ class SeenMap {
   /// between. Along a ray what is near comes into the foveal region first, so that what stands
   /// still is in the map before its background is.
   std::vector<std::uint8_t> marks_before(const PointCloud& points_cam) const;
+
+  /// The gain, a channel, that brings the view's colours to those of the map: the median over
+  /// points of two views and more. 1 where too few tell.
+  Eigen::Array3f gain_to_map(const TileMap& map, const ColorView& view) const;
 
   /// Fuses the view's colours into the points in the region that neither other points of the map
   /// nor new ones hide. To be called once.

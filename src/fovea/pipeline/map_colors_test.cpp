@@ -273,6 +273,45 @@ TEST(SeenMap, MarksWhatStandsBeforeTheMap) {
             std::vector<std::uint8_t>(8, 0));
 }
 
+// A wall whose points have two views of one colour, and a third image of another exposure.
+TEST(Exposure, GainBringsAnImageToTheMap) {
+  const std::vector<Eigen::Vector3f> positions = wall(8, -2, 2, -0.8, 0.8);
+  TileMap map(4.0);
+  map.add_submap(RigidMotion::Identity());
+  PointCloud points = new_points(positions);
+  points.color.assign(points.size(), Rgb{100, 60, 80});
+  points.views.assign(points.size(), 2);
+  map.add(points);
+  const auto gain_of = [&](const Rgb& color) {
+    const TestView view(image_of(color));
+    return SeenMap(map, view.region, view.T_cam_local, kSpacing).gain_to_map(map, view.view);
+  };
+  EXPECT_LT((gain_of({100, 60, 80}) - 1).abs().maxCoeff(), 1e-3);
+  EXPECT_LT((gain_of({200, 120, 160}) - 0.5f).abs().maxCoeff(), 1e-3);
+  EXPECT_LT((gain_of({50, 60, 40}) - Eigen::Array3f(2, 1, 2)).abs().maxCoeff(), 1e-3);
+  EXPECT_EQ(gain_of({255, 255, 255}).matrix(), Eigen::Vector3f::Ones());  // saturated: no answer
+  EXPECT_FALSE(is_exposure_off(gain_of({120, 72, 96})));
+  EXPECT_TRUE(is_exposure_off(gain_of({200, 120, 160})));
+  EXPECT_TRUE(is_exposure_off(gain_of({50, 30, 40})));
+
+  // New points under the matching gain lie close to the map's colours.
+  const TestView bright(image_of({200, 120, 160}));
+  ColorView view = bright.view;
+  view.gain = matching_gain(gain_of({200, 120, 160}));
+  PointCloud added;
+  added.position = {{0, 0, 8}};
+  colour_new_points(added, view);
+  EXPECT_NEAR(added.color[0].r, 100, 8);
+  EXPECT_GT(added.color[0].r, 100);
+}
+
+TEST(Exposure, FewPointsSayNothing) {
+  TileMap map = map_of(wall(8, -0.1, 0.1, -0.1, 0.1));
+  const TestView view(image_of({200, 200, 200}));
+  const SeenMap seen(map, view.region, view.T_cam_local, kSpacing);
+  EXPECT_EQ(seen.gain_to_map(map, view.view).matrix(), Eigen::Vector3f::Ones());
+}
+
 TEST(Recolour, AnEmptyMapAndAViewOfNothingAreNormal) {
   TileMap empty;
   const TestView view(image_of({200, 200, 200}));

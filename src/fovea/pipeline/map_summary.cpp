@@ -41,18 +41,21 @@ struct Flaw {
 /// What a user must know of poses and images.
 void note_flaws(const std::vector<FrameRecord>& records, const DriveInfo& drive,
                 std::vector<std::string>& notes) {
-  Flaw absent, jumped, degenerate, blank;
+  Flaw absent, jumped, degenerate, blank, exposed;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
     if (drive.navigation && !record.T_local_lidar_navigation) absent.add(record.index);
     if (record.has("navigation_jumped")) jumped.add(record.index);
     if (record.has("registration_degenerate")) degenerate.add(record.index);
     if (record.has("images_blank")) blank.add(record.index);
+    if (record.has("exposure_off")) exposed.add(record.index);
   }
   absent.note("no GPS/INS, the scans alone tell the motion", notes);
   jumped.note("GPS/INS moves otherwise than the scans, it counts for less from there on", notes);
   degenerate.note("the scan leaves a direction of motion open, which is taken from the first guess",
                   notes);
+  exposed.note(
+      "an image is exposed otherwise than the map by over 40 % and colours new points only", notes);
   blank.note("an image shows nothing but black or white and colours no point", notes);
 }
 

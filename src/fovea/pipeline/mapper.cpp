@@ -270,8 +270,14 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
       return;
     }
     const ImagePyramid pyramid(image);
-    const ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
-    record.figures["points_recoloured"] += as_figure(seen->recolour(map_, view, dense_cam));
+    ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
+    const Eigen::Array3f gain = seen->gain_to_map(map_, view);
+    if (is_exposure_off(gain)) {
+      view.gain = matching_gain(gain);
+      ++record.figures["exposure_off"];
+    } else {
+      record.figures["points_recoloured"] += as_figure(seen->recolour(map_, view, dense_cam));
+    }
     colour_new_points(visible_cam, view);
   });
   PointCloud added_local = transform_cloud(visible_cam, T_local_cam, T_local_lidar.translation());

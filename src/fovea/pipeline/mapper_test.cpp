@@ -233,6 +233,26 @@ TEST(Mapper, BlankImagesColourNothing) {
   EXPECT_LT(color_error / double(points.size()), 4.0);
 }
 
+// Images of two fifths of the light for three frames, as of a camera whose exposure jumps: the map
+// keeps its colours, and what comes in these frames is matched to them.
+TEST(Mapper, AWrongExposureDoesNotSpoilTheMap) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  for (int i = 0; i < 8; ++i) {
+    Frame frame = std::get<Frame>(street().load(i));
+    const bool wrong = i >= 3 && i < 6;
+    if (wrong) {
+      for (std::uint8_t& value : frame.images[0].data) value = std::uint8_t(value * 2 / 5);
+    }
+    EXPECT_EQ(mapper.process(frame, false).has("exposure_off"), wrong) << i;
+  }
+  double color_error = 0;
+  const auto points = points_of(mapper.map());
+  for (const MapPoint& point : points) {
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_LT(color_error / double(points.size()), 6.0);
+}
+
 // The registration is given a wrong speed (navigation scaled by 0.9) and must find the true steps.
 TEST(Mapper, RefinementCorrectsTheNavigation) {
   SyntheticDrive drive(street_scene(), 8, 0.8);
