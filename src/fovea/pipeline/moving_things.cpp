@@ -14,6 +14,9 @@ constexpr double kVoxel = 0.2;  // m
 /// Fewer scans than this that saw through a place are taken for chance.
 constexpr int kMinFree = 3;
 constexpr std::size_t kVoxelGrain = 64;
+/// How many voxels beneath one that goes lose what came with it: rays graze the road, so that they
+/// never see through what stands just above it, the foot of a thing.
+constexpr std::uint32_t kFoot = 2;
 
 int voxels_per_edge(const TileMap& map) {
   return std::max(1, static_cast<int>(std::lround(map.tile_size() / kVoxel)));
@@ -153,9 +156,24 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   if (!tile.shrinks) return;
   const int edge = voxels_per_edge(map);
   const auto cells_per_metre = static_cast<float>(edge / map.tile_size());
-  for (std::uint32_t i = 0; i < tile.points->size(); ++i) {
-    const std::uint32_t cell = cell_of(tile.points->position[i], cells_per_metre, edge);
-    if (!gone(block.voxels[block.place.at(cell)])) tile.kept.push_back(i);
+  const auto layer = static_cast<std::uint32_t>(edge * edge);
+  const std::size_t n = tile.points->size();
+  const auto frame_bit = [&](std::size_t i) {
+    return aged(1, block.frame - tile.points->frame[i]);
+  };
+  std::vector<std::uint32_t> cell(n);
+  std::unordered_map<std::uint32_t, std::uint32_t> foot;  // by cell: frames whose points go
+  for (std::size_t i = 0; i < n; ++i) {
+    cell[i] = cell_of(tile.points->position[i], cells_per_metre, edge);
+    if (!gone(block.voxels[block.place.at(cell[i])])) continue;
+    for (std::uint32_t k = 1; k <= kFoot && cell[i] >= k * layer; ++k) {
+      foot[cell[i] - k * layer] |= frame_bit(i);
+    }
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (gone(block.voxels[block.place.at(cell[i])])) continue;
+    const auto beneath = foot.find(cell[i]);
+    if (beneath == foot.end() || (beneath->second & frame_bit(i)) == 0) tile.kept.push_back(i);
   }
   std::erase_if(block.voxels, gone);
   block.place.clear();

@@ -36,7 +36,7 @@ class MovingThings {
                                   const RigidMotion& T_odom_local) const;
 
   /// Looks at the map through a scan and removes the points of voxels that it and the scans before
-  /// see through: something was there and has gone.
+  /// see through: something was there and has gone; and what came with them within 40 cm beneath.
   /// @return how many points were removed
   std::size_t observe(TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_odom_lidar,
                       const RigidMotion& T_odom_local, int frame);

@@ -65,6 +65,28 @@ TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
   EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, 5), 0u);
 }
 
+// A road 1 m below the LiDAR: rays graze it, so that the lowest decimetres above it are never seen
+// through. What stood there goes with what stood on it; the road stays.
+TEST(MovingThings, TheFootOfWhatHasGoneGoesToo) {
+  PointCloud scan = scan_of(0);
+  for (Eigen::Vector3f& p : scan.position) {
+    if (p.z() < -1) p *= -1 / p.z();
+  }
+  MovingThings things({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  PointCloud road = face_points(10, 0), face = face_points(10, 1);
+  for (Eigen::Vector3f& p : road.position) p = {10 + p.z() / 2, p.y(), -1.0f};
+  map.add(road);
+  map.add(face);
+  std::size_t removed = 0;
+  for (int frame = 2; frame < 10; ++frame) {
+    removed += things.observe(map, scan, kHere, kHere, frame);
+  }
+  EXPECT_EQ(removed, face.size());
+  EXPECT_EQ(map.size(), road.size());
+}
+
 TEST(MovingThings, WhatIsSeenNowAndThenStays) {
   MovingThings things({});
   TileMap map(4.0);
