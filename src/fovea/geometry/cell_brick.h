@@ -8,6 +8,13 @@
 
 namespace fovea {
 
+/// A number for a cell of a grid, each coordinate within 2^20.
+inline std::uint64_t cell_key(const Eigen::Array3i& cell) {
+  std::uint64_t key = 0;
+  for (const int i : cell) key = key << 21 | (static_cast<std::uint64_t>(i) & 0x1fffff);
+  return key;
+}
+
 /// 8 x 8 x 8 cells, one bit each.
 class CellBrick {
  public:
@@ -37,8 +44,7 @@ class CellSet {
   /// @return whether it was not marked before
   bool mark(const Eigen::Array3i& cell) {
     const Eigen::Array3i brick = cell.unaryExpr([](int i) { return i >> 3; });
-    std::uint64_t key = 0;
-    for (const int i : brick) key = key << 21 | (static_cast<std::uint64_t>(i) & 0x1fffff);
+    const std::uint64_t key = cell_key(brick);
     if (last_ == nullptr || key != last_key_) {
       last_ = &bricks_[key];
       last_key_ = key;

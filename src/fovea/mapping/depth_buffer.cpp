@@ -39,7 +39,7 @@ bool DepthBuffer::hides(const Eigen::Vector2f& pixel, float depth) const {
   return depth > depth_at(pixel) + kBehind + kBehindShare * depth;
 }
 
-bool DepthBuffer::is_hidden_by(const Eigen::Vector2f& pixel, float depth) const {
+bool DepthBuffer::stands_before(const Eigen::Vector2f& pixel, float depth) const {
   const float front = depth_at(pixel);
   return front != std::numeric_limits<float>::infinity() &&
          front - depth > std::max(kBefore, kBeforeShare * depth);

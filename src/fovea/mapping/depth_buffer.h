@@ -27,7 +27,7 @@ class DepthBuffer {
   bool hides(const Eigen::Vector2f& pixel, float depth) const;
 
   /// Whether a point there would stand before all that was added: no part of its surface.
-  bool is_hidden_by(const Eigen::Vector2f& pixel, float depth) const;
+  bool stands_before(const Eigen::Vector2f& pixel, float depth) const;
 
  private:
   float depth_at(const Eigen::Vector2f& pixel) const;

@@ -6,29 +6,19 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "../../../tests/synthetic_drive.h"
+#include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
+#include "fovea/mapping/camera_test_support.h"
 
 namespace fovea {
 namespace {
 
 constexpr double kCell = 0.02;
-constexpr double kDegree = std::numbers::pi / 180;
-
-Camera test_camera() {
-  Camera camera;
-  camera.width = 1242;
-  camera.height = 375;
-  camera.fx = camera.fy = 720;
-  camera.cx = 610;
-  camera.cy = 170;
-  return camera;
-}
 
 /// Rings of a LiDAR that stands a little above and behind the camera, cut to about its view.
 struct Rings {

@@ -9,20 +9,11 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/random.h"
+#include "fovea/mapping/camera_test_support.h"
 #include "fovea/mapping/grid_predicates.h"
 
 namespace fovea {
 namespace {
-
-Camera test_camera() {
-  Camera camera;
-  camera.width = 1242;
-  camera.height = 375;
-  camera.fx = camera.fy = 720;
-  camera.cx = 610;
-  camera.cy = 170;
-  return camera;
-}
 
 Eigen::Vector3f at_pixel(const Camera& camera, double u, double v, double depth) {
   return Eigen::Vector3d((u - camera.cx) / camera.fx * depth, (v - camera.cy) / camera.fy * depth,

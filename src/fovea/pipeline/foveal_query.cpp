@@ -8,9 +8,7 @@ std::vector<Ray> rays_of(const PointCloud& points_cam, const Camera& camera) {
   // Interpolated points lie between points in view, but rounding may put them a hair outside.
   const Eigen::Vector2f last(float(camera.width - 1), float(camera.height - 1));
   for (const Eigen::Vector3f& p : points_cam.position) {
-    const Eigen::Vector2f pixel(float(camera.fx) * p.x() / p.z() + float(camera.cx),
-                                float(camera.fy) * p.y() / p.z() + float(camera.cy));
-    rays.push_back({pixel.cwiseMax(0.0f).cwiseMin(last), p.norm()});
+    rays.push_back({pixel_of(camera, p).cwiseMax(0.0f).cwiseMin(last), p.norm()});
   }
   return rays;
 }

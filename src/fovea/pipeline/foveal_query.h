@@ -9,6 +9,12 @@
 
 namespace fovea {
 
+/// Projection of a point that is in front of the camera, in float: for many points.
+inline Eigen::Vector2f pixel_of(const Camera& camera, const Eigen::Vector3f& p_cam) {
+  return {float(camera.fx) * p_cam.x() / p_cam.z() + float(camera.cx),
+          float(camera.fy) * p_cam.y() / p_cam.z() + float(camera.cy)};
+}
+
 /// Rays of all points, which must project into the camera.
 std::vector<Ray> rays_of(const PointCloud& points_cam, const Camera& camera);
 

@@ -7,6 +7,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/color_fusion.h"
+#include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {
 namespace {
@@ -18,11 +19,6 @@ constexpr float kDiscRadius = 0.75f;
 /// Seed of the rounding of colours.
 constexpr std::uint64_t kRounding = 0x636f6c6f7572ull;
 
-Eigen::Vector2f project(const Camera& camera, const Eigen::Vector3f& p_cam) {
-  return {float(camera.fx) * p_cam.x() / p_cam.z() + float(camera.cx),
-          float(camera.fy) * p_cam.y() / p_cam.z() + float(camera.cy)};
-}
-
 float pixels(double length, const Camera& camera, float depth) {
   return static_cast<float>(length * camera.fx) / depth;
 }
@@ -30,6 +26,13 @@ float pixels(double length, const Camera& camera, float depth) {
 Eigen::Vector3f color_at(const ColorView& view, const Eigen::Vector2f& pixel, float depth) {
   return view.gain *
          view.image.at(pixel.x(), pixel.y(), pixels(view.footprint, view.camera, depth)).array();
+}
+
+void put(const TileColors& colors, std::size_t i, const FusedColor& fused) {
+  colors.color[i] = fused.color;
+  colors.views[i] = fused.views;
+  colors.spread[i] = fused.spread;
+  colors.weight[i] = fused.weight;
 }
 
 /// Of the exposure: every how many points in view are asked, how many must tell at least, and which
@@ -65,14 +68,12 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   points_cam.views.resize(n);
   points_cam.spread.resize(n);
   points_cam.weight.resize(n);
+  const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight};
   parallel_for(n, kGrain, [&](std::size_t i) {
     const Eigen::Vector3f& p = points_cam.position[i];
     const FusedColor first =
-        fuse({}, color_at(view, project(view.camera, p), p.z()), view_weight(p.norm()), 0);
-    points_cam.color[i] = first.color;
-    points_cam.views[i] = first.views;
-    points_cam.spread[i] = first.spread;
-    points_cam.weight[i] = first.weight;
+        fuse({}, color_at(view, pixel_of(view.camera, p), p.z()), view_weight(p.norm()), 0);
+    put(colors, i, first);
   });
 }
 
@@ -101,7 +102,7 @@ void SeenMap::look_at(const TileMap& map, const RigidMotion& T_cam_local, Tile& 
   for (std::uint32_t i = 0; i < tile.points->size(); ++i) {
     const Eigen::Vector3f p = R * tile.points->position[i] + t;
     if (!(p.z() > float(Camera::kMinDepth))) continue;
-    Eigen::Vector2f pixel = project(camera, p);
+    Eigen::Vector2f pixel = pixel_of(camera, p);
     if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= right && pixel.y() <= bottom)) continue;
     const bool in_region = region_.contains(p, pixel);
     tile.seen.push_back({i, pixel, p.z(), p.norm(), in_region});
@@ -117,8 +118,8 @@ std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) co
   const Camera& camera = region_.camera();
   parallel_for(marks.size(), kGrain, [&](std::size_t i) {
     const Eigen::Vector3f& p = points_cam.position[i];
-    const Eigen::Vector2f pixel = project(camera, p);
-    marks[i] = camera.in_view(pixel.cast<double>()) && front_.is_hidden_by(pixel, p.z());
+    const Eigen::Vector2f pixel = pixel_of(camera, p);
+    marks[i] = camera.in_view(pixel.cast<double>()) && front_.stands_before(pixel, p.z());
   });
   return marks;
 }
@@ -144,7 +145,7 @@ Eigen::Array3f SeenMap::gain_to_map(const TileMap& map, const ColorView& view) c
 std::size_t SeenMap::recolour(TileMap& map, const ColorView& view,
                               const PointCloud& new_points_cam) {
   for (const Eigen::Vector3f& p : new_points_cam.position) {
-    const Eigen::Vector2f pixel = project(view.camera, p);
+    const Eigen::Vector2f pixel = pixel_of(view.camera, p);
     if (view.camera.in_view(pixel.cast<double>())) put_in_front(pixel, p.z());
   }
   const auto camera = static_cast<std::uint64_t>(view.camera.index);
@@ -159,10 +160,7 @@ std::size_t SeenMap::recolour(TileMap& map, const ColorView& view,
           fuse({colors.color[i], colors.views[i], colors.spread[i], colors.weight[i]},
                color_at(view, point.pixel, point.depth), view_weight(point.distance),
                Random::of_item(seed, kRounding, i).next());
-      colors.color[i] = fused.color;
-      colors.views[i] = fused.views;
-      colors.spread[i] = fused.spread;
-      colors.weight[i] = fused.weight;
+      put(colors, i, fused);
       ++count;
     }
     return count;

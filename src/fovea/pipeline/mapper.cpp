@@ -16,7 +16,6 @@ namespace {
 
 /// Samples lie at most this far beyond the foveal region (m).
 constexpr double kMargin = 1.0;
-constexpr double kFinestSpacing = 0.005;  // m
 
 double as_figure(std::size_t count) { return static_cast<double>(count); }
 
@@ -71,9 +70,9 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       refiner_(options.refinement, drive.calibration.cameras),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
       moving_things_(options.moving),
-      map_(options.tile_size),
-      occupancy_(options.tile_size, std::max(options.surface.spacing, kFinestSpacing)) {
+      map_(options.tile_size) {
   options.validate();
+  if (options.surface.spacing > 0) occupancy_.emplace(options.tile_size, options.surface.spacing);
 }
 
 FrameRecord Mapper::process(const Frame& frame, bool held_out,
@@ -199,24 +198,23 @@ PointCloud Mapper::foveal_part(const PointCloud& scan_lidar, const FovealRegion&
   if (options_.ray_filter.mode != RayFilterMode::kScan) return foveal_cam;
   return clock.time("filter", [&] {
     const ScanProjection projection(scan_lidar, camera);
-    std::vector<std::uint32_t> seen;
-    for (std::uint32_t i = 0; i < foveal_cam.size(); ++i) {
-      const Eigen::Vector3d p = foveal_cam.position[i].cast<double>();
-      if (!projection.hidden(camera.project(p).value(), p.norm())) seen.push_back(i);
+    std::vector<std::uint8_t> hidden;
+    for (const Eigen::Vector3f& position : foveal_cam.position) {
+      const Eigen::Vector3d p = position.cast<double>();
+      hidden.push_back(projection.hidden(camera.project(p).value(), p.norm()));
     }
-    record.figures["filter_hidden"] += as_figure(foveal_cam.size() - seen.size());
-    return foveal_cam.select(seen);
+    return without(foveal_cam, hidden, record.figures["filter_hidden"]);
   });
 }
 
 PointCloud Mapper::densified(const PointCloud& foveal_cam, const Camera& camera,
                              const RigidMotion& T_local_cam, StageClock& clock) {
   return clock.time("upsample", [&] {
-    if (options_.surface.spacing == 0) return upsample(foveal_cam, camera, options_.upsample);
-    occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
+    if (!occupancy_) return upsample(foveal_cam, camera, options_.upsample);
+    occupancy_->follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
     const SampleGrid grid{map_.submaps().back().T_local_submap.inverse() * T_local_cam,
-                          occupancy_.cell(),
-                          [&](const Eigen::Vector3d& p_grid) { return occupancy_.taken(p_grid); }};
+                          occupancy_->cell(),
+                          [&](const Eigen::Vector3d& p_grid) { return occupancy_->taken(p_grid); }};
     return sample_surfaces(foveal_cam, camera, options_.surface, grid);
   });
 }
@@ -245,10 +243,9 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   std::optional<SeenMap> seen;
   if (options_.ray_filter.mode == RayFilterMode::kScan ||
       options_.texture.views == TextureViews::kMean) {
-    const bool on_grid = options_.surface.spacing > 0;
     clock.time("filter", [&] {
       seen.emplace(map_, region, T_local_cam.inverse(),
-                   on_grid ? occupancy_.cell() : options_.texture.footprint);
+                   occupancy_ ? occupancy_->cell() : options_.texture.footprint);
     });
   }
   PointCloud visible_cam = clock.time("filter", [&] {
@@ -291,8 +288,8 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   clock.time("store", [&] {
     // The cells' record of the map must not miss what goes before the next frame.
     map_.add(added_local);
-    if (options_.surface.spacing > 0) {
-      occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
+    if (occupancy_) {
+      occupancy_->follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
     }
   });
   record.figures["points_added"] += as_figure(added_local.size());

@@ -87,7 +87,7 @@ class Mapper {
   RayFilter ray_filter_;
   MovingThings moving_things_;
   TileMap map_;
-  Occupancy occupancy_;
+  std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid
   /// Where the cameras were when the images of the frame at hand were taken.
   std::vector<Camera> cameras_;
 };

@@ -6,6 +6,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/geometry/cell_brick.h"
 
 namespace fovea {
 namespace {
@@ -75,11 +76,8 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
   std::vector<std::uint32_t> voxel(points_local.size()), first_point;
   const float inverse = static_cast<float>(1 / kVoxel);
   for (std::uint32_t i = 0; i < voxel.size(); ++i) {
-    const Eigen::Array3f cell = (points_local.position[i].array() * inverse).floor();
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      key = key << 21 | (static_cast<std::uint64_t>(std::int64_t(cell[axis])) & 0x1fffff);
-    }
+    const std::uint64_t key =
+        cell_key((points_local.position[i].array() * inverse).floor().cast<int>());
     const auto [place, is_new] = voxel_of_key.try_emplace(key, std::uint32_t(first_point.size()));
     if (is_new) first_point.push_back(i);
     voxel[i] = place->second;
