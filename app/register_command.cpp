@@ -23,7 +23,8 @@ struct RegisterArguments {
 RegistrationCloud read_cloud(const std::string& file, double voxel,
                              const RegistrationOptions& options) {
   return prepare_cloud(
-      voxel_thinned(read_kitti_scan(file).points.position, static_cast<float>(voxel)), options);
+      voxel_thinned(read_kitti_scan(file).points.position, static_cast<float>(voxel)), options,
+      voxel);
 }
 
 void run(const RegisterArguments& arguments) {
@@ -35,8 +36,8 @@ void run(const RegisterArguments& arguments) {
       arguments.guess.empty() ? RigidMotion::Identity() : read_poses(arguments.guess).front();
   const RegistrationCloud target = read_cloud(arguments.target, arguments.voxel, options);
   const RegistrationCloud source = read_cloud(arguments.source, arguments.voxel, options);
-  const KdTree tree(target.points);
-  const RegistrationResult result = register_clouds(target, tree, source, guess, options);
+  const PointIndex index(target.points, arguments.voxel);
+  const RegistrationResult result = register_clouds(target, index, source, guess, options);
   fmt::print("{}\n", format_pose(result.T_target_source));
   fmt::print(stderr, "{} after {} iterations, {} pairs, rms {:.4f} m, {} degenerate directions\n",
              result.converged ? "converged" : "NOT converged", result.iterations, result.pairs,

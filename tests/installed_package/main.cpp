@@ -16,11 +16,11 @@ int main() {
     }
   }
   const auto cloud = fovea::prepare_cloud(points, options.refinement.registration);
-  const fovea::KdTree tree(cloud.points);
+  const fovea::PointIndex index(cloud.points);
   fovea::RigidMotion guess = fovea::RigidMotion::Identity();
   guess.translation() = Eigen::Vector3d(0.05, -0.03, 0.02);
   const auto result =
-      fovea::register_clouds(cloud, tree, cloud, guess, options.refinement.registration);
+      fovea::register_clouds(cloud, index, cloud, guess, options.refinement.registration);
   std::printf("fovea %s: off by %g m\n", fovea::version(),
               result.T_target_source.translation().norm());
   return result.converged && result.T_target_source.translation().norm() < 0.02 ? 0 : 1;

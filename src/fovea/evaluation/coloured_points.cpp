@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "fovea/base/parallel.h"
-#include "fovea/evaluation/voxel_table.h"
+#include "fovea/geometry/voxel_table.h"
 #include "fovea/geometry/voxel_grid.h"
 
 namespace fovea {

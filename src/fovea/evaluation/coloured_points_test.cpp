@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/base/random.h"
-#include "fovea/evaluation/voxel_table.h"
-
 namespace fovea {
 namespace {
 
@@ -16,25 +13,6 @@ std::vector<Eigen::Vector3f> plane(float a, float spacing, const Eigen::Vector3f
     for (float y = -a; y <= a; y += spacing) points.push_back(R * Eigen::Vector3f(x, y, 0.033f));
   }
   return points;
-}
-
-TEST(VoxelTable, NumbersVoxelsInTheOrderOfAppearance) {
-  VoxelTable table(0.5f);
-  Random random(1);
-  std::vector<VoxelTable::Voxel> voxels;
-  for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3f p(float(random.uniform(-900, 900)), float(random.uniform(-900, 900)),
-                            float(i));
-    voxels.push_back(table.voxel_of(p));
-    EXPECT_EQ(table.insert(voxels.back()), i);
-  }
-  for (std::uint32_t i = 0; i < voxels.size(); ++i) {
-    EXPECT_EQ(table.find(voxels[i]), i);
-    EXPECT_EQ(table.insert(voxels[i]), i);
-    EXPECT_EQ(table.voxel(i), voxels[i]);
-  }
-  EXPECT_EQ(table.find({0, 0, -1}), VoxelTable::kNone);
-  EXPECT_EQ(table.voxel_of({-0.1f, 0.1f, 0.6f}), VoxelTable::Voxel(-1, 0, 1));
 }
 
 TEST(ColouredPoints, LeaveOutUncolouredOnes) {

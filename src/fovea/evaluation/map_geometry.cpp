@@ -6,7 +6,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
-#include "fovea/evaluation/voxel_table.h"
+#include "fovea/geometry/voxel_table.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/voxel_grid.h"
 

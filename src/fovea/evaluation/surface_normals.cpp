@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "fovea/base/parallel.h"
-#include "fovea/evaluation/voxel_table.h"
+#include "fovea/geometry/voxel_table.h"
 
 namespace fovea {
 namespace {

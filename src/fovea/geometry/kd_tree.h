@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "fovea/geometry/neighbor.h"
+
 namespace fovea {
 
 /// kd-tree over float points (nanoflann). The points must outlive it; queries are thread-safe.
@@ -18,10 +20,7 @@ class KdTree {
   KdTree(KdTree&&) noexcept;
   KdTree& operator=(KdTree&&) noexcept;
 
-  struct Neighbor {
-    std::uint32_t index = 0;
-    float squared_distance = 0;  ///< m^2
-  };
+  using Neighbor = fovea::Neighbor;
 
   /// Nearest point within `max_distance`, of equally near ones that of the lowest index;
   /// squared_distance is infinite if there is none.

@@ -1,54 +1,48 @@
 #include "fovea/geometry/voxel_grid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "fovea/geometry/voxel_table.h"
 
 namespace fovea {
 namespace {
 
-/// 21 bits an axis: +-1 million voxels around the origin.
-std::uint64_t voxel_key(const Eigen::Vector3f& p, float inverse_size) {
-  const auto axis = [&](float value) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value * inverse_size)) +
-                                      (1 << 20)) &
-           0x1fffff;
-  };
-  return axis(p.x()) | axis(p.y()) << 21 | axis(p.z()) << 42;
-}
+struct VoxelMean {
+  Eigen::Vector3f anchor;                         // its first point, which keeps the sum precise
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // of what the others are off it
+  std::uint32_t count = 0;
+  std::uint32_t nearest = 0;  // point to the mean
+  float squared_distance = std::numeric_limits<float>::infinity();
+};
 
 }  // namespace
 
 std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points, float size) {
   if (!(size > 0)) throw std::invalid_argument("the voxel size must be positive");
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(points.size());
+  VoxelTable table(size);
+  std::vector<VoxelMean> means;
+  std::vector<std::uint32_t> voxel(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    voxel[i] = table.insert(table.voxel_of(points[i]));
+    if (voxel[i] == means.size()) means.push_back({.anchor = points[i]});
+    VoxelMean& mean = means[voxel[i]];
+    mean.sum += points[i] - mean.anchor;
+    ++mean.count;
+  }
+  for (VoxelMean& mean : means) mean.sum = mean.anchor + mean.sum / static_cast<float>(mean.count);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    keyed[i] = {voxel_key(points[i], 1 / size), i};
+    VoxelMean& mean = means[voxel[i]];
+    const float squared = (points[i] - mean.sum).squaredNorm();
+    if (squared < mean.squared_distance) {
+      mean.squared_distance = squared;
+      mean.nearest = i;
+    }
   }
-  std::sort(keyed.begin(), keyed.end());
-
   std::vector<std::uint32_t> chosen;
-  for (std::size_t begin = 0; begin < keyed.size();) {
-    std::size_t end = begin;
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    const Eigen::Vector3f& anchor = points[keyed[begin].second];  // keeps the sum precise
-    for (; end < keyed.size() && keyed[end].first == keyed[begin].first; ++end) {
-      sum += points[keyed[end].second] - anchor;
-    }
-    const Eigen::Vector3f mean = anchor + sum / static_cast<float>(end - begin);
-    std::uint32_t best = keyed[begin].second;
-    float best_distance = std::numeric_limits<float>::infinity();
-    for (std::size_t i = begin; i < end; ++i) {
-      const float distance = (points[keyed[i].second] - mean).squaredNorm();
-      if (distance < best_distance) {
-        best_distance = distance;
-        best = keyed[i].second;
-      }
-    }
-    chosen.push_back(best);
-    begin = end;
-  }
+  chosen.reserve(means.size());
+  for (const VoxelMean& mean : means) chosen.push_back(mean.nearest);
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }

@@ -53,7 +53,7 @@ RegistrationCloud PoseRefiner::prepare(const PointCloud& scan_lidar, StageClock&
   const std::vector<Eigen::Vector3f>& points = whole ? scan_lidar.position : dense.position;
   return clock.time("register", [&] {
     return prepare_cloud(voxel_thinned(points, static_cast<float>(options_.voxel)),
-                         options_.registration);
+                         options_.registration, options_.voxel);
   });
 }
 
@@ -62,9 +62,9 @@ RegistrationResult PoseRefiner::register_scan(const RegistrationCloud& source,
   if (options_.target == RegistrationTarget::kLocalMap) {
     return register_to(local_map_, source, guess, options_.registration);
   }
-  const KdTree tree(previous_->cloud.points);
+  const PointIndex index(previous_->cloud.points, options_.voxel);
   RegistrationResult result =
-      register_clouds(previous_->cloud, tree, source, previous_->T_odom_lidar.inverse() * guess,
+      register_clouds(previous_->cloud, index, source, previous_->T_odom_lidar.inverse() * guess,
                       options_.registration);
   result.T_target_source = previous_->T_odom_lidar * result.T_target_source;
   return result;

@@ -33,7 +33,7 @@ RegistrationCloud thin(const std::vector<Eigen::Vector3f>& points,
   std::vector<Eigen::Vector3f> near;
   std::copy_if(points.begin(), points.end(), std::back_inserter(near),
                [](const Eigen::Vector3f& p) { return p.squaredNorm() <= kMaxRange * kMaxRange; });
-  return prepare_cloud(voxel_thinned(std::move(near), kVoxel), options);
+  return prepare_cloud(voxel_thinned(std::move(near), kVoxel), options, kVoxel);
 }
 
 struct Fit {
@@ -41,8 +41,8 @@ struct Fit {
   double on_plane = 0;  // of those, share on their counterpart's plane
 };
 
-Fit fit_of(const RegistrationCloud& target, const KdTree& tree, const RegistrationCloud& source,
-           const RigidMotion& T_target_source) {
+Fit fit_of(const RegistrationCloud& target, const PointIndex& index,
+           const RegistrationCloud& source, const RigidMotion& T_target_source) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   std::size_t standing = 0, paired = 0, on_plane = 0;
@@ -50,7 +50,7 @@ Fit fit_of(const RegistrationCloud& target, const KdTree& tree, const Registrati
     if (source.normals[i].isZero() || std::abs(source.normals[i].z()) > kFlat) continue;
     ++standing;
     const Eigen::Vector3f p = R * source.points[i] + t;
-    const KdTree::Neighbor nearest = tree.nearest(p, kPairDistance);
+    const Neighbor nearest = index.nearest(p, kPairDistance);
     if (!std::isfinite(nearest.squared_distance)) continue;
     ++paired;
     const Eigen::Vector3f& normal = target.normals[nearest.index];
@@ -77,21 +77,21 @@ void LoopCloser::add(std::size_t submap, const std::vector<Eigen::Vector3f>& poi
 std::optional<LoopClosure> LoopCloser::verify(const RegistrationCloud& cloud_lidar,
                                               const LoopCandidate& candidate) const {
   const Scan& scan = scans_.at(candidate.submap);
-  const KdTree tree(scan.cloud_lidar.points);
+  const PointIndex index(scan.cloud_lidar.points, kVoxel);
   RigidMotion T_scan_lidar = scan.T_submap_lidar.inverse() * candidate.T_submap_lidar;
   RegistrationResult result;
   for (const double distance :
        {std::max(kCoarseDistance, registration_.max_distance), registration_.max_distance}) {
     RegistrationOptions options = registration_;
     options.max_distance = distance;
-    result = register_clouds(scan.cloud_lidar, tree, cloud_lidar, T_scan_lidar, options);
+    result = register_clouds(scan.cloud_lidar, index, cloud_lidar, T_scan_lidar, options);
     if (!result.converged || result.degenerate_directions > 0) return std::nullopt;
     T_scan_lidar = result.T_target_source;
   }
   const RigidMotion T_submap_lidar = scan.T_submap_lidar * T_scan_lidar;
   const double moved =
       (T_submap_lidar.translation() - candidate.T_submap_lidar.translation()).norm();
-  const Fit fit = fit_of(scan.cloud_lidar, tree, cloud_lidar, T_scan_lidar);
+  const Fit fit = fit_of(scan.cloud_lidar, index, cloud_lidar, T_scan_lidar);
   if (fit.overlap < kMinOverlap || fit.on_plane < kMinFit) return std::nullopt;
   if (moved > kCoarseDistance + drift_of(candidate)) return std::nullopt;
   return LoopClosure{candidate.submap, T_submap_lidar};

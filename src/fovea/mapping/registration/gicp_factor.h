@@ -12,6 +12,8 @@ namespace fovea {
 /// plane epsilon.
 struct GicpFactor {
   static constexpr bool kNeedsNormals = true;
+  /// Along a wall no pair tells anything, so that it may be of points a little off the nearest.
+  static constexpr double kKeepsPairFor = 0.01;  // m
 
   /// @param n  unit normal of the target point; zero where unknown (then its covariance is I)
   /// @param m  the same of the source point, rotated into the target's axes

@@ -1,6 +1,5 @@
 #include "fovea/mapping/registration/local_map.h"
 
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -9,36 +8,12 @@
 namespace fovea {
 namespace {
 
-/// Set of voxels: open addressing in one flat table, because it is filled anew with every scan.
-class VoxelSet {
- public:
-  VoxelSet(float voxel, std::size_t capacity)
-      : inverse_voxel_(1 / voxel), slots_(std::bit_ceil(capacity * 2 + 1), kFree) {}
+/// The origin moves in steps of this (m): a whole number of any voxels that divide it, and seldom.
+constexpr double kOriginStep = 64;
 
-  /// Whether the point is the first of its voxel.
-  bool insert(const Eigen::Vector3f& p) {
-    const std::uint64_t key = axis(p.x()) | axis(p.y()) << 21 | axis(p.z()) << 42;
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = (key * 0x9e3779b97f4a7c15ull) >> 20 & mask;; i = (i + 1) & mask) {
-      if (slots_[i] == key) return false;
-      if (slots_[i] == kFree) {
-        slots_[i] = key;
-        return true;
-      }
-    }
-  }
-
- private:
-  static constexpr std::uint64_t kFree = ~std::uint64_t{0};  // keys have 63 bits
-  /// 21 bits an axis: a million voxels to either side.
-  std::uint64_t axis(float value) const {
-    const auto cell = static_cast<std::int64_t>(std::floor(value * inverse_voxel_)) + (1 << 20);
-    return static_cast<std::uint64_t>(cell) & 0x1fffff;
-  }
-
-  float inverse_voxel_;
-  std::vector<std::uint64_t> slots_;
-};
+Eigen::Vector3d origin_near(const Eigen::Vector3d& p_local) {
+  return (p_local.array() / kOriginStep).round() * kOriginStep;
+}
 
 }  // namespace
 
@@ -58,35 +33,79 @@ void LocalMapOptions::validate() const {
   }
 }
 
-LocalMap::LocalMap(const LocalMapOptions& options) : options_(options) { options_.validate(); }
-
-void LocalMap::add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar) {
-  keyframes_.push_back({std::move(cloud_lidar), T_local_lidar});
-  if (keyframes_.size() > static_cast<std::size_t>(options_.max_keyframes)) keyframes_.pop_front();
-  const Eigen::Vector3d origin = T_local_lidar.translation();
-  RegistrationCloud cloud = thinned(origin);
-  KdTree tree(cloud.points);  // moving the vector below keeps its points where they are
-  target_ = std::make_unique<Target>(Target{origin, std::move(cloud), std::move(tree)});
+LocalMap::LocalMap(const LocalMapOptions& options)
+    : options_(options), voxels_(static_cast<float>(options.voxel)) {
+  options_.validate();
 }
 
-RegistrationCloud LocalMap::thinned(const Eigen::Vector3d& origin_local) const {
-  std::size_t total = 0;
-  for (const Keyframe& keyframe : keyframes_) total += keyframe.cloud_lidar.points.size();
-  VoxelSet occupied(static_cast<float>(options_.voxel), total);
-  const float max_range2 = static_cast<float>(options_.max_range * options_.max_range);
+auto LocalMap::next_of() {
+  return [this](const VoxelQueues::Item& item) -> VoxelQueues::Item& {
+    return keyframes_[item.owner - keyframes_.front().number].next[item.index];
+  };
+}
 
+void LocalMap::add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar) {
+  if (keyframes_.size() == static_cast<std::size_t>(options_.max_keyframes)) forget_oldest();
+  keyframes_.push_back({next_number_++, std::move(cloud_lidar), T_local_lidar, {}, {}, {}});
+  const Eigen::Vector3d center = T_local_lidar.translation();
+  const Eigen::Vector3d origin = origin_near(center);
+  if (origin == origin_local_) {
+    place(keyframes_.back());
+  } else {
+    move_origin(origin);
+  }
+  RegistrationCloud cloud = thinned(center);
+  PointIndex index(cloud.points, options_.voxel);  // moving the cloud keeps its points in place
+  target_ = std::make_unique<Target>(Target{origin_local_, std::move(cloud), std::move(index)});
+}
+
+void LocalMap::place(Keyframe& keyframe) {
+  const RegistrationCloud& source = keyframe.cloud_lidar;
+  const Eigen::Matrix3f R = keyframe.T_local_lidar.linear().cast<float>();
+  const Eigen::Vector3f t = (keyframe.T_local_lidar.translation() - origin_local_).cast<float>();
+  const std::size_t n = source.points.size();
+  keyframe.cloud.points.resize(n);
+  keyframe.cloud.normals.resize(source.normals.size());
+  for (std::size_t i = 0; i < n; ++i) keyframe.cloud.points[i] = R * source.points[i] + t;
+  for (std::size_t i = 0; i < source.normals.size(); ++i) {
+    keyframe.cloud.normals[i] = R * source.normals[i];
+  }
+  keyframe.next.resize(n);
+  keyframe.stands.assign(n, 1);
+  if (options_.voxel == 0) return;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    keyframe.stands[i] = voxels_.push(keyframe.cloud.points[i], {keyframe.number, i}, next_of());
+  }
+}
+
+void LocalMap::forget_oldest() {
+  const Keyframe& oldest = keyframes_.front();
+  for (std::size_t i = 0; options_.voxel > 0 && i < oldest.stands.size(); ++i) {
+    if (oldest.stands[i] == 0) continue;  // a second one in its voxel
+    const VoxelQueues::Item heir = voxels_.pop(oldest.cloud.points[i], next_of());
+    if (heir.owner == VoxelQueues::kNobody) continue;
+    keyframes_[heir.owner - oldest.number].stands[heir.index] = 1;
+  }
+  keyframes_.pop_front();
+}
+
+void LocalMap::move_origin(const Eigen::Vector3d& origin_local) {
+  origin_local_ = origin_local;
+  voxels_ = VoxelQueues(static_cast<float>(options_.voxel));
+  for (Keyframe& keyframe : keyframes_) place(keyframe);
+}
+
+RegistrationCloud LocalMap::thinned(const Eigen::Vector3d& center_local) const {
+  const Eigen::Vector3f center = (center_local - origin_local_).cast<float>();
+  const float max_range2 = static_cast<float>(options_.max_range * options_.max_range);
   RegistrationCloud cloud;
-  // The oldest scan has a voxel: the target changes least from scan to scan, and drifts least.
   for (const Keyframe& keyframe : keyframes_) {
-    const RegistrationCloud& source = keyframe.cloud_lidar;
-    const Eigen::Matrix3f R = keyframe.T_local_lidar.linear().cast<float>();
-    const Eigen::Vector3f t = (keyframe.T_local_lidar.translation() - origin_local).cast<float>();
-    for (std::size_t i = 0; i < source.points.size(); ++i) {
-      const Eigen::Vector3f p = R * source.points[i] + t;
-      if (p.squaredNorm() > max_range2) continue;
-      if (options_.voxel > 0 && !occupied.insert(p)) continue;
-      cloud.points.push_back(p);
-      if (!source.normals.empty()) cloud.normals.push_back(R * source.normals[i]);
+    const RegistrationCloud& placed = keyframe.cloud;
+    for (std::size_t i = 0; i < placed.points.size(); ++i) {
+      if (keyframe.stands[i] == 0) continue;
+      if ((placed.points[i] - center).squaredNorm() > max_range2) continue;
+      cloud.points.push_back(placed.points[i]);
+      if (!placed.normals.empty()) cloud.normals.push_back(placed.normals[i]);
     }
   }
   return cloud;
@@ -102,7 +121,7 @@ RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& sou
                                const RegistrationOptions& options) {
   const LocalMap::Target& target = map.target();
   const Eigen::Translation3d T_origin_local(-target.origin_local);
-  RegistrationResult result = register_clouds(target.cloud, target.tree, source_lidar,
+  RegistrationResult result = register_clouds(target.cloud, target.index, source_lidar,
                                               T_origin_local * guess_T_local_lidar, options);
   result.T_target_source = T_origin_local.inverse() * result.T_target_source;
   return result;

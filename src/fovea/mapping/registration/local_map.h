@@ -4,9 +4,10 @@
 #include <deque>
 #include <memory>
 
-#include "fovea/geometry/kd_tree.h"
+#include "fovea/geometry/point_index.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/mapping/registration/registration.h"
+#include "fovea/mapping/registration/voxel_queues.h"
 
 namespace fovea {
 
@@ -17,7 +18,8 @@ struct LocalMapOptions {
   void validate() const;    ///< ConfigError that names the field
 };
 
-/// The last scans of known pose, thinned to one point a voxel.
+/// The last scans of known pose, thinned to one point a voxel: that of the oldest scan that has one
+/// there, so that the target changes least from scan to scan, and drifts least.
 ///
 /// A pure function of the last max_keyframes scans and poses added (and the options): a run that
 /// resumes and adds those again gets the same target, bit by bit.
@@ -26,9 +28,9 @@ class LocalMap {
   /// A cloud to register against, in `local` axes relative to a point near the vehicle, so that
   /// floats stay precise however far the vehicle is from local's origin.
   struct Target {
-    Eigen::Vector3d origin_local;  ///< of the points: the newest scan's sensor
+    Eigen::Vector3d origin_local;  ///< of the points
     RegistrationCloud cloud;
-    KdTree tree;  // over cloud.points
+    PointIndex index;  // over cloud.points
   };
 
   explicit LocalMap(const LocalMapOptions& options);
@@ -45,13 +47,24 @@ class LocalMap {
 
  private:
   struct Keyframe {
+    std::uint32_t number = 0;
     RegistrationCloud cloud_lidar;
     RigidMotion T_local_lidar;
+    RegistrationCloud cloud;              // placed: about origin_local_
+    std::vector<std::uint8_t> stands;     // for its voxel
+    std::vector<VoxelQueues::Item> next;  // behind each point in its voxel
   };
-  RegistrationCloud thinned(const Eigen::Vector3d& origin_local) const;
+  void place(Keyframe& keyframe);
+  void forget_oldest();
+  void move_origin(const Eigen::Vector3d& origin_local);
+  RegistrationCloud thinned(const Eigen::Vector3d& center_local) const;
+  auto next_of();
 
   LocalMapOptions options_;
   std::deque<Keyframe> keyframes_;  // oldest first
+  std::uint32_t next_number_ = 0;
+  Eigen::Vector3d origin_local_ = Eigen::Vector3d::Zero();
+  VoxelQueues voxels_;
   std::unique_ptr<Target> target_;
 };
 

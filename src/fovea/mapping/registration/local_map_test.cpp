@@ -27,17 +27,25 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
   LocalMapOptions options;
   options.max_keyframes = 4;
   LocalMap whole(options), resumed(options);
+  // 10 m a step: the origin moves, too.
+  const auto pose = [](int i) { return motion(0, 0, 0.02 * i, 10.0 * i, -i, 0); };
+  const auto scan = [&](int i, const RigidMotion& T) {
+    return fovea::scan(static_cast<std::uint64_t>(i), pose(9).inverse() * T);
+  };
   for (int i = 0; i < 10; ++i) whole.add(scan(i, pose(i)), pose(i));
   for (int i = 6; i < 10; ++i) resumed.add(scan(i, pose(i)), pose(i));
+  EXPECT_GT(whole.target().origin_local.norm(), 50);
+  EXPECT_GT(whole.target().cloud.points.size(), 300u);
   const LocalMap::Target& a = whole.target();
   const LocalMap::Target& b = resumed.target();
   EXPECT_EQ(a.origin_local, b.origin_local);
   EXPECT_EQ(a.cloud.points, b.cloud.points);
   EXPECT_EQ(a.cloud.normals, b.cloud.normals);
 
-  const RegistrationCloud source = scan(99, pose(10));
-  EXPECT_EQ(register_to(whole, source, pose(9), {}).T_target_source.matrix(),
-            register_to(resumed, source, pose(9), {}).T_target_source.matrix());
+  const RegistrationCloud source = scan(99, pose(9));
+  const RigidMotion guess = pose(9) * motion(0, 0, 0, 0.1, 0.1, 0);
+  EXPECT_EQ(register_to(whole, source, guess, {}).T_target_source.matrix(),
+            register_to(resumed, source, guess, {}).T_target_source.matrix());
 }
 
 TEST(LocalMap, ForgetsOldScans) {
@@ -57,7 +65,8 @@ TEST(LocalMap, HoldsOnePointAVoxelWithinReach) {
   for (int i = 0; i < 3; ++i) map.add(scan(i, pose(i)), pose(i));
   std::set<std::tuple<int, int, int>> voxels;
   for (const Eigen::Vector3f& p : map.target().cloud.points) {
-    EXPECT_LE(p.norm(), 5.0001f);
+    const Eigen::Vector3d p_local = p.cast<double>() + map.target().origin_local;
+    EXPECT_LE((p_local - pose(2).translation()).norm(), 5.0001);
     const Eigen::Vector3i v = (p / 0.5f).array().floor().cast<int>();
     EXPECT_TRUE(voxels.emplace(v.x(), v.y(), v.z()).second);
   }

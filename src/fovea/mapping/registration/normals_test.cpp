@@ -10,8 +10,7 @@ namespace {
 TEST(Normals, OfPlanesPointToTheSensor) {
   // Walls and floor of a corridor, away from their edges.
   const std::vector<Eigen::Vector3f> points = test::sample(test::corridor(5), 40, 1);
-  const KdTree tree(points);
-  const std::vector<Eigen::Vector3f> normals = estimate_normals(points, tree, 10);
+  const std::vector<Eigen::Vector3f> normals = estimate_normals(points, 10);
   ASSERT_EQ(normals.size(), points.size());
   std::size_t checked = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -29,9 +28,8 @@ TEST(Normals, FarFromTheOriginAndObliqueStayExact) {
   const RigidMotion T = test::motion(0.4, -0.3, 0.7, 90, -40, 5);
   const std::vector<Eigen::Vector3f> points =
       test::transformed(T, test::sample({{{-2, -2, 0}, {4, 0, 0}, {0, 4, 0}}}, 40, 2));
-  const KdTree tree(points);
   const Eigen::Vector3f truth = T.linear().col(2).cast<float>();
-  for (const Eigen::Vector3f& normal : estimate_normals(points, tree, 10)) {
+  for (const Eigen::Vector3f& normal : estimate_normals(points, 10)) {
     EXPECT_GT(std::abs(normal.dot(truth)), 0.9999f);
     EXPECT_NEAR(normal.norm(), 1, 1e-6);
   }
@@ -40,10 +38,34 @@ TEST(Normals, FarFromTheOriginAndObliqueStayExact) {
 TEST(Normals, NoiseTiltsThemLittle) {
   const std::vector<Eigen::Vector3f> points =
       test::sample({{{5, -3, -3}, {0, 6, 0}, {0, 0, 6}}}, 30, 3, 0.01);
-  const KdTree tree(points);
   double sum = 0;
-  for (const Eigen::Vector3f& normal : estimate_normals(points, tree, 15)) sum -= normal.x();
+  for (const Eigen::Vector3f& normal : estimate_normals(points, 15)) sum -= normal.x();
   EXPECT_GT(sum / static_cast<double>(points.size()), 0.998);  // 3.6 degrees
+}
+
+TEST(Normals, ByGridAreThoseByTree) {
+  // Dense walls, sparse ones, a few points far from all: every width of cell is asked for.
+  std::vector<Eigen::Vector3f> points = test::sample(test::corridor(8), 12, 5, 0.01);
+  for (const double density : {2.0, 0.1}) {
+    const std::vector<Eigen::Vector3f> more =
+        test::sample({{{20, -10, -8}, {0, 20, 1}, {1, 0, 16}}}, density, 6, 0.02);
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  points.insert(points.end(), {{300, 0, 0}, {310, 1, 0}, {305, 20, 2}, {300, 40, 80}});
+  const std::vector<Eigen::Vector3f> by_tree = estimate_normals(points, 10);
+  const std::vector<Eigen::Vector3f> by_grid = estimate_normals(points, 10, 0.25);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_LT((by_tree[i] - by_grid[i]).norm(), 1e-3) << points[i].transpose();
+  }
+}
+
+TEST(Normals, FewPointsHaveNormalsToo) {
+  const std::vector<Eigen::Vector3f> points{{5, 0, 0}, {5, 1, 0}, {5, 0, 1}, {5, 1, 1.5f}};
+  for (const double spacing : {0.0, 0.25}) {
+    for (const Eigen::Vector3f& normal : estimate_normals(points, 10, spacing)) {
+      EXPECT_NEAR(normal.x(), -1, 1e-5) << spacing;
+    }
+  }
 }
 
 TEST(Normals, UndeterminedAreZero) {
@@ -51,12 +73,11 @@ TEST(Normals, UndeterminedAreZero) {
   for (int i = 0; i < 20; ++i) line.emplace_back(5, 0.1f * static_cast<float>(i), 1);
   for (const auto& cloud : {line, std::vector<Eigen::Vector3f>(20, Eigen::Vector3f(1, 2, 3)),
                             std::vector<Eigen::Vector3f>{{1, 2, 3}, {2, 3, 4}}}) {
-    const KdTree tree(cloud);
-    for (const Eigen::Vector3f& normal : estimate_normals(cloud, tree, 10)) {
+    for (const Eigen::Vector3f& normal : estimate_normals(cloud, 10)) {
       EXPECT_EQ(normal, Eigen::Vector3f::Zero());
     }
   }
-  EXPECT_TRUE(estimate_normals({}, KdTree({}), 10).empty());
+  EXPECT_TRUE(estimate_normals({}, 10).empty());
 }
 
 }  // namespace

@@ -1,13 +1,8 @@
 #include "fovea/mapping/registration/optimizer.h"
 
 #include <Eigen/Eigenvalues>
-
-#include "fovea/base/parallel.h"
-
 namespace fovea {
 namespace {
-
-constexpr std::size_t kGrain = 1024;
 
 /// Steps on one set of pairs: the pairs are about to change, so that more would be wasted.
 constexpr int kMaxSteps = 3;
@@ -71,23 +66,7 @@ bool is_small(const Twist& step, const OptimizerOptions& options) {
 
 }  // namespace
 
-PairEquations accumulate(std::span<const Pair> pairs, const RigidMotion& T_target_source,
-                         double robust_width) {
-  PairEquations total =
-      parallel_sum(pairs.size(), kGrain, PairEquations(), [&](std::size_t begin, std::size_t end) {
-        PairEquations part;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (pairs[i].target_index != Pair::kNone) {
-            part.add(pairs[i], T_target_source, robust_width);
-          }
-        }
-        return part;
-      });
-  total.rotate(T_target_source.linear());
-  return total;
-}
-
-OptimizerResult minimize(std::span<const Pair> pairs, const RigidMotion& guess,
+OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
                          const OptimizerOptions& options) {
   OptimizerResult best{guess, 0, accumulate(pairs, guess, options.robust_width)};
   Directions directions = observed_directions(best.equations, options);

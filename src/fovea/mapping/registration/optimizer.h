@@ -1,8 +1,6 @@
 // The optimiser of all registration methods: Gauss-Newton / Levenberg-Marquardt on SE(3).
 #pragma once
 
-#include <span>
-
 #include "fovea/mapping/registration/pair_equations.h"
 
 namespace fovea {
@@ -25,14 +23,10 @@ struct OptimizerResult {
   PairEquations equations;  ///< at T_target_source
 };
 
-/// Normal equations of the pairs that have a target, summed in fixed chunks (deterministic).
-PairEquations accumulate(std::span<const Pair> pairs, const RigidMotion& T_target_source,
-                         double robust_width);
-
 /// Minimises the error of fixed pairs. A step that raises the error is not taken but damped and
 /// tried again; directions of too little information are projected out of every step ("solution
 /// remapping", Zhang, Kaess, Singh, ICRA 2016), so that the pose keeps its first value along them.
-OptimizerResult minimize(std::span<const Pair> pairs, const RigidMotion& guess,
+OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
                          const OptimizerOptions& options);
 
 }  // namespace fovea

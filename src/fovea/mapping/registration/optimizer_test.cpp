@@ -29,7 +29,7 @@ TEST(Optimizer, FindsTheTruthFromFarAwayAndNeverRaisesTheError) {
       Twist offset;
       for (int i = 0; i < 6; ++i) offset[i] = random.uniform(-1.5, 1.5);
       RigidMotion T = truth * exp_se3(offset);
-      const std::vector<Pair> pairs = true_pairs(truth);
+      const PairBlocks pairs(true_pairs(truth));
       double error = accumulate(pairs, T, robust_width).error;
       for (int i = 0; i < 20; ++i) {
         const OptimizerResult result = minimize(pairs, T, options);
@@ -49,7 +49,7 @@ TEST(Optimizer, PairsWithoutATargetDoNotCount) {
   const std::size_t all = pairs.size();
   pairs[3].target_index = pairs[7].target_index = Pair::kNone;
   pairs[3].target.x() = 1e6f;
-  const PairEquations equations = accumulate(pairs, RigidMotion::Identity(), 0);
+  const PairEquations equations = accumulate(PairBlocks(pairs), RigidMotion::Identity(), 0);
   EXPECT_EQ(equations.pairs, all - 2);
   EXPECT_NEAR(equations.error, static_cast<double>(all - 2), 1e-2);
 }
@@ -64,15 +64,16 @@ TEST(Optimizer, StepsAreProjectedOffDegenerateDirections) {
   options.degenerate_eigenvalue = 0.01;
   options.judge_by_planes = true;
   RigidMotion T = RigidMotion::Identity();
-  for (int i = 0; i < 10; ++i) T = minimize(pairs, T, options).T_target_source;
-  EXPECT_EQ(minimize(pairs, T, options).degenerate_directions, 1);
+  for (int i = 0; i < 10; ++i) T = minimize(PairBlocks(pairs), T, options).T_target_source;
+  EXPECT_EQ(minimize(PairBlocks(pairs), T, options).degenerate_directions, 1);
   EXPECT_NEAR(T.translation().x(), 0, 0.01);  // and not 0.5
   EXPECT_NEAR(T.translation().y(), 0.2, 0.05);
 }
 
 TEST(Optimizer, NoPairsNoStep) {
   const RigidMotion guess = test::motion(0.1, 0, 0, 1, 2, 3);
-  EXPECT_LT(log_se3(guess.inverse() * minimize({}, guess, {}).T_target_source).norm(), 1e-12);
+  EXPECT_LT(log_se3(guess.inverse() * minimize(PairBlocks(), guess, {}).T_target_source).norm(),
+            1e-12);
 }
 
 }  // namespace

@@ -25,11 +25,15 @@ RigidMotion random_pose(Random& random) {
   return exp_se3(twist);
 }
 
+Eigen::Matrix3d unpack_symmetric(const Symmetric3& s) {
+  const Eigen::Matrix<double, 6, 1> d = s.cast<double>();
+  Eigen::Matrix3d m;
+  m << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
+  return m;
+}
+
 PairEquations equations_at(const Pair& pair, const RigidMotion& T, double robust_width) {
-  PairEquations equations;
-  equations.add(pair, T, robust_width);
-  equations.rotate(T.linear());
-  return equations;
+  return accumulate(PairBlocks(std::span(&pair, 1)), T, robust_width);
 }
 
 template <class Factor>
@@ -60,13 +64,14 @@ TYPED_TEST(FactorTest, GradientIsTheDerivativeOfTheError) {
       const RigidMotion T = random_pose(this->random_);
       const Pair pair = this->random_pair(T);
       const PairEquations equations = equations_at(pair, T, robust_width);
-      constexpr double h = 1e-6;
       for (int i = 0; i < 6; ++i) {
-        const Twist step = h * Twist::Unit(i);
-        const double slope = (equations_at(pair, T * exp_se3(step), robust_width).error -
-                              equations_at(pair, T * exp_se3(-step), robust_width).error) /
-                             (2 * h);
-        EXPECT_NEAR(2 * equations.b[i], slope, 1e-6 * (1 + std::abs(slope)));
+        const double h = i < 3 ? 1e-3 : 1e-2;  // wide, since the error is a float
+        const auto change = [&](double step) {
+          return equations_at(pair, T * exp_se3(step * Twist::Unit(i)), robust_width).error -
+                 equations_at(pair, T * exp_se3(-step * Twist::Unit(i)), robust_width).error;
+        };
+        const double slope = (8 * change(h) - change(2 * h)) / (12 * h);
+        EXPECT_NEAR(2 * equations.b[i], slope, 5e-3 * (1 + std::abs(slope)));
       }
     }
   }
@@ -86,10 +91,10 @@ TYPED_TEST(FactorTest, HessianIsTheSquareOfTheNumericalJacobian) {
     }
     const Eigen::Matrix<double, 6, 6> H = J.transpose() * unpack_symmetric(pair.information) * J;
     const PairEquations equations = equations_at(pair, T, 0);
-    EXPECT_LT((equations.H - H).norm(), 1e-6 * (1 + H.norm()));
+    EXPECT_LT((equations.H - H).norm(), 1e-5 * (1 + H.norm()));
     const Eigen::Matrix<double, 1, 6> slope = pair.normal.cast<double>().transpose() * J;
     EXPECT_LT((equations.H_planes - slope.transpose() * slope).norm(),
-              1e-6 * (1 + slope.squaredNorm()));
+              1e-5 * (1 + slope.squaredNorm()));
   }
 }
 

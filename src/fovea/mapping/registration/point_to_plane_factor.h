@@ -10,6 +10,8 @@ namespace fovea {
 /// unknown normal says nothing.
 struct PointToPlaneFactor {
   static constexpr bool kNeedsNormals = true;
+  /// Along a wall no pair tells anything, so that it may be of points a little off the nearest.
+  static constexpr double kKeepsPairFor = 0.01;  // m
 
   /// @param n  unit normal of the target point, or zero
   static Symmetric3 information(const Eigen::Vector3f& n, const Eigen::Vector3f&,

@@ -10,6 +10,8 @@ namespace fovea {
 /// where along itself it lies (wrongly: by its sampling), and no direction ever looks degenerate.
 struct PointToPointFactor {
   static constexpr bool kNeedsNormals = false;
+  /// Every pair tells of all directions: it must be of the nearest.
+  static constexpr double kKeepsPairFor = 0;  // m
 
   static Symmetric3 information(const Eigen::Vector3f&, const Eigen::Vector3f&,
                                 const RegistrationOptions&) {

@@ -15,27 +15,33 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
+/// A pair is looked for again once its points have moved by this share of how far pairs are apart.
+constexpr double kKeepsPairShare = 0.1;
+
 /// Fewer pairs than this are no evidence of six numbers.
 constexpr std::size_t kMinPairs = 50;
 
-/// Gives each source point its nearest target point and the factor's weight of the two. Pairs of
-/// the previous pose bound the search, which then ends early; the result is the same without them.
+/// Gives each source point its nearest target point and the factor's weight of the two. A pair is
+/// kept while its source point moves by less than `keep_within` (m); otherwise it bounds the
+/// search, which then ends early.
 template <class Factor>
-void find_pairs(const RegistrationCloud& target, const KdTree& target_tree,
+void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
                 const RegistrationCloud& source, const RigidMotion& T_target_source,
-                const RegistrationOptions& options, std::vector<Pair>& pairs) {
+                const RegistrationOptions& options, float keep_within, std::vector<Pair>& pairs) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   const float max_distance = static_cast<float>(options.max_distance);
   parallel_for(pairs.size(), kGrain, [&](std::size_t i) {
     Pair& pair = pairs[i];
     const Eigen::Vector3f p = R * source.points[i] + t;
+    if ((p - pair.looked_at).squaredNorm() < keep_within * keep_within) return;
+    pair.looked_at = p;
     float bound = max_distance;
     if (pair.target_index != Pair::kNone) {
       // A little wider, so that rounding does not lose the previous neighbour itself.
       bound = std::min(bound, (p - pair.target).norm() * 1.001f + 1e-4f);
     }
-    const KdTree::Neighbor nearest = target_tree.nearest(p, bound);
+    const Neighbor nearest = target_index.nearest(p, bound);
     pair.target_index = Pair::kNone;
     if (!std::isfinite(nearest.squared_distance)) return;
     Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
@@ -52,7 +58,7 @@ void find_pairs(const RegistrationCloud& target, const KdTree& target_tree,
 }
 
 template <class Factor>
-RegistrationResult align(const RegistrationCloud& target, const KdTree& target_tree,
+RegistrationResult align(const RegistrationCloud& target, const PointIndex& target_index,
                          const RegistrationCloud& source, const RigidMotion& guess,
                          const RegistrationOptions& options) {
   OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
@@ -69,8 +75,12 @@ RegistrationResult align(const RegistrationCloud& target, const KdTree& target_t
       optimizer.robust_width =
           std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
     }
-    find_pairs<Factor>(target, target_tree, source, result.T_target_source, options, pairs);
-    const auto [T, degenerate, equations] = minimize(pairs, result.T_target_source, optimizer);
+    const auto keep_within =
+        static_cast<float>(std::min(Factor::kKeepsPairFor, kKeepsPairShare * result.rms_distance));
+    find_pairs<Factor>(target, target_index, source, result.T_target_source, options, keep_within,
+                       pairs);
+    const auto [T, degenerate, equations] =
+        minimize(PairBlocks(pairs), result.T_target_source, optimizer);
     ++result.iterations;
     result.pairs = equations.pairs;
     if (equations.pairs < kMinPairs) {
@@ -129,27 +139,26 @@ void RegistrationOptions::validate() const {
 }
 
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
-                                const RegistrationOptions& options) {
+                                const RegistrationOptions& options, double spacing) {
   RegistrationCloud cloud;
   cloud.points = std::move(points);
   std::erase_if(cloud.points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
   if (options.method != RegistrationMethod::kPointToPoint) {
-    const KdTree tree(cloud.points);
-    cloud.normals = estimate_normals(cloud.points, tree, options.neighbors);
+    cloud.normals = estimate_normals(cloud.points, options.neighbors, spacing);
   }
   return cloud;
 }
 
-RegistrationResult register_clouds(const RegistrationCloud& target, const KdTree& target_tree,
+RegistrationResult register_clouds(const RegistrationCloud& target, const PointIndex& target_index,
                                    const RegistrationCloud& source, const RigidMotion& guess,
                                    const RegistrationOptions& options) {
   switch (options.method) {
     case RegistrationMethod::kGicp:
-      return align<GicpFactor>(target, target_tree, source, guess, options);
+      return align<GicpFactor>(target, target_index, source, guess, options);
     case RegistrationMethod::kPointToPoint:
-      return align<PointToPointFactor>(target, target_tree, source, guess, options);
+      return align<PointToPointFactor>(target, target_index, source, guess, options);
     case RegistrationMethod::kPointToPlane:
-      return align<PointToPlaneFactor>(target, target_tree, source, guess, options);
+      return align<PointToPlaneFactor>(target, target_index, source, guess, options);
   }
   throw std::invalid_argument("unknown registration method");
 }

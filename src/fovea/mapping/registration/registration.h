@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/geometry/kd_tree.h"
+#include "fovea/geometry/point_index.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
@@ -40,9 +40,10 @@ struct RegistrationCloud {
 
 /// The finite points, and unless the method is point to point their normals (plane of least
 /// variance through the k nearest neighbours, see normals.h).
-/// @param points  m, in the sensor's frame
+/// @param points   m, in the sensor's frame
+/// @param spacing  that they have been thinned to (m); 0: they have not
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
-                                const RegistrationOptions& options);
+                                const RegistrationOptions& options, double spacing = 0);
 
 struct RegistrationResult {
   RigidMotion T_target_source = RigidMotion::Identity();
@@ -59,9 +60,9 @@ struct RegistrationResult {
 /// Floats are precise enough within some 100 m of the target's origin. Never throws on data: fewer
 /// than 50 pairs are no evidence (not converged, T_target_source = guess, six degenerate
 /// directions). Point to point takes small steps: from a poor guess give it 100 iterations.
-/// @param target       with normals unless point to point; the tree is of its points
+/// @param target       with normals unless point to point; the index is of its points
 /// @param source       in the sensor's frame, the sensor at the origin
-RegistrationResult register_clouds(const RegistrationCloud& target, const KdTree& target_tree,
+RegistrationResult register_clouds(const RegistrationCloud& target, const PointIndex& target_index,
                                    const RegistrationCloud& source, const RigidMotion& guess,
                                    const RegistrationOptions& options);
 

@@ -28,8 +28,8 @@ std::vector<Eigen::Vector3f> thinned_scan(const std::filesystem::path& drive, in
 
 struct Scan {
   RegistrationCloud cloud;
-  KdTree tree;
-  explicit Scan(RegistrationCloud prepared) : cloud(std::move(prepared)), tree(cloud.points) {}
+  PointIndex index;
+  explicit Scan(RegistrationCloud prepared) : cloud(std::move(prepared)), index(cloud.points) {}
 };
 
 TEST(RegistrationKitti, NeighbouringScansAlignFromIdentity) {
@@ -48,7 +48,7 @@ TEST(RegistrationKitti, NeighbouringScansAlignFromIdentity) {
       ASSERT_GT(a.cloud.points.size(), 10'000u);
       const auto align = [&](const Scan& target, const Scan& source, const RigidMotion& guess) {
         const RegistrationResult result =
-            register_clouds(target.cloud, target.tree, source.cloud, guess, options);
+            register_clouds(target.cloud, target.index, source.cloud, guess, options);
         EXPECT_TRUE(result.converged) << "frame " << frame;
         EXPECT_EQ(result.degenerate_directions, 0);
         return result.T_target_source;

@@ -42,7 +42,7 @@ RegistrationResult align(const Scans& scans, const RigidMotion& guess,
                          const RegistrationOptions& options) {
   const RegistrationCloud target = prepare_cloud(scans.target, options);
   const RegistrationCloud source = prepare_cloud(scans.source, options);
-  return register_clouds(target, KdTree(target.points), source, guess, options);
+  return register_clouds(target, PointIndex(target.points), source, guess, options);
 }
 
 struct PoseError {
@@ -151,12 +151,12 @@ TEST_P(EveryMethod, ResultIsARotationHoweverOftenItIsExtrapolated) {
   const std::vector<Eigen::Vector3f> room = test::sample(test::room_corner(), 5, 1);
   RegistrationOptions options = options_for(GetParam());
   const RegistrationCloud cloud = prepare_cloud(room, options);
-  const KdTree tree(cloud.points);
+  const PointIndex index(cloud.points);
   RigidMotion before = motion(0.01, 0, 0, 0, 0, 0), last = RigidMotion::Identity();
   for (int i = 0; i < 100; ++i) {
     const RigidMotion guess = last * (before.inverse() * last);
     before = last;
-    last = register_clouds(cloud, tree, cloud, guess, options).T_target_source;
+    last = register_clouds(cloud, index, cloud, guess, options).T_target_source;
   }
   EXPECT_TRUE(is_rotation(last.linear(), 1e-12));
 }

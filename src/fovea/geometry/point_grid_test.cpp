@@ -1,0 +1,96 @@
+#include "fovea/geometry/point_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "fovea/base/random.h"
+#include "fovea/geometry/point_index.h"
+
+namespace fovea {
+namespace {
+
+Eigen::Vector3f random_point(Random& random, double half_width) {
+  Eigen::Vector3f p;
+  for (float& value : p) value = static_cast<float>(random.uniform(-half_width, half_width));
+  return p;
+}
+
+std::vector<Eigen::Vector3f> random_points(int count, double half_width, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < count; ++i) points.push_back(random_point(random, half_width));
+  return points;
+}
+
+TEST(PointGrid, FindsTheNearestAsTryingAllDoes) {
+  const std::vector<Eigen::Vector3f> points = random_points(3000, 4, 1);
+  const PointGrid grid(points, 0.5f);
+  Random random(2);
+  int found = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Eigen::Vector3f query = random_point(random, 5);
+    const auto reach = static_cast<float>(random.uniform(0.01, 1.5));
+    Neighbor truth{0, std::numeric_limits<float>::infinity()};
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const float squared = (points[i] - query).squaredNorm();
+      if (squared < truth.squared_distance && squared <= reach * reach) truth = {i, squared};
+    }
+    const Neighbor nearest = grid.nearest(query, reach);
+    EXPECT_EQ(nearest.squared_distance, truth.squared_distance);
+    if (!std::isfinite(truth.squared_distance)) continue;
+    EXPECT_EQ(nearest.index, truth.index);
+    ++found;
+  }
+  EXPECT_GT(found, 1000);
+}
+
+TEST(PointGrid, OfEquallyNearPointsTheFirstIsTaken) {
+  const std::vector<Eigen::Vector3f> points{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+  EXPECT_EQ(PointGrid(points, 0.3f).nearest({0, 0, 0}, 2).index, 0u);
+  EXPECT_EQ(PointGrid(points, 5).nearest({0, 0, 0}, 2).index, 0u);
+}
+
+TEST(PointGrid, APointAtTheLimitCountsAndNoneIsFoundBeyond) {
+  const std::vector<Eigen::Vector3f> points{{2, 0, 0}};
+  const PointGrid grid(points, 0.5f);
+  EXPECT_EQ(grid.nearest({0, 0, 0}, 2).squared_distance, 4);
+  EXPECT_FALSE(std::isfinite(grid.nearest({0, 0, 0}, 1.99f).squared_distance));
+  EXPECT_FALSE(std::isfinite(PointGrid({}, 0.5f).nearest({0, 0, 0}, 2).squared_distance));
+}
+
+TEST(PointGrid, CellsHoldAllPointsAndTheirSurroundings) {
+  const std::vector<Eigen::Vector3f> points = random_points(500, 2, 3);
+  const PointGrid grid(points, 0.7f);
+  std::set<std::uint32_t> seen;
+  for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
+    std::size_t around = 0;
+    grid.for_each_around(cell, [&](auto near) { around += near.size(); });
+    EXPECT_TRUE(std::is_sorted(grid.points_of(cell).begin(), grid.points_of(cell).end()));
+    for (const std::uint32_t i : grid.points_of(cell)) {
+      EXPECT_TRUE(seen.insert(i).second);
+      std::size_t within = 0;
+      for (const Eigen::Vector3f& p : points) within += (p - points[i]).norm() <= grid.cell();
+      EXPECT_LE(within, around);
+    }
+  }
+  EXPECT_EQ(seen.size(), points.size());
+}
+
+TEST(PointIndex, GridAndTreeAgree) {
+  const std::vector<Eigen::Vector3f> points = random_points(2000, 3, 4);
+  const PointIndex grid(points, 0.2), tree(points);
+  for (const Eigen::Vector3f& query : random_points(500, 4, 5)) {
+    const Neighbor a = grid.nearest(query, 1), b = tree.nearest(query, 1);
+    EXPECT_EQ(std::isfinite(a.squared_distance), std::isfinite(b.squared_distance));
+    if (std::isfinite(a.squared_distance)) {
+      EXPECT_EQ(a.index, b.index);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,30 @@
+#include "fovea/geometry/voxel_table.h"
+
+#include <gtest/gtest.h>
+
+#include "fovea/base/random.h"
+
+namespace fovea {
+namespace {
+
+TEST(VoxelTable, NumbersVoxelsInTheOrderOfAppearance) {
+  VoxelTable table(0.5f);
+  Random random(1);
+  std::vector<VoxelTable::Voxel> voxels;
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3f p(float(random.uniform(-900, 900)), float(random.uniform(-900, 900)),
+                            float(i));
+    voxels.push_back(table.voxel_of(p));
+    EXPECT_EQ(table.insert(voxels.back()), i);
+  }
+  for (std::uint32_t i = 0; i < voxels.size(); ++i) {
+    EXPECT_EQ(table.find(voxels[i]), i);
+    EXPECT_EQ(table.insert(voxels[i]), i);
+    EXPECT_EQ(table.voxel(i), voxels[i]);
+  }
+  EXPECT_EQ(table.find({0, 0, -1}), VoxelTable::kNone);
+  EXPECT_EQ(table.voxel_of({-0.1f, 0.1f, 0.6f}), VoxelTable::Voxel(-1, 0, 1));
+}
+
+}  // namespace
+}  // namespace fovea
