@@ -27,7 +27,10 @@ EvaluationReport full_report() {
 void collect(const Json& json, const std::string& prefix, std::map<std::string, std::string>& all) {
   for (const auto& [name, value] : json.items()) {
     const std::string key = prefix.empty() ? name : prefix + "." + name;
-    if (key == "frames" || key == "skipped" || key == "cameras" || key == "warnings") continue;
+    if (key == "frames" || key == "skipped" || key == "cameras" || key == "warnings" ||
+        key == "images_missing") {
+      continue;
+    }
     const bool pair = value.is_array() && value.size() == 2 && !value[0].is_object();
     if (value.is_structured() && !pair) {
       collect(value, key, all);

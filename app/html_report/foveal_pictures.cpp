@@ -84,7 +84,12 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   const PlacedFrame& placed = training[training.size() / 2];
   const std::optional<LoadedFrame> loaded = load_frame(drive, placed);
   if (!loaded) return excuse("The frame could not be loaded again.");
-  const Camera camera = drive.info().calibration.cameras.front().at_image(placed.velocity);
+  const std::vector<Image>& images = loaded->frame.images;
+  const auto shot =
+      std::find_if(images.begin(), images.end(), [](const Image& image) { return !image.empty(); });
+  if (shot == images.end()) return excuse("The frame has no image.");
+  const auto place = static_cast<std::size_t>(shot - images.begin());
+  const Camera camera = drive.info().calibration.cameras.at(place).at_image(placed.velocity);
   const MapperOptions options = options_of(map);
   const FovealOptions foveal = foveal_options_of(options, camera.index);
   const FovealRegion region(foveal, camera);
@@ -94,7 +99,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
   PointCloud dense_cam = densified(measured_cam, camera, options);
   limit_incidence(dense_cam, foveal.max_incidence);
-  colour_points(dense_cam, {loaded->frame.images.front(), camera, placed.index});
+  colour_points(dense_cam, {*shot, camera, placed.index});
 
   const RigidMotion T_lidar_cam = camera.T_cam_lidar.inverse();
   const PointCloud measured = transform_cloud(measured_cam, T_lidar_cam);

@@ -131,6 +131,14 @@ Part figures_part(const nlohmann::ordered_json& json) {
     }
     part.html += "</ul></details>\n";
   }
+  if (!json.at("images_missing").empty()) {
+    part.html += "<details><summary>Images that are missing or damaged</summary><ul>";
+    for (const auto& view : json.at("images_missing")) {
+      part.html += fmt::format("<li>frame {}: camera {}</li>", view.at("frame").dump(),
+                               view.at("camera").dump());
+    }
+    part.html += "</ul></details>\n";
+  }
   return part;
 }
 

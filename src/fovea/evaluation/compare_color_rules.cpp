@@ -69,6 +69,7 @@ std::vector<HeldOutView> load_held_out(const Comparison& c) {
     const Frame& frame = std::get<Frame>(loaded);
     const PointCloud scan = compensated_scan(frame.scan, placed, info);
     for (const std::size_t place : c.places) {
+      if (frame.images.at(place).empty()) continue;
       HeldOutView held_out;
       const Camera camera = info.calibration.cameras[place].at_image(placed.velocity);
       held_out.view =
@@ -226,7 +227,7 @@ std::map<ColorRule, GradientSums> compare_sharpness(const Comparison& c, RuleCol
       std::vector<GradientSums> parts(count);
       parallel_for(count, 1, [&](std::size_t i) {
         for (const std::size_t place : c.places) {
-          if (images[i].empty()) continue;
+          if (images[i].empty() || images[i].at(place).empty()) continue;
           const Camera camera =
               info.calibration.cameras[place].at_image(c.scored[begin + i].velocity);
           const RigidMotion T_cam_local =

@@ -104,6 +104,8 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                        score.errors.position.size() - score.errors_without_moving.position.size());
     block_collector.add(frames[i].index, score.errors);
     report.unreached += score.unreached;
+    report.images_missing.insert(report.images_missing.end(), score.unscored_views.begin(),
+                                 score.unscored_views.end());
     report.split.append(score.split);
     paper_like_errors.append(score.paper_like_errors);
     positions.insert(positions.end(), score.positions.begin(), score.positions.end());

@@ -132,6 +132,32 @@ TEST(Evaluate, UncolouredPointsCountInThePaperLikeFiguresOnly) {
   EXPECT_EQ(report.map_points_coloured, coloured.map_points_coloured);
 }
 
+// Frame 4 lacks camera 3's image, frame 12 both.
+TEST(Evaluate, MissingImagesScoreNothingAndAreTold) {
+  Camera second = forward_camera();
+  second.index = 3;
+  WallDrive drive(16, {forward_camera(), second});
+  const ScoredMap map = wall_map(WallScene::map(0.02), 16);
+  ProtocolOptions options;
+  options.cameras = {2, 3};
+  const EvaluationReport whole = evaluate(map, drive, options);
+  EXPECT_EQ(whole.views.size(), 4u);
+  EXPECT_TRUE(whole.images_missing.empty());
+  drive.lose_image(4, 3);
+  drive.lose_image(12, 2);
+  drive.lose_image(12, 3);
+  const EvaluationReport report = evaluate(map, drive, options);
+  ASSERT_EQ(report.views.size(), 1u);
+  EXPECT_EQ(report.views[0].camera, 2);
+  EXPECT_EQ(report.views[0].figures.te_mean, whole.views[0].figures.te_mean);
+  EXPECT_EQ(report.frames, 1u);
+  ASSERT_EQ(report.images_missing.size(), 1u);
+  EXPECT_EQ(report.images_missing[0].frame, 4);
+  EXPECT_EQ(report.images_missing[0].camera, 3);
+  ASSERT_EQ(report.skipped.size(), 1u);
+  EXPECT_EQ(report.skipped[0].index, 12);
+}
+
 TEST(Evaluate, GreyCamerasScoreIntensity) {
   WallDrive drive;
   drive.make_grey();

@@ -157,6 +157,10 @@ std::string to_json(const EvaluationReport& report) {
   for (const UnscoredFrame& frame : report.skipped) {
     json["skipped"].push_back({{"frame", frame.index}, {"reason", frame.reason}});
   }
+  json["images_missing"] = Json::array();
+  for (const UnscoredView& view : report.images_missing) {
+    json["images_missing"].push_back({{"frame", view.frame}, {"camera", view.camera}});
+  }
   if (const ViewReport* worst = worst_view(report)) {
     json["worst_frame"] = {{"frame", worst->frame},
                            {"camera", worst->camera},
@@ -175,6 +179,10 @@ std::string to_text(const EvaluationReport& report) {
   std::string text = fmt::format("{}, camera {}: {} points of {} frames ({} skipped)\n",
                                  to_string(report.protocol), fmt::join(report.cameras, ", "),
                                  f.points, report.frames, report.skipped.size());
+  if (!report.images_missing.empty()) {
+    text += fmt::format("{} images of these frames are missing or damaged and score nothing\n",
+                        report.images_missing.size());
+  }
   if (report.calibration != "drive") {
     text += fmt::format("under the calibration of {}\n", report.calibration);
   }

@@ -37,6 +37,11 @@ struct UnscoredFrame {
   std::string reason;
 };
 
+/// A scored camera of a scored frame that has no image which can be read.
+struct UnscoredView {
+  int frame = 0, camera = 0;
+};
+
 /// Figures of the points outside moved boxes, against map points outside them.
 struct MovingReport {
   std::size_t labelled = 0, moved = 0;  ///< boxes
@@ -99,7 +104,8 @@ struct EvaluationReport {
   std::size_t frames = 0;         ///< scored
   std::vector<ViewReport> views;  ///< by frame, then camera
   std::vector<UnscoredFrame> skipped;
-  std::vector<ColorRuleScore> color_rules;  ///< empty unless asked for, see compare_color_rules
+  std::vector<UnscoredView> images_missing;  ///< of frames that other cameras score
+  std::vector<ColorRuleScore> color_rules;   ///< empty unless asked for, see compare_color_rules
 };
 
 /// The view with the highest mean TE, the first of equal ones; null if none has a point.

@@ -86,7 +86,17 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   std::vector<Camera> cameras;
   for (const Camera& camera : cameras_) cameras.push_back(camera.at_image(placed.velocity));
   for (std::size_t k = 0; k < cameras.size(); ++k) {
-    score_view(frame, scan, placed, cameras[k], frame.images.at(options_.cameras[k]), score);
+    const Image& image = frame.images.at(options_.cameras[k]);
+    if (image.empty()) {
+      score.unscored_views.push_back({placed.index, cameras[k].index});
+    } else {
+      score_view(frame, scan, placed, cameras[k], image, score);
+    }
+  }
+  if (score.views.empty()) {
+    score.unscored = {placed.index, "no image of a scored camera"};
+    score.unscored_views.clear();
+    return score;
   }
   free_space_.add_scan(scan, placed.T_local_lidar, cameras);
   return score;
@@ -129,6 +139,7 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     const Camera camera = cameras_[k].at_image(placed.velocity);
     Image& image = frame.images.at(options_.cameras[k]);
+    if (image.empty()) continue;
     ScoredPoints scored = score_points(frame, scan, placed, camera, image);
     pictures.push_back({placed.index, camera.index, std::move(image),
                         draw(placed, camera, SplatOptions{.min_depth = kEvaluatedDepth}),

@@ -22,6 +22,7 @@ struct FrameScore {
   std::size_t unreached = 0;               ///< points that no training frame could see
   ErrorSplit split;
   std::vector<ViewReport> views;
+  std::vector<UnscoredView> unscored_views;
   std::optional<UnscoredFrame> unscored;
 };
 

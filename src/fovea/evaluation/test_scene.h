@@ -95,6 +95,7 @@ class WallDrive : public FrameSource {
 
   DriveInfo& mutable_info() { return info_; }
   void lose(int frame) { lost_.insert(frame); }
+  void lose_image(int frame, int camera) { lost_images_.insert({frame, camera}); }
   void make_grey() { channels_ = 1; }
 
   static RigidMotion T_local_lidar(int frame) {
@@ -109,6 +110,10 @@ class WallDrive : public FrameSource {
     frame.index = index;
     frame.scan = WallScene::scan(T_local_lidar(index), static_cast<std::uint64_t>(index));
     for (const Camera& camera : info_.calibration.cameras) {
+      if (lost_images_.contains({index, camera.index})) {
+        frame.images.emplace_back();
+        continue;
+      }
       frame.images.push_back(WallScene::photograph(
           camera, T_local_lidar(index) * camera.T_cam_lidar.inverse(), channels_));
     }
@@ -118,6 +123,7 @@ class WallDrive : public FrameSource {
  private:
   DriveInfo info_;
   std::set<int> lost_;
+  std::set<std::pair<int, int>> lost_images_;  // frame and camera
   int channels_ = 3;
 };
 

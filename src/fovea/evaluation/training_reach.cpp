@@ -26,31 +26,35 @@ TrainingReach::TrainingReach(const std::vector<FrameRecord>& frames, std::vector
     : cameras_(std::move(cameras)) {
   for (const FrameRecord& record : frames) {
     if (record.status != FrameStatus::kMapped) continue;
-    T_lidar_local_.push_back(record.T_local_lidar.inverse());
+    Training frame{record.T_local_lidar.inverse(), {}};
+    for (std::size_t k = 0; k < cameras_.size(); ++k) {
+      if (!record.lacks_image(cameras_[k].index)) frame.cameras.push_back(k);
+    }
+    training_.push_back(std::move(frame));
   }
 }
 
 std::vector<std::uint8_t> TrainingReach::reached(const std::vector<Eigen::Vector3f>& positions,
                                                  const Eigen::Vector3d& origin_local,
                                                  const Eigen::Vector3d& lidar_local) const {
-  std::vector<const RigidMotion*> near;  // others' white zones cannot hold any of the points
-  for (const RigidMotion& T_lidar_local : T_lidar_local_) {
-    if ((T_lidar_local * lidar_local).norm() < 2 * kEvaluatedFar + 1)
-      near.push_back(&T_lidar_local);
+  std::vector<const Training*> near;  // others' white zones cannot hold any of the points
+  for (const Training& frame : training_) {
+    if ((frame.T_lidar_local * lidar_local).norm() < 2 * kEvaluatedFar + 1) near.push_back(&frame);
   }
-  const auto in_view = [&](const Eigen::Vector3d& p_lidar) {
+  const auto in_view = [&](const Training& frame, const Eigen::Vector3d& p_lidar) {
     return cameras_.empty() ||
-           std::any_of(cameras_.begin(), cameras_.end(), [&](const Camera& camera) {
-             return scored_pixel(camera, Eigen::Vector3d(camera.T_cam_lidar * p_lidar)).has_value();
+           std::any_of(frame.cameras.begin(), frame.cameras.end(), [&](std::size_t k) {
+             const Eigen::Vector3d p_cam = cameras_[k].T_cam_lidar * p_lidar;
+             return scored_pixel(cameras_[k], p_cam).has_value();
            });
   };
   std::vector<std::uint8_t> marks(positions.size(), 0);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Eigen::Vector3d p_local = positions[i].cast<double>() + origin_local;
-    marks[i] = std::any_of(near.begin(), near.end(), [&](const RigidMotion* T_lidar_local) {
-      const Eigen::Vector3d p_lidar = *T_lidar_local * p_local;
+    marks[i] = std::any_of(near.begin(), near.end(), [&](const Training* frame) {
+      const Eigen::Vector3d p_lidar = frame->T_lidar_local * p_local;
       const double range = p_lidar.norm();
-      return range > kEvaluatedNear && range < kEvaluatedFar && in_view(p_lidar);
+      return range > kEvaluatedNear && range < kEvaluatedFar && in_view(*frame, p_lidar);
     });
   }
   return marks;

@@ -21,14 +21,18 @@ class TrainingReach {
   TrainingReach(const std::vector<FrameRecord>& frames, std::vector<Camera> cameras);
 
   /// Marks (1) the points that lay in the white zone (3-15 m) of a mapped frame and in the view of
-  /// one of its cameras; that something may have stood before them is not asked.
+  /// one of its cameras that had an image; that something may have stood before them is not asked.
   /// @param positions     local frame, relative to origin_local, all within 15 m of `lidar_local`
   std::vector<std::uint8_t> reached(const std::vector<Eigen::Vector3f>& positions,
                                     const Eigen::Vector3d& origin_local,
                                     const Eigen::Vector3d& lidar_local) const;
 
  private:
-  std::vector<RigidMotion> T_lidar_local_;
+  struct Training {
+    RigidMotion T_lidar_local;
+    std::vector<std::size_t> cameras;  // places of those that had an image
+  };
+  std::vector<Training> training_;
   std::vector<Camera> cameras_;
 };
 

@@ -38,5 +38,18 @@ TEST(TrainingReach, IsTheWhiteZoneInView) {
   EXPECT_THAT(all_round.reached(points, {0, 0, 0}, {40, 0, 0}), ElementsAre(0, 0, 0, 0, 0, 0));
 }
 
+TEST(TrainingReach, ACameraWithoutImageSawNothing) {
+  std::vector<FrameRecord> frames(1);
+  frames[0].count_missing_image(7);
+  const std::vector<Eigen::Vector3f> points = {{5, 0, 0}};
+  Camera camera = forward_camera();
+  camera.index = 7;
+  EXPECT_THAT(TrainingReach(frames, {camera}).reached(points, {0, 0, 0}, {8, 0, 0}),
+              ElementsAre(0));
+  camera.index = 8;
+  EXPECT_THAT(TrainingReach(frames, {camera}).reached(points, {0, 0, 0}, {8, 0, 0}),
+              ElementsAre(1));
+}
+
 }  // namespace
 }  // namespace fovea

@@ -41,6 +41,7 @@ std::vector<TrainingView> load_training_views(const FrameSource& drive, const Fr
   options.max_depth = kViewReach;
   std::vector<TrainingView> views;
   for (const std::size_t place : cameras) {
+    if (frame.images.at(place).empty()) continue;
     TrainingView view;
     view.camera = drive.info().calibration.cameras.at(place).at_image(record.velocity);
     view.T_cam_local = view.camera.T_cam_lidar * record.T_local_lidar.inverse();

@@ -28,7 +28,7 @@ std::vector<FrameRecord> training_frames(const ScoredMap& map, const DriveInfo& 
                                          const std::vector<PlacedFrame>& scored,
                                          const HoldOut& hold_out);
 
-/// The views of one frame's cameras; empty if the drive cannot load it.
+/// The views of those of a frame's cameras that have an image; none if the drive cannot load it.
 /// @param cameras    places in the drive's calibration
 /// @param points     what may stand in front
 /// @param spacing    of these, see sample_spacing

@@ -22,6 +22,17 @@ std::optional<FrameStatus> frame_status(std::string_view name) {
   return std::nullopt;
 }
 
+namespace {
+std::string missing_image_figure(int camera) { return "images_missing_" + std::to_string(camera); }
+}  // namespace
+
+void FrameRecord::count_missing_image(int camera) {
+  ++figures["images_missing"];
+  ++figures[missing_image_figure(camera)];
+}
+
+bool FrameRecord::lacks_image(int camera) const { return has(missing_image_figure(camera)); }
+
 bool FrameRecord::has(const std::string& figure) const {
   const auto found = figures.find(figure);
   return found != figures.end() && found->second > 0;

@@ -46,6 +46,10 @@ struct FrameRecord {
 
   /// Whether a figure is there and above zero.
   bool has(const std::string& figure) const;
+  /// Counts an image that the camera has not given, or not one that can be read: the figures
+  /// "images_missing" and "images_missing_K".
+  void count_missing_image(int camera);
+  bool lacks_image(int camera) const;
 };
 
 }  // namespace fovea

@@ -29,6 +29,7 @@ void colour_points(PointCloud& points_cam, const View& view, const TextureOption
   points_cam.views.assign(n, 0);
   points_cam.spread.assign(n, 0);
   points_cam.weight.assign(n, 0);  // one view, not to be fused with others
+  if (view.image.empty()) return;
   parallel_for(n, kGrain, [&](std::size_t i) {
     const auto pixel = view.camera.project(points_cam.position[i].cast<double>());
     if (!pixel || !view.camera.in_view(*pixel)) return;

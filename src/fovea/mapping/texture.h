@@ -31,8 +31,8 @@ struct View {
 };
 
 /// Colours every point from the image at its projection and notes frame and camera;
-/// points that do not project into the image get kNoCamera. One view, no average: averaging blurs
-/// edges.
+/// points that do not project into the image, all if it is empty, get kNoCamera. One view, no
+/// average: averaging blurs edges.
 /// @param points_cam  camera frame, origin 0
 void colour_points(PointCloud& points_cam, const View& view, const TextureOptions& options = {});
 

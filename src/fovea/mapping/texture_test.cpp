@@ -47,6 +47,19 @@ TEST(Texture, NearestSamplingTakesThePixelWhoseCentreIsNearest) {
   EXPECT_EQ(cloud.color[0].r, 140);
 }
 
+TEST(Texture, AnEmptyImageColoursNothing) {
+  Camera camera;
+  camera.width = camera.height = 10;
+  camera.fx = camera.fy = 10;
+  PointCloud cloud;
+  cloud.position = {{1, 1, 4}};
+  const Image none;
+  colour_points(cloud, {none, camera, 5});
+  EXPECT_EQ(cloud.camera[0], kNoCamera);
+  EXPECT_EQ(cloud.views[0], 0);
+  EXPECT_EQ(cloud.frame[0], 5);
+}
+
 TEST(Texture, GreyImagesGiveThreeEqualChannels) {
   Camera camera;
   camera.width = camera.height = 10;
