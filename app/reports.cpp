@@ -83,9 +83,14 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
     const StageLatency l = found != summary.latency_ms.end() ? found->second : StageLatency{};
     latency[stage] = {{"p50", l.p50}, {"p95", l.p95}, {"max", l.max}};
   }
+  auto images_missing = nlohmann::ordered_json::object();  // by camera
+  for (const auto& [camera, count] : summary.images_missing) {
+    images_missing[std::to_string(camera)] = count;
+  }
   return {{"frames", summary.frames_mapped},
           {"frames_held_out", summary.frames_held_out},
           {"frames_skipped", summary.frames_skipped},
+          {"images_missing", images_missing},
           {"registrations_failed", summary.registrations_failed},
           {"loops_closed", summary.loops_closed},
           {"points", summary.points},

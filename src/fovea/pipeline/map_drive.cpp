@@ -117,6 +117,15 @@ FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> st
   return record;
 }
 
+/// Counts and names the cameras that gave a frame no image.
+void note_missing_images(const Frame& frame, FrameRecord& record) {
+  for (const MissingImage& image : frame.missing_images) {
+    record.count_missing_image(image.camera);
+    record.note += fmt::format("{}camera {} gives nothing, {}: {}", record.note.empty() ? "" : "; ",
+                               image.camera, to_string(image.reason), image.detail);
+  }
+}
+
 void store_map(MapWriter& writer, const MapMeta& meta, const std::vector<FrameRecord>& records,
                const TileMap& map, bool complete) {
   for (const auto& [key, value] : meta) writer.put_meta(key, value);
@@ -217,6 +226,7 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
       const auto place = static_cast<std::size_t>(frame.index - drive.begin);
       if (place < job.given_poses.size()) given = job.given_poses[place];
       records.push_back(mapper.process(frame, job.hold_out.contains(frame.index), given));
+      note_missing_images(frame, records.back());
       if (check && check->wants(frame.index) && !job.hold_out.contains(frame.index)) {
         check_calibration(*check, frame, records);
       }

@@ -30,7 +30,7 @@ struct Flaw {
   void add(int index) {
     if (frames++ == 0) first = index;
   }
-  void note(const char* what, std::vector<std::string>& notes) const {
+  void note(const std::string& what, std::vector<std::string>& notes) const {
     if (frames > 0) {
       notes.push_back(fmt::format("{} frame{} (the first: {}): {}", frames, frames == 1 ? "" : "s",
                                   first, what));
@@ -42,6 +42,7 @@ struct Flaw {
 void note_flaws(const std::vector<FrameRecord>& records, const DriveInfo& drive,
                 std::vector<std::string>& notes) {
   Flaw absent, jumped, degenerate, blank, exposed;
+  std::map<int, Flaw> missing;  // by camera
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
     if (drive.navigation && !record.T_local_lidar_navigation) absent.add(record.index);
@@ -49,6 +50,9 @@ void note_flaws(const std::vector<FrameRecord>& records, const DriveInfo& drive,
     if (record.has("registration_degenerate")) degenerate.add(record.index);
     if (record.has("images_blank")) blank.add(record.index);
     if (record.has("exposure_off")) exposed.add(record.index);
+    for (const Camera& camera : drive.calibration.cameras) {
+      if (record.lacks_image(camera.index)) missing[camera.index].add(record.index);
+    }
   }
   absent.note("no GPS/INS, the scans alone tell the motion", notes);
   jumped.note("GPS/INS moves otherwise than the scans, it counts for less from there on", notes);
@@ -57,6 +61,11 @@ void note_flaws(const std::vector<FrameRecord>& records, const DriveInfo& drive,
   exposed.note(
       "an image is exposed otherwise than the map by over 40 % and colours new points only", notes);
   blank.note("an image shows nothing but black or white and colours no point", notes);
+  for (const auto& [camera, flaw] : missing) {
+    flaw.note(fmt::format("camera {} has no image that can be read, the frame is used without it",
+                          camera),
+              notes);
+  }
 }
 
 }  // namespace
@@ -87,6 +96,9 @@ MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_
     }
     if (record.has("registration_failed")) ++summary.registrations_failed;
     if (record.revisit) ++summary.loops_closed;
+    for (const Camera& camera : drive.calibration.cameras) {
+      if (record.lacks_image(camera.index)) ++summary.images_missing[camera.index];
+    }
     if (i < first_new) continue;
     for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);
   }

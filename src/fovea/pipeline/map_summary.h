@@ -18,6 +18,7 @@ struct StageLatency {
 struct MapSummary {
   int frames_mapped = 0, frames_held_out = 0;
   std::map<std::string, int> frames_skipped;  ///< by reason
+  std::map<int, int> images_missing;          ///< by camera; of frames that were not skipped
   int registrations_failed = 0;
   int loops_closed = 0;  ///< scans registered to a place seen before
   std::size_t points = 0;

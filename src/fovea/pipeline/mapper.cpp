@@ -19,6 +19,14 @@ constexpr double kMargin = 1.0;
 
 double as_figure(std::size_t count) { return static_cast<double>(count); }
 
+/// Whether an image can give colours; a blank one is counted, a missing one the drive has told of.
+bool shows_something(const Image& image, FrameRecord& record) {
+  if (image.empty()) return false;
+  if (!is_blank(image)) return true;
+  ++record.figures["images_blank"];
+  return false;
+}
+
 /// The points that passed the filter; the others are counted by verdict.
 PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>& verdicts,
                         std::map<std::string, double>& figures) {
@@ -121,10 +129,7 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
     }
     if (options_.foveal_enabled) {
       for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
-        if (is_blank(frame.images[camera])) {
-          ++record.figures["images_blank"];
-          continue;
-        }
+        if (!shows_something(frame.images[camera], record)) continue;
         map_camera(scan_lidar, frame, camera, record.T_local_lidar, record, clock);
       }
     } else {
@@ -308,7 +313,9 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
       points_cam.normal.assign(points_cam.size(), Eigen::Vector3f::Zero());
       points_cam.interpolated.assign(points_cam.size(), 0);
       limit_incidence(points_cam, std::numeric_limits<double>::infinity());
-      colour_points(points_cam, {frame.images[last ? 0 : slot], camera, frame.index},
+      const Image none;
+      const bool sees = !last && shows_something(frame.images[slot], record);
+      colour_points(points_cam, {sees ? frame.images[slot] : none, camera, frame.index},
                     options_.texture);
       std::vector<std::uint32_t> added, unseen;
       for (std::uint32_t i = 0; i < points_cam.size(); ++i) {

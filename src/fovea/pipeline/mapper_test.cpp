@@ -233,6 +233,35 @@ TEST(Mapper, BlankImagesColourNothing) {
   EXPECT_LT(color_error / double(points.size()), 4.0);
 }
 
+// Two cameras, one without an image for a while: the other one goes on, in both kinds of mapping.
+TEST(Mapper, ACameraWithoutImageLeavesTheOther) {
+  SyntheticDrive drive(street_scene(), 3, 0.8);
+  Camera right = drive.info().calibration.cameras[0];
+  right.index = 3;
+  drive.editable_info().calibration.cameras.push_back(right);
+  MapperOptions whole_scan;
+  apply_variant("baseline-gicp", whole_scan);
+  for (const MapperOptions& options : {MapperOptions{}, whole_scan}) {
+    Mapper mapper(drive.info(), options, PoseSource::kNavigation);
+    for (int i = 0; i < 3; ++i) {
+      Frame frame = std::get<Frame>(drive.load(i));
+      frame.images[i == 1 ? 0 : 1] = {};
+      const FrameRecord record = mapper.process(frame, false);
+      EXPECT_GT(record.figures.at("points_added"), 0);
+      EXPECT_FALSE(record.has("images_blank"));
+    }
+    double color_error = 0;
+    std::size_t coloured = 0;
+    for (const MapPoint& point : points_of(mapper.map())) {
+      if (point.camera == kNoCamera) continue;
+      EXPECT_EQ(point.camera, point.frame == 1 ? 3 : 2);
+      color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+      ++coloured;
+    }
+    EXPECT_LT(color_error / double(coloured), 4.0);
+  }
+}
+
 // Images of two fifths of the light for three frames, as of a camera whose exposure jumps: the map
 // keeps its colours, and what comes in these frames is matched to them.
 TEST(Mapper, AWrongExposureDoesNotSpoilTheMap) {

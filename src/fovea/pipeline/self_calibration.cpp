@@ -14,6 +14,7 @@ constexpr int kCalibrationFrames = 60, kPasses = 2;
 std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const Camera& camera,
                                      const DriveInfo& drive, bool compensate,
                                      const FrameMotion& motion) {
+  if (frame.images.at(slot).empty()) return {};
   LidarEdges edges_lidar = find_lidar_edges(frame.scan, camera, kMaxRange);
   if (compensate) {
     compensate_sweep(edges_lidar.inside, motion.velocity, drive.sweep_period);

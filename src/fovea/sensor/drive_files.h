@@ -24,7 +24,7 @@ struct DriveFiles {
 /// order. A drive without stamps counts as 10 Hz.
 std::optional<TimeNs> frame_stamp(const DriveInfo& info, const TimeStamps& stamps, int index);
 
-/// First frame of the range that has a scan, every image and a stamp, as far as can be known
+/// First frame of the range that has a scan, an image and a stamp, as far as can be known
 /// without reading them; empty if there is none.
 std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& files);
 

@@ -1,5 +1,6 @@
-// FrameSource over numbered files: checks that a frame has all its parts, then reads them.
+// FrameSource over numbered files: checks that a frame has its parts, then reads them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -33,7 +34,8 @@ class FileFrameSource : public FrameSource {
     } catch (const InputError& error) {
       return SkippedFrame{index, SkipReason::kDamagedScan, error.what()};
     }
-    if (const auto damaged = read_images(index, frame.images)) return *damaged;
+    read_images(frame);
+    if (frame.missing_images.size() == files_.images.size()) return without_images(frame);
     return frame;
   }
 
@@ -47,11 +49,6 @@ class FileFrameSource : public FrameSource {
       return skip(SkipReason::kMissingScan, fmt::format("no scan {} in the drive", index));
     }
     if (!stamp(index)) return skip(SkipReason::kMissingStamp, why_no_stamp(index));
-    for (std::size_t k = 0; k < files_.images.size(); ++k) {
-      if (files_.images[k].contains(index)) continue;
-      return skip(SkipReason::kMissingImage, fmt::format("no image {} of camera {}", index,
-                                                         info_.calibration.cameras[k].index));
-    }
     return std::nullopt;
   }
 
@@ -68,31 +65,49 @@ class FileFrameSource : public FrameSource {
     return fmt::format("no time stamp in line {}", index + 1);
   }
 
-  /// Decodes the images of all cameras at once; the first camera's failure, if any.
-  std::optional<SkippedFrame> read_images(int index, std::vector<Image>& images) const {
+  /// Decodes the images of all cameras at once; those that cannot be used stay empty.
+  void read_images(Frame& frame) const {
     const std::size_t count = files_.images.size();
-    std::vector<std::string> failures(count);
-    images.resize(count);
+    std::vector<std::optional<MissingImage>> missing(count);
+    frame.images.resize(count);
     parallel_for(count, 1, [&](std::size_t k) {
-      const Camera& camera = info_.calibration.cameras[k];
-      const std::filesystem::path& file = files_.images[k].at(index);
-      try {
-        images[k] = read_image(file);
-        if (images[k].width != camera.width || images[k].height != camera.height) {
-          failures[k] =
-              fmt::format("the image has {} x {} pixels, its camera {} x {}, {}", images[k].width,
-                          images[k].height, camera.width, camera.height, file.string());
-        }
-      } catch (const InputError& error) {
-        failures[k] = error.what();
-      }
+      missing[k] = read_image_of(k, frame.index, frame.images[k]);
     });
-    for (std::string& failure : failures) {
-      if (!failure.empty()) {
-        return SkippedFrame{index, SkipReason::kDamagedImage, std::move(failure)};
-      }
+    for (std::optional<MissingImage>& image : missing) {
+      if (image) frame.missing_images.push_back(std::move(*image));
     }
-    return std::nullopt;
+  }
+
+  /// Reads one camera's image; why it stays empty, if it does.
+  std::optional<MissingImage> read_image_of(std::size_t k, int index, Image& image) const {
+    const Camera& camera = info_.calibration.cameras[k];
+    const auto file = files_.images[k].find(index);
+    if (file == files_.images[k].end()) {
+      return MissingImage{camera.index, SkipReason::kMissingImage,
+                          fmt::format("no image {} of camera {}", index, camera.index)};
+    }
+    const auto damaged = [&](std::string detail) {
+      return MissingImage{camera.index, SkipReason::kDamagedImage, std::move(detail)};
+    };
+    try {
+      Image read = read_image(file->second);
+      if (read.width != camera.width || read.height != camera.height) {
+        return damaged(fmt::format("the image has {} x {} pixels, its camera {} x {}, {}",
+                                   read.width, read.height, camera.width, camera.height,
+                                   file->second.string()));
+      }
+      image = std::move(read);
+      return std::nullopt;
+    } catch (const InputError& error) {
+      return damaged(error.what());
+    }
+  }
+
+  static SkippedFrame without_images(const Frame& frame) {
+    std::vector<std::string> details;
+    for (const MissingImage& image : frame.missing_images) details.push_back(image.detail);
+    return {frame.index, frame.missing_images.front().reason,
+            fmt::format("{}", fmt::join(details, "; "))};
   }
 
   DriveInfo info_;

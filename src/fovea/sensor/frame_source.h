@@ -17,15 +17,6 @@
 
 namespace fovea {
 
-/// One LiDAR sweep with the images that belong to it.
-struct Frame {
-  int index = 0;                   ///< the number in the file's name
-  TimeNs stamp = 0;                ///< scan time; images count as taken then (docs/method.md 1)
-  PointCloud scan;                 ///< lidar frame, as measured, with intensity
-  std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
-  std::vector<Image> images;       ///< one a camera of the calibration, in its order
-};
-
 enum class SkipReason {
   kMissingScan,
   kDamagedScan,
@@ -35,7 +26,27 @@ enum class SkipReason {
 };
 const char* to_string(SkipReason reason);
 
-/// A frame that cannot be used: counted and reported, and the drive goes on.
+/// An image that a camera of the calibration should have taken and that cannot be used.
+struct MissingImage {
+  int camera = 0;  ///< the drive's number for it
+  SkipReason reason = SkipReason::kMissingImage;
+  std::string detail;  ///< one line: what and which file
+};
+
+/// One LiDAR sweep with the images that belong to it.
+struct Frame {
+  int index = 0;                   ///< the number in the file's name
+  TimeNs stamp = 0;                ///< scan time; images count as taken then (docs/method.md 1)
+  PointCloud scan;                 ///< lidar frame, as measured, with intensity
+  std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
+  /// One a camera of the calibration, in its order; empty where the camera has none that can be
+  /// used, which at most all but one are.
+  std::vector<Image> images;
+  std::vector<MissingImage> missing_images;  ///< why images are empty, in the cameras' order
+};
+
+/// A frame that cannot be used, for want of a scan, a stamp or any image: counted and reported, and
+/// the drive goes on.
 struct SkippedFrame {
   int index = 0;
   SkipReason reason = SkipReason::kMissingScan;

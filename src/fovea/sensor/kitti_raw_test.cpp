@@ -161,9 +161,55 @@ TEST_F(KittiRaw, SkipsMissingParts) {
   expect_skipped(2, SkipReason::kMissingScan, "no scan 2");
 }
 TEST_F(KittiRaw, SkipsMissingImages) {
+  test::fs::remove(image(2, 5));
+  expect_skipped(5, SkipReason::kMissingImage, "no image 5 of camera 2");
+}
+// Two cameras: what one of them has is used, and the frame says what is missing.
+TEST_F(KittiRaw, AFrameWithOneImageOfTwoIsLoaded) {
   options_.cameras = {2, 3};
   test::fs::remove(image(3, 5));
-  expect_skipped(5, SkipReason::kMissingImage, "no image 5 of camera 3");
+  test::truncate(image(2, 6), 0.7);
+  const auto drive = open();
+  const Frame five = std::get<Frame>(drive->load(5)), six = std::get<Frame>(drive->load(6));
+  EXPECT_EQ(five.images.at(0).data, pattern(test::kWidth, test::kHeight, 3).data);
+  EXPECT_TRUE(five.images.at(1).empty());
+  ASSERT_EQ(five.missing_images.size(), 1u);
+  EXPECT_EQ(five.missing_images[0].camera, 3);
+  EXPECT_EQ(five.missing_images[0].reason, SkipReason::kMissingImage);
+  EXPECT_EQ(five.missing_images[0].detail, "no image 5 of camera 3");
+  EXPECT_TRUE(six.images.at(0).empty());
+  EXPECT_FALSE(six.images.at(1).empty());
+  ASSERT_EQ(six.missing_images.size(), 1u);
+  EXPECT_EQ(six.missing_images[0].camera, 2);
+  EXPECT_EQ(six.missing_images[0].reason, SkipReason::kDamagedImage);
+  EXPECT_THAT(six.missing_images[0].detail, HasSubstr("0000000006.png"));
+  EXPECT_TRUE(std::get<Frame>(drive->load(4)).missing_images.empty());
+}
+TEST_F(KittiRaw, SkipsFramesWithoutAnyImage) {
+  options_.cameras = {2, 3};
+  test::fs::remove(image(2, 5));
+  test::truncate(image(3, 5), 0.7);
+  expect_skipped(5, SkipReason::kMissingImage, "no image 5 of camera 2; ");
+  expect_skipped(5, SkipReason::kMissingImage, "image_03/data/0000000005.png");
+}
+// The local frame's origin is the first frame that is used, be it without one of its images.
+TEST_F(KittiRaw, TheOriginIsThatOfTheFirstFrameWithAnImage) {
+  options_.cameras = {2, 3};
+  const double latitude = open()->info().origin->latitude;
+  test::fs::remove(image(2, 0));
+  EXPECT_EQ(open()->info().origin->latitude, latitude);
+  test::fs::remove(image(3, 0));
+  EXPECT_GT(open()->info().origin->latitude, latitude);
+}
+TEST_F(KittiRaw, ACameraThatStopsLeavesTheOtherOne) {
+  options_.cameras = {3, 2};
+  for (int i = 4; i < kFrames; ++i) test::fs::remove(image(3, i));
+  const auto drive = open();
+  for (int i = 0; i < kFrames; ++i) {
+    const Frame frame = std::get<Frame>(drive->load(i));
+    EXPECT_EQ(frame.images.at(0).empty(), i >= 4);
+    EXPECT_FALSE(frame.images.at(1).empty());
+  }
 }
 TEST_F(KittiRaw, SkipsDamagedScans) {
   test::fs::resize_file(scan(6), 17);
