@@ -67,7 +67,8 @@ void add_export_command(CLI::App& app) {
   command->add_option(
       "--where", arguments->where,
       "PLY: only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "
-      "views, spread, range, incidence (degrees), frame, camera, interpolated, intensity");
+      "views, spread, range, incidence (degrees), frame, camera, rule (measured, short-edges, "
+      "planar, centroid), matched (exposure, 0 or 1), interpolated, intensity");
   command->add_flag("--force", arguments->ply.force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });

@@ -33,6 +33,7 @@ inline PointCloud random_map_points(std::size_t count, Random& random, double ha
     points.views.push_back(i % 3 == 0 ? 0 : static_cast<std::uint8_t>(bits >> 32));
     points.spread.push_back(static_cast<std::uint8_t>(bits >> 40));
     points.weight.push_back(static_cast<std::uint16_t>(bits >> 48));
+    points.reason.push_back(static_cast<std::uint8_t>(bits >> 25 & 0x13));
   }
   return points;
 }
@@ -49,6 +50,7 @@ inline PointCloud one_point_each(const std::vector<Eigen::Vector3f>& positions) 
   points.views.assign(positions.size(), 1);
   points.spread.assign(positions.size(), 0);
   points.weight.assign(positions.size(), 1);
+  points.reason.assign(positions.size(), 0);
   for (std::size_t i = 0; i < positions.size(); ++i) points.frame.push_back(int(i));
   return points;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fovea/base/image.h"
+#include "fovea/base/point_reason.h"
 
 namespace fovea {
 
@@ -31,6 +32,7 @@ struct PointCloud {
   std::vector<std::uint8_t> views;         ///< images that gave the colour; 255: or more
   std::vector<std::uint8_t> spread;        ///< RMS of their differences from it, grey values
   std::vector<std::uint16_t> weight;       ///< sum of their weights (mapping/color_fusion.h)
+  std::vector<std::uint8_t> reason;        ///< why it is there (base/point_reason.h)
 
   std::size_t size() const { return position.size(); }
   bool empty() const { return position.empty(); }
@@ -59,6 +61,7 @@ void for_each_optional_column(Cloud& cloud, F&& f) {
   f("views", cloud.views);
   f("spread", cloud.spread);
   f("weight", cloud.weight);
+  f("reason", cloud.reason);
 }
 
 /// Calls `f(name, column_a, column_b)` for each optional column of two clouds.
@@ -75,6 +78,7 @@ void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("views", a.views, b.views);
   f("spread", a.spread, b.spread);
   f("weight", a.weight, b.weight);
+  f("reason", a.reason, b.reason);
 }
 
 }  // namespace fovea

@@ -43,6 +43,7 @@ ScoredMap load_fovea_map(const std::filesystem::path& path) {
     part.camera = tile.camera;
     part.frame = tile.frame;
     part.interpolated = tile.interpolated;
+    part.reason = tile.reason;
     map.points_local.append(
         transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
   });

@@ -12,8 +12,8 @@
 namespace fovea {
 
 struct ScoredMap {
-  /// Local frame, relative to any origin near the drive; columns color and camera always, frame
-  /// and interpolated where they are known.
+  /// Local frame, relative to any origin near the drive; columns color and camera always, frame,
+  /// interpolated and reason where they are known.
   PointCloud points_local;
   std::vector<FrameRecord> frames;  ///< by index
   MapMeta meta;                     ///< empty for a cloud

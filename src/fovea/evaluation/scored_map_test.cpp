@@ -195,6 +195,7 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
     points.views = {1, 1};
     points.spread = {0, 0};
     points.weight = {1, 1};
+    points.reason = {0, reason_of(PointRule::kPlanar)};
     tiles.add(points);
     writer->put_submap(0, tiles.submaps()[0].T_local_submap);
     for (const auto& [key, tile] : tiles.submaps()[0].tiles) writer->put_tile(0, key, tile);
@@ -215,6 +216,7 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
   ASSERT_EQ(map.points_local.interpolated.size(), 2u);
   EXPECT_EQ(map.points_local.interpolated[coloured], 0);
   EXPECT_EQ(map.points_local.interpolated[1 - coloured], 1);
+  EXPECT_EQ(map.points_local.reason[1 - coloured], reason_of(PointRule::kPlanar));
   ScoredMapOptions with_poses;
   with_poses.poses = "poses.txt";
   EXPECT_THROW(load_scored_map(file, with_poses), ConfigError);

@@ -43,7 +43,7 @@ std::string header(const MapMeta& meta, std::size_t points, const PlyOptions& op
   return text +
          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty char camera\n"
          "property int frame\nproperty float range\nproperty uchar interpolated\n"
-         "property uchar views\nproperty uchar spread\nend_header\n";
+         "property uchar views\nproperty uchar spread\nproperty uchar reason\nend_header\n";
 }
 
 /// Packs values one behind the other, as PLY wants them.
@@ -99,6 +99,7 @@ std::size_t pack_tile(const PointCloud& tile, const RigidMotion& T_local_submap,
     packer.put(tile.interpolated[i]);
     packer.put(tile.views[i]);
     packer.put(tile.spread[i]);
+    packer.put(tile.reason[i]);
     ++packed;
   }
   return packed;

@@ -23,9 +23,9 @@ struct PlyFigures {
 };
 
 /// Writes the map's points, tile by tile, as binary little endian PLY: x y z (m, local frame), red
-/// green blue (uchar), camera (char), frame (int), range (float, m), interpolated, views, spread
-/// (uchar). The file appears when it is whole. OutputError if it cannot be written or exists and
-/// `force` is false; InputError if the map is damaged or grows meanwhile.
+/// green blue (uchar), camera (char), frame (int), range (float, m), interpolated, views, spread,
+/// reason (uchar). The file appears when it is whole. OutputError if it cannot be written or exists
+/// and `force` is false; InputError if the map is damaged or grows meanwhile.
 PlyFigures write_ply(const MapReader& map, const std::filesystem::path& path,
                      const PlyOptions& options = {});
 

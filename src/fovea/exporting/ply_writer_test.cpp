@@ -123,7 +123,8 @@ TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
       {"green", "uchar"}, {"blue", "uchar"},
       {"camera", "char"}, {"frame", "int"},
       {"range", "float"}, {"interpolated", "uchar"},
-      {"views", "uchar"}, {"spread", "uchar"}};
+      {"views", "uchar"}, {"spread", "uchar"},
+      {"reason", "uchar"}};
   EXPECT_EQ(ply.properties, expected_properties);
   EXPECT_EQ(ply.comments[0], std::string("fovea ") + version());
   EXPECT_THAT(ply.comments,
@@ -147,6 +148,7 @@ TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
     EXPECT_EQ(at("interpolated"), tile.interpolated[i]);
     EXPECT_EQ(at("views"), tile.views[i]);
     EXPECT_EQ(at("spread"), tile.spread[i]);
+    EXPECT_EQ(at("reason"), tile.reason[i]);
     ++row;
   });
   EXPECT_EQ(row, ply.count);

@@ -206,7 +206,7 @@ void MapReader::for_each_tile(
   Statement rows(database,
                  "SELECT submap, x, y, z, points, colored, origin_x, origin_y, origin_z, position, "
                  "color, camera, frame, range, incidence, interpolated, views, spread, weight, "
-                 "intensity, checksum "
+                 "reason, intensity, checksum "
                  "FROM tiles ORDER BY submap, x, y, z");
   TileDecoder decoder;
   while (rows.step()) {

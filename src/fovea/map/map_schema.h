@@ -52,6 +52,7 @@ CREATE TABLE tiles(
   views BLOB NOT NULL,
   spread BLOB NOT NULL,
   weight BLOB NOT NULL,
+  reason BLOB NOT NULL,
   intensity BLOB,
   checksum INTEGER NOT NULL,
   PRIMARY KEY(submap, x, y, z));

@@ -15,7 +15,7 @@
 namespace fovea {
 
 /// Version of the schema; a file of another version is refused.
-inline constexpr int kMapSchemaVersion = 3;
+inline constexpr int kMapSchemaVersion = 4;
 
 using MapMeta = std::map<std::string, std::string>;
 

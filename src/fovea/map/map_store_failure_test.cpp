@@ -308,13 +308,16 @@ TEST(MapReader, RefusesWhatIsNoMap) {
 TEST(MapReader, RefusesOtherVersions) {
   const TemporaryFolder folder;
   write_sample_map(folder / "a.fovea");
-  run_sql(folder / "a.fovea", "PRAGMA user_version=4");
+  run_sql(folder / "a.fovea", "PRAGMA user_version=5");
   EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
-              AllOf(HasSubstr("format version 4"), HasSubstr("newer Fovea")));
+              AllOf(HasSubstr("format version 5"), HasSubstr("newer Fovea")));
   EXPECT_THROW(MapWriter::open(folder / "a.fovea"), InputError);
-  run_sql(folder / "a.fovea", "PRAGMA user_version=0");
-  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
-              AllOf(HasSubstr("format version 0"), HasSubstr("map the drive again")));
+  for (const char* old : {"0", "3"}) {  // 3: tiles without their points' reasons
+    run_sql(folder / "a.fovea", std::string("PRAGMA user_version=") + old);
+    EXPECT_THAT(
+        message<InputError>([&] { MapReader(folder / "a.fovea"); }),
+        AllOf(HasSubstr(std::string("format version ") + old), HasSubstr("map the drive again")));
+  }
 }
 
 TEST(MapReader, ATruncatedMapIsAnInputError) {

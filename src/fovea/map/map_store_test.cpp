@@ -47,7 +47,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   const MapReader reader(folder / "a.fovea");
   const MapMeta meta = reader.meta();
   EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
-  EXPECT_EQ(meta.at("schema_version"), "3");
+  EXPECT_EQ(meta.at("schema_version"), "4");
   EXPECT_EQ(meta.size(), 6u);
   const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
   ASSERT_EQ(frames.size(), expected.size());
@@ -272,6 +272,9 @@ TEST(MapDigest, ChangesWithAnyBitOfATile) {
   changed.weight[last] ^= 256;
   expect_new(changed);
   changed = tile;
+  changed.reason[0] ^= kExposureMatched;
+  expect_new(changed);
+  changed = tile;
   changed.intensity[last] = -1;
   expect_new(changed);
   changed = tile;
@@ -311,7 +314,7 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
   const Raw raw(folder / "a.fovea");
   sqlite3_stmt* row = nullptr;
   ASSERT_EQ(sqlite3_prepare_v2(raw.database, "SELECT * FROM tiles", -1, &row, nullptr), SQLITE_OK);
-  ASSERT_EQ(sqlite3_column_count(row), 21);
+  ASSERT_EQ(sqlite3_column_count(row), 22);
   std::size_t points = 0;
   while (sqlite3_step(row) == SQLITE_ROW) {
     const auto submap = static_cast<std::size_t>(sqlite3_column_int64(row, 0));
@@ -334,7 +337,8 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 16, count), tile.views));
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 17, count), tile.spread));
     EXPECT_TRUE(same_bits(inflate<std::uint16_t>(row, 18, count), tile.weight));
-    EXPECT_TRUE(same_bits(inflate<float>(row, 19, count), tile.intensity));
+    EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 19, count), tile.reason));
+    EXPECT_TRUE(same_bits(inflate<float>(row, 20, count), tile.intensity));
 
     std::vector<char> bytes;
     const auto add_bytes = [&](const void* data, std::size_t size) {
@@ -344,12 +348,12 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
     const auto add = [&](auto value) { add_bytes(&value, sizeof(value)); };
     for (int column = 0; column < 6; ++column) add(sqlite3_column_int64(row, column));
     for (int column = 6; column < 9; ++column) add(sqlite3_column_double(row, column));
-    for (int column = 9; column < 20; ++column) {
+    for (int column = 9; column < 21; ++column) {
       const int size = sqlite3_column_bytes(row, column);
       add(std::int64_t{size});
       add_bytes(sqlite3_column_blob(row, column), static_cast<std::size_t>(size));
     }
-    EXPECT_EQ(static_cast<std::uint64_t>(sqlite3_column_int64(row, 20)),
+    EXPECT_EQ(static_cast<std::uint64_t>(sqlite3_column_int64(row, 21)),
               XXH3_64bits(bytes.data(), bytes.size()));
   }
   sqlite3_finalize(row);
@@ -417,10 +421,11 @@ TEST(MapFormat, DigestIsAsStated) {
                "revisited, revisited_pose, velocity, figures "
                "FROM frames ORDER BY idx");
   digest.table(raw.database, "submaps", "SELECT id, pose FROM submaps ORDER BY id");
-  digest.table(raw.database, "tiles",
-               "SELECT submap, x, y, z, points, origin_x, origin_y, origin_z, position, color, "
-               "camera, frame, range, incidence, interpolated, views, spread, weight, intensity "
-               "FROM tiles ORDER BY submap, x, y, z");
+  digest.table(
+      raw.database, "tiles",
+      "SELECT submap, x, y, z, points, origin_x, origin_y, origin_z, position, color, "
+      "camera, frame, range, incidence, interpolated, views, spread, weight, reason, intensity "
+      "FROM tiles ORDER BY submap, x, y, z");
   XXH128_canonical_t canonical;
   XXH128_canonicalFromHash(&canonical, XXH3_128bits(digest.bytes.data(), digest.bytes.size()));
   std::string hex;

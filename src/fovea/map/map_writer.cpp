@@ -55,7 +55,7 @@ struct Puts {
         tile(database,
              "INSERT OR REPLACE INTO tiles VALUES"
              "(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,?17,?18,?19,"
-             "?20,?21)") {}
+             "?20,?21,?22)") {}
   Statement meta, frame, submap, tile;
 };
 

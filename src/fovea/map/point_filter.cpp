@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "fovea/base/angle.h"
@@ -16,9 +17,10 @@ namespace {
 
 using Value = double (*)(const PointCloud&, std::size_t);
 
+constexpr std::string_view kRuleField = "rule";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::array<std::pair<std::string_view, Value>, 8> kFields = {{
+constexpr std::array<std::pair<std::string_view, Value>, 10> kFields = {{
     {"views", [](const PointCloud& p, std::size_t i) { return double(p.views[i]); }},
     {"spread", [](const PointCloud& p, std::size_t i) { return double(p.spread[i]); }},
     {"range", [](const PointCloud& p, std::size_t i) { return double(p.range[i]); }},
@@ -26,12 +28,28 @@ constexpr std::array<std::pair<std::string_view, Value>, 8> kFields = {{
      [](const PointCloud& p, std::size_t i) { return double(p.incidence[i]) / kDegree; }},
     {"frame", [](const PointCloud& p, std::size_t i) { return double(p.frame[i]); }},
     {"camera", [](const PointCloud& p, std::size_t i) { return double(p.camera[i]); }},
+    {kRuleField,
+     [](const PointCloud& p, std::size_t i) { return double(rule_number(p.reason[i])); }},
+    {"matched", [](const PointCloud& p,
+                   std::size_t i) { return (p.reason[i] & kExposureMatched) != 0 ? 1.0 : 0.0; }},
     {"interpolated", [](const PointCloud& p, std::size_t i) { return double(p.interpolated[i]); }},
     {"intensity",
      [](const PointCloud& p, std::size_t i) {
        return p.intensity.empty() ? kNone : double(p.intensity[i]);
      }},
 }};
+
+/// The number that a condition states; of a rule its name will do.
+std::optional<double> number_of(std::string_view field, std::string_view text) {
+  if (field == kRuleField) {
+    const auto named = std::find(kPointRuleNames.begin(), kPointRuleNames.end(), text);
+    if (named != kPointRuleNames.end()) return double(named - kPointRuleNames.begin());
+  }
+  double value = 0;
+  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || last != text.data() + text.size()) return std::nullopt;
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 constexpr std::string_view kBlanks = " \t";
 
@@ -44,8 +62,8 @@ std::string_view trimmed(std::string_view text) {
 [[noreturn]] void reject(std::string_view condition) {
   throw ConfigError(fmt::format("the condition '{}' is not understood", condition), "--where",
                     "write FIELD OPERATOR NUMBER, joined by 'and', e.g. \"views >= 2 and range < "
-                    "10\"; fields are views, spread, range, incidence, frame, camera, "
-                    "interpolated, intensity");
+                    "10\"; fields are views, spread, range, incidence, frame, camera, rule, "
+                    "matched, interpolated, intensity");
 }
 
 }  // namespace
@@ -89,12 +107,9 @@ PointFilter::Condition PointFilter::parse_condition(const std::string& text) {
   };
   const auto found_field = std::find_if(kFields.begin(), kFields.end(), named(field));
   const auto found_sign = std::find_if(kOperators.begin(), kOperators.end(), named(sign));
-  double value = 0;
-  const auto [last, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  const bool is_number =
-      error == std::errc{} && last == number.data() + number.size() && std::isfinite(value);
-  if (found_field == kFields.end() || found_sign == kOperators.end() || !is_number) reject(text);
-  return {found_field->second, found_sign->second, value};
+  const std::optional<double> value = number_of(field, number);
+  if (found_field == kFields.end() || found_sign == kOperators.end() || !value) reject(text);
+  return {found_field->second, found_sign->second, *value};
 }
 
 PointFilter PointFilter::parse(std::string_view text) {

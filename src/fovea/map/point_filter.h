@@ -10,8 +10,9 @@
 namespace fovea {
 
 /// Conditions that hold together. Fields: views, spread (grey values), range (m), incidence
-/// (degrees), frame, camera (-1: uncoloured), interpolated (0 or 1), intensity (0-1). Operators: <
-/// <= > >= == (or =) !=. A value that a point does not have (an unknown incidence, an intensity in
+/// (degrees), frame, camera (-1: uncoloured), rule (a number or name of PointRule), matched
+/// (exposure, 0 or 1), interpolated (0 or 1), intensity (0-1). Operators: < <= > >= == (or =) !=. A
+/// value that a point does not have (an unknown incidence, an intensity in
 /// a map without) meets no condition.
 class PointFilter {
  public:

@@ -24,6 +24,7 @@ PointCloud four_points() {
   points.frame = {0, 1, 7, 7};
   points.camera = {kNoCamera, 2, 2, 3};
   points.interpolated = {0, 1, 1, 0};
+  points.reason = {0, 1, 2 | kExposureMatched, kExposureMatched};
   return points;
 }
 
@@ -56,6 +57,16 @@ TEST(PointFilter, EveryField) {
   EXPECT_THAT(passing("incidence < 28"), ElementsAre(0));
 }
 
+TEST(PointFilter, RulesByNameOrNumber) {
+  EXPECT_THAT(passing("rule == measured"), ElementsAre(0, 3));
+  EXPECT_THAT(passing("rule = short-edges"), ElementsAre(1));
+  EXPECT_THAT(passing("rule == 2"), ElementsAre(2));
+  EXPECT_THAT(passing("rule != planar"), ElementsAre(0, 1, 3));
+  EXPECT_THAT(passing("rule == centroid"), ElementsAre());
+  EXPECT_THAT(passing("matched == 1"), ElementsAre(2, 3));
+  EXPECT_THAT(passing("matched = 0 and rule = measured"), ElementsAre(0));
+}
+
 TEST(PointFilter, UnknownValuesMeetNothing) {
   EXPECT_THAT(passing("incidence >= 0"), ElementsAre(0, 1, 3));
   EXPECT_THAT(passing("incidence != 0"), ElementsAre(1, 3));
@@ -73,7 +84,7 @@ TEST(PointFilter, SaysWhatItDoesNotUnderstand) {
   for (const char* text :
        {"", " ", "views", "views >=", ">= 2", "view >= 2", "views >= two", "views >= 2 3",
         "views => 2", "views >= 2 and", "and views >= 2", "views >= 2 or range < 3", "views >= nan",
-        "views >= 1e999", "views >= 2,range<3"}) {
+        "views >= 1e999", "rule == flat", "views == planar", "views >= 2,range<3"}) {
     try {
       PointFilter::parse(text);
       ADD_FAILURE() << text;

@@ -30,10 +30,11 @@ void for_each_stored_column(Cloud& tile, F&& f) {
   f(tile.views);
   f(tile.spread);
   f(tile.weight);
+  f(tile.reason);
   f(tile.intensity);
 }
-inline constexpr std::size_t kStoredColumns = 11;
-inline constexpr std::size_t kIntensityColumn = 10;  // the only one that may be missing
+inline constexpr std::size_t kStoredColumns = 12;
+inline constexpr std::size_t kIntensityColumn = 11;  // the only one that may be missing
 
 /// Points that one tile may hold; bounds what a damaged row can make a reader allocate.
 inline constexpr std::int64_t kMaxTilePoints = std::int64_t{1} << 26;

@@ -45,6 +45,7 @@ void append_columns(const PointCloud& points, const std::vector<std::uint32_t>& 
   gather(points.views, tile.views);
   gather(points.spread, tile.spread);
   gather(points.weight, tile.weight);
+  gather(points.reason, tile.reason);
   if (!points.intensity.empty()) gather(points.intensity, tile.intensity);
 }
 
@@ -75,6 +76,7 @@ void check_tile_columns(const PointCloud& cloud) {
   require("views", cloud.views);
   require("spread", cloud.spread);
   require("weight", cloud.weight);
+  require("reason", cloud.reason);
 }
 
 TileMap::TileMap(double tile_size) : tile_size_(tile_size) {

@@ -31,8 +31,9 @@ struct TileId {
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
   /// Points of each tile, submap frame, relative to the cloud's `origin` = the tile's lowest
-  /// corner. Columns range, incidence, color, frame, camera, interpolated, views, spread and
-  /// weight are always there; intensity in all tiles of a map or in none; normals are not kept.
+  /// corner. Columns range, incidence, color, frame, camera, interpolated, views, spread,
+  /// weight and reason are always there; intensity in all tiles of a map or in none; normals are
+  /// not kept.
   std::map<TileKey, PointCloud> tiles;
 };
 

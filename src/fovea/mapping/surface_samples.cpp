@@ -22,6 +22,7 @@ constexpr int kSmoothing = 2;
 struct Surface {
   ImageMesh mesh;
   std::vector<Vertices> triangles;
+  std::vector<PointRule> rule;          // by triangle: why it is surface
   std::vector<Eigen::Vector3f> area;    // by triangle: its normal, as long as twice its area
   std::vector<Eigen::Vector3f> normal;  // by vertex; zero without a triangle
 };
@@ -72,11 +73,10 @@ void find_triangles(const GridProjection& project, const SurfaceOptions& options
   for (std::size_t t = 0; t < area.size(); ++t) {
     if (area[t].isZero(0)) continue;
     const Vertices& corners = mesh.triangulation.vertices(t);
-    if (!mesh.edges_below(corners, squared(options.max_edge)) &&
-        !is_flat(mesh, area, t, cos_angle)) {
-      continue;
-    }
+    const bool is_short = mesh.edges_below(corners, squared(options.max_edge));
+    if (!is_short && !is_flat(mesh, area, t, cos_angle)) continue;
     surface.triangles.push_back(corners);
+    surface.rule.push_back(is_short ? PointRule::kShortEdges : PointRule::kPlanar);
     surface.area.push_back(area[t]);
   }
 }
@@ -196,6 +196,7 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
                                 : surface.normal[static_cast<std::size_t>(vertex)]);
   }
   points.interpolated.assign(kept.size(), 0);
+  points.reason.assign(kept.size(), reason_of(PointRule::kMeasured));
   return points;
 }
 
@@ -231,7 +232,7 @@ PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
   options.validate();
   points_cam.check();
   const GridProjection project(camera, points_cam.origin);
-  Surface surface{ImageMesh(points_cam, project), {}, {}, {}};
+  Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}};
   find_triangles(project, options, surface);
   find_normals(surface);
   const std::vector<std::vector<Sample>> samples = sample_triangles(surface, grid);
@@ -245,6 +246,7 @@ PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
       points.position.push_back((T_cam_grid * sample.p_grid).cast<float>());
       points.normal.push_back(normal_of(surface, sample.triangle));
       points.interpolated.push_back(1);
+      points.reason.push_back(reason_of(surface.rule[sample.triangle]));
       if (!points_cam.intensity.empty()) {
         points.intensity.push_back(mean_intensity(points_cam, surface, sample.triangle));
       }

@@ -38,7 +38,8 @@ struct SampleGrid {
 /// @param points_cam  camera frame, origin 0, all more than Camera::kMinDepth in front of it
 /// @return the input points, in their order, then the samples (intensity: mean of the corners'),
 ///         without those in taken cells, and one for each cell; columns as upsample() gives them,
-///         and normals smoothed over neighbouring triangles
+///         and normals smoothed over neighbouring triangles; `reason` says which edges admitted a
+///         sample's triangle
 PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
                            const SurfaceOptions& options, const SampleGrid& grid);
 

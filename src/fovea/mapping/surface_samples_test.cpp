@@ -186,6 +186,45 @@ TEST(SurfaceSamples, GroundBetweenDistantRingsIsFilled) {
   }
 }
 
+// Rings 0.3 to 1 m apart: a sample says whether short edges let it in, or only the ground's being
+// flat. The rings that a point of the ground lies between are known, and so are their triangles'
+// edges: at least as long as the gap, at most its diagonal with a step along the ring.
+TEST(SurfaceSamples, SayWhyTheyAreThere) {
+  constexpr double kHeight = 1.653, kMaxEdge = 0.55;
+  const Rings rings;
+  const PointCloud measured = scan({{{{-50, kHeight, -5}, {50, kHeight + 1, 60}}}}, rings);
+  const PointCloud points =
+      sample_surfaces(measured, test_camera(), {.max_edge = kMaxEdge}, plain_grid());
+  std::array<std::size_t, kPointRules> count{};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint8_t rule = points.reason[i];
+    ASSERT_LT(rule, kPointRules);
+    ++count[rule];
+    ASSERT_EQ(rule == reason_of(PointRule::kMeasured), points.interpolated[i] == 0);
+    const Eigen::Vector3f p = points.position[i] - Eigen::Vector3f(0.01f, -0.08f, -0.27f);
+    if (points.interpolated[i] == 0) continue;
+    const double out = std::hypot(p.x(), p.z()), height = kHeight + 0.08;
+    const double below = (rings.first + std::atan2(height, out) / kDegree) / rings.step;
+    const auto radius = [&](double ring) {
+      return height / std::tan((ring * rings.step - rings.first) * kDegree);
+    };
+    // Chords of a ring lie inside its circle: a little beyond a ring's points are its triangles.
+    if (std::abs(below - std::round(below)) < 0.02) continue;
+    const double gap = radius(std::floor(below)) - radius(std::ceil(below));
+    const double along = radius(std::floor(below)) * rings.azimuth_step * kDegree;
+    if (std::hypot(gap, 2 * along) < kMaxEdge) {
+      ASSERT_EQ(rule, reason_of(PointRule::kShortEdges)) << out;
+    }
+    if (gap > kMaxEdge) {
+      ASSERT_EQ(rule, reason_of(PointRule::kPlanar)) << out;
+    }
+  }
+  EXPECT_GT(count[reason_of(PointRule::kMeasured)], 1000u);
+  EXPECT_GT(count[reason_of(PointRule::kShortEdges)], 10000u);
+  EXPECT_GT(count[reason_of(PointRule::kPlanar)], 10000u);
+  EXPECT_EQ(count[reason_of(PointRule::kCentroid)], 0u);
+}
+
 // What lies between a board and the wall behind it was never measured.
 TEST(SurfaceSamples, NothingIsSampledBetweenABoardAndTheWallBehind) {
   for (const double azimuth_step : {0.17, 0.09, 0.4}) {

@@ -115,6 +115,8 @@ PointCloud to_cloud(const PointCloud& points, const DenseMesh& mesh) {
   cloud.normal.insert(cloud.normal.end(), mesh.normal.begin() + first, mesh.normal.end());
   cloud.interpolated.resize(points.size(), 0);
   cloud.interpolated.resize(cloud.position.size(), 1);
+  cloud.reason.resize(points.size(), reason_of(PointRule::kMeasured));
+  cloud.reason.resize(cloud.position.size(), reason_of(PointRule::kCentroid));
   return cloud;
 }
 

@@ -26,8 +26,9 @@ struct UpsampleOptions {
 ///                    (std::invalid_argument otherwise); they need not be inside the image. Of the
 ///                    columns present, intensity, range and incidence are averaged; color, frame
 ///                    and camera are those of one of the triangle's corners
-/// @return the input points in their order, then the new ones, with two columns set: `interpolated`
-///         (1 for new points, as it was for the others) and `normal` (camera frame, unit, towards
+/// @return the input points in their order, then the new ones, with three columns set:
+///         `interpolated` (1 for new points, as it was for the others), `reason` likewise
+///         (PointRule::kCentroid), and `normal` (camera frame, unit, towards
 ///         the camera): of a new point, its triangle's; of an input point, the area-weighted mean
 ///         of the triangles of input points below max_edge around it, or zero without any; of one
 ///         that shares a grid point, the vertex's if that is within 5 cm, or zero

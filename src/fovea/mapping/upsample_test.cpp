@@ -175,6 +175,7 @@ TEST(Upsample, AveragesQuantitiesAndKeepsProvenance) {
   EXPECT_EQ(dense.frame[3], 17);
   EXPECT_EQ(dense.camera[3], 2);
   EXPECT_EQ(dense.interpolated, (std::vector<std::uint8_t>{0, 1, 0, 1}));
+  EXPECT_EQ(dense.reason, (std::vector<std::uint8_t>{0, 0, 0, 3}));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(dense.position[i], cloud.position[i]);
     EXPECT_EQ(dense.intensity[i], cloud.intensity[i]);

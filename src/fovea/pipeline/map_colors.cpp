@@ -68,6 +68,9 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   points_cam.views.resize(n);
   points_cam.spread.resize(n);
   points_cam.weight.resize(n);
+  if ((view.gain != 1).any()) {
+    for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
+  }
   const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight};
   parallel_for(n, kGrain, [&](std::size_t i) {
     const Eigen::Vector3f& p = points_cam.position[i];

@@ -28,7 +28,8 @@ bool is_exposure_off(const Eigen::Array3f& gain_to_map);
 Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map);
 
 /// Gives new points, all in view, the view's colours, as their first ones.
-/// @param points_cam  camera frame; columns frame, camera and those of the colour are set
+/// @param points_cam  camera frame; columns frame, camera and those of the colour are set, and
+///                    `reason` is marked where a gain has matched the view's exposure
 void colour_new_points(PointCloud& points_cam, const ColorView& view);
 
 /// The points of a map in one camera's view, at one moment.

@@ -85,6 +85,7 @@ PointCloud new_points(const std::vector<Eigen::Vector3f>& positions) {
   PointCloud points = one_point_each(positions);
   points.frame.assign(points.size(), 0);
   points.weight.assign(points.size(), view_weight(5));
+  points.reason.assign(points.size(), 0);
   return points;
 }
 
@@ -134,6 +135,21 @@ TEST(NewColours, AreTheViewsAtThePoints) {
   EXPECT_EQ(points.spread, std::vector<std::uint8_t>(3, 0));
   EXPECT_EQ(points.frame, std::vector<std::int32_t>(3, 7));
   EXPECT_EQ(points.camera, std::vector<std::int8_t>(3, 3));
+}
+
+TEST(NewColours, SayThatTheirExposureWasMatched) {
+  Image grey(621, 188, 3);
+  std::fill(grey.data.begin(), grey.data.end(), 80);
+  TestView view(grey);
+  PointCloud points;
+  points.position = {{0, 0, 6}, {1.5f, 0.5f, 4}};
+  points.reason = {reason_of(PointRule::kMeasured), reason_of(PointRule::kPlanar)};
+  colour_new_points(points, view.view);
+  EXPECT_EQ(points.reason, (std::vector<std::uint8_t>{0, 2}));
+  view.view.gain = Eigen::Array3f(1.5f, 1.5f, 1.5f);
+  colour_new_points(points, view.view);
+  EXPECT_EQ(points.reason, (std::vector<std::uint8_t>{0x10, 0x12}));
+  EXPECT_EQ(points.color[0], (Rgb{120, 120, 120}));
 }
 
 // Near by the footprint is many pixels: the mean of stripes; far away it is less than one.

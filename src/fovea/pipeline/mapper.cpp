@@ -312,6 +312,7 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
       PointCloud points_cam = transform_cloud(rest_lidar, camera.T_cam_lidar);
       points_cam.normal.assign(points_cam.size(), Eigen::Vector3f::Zero());
       points_cam.interpolated.assign(points_cam.size(), 0);
+      points_cam.reason.assign(points_cam.size(), reason_of(PointRule::kMeasured));
       limit_incidence(points_cam, std::numeric_limits<double>::infinity());
       const Image none;
       const bool sees = !last && shows_something(frame.images[slot], record);

@@ -44,6 +44,7 @@ PointCloud face_points(float x, int frame) {
   points.views.assign(n, 1);
   points.spread.assign(n, 0);
   points.weight.assign(n, 1);
+  points.reason.assign(n, 0);
   return points;
 }
 

@@ -1,0 +1,122 @@
+// What the mapper makes of images: blank, missing or wrongly exposed ones, and of points that none
+// shows.
+#include <gtest/gtest.h>
+
+#include "fovea/pipeline/mapper_test_support.h"
+
+namespace fovea {
+namespace {
+
+// A lens that is covered for three frames: no point turns black, and the drive goes on.
+TEST(Mapper, BlankImagesColourNothing) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  std::size_t before = 0;
+  for (int i = 0; i < 6; ++i) {
+    Frame frame = std::get<Frame>(street().load(i));
+    const bool covered = i >= 2 && i < 5;
+    if (covered) std::fill(frame.images[0].data.begin(), frame.images[0].data.end(), 3);
+    const FrameRecord record = mapper.process(frame, false);
+    EXPECT_EQ(record.has("images_blank"), covered);
+    EXPECT_EQ(record.status, FrameStatus::kMapped);
+    if (covered) {
+      EXPECT_EQ(mapper.map().size(), before);
+    } else {
+      EXPECT_GT(mapper.map().size(), before);
+    }
+    before = mapper.map().size();
+  }
+  double color_error = 0;
+  const auto points = points_of(mapper.map());
+  for (const MapPoint& point : points) {
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_LT(color_error / double(points.size()), 4.0);
+}
+
+// Two cameras, one without an image for a while: the other one goes on, in both kinds of mapping.
+TEST(Mapper, ACameraWithoutImageLeavesTheOther) {
+  SyntheticDrive drive(street_scene(), 3, 0.8);
+  Camera right = drive.info().calibration.cameras[0];
+  right.index = 3;
+  drive.editable_info().calibration.cameras.push_back(right);
+  MapperOptions whole_scan;
+  apply_variant("baseline-gicp", whole_scan);
+  for (const MapperOptions& options : {MapperOptions{}, whole_scan}) {
+    Mapper mapper(drive.info(), options, PoseSource::kNavigation);
+    for (int i = 0; i < 3; ++i) {
+      Frame frame = std::get<Frame>(drive.load(i));
+      frame.images[i == 1 ? 0 : 1] = {};
+      const FrameRecord record = mapper.process(frame, false);
+      EXPECT_GT(record.figures.at("points_added"), 0);
+      EXPECT_FALSE(record.has("images_blank"));
+    }
+    double color_error = 0;
+    std::size_t coloured = 0;
+    for (const MapPoint& point : points_of(mapper.map())) {
+      if (point.camera == kNoCamera) continue;
+      EXPECT_EQ(point.camera, point.frame == 1 ? 3 : 2);
+      color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+      ++coloured;
+    }
+    EXPECT_LT(color_error / double(coloured), 4.0);
+  }
+}
+
+// Images of two fifths of the light for three frames, as of a camera whose exposure jumps: the map
+// keeps its colours, and what comes in these frames is matched to them.
+TEST(Mapper, AWrongExposureDoesNotSpoilTheMap) {
+  Mapper mapper(street().info(), {}, PoseSource::kNavigation);
+  for (int i = 0; i < 8; ++i) {
+    Frame frame = std::get<Frame>(street().load(i));
+    const bool wrong = i >= 3 && i < 6;
+    if (wrong) {
+      for (std::uint8_t& value : frame.images[0].data) value = std::uint8_t(value * 2 / 5);
+    }
+    EXPECT_EQ(mapper.process(frame, false).has("exposure_off"), wrong) << i;
+  }
+  double color_error = 0;
+  const auto points = points_of(mapper.map());
+  for (const MapPoint& point : points) {
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_LT(color_error / double(points.size()), 6.0);
+  for (const MapPoint& point : points) {
+    ASSERT_EQ((point.reason & kExposureMatched) != 0, point.frame >= 3 && point.frame < 6);
+    ASSERT_EQ(rule_number(point.reason) == reason_of(PointRule::kMeasured), !point.interpolated);
+  }
+}
+
+TEST(Mapper, BaselineKeepsTheWholeScanAndLeavesTheUnseenUncoloured) {
+  MapperOptions options;
+  apply_variant("baseline-gicp", options);
+  Mapper mapper(street().info(), options, PoseSource::kNavigation);
+  const auto record = map_frames(mapper, street(), 0, 1)[0];
+  EXPECT_EQ(mapper.map().size(), std::size_t(record.figures.at("points_scan")));
+  std::size_t uncoloured = 0;
+  for (const MapPoint& point : points_of(mapper.map())) uncoloured += point.camera == kNoCamera;
+  EXPECT_EQ(double(uncoloured), record.figures.at("points_unseen"));
+  for (const MapPoint& point : points_of(mapper.map())) ASSERT_EQ(point.reason, 0);
+  EXPECT_GT(uncoloured, mapper.map().size() / 2);
+}
+
+TEST(Mapper, TwoCamerasTakeTurns) {
+  SyntheticDrive drive(street_scene(), 2, 0.8);
+  Camera right = drive.info().calibration.cameras[0];
+  right.index = 3;
+  right.T_cam_lidar.translation().x() -= 0.54;
+  drive.editable_info().calibration.cameras.push_back(right);
+  Mapper mapper(drive.info(), {}, PoseSource::kNavigation);
+  map_frames(mapper, drive, 0, 1);
+  std::size_t from_left = 0, from_right = 0;
+  double color_error = 0;
+  for (const MapPoint& point : points_of(mapper.map())) {
+    (point.camera == 2 ? from_left : from_right) += 1;
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  EXPECT_GT(from_right, 0u);
+  EXPECT_LT(from_right, from_left);  // what occludes the first's points was left out
+  EXPECT_LT(color_error / double(mapper.map().size()), 3.0);
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,48 @@
+// Drives and maps for tests of the mapper.
+#pragma once
+
+#include <vector>
+
+#include "../../../tests/synthetic_drive.h"
+#include "fovea/pipeline/mapper.h"
+
+namespace fovea {
+
+struct MapPoint {
+  Eigen::Vector3d p_local;
+  Rgb color;
+  int frame = 0;
+  std::int8_t camera = kNoCamera;
+  bool interpolated = false;
+  std::uint8_t reason = 0;
+};
+
+inline std::vector<MapPoint> points_of(const TileMap& map) {
+  std::vector<MapPoint> points;
+  for (const Submap& submap : map.submaps()) {
+    for (const auto& [key, tile] : submap.tiles) {
+      for (std::size_t i = 0; i < tile.size(); ++i) {
+        points.push_back({submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()),
+                          tile.color[i], tile.frame[i], tile.camera[i], tile.interpolated[i] != 0,
+                          tile.reason[i]});
+      }
+    }
+  }
+  return points;
+}
+
+inline std::vector<FrameRecord> map_frames(Mapper& mapper, const SyntheticDrive& drive, int begin,
+                                           int end, int held_out = -1) {
+  std::vector<FrameRecord> records;
+  for (int i = begin; i < end; ++i) {
+    records.push_back(mapper.process(std::get<Frame>(drive.load(i)), i == held_out));
+  }
+  return records;
+}
+
+inline const SyntheticDrive& street() {
+  static const SyntheticDrive drive(street_scene(), 8, 0.8);
+  return drive;
+}
+
+}  // namespace fovea
