@@ -63,7 +63,7 @@ void add_export_command(CLI::App& app) {
       ->check(CLI::IsMember({"ply", "kitti-poses"}));
   command->add_flag("--double", arguments->ply.double_positions, "PLY positions as double");
   command->add_flag("--uncolored", arguments->ply.include_uncolored,
-                    "PLY: also points that no camera coloured");
+                    "PLY: also points that no camera coloured, in grey with camera -1");
   command->add_option(
       "--where", arguments->where,
       "PLY: only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "

@@ -115,6 +115,31 @@ TEST_F(Program, MapsInfoExportEvaluate) {
   EXPECT_NEAR(cloud_score.at("te_mean"), score.at("te_mean"), 0.1);
 }
 
+// A map of whole scans: what no camera saw is in the map, and in no score and no export unasked.
+TEST_F(Program, UnseenPointsAreNeitherScoredNorBlack) {
+  ASSERT_EQ(map(drive_, "--variant baseline-gicp --hold-out 4:2").exit_code, 0);
+  const auto poses = own_ / "poses.txt", ply = own_ / "map.ply", scores = own_ / "scores.json";
+  const std::string exporting = "export '" + output().string() + "' --force ";
+  ASSERT_EQ(run_fovea(exporting + poses.string() + " --format kitti-poses").exit_code, 0);
+  const auto score = [&](const std::string& more) {
+    EXPECT_EQ(run_fovea(exporting + ply.string() + more).exit_code, 0);
+    const ProgramRun run = run_fovea("evaluate " + ply.string() + " '" + drive_.string() +
+                                     "' --protocol held-out --hold-out 4:2 --cameras 2 --poses " +
+                                     poses.string() + " --json " + scores.string());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(read_text(scores));
+  };
+  const auto coloured = score(""), all = score(" --uncolored");
+  const auto by_camera = score(" --uncolored --where 'camera>=0'");
+  EXPECT_EQ(all.at("map_points"), info().at("points"));
+  EXPECT_GT(all.at("map_points"), 2 * coloured.at("map_points").get<std::size_t>());
+  EXPECT_EQ(all.at("map_points_coloured"), coloured.at("map_points"));
+  EXPECT_EQ(by_camera.at("map_points"), coloured.at("map_points"));
+  for (const char* key : {"me_mean", "te_mean", "coverage_5cm", "sharpness", "pictures"}) {
+    EXPECT_EQ(all.at(key), coloured.at(key)) << key;
+  }
+}
+
 TEST_F(Program, TheWrittenDriveIsReadBackToTheTruth) {
   // Calibration, geodesy, stamps, poses: with true poses every map point lies on a surface.
   ASSERT_EQ(map(drive_,

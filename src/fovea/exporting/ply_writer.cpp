@@ -37,6 +37,10 @@ std::string header(const MapMeta& meta, std::size_t points, const PlyOptions& op
         "comment east-north-up metres; origin latitude {} longitude {} degrees, altitude {} m\n",
         *latitude, *longitude, *altitude);
   }
+  if (options.include_uncolored) {
+    text += fmt::format("comment camera -1: no camera saw the point, its colour {} {} {} is none\n",
+                        kUncolored.r, kUncolored.g, kUncolored.b);
+  }
   const char* real = options.double_positions ? "double" : "float";
   text += fmt::format("element vertex {}\n", points);
   for (const char* axis : {"x", "y", "z"}) text += fmt::format("property {} {}\n", real, axis);
@@ -89,7 +93,7 @@ std::size_t pack_tile(const PointCloud& tile, const RigidMotion& T_local_submap,
       options.double_positions ? packer.put(coordinate)
                                : packer.put(static_cast<float>(coordinate));
     }
-    const Rgb color = colored ? tile.color[i] : Rgb{};
+    const Rgb color = colored ? tile.color[i] : kUncolored;
     packer.put(color.r);
     packer.put(color.g);
     packer.put(color.b);

@@ -9,9 +9,12 @@
 
 namespace fovea {
 
+/// Colour of points that no camera has coloured, so that no program shows them as black things.
+inline constexpr Rgb kUncolored{128, 128, 128};
+
 struct PlyOptions {
   bool double_positions = false;   ///< x y z as double: keeps 0.1 mm beyond 1 km from the origin
-  bool include_uncolored = false;  ///< also points that no camera has coloured: black, camera -1
+  bool include_uncolored = false;  ///< also points that no camera has coloured: grey, camera -1
   PointFilter where = {};          ///< only points that pass
   bool force = false;              ///< replace an existing file
 };

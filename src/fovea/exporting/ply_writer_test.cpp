@@ -169,9 +169,24 @@ TEST_F(PlyWriter, DoublePositionsAndUncolouredPoints) {
     const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
     EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-12);
     EXPECT_EQ(at("camera"), tile.camera[i]);
-    EXPECT_EQ(at("red"), tile.camera[i] == kNoCamera ? 0 : tile.color[i].r);
+    const Rgb color = tile.camera[i] == kNoCamera ? Rgb{128, 128, 128} : tile.color[i];
+    EXPECT_EQ(at("red"), color.r);
+    EXPECT_EQ(at("green"), color.g);
+    EXPECT_EQ(at("blue"), color.b);
     ++row;
   });
+}
+
+TEST_F(PlyWriter, UncolouredPointsAreLeftOutByTheirCamera) {
+  PlyOptions options;
+  options.include_uncolored = true;
+  options.where = PointFilter::parse("camera>=0");
+  const PlyFigures coloured = write(options);
+  EXPECT_EQ(coloured.points, MapReader(folder_ / "a.fovea").colored_size());
+  for (const double camera : Ply(folder_ / "a.ply").columns.at("camera")) EXPECT_GE(camera, 0);
+  options.where = PointFilter::parse("camera == -1");
+  options.force = true;
+  EXPECT_EQ(write(options).points + coloured.points, sample_tile_map().size());
 }
 
 TEST_F(PlyWriter, ReplacesOnlyWithForce) {
