@@ -122,6 +122,8 @@ const std::vector<FigureGroup>& groups() {
        "Without the boxes of objects that moved, where the drive has labels."},
       {"bleeding", "Bleeding at edges of depth", "Points within 5 pixels of an edge."},
       {"split", "Place and colour", "What of TE comes from the nearest point's distance."},
+      {"by_rule", "By the nearest point's rule",
+       "What let that point into the map: a return, a sample between returns, and of which kind."},
       {"consistency", "Consistency of colours", ""},
       {"geometry", "Geometry", "Precision, recall and F-score within 5, 10 and 20 cm."},
       {"pictures", "Pictures", "The map drawn into the scored views."},

@@ -18,6 +18,7 @@ EvaluationReport full_report() {
   report.figures.points = 12345;
   report.figures.te_mean = 10.123456789;
   report.without_moving = MovingReport{};
+  report.by_rule[0] = {3, 0.5, 7};
   report.blocks = {{4, 9, {}}, {20, 25, {}}};
   report.color_rules = {{ColorRule::kFovea, 7, {}, 0.5}, {ColorRule::kFloor, {}, {}, {}}};
   return report;

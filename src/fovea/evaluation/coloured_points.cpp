@@ -53,6 +53,7 @@ ColouredPoints coloured_points(const PointCloud& map_local) {
     if (!map_local.interpolated.empty()) {
       coloured.interpolated.push_back(map_local.interpolated[i]);
     }
+    if (!map_local.reason.empty()) coloured.reason.push_back(map_local.reason[i]);
     if (!map_local.frame.empty()) coloured.frame.push_back(map_local.frame[i]);
   }
   coloured.runs = make_runs(coloured.position, kRunLength);

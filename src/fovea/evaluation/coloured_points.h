@@ -26,6 +26,7 @@ struct ColouredPoints {
   std::vector<Eigen::Vector3f> position;  ///< local frame, relative to origin
   std::vector<Rgb> color;
   std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling; empty where not known
+  std::vector<std::uint8_t> reason;        ///< base/point_reason.h; empty where not known
   std::vector<std::int32_t> frame;         ///< that the point comes from; empty where not known
   std::vector<PointRun> runs;              ///< covering all points in order
 };

@@ -21,11 +21,13 @@ TEST(ColouredPoints, LeaveOutUncolouredOnes) {
   map.position = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   map.color = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
   map.camera = {2, kNoCamera, 3};
+  map.reason = {0, 1, 2};
   const ColouredPoints coloured = coloured_points(map);
   EXPECT_EQ(coloured.origin, map.origin);
   ASSERT_EQ(coloured.position.size(), 2u);
   EXPECT_EQ(coloured.position[1], Eigen::Vector3f(2, 0, 0));
   EXPECT_EQ(coloured.color[1], (Rgb{3, 3, 3}));
+  EXPECT_EQ(coloured.reason, (std::vector<std::uint8_t>{0, 2}));
 }
 
 TEST(PointRuns, BoundTheirPoints) {

@@ -107,6 +107,7 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
     report.images_missing.insert(report.images_missing.end(), score.unscored_views.begin(),
                                  score.unscored_views.end());
     report.split.append(score.split);
+    append(report.by_rule, score.by_rule);
     paper_like_errors.append(score.paper_like_errors);
     positions.insert(positions.end(), score.positions.begin(), score.positions.end());
     for (const ViewReport& view : score.views) {

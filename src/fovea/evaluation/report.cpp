@@ -103,6 +103,17 @@ void put_structure(Json& json, const EvaluationReport& report) {
   json["warnings"] = report.warnings;
 }
 
+void put_rules(Json& json, const ErrorsByRule& by_rule) {
+  json = Json::object();
+  for (std::size_t rule = 0; rule < kPointRules; ++rule) {
+    const RuleErrors& errors = by_rule[rule];
+    if (errors.points == 0) continue;
+    json[std::string(kPointRuleNames[rule])] = {{"points", errors.points},
+                                                {"me_mean", errors.mean(errors.position)},
+                                                {"te_mean", errors.mean(errors.color)}};
+  }
+}
+
 Json view_json(const ViewReport& view) {
   Json json;
   json["frame"] = view.frame;
@@ -141,6 +152,7 @@ std::string to_json(const EvaluationReport& report) {
   json["density_per_m2"] = report.density_per_m2;
   put_set(json["visible"], report.visible);
   put_structure(json, report);
+  put_rules(json["by_rule"], report.by_rule);
   put_moving(json["without_moving"], report.without_moving);
   if (!report.blocks.empty()) put_blocks(json["blocks"], report);
   json["free_space_points"] = report.free_space.tested;
@@ -221,6 +233,13 @@ std::string to_text(const EvaluationReport& report) {
   const ErrorSplit& s = report.split;
   row("TE of sampling", number(s.mean(s.sampling), 2),
       fmt::format("by the nearest point's distance; {:.2f} by its colour", s.mean(s.same_place)));
+  for (std::size_t rule = 0; rule < kPointRules; ++rule) {
+    const RuleErrors& errors = report.by_rule[rule];
+    if (errors.points == 0) continue;
+    row(fmt::format("nearest is {}", kPointRuleNames[rule]),
+        number(errors.mean(errors.position), 4),
+        fmt::format("m ME, TE {:.2f}; {} points", errors.mean(errors.color), errors.points));
+  }
   row("roughness", number(report.roughness.roughness(), 2),
       fmt::format("on {} smooth patches", report.roughness.patches));
   row("cross-view RMS", number(report.cross_view.map, 2),

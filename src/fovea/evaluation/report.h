@@ -14,6 +14,7 @@
 #include "fovea/evaluation/picture_quality.h"
 #include "fovea/evaluation/pose_stray.h"
 #include "fovea/evaluation/protocol.h"
+#include "fovea/evaluation/rule_errors.h"
 #include "fovea/evaluation/set_figures.h"
 #include "fovea/evaluation/sharpness.h"
 
@@ -83,6 +84,7 @@ struct EvaluationReport {
   std::size_t unreached = 0;  ///< points left out with blocks: no training frame could see them
   BleedingFigures bleeding;
   ErrorSplit split;
+  ErrorsByRule by_rule{};  ///< all zero where the map does not say
   RoughnessSums roughness;
   CrossViewTest::Result cross_view;
   PlaneThickness thickness;

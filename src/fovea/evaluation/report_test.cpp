@@ -62,12 +62,16 @@ TEST(Report, HasTheFiguresBesideTheContracts) {
       summarize({{0.1f, 0.3f}, {10, 30}, {5, 7}, {1, 4}, std::vector<std::uint8_t>{1, 0}});
   report.intervals.te = {12, 28};
   report.map_share_interpolated = 0.75;
+  report.by_rule[reason_of(PointRule::kPlanar)] = {4, 0.2, 80};
   const nlohmann::json json = nlohmann::json::parse(to_json(report));
   EXPECT_EQ(json["te_ciede2000_mean"], 2.5);
   EXPECT_EQ(json["te_ciede2000_median"], 2.5);
   EXPECT_EQ(json["share_interpolated"], 0.5);
   EXPECT_EQ(json["map_share_interpolated"], 0.75);
   EXPECT_EQ(json["intervals_95"]["te_mean"], (std::vector<double>{12, 28}));
+  EXPECT_EQ(json["by_rule"],
+            (nlohmann::json{{"planar", {{"points", 4}, {"me_mean", 0.05}, {"te_mean", 20.0}}}}));
+  EXPECT_NE(to_text(report).find("nearest is planar"), std::string::npos);
   EXPECT_TRUE(json["intervals_95"]["me_mean"][0].is_null());
 }
 

@@ -161,6 +161,7 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   mark_points(view, scan, camera, score);
   score.split.append(
       split_errors(view, nearest_in(placed, camera, nearest), nearest.color, camera, image));
+  append(score.by_rule, errors_by_rule(errors, nearest.index, coloured_.reason));
   if (static_tree_) score_without_moving(view, scan, score);
   if (all_tree_) {
     const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);

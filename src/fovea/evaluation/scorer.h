@@ -21,6 +21,7 @@ struct FrameScore {
   std::vector<Eigen::Vector3f> positions;  ///< of the points, in the map's float frame
   std::size_t unreached = 0;               ///< points that no training frame could see
   ErrorSplit split;
+  ErrorsByRule by_rule{};
   std::vector<ViewReport> views;
   std::vector<UnscoredView> unscored_views;
   std::optional<UnscoredFrame> unscored;
