@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "fovea/base/parallel.h"
-#include "fovea/geometry/voxel_table.h"
 #include "fovea/geometry/voxel_grid.h"
+#include "fovea/geometry/voxel_table.h"
 
 namespace fovea {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
-#include "fovea/geometry/voxel_table.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/voxel_grid.h"
+#include "fovea/geometry/voxel_table.h"
 
 namespace fovea {
 namespace {
