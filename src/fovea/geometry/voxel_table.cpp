@@ -15,12 +15,20 @@ VoxelTable::VoxelTable(float edge)
 }
 
 std::uint32_t VoxelTable::insert(const Voxel& voxel) {
-  Slot& slot = slots_[place_of(key_of(voxel))];
-  if (slot.id != kNone) return slot.id;
-  const auto id = static_cast<std::uint32_t>(voxels_.size());
-  slot = {key_of(voxel), id};
-  voxels_.push_back(voxel);
-  if (2 * voxels_.size() > slots_.size()) grow();
+  const std::uint64_t key = brick_key(voxel);
+  Slot& slot = slots_[place_of(key)];
+  std::uint32_t brick = slot.brick;
+  if (brick == kNone) {
+    brick = static_cast<std::uint32_t>(bricks_.size());
+    slot = {key, brick};
+    bricks_.emplace_back().fill(kNone);
+    if (2 * bricks_.size() > slots_.size()) grow();
+  }
+  std::uint32_t& id = bricks_[brick][place_in_brick(voxel)];
+  if (id == kNone) {
+    id = static_cast<std::uint32_t>(voxels_.size());
+    voxels_.push_back(voxel);
+  }
   return id;
 }
 
@@ -29,7 +37,7 @@ void VoxelTable::grow() {
   before.swap(slots_);
   --shift_;
   for (const Slot& slot : before) {
-    if (slot.id != kNone) slots_[place_of(slot.key)] = slot;
+    if (slot.brick != kNone) slots_[place_of(slot.key)] = slot;
   }
 }
 

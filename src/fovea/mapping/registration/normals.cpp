@@ -1,9 +1,10 @@
 #include "fovea/mapping/registration/normals.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
+#include <array>
 
+#include "fovea/base/lanes.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/point_grid.h"
@@ -15,130 +16,154 @@ constexpr std::size_t kGrain = 256;
 
 /// A neighbourhood is a line, and has no plane, if its second variance is below this share of its
 /// first.
-constexpr double kLineRatio = 1e-4;
+constexpr float kLineRatio = 1e-4f;
+/// Power iterations: to the 2^4th power.
+constexpr int kSquarings = 4;
 
-/// Variances of points around one of them, which is near: squares of coordinates near 100 m would
+/// Sums over points around one of them, which is near: squares of coordinates near 100 m would
 /// cancel.
-class Covariance {
- public:
-  explicit Covariance(const Eigen::Vector3f& center) : center_(center) {}
+struct Moments {
+  float count = 0;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Vector3f squares = Eigen::Vector3f::Zero();   // xx, yy, zz
+  Eigen::Vector3f products = Eigen::Vector3f::Zero();  // yz, xz, xy
 
-  void add(const Eigen::Vector3f& point) {
-    const Eigen::Vector3f p = point - center_;
-    sum_ += p;
-    diagonal_ += p.cwiseProduct(p);
-    beside_ += Eigen::Vector3f(p.x() * p.y(), p.x() * p.z(), p.y() * p.z());
-    ++count_;
+  void add(const Eigen::Vector3f& p) {
+    count += 1;
+    sum += p;
+    squares += p.cwiseProduct(p);
+    products += Eigen::Vector3f(p.y() * p.z(), p.x() * p.z(), p.x() * p.y());
   }
-
-  /// Unit, towards the origin; zero where there is no plane.
-  Eigen::Vector3f normal() const {
-    if (count_ < 3) return Eigen::Vector3f::Zero();
-    const double n = count_;
-    const Eigen::Vector3d mean = sum_.cast<double>() / n;
-    Eigen::Matrix3d covariance;
-    covariance.diagonal() = diagonal_.cast<double>() / n;
-    covariance(0, 1) = covariance(1, 0) = double(beside_[0]) / n;
-    covariance(0, 2) = covariance(2, 0) = double(beside_[1]) / n;
-    covariance(1, 2) = covariance(2, 1) = double(beside_[2]) / n;
-    covariance -= mean * mean.transpose();
-
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(covariance);
-    const Eigen::Vector3d& variances = solver.eigenvalues();
-    if (!(variances[1] > kLineRatio * variances[2])) return Eigen::Vector3f::Zero();
-    const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>().normalized();
-    return normal.dot(center_) > 0 ? Eigen::Vector3f(-normal) : normal;
-  }
-
- private:
-  Eigen::Vector3f center_, sum_ = Eigen::Vector3f::Zero(), diagonal_ = Eigen::Vector3f::Zero(),
-                           beside_ = Eigen::Vector3f::Zero();
-  int count_ = 0;
 };
 
-/// Points of some cells, and which of them are nearest to one.
-class Neighborhood {
- public:
-  explicit Neighborhood(std::size_t count) : nearest_(count) {}
+/// A symmetric matrix's adjugate: its inverse but for a factor, and there where it is singular.
+Eigen::Matrix3f adjugate(const Eigen::Matrix3f& m) {
+  Eigen::Matrix3f a;
+  a.col(0) = m.col(1).cross(m.col(2));
+  a.col(1) = m.col(2).cross(m.col(0));
+  a.col(2) = m.col(0).cross(m.col(1));
+  return a;
+}
 
-  void clear() { points_.clear(); }
+/// Direction of least variance, towards the origin; zero where there is no plane.
+/// @param center  of the moments
+Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3f& center) {
+  if (moments.count < 3) return Eigen::Vector3f::Zero();
+  const Eigen::Vector3f mean = moments.sum / moments.count;
+  const Eigen::Vector3f beside =
+      moments.products / moments.count -
+      Eigen::Vector3f(mean.y() * mean.z(), mean.x() * mean.z(), mean.x() * mean.y());
+  Eigen::Matrix3f covariance;
+  covariance.diagonal() = moments.squares / moments.count - mean.cwiseProduct(mean);
+  covariance(1, 2) = covariance(2, 1) = beside[0];
+  covariance(0, 2) = covariance(2, 0) = beside[1];
+  covariance(0, 1) = covariance(1, 0) = beside[2];
+  const float spread = covariance.trace();
+  if (!(spread > 0)) return Eigen::Vector3f::Zero();
+  covariance /= spread;
+
+  // The adjugate has the same eigenvectors, and that of the least variance has the largest
+  // eigenvalue, the product of the two others. Squaring makes it prevail (power iteration).
+  Eigen::Matrix3f power = adjugate(covariance);
+  const float area = power.trace();
+  if (!(area > kLineRatio)) return Eigen::Vector3f::Zero();
+  power /= area;
+  for (int i = 0; i < kSquarings; ++i) {
+    power = (power * power).eval();
+    power /= power.trace();
+  }
+  Eigen::Index widest = 0;
+  power.diagonal().maxCoeff(&widest);
+  const Eigen::Vector3f normal = power.col(widest).normalized();
+  return normal.dot(center) > 0 ? Eigen::Vector3f(-normal) : normal;
+}
+
+/// Points of some cells.
+class Surroundings {
+ public:
+  void clear() { size_ = 0; }
+  std::size_t size() const { return size_; }
+
   void add(std::span<const Eigen::Vector3f> points) {
-    points_.insert(points_.end(), points.begin(), points.end());
-  }
-  std::size_t size() const { return points_.size(); }
-
-  /// Finds the nearest to `center`; false if there are too few.
-  bool find(const Eigen::Vector3f& center) {
-    if (points_.size() < nearest_.size()) return false;
-    // Squared distance and number in one integer: floats that are not negative compare like their
-    // bits.
-    std::fill(nearest_.begin(), nearest_.end(), ~std::uint64_t{0});
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      const float squared = (points_[i] - center).squaredNorm();
-      const std::uint64_t key = std::uint64_t{std::bit_cast<std::uint32_t>(squared)} << 32 | i;
-      if (key >= nearest_.back()) continue;
-      std::size_t place = nearest_.size() - 1;
-      for (; place > 0 && nearest_[place - 1] > key; --place) nearest_[place] = nearest_[place - 1];
-      nearest_[place] = key;
+    blocks_.resize(std::max(blocks_.size(), (size_ + points.size()) / kLanes + 1));
+    for (const Eigen::Vector3f& p : points) {
+      Block& block = blocks_[size_ / kLanes];
+      const std::size_t lane = size_ % kLanes;
+      if (lane == 0) block.fill(all_lanes(kNowhere));
+      for (std::size_t i = 0; i < 3; ++i) block[i][lane] = p[Eigen::Index(i)];
+      ++size_;
     }
-    return true;
   }
-  /// Of the farthest that was found.
-  float squared_distance() const {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(nearest_.back() >> 32));
-  }
-  Eigen::Vector3f normal(const Eigen::Vector3f& center) const {
-    Covariance covariance(center);
-    for (const std::uint64_t key : nearest_) covariance.add(points_[key & 0xffffffff]);
-    return covariance.normal();
+
+  /// Of those within a radius.
+  Moments moments(const Eigen::Vector3f& center, float radius) const {
+    Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
+    const Lanes radius2 = all_lanes(radius * radius), one = all_lanes(1);
+    const std::size_t blocks = (size_ + kLanes - 1) / kLanes;
+    for (std::size_t k = 0; k < blocks; ++k) {
+      const Lanes x = blocks_[k][0] - center.x(), y = blocks_[k][1] - center.y(),
+                  z = blocks_[k][2] - center.z();
+      const LaneMask inside = x * x + y * y + z * z <= radius2;
+      const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
+      count += where(inside, one);
+      sx += in_x;
+      sy += in_y;
+      sz += in_z;
+      sxx += in_x * x;
+      syy += in_y * y;
+      szz += in_z * z;
+      syz += in_y * z;
+      sxz += in_x * z;
+      sxy += in_x * y;
+    }
+    return {sum_of_lanes(count),
+            {sum_of_lanes(sx), sum_of_lanes(sy), sum_of_lanes(sz)},
+            {sum_of_lanes(sxx), sum_of_lanes(syy), sum_of_lanes(szz)},
+            {sum_of_lanes(syz), sum_of_lanes(sxz), sum_of_lanes(sxy)}};
   }
 
  private:
-  std::vector<Eigen::Vector3f> points_;
-  std::vector<std::uint64_t> nearest_;  // nearest first
+  static constexpr float kNowhere = 1e9f;  // m: outside of every radius
+  using Block = std::array<Lanes, 3>;
+  std::vector<Block> blocks_;
+  std::size_t size_ = 0;
 };
 
-/// Edge of the grids' cells over the points' spacing, and over that of the grid before: where
-/// points are far apart, wider cells are looked at.
-constexpr float kFinestCell = 2, kCoarser = 4;
-constexpr int kLevels = 4;
+/// Radii over the points' spacing: where points are far apart, wider ones are tried.
+constexpr float kFirstRadius = 2, kWider = 2;
+constexpr int kRadii = 5;
 constexpr std::size_t kCellGrain = 64;
 
-/// Normals of the points not yet done whose neighbours all lie in the cells around.
-void look_around(const PointGrid& grid, std::span<const Eigen::Vector3f> points, int neighbors,
+/// Normals of the points not yet done that have neighbours enough within the radius, the edge of
+/// the grid's cells.
+void look_around(const PointGrid& grid, std::span<const Eigen::Vector3f> points, float neighbors,
                  std::vector<std::uint8_t>& done, std::vector<Eigen::Vector3f>& normals) {
   parallel_chunks(grid.cells(), kCellGrain, [&](std::size_t begin, std::size_t end) {
-    Neighborhood neighborhood(static_cast<std::size_t>(neighbors));
+    Surroundings surroundings;
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
-      neighborhood.clear();
+      surroundings.clear();
       for (const std::uint32_t i : grid.points_of(cell)) {
         if (done[i] != 0) continue;
-        if (neighborhood.size() == 0) {
-          grid.for_each_around(cell, [&](auto near) { neighborhood.add(near); });
+        if (surroundings.size() == 0) {
+          grid.for_each_around(cell, [&](auto near) { surroundings.add(near); });
         }
-        if (!neighborhood.find(points[i])) break;
-        if (neighborhood.squared_distance() > grid.cell() * grid.cell()) continue;
-        normals[i] = neighborhood.normal(points[i]);
+        if (static_cast<float>(surroundings.size()) < neighbors) break;
+        const Moments moments = surroundings.moments(points[i], grid.cell());
+        if (moments.count < neighbors) continue;
+        normals[i] = plane_normal(moments, points[i]);
         done[i] = 1;
       }
     }
   });
 }
 
-std::vector<Eigen::Vector3f> normals_by_grid(std::span<const Eigen::Vector3f> points, int neighbors,
-                                             double spacing) {
-  std::vector<Eigen::Vector3f> normals(points.size());
+std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> points,
+                                               int neighbors, double spacing) {
+  std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
   std::vector<std::uint8_t> done(points.size(), 0);
-  float cell = kFinestCell * static_cast<float>(spacing);
-  for (int level = 0; level < kLevels; ++level, cell *= kCoarser) {
-    look_around(PointGrid(points, cell), points, neighbors, done, normals);
-  }
-  // Far from everything.
-  Neighborhood all(std::min(static_cast<std::size_t>(neighbors), points.size()));
-  all.add(points);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (done[i] == 0 && all.find(points[i])) normals[i] = all.normal(points[i]);
+  float radius = kFirstRadius * static_cast<float>(spacing);
+  for (int i = 0; i < kRadii; ++i, radius *= kWider) {
+    look_around(PointGrid(points, radius), points, static_cast<float>(neighbors), done, normals);
   }
   return normals;
 }
@@ -148,12 +173,12 @@ std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> po
   const KdTree tree(points);
   std::vector<Eigen::Vector3f> normals(points.size());
   parallel_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<KdTree::Neighbor> found;
+    std::vector<Neighbor> found;
     for (std::size_t i = begin; i < end; ++i) {
       tree.nearest_k(points[i], static_cast<std::size_t>(neighbors), found);
-      Covariance covariance(points[i]);
-      for (const KdTree::Neighbor& neighbor : found) covariance.add(points[neighbor.index]);
-      normals[i] = covariance.normal();
+      Moments moments;
+      for (const Neighbor& neighbor : found) moments.add(points[neighbor.index] - points[i]);
+      normals[i] = plane_normal(moments, points[i]);
     }
   });
   return normals;
@@ -163,7 +188,7 @@ std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> po
 
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
                                               int neighbors, double spacing) {
-  return spacing > 0 ? normals_by_grid(points, neighbors, spacing)
+  return spacing > 0 ? normals_by_radius(points, neighbors, spacing)
                      : normals_by_tree(points, neighbors);
 }
 

@@ -5,30 +5,24 @@
 namespace fovea {
 namespace {
 
-using Lanes = PairBlock::Lanes;
 using Lanes3 = std::array<Lanes, 3>;
 
 constexpr std::size_t kGrain = 128;  // blocks
 
-Lanes dot(const Lanes3& a, const Lanes3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Lanes dot(const Lanes3& a, const Lanes3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
-Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 /// Sums of the pairs' terms, lane by lane. The rows stand for the perturbation expressed in target
 /// axes, which costs no rotation of M a pair.
 struct Sums {
-  std::array<Lanes, 21> H, H_planes;  // upper triangles, row by row
-  std::array<Lanes, 6> b;
-  Lanes error, squared_distance, weight;
-
-  Sums() {
-    for (Lanes& lanes : H) lanes.setZero();
-    for (Lanes& lanes : H_planes) lanes.setZero();
-    for (Lanes& lanes : b) lanes.setZero();
-    for (Lanes* lanes : {&error, &squared_distance, &weight}) lanes->setZero();
-  }
+  std::array<Lanes, 21> H{}, H_planes{};  // upper triangles, row by row
+  std::array<Lanes, 6> b{};
+  Lanes error{}, squared_distance{}, weight{};
 };
 
 class Accumulator {
@@ -51,7 +45,7 @@ class Accumulator {
     const Lanes squared_error = dot(d, Md);
 
     // Geman-McClure: rho(e^2) = w^2 e^2 / (w^2 + e^2), its derivative weighs the pair.
-    Lanes share = Lanes::Ones();
+    Lanes share = all_lanes(1);
     if (width2_ > 0) share = width2_ / (width2_ + squared_error);
     const Lanes robust = share * share * pair.counts;
     sums.error += share * squared_error * pair.counts;
@@ -100,7 +94,7 @@ struct Totals {
 
   Totals() = default;
   explicit Totals(const Sums& sums) {
-    const auto total = [](const Lanes& lanes) { return lanes.cast<double>().sum(); };
+    const auto total = [](const Lanes& lanes) { return double{sum_of_lanes(lanes)}; };
     for (std::size_t i = 0; i < H.size(); ++i) H[i] = total(sums.H[i]);
     for (std::size_t i = 0; i < H.size(); ++i) H_planes[i] = total(sums.H_planes[i]);
     for (std::size_t i = 0; i < b.size(); ++i) b[i] = total(sums.b[i]);
@@ -136,25 +130,18 @@ Eigen::Matrix<double, 6, 6> turned(const std::array<double, 21>& triangle,
 }  // namespace
 
 PairBlocks::PairBlocks(std::span<const Pair> all) {
-  const auto lane_of = [](auto& columns, int lane, const auto& values) {
+  const auto put = [](auto& columns, std::size_t lane, const auto& values) {
     for (std::size_t i = 0; i < columns.size(); ++i) columns[i][lane] = values[Eigen::Index(i)];
   };
   for (const Pair& pair : all) {
     if (pair.target_index == Pair::kNone) continue;
-    const int lane = static_cast<int>(pairs++ % PairBlock::kLanes);
-    if (lane == 0) {
-      PairBlock& block = blocks.emplace_back();
-      for (auto* columns : {&block.source, &block.target, &block.normal}) {
-        for (Lanes& column : *columns) column.setZero();
-      }
-      for (Lanes& column : block.information) column.setZero();
-      block.counts.setZero();
-    }
+    const std::size_t lane = pairs++ % kLanes;
+    if (lane == 0) blocks.emplace_back();
     PairBlock& block = blocks.back();
-    lane_of(block.source, lane, pair.source);
-    lane_of(block.target, lane, pair.target);
-    lane_of(block.normal, lane, pair.normal);
-    lane_of(block.information, lane, pair.information);
+    put(block.source, lane, pair.source);
+    put(block.target, lane, pair.target);
+    put(block.normal, lane, pair.normal);
+    put(block.information, lane, pair.information);
     block.counts[lane] = 1;
   }
 }

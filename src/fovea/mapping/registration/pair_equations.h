@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/lanes.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
@@ -42,12 +43,10 @@ struct Pair {
 };
 
 /// Pairs whose terms are computed side by side.
-struct alignas(32) PairBlock {
-  static constexpr int kLanes = 8;
-  using Lanes = Eigen::Array<float, kLanes, 1>;
-  std::array<Lanes, 3> source, target, normal;
-  std::array<Lanes, 6> information;
-  Lanes counts;  // 1; 0 where the last block has no pair
+struct PairBlock {
+  std::array<Lanes, 3> source{}, target{}, normal{};
+  std::array<Lanes, 6> information{};
+  Lanes counts{};  // 1; 0 where the last block has no pair
 };
 
 /// The pairs that have a target.

@@ -18,22 +18,27 @@ constexpr std::size_t kGrain = 256;
 /// A pair is looked for again once its points have moved by this share of how far pairs are apart.
 constexpr double kKeepsPairShare = 0.1;
 
+/// How many points are asked first, at least.
+constexpr std::size_t kCoarsePoints = 4000;
+
 /// Fewer pairs than this are no evidence of six numbers.
 constexpr std::size_t kMinPairs = 50;
 
 /// Gives each source point its nearest target point and the factor's weight of the two. A pair is
 /// kept while its source point moves by less than `keep_within` (m); otherwise it bounds the
 /// search, which then ends early.
+/// @param stride  pairs are of every how many-th source point
 template <class Factor>
 void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
-                const RegistrationCloud& source, const RigidMotion& T_target_source,
-                const RegistrationOptions& options, float keep_within, std::vector<Pair>& pairs) {
+                const RegistrationCloud& source, std::size_t stride,
+                const RigidMotion& T_target_source, const RegistrationOptions& options,
+                float keep_within, std::vector<Pair>& pairs) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   const float max_distance = static_cast<float>(options.max_distance);
   parallel_for(pairs.size(), kGrain, [&](std::size_t i) {
     Pair& pair = pairs[i];
-    const Eigen::Vector3f p = R * source.points[i] + t;
+    const Eigen::Vector3f p = R * pair.source + t;
     if ((p - pair.looked_at).squaredNorm() < keep_within * keep_within) return;
     pair.looked_at = p;
     float bound = max_distance;
@@ -47,7 +52,7 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
     Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
     if constexpr (Factor::kNeedsNormals) {
       n = target.normals[nearest.index];
-      m = R * source.normals[i];
+      m = R * source.normals[i * stride];
       if (n.isZero() && m.isZero()) return;
     }
     pair.target_index = nearest.index;
@@ -57,6 +62,19 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
   });
 }
 
+/// While the kernel is wide, some thousand points say enough of where to go; all of them are asked
+/// for the last of it.
+std::size_t coarse_stride(const RegistrationCloud& source, const RegistrationOptions& options) {
+  const bool narrows = options.robust_width > 0 && options.robust_width < options.max_distance;
+  return narrows ? std::max<std::size_t>(1, source.points.size() / kCoarsePoints) : 1;
+}
+
+std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t stride) {
+  std::vector<Pair> pairs((source.points.size() + stride - 1) / stride);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].source = source.points[i * stride];
+  return pairs;
+}
+
 template <class Factor>
 RegistrationResult align(const RegistrationCloud& target, const PointIndex& target_index,
                          const RegistrationCloud& source, const RigidMotion& guess,
@@ -64,8 +82,8 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
   OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
                              Factor::kNeedsNormals, options.converged_rotation,
                              options.converged_translation};
-  std::vector<Pair> pairs(source.points.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].source = source.points[i];
+  std::size_t stride = coarse_stride(source, options);
+  std::vector<Pair> pairs = pairs_of(source, stride);
 
   RegistrationResult result;
   result.T_target_source = guess;
@@ -75,10 +93,14 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
       optimizer.robust_width =
           std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
     }
+    if (optimizer.robust_width <= options.robust_width && stride > 1) {
+      stride = 1;
+      pairs = pairs_of(source, stride);
+    }
     const auto keep_within =
         static_cast<float>(std::min(Factor::kKeepsPairFor, kKeepsPairShare * result.rms_distance));
-    find_pairs<Factor>(target, target_index, source, result.T_target_source, options, keep_within,
-                       pairs);
+    find_pairs<Factor>(target, target_index, source, stride, result.T_target_source, options,
+                       keep_within, pairs);
     const auto [T, degenerate, equations] =
         minimize(PairBlocks(pairs), result.T_target_source, optimizer);
     ++result.iterations;

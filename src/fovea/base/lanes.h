@@ -1,0 +1,26 @@
+// Eight floats computed side by side.
+#pragma once
+
+#include <cstdint>
+
+namespace fovea {
+
+/// GCC's and Clang's vector extension: the operators of floats, lane by lane, on any processor; on
+/// one that has AVX, in one instruction each.
+using Lanes = float __attribute__((vector_size(32)));
+using LaneMask = std::int32_t __attribute__((vector_size(32)));  // -1 where true
+inline constexpr int kLanes = 8;
+
+inline Lanes all_lanes(float value) { return value - Lanes{}; }
+
+/// The value where the mask is true, 0 elsewhere.
+inline Lanes where(LaneMask mask, Lanes value) {
+  return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(value) & mask);
+}
+
+/// Pairs first: the same on every processor.
+inline float sum_of_lanes(const Lanes& v) {
+  return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]));
+}
+
+}  // namespace fovea
