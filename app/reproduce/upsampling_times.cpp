@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "app/reproduce/paper_numbers.h"
 #include "fovea/base/errors.h"
@@ -18,7 +19,7 @@ constexpr int kRuns = 7;
 
 }  // namespace
 
-PointCloud shuffled_scan(const FrameSource& drive) {
+PointCloud scan_in_view(const FrameSource& drive) {
   const DriveInfo& info = drive.info();
   const Camera& camera = info.calibration.cameras.at(0);
   for (int index = (info.begin + info.end) / 2; index < info.end; ++index) {
@@ -32,12 +33,18 @@ PointCloud shuffled_scan(const FrameSource& drive) {
       const auto pixel = camera.project(points_cam.position[i].cast<double>());
       if (pixel && camera.in_view(*pixel)) visible.push_back(i);
     }
-    Random random(1);
-    for (std::size_t i = visible.size(); i > 1; --i)
-      std::swap(visible[i - 1], visible[random.below(i)]);
     return points_cam.select(visible);
   }
   throw InputError("no frame of the drive can be read", info.path.string(), "check its files");
+}
+
+PointCloud shuffled_scan(const FrameSource& drive) {
+  const PointCloud scan = scan_in_view(drive);
+  std::vector<std::uint32_t> order(scan.size());
+  std::iota(order.begin(), order.end(), 0u);
+  Random random(1);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  return scan.select(order);
 }
 
 namespace {

@@ -21,8 +21,10 @@ struct UpsamplingCase {
 /// where the scan does not give as many at the highest rate.
 std::vector<UpsamplingCase> upsampling_cases(const FrameSource& drive);
 
-/// All points of that scan in view, in the camera's frame, in the same order of drawing: a case's
-/// points are the first of them.
+/// All points of that scan in view, in the camera's frame, in the order of the scan.
+PointCloud scan_in_view(const FrameSource& drive);
+
+/// The same in the order of drawing: a case's points are the first of them.
 PointCloud shuffled_scan(const FrameSource& drive);
 
 struct UpsamplingTime {

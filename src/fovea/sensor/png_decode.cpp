@@ -5,11 +5,14 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/png_plain_decode.h"
 
 namespace fovea {
 namespace {
@@ -107,6 +110,11 @@ struct PngReader {
 }  // namespace
 
 Image decode_png(std::span<const std::uint8_t> file) {
+  std::optional<Image> image = decode_plain_png(file);
+  return image ? std::move(*image) : decode_png_by_libpng(file);
+}
+
+Image decode_png_by_libpng(std::span<const std::uint8_t> file) {
   PngInput input{file, {}};
   PngReader reader(input);
   if (reader.header == nullptr) throw std::bad_alloc();

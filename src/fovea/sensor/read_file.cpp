@@ -46,6 +46,7 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) fail(std::strerror(errno));
+  std::setvbuf(stream.get(), nullptr, _IONBF, 0);  // all in one go, not the tail by a buffer
 
   std::error_code size_error;
   const auto size = std::filesystem::file_size(file, size_error);

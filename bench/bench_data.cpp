@@ -1,0 +1,38 @@
+#include "bench/bench_data.h"
+
+#include "app/reproduce/upsampling_times.h"
+#include "fovea/base/errors.h"
+#include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/read_file.h"
+#include "fovea/simulation/simulate.h"
+#include "tests/temporary_folder.h"
+
+namespace fovea::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+BenchData data_of(const fs::path& folder) {
+  const auto drive = open_drive(folder, {});
+  BenchData data{app::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}};
+  const fs::path images =
+      drive->info().path / ("image_0" + std::to_string(data.camera.index)) / "data";
+  const NumberedFiles files = list_numbered_files(images, {".png"});
+  if (files.empty()) {
+    throw InputError("the drive has no PNG image", images.string(), "give a KITTI raw drive");
+  }
+  data.png = read_bytes(files.begin()->second);
+  return data;
+}
+
+}  // namespace
+
+BenchData load_bench_data(const std::string& drive) {
+  if (!drive.empty()) return data_of(drive);
+  const TemporaryFolder folder;
+  SimulationOptions options;
+  options.frames = 1;
+  return data_of(simulate(options, folder / "drive"));
+}
+
+}  // namespace fovea::bench
