@@ -2,9 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <unordered_map>
+#include <vector>
 
 namespace fovea {
 
@@ -45,16 +46,43 @@ class CellSet {
   bool mark(const Eigen::Array3i& cell) {
     const Eigen::Array3i brick = cell.unaryExpr([](int i) { return i >> 3; });
     const std::uint64_t key = cell_key(brick);
-    if (last_ == nullptr || key != last_key_) {
-      last_ = &bricks_[key];
+    if (bricks_.empty() || key != last_key_) {
+      last_ = place_of(key);
       last_key_ = key;
     }
-    return last_->mark(cell - brick * CellBrick::kEdge);
+    return bricks_[last_].mark(cell - brick * CellBrick::kEdge);
   }
 
  private:
-  std::unordered_map<std::uint64_t, CellBrick> bricks_;
-  CellBrick* last_ = nullptr;  // elements of an unordered_map stay where they are
+  // A hash table with open addressing: numbers of bricks, kEmpty where there is none.
+  static constexpr std::uint32_t kEmpty = ~0u;
+
+  std::size_t slot_of(std::uint64_t key) const {
+    std::size_t slot = (key * 0x9e3779b97f4a7c15u) >> 32 & (slots_.size() - 1);
+    while (slots_[slot] != kEmpty && keys_[slots_[slot]] != key) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slot;
+  }
+  std::size_t place_of(std::uint64_t key) {
+    if (2 * keys_.size() >= slots_.size()) grow();
+    std::uint32_t& place = slots_[slot_of(key)];
+    if (place == kEmpty) {
+      place = static_cast<std::uint32_t>(bricks_.size());
+      keys_.push_back(key);
+      bricks_.emplace_back();
+    }
+    return place;
+  }
+  void grow() {
+    slots_.assign(std::max<std::size_t>(1024, 2 * slots_.size()), kEmpty);
+    for (std::uint32_t i = 0; i < keys_.size(); ++i) slots_[slot_of(keys_[i])] = i;
+  }
+
+  std::vector<std::uint32_t> slots_;  // a power of two of them
+  std::vector<std::uint64_t> keys_;   // by brick
+  std::vector<CellBrick> bricks_;
+  std::size_t last_ = 0;  // the brick of last_key_
   std::uint64_t last_key_ = 0;
 };
 

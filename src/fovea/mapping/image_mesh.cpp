@@ -70,9 +70,4 @@ Eigen::Vector3f ImageMesh::area_normal(const DelaunayTriangulation::Vertices& co
   return normal.dot(project.from_camera(a).cast<float>()) > 0 ? -normal : normal;
 }
 
-Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
-  const float length = v.norm();
-  return length > 0 ? Eigen::Vector3f(v / length) : Eigen::Vector3f::Zero();
-}
-
 }  // namespace fovea

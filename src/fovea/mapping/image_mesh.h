@@ -50,6 +50,9 @@ struct ImageMesh {
 };
 
 /// Of a vector of length zero: itself.
-Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v);
+inline Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
+  const float length = v.norm();
+  return length > 0 ? Eigen::Vector3f(v / length) : Eigen::Vector3f::Zero();
+}
 
 }  // namespace fovea

@@ -103,41 +103,76 @@ Eigen::Vector3f normal_of(const Surface& surface, std::size_t triangle) {
   return unit_or_zero(surface.normal[a] + surface.normal[b] + surface.normal[c]);
 }
 
-/// Calls f(p) at the centres of cells that fall onto a triangle when looked at along `axis`.
-template <class F>
-void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, int axis, double cell, F&& f) {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+/// Where a column of the grid's cells along `axis` meets a triangle.
+struct Sample {
+  double height;             // m along the axis
+  std::int32_t layer;        // its cell along the axis
+  std::int32_t column, row;  // and along axis + 1 and axis + 2 (modulo 3), where it is the centre
+  std::uint32_t triangle, axis;
+
+  Eigen::Vector3d position(double cell) const {
+    return along_axes((column + 0.5) * cell, (row + 0.5) * cell, height);
+  }
+  Eigen::Array3i cell() const { return along_axes(column, row, layer); }
+
+ private:
+  template <class T>
+  Eigen::Matrix<T, 3, 1> along_axes(T u, T v, T along) const {
+    switch (axis) {
+      case 0:
+        return {along, u, v};
+      case 1:
+        return {v, along, u};
+      default:
+        return {u, v, along};
+    }
+  }
+};
+
+/// Calls f(sample) at the centres of cells that fall onto a triangle when looked at along kAxis.
+template <std::uint32_t kAxis, class F>
+void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
+                     double cell, F&& f) {
+  constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
   const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  if (!(std::abs(n[axis]) > 1e-3 * n.norm())) return;  // seen from its edge
-  const double slope_u = -n[u] / n[axis], slope_v = -n[v] / n[axis];
+  if (!(std::abs(n[kAxis]) > 1e-3 * n.norm())) return;  // seen from its edge
+  const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
   const auto first_center = [&](double low) { return std::ceil(low / cell - 0.5); };
-  const auto [v_low, v_high] = std::minmax({corner[0][v], corner[1][v], corner[2][v]});
+  const auto [v_low, v_high] = std::minmax({corner[0][kV], corner[1][kV], corner[2][kV]});
   const double rows = first_center(v_high);
   for (double row = first_center(v_low); row < rows; ++row) {
     const double at_v = (row + 0.5) * cell;
     double u_low = std::numeric_limits<double>::infinity(), u_high = -u_low;
     for (std::size_t i = 0; i < 3; ++i) {
       const Eigen::Vector3d &a = corner[i], &b = corner[(i + 1) % 3];
-      if ((a[v] <= at_v) == (b[v] <= at_v)) continue;
-      const double crossing = a[u] + (at_v - a[v]) / (b[v] - a[v]) * (b[u] - a[u]);
+      if ((a[kV] <= at_v) == (b[kV] <= at_v)) continue;
+      const double crossing = a[kU] + (at_v - a[kV]) / (b[kV] - a[kV]) * (b[kU] - a[kU]);
       u_low = std::min(u_low, crossing);
       u_high = std::max(u_high, crossing);
     }
     const double columns = first_center(u_high);
     for (double column = first_center(u_low); column < columns; ++column) {
-      Eigen::Vector3d p;
-      p[u] = (column + 0.5) * cell;
-      p[v] = at_v;
-      p[axis] = corner[0][axis] + slope_u * (p[u] - corner[0][u]) + slope_v * (p[v] - corner[0][v]);
-      f(p);
+      const double at_u = (column + 0.5) * cell;
+      const double height =
+          corner[0][kAxis] + slope_u * (at_u - corner[0][kU]) + slope_v * (at_v - corner[0][kV]);
+      f(Sample{height, static_cast<std::int32_t>(std::floor(height / cell)),
+               static_cast<std::int32_t>(column), static_cast<std::int32_t>(row), triangle, kAxis});
     }
   }
 }
 
-struct Sample {
-  Eigen::Vector3d p_grid;
-  std::uint32_t triangle;
-};
+template <class F>
+void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
+                     Eigen::Index axis, double cell, F&& f) {
+  switch (axis) {
+    case 0:
+      return for_each_center<0>(corner, triangle, cell, f);
+    case 1:
+      return for_each_center<1>(corner, triangle, cell, f);
+    default:
+      return for_each_center<2>(corner, triangle, cell, f);
+  }
+}
 
 /// By chunks of triangles.
 std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const SampleGrid& grid) {
@@ -145,6 +180,7 @@ std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const 
   std::vector<std::vector<Sample>> chunks((count + kGrain - 1) / kGrain);
   const Eigen::Matrix3f R_grid_cam = grid.T_grid_cam.linear().cast<float>();
   parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Sample>& samples = chunks[begin / kGrain];
     for (std::size_t t = begin; t < end; ++t) {
       std::array<Eigen::Vector3d, 3> corner;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -153,39 +189,22 @@ std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const 
       }
       Eigen::Index axis;
       (R_grid_cam * normal_of(surface, t)).cwiseAbs().maxCoeff(&axis);
-      for_each_center(corner, static_cast<int>(axis), grid.cell, [&](const Eigen::Vector3d& p) {
-        if (grid.taken(p)) return;
-        chunks[begin / kGrain].push_back({p, static_cast<std::uint32_t>(t)});
-      });
+      for_each_center(corner, static_cast<std::uint32_t>(t), axis, grid.cell,
+                      [&](const Sample& sample) {
+                        if (!grid.taken(sample.position(grid.cell))) samples.push_back(sample);
+                      });
     }
   });
   return chunks;
 }
 
-/// Gathers points whose cells are free.
-class FreeCells {
- public:
-  explicit FreeCells(const SampleGrid& grid) : grid_(grid) {}
-  /// Whether nothing gathered before lies in the cell.
-  bool claim(const Eigen::Vector3d& p_grid) {
-    return cells_.mark((p_grid.array() / grid_.cell).floor().cast<int>());
-  }
-  bool claim_untaken(const Eigen::Vector3d& p_grid) {
-    return !grid_.taken(p_grid) && claim(p_grid);
-  }
-
- private:
-  const SampleGrid& grid_;
-  CellSet cells_;
-};
-
 PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
-                           const SampleGrid& grid, FreeCells& cells) {
+                           const SampleGrid& grid, CellSet& cells) {
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
-    if (cells.claim_untaken(grid.T_grid_cam * points_cam.position[i].cast<double>())) {
-      kept.push_back(i);
-    }
+    const Eigen::Vector3d p_grid = grid.T_grid_cam * points_cam.position[i].cast<double>();
+    const Eigen::Array3i cell = (p_grid.array() / grid.cell).floor().cast<int>();
+    if (!grid.taken(p_grid) && cells.mark(cell)) kept.push_back(i);
   }
   PointCloud points = points_cam.select(kept);
   points.normal.clear();
@@ -201,12 +220,43 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
 }
 
 float mean_intensity(const PointCloud& points, const Surface& surface, std::size_t triangle) {
+  if (points.intensity.empty()) return 0;
   float sum = 0;
   for (const std::int32_t vertex : surface.triangles[triangle]) {
     sum += points.intensity[surface.mesh.point_of_vertex[static_cast<std::size_t>(vertex)]];
   }
   return sum / 3;
 }
+
+void reserve_more(PointCloud& points, const std::vector<std::vector<Sample>>& samples) {
+  std::size_t count = points.size();
+  for (const std::vector<Sample>& chunk : samples) count += chunk.size();
+  points.position.reserve(count);
+  points.normal.reserve(count);
+  points.interpolated.reserve(count);
+  points.reason.reserve(count);
+  if (!points.intensity.empty()) points.intensity.reserve(count);
+}
+
+/// What all samples of a triangle share, found once for those that follow each other.
+class TriangleValues {
+ public:
+  TriangleValues(const PointCloud& points_cam, const Surface& surface)
+      : points_(points_cam), surface_(surface) {}
+  void of(std::uint32_t triangle) {
+    if (triangle == triangle_) return;
+    triangle_ = triangle;
+    normal = normal_of(surface_, triangle);
+    intensity = mean_intensity(points_, surface_, triangle);
+  }
+  Eigen::Vector3f normal;
+  float intensity = 0;
+
+ private:
+  const PointCloud& points_;
+  const Surface& surface_;
+  std::uint32_t triangle_ = ~0u;
+};
 
 }  // namespace
 
@@ -237,19 +287,20 @@ PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
   find_normals(surface);
   const std::vector<std::vector<Sample>> samples = sample_triangles(surface, grid);
 
-  FreeCells cells(grid);
+  CellSet cells;
   PointCloud points = measured_points(points_cam, surface, grid, cells);
   const RigidMotion T_cam_grid = grid.T_grid_cam.inverse();
+  reserve_more(points, samples);
+  TriangleValues values(points_cam, surface);
   for (const std::vector<Sample>& chunk : samples) {
     for (const Sample& sample : chunk) {
-      if (!cells.claim(sample.p_grid)) continue;
-      points.position.push_back((T_cam_grid * sample.p_grid).cast<float>());
-      points.normal.push_back(normal_of(surface, sample.triangle));
+      if (!cells.mark(sample.cell())) continue;
+      values.of(sample.triangle);
+      points.position.push_back((T_cam_grid * sample.position(grid.cell)).cast<float>());
+      points.normal.push_back(values.normal);
       points.interpolated.push_back(1);
       points.reason.push_back(reason_of(surface.rule[sample.triangle]));
-      if (!points_cam.intensity.empty()) {
-        points.intensity.push_back(mean_intensity(points_cam, surface, sample.triangle));
-      }
+      if (!points_cam.intensity.empty()) points.intensity.push_back(values.intensity);
     }
   }
   return points;
