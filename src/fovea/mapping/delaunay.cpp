@@ -16,6 +16,11 @@ void DelaunayTriangulation::clear() {
 
 DelaunayTriangulation::Insertion DelaunayTriangulation::insert(GridPoint point, std::int32_t hint) {
   check_arguments({&point, 1}, {&hint, 1});
+  return insert_checked(point, hint);
+}
+
+DelaunayTriangulation::Insertion DelaunayTriangulation::insert_checked(GridPoint point,
+                                                                       std::int32_t hint) {
   if (triangles_.empty()) return insert_while_collinear(point);
 
   const std::int32_t triangle = locate(point, hint == kNoTriangle ? 0 : hint);
@@ -36,8 +41,13 @@ std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoin
   }
   std::vector<std::int32_t> vertex_of(points.size());
   std::int32_t hint = kNoTriangle;
-  for (const std::uint32_t i : insertion_order(points)) {
-    const Insertion insertion = insert(points[i], hint);
+  constexpr std::size_t kAhead = 8;
+  const std::vector<std::uint32_t> order = insertion_order(points);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::uint32_t i = order[k];
+    // The curve is a random walk through the caller's memory.
+    __builtin_prefetch(&points[order[std::min(k + kAhead, order.size() - 1)]]);
+    const Insertion insertion = insert_checked(points[i], hint);
     vertex_of[i] = insertion.vertex;
     hint = insertion.triangle;
   }
@@ -68,7 +78,7 @@ std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoi
   legalize_after_split(vertex_in, moved_to);
   for (const std::uint32_t i : to_locate) {
     const std::int32_t hint = triangles[i] == kNoTriangle ? kNoTriangle : moved_to[triangles[i]];
-    if (insert(points[i], hint).inserted) point_of.push_back(i);
+    if (insert_checked(points[i], hint).inserted) point_of.push_back(i);
   }
   return point_of;
 }

@@ -94,6 +94,8 @@ class DelaunayTriangulation {
 
   void check_arguments(std::span<const GridPoint> points,
                        std::span<const std::int32_t> hints) const;
+  // As insert(), without looking at the arguments again.
+  Insertion insert_checked(GridPoint point, std::int32_t hint);
   std::int32_t add_vertex(GridPoint point);
   Insertion insert_while_collinear(GridPoint point);
   void start_with(std::int32_t apex_vertex);

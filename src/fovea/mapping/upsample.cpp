@@ -45,18 +45,29 @@ void insert_centroids(DenseMesh& mesh, const GridProjection& project, float max_
   std::vector<GridPoint> pixels;
   std::vector<std::int32_t> triangles;
   std::vector<DelaunayTriangulation::Vertices> corners;
+  std::vector<Eigen::Vector3f> centroids;
+  pixels.reserve(mesh.triangulation.triangle_count());
+  triangles.reserve(pixels.capacity());
+  corners.reserve(pixels.capacity());
+  centroids.reserve(pixels.capacity());
   for (std::size_t t = 0; t < mesh.triangulation.triangle_count(); ++t) {
     if (!mesh.triangulation.is_finite(t)) continue;
     const auto candidate = mesh.triangulation.vertices(t);
     if (!mesh.edges_below(candidate, max_edge_squared)) continue;
-    const auto pixel = project(centroid(mesh, candidate));
+    const Eigen::Vector3f middle = centroid(mesh, candidate);
+    const auto pixel = project(middle);
     if (!pixel) continue;
     pixels.push_back(*pixel);
     triangles.push_back(static_cast<std::int32_t>(t));
     corners.push_back(candidate);
+    centroids.push_back(middle);
   }
-  for (const std::uint32_t i : mesh.triangulation.insert(pixels, triangles)) {
-    mesh.position.push_back(centroid(mesh, corners[i]));
+  const std::vector<std::uint32_t> inserted = mesh.triangulation.insert(pixels, triangles);
+  mesh.position.reserve(mesh.position.size() + inserted.size());
+  mesh.normal.reserve(mesh.normal.size() + inserted.size());
+  mesh.corners.reserve(mesh.corners.size() + inserted.size());
+  for (const std::uint32_t i : inserted) {
+    mesh.position.push_back(centroids[i]);
     mesh.normal.push_back(unit_or_zero(mesh.area_normal(corners[i], project)));
     mesh.corners.push_back(corners[i]);
   }
