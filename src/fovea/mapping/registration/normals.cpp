@@ -130,13 +130,16 @@ class Surroundings {
 };
 
 /// Radii over the points' spacing: where points are far apart, wider ones are tried.
-constexpr float kFirstRadius = 2, kWider = 2;
-constexpr int kRadii = 5;
+constexpr float kFirstRadius = 2, kWider = 1.5f;
+constexpr int kRadii = 8;
+/// From radius to radius a surface's points become 2.25 times as many: of at least this share of k,
+/// they are k in the mean.
+constexpr float kFewest = 0.6f;
 constexpr std::size_t kCellGrain = 64;
 
 /// Normals of the points not yet done that have neighbours enough within the radius, the edge of
 /// the grid's cells.
-void look_around(const PointGrid& grid, std::span<const Eigen::Vector3f> points, float neighbors,
+void look_around(const PointGrid& grid, std::span<const Eigen::Vector3f> points, float enough,
                  std::vector<std::uint8_t>& done, std::vector<Eigen::Vector3f>& normals) {
   parallel_chunks(grid.cells(), kCellGrain, [&](std::size_t begin, std::size_t end) {
     Surroundings surroundings;
@@ -147,9 +150,9 @@ void look_around(const PointGrid& grid, std::span<const Eigen::Vector3f> points,
         if (surroundings.size() == 0) {
           grid.for_each_around(cell, [&](auto near) { surroundings.add(near); });
         }
-        if (static_cast<float>(surroundings.size()) < neighbors) break;
+        if (static_cast<float>(surroundings.size()) < enough) break;
         const Moments moments = surroundings.moments(points[i], grid.cell());
-        if (moments.count < neighbors) continue;
+        if (moments.count < enough) continue;
         normals[i] = plane_normal(moments, points[i]);
         done[i] = 1;
       }
@@ -163,7 +166,8 @@ std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> 
   std::vector<std::uint8_t> done(points.size(), 0);
   float radius = kFirstRadius * static_cast<float>(spacing);
   for (int i = 0; i < kRadii; ++i, radius *= kWider) {
-    look_around(PointGrid(points, radius), points, static_cast<float>(neighbors), done, normals);
+    look_around(PointGrid(points, radius), points, kFewest * static_cast<float>(neighbors), done,
+                normals);
   }
   return normals;
 }
