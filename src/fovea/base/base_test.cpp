@@ -88,6 +88,31 @@ TEST(Parallel, EveryItemOnce) {
   parallel_for(0, 17, [&](std::size_t) { FAIL(); });
 }
 
+TEST(PointCloud, KeepsAsItSelects) {
+  Random random(2);
+  PointCloud cloud;
+  for (int i = 0; i < 500; ++i) {
+    cloud.position.push_back(Eigen::Vector3f::Constant(float(i)));
+    cloud.range.push_back(float(i));
+    cloud.color.push_back({std::uint8_t(i), 1, 2});
+  }
+  for (const double share : {0.0, 0.02, 0.5, 0.98, 1.0}) {
+    for (const bool with_first : {false, true}) {
+      std::vector<std::uint32_t> indices;
+      for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+        if (i == 0 ? with_first : random.uniform() < share) indices.push_back(i);
+      }
+      const PointCloud selected = cloud.select(indices);
+      PointCloud kept = cloud;
+      kept.keep(indices);
+      EXPECT_EQ(kept.position, selected.position);
+      EXPECT_EQ(kept.range, selected.range);
+      EXPECT_EQ(kept.color, selected.color);
+      EXPECT_TRUE(kept.frame.empty());
+    }
+  }
+}
+
 TEST(Parallel, LimitIsKept) {
   const auto threads_used = [](int limit) {
     const ThreadLimit guard(limit);

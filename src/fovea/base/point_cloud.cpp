@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace fovea {
@@ -20,13 +21,35 @@ PointCloud PointCloud::select(const std::vector<std::uint32_t>& indices) const {
   result.origin = origin;
   const auto gather = [&](const auto& from, auto& to) {
     if (from.empty()) return;
-    to.reserve(indices.size());
-    for (const std::uint32_t i : indices) to.push_back(from[i]);
+    to.resize(indices.size());
+    for (std::size_t k = 0; k < indices.size(); ++k) to[k] = from[indices[k]];
   };
   gather(position, result.position);
   for_each_optional_column(*this, result,
                            [&](const char*, const auto& from, auto& to) { gather(from, to); });
   return result;
+}
+
+void PointCloud::keep(const std::vector<std::uint32_t>& indices) {
+  if (indices.size() == size()) return;
+  // Mostly few points go: those between two of them move up together.
+  std::vector<std::size_t> run_begins;
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    if (k == 0 ? indices[k] != 0 : indices[k] != indices[k - 1] + 1) run_begins.push_back(k);
+  }
+  const auto close_up = [&](auto& column) {
+    if (column.empty()) return;
+    for (std::size_t r = 0; r < run_begins.size(); ++r) {
+      const std::size_t begin = run_begins[r];
+      const std::size_t end = r + 1 < run_begins.size() ? run_begins[r + 1] : indices.size();
+      const auto from = column.begin() + indices[begin];
+      std::move(from, from + static_cast<std::ptrdiff_t>(end - begin),
+                column.begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+    column.resize(indices.size());
+  };
+  for_each_optional_column(*this, [&](const char*, auto& column) { close_up(column); });
+  close_up(position);
 }
 
 void PointCloud::append(const PointCloud& other) {

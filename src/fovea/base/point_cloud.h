@@ -43,6 +43,9 @@ struct PointCloud {
   /// The points at `indices`, in that order, with every column that this cloud has.
   PointCloud select(const std::vector<std::uint32_t>& indices) const;
 
+  /// Keeps only the points at `indices` (ascending), in place.
+  void keep(const std::vector<std::uint32_t>& indices);
+
   /// Appends `other`, which must have the same origin and columns (or this cloud is empty).
   void append(const PointCloud& other);
 };

@@ -9,9 +9,11 @@ PointCloud transform_cloud(PointCloud points_b, const RigidMotion& T_a_b,
   // The large numbers meet in double once; the points stay near zero in float.
   const Eigen::Matrix3f R = T_a_b.linear().cast<float>();
   const Eigen::Vector3f t = (T_a_b * points_b.origin - origin_a).cast<float>();
-  parallel_for(points_b.size(), 16384,
+  constexpr std::size_t kGrain = 16384;
+  parallel_for(points_b.size(), kGrain,
                [&](std::size_t i) { points_b.position[i] = R * points_b.position[i] + t; });
-  for (Eigen::Vector3f& normal : points_b.normal) normal = R * normal;
+  parallel_for(points_b.normal.size(), kGrain,
+               [&](std::size_t i) { points_b.normal[i] = R * points_b.normal[i]; });
   points_b.origin = origin_a;
   return points_b;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/base/parallel.h"
+
 namespace fovea {
 namespace {
 
@@ -14,13 +16,21 @@ std::size_t place_in(const Eigen::Array3i& place, const Eigen::Array3i& size) {
   return static_cast<std::size_t>((place.z() * size.y() + place.y()) * size.x() + place.x());
 }
 
+/// A cell's brick, and its place there, by shift and mask: a division of signed numbers is not one.
+static_assert(kBrick == 8);
+Eigen::Array3i brick_of(const Eigen::Array3i& cell) {
+  return cell.unaryExpr([](int i) { return i >> 3; });
+}
+Eigen::Array3i in_brick(const Eigen::Array3i& cell) {
+  return cell.unaryExpr([](int i) { return i & 7; });
+}
+
 Eigen::Array3i number_of(const TileKey& key) { return {key.x, key.y, key.z}; }
 
 }  // namespace
 
 Occupancy::Occupancy(double tile_size, double spacing)
     : edge_(kBrick * std::max(1, static_cast<int>(std::lround(tile_size / spacing / kBrick)))),
-      tile_size_(tile_size),
       cell_(tile_size / edge_) {}
 
 std::size_t Occupancy::place_of(const Cell& brick) const {
@@ -35,29 +45,28 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
     tile.points = 0;
   }
   const auto per_metre = static_cast<float>(1 / cell_);
+  const auto last = static_cast<float>(edge_ - 1);
   for (; tile.points < points.size(); ++tile.points) {
-    const Cell cell = (points.position[tile.points].array() * per_metre)
-                          .floor()
-                          .cast<int>()
-                          .max(0)
-                          .min(edge_ - 1);
-    const Cell place = cell / kBrick;
-    std::int32_t& brick = tile.brick[place_of(place)];
+    const Cell cell =
+        (points.position[tile.points].array() * per_metre).max(0.0f).min(last).cast<int>();
+    std::int32_t& brick = tile.brick[place_of(brick_of(cell))];
     if (brick == kNoBrick) {
       brick = static_cast<std::int32_t>(tile.bricks.size());
       tile.bricks.emplace_back();
     }
-    tile.bricks[static_cast<std::size_t>(brick)].mark(cell - place * kBrick);
+    tile.bricks[static_cast<std::size_t>(brick)].mark(in_brick(cell));
   }
 }
 
 void Occupancy::follow(const TileMap& map, const Eigen::Vector3d& center_local, double radius) {
   std::map<TileId, Tile> within_reach;
+  std::vector<std::pair<const PointCloud*, Tile*>> tiles;
   map.for_each_tile_near(center_local, radius, [&](const TileId& id, const PointCloud& points) {
     auto node = tiles_.extract(id);
     Tile& tile = node ? within_reach.insert(std::move(node)).position->second : within_reach[id];
-    take_in(points, tile);
+    if (points.size() != tile.points) tiles.emplace_back(&points, &tile);
   });
+  parallel_for(tiles.size(), 1, [&](std::size_t k) { take_in(*tiles[k].first, *tiles[k].second); });
   tiles_ = std::move(within_reach);
   open_windows(map);
 }
@@ -68,45 +77,65 @@ void Occupancy::open_windows(const TileMap& map) {
     const std::size_t submap = begin->first.submap;
     const auto end = std::find_if(begin, tiles_.end(),
                                   [&](const auto& entry) { return entry.first.submap != submap; });
-    Window window;
-    window.low.setConstant(std::numeric_limits<int>::max());
+    Eigen::Array3i low = Eigen::Array3i::Constant(std::numeric_limits<int>::max());
     Eigen::Array3i high = Eigen::Array3i::Constant(std::numeric_limits<int>::min());
     for (auto entry = begin; entry != end; ++entry) {
-      window.low = window.low.min(number_of(entry->first.key)).eval();
+      low = low.min(number_of(entry->first.key)).eval();
       high = high.max(number_of(entry->first.key)).eval();
     }
-    window.size = high - window.low + 1;
-    window.tiles.assign(window.size.cast<std::size_t>().prod(), nullptr);
+    const Eigen::Array3i size = high - low + 1;
+    Window window;
+    window.tiles.assign(size.cast<std::size_t>().prod(), nullptr);
     for (; begin != end; ++begin) {
-      window.tiles[place_in(number_of(begin->first.key) - window.low, window.size)] =
-          &begin->second;
+      window.tiles[place_in(number_of(begin->first.key) - low, size)] = &begin->second;
     }
+    window.places = places_of(size);
+    window.size = (size * edge_).cast<double>().matrix();
     const RigidMotion T_submap_last =
         map.submaps()[submap].T_local_submap.inverse() * map.submaps().back().T_local_submap;
-    window.R_submap_last = T_submap_last.linear();
-    window.t_submap_last = T_submap_last.translation();
+    window.R_cells_last = T_submap_last.linear() / cell_;
+    window.t_cells_last =
+        T_submap_last.translation() / cell_ - (low.cast<double>() * edge_).matrix();
     windows_.push_back(std::move(window));
   }
 }
 
-bool Occupancy::is_marked(const Window& window, const Eigen::Vector3d& p_submap) const {
-  const Eigen::Array3d tile_number = (p_submap.array() / tile_size_).floor();
-  const Eigen::Array3i place = tile_number.cast<int>() - window.low;
-  if ((place < 0).any() || (place >= window.size).any()) return false;
-  const Tile* tile = window.tiles[place_in(place, window.size)];
+std::array<std::vector<Occupancy::Place>, 3> Occupancy::places_of(
+    const Eigen::Array3i& tiles) const {
+  std::array<std::vector<Place>, 3> places;
+  const int bricks = edge_ / kBrick;
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Array3i place = Eigen::Array3i::Zero();
+    for (int i = 0; i < tiles[axis] * bricks; ++i) {
+      place[axis] = i / bricks;
+      const auto tile = static_cast<std::uint32_t>(place_in(place, tiles));
+      place[axis] = i % bricks;
+      places[std::size_t(axis)].push_back({tile, static_cast<std::uint32_t>(place_of(place))});
+    }
+  }
+  return places;
+}
+
+bool Occupancy::is_marked(const Window& window, const Eigen::Vector3d& p_last) {
+  const Eigen::Vector3d p_cells = window.R_cells_last * p_last + window.t_cells_last;
+  // Written so that NaN is nowhere.
+  if (!((p_cells.array() >= 0).all() && (p_cells.array() < window.size.array()).all())) {
+    return false;
+  }
+  const Cell cell = p_cells.array().cast<int>();
+  const auto place = [&](int axis) {
+    return window.places[std::size_t(axis)][std::size_t(cell[axis]) / kBrick];
+  };
+  const Place x = place(0), y = place(1), z = place(2);
+  const Tile* tile = window.tiles[x.tile + y.tile + z.tile];
   if (tile == nullptr) return false;
-  const Cell cell =
-      ((p_submap.array() - tile_number * tile_size_) / cell_).cast<int>().max(0).min(edge_ - 1);
-  const Cell brick_place = cell / kBrick;
-  const std::int32_t brick = tile->brick[place_of(brick_place)];
-  return brick != kNoBrick &&
-         tile->bricks[static_cast<std::size_t>(brick)].test(cell - brick_place * kBrick);
+  const std::int32_t brick = tile->brick[x.brick + y.brick + z.brick];
+  return brick != kNoBrick && tile->bricks[static_cast<std::size_t>(brick)].test(in_brick(cell));
 }
 
 bool Occupancy::taken(const Eigen::Vector3d& p_grid) const {
-  return std::any_of(windows_.rbegin(), windows_.rend(), [&](const Window& window) {
-    return is_marked(window, window.R_submap_last * p_grid + window.t_submap_last);
-  });
+  return std::any_of(windows_.rbegin(), windows_.rend(),
+                     [&](const Window& window) { return is_marked(window, p_grid); });
 }
 
 }  // namespace fovea

@@ -1,6 +1,7 @@
 // Which cells of a fine grid hold a point of the map: what keeps its density even.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -35,21 +36,29 @@ class Occupancy {
     std::vector<std::int32_t> brick;  // by place in the tile; kNoBrick: empty
     std::vector<CellBrick> bricks;
   };
+  /// Where a brick's number along one axis leads: added up over the axes, to a place among a
+  /// window's tiles and to one among a tile's bricks.
+  struct Place {
+    std::uint32_t tile = 0, brick = 0;
+  };
   /// The tiles of one submap in the box of tile numbers around them.
   struct Window {
-    Eigen::Matrix3d R_submap_last;
-    Eigen::Vector3d t_submap_last;
-    Eigen::Array3i low, size;
+    /// From the frame of the last submap, m, to cells, counted from the box's lowest corner.
+    Eigen::Matrix3d R_cells_last;
+    Eigen::Vector3d t_cells_last;
+    Eigen::Vector3d size;                      // cells
+    std::array<std::vector<Place>, 3> places;  // of each brick of the box, an axis
     std::vector<const Tile*> tiles;
   };
 
   void take_in(const PointCloud& points, Tile& tile) const;
   void open_windows(const TileMap& map);
-  bool is_marked(const Window& window, const Eigen::Vector3d& p_submap) const;
+  std::array<std::vector<Place>, 3> places_of(const Eigen::Array3i& tiles) const;
+  static bool is_marked(const Window& window, const Eigen::Vector3d& p_last);
   std::size_t place_of(const Cell& brick) const;
 
   int edge_;  // cells of a tile
-  double tile_size_, cell_;
+  double cell_;
   std::map<TileId, Tile> tiles_;
   std::vector<Window> windows_;  // the last submap's is the last
 };

@@ -6,11 +6,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "fovea/base/parallel.h"
+
 namespace fovea {
 namespace {
 
 /// Stored floats may round to just outside their tile; relative to the tile's edge.
 constexpr double kRoundingMargin = 1e-6;
+constexpr std::size_t kGrain = 8192;
 
 std::int32_t tile_index(double tiles) {
   const double index = std::floor(tiles);
@@ -125,28 +128,35 @@ std::vector<TileKey> TileMap::add(const PointCloud& points_local) {
   const Eigen::Matrix3d R = T_submap_local.linear();
   const Eigen::Vector3d t = T_submap_local * points_local.origin;
   std::vector<Eigen::Vector3d> p_submap(points_local.size());
+  std::vector<TileKey> keys(p_submap.size());
+  parallel_for(p_submap.size(), kGrain, [&](std::size_t i) {
+    p_submap[i] = R * points_local.position[i].cast<double>() + t;
+    keys[i] = key_of(p_submap[i], tile_size_);
+  });
   std::map<TileKey, std::vector<std::uint32_t>> groups;
   auto group = groups.end();  // neighbours in a cloud mostly share a tile
-  for (std::size_t i = 0; i < p_submap.size(); ++i) {
-    p_submap[i] = R * points_local.position[i].cast<double>() + t;
-    const TileKey key = key_of(p_submap[i], tile_size_);
-    if (group == groups.end() || group->first != key) group = groups.try_emplace(key).first;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (group == groups.end() || group->first != keys[i]) group = groups.try_emplace(keys[i]).first;
     group->second.push_back(static_cast<std::uint32_t>(i));
   }
 
   std::vector<TileKey> grown;
-  grown.reserve(groups.size());
+  std::vector<std::pair<PointCloud*, const std::vector<std::uint32_t>*>> additions;
   for (const auto& [key, indices] : groups) {
     PointCloud& tile = submap.tiles[key];
     tile.origin = corner(key);
-    append_columns(points_local, indices, tile);
-    std::size_t next = tile.position.size();
-    tile.position.resize(next + indices.size());
-    for (const std::uint32_t i : indices) {
-      tile.position[next++] = (p_submap[i] - tile.origin).cast<float>();
-    }
+    additions.emplace_back(&tile, &indices);
     grown.push_back(key);
   }
+  parallel_for(additions.size(), 1, [&](std::size_t k) {
+    const auto& [tile, indices] = additions[k];
+    append_columns(points_local, *indices, *tile);
+    std::size_t next = tile->position.size();
+    tile->position.resize(next + indices->size());
+    for (const std::uint32_t i : *indices) {
+      tile->position[next++] = (p_submap[i] - tile->origin).cast<float>();
+    }
+  });
   size_ += points_local.size();
   return grown;
 }
@@ -185,7 +195,7 @@ void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& in
   if (indices.empty()) {
     submaps_[id.submap].tiles.erase(id.key);
   } else {
-    tile = tile.select(indices);
+    tile.keep(indices);
   }
 }
 

@@ -5,8 +5,12 @@
 #include <numbers>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
 
 namespace fovea {
+namespace {
+constexpr std::size_t kGrain = 8192;
+}  // namespace
 
 void FovealOptions::validate() const {
   const auto reject = [](const char* what, const char* field, const char* remedy) {
@@ -34,7 +38,9 @@ void FovealOptions::validate() const {
 FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
     : options_(options),
       camera_(camera),
-      lidar_in_cam_(camera.T_cam_lidar.translation().cast<float>()) {
+      lidar_in_cam_(camera.T_cam_lidar.translation().cast<float>()),
+      near_range2_(static_cast<float>(options.near_range * options.near_range)),
+      far_range2_(static_cast<float>(options.far_range * options.far_range)) {
   for (const AngularSlice& s : options.slices) {
     slices_.push_back({float(std::tan(s.azimuth_min)), float(std::tan(s.azimuth_max)),
                        float(std::tan(s.elevation_min)), float(std::tan(s.elevation_max))});
@@ -43,11 +49,7 @@ FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
 
 bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const {
   if (!(p_cam.z() > float(Camera::kMinDepth))) return false;
-  const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
-  if (range2 <= float(options_.near_range * options_.near_range) ||
-      range2 >= float(options_.far_range * options_.far_range)) {
-    return false;
-  }
+  if (!in_white_zone(p_cam)) return false;
   const float inverse_depth = 1 / p_cam.z();
   pixel = {float(camera_.fx) * p_cam.x() * inverse_depth + float(camera_.cx),
            float(camera_.fy) * p_cam.y() * inverse_depth + float(camera_.cy)};
@@ -55,8 +57,12 @@ bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel
         pixel.y() <= float(camera_.height - 1))) {
     return false;
   }
+  return in_slices(p_cam);
+}
+
+bool FovealRegion::in_slices(const Eigen::Vector3f& p_cam) const {
   if (slices_.empty()) return true;
-  const float right = p_cam.x() * inverse_depth;
+  const float right = p_cam.x() / p_cam.z();
   const float up = -p_cam.y() / std::hypot(p_cam.x(), p_cam.z());
   for (const SlopeBounds& s : slices_) {
     if (right >= s.right_min && right <= s.right_max && up >= s.up_min && up <= s.up_max) {
@@ -67,10 +73,14 @@ bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel
 }
 
 std::vector<std::uint32_t> foveal_points(const PointCloud& points_cam, const FovealRegion& region) {
+  std::vector<std::uint8_t> is_inside(points_cam.size());
+  parallel_for(is_inside.size(), kGrain, [&](std::size_t i) {
+    Eigen::Vector2f pixel;
+    is_inside[i] = region.contains(points_cam.position[i], pixel);
+  });
   std::vector<std::uint32_t> inside;
-  Eigen::Vector2f pixel;
-  for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
-    if (region.contains(points_cam.position[i], pixel)) inside.push_back(i);
+  for (std::uint32_t i = 0; i < is_inside.size(); ++i) {
+    if (is_inside[i] != 0) inside.push_back(i);
   }
   return inside;
 }
@@ -79,9 +89,7 @@ std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {
   const std::size_t n = points_cam.size();
   points_cam.range.resize(n);
   points_cam.incidence.resize(n);
-  std::vector<std::uint32_t> kept;
-  kept.reserve(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
+  parallel_for(n, kGrain, [&](std::size_t i) {
     const Eigen::Vector3f& p = points_cam.position[i];
     const Eigen::Vector3f& normal = points_cam.normal[i];
     const float range = p.norm();
@@ -89,9 +97,13 @@ std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {
     points_cam.incidence[i] = normal.squaredNorm() > 0.5f
                                   ? std::acos(std::clamp(-normal.dot(p) / range, -1.0f, 1.0f))
                                   : std::numeric_limits<float>::quiet_NaN();
+  });
+  std::vector<std::uint32_t> kept;
+  kept.reserve(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
     if (!(points_cam.incidence[i] > float(max_incidence))) kept.push_back(i);
   }
-  if (kept.size() < n) points_cam = points_cam.select(kept);
+  points_cam.keep(kept);
   return n - kept.size();
 }
 

@@ -40,6 +40,16 @@ class FovealRegion {
   /// @param pixel  receives the projection where the answer is yes
   bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
 
+  /// Whether a point in the camera's frame lies in the white zone.
+  bool in_white_zone(const Eigen::Vector3f& p_cam) const {
+    const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
+    return (range2 > near_range2_) & (range2 < far_range2_);  // no branch, in loops
+  }
+  /// Whether a point in front of the camera lies in one of its slices.
+  bool in_slices(const Eigen::Vector3f& p_cam) const;
+  /// False: the whole view is one.
+  bool has_slices() const { return !slices_.empty(); }
+
  private:
   /// Slices as bounds on the ray's slopes, so that no point costs an arc tangent.
   struct SlopeBounds {
@@ -49,6 +59,7 @@ class FovealRegion {
   FovealOptions options_;
   Camera camera_;
   Eigen::Vector3f lidar_in_cam_;
+  float near_range2_, far_range2_;  // m^2
   std::vector<SlopeBounds> slices_;
 };
 

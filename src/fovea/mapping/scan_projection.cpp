@@ -5,10 +5,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "fovea/base/parallel.h"
+
 namespace fovea {
 namespace {
 
-constexpr double kCell = 8;    // pixels
+constexpr double kCell = 8;  // pixels
+constexpr std::size_t kGrain = 8192;
 constexpr double kMargin = 8;  // what lies just outside the image may hide, and be an edge
 
 }  // namespace
@@ -24,16 +27,23 @@ ScanProjection::ScanProjection(const PointCloud& scan_lidar, const Camera& camer
     : columns_(static_cast<int>((camera.width + 2 * kMargin) / kCell) + 1),
       rows_(static_cast<int>((camera.height + 2 * kMargin) / kCell) + 1),
       hiding_radius_(camera.fx * std::tan(kHidingDegrees * std::numbers::pi / 180)) {
-  std::vector<Point> seen;
-  for (const Eigen::Vector3f& p_lidar : scan_lidar.position) {
-    const Eigen::Vector3d p_cam = camera.T_cam_lidar * p_lidar.cast<double>();
-    const std::optional<Eigen::Vector2d> pixel = camera.project(p_cam);
-    if (!pixel || pixel->x() < -kMargin || pixel->x() > camera.width + kMargin ||
-        pixel->y() < -kMargin || pixel->y() > camera.height + kMargin) {
-      continue;
+  std::vector<std::vector<Point>> chunks((scan_lidar.size() + kGrain - 1) / kGrain);
+  parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d p_cam = camera.T_cam_lidar * scan_lidar.position[i].cast<double>();
+      const std::optional<Eigen::Vector2d> pixel = camera.project(p_cam);
+      if (!pixel || pixel->x() < -kMargin || pixel->x() > camera.width + kMargin ||
+          pixel->y() < -kMargin || pixel->y() > camera.height + kMargin) {
+        continue;
+      }
+      chunks[begin / kGrain].push_back({static_cast<float>(pixel->x()),
+                                        static_cast<float>(pixel->y()),
+                                        static_cast<float>(p_cam.norm())});
     }
-    seen.push_back({static_cast<float>(pixel->x()), static_cast<float>(pixel->y()),
-                    static_cast<float>(p_cam.norm())});
+  });
+  std::vector<Point> seen;
+  for (const std::vector<Point>& chunk : chunks) {
+    seen.insert(seen.end(), chunk.begin(), chunk.end());
   }
   const auto cell_of = [&](const Point& p) {
     return static_cast<std::size_t>(row_of(p.v)) * columns_ + column_of(p.u);

@@ -75,9 +75,15 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
   std::unordered_map<std::uint64_t, std::uint32_t> voxel_of_key;
   std::vector<std::uint32_t> voxel(points_local.size()), first_point;
   const float inverse = static_cast<float>(1 / kVoxel);
+  std::uint64_t last_key = 0;
   for (std::uint32_t i = 0; i < voxel.size(); ++i) {
     const std::uint64_t key =
         cell_key((points_local.position[i].array() * inverse).floor().cast<int>());
+    if (i > 0 && key == last_key) {  // neighbours in a cloud mostly share a voxel
+      voxel[i] = voxel[i - 1];
+      continue;
+    }
+    last_key = key;
     const auto [place, is_new] = voxel_of_key.try_emplace(key, std::uint32_t(first_point.size()));
     if (is_new) first_point.push_back(i);
     voxel[i] = place->second;
@@ -127,12 +133,17 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
   }
   // Points that came since. Those of later frames are there when scans are replayed.
   const std::vector<std::int32_t>& point_frame = tile.points->frame;
+  Voxel* last = nullptr;  // neighbours mostly share a voxel
   for (std::size_t& i = block.known_points; i < point_frame.size() && point_frame[i] <= frame;
        ++i) {
     const std::uint32_t cell = cell_of(tile.points->position[i], 1 / size, edge);
-    const auto [place, is_new] = block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
-    if (is_new) block.voxels.push_back({cell, 0, 0});
-    block.voxels[place->second].filled |= aged(1, frame - point_frame[i]);
+    if (last == nullptr || last->cell != cell) {
+      const auto [place, is_new] =
+          block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
+      if (is_new) block.voxels.push_back({cell, 0, 0});
+      last = &block.voxels[place->second];
+    }
+    last->filled |= aged(1, frame - point_frame[i]);
   }
   const TileView view(
       scan.T_lidar_odom * T_odom_local * map.submaps()[tile.id.submap].T_local_submap,
@@ -159,18 +170,25 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   const auto frame_bit = [&](std::size_t i) {
     return aged(1, block.frame - tile.points->frame[i]);
   };
-  std::vector<std::uint32_t> cell(n);
+  // Of each point, its voxel; neighbours mostly share one.
+  std::vector<const Voxel*> voxel(n);
+  std::uint32_t last_cell = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t cell = cell_of(tile.points->position[i], cells_per_metre, edge);
+    voxel[i] = i > 0 && cell == last_cell ? voxel[i - 1] : &block.voxels[block.place.at(cell)];
+    last_cell = cell;
+  }
   std::unordered_map<std::uint32_t, std::uint32_t> foot;  // by cell: frames whose points go
   for (std::size_t i = 0; i < n; ++i) {
-    cell[i] = cell_of(tile.points->position[i], cells_per_metre, edge);
-    if (!gone(block.voxels[block.place.at(cell[i])])) continue;
-    for (std::uint32_t k = 1; k <= kFoot && cell[i] >= k * layer; ++k) {
-      foot[cell[i] - k * layer] |= frame_bit(i);
+    if (!gone(*voxel[i])) continue;
+    const std::uint32_t cell = voxel[i]->cell;
+    for (std::uint32_t k = 1; k <= kFoot && cell >= k * layer; ++k) {
+      foot[cell - k * layer] |= frame_bit(i);
     }
   }
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (gone(block.voxels[block.place.at(cell[i])])) continue;
-    const auto beneath = foot.find(cell[i]);
+    if (gone(*voxel[i])) continue;
+    const auto beneath = foot.find(voxel[i]->cell);
     if (beneath == foot.end() || (beneath->second & frame_bit(i)) == 0) tile.kept.push_back(i);
   }
   std::erase_if(block.voxels, gone);

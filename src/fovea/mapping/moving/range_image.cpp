@@ -5,6 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "fovea/base/parallel.h"
+#include "fovea/base/quick_angle.h"
+
 namespace fovea {
 namespace {
 
@@ -23,46 +26,95 @@ constexpr std::array<Window, 3> kWindows{{{12, 1}, {6, 2}, {0, 4}}};
 /// Share of a window's cells that must hold a return for its silence to mean anything.
 constexpr float kFilledShare = 0.4f;
 
-int column_of(float x, float y) {
-  const int column = static_cast<int>((std::atan2(y, x) + kPi) * (kColumns / (2 * kPi)));
-  return std::clamp(column, 0, kColumns - 1);
+float column_of(float x, float y) {  // with a fraction
+  return (quick_atan2(y, x) + kPi) * (kColumns / (2 * kPi));
 }
-int row_of(float z, float range) {
-  return static_cast<int>(std::floor(std::asin(std::clamp(z / range, -1.0f, 1.0f)) / kRowHeight));
+float row_of(float z, float flat) { return std::floor(quick_atan2(z, flat) / kRowHeight); }
+int whole_column(float column) { return std::clamp(static_cast<int>(column), 0, kColumns - 1); }
+
+struct Return {
+  int row, column;
+  float range;
+};
+
+/// Directions and ranges of some points, a row for each, on which the compiler works eight wide.
+struct DirectionBlock {
+  static constexpr std::size_t kSize = 256;
+  using Row = std::array<float, kSize>;
+  alignas(64) Row x{}, y{}, z{}, flat{}, range{}, row{}, column{};
+
+  void compute(std::span<const Eigen::Vector3f> points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      x[i] = points[i].x();
+      y[i] = points[i].y();
+      z[i] = points[i].z();
+    }
+    for (std::size_t i = 0; i < kSize; ++i) {
+      const float flat2 = x[i] * x[i] + y[i] * y[i];
+      flat[i] = std::sqrt(flat2);
+      range[i] = std::sqrt(flat2 + z[i] * z[i]);
+    }
+    for (std::size_t i = 0; i < kSize; ++i) row[i] = row_of(z[i], flat[i]);
+    for (std::size_t i = 0; i < kSize; ++i) column[i] = column_of(x[i], y[i]);
+  }
+};
+
+/// Whatever is far enough and finite.
+std::vector<Return> returns_of(std::span<const Eigen::Vector3f> scan_lidar) {
+  constexpr std::size_t kGrain = DirectionBlock::kSize;
+  std::vector<std::vector<Return>> chunks((scan_lidar.size() + kGrain - 1) / kGrain);
+  parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    DirectionBlock block;
+    block.compute(scan_lidar.subspan(begin, end - begin));
+    std::vector<Return>& returns = chunks[begin / kGrain];
+    returns.reserve(end - begin);
+    for (std::size_t i = 0; i < end - begin; ++i) {
+      if (!(block.range[i] > kMinRange) || !std::isfinite(block.range[i])) continue;
+      returns.push_back(
+          {static_cast<int>(block.row[i]), whole_column(block.column[i]), block.range[i]});
+    }
+  });
+  std::vector<Return> all;
+  all.reserve(scan_lidar.size());
+  for (const std::vector<Return>& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
+  return all;
 }
 
 }  // namespace
 
 RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
-  struct Return {
-    int row, column;
-    float range;
-  };
-  std::vector<Return> returns;
-  returns.reserve(scan_lidar.size());
-  int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
-  for (const Eigen::Vector3f& p : scan_lidar) {
-    const float range = p.norm();
-    if (!(range > kMinRange) || !std::isfinite(range)) continue;
-    const int row = row_of(p.z(), range);
-    lowest = std::min(lowest, row);
-    highest = std::max(highest, row);
-    returns.push_back({row, column_of(p.x(), p.y()), range});
-  }
+  const std::vector<Return> returns = returns_of(scan_lidar);
   if (returns.empty()) return;
-  first_row_ = lowest;
-  rows_ = highest - lowest + 1;
+  const auto [lowest, highest] =
+      std::minmax_element(returns.begin(), returns.end(),
+                          [](const Return& a, const Return& b) { return a.row < b.row; });
+  first_row_ = lowest->row;
+  rows_ = highest->row - first_row_ + 1;
 
   Level cells;
   cells.nearest.assign(static_cast<std::size_t>(rows_) * kColumns, kNothing);
   for (const Return& r : returns) {
-    float& nearest = cells.nearest[static_cast<std::size_t>(r.row - lowest) * kColumns + r.column];
+    float& nearest =
+        cells.nearest[static_cast<std::size_t>(r.row - first_row_) * kColumns + r.column];
     nearest = std::min(nearest, r.range);
   }
   cells.filled.resize(cells.nearest.size());
   for (std::size_t i = 0; i < cells.filled.size(); ++i)
     cells.filled[i] = cells.nearest[i] < kNothing;
-  for (std::size_t k = 0; k < kLevels; ++k) levels_[k] = widened(cells, kWindows[k].half_width);
+  parallel_for(kLevels, 1,
+               [&](std::size_t k) { levels_[k] = widened(cells, kWindows[k].half_width); });
+}
+
+void RangeImage::take_in(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
+                         std::size_t count) {
+  const float* const nearest = from.nearest.data() + from_cell;
+  const std::uint8_t* const filled = from.filled.data() + from_cell;
+  float* const to_nearest = to.nearest.data() + to_cell;
+  std::uint8_t* const to_filled = to.filled.data() + to_cell;
+  for (std::size_t i = 0; i < count; ++i) to_nearest[i] = std::min(to_nearest[i], nearest[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    to_filled[i] = static_cast<std::uint8_t>(to_filled[i] + filled[i]);
+  }
 }
 
 RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
@@ -70,28 +122,20 @@ RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
   Level wide = cells;
   for (int row = 0; row < rows_; ++row) {
     const std::size_t begin = static_cast<std::size_t>(row) * kColumns;
-    for (int column = 0; column < kColumns; ++column) {
-      float nearest = kNothing;
-      int filled = 0;
-      for (int k = -half; k <= half; ++k) {
-        const std::size_t i = begin + static_cast<std::size_t>((column + k + kColumns) % kColumns);
-        nearest = std::min(nearest, cells.nearest[i]);
-        filled += cells.filled[i];
-      }
-      wide.nearest[begin + column] = nearest;
-      wide.filled[begin + column] = static_cast<std::uint8_t>(filled);
+    for (int k = -half; k <= half; ++k) {
+      if (k == 0) continue;
+      // From each cell on to the right, and past the last on from the first: no remainder a cell.
+      const auto turn = static_cast<std::size_t>((k + kColumns) % kColumns);
+      take_in(cells, begin + turn, wide, begin, kColumns - turn);
+      take_in(cells, begin, wide, begin + kColumns - turn, turn);
     }
   }
   Level result = wide;
   for (int row = 0; row < rows_; ++row) {
     for (int k = std::max(0, row - half); k <= std::min(rows_ - 1, row + half); ++k) {
       if (k == row) continue;
-      for (int column = 0; column < kColumns; ++column) {
-        const std::size_t to = static_cast<std::size_t>(row) * kColumns + column;
-        const std::size_t from = static_cast<std::size_t>(k) * kColumns + column;
-        result.nearest[to] = std::min(result.nearest[to], wide.nearest[from]);
-        result.filled[to] = static_cast<std::uint8_t>(result.filled[to] + wide.filled[from]);
-      }
+      take_in(wide, static_cast<std::size_t>(k) * kColumns, result,
+              static_cast<std::size_t>(row) * kColumns, kColumns);
     }
   }
   return result;
@@ -105,9 +149,10 @@ Sight RangeImage::sight(const Eigen::Vector3f& p) const {
                                             [&](const Window& w) { return range >= w.range; }) -
                                kWindows.begin());
   const int half = kWindows[window].half_width;
-  const int row = row_of(p.z(), range) - first_row_;
+  const int row = static_cast<int>(row_of(p.z(), p.head<2>().norm())) - first_row_;
   if (row < 0 || row >= rows_) return Sight::kUnknown;
-  const std::size_t cell = static_cast<std::size_t>(row) * kColumns + column_of(p.x(), p.y());
+  const std::size_t cell =
+      static_cast<std::size_t>(row) * kColumns + whole_column(column_of(p.x(), p.y()));
   const float nearest = levels_[window].nearest[cell];
   if (nearest < range - kMargin) return Sight::kUnknown;  // something stands before it
   if (nearest <= range + kMargin) return Sight::kSurface;

@@ -37,6 +37,9 @@ class RangeImage {
     std::vector<std::uint8_t> filled;
   };
   static constexpr std::size_t kLevels = 3;
+  /// Into `count` cells of one level those of another.
+  static void take_in(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
+                      std::size_t count);
   Level widened(const Level& cells, int half_width) const;
 
   int first_row_ = 0;  // of the lowest return
