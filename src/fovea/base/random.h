@@ -15,11 +15,18 @@ class Random {
   /// Numbers of one item (a frame, a point) of one kind (any constant): those of other items, kinds
   /// and seeds have nothing to do with them.
   static Random of_item(std::uint64_t seed, std::uint64_t kind, std::uint64_t item) {
-    Random mixed(seed);
-    mixed.state_ = mixed.next() ^ kind;
-    mixed.state_ = mixed.next() ^ item;
-    return Random(mixed.next());
+    return Items(seed, kind).of(item);
   }
+  /// of_item() for many items of one seed and kind, which are mixed once.
+  class Items {
+   public:
+    Items(std::uint64_t seed, std::uint64_t kind)
+        : mixed_(Random(Random(seed).next() ^ kind).next()) {}
+    Random of(std::uint64_t item) const { return Random(Random(mixed_ ^ item).next()); }
+
+   private:
+    std::uint64_t mixed_;
+  };
 
   std::uint64_t next() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);

@@ -1,30 +1,41 @@
 // One colour from many views (goes past the paper, which keeps one view; docs/method.md 6).
 #pragma once
 
-#include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 
-#include "fovea/base/image.h"
+#include "fovea/base/color_block.h"
 
 namespace fovea {
 
-/// What is known of a point's colour; eight bits a channel are all that is kept.
-struct FusedColor {
-  Rgb color;
-  std::uint8_t views = 0;    ///< 255: or more
-  std::uint8_t spread = 0;   ///< RMS of the views' differences from the colour, grey values
-  std::uint16_t weight = 0;  ///< sum of the views' weights
-};
-
 /// Weight of a view from this many metres: one over the distance, since a near view shows more
 /// detail; as an integer of 1-100, so that sums are exact.
-std::uint16_t view_weight(double distance);
+inline std::uint16_t view_weight(float distance) {
+  constexpr float kWeightAtOneMetre = 100;
+  return static_cast<std::uint16_t>(std::clamp(kWeightAtOneMetre / distance, 1.0f, 100.0f) + 0.5f);
+}
 
-/// Takes in one more view: weighted running mean and deviation (West 1979).
-/// @param seen   colour in this view, 0-255 a channel
-/// @param noise  random bits. Rounding up or down by chance lets steps below one grey value count,
-///               which rounding to the nearest would lose
-FusedColor fuse(const FusedColor& before, const Eigen::Vector3f& seen, std::uint16_t weight,
-                std::uint64_t noise);
+/// What is known of the colours of some points; eight bits a channel are all that is kept.
+struct FusedColors {
+  template <class T>
+  using Row = std::array<T, ColorBlock::kSize>;
+  Row<std::uint8_t> red, green, blue;
+  Row<std::uint8_t> views;    ///< 0: the rest means nothing; 255: or more
+  Row<std::uint8_t> spread;   ///< RMS of the views' differences from the colour, grey values
+  Row<std::uint16_t> weight;  ///< sum of the views' weights
+};
+
+/// One view of some points.
+struct SeenColors {
+  ColorBlock color;
+  std::array<std::uint16_t, ColorBlock::kSize> weight;
+  /// Random bits, as two words a point. Rounding up or down by chance lets steps below one grey
+  /// value count, which rounding to the nearest would lose.
+  std::array<std::array<std::uint32_t, ColorBlock::kSize>, 2> noise;
+};
+
+/// Takes in one more view of the first `count` points: weighted running mean and deviation (West
+/// 1979). The first view of a point is its colour, rounded to the nearest.
+void fuse(FusedColors& points, const SeenColors& seen, std::size_t count);
 
 }  // namespace fovea

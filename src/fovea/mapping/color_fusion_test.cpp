@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "fovea/base/image.h"
 #include "fovea/base/random.h"
 
 namespace fovea {
@@ -14,6 +15,47 @@ struct SeenView {
   Eigen::Vector3f color;
   std::uint16_t weight;
 };
+
+struct FusedColor {
+  Rgb color;
+  std::uint8_t views = 0, spread = 0;
+  std::uint16_t weight = 0;
+};
+
+void put(FusedColors& points, std::size_t i, const FusedColor& point) {
+  points.red[i] = point.color.r;
+  points.green[i] = point.color.g;
+  points.blue[i] = point.color.b;
+  points.views[i] = point.views;
+  points.spread[i] = point.spread;
+  points.weight[i] = point.weight;
+}
+
+FusedColor get(const FusedColors& points, std::size_t i) {
+  return {{points.red[i], points.green[i], points.blue[i]},
+          points.views[i],
+          points.spread[i],
+          points.weight[i]};
+}
+
+void put(SeenColors& seen, std::size_t i, const SeenView& view, std::uint64_t noise) {
+  seen.color.red[i] = view.color.x();
+  seen.color.green[i] = view.color.y();
+  seen.color.blue[i] = view.color.z();
+  seen.weight[i] = view.weight;
+  seen.noise[0][i] = static_cast<std::uint32_t>(noise);
+  seen.noise[1][i] = static_cast<std::uint32_t>(noise >> 32);
+}
+
+FusedColor fuse(const FusedColor& point, const Eigen::Vector3f& color, std::uint16_t weight,
+                std::uint64_t noise) {
+  FusedColors points;
+  SeenColors seen;
+  put(points, 0, point);
+  put(seen, 0, {color, weight}, noise);
+  fuse(points, seen, 1);
+  return get(points, 0);
+}
 
 /// What no rounding would give.
 struct Exact {
@@ -138,6 +180,40 @@ TEST(ColorFusion, RoundingNoiseDoesNotGrowWithTheViews) {
   }
 }
 
+TEST(ColorFusion, ABlockIsFusedAsEachPointAlone) {
+  Random random(6);
+  const auto byte = [&] { return static_cast<std::uint8_t>(random.below(256)); };
+  constexpr std::size_t kPoints = 251;
+  std::vector<FusedColor> alone(kPoints);
+  FusedColors points;
+  SeenColors seen;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    FusedColor point;
+    point = {{byte(), byte(), byte()}, byte(), byte(), static_cast<std::uint16_t>(byte() + 1)};
+    if (i % 7 == 0) point.views = 0;  // then the rest means nothing
+    const SeenView view{{float(byte()), float(byte()), float(byte())},
+                        static_cast<std::uint16_t>(1 + random.below(100))};
+    const std::uint64_t noise = random.next();
+    put(points, i, point);
+    put(seen, i, view, noise);
+    alone[i] = fuse(point, view.color, view.weight, noise);
+    if (i % 7 == 0) {
+      EXPECT_EQ(alone[i].color, to_rgb(view.color));
+      EXPECT_EQ(alone[i].weight, view.weight);
+      EXPECT_EQ(alone[i].spread, 0);
+      EXPECT_EQ(alone[i].views, 1);
+    }
+  }
+  fuse(points, seen, kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const FusedColor together = get(points, i);
+    ASSERT_EQ(together.color, alone[i].color) << i;
+    ASSERT_EQ(together.views, alone[i].views) << i;
+    ASSERT_EQ(together.spread, alone[i].spread) << i;
+    ASSERT_EQ(together.weight, alone[i].weight) << i;
+  }
+}
+
 TEST(ColorFusion, LateChangesStillArrive) {
   std::vector<SeenView> views(50, {{80, 80, 80}, 10});
   views.resize(100, {{120, 120, 120}, 10});
@@ -188,7 +264,7 @@ TEST(ViewWeight, FallsWithTheDistance) {
   EXPECT_EQ(view_weight(15), 7);
   std::uint16_t last = view_weight(0);
   EXPECT_EQ(last, 100);
-  for (double distance = 0.1; distance < 500; distance *= 1.07) {
+  for (float distance = 0.1f; distance < 500; distance *= 1.07f) {
     const std::uint16_t weight = view_weight(distance);
     ASSERT_LE(weight, last);
     ASSERT_GE(weight, 1);

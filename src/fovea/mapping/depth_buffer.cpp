@@ -2,47 +2,66 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
 namespace fovea {
 namespace {
+
 /// Radius of a sample in the buffer's pixels: what lies on a pixel covers it, and no sample is near
 /// enough to cover more than the larger.
 constexpr float kMinRadius = 0.5f, kMaxRadius = 4.0f;
+
+/// The pixels that samples cover, from the first to the last, along one axis.
+struct Covered {
+  using Row = std::array<float, DepthBuffer::Samples::kSize>;
+  std::array<std::int32_t, DepthBuffer::Samples::kSize> first, last;
+  void compute(const Row& place, const Row& depth, std::size_t count, float radius, int end) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float center = place[i] / 2;
+      const float r = std::min(std::max(radius / depth[i] / 2, kMinRadius), kMaxRadius);
+      first[i] = std::max(0, static_cast<std::int32_t>(std::ceil(center - r)));
+      last[i] = std::min(end - 1, static_cast<std::int32_t>(std::floor(center + r)));
+    }
+  }
+};
+
 }  // namespace
 
-DepthBuffer::DepthBuffer(const Camera& camera)
-    : width_(camera.width / 2 + 1),
-      height_(camera.height / 2 + 1),
-      depth_(static_cast<std::size_t>(width_) * height_, std::numeric_limits<float>::infinity()) {}
+void DepthBuffer::clear(const Camera& camera) {
+  width_ = camera.width / 2 + 1;
+  height_ = camera.height / 2 + 1;
+  depth_.assign(static_cast<std::size_t>(width_) * height_, std::numeric_limits<float>::infinity());
+}
 
-void DepthBuffer::add(const Eigen::Vector2f& pixel, float depth, float radius) {
-  const float u = pixel.x() / 2, v = pixel.y() / 2;
-  const float r = std::clamp(radius / 2, kMinRadius, kMaxRadius);
-  const int left = std::max(0, static_cast<int>(std::ceil(u - r)));
-  const int right = std::min(width_ - 1, static_cast<int>(std::floor(u + r)));
-  const int top = std::max(0, static_cast<int>(std::ceil(v - r)));
-  const int bottom = std::min(height_ - 1, static_cast<int>(std::floor(v + r)));
-  for (int y = top; y <= bottom; ++y) {
-    float* row = depth_.data() + static_cast<std::size_t>(y) * width_;
-    for (int x = left; x <= right; ++x) row[x] = std::min(row[x], depth);
+void DepthBuffer::add(const Samples& samples, std::size_t count, float radius) {
+  Covered columns, rows;
+  columns.compute(samples.u, samples.depth, count, radius, width_);
+  rows.compute(samples.v, samples.depth, count, radius, height_);
+  float* const front = depth_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float depth = samples.depth[i];
+    const int left = columns.first[i], right = columns.last[i];
+    float* const top = front + rows.first[i] * width_;
+    float* const bottom = front + rows.last[i] * width_;
+    if (right - left <= 1 && bottom - top <= width_) {
+      // Nearly all samples: no loop, whose length nobody could foresee. A pixel may come twice, and
+      // all are read first, for none to wait until another is written.
+      const float a = std::min(top[left], depth), b = std::min(top[right], depth);
+      const float c = std::min(bottom[left], depth), d = std::min(bottom[right], depth);
+      top[left] = a;
+      top[right] = b;
+      bottom[left] = c;
+      bottom[right] = d;
+      continue;
+    }
+    for (float* row = top; row <= bottom; row += width_) {
+      for (int x = left; x <= right; ++x) row[x] = std::min(row[x], depth);
+    }
   }
 }
 
-float DepthBuffer::depth_at(const Eigen::Vector2f& pixel) const {
-  const auto x = static_cast<std::size_t>(pixel.x() / 2 + 0.5f);
-  const auto y = static_cast<std::size_t>(pixel.y() / 2 + 0.5f);
-  return depth_[y * static_cast<std::size_t>(width_) + x];
-}
-
-bool DepthBuffer::hides(const Eigen::Vector2f& pixel, float depth) const {
-  return depth > depth_at(pixel) + kBehind + kBehindShare * depth;
-}
-
-bool DepthBuffer::stands_before(const Eigen::Vector2f& pixel, float depth) const {
-  const float front = depth_at(pixel);
-  return front != std::numeric_limits<float>::infinity() &&
-         front - depth > std::max(kBefore, kBeforeShare * depth);
+void DepthBuffer::add(const DepthBuffer& other) {
+  for (std::size_t i = 0; i < depth_.size(); ++i) depth_[i] = std::min(depth_[i], other.depth_[i]);
 }
 
 }  // namespace fovea

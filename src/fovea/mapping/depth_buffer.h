@@ -1,6 +1,9 @@
 // What stands in front, as a camera sees it: the nearest depth by pixel of surface samples.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <vector>
 
 #include "fovea/geometry/camera.h"
@@ -15,23 +18,50 @@ class DepthBuffer {
   /// A point this far before it, and this share of its own depth, is not.
   static constexpr float kBefore = 0.3f, kBeforeShare = 0.05f;
 
-  explicit DepthBuffer(const Camera& camera);
+  DepthBuffer() = default;  ///< of an image without pixels
+  explicit DepthBuffer(const Camera& camera) { clear(camera); }
 
-  /// Puts a sample into the buffer.
-  /// @param pixel   projection, inside the image
-  /// @param depth   m along the optical axis
-  /// @param radius  of the surface that the sample stands for, pixels of the image
-  void add(const Eigen::Vector2f& pixel, float depth, float radius);
+  /// Forgets all samples; the memory stays.
+  void clear(const Camera& camera);
+
+  /// Samples of surfaces, a row for each coordinate.
+  struct Samples {
+    static constexpr std::size_t kSize = 256;
+    std::array<float, kSize> u, v;   ///< projection, inside the image, pixels
+    std::array<float, kSize> depth;  ///< m along the optical axis
+    void put(std::size_t i, const Eigen::Vector2f& pixel, float depth_of_sample) {
+      u[i] = pixel.x();
+      v[i] = pixel.y();
+      depth[i] = depth_of_sample;
+    }
+  };
+
+  /// Puts the first `count` samples into the buffer.
+  /// @param radius  of the surface that a sample stands for: pixels of the image, at a depth of 1 m
+  void add(const Samples& samples, std::size_t count, float radius);
+
+  /// Puts all samples of a buffer of the same camera into this one.
+  void add(const DepthBuffer& other);
 
   /// Whether something added stands in front of a point there.
-  bool hides(const Eigen::Vector2f& pixel, float depth) const;
+  bool hides(const Eigen::Vector2f& pixel, float depth) const {
+    return depth > depth_at(pixel) + kBehind + kBehindShare * depth;
+  }
 
   /// Whether a point there would stand before all that was added: no part of its surface.
-  bool stands_before(const Eigen::Vector2f& pixel, float depth) const;
+  bool stands_before(const Eigen::Vector2f& pixel, float depth) const {
+    const float front = depth_at(pixel);
+    return front != std::numeric_limits<float>::infinity() &&
+           front - depth > std::max(kBefore, kBeforeShare * depth);
+  }
 
  private:
-  float depth_at(const Eigen::Vector2f& pixel) const;
-  int width_, height_;
+  float depth_at(const Eigen::Vector2f& pixel) const {
+    const auto x = static_cast<int>(pixel.x() / 2 + 0.5f);
+    const auto y = static_cast<int>(pixel.y() / 2 + 0.5f);
+    return depth_[static_cast<std::size_t>(y * width_ + x)];
+  }
+  int width_ = 0, height_ = 0;
   std::vector<float> depth_;
 };
 

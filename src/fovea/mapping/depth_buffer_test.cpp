@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fovea/base/random.h"
+
 namespace fovea {
 namespace {
 
@@ -15,6 +17,13 @@ Camera camera_of(int width, int height) {
   return camera;
 }
 
+/// @param radius  pixels
+void add(DepthBuffer& buffer, const Eigen::Vector2f& pixel, float depth, float radius) {
+  DepthBuffer::Samples samples;
+  samples.put(0, pixel, depth);
+  buffer.add(samples, 1, radius * depth);
+}
+
 TEST(DepthBuffer, HidesNothingWhereNothingStands) {
   const DepthBuffer buffer(camera_of(100, 50));
   EXPECT_FALSE(buffer.hides({0, 0}, 1000.f));
@@ -23,7 +32,7 @@ TEST(DepthBuffer, HidesNothingWhereNothingStands) {
 
 TEST(DepthBuffer, HidesWhatIsBehindAndNotWhatIsBesideOrInFront) {
   DepthBuffer buffer(camera_of(100, 50));
-  buffer.add({40, 20}, 5, 6);
+  add(buffer, {40, 20}, 5, 6);
   const float margin = DepthBuffer::kBehind + DepthBuffer::kBehindShare * 5.2f;
   EXPECT_FALSE(buffer.hides({40, 20}, 4));
   EXPECT_FALSE(buffer.hides({40, 20}, 5));
@@ -42,9 +51,9 @@ TEST(DepthBuffer, HidesWhatIsBehindAndNotWhatIsBesideOrInFront) {
 
 TEST(DepthBuffer, TheNearestStandsInFront) {
   DepthBuffer buffer(camera_of(100, 50));
-  buffer.add({40, 20}, 5, 2);
-  buffer.add({40, 20}, 3, 2);
-  buffer.add({40, 20}, 9, 2);
+  add(buffer, {40, 20}, 5, 2);
+  add(buffer, {40, 20}, 3, 2);
+  add(buffer, {40, 20}, 9, 2);
   EXPECT_TRUE(buffer.hides({40, 20}, 4));
   EXPECT_FALSE(buffer.hides({40, 20}, 3.1f));
 }
@@ -54,7 +63,7 @@ TEST(DepthBuffer, ASampleCoversAtLeastItsOwnPixel) {
   for (float u = 0; u <= 99; u += 0.37f) {
     for (float v = 0; v <= 49; v += 1.13f) {
       DepthBuffer alone(camera_of(100, 50));
-      alone.add({u, v}, 2, 0);
+      add(alone, {u, v}, 2, 0);
       ASSERT_TRUE(alone.hides({u, v}, 3)) << u << " " << v;
     }
   }
@@ -66,7 +75,7 @@ TEST(DepthBuffer, CornersOfEvenAndOddImagesAreInside) {
       for (const float v : {0.f, float(height - 1)}) {
         for (const float radius : {0.f, 3.f, 100.f}) {
           DepthBuffer buffer(camera_of(width, height));
-          buffer.add({u, v}, 2, radius);
+          add(buffer, {u, v}, 2, radius);
           ASSERT_TRUE(buffer.hides({u, v}, 3));
           ASSERT_FALSE(buffer.hides({u, v}, 2));
         }
@@ -91,7 +100,7 @@ TEST(DepthBuffer, ASlantSurfaceDoesNotHideItself) {
       const Eigen::Vector2f pixel = pixel_of(x, kHeight, z);
       if (!camera.in_view(pixel.cast<double>())) continue;
       samples.emplace_back(pixel, static_cast<float>(z));
-      buffer.add(pixel, samples.back().second, static_cast<float>(0.75 * 0.02 * camera.fx / z));
+      add(buffer, pixel, samples.back().second, static_cast<float>(0.75 * 0.02 * camera.fx / z));
     }
   }
   ASSERT_GT(samples.size(), 50'000u);
@@ -100,6 +109,30 @@ TEST(DepthBuffer, ASlantSurfaceDoesNotHideItself) {
   EXPECT_LT(double(hidden), 0.01 * double(samples.size()));
   for (double z = 7; z < 11; z += 0.1) {
     EXPECT_TRUE(buffer.hides(pixel_of(0.3, kHeight * 1.3, z * 1.3), static_cast<float>(z * 1.3)));
+  }
+}
+
+TEST(DepthBuffer, ABlockOfSamplesAndAJoinedBufferAreAsAllOneByOne) {
+  const Camera camera = camera_of(101, 51);
+  DepthBuffer one_by_one(camera), first(camera), second(camera);
+  Random random(1);
+  DepthBuffer::Samples samples;
+  for (int half = 0; half < 2; ++half) {
+    for (std::size_t i = 0; i < DepthBuffer::Samples::kSize; ++i) {
+      const Eigen::Vector2f pixel(float(random.uniform(0, 100)), float(random.uniform(0, 50)));
+      const auto depth = static_cast<float>(random.uniform(1, 9));
+      samples.put(i, pixel, depth);
+      add(one_by_one, pixel, depth, 7 / depth);
+    }
+    (half == 0 ? first : second).add(samples, DepthBuffer::Samples::kSize, 7);
+  }
+  first.add(second);
+  for (float u = 0; u <= 100; ++u) {
+    for (float v = 0; v <= 50; ++v) {
+      for (float depth = 0.5; depth < 10; depth += 0.37f) {
+        ASSERT_EQ(first.hides({u, v}, depth), one_by_one.hides({u, v}, depth)) << u << " " << v;
+      }
+    }
   }
 }
 

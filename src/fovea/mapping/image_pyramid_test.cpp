@@ -25,12 +25,19 @@ Image noise_image(int width, int height, int channels, std::uint64_t seed) {
   return painted(width, height, channels, [&](int, int, int) { return random.below(256); });
 }
 
+Eigen::Vector3f color_at(const ImagePyramid& pyramid, double u, double v, float footprint) {
+  const auto u_float = static_cast<float>(u), v_float = static_cast<float>(v);
+  ColorBlock color;
+  pyramid.colors_at({&u_float, 1}, {&v_float, 1}, {&footprint, 1}, color);
+  return {color.red[0], color.green[0], color.blue[0]};
+}
+
 TEST(ImagePyramid, AConstantImageIsConstant) {
   const ImagePyramid pyramid(painted(37, 21, 3, [](int, int, int c) { return 40 + 70 * c; }));
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    const Eigen::Vector3f color = pyramid.at(random.uniform(0, 36), random.uniform(0, 20),
-                                             static_cast<float>(random.uniform(0, 100)));
+    const Eigen::Vector3f color = color_at(pyramid, random.uniform(0, 36), random.uniform(0, 20),
+                                           static_cast<float>(random.uniform(0, 100)));
     ASSERT_LT((color - Eigen::Vector3f(40, 110, 180)).norm(), 1e-3f);
   }
 }
@@ -44,7 +51,7 @@ TEST(ImagePyramid, ARampHasItsValueAtEveryFootprint) {
   for (int i = 0; i < 5000; ++i) {
     const double u = random.uniform(32, 150), v = random.uniform(32, 80);
     const auto footprint = static_cast<float>(random.uniform(0.5, 32));
-    const Eigen::Vector3f color = pyramid.at(u, v, footprint);
+    const Eigen::Vector3f color = color_at(pyramid, u, v, footprint);
     // 2 x 2 means are rounded: halves up, half a grey value a level at worst.
     ASSERT_NEAR(color.x(), u, 2.6) << footprint;
     ASSERT_NEAR(color.y(), v, 2.6) << footprint;
@@ -55,7 +62,7 @@ TEST(ImagePyramid, RampsAreExactWhereNothingIsRounded) {
   const ImagePyramid pyramid(painted(60, 60, 1, [](int x, int y, int) { return 2 * (x + y); }));
   for (const float footprint : {1.f, 1.3f, 2.f}) {
     for (const double u : {10.0, 10.5, 23.25}) {
-      ASSERT_NEAR(pyramid.at(u, 20.75, footprint).x(), 2 * (u + 20.75), 1e-4) << footprint;
+      ASSERT_NEAR(color_at(pyramid, u, 20.75, footprint).x(), 2 * (u + 20.75), 1e-4) << footprint;
     }
   }
 }
@@ -67,10 +74,10 @@ TEST(ImagePyramid, ACheckerboardIsGreyFromTwoPixelsOn) {
   for (int i = 0; i < 1000; ++i) {
     const double u = random.uniform(0, 63), v = random.uniform(0, 47);
     const auto footprint = static_cast<float>(random.uniform(2, 60));
-    ASSERT_NEAR(pyramid.at(u, v, footprint).x(), 100, 1e-3);
+    ASSERT_NEAR(color_at(pyramid, u, v, footprint).x(), 100, 1e-3);
   }
-  EXPECT_NEAR(pyramid.at(10, 10, 1.f).x(), 0, 1e-3);
-  const float between = pyramid.at(10, 10, 1.4f).x();
+  EXPECT_NEAR(color_at(pyramid, 10, 10, 1.f).x(), 0, 1e-3);
+  const float between = color_at(pyramid, 10, 10, 1.4f).x();
   EXPECT_GT(between, 30);
   EXPECT_LT(between, 70);
 }
@@ -82,7 +89,7 @@ TEST(ImagePyramid, ASmallFootprintIsBilinear) {
   for (int i = 0; i < 1000; ++i) {
     const double u = random.uniform(0, 30), v = random.uniform(0, 16);
     const auto footprint = static_cast<float>(random.uniform(0, 1));
-    ASSERT_LT((pyramid.at(u, v, footprint) - bilinear(image, u, v)).norm(), 1e-3f);
+    ASSERT_LT((color_at(pyramid, u, v, footprint) - bilinear(image, u, v)).norm(), 1e-3f);
   }
 }
 
@@ -99,7 +106,7 @@ TEST(ImagePyramid, ACoarsePixelIsTheMeanOfItsPixels) {
         }
         mean /= edge * edge;
         const double center = (edge - 1) / 2.0;
-        ASSERT_NEAR(pyramid.at(x + center, y + center, float(edge)).x(), mean, 1.5) << edge;
+        ASSERT_NEAR(color_at(pyramid, x + center, y + center, float(edge)).x(), mean, 1.5) << edge;
       }
     }
   }
@@ -108,9 +115,28 @@ TEST(ImagePyramid, ACoarsePixelIsTheMeanOfItsPixels) {
 TEST(ImagePyramid, IsContinuousInTheFootprint) {
   const ImagePyramid pyramid(noise_image(64, 64, 3, 7));
   for (const float footprint : {1.f, 2.f, 4.f, 8.f, 16.f, 32.f}) {
-    const Eigen::Vector3f below = pyramid.at(30.3, 28.9, footprint * 0.9999f);
-    const Eigen::Vector3f above = pyramid.at(30.3, 28.9, footprint * 1.0001f);
+    const Eigen::Vector3f below = color_at(pyramid, 30.3, 28.9, footprint * 0.9999f);
+    const Eigen::Vector3f above = color_at(pyramid, 30.3, 28.9, footprint * 1.0001f);
     EXPECT_LT((below - above).norm(), 0.1f) << footprint;
+  }
+}
+
+TEST(ImagePyramid, ABlockHasTheColoursOfEachAlone) {
+  const ImagePyramid pyramid(noise_image(57, 43, 3, 9));
+  Random random(10);
+  for (const std::size_t count : {std::size_t{0}, std::size_t{3}, ColorBlock::kSize}) {
+    std::vector<float> u(count), v(count), footprint(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      u[i] = static_cast<float>(random.uniform(0, 56));
+      v[i] = static_cast<float>(random.uniform(0, 42));
+      footprint[i] = static_cast<float>(random.uniform(0, 50));
+    }
+    ColorBlock colors;
+    pyramid.colors_at(u, v, footprint, colors);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3f together(colors.red[i], colors.green[i], colors.blue[i]);
+      ASSERT_LT((together - color_at(pyramid, u[i], v[i], footprint[i])).norm(), 1e-3f);
+    }
   }
 }
 
@@ -122,7 +148,7 @@ TEST(ImagePyramid, OddAndTinyImagesWork) {
       for (const float footprint : {0.f, 1.f, 1.5f, 2.f, 7.f, 1000.f}) {
         for (const double u : {0.0, (width - 1) / 2.0, width - 1.0}) {
           for (const double v : {0.0, height - 1.0}) {
-            const Eigen::Vector3f color = pyramid.at(u, v, footprint);
+            const Eigen::Vector3f color = color_at(pyramid, u, v, footprint);
             ASSERT_GE(color.minCoeff(), 0);
             ASSERT_LE(color.maxCoeff(), 255.001f);
             if (channels == 1) {

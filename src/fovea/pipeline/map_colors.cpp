@@ -7,42 +7,45 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/color_fusion.h"
+#include "fovea/mapping/projected_block.h"
 #include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {
 namespace {
 
-constexpr std::size_t kGrain = 8192;
+constexpr std::size_t kGrain = 8192, kBlock = ColorBlock::kSize;
 /// Radius of the disc that a point stands for over the points' spacing: discs of neighbours
 /// overlap.
 constexpr float kDiscRadius = 0.75f;
 /// Seed of the rounding of colours.
 constexpr std::uint64_t kRounding = 0x636f6c6f7572ull;
 
-float pixels(double length, const Camera& camera, float depth) {
-  return static_cast<float>(length * camera.fx) / depth;
+/// Between rows of one point each and the columns of a tile or cloud.
+void get(const TileColors& colors, std::size_t i, FusedColors& fused, std::size_t j) {
+  fused.red[j] = colors.color[i].r;
+  fused.green[j] = colors.color[i].g;
+  fused.blue[j] = colors.color[i].b;
+  fused.views[j] = colors.views[i];
+  fused.spread[j] = colors.spread[i];
+  fused.weight[j] = colors.weight[i];
 }
-
-Eigen::Vector3f color_at(const ColorView& view, const Eigen::Vector2f& pixel, float depth) {
-  return view.gain *
-         view.image.at(pixel.x(), pixel.y(), pixels(view.footprint, view.camera, depth)).array();
-}
-
-void put(const TileColors& colors, std::size_t i, const FusedColor& fused) {
-  colors.color[i] = fused.color;
-  colors.views[i] = fused.views;
-  colors.spread[i] = fused.spread;
-  colors.weight[i] = fused.weight;
+void put(const TileColors& colors, std::size_t i, const FusedColors& fused, std::size_t j) {
+  colors.color[i] = {fused.red[j], fused.green[j], fused.blue[j]};
+  colors.views[i] = fused.views[j];
+  colors.spread[i] = fused.spread[j];
+  colors.weight[i] = fused.weight[j];
 }
 
 /// Of the exposure: every how many points in view are asked, how many must tell at least, and which
 /// grey values do (darker ones are noise, brighter ones saturated).
-constexpr std::size_t kExposureStep = 16, kMinExposurePoints = 300;
+constexpr std::size_t kExposureStep = 32, kMinExposurePoints = 150;
 constexpr float kDark = 12, kBright = 240;
 /// Logarithm of the gain that is off, and the share of it that is undone.
 constexpr float kOffGain = 0.34f, kUndone = 0.9f;
 
-bool tells_exposure(const Eigen::Vector3f& color) {
+static_assert(kGrain / kExposureStep <= kBlock);
+
+bool tells_exposure(const Eigen::Array3f& color) {
   return color.minCoeff() > kDark && color.maxCoeff() < kBright;
 }
 
@@ -50,6 +53,17 @@ float median(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Whether a ball in the camera's frame may reach into its view.
+bool may_be_in_view(const Camera& camera, const Eigen::Vector3d& center, double radius) {
+  const auto inside = [&](const Eigen::Vector3d& normal) {
+    return normal.normalized().dot(center) >= -radius;
+  };
+  return center.z() + radius > Camera::kMinDepth && inside({camera.fx, 0, camera.cx}) &&
+         inside({-camera.fx, 0, camera.width - 1 - camera.cx}) &&
+         inside({0, camera.fy, camera.cy}) &&
+         inside({0, -camera.fy, camera.height - 1 - camera.cy});
 }
 
 }  // namespace
@@ -72,99 +86,196 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
     for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
   }
   const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight};
-  parallel_for(n, kGrain, [&](std::size_t i) {
-    const Eigen::Vector3f& p = points_cam.position[i];
-    const FusedColor first =
-        fuse({}, color_at(view, pixel_of(view.camera, p), p.z()), view_weight(p.norm()), 0);
-    put(colors, i, first);
+  const PatchColors patches(view);
+  parallel_chunks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    PatchPlaces places;
+    SeenColors seen{};
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3f& p = points_cam.position[i];
+      places.put(i - begin, pixel_of(view.camera, p), p.z());
+      seen.weight[i - begin] = view_weight(p.norm());
+    }
+    patches.at(places, end - begin, seen.color);
+    FusedColors fused{};
+    fuse(fused, seen, end - begin);
+    for (std::size_t i = begin; i < end; ++i) put(colors, i, fused, i - begin);
   });
 }
 
-SeenMap::SeenMap(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
-                 double spacing)
-    : region_(region), spacing_(spacing), front_(region.camera()) {
-  const Eigen::Vector3d lidar_local =
-      T_cam_local.inverse() * region.camera().T_cam_lidar.translation();
-  map.for_each_tile_near(lidar_local, region.far_range(),
-                         [&](const TileId& id, const PointCloud& points) {
-                           tiles_.push_back({id, &points, {}});
-                         });
-  parallel_for(tiles_.size(), 1, [&](std::size_t k) { look_at(map, T_cam_local, tiles_[k]); });
-  for (const Tile& tile : tiles_) {
-    for (const Point& point : tile.seen) put_in_front(point.pixel, point.depth);
-  }
+void SeenMap::gather(const TileMap& map, const FovealRegion& region,
+                     const RigidMotion& T_cam_local) {
+  pieces_.clear();
+  std::size_t first = 0;
+  // A tile's ball, and a hair for points that rounding has put outside the tile.
+  const double half = map.tile_size() / 2, radius = half * 1.7321 + 1e-3;
+  const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
+  map.for_each_tile_near(
+      lidar_local, region.far_range(), [&](const TileId& id, const PointCloud& points) {
+        const Eigen::Vector3d center = T_cam_local * map.submaps()[id.submap].T_local_submap *
+                                       (points.origin + Eigen::Vector3d::Constant(half));
+        if (!may_be_in_view(camera_, center, radius)) return;
+        const auto size = static_cast<std::uint32_t>(points.size());
+        for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kGrain)) {
+          const std::uint32_t end = std::min(size, begin + std::uint32_t(kGrain));
+          pieces_.push_back({id, &points, begin, end, first, 0});
+          first += end - begin;
+        }
+      });
+  if (points_.size() < first) points_.resize(first);
 }
 
-void SeenMap::look_at(const TileMap& map, const RigidMotion& T_cam_local, Tile& tile) const {
-  const Camera& camera = region_.camera();
-  const RigidMotion T_cam_submap = T_cam_local * map.submaps()[tile.id.submap].T_local_submap;
+void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
+                   double spacing) {
+  camera_ = region.camera();
+  disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
+  gather(map, region, T_cam_local);
+  parallel_for(kShares, 1, [&](std::size_t share) {
+    fronts_[share].clear(camera_);
+    for (std::size_t k = share; k < pieces_.size(); k += kShares) {
+      look_at(map, region, T_cam_local, pieces_[k], fronts_[share]);
+    }
+  });
+  std::swap(front_, fronts_[0]);
+  for (std::size_t share = 1; share < kShares; ++share) front_.add(fronts_[share]);
+}
+
+void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
+                      const RigidMotion& T_cam_local, Piece& piece, DepthBuffer& front) {
+  const RigidMotion T_cam_submap = T_cam_local * map.submaps()[piece.tile.submap].T_local_submap;
   const Eigen::Matrix3f R = T_cam_submap.linear().cast<float>();
-  const Eigen::Vector3f t = (T_cam_submap * tile.points->origin).cast<float>();
-  const auto right = static_cast<float>(camera.width - 1);
-  const auto bottom = static_cast<float>(camera.height - 1);
-  for (std::uint32_t i = 0; i < tile.points->size(); ++i) {
-    const Eigen::Vector3f p = R * tile.points->position[i] + t;
-    if (!(p.z() > float(Camera::kMinDepth))) continue;
-    Eigen::Vector2f pixel = pixel_of(camera, p);
-    if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= right && pixel.y() <= bottom)) continue;
-    const bool in_region = region_.contains(p, pixel);
-    tile.seen.push_back({i, pixel, p.z(), p.norm(), in_region});
+  const Eigen::Vector3f t = (T_cam_submap * piece.points->origin).cast<float>();
+  ProjectedBlock block(camera_);
+  std::array<std::uint16_t, ProjectedBlock::kSize> weight;
+  DepthBuffer::Samples samples;
+  Point* out = points_.data() + piece.first;
+  for (std::uint32_t begin = piece.begin; begin < piece.end;) {
+    const std::uint32_t n = std::min(piece.end - begin, std::uint32_t(ProjectedBlock::kSize));
+    block.project({piece.points->position.data() + begin, n}, R, t);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      const int in_zone = region.in_white_zone(block.p_cam(i));
+      weight[i] = static_cast<std::uint16_t>(in_zone * view_weight(block.distance(i)));
+    }
+    if (region.has_slices()) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        if (weight[i] != 0 && !region.in_slices(block.p_cam(i))) weight[i] = 0;
+      }
+    }
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      // Written always, and kept by a step on: no branch, which nobody could foresee.
+      out[count] = {begin + i, block.pixel(i).x(), block.pixel(i).y(), block.depth(i), weight[i]};
+      samples.put(count, block.pixel(i), block.depth(i));
+      count += block.in_view(i);
+    }
+    front.add(samples, count, disc_radius_);
+    out += count;
+    piece.seen += count;
+    begin += n;
   }
 }
 
-void SeenMap::put_in_front(const Eigen::Vector2f& pixel, float depth) {
-  front_.add(pixel, depth, kDiscRadius * pixels(spacing_, region_.camera(), depth));
+void SeenMap::put_in_front(const PointCloud& points_cam) {
+  ProjectedBlock block(camera_);
+  DepthBuffer::Samples samples;
+  for (std::size_t begin = 0; begin < points_cam.size(); begin += kBlock) {
+    const std::size_t n = std::min(kBlock, points_cam.size() - begin);
+    block.project({points_cam.position.data() + begin, n}, Eigen::Matrix3f::Identity(),
+                  Eigen::Vector3f::Zero());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
+    }
+    front_.add(samples, count, disc_radius_);
+  }
 }
 
 std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) const {
   std::vector<std::uint8_t> marks(points_cam.size(), 0);
-  const Camera& camera = region_.camera();
   parallel_for(marks.size(), kGrain, [&](std::size_t i) {
     const Eigen::Vector3f& p = points_cam.position[i];
-    const Eigen::Vector2f pixel = pixel_of(camera, p);
-    marks[i] = camera.in_view(pixel.cast<double>()) && front_.stands_before(pixel, p.z());
+    const Eigen::Vector2f pixel = pixel_of(camera_, p);
+    marks[i] = camera_.in_view(pixel.cast<double>()) && front_.stands_before(pixel, p.z());
   });
   return marks;
 }
 
-Eigen::Array3f SeenMap::gain_to_map(const TileMap& map, const ColorView& view) const {
-  std::array<std::vector<float>, 3> logs;
-  for (const Tile& tile : tiles_) {
-    const PointCloud& points = map.submaps()[tile.id.submap].tiles.at(tile.id.key);
-    for (std::size_t k = 0; k < tile.seen.size(); k += kExposureStep) {
-      const Point& point = tile.seen[k];
-      if (!point.in_region || points.views[point.index] < 2) continue;
-      if (front_.hides(point.pixel, point.depth)) continue;
-      const Eigen::Vector3f known = to_float(points.color[point.index]);
-      const Eigen::Vector3f seen = color_at(view, point.pixel, point.depth);
-      if (!tells_exposure(known) || !tells_exposure(seen)) continue;
-      for (int c = 0; c < 3; ++c) logs[std::size_t(c)].push_back(std::log(known[c] / seen[c]));
-    }
+std::vector<Eigen::Array3f> SeenMap::gains_at(const Piece& piece,
+                                              const PatchColors& patches) const {
+  const PointCloud& tile = *piece.points;
+  const std::span<const Point> points = seen(piece);
+  PatchPlaces places;
+  std::array<Eigen::Array3f, kBlock> known;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < points.size(); i += kExposureStep) {
+    const Point& point = points[i];
+    if (point.weight == 0 || tile.views[point.index] < 2) continue;
+    if (front_.hides(point.pixel(), point.depth)) continue;
+    known[n] = to_float(tile.color[point.index]).array();
+    places.put(n++, point.pixel(), point.depth);
   }
-  if (logs[0].size() < kMinExposurePoints) return Eigen::Array3f::Ones();
-  return Eigen::Array3f(median(logs[0]), median(logs[1]), median(logs[2])).exp();
+  ColorBlock here;
+  patches.at(places, n, here);
+  std::vector<Eigen::Array3f> gains;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Eigen::Array3f color(here.red[j], here.green[j], here.blue[j]);
+    if (tells_exposure(known[j]) && tells_exposure(color)) gains.push_back(known[j] / color);
+  }
+  return gains;
 }
 
-std::size_t SeenMap::recolour(TileMap& map, const ColorView& view,
-                              const PointCloud& new_points_cam) {
-  for (const Eigen::Vector3f& p : new_points_cam.position) {
-    const Eigen::Vector2f pixel = pixel_of(view.camera, p);
-    if (view.camera.in_view(pixel.cast<double>())) put_in_front(pixel, p.z());
+Eigen::Array3f SeenMap::gain_to_map(const ColorView& view) const {
+  const PatchColors patches(view);
+  std::vector<std::vector<Eigen::Array3f>> of_piece(pieces_.size());
+  parallel_for(pieces_.size(), 1,
+               [&](std::size_t k) { of_piece[k] = gains_at(pieces_[k], patches); });
+  Eigen::Array3f gain = Eigen::Array3f::Ones();
+  parallel_for(3, 1, [&](std::size_t channel) {
+    std::vector<float> gains;
+    for (const std::vector<Eigen::Array3f>& piece : of_piece) {
+      for (const Eigen::Array3f& ratio : piece) gains.push_back(ratio[Eigen::Index(channel)]);
+    }
+    if (gains.size() >= kMinExposurePoints) gain[Eigen::Index(channel)] = median(gains);
+  });
+  return gain;
+}
+
+std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,
+                                    const PatchColors& patches, const Random::Items& noise) const {
+  std::array<const Point*, kBlock> visible;
+  std::size_t n = 0;
+  for (const Point& point : points) {
+    visible[n] = &point;
+    n += point.weight != 0 && !front_.hides(point.pixel(), point.depth);
   }
+  PatchPlaces places;
+  FusedColors fused;
+  SeenColors seen;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Point& point = *visible[j];
+    places.put(j, point.pixel(), point.depth);
+    get(colors, point.index, fused, j);
+    const std::uint64_t bits = noise.of(point.index).next();
+    seen.noise[0][j] = static_cast<std::uint32_t>(bits);
+    seen.noise[1][j] = static_cast<std::uint32_t>(bits >> 32);
+    seen.weight[j] = point.weight;
+  }
+  patches.at(places, n, seen.color);
+  fuse(fused, seen, n);
+  for (std::size_t j = 0; j < n; ++j) put(colors, visible[j]->index, fused, j);
+  return n;
+}
+
+std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
   const auto camera = static_cast<std::uint64_t>(view.camera.index);
-  const std::uint64_t seed = static_cast<std::uint64_t>(view.frame) << 8 | camera;
-  return parallel_sum(tiles_.size(), 1, std::size_t{0}, [&](std::size_t k, std::size_t) {
-    const TileColors colors = map.colors(tiles_[k].id);
+  const Random::Items noise(static_cast<std::uint64_t>(view.frame) << 8 | camera, kRounding);
+  const PatchColors patches(view);
+  return parallel_sum(pieces_.size(), 1, std::size_t{0}, [&](std::size_t k, std::size_t) {
+    const TileColors colors = map.colors(pieces_[k].tile);
+    const std::span<const Point> points = seen(pieces_[k]);
     std::size_t count = 0;
-    for (const Point& point : tiles_[k].seen) {
-      if (!point.in_region || front_.hides(point.pixel, point.depth)) continue;
-      const std::uint32_t i = point.index;
-      const FusedColor fused =
-          fuse({colors.color[i], colors.views[i], colors.spread[i], colors.weight[i]},
-               color_at(view, point.pixel, point.depth), view_weight(point.distance),
-               Random::of_item(seed, kRounding, i).next());
-      put(colors, i, fused);
-      ++count;
+    for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
+      count += recolour_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),
+                              colors, patches, noise);
     }
     return count;
   });

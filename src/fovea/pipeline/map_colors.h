@@ -2,22 +2,16 @@
 // again (docs/method.md 5, 6).
 #pragma once
 
+#include <array>
+#include <span>
+
+#include "fovea/base/random.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/depth_buffer.h"
 #include "fovea/mapping/foveal_region.h"
-#include "fovea/mapping/image_pyramid.h"
+#include "fovea/pipeline/patch_colors.h"
 
 namespace fovea {
-
-/// An image that colours points.
-struct ColorView {
-  const ImagePyramid& image;
-  const Camera& camera;
-  int frame = 0;
-  double footprint = 0.02;  ///< m: edge of the patch of surface whose mean colour a point gets
-  /// By which the image's colours are multiplied, a channel.
-  Eigen::Array3f gain = Eigen::Array3f::Ones();
-};
 
 /// Whether an image's exposure is so far off the map's that its colours must not be mixed with
 /// those of others: by over 40 %. What automatic exposure does from frame to frame is less.
@@ -32,48 +26,69 @@ Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map);
 ///                    `reason` is marked where a gain has matched the view's exposure
 void colour_new_points(PointCloud& points_cam, const ColorView& view);
 
-/// The points of a map in one camera's view, at one moment.
+/// The points of a map in one camera's view, at one moment. One object serves all views in turn:
+/// its memory stays.
 class SeenMap {
  public:
+  /// Looks at a map, and forgets what was seen before.
+  /// @param map      no point may come or go as long as this view of it is used
   /// @param region   what may be coloured; it knows the camera
   /// @param spacing  of the map's points, m
-  SeenMap(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
-          double spacing);
+  void look(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
+            double spacing);
 
   /// Marks (1) points that stand before the map, where it has been seen already: something has come
   /// between. Along a ray what is near comes into the foveal region first, so that what stands
   /// still is in the map before its background is.
   std::vector<std::uint8_t> marks_before(const PointCloud& points_cam) const;
 
+  /// From now on these points, new ones that are not in the map, hide what is behind them, too.
+  void put_in_front(const PointCloud& points_cam);
+
   /// The gain, a channel, that brings the view's colours to those of the map: the median over
   /// points of two views and more. 1 where too few tell.
-  Eigen::Array3f gain_to_map(const TileMap& map, const ColorView& view) const;
+  Eigen::Array3f gain_to_map(const ColorView& view) const;
 
-  /// Fuses the view's colours into the points in the region that neither other points of the map
-  /// nor new ones hide. To be called once.
-  /// @param map             the same, not changed since
-  /// @param new_points_cam  of the frame at hand, not in the map: they hide, too
+  /// Fuses the view's colours into the points in the region that nothing hides. Once for each
+  /// look().
+  /// @param map  the one looked at
   /// @return how many points were in view
-  std::size_t recolour(TileMap& map, const ColorView& view, const PointCloud& new_points_cam);
+  std::size_t recolour(TileMap& map, const ColorView& view) const;
 
  private:
   struct Point {
     std::uint32_t index;  // in its tile
-    Eigen::Vector2f pixel;
-    float depth, distance;  // m
-    bool in_region;
+    float u, v, depth;
+    std::uint16_t weight;  // of this view; 0: outside the region
+    Eigen::Vector2f pixel() const { return {u, v}; }
   };
-  struct Tile {
-    TileId id;
+  /// Points of a tile; of one length, so that threads share the work evenly.
+  struct Piece {
+    TileId tile;
     const PointCloud* points;
-    std::vector<Point> seen;
+    std::uint32_t begin, end;  // in the tile
+    std::size_t first, seen;   // in points_
   };
-  void look_at(const TileMap& map, const RigidMotion& T_cam_local, Tile& tile) const;
-  void put_in_front(const Eigen::Vector2f& pixel, float depth);
+  /// A share of the pieces has its own depth buffer, for threads not to wait for each other.
+  static constexpr std::size_t kShares = 4;
 
-  const FovealRegion& region_;
-  double spacing_;
-  std::vector<Tile> tiles_;
+  void gather(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local);
+  void look_at(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
+               Piece& piece, DepthBuffer& front);
+  /// What brings the view's colours to the map's, of some points of a piece.
+  std::vector<Eigen::Array3f> gains_at(const Piece& piece, const PatchColors& patches) const;
+  /// @return how many of the points were in view
+  std::size_t recolour_block(std::span<const Point> points, const TileColors& colors,
+                             const PatchColors& patches, const Random::Items& noise) const;
+  std::span<const Point> seen(const Piece& piece) const {
+    return {points_.data() + piece.first, piece.seen};
+  }
+
+  Camera camera_;
+  float disc_radius_ = 0;  // that a point stands for, pixels at a depth of 1 m
+  std::vector<Piece> pieces_;
+  std::vector<Point> points_;
+  std::array<DepthBuffer, kShares> fronts_;
   DepthBuffer front_;
 };
 

@@ -58,8 +58,15 @@ struct TestView {
   TestView(const TestView&) = delete;
   TestView& operator=(const TestView&) = delete;
 
+  SeenMap look(const TileMap& map) const {
+    SeenMap seen;
+    seen.look(map, region, T_cam_local, kSpacing);
+    return seen;
+  }
   std::size_t recolour(TileMap& map, const PointCloud& new_points_cam = {}) const {
-    return SeenMap(map, region, T_cam_local, kSpacing).recolour(map, view, new_points_cam);
+    SeenMap seen = look(map);
+    seen.put_in_front(new_points_cam);
+    return seen.recolour(map, view);
   }
 };
 
@@ -185,7 +192,7 @@ TEST(Recolour, AWallGetsTheWeightedMeanOfItsViews) {
     Eigen::Vector3d sum = weight * Eigen::Vector3d(1, 2, 3);
     double squares = weight * Eigen::Vector3d(1, 2, 3).squaredNorm();
     for (const auto& [color, T_cam_local] : views) {
-      const double w = view_weight((T_cam_local * p).norm());
+      const double w = view_weight(static_cast<float>((T_cam_local * p).norm()));
       const Eigen::Vector3d seen = to_float(color).cast<double>();
       sum += w * seen;
       squares += w * seen.squaredNorm();
@@ -265,6 +272,35 @@ TEST(Recolour, PointsOutsideTheRegionStayAsTheyAre) {
   EXPECT_LE(seen, inside);
 }
 
+// Tiles are left out whole where the camera does not look; none that holds a point in view is.
+TEST(Recolour, FindsEveryPointInViewWhereverItsTileLies) {
+  Random random(5);
+  std::size_t all_inside = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Twist twist;
+    for (double& value : twist) value = random.uniform(-1.5, 1.5);
+    const RigidMotion T_cam_local = exp_se3(twist);
+    std::vector<Eigen::Vector3f> positions;  // so few that none hides another
+    for (int i = 0; i < 300; ++i) {
+      positions.push_back(
+          Eigen::Vector3d(random.uniform(-19, 19), random.uniform(-19, 19), random.uniform(-19, 19))
+              .cast<float>());
+    }
+    TileMap map = map_of(positions);
+    const TestView view(image_of({200, 200, 200}), T_cam_local);
+    view.recolour(map);
+    std::size_t seen = 0, inside = 0;
+    for_each_point(map, [&](const Eigen::Vector3d& p, const PointCloud& tile, std::size_t i) {
+      Eigen::Vector2f pixel;
+      inside += view.region.contains((T_cam_local * p).cast<float>(), pixel);
+      seen += tile.views[i] == 2;
+    });
+    EXPECT_GE(seen + 1, inside) << trial;  // one may hide another
+    all_inside += inside;
+  }
+  EXPECT_GT(all_inside, 150u);
+}
+
 // Nearer than the near blind zone nothing is coloured, but it hides.
 TEST(Recolour, WhatIsOutsideTheRegionHidesToo) {
   TileMap map = map_of(wall(8, -1, 1, -0.3, 0.3));
@@ -279,14 +315,15 @@ TEST(SeenMap, MarksWhatStandsBeforeTheMap) {
   const Camera camera = test_camera();
   const FovealRegion region(white_zone(1), camera);
   const TileMap map = map_of(wall(8, -1, 1, -0.5, 0.5));
-  const SeenMap seen(map, region, RigidMotion::Identity(), kSpacing);
+  SeenMap seen;
+  seen.look(map, region, RigidMotion::Identity(), kSpacing);
   PointCloud points;
   points.position = {{0, 0, 5},       {0.2f, 0.1f, 7.5f}, {0, 0, 7.7f}, {0, 0, 8},
                      {0, 0, 8.5f},    {-0.3f, 0, 3},      {2, 0, 5},  // beside the wall
                      {0.4f, -0.2f, 4}};
   EXPECT_EQ(seen.marks_before(points), (std::vector<std::uint8_t>{1, 1, 0, 0, 0, 1, 0, 1}));
-  EXPECT_EQ(SeenMap(TileMap(), region, RigidMotion::Identity(), kSpacing).marks_before(points),
-            std::vector<std::uint8_t>(8, 0));
+  seen.look(TileMap(), region, RigidMotion::Identity(), kSpacing);
+  EXPECT_EQ(seen.marks_before(points), std::vector<std::uint8_t>(8, 0));
 }
 
 // A wall whose points have two views of one colour, and a third image of another exposure.
@@ -300,7 +337,7 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
   map.add(points);
   const auto gain_of = [&](const Rgb& color) {
     const TestView view(image_of(color));
-    return SeenMap(map, view.region, view.T_cam_local, kSpacing).gain_to_map(map, view.view);
+    return view.look(map).gain_to_map(view.view);
   };
   EXPECT_LT((gain_of({100, 60, 80}) - 1).abs().maxCoeff(), 1e-3);
   EXPECT_LT((gain_of({200, 120, 160}) - 0.5f).abs().maxCoeff(), 1e-3);
@@ -324,8 +361,7 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
 TEST(Exposure, FewPointsSayNothing) {
   TileMap map = map_of(wall(8, -0.1, 0.1, -0.1, 0.1));
   const TestView view(image_of({200, 200, 200}));
-  const SeenMap seen(map, view.region, view.T_cam_local, kSpacing);
-  EXPECT_EQ(seen.gain_to_map(map, view.view).matrix(), Eigen::Vector3f::Ones());
+  EXPECT_EQ(view.look(map).gain_to_map(view.view).matrix(), Eigen::Vector3f::Ones());
 }
 
 TEST(Recolour, AnEmptyMapAndAViewOfNothingAreNormal) {

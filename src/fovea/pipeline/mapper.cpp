@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/foveal_query.h"
-#include "fovea/pipeline/map_colors.h"
 #include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
@@ -16,6 +16,7 @@ namespace {
 
 /// Samples lie at most this far beyond the foveal region (m).
 constexpr double kMargin = 1.0;
+constexpr std::size_t kGrain = 1024;  // points
 
 double as_figure(std::size_t count) { return static_cast<double>(count); }
 
@@ -44,14 +45,15 @@ PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>&
 }
 
 /// The points that are not marked; `left_out` counts the others.
-PointCloud without(const PointCloud& points, const std::vector<std::uint8_t>& marks,
-                   double& left_out) {
+PointCloud without(PointCloud points, const std::vector<std::uint8_t>& marks, double& left_out) {
   std::vector<std::uint32_t> kept;
+  kept.reserve(marks.size());
   for (std::uint32_t i = 0; i < marks.size(); ++i) {
     if (marks[i] == 0) kept.push_back(i);
   }
   left_out += as_figure(marks.size() - kept.size());
-  return points.select(kept);
+  points.keep(kept);
+  return points;
 }
 
 /// Poses that are given are not corrected, nor those of the paper's pairwise chain.
@@ -203,12 +205,12 @@ PointCloud Mapper::foveal_part(const PointCloud& scan_lidar, const FovealRegion&
   if (options_.ray_filter.mode != RayFilterMode::kScan) return foveal_cam;
   return clock.time("filter", [&] {
     const ScanProjection projection(scan_lidar, camera);
-    std::vector<std::uint8_t> hidden;
-    for (const Eigen::Vector3f& position : foveal_cam.position) {
-      const Eigen::Vector3d p = position.cast<double>();
-      hidden.push_back(projection.hidden(camera.project(p).value(), p.norm()));
-    }
-    return without(foveal_cam, hidden, record.figures["filter_hidden"]);
+    std::vector<std::uint8_t> hidden(foveal_cam.size());
+    parallel_for(hidden.size(), kGrain, [&](std::size_t i) {
+      const Eigen::Vector3d p = foveal_cam.position[i].cast<double>();
+      hidden[i] = projection.hidden(camera.project(p).value(), p.norm());
+    });
+    return without(std::move(foveal_cam), hidden, record.figures["filter_hidden"]);
   });
 }
 
@@ -233,6 +235,27 @@ PointCloud Mapper::filter_rays(const PointCloud& dense_cam, const FovealRegion& 
   return keep_visible(dense_cam, verdicts, record.figures);
 }
 
+PointCloud Mapper::visible_part(PointCloud dense_cam, const FovealRegion& region,
+                                const RigidMotion& T_local_lidar, FrameRecord& record) {
+  const bool is_scan_mode = options_.ray_filter.mode == RayFilterMode::kScan;
+  std::vector<std::uint8_t> before;
+  if (is_scan_mode || options_.texture.views == TextureViews::kMean) {
+    seen_map_.look(map_, region, region.camera().T_cam_lidar * T_local_lidar.inverse(),
+                   occupancy_ ? occupancy_->cell() : options_.texture.footprint);
+    if (is_scan_mode) before = seen_map_.marks_before(dense_cam);
+    seen_map_.put_in_front(dense_cam);
+  }
+  switch (options_.ray_filter.mode) {
+    case RayFilterMode::kPaper:
+      return filter_rays(dense_cam, region, T_local_lidar, record);
+    case RayFilterMode::kScan:
+      return without(std::move(dense_cam), before, record.figures["filter_occluding"]);
+    case RayFilterMode::kOff:
+      break;
+  }
+  return dense_cam;
+}
+
 void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
                         const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
   const Camera& camera = cameras_[camera_slot];
@@ -245,26 +268,8 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
   record.figures["points_oblique"] += as_figure(oblique);
 
-  std::optional<SeenMap> seen;
-  if (options_.ray_filter.mode == RayFilterMode::kScan ||
-      options_.texture.views == TextureViews::kMean) {
-    clock.time("filter", [&] {
-      seen.emplace(map_, region, T_local_cam.inverse(),
-                   occupancy_ ? occupancy_->cell() : options_.texture.footprint);
-    });
-  }
-  PointCloud visible_cam = clock.time("filter", [&] {
-    switch (options_.ray_filter.mode) {
-      case RayFilterMode::kPaper:
-        return filter_rays(dense_cam, region, T_local_lidar, record);
-      case RayFilterMode::kScan:
-        return without(dense_cam, seen->marks_before(dense_cam),
-                       record.figures["filter_occluding"]);
-      case RayFilterMode::kOff:
-        break;
-    }
-    return dense_cam;
-  });
+  PointCloud visible_cam = clock.time(
+      "filter", [&] { return visible_part(std::move(dense_cam), region, T_local_lidar, record); });
   clock.time("texture", [&] {
     const Image& image = frame.images[camera_slot];
     if (options_.texture.views == TextureViews::kFirst) {
@@ -273,21 +278,23 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
     }
     const ImagePyramid pyramid(image);
     ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
-    const Eigen::Array3f gain = seen->gain_to_map(map_, view);
+    const Eigen::Array3f gain = seen_map_.gain_to_map(view);
     if (is_exposure_off(gain)) {
       view.gain = matching_gain(gain);
       ++record.figures["exposure_off"];
     } else {
-      record.figures["points_recoloured"] += as_figure(seen->recolour(map_, view, dense_cam));
+      record.figures["points_recoloured"] += as_figure(seen_map_.recolour(map_, view));
     }
     colour_new_points(visible_cam, view);
   });
-  PointCloud added_local = transform_cloud(visible_cam, T_local_cam, T_local_lidar.translation());
+  visible_cam.normal.clear();  // a map has none
+  PointCloud added_local =
+      transform_cloud(std::move(visible_cam), T_local_cam, T_local_lidar.translation());
   if (options_.moving.remove) {
     added_local = clock.time("filter", [&] {
-      return without(added_local,
-                     moving_things_.marks(added_local, fusion_.T_local_odom().inverse()),
-                     record.figures["filter_moving"]);
+      const std::vector<std::uint8_t> moving =
+          moving_things_.marks(added_local, fusion_.T_local_odom().inverse());
+      return without(std::move(added_local), moving, record.figures["filter_moving"]);
     });
   }
   clock.time("store", [&] {

@@ -8,6 +8,7 @@
 #include "fovea/map/occupancy.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/ray_filter.h"
+#include "fovea/pipeline/map_colors.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/moving_things.h"
@@ -75,6 +76,9 @@ class Mapper {
   /// What the paper's ray filter leaves.
   PointCloud filter_rays(const PointCloud& dense_cam, const FovealRegion& region,
                          const RigidMotion& T_local_lidar, FrameRecord& record);
+  /// What the ray filter leaves; the map is looked at where it or the texture asks for that.
+  PointCloud visible_part(PointCloud dense_cam, const FovealRegion& region,
+                          const RigidMotion& T_local_lidar, FrameRecord& record);
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
                       const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
 
@@ -87,6 +91,7 @@ class Mapper {
   RayFilter ray_filter_;
   MovingThings moving_things_;
   TileMap map_;
+  SeenMap seen_map_;
   std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid
   /// Where the cameras were when the images of the frame at hand were taken.
   std::vector<Camera> cameras_;

@@ -1,0 +1,38 @@
+#include "fovea/mapping/projected_block.h"
+
+#include <cmath>
+
+namespace fovea {
+
+ProjectedBlock::ProjectedBlock(const Camera& camera)
+    : fx_(static_cast<float>(camera.fx)),
+      fy_(static_cast<float>(camera.fy)),
+      cx_(static_cast<float>(camera.cx)),
+      cy_(static_cast<float>(camera.cy)),
+      right_(static_cast<float>(camera.width - 1)),
+      bottom_(static_cast<float>(camera.height - 1)) {}
+
+void ProjectedBlock::project(std::span<const Eigen::Vector3f> points_b,
+                             const Eigen::Matrix3f& R_cam_b, const Eigen::Vector3f& t_cam_b) {
+  // Copies: the compiler cannot know that the rows do not overlap what a reference refers to.
+  const Eigen::Matrix3f R = R_cam_b;
+  const Eigen::Vector3f t = t_cam_b;
+  const float fx = fx_, fy = fy_, cx = cx_, cy = cy_, right = right_, bottom = bottom_;
+  const std::size_t n = points_b.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const float x = points_b[i].x(), y = points_b[i].y(), z = points_b[i].z();
+    x_[i] = R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t.x();
+    y_[i] = R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t.y();
+    z_[i] = R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t.z();
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    u_[i] = fx * x_[i] / z_[i] + cx;
+    v_[i] = fy * y_[i] / z_[i] + cy;
+    distance_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
+    // Bits, not conditions: no branch.
+    in_view_[i] = (z_[i] > float(Camera::kMinDepth)) & (u_[i] >= 0) & (v_[i] >= 0) &
+                  (u_[i] <= right) & (v_[i] <= bottom);
+  }
+}
+
+}  // namespace fovea
