@@ -9,7 +9,6 @@
 #include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/foveal_query.h"
-#include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
 namespace {
@@ -56,29 +55,12 @@ PointCloud without(PointCloud points, const std::vector<std::uint8_t>& marks, do
   return points;
 }
 
-/// Poses that are given are not corrected, nor those of the paper's pairwise chain.
-bool fuses(const MapperOptions& options, PoseSource pose_source) {
-  return options.fusion.enabled && pose_source == PoseSource::kRefine &&
-         options.refinement.target == RegistrationTarget::kLocalMap;
-}
-
-FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_source) {
-  FusionOptions fusion = options.fusion;
-  fusion.enabled = fuses(options, pose_source);
-  return fusion;
-}
-
 }  // namespace
 
 Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
     : drive_(drive),
       options_(options),
-      pose_source_(pose_source),
-      motion_model_(
-          drive.navigation ? &*drive.navigation : nullptr,
-          {.interpolate = options.interpolate_navigation, .doubt = fuses(options, pose_source)}),
-      refiner_(options.refinement, drive.calibration.cameras),
-      fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
+      tracker_(drive, options, pose_source),
       moving_things_(options.moving),
       map_(options.tile_size) {
   options.validate();
@@ -87,47 +69,32 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
 
 FrameRecord Mapper::process(const Frame& frame, bool held_out,
                             const std::optional<RigidMotion>& given_pose) {
-  StageClock clock;
-  FrameRecord record;
-  record.index = frame.index;
-  record.stamp = frame.stamp;
-  record.status = held_out ? FrameStatus::kHeldOut : FrameStatus::kMapped;
-  record.figures["points_scan"] = as_figure(frame.scan.size());
-  record.figures["points_dropped"] = as_figure(frame.dropped_points);
+  return add(frame, track(frame, held_out, given_pose));
+}
 
-  // Where are we, and how do we move?
-  const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
-  const MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
-  record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
+TrackedFrame Mapper::track(const Frame& frame, bool held_out,
+                           const std::optional<RigidMotion>& given_pose) {
+  return tracker_.track(frame, held_out, given_pose);
+}
 
-  // Pose refinement.
-  Placed placed = place(frame, motion, given_pose, clock);
-  const PointCloud scan_lidar = std::move(placed.scan_lidar);
-  if (compensates()) record.velocity = placed.velocity;
-  record.note = placed.refined.note;
-  record.figures.merge(placed.refined.figures);
-  record.T_odom_lidar = placed.refined.T_odom_lidar;
-  motion_model_.update(frame.stamp, record.T_odom_lidar);
-  clock.time("register", [&] {
-    fusion_.track(record);
-    if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
-  });
-  follow_submaps();
-  if (!held_out && registers()) {
-    refiner_.keep(std::move(placed.refined.cloud), record.T_odom_lidar, clock);
-  }
+FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
+  FrameRecord record = std::move(tracked.record);
+  StageClock& clock = tracked.clock;
+  const PointCloud& scan_lidar = tracked.scan_lidar;
+  follow_submaps(tracked.submaps);
+  T_odom_local_ = tracked.T_local_odom.inverse();
 
   // Foveal processing, ray filtering and texture mapping, camera by camera.
-  if (!held_out) {
+  if (record.status != FrameStatus::kHeldOut) {
     if (options_.moving.remove) {
       record.figures["moving_removed"] = as_figure(clock.time("filter", [&] {
-        return moving_things_.observe(map_, scan_lidar, record.T_odom_lidar,
-                                      fusion_.T_local_odom().inverse(), frame.index);
+        return moving_things_.observe(map_, scan_lidar, record.T_odom_lidar, T_odom_local_,
+                                      frame.index);
       }));
     }
     cameras_.clear();
     for (const Camera& camera : drive_.calibration.cameras) {
-      cameras_.push_back(camera.at_image(placed.velocity));
+      cameras_.push_back(camera.at_image(tracked.velocity));
     }
     if (options_.foveal_enabled) {
       for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
@@ -142,55 +109,13 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
   return record;
 }
 
-PointCloud Mapper::compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const {
-  PointCloud scan_lidar = scan;
-  if (velocity) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
-  return scan_lidar;
-}
-
-Mapper::Placed Mapper::place(const Frame& frame, const MotionPrediction& motion,
-                             const std::optional<RigidMotion>& given_pose,
-                             StageClock& clock) const {
-  std::optional<Placed> best;
-  for (const MotionGuess& guess : motion.guesses) {
-    Placed placed;
-    placed.velocity = guess.velocity;
-    placed.scan_lidar = clock.time("register", [&] {
-      return compensated(frame.scan, compensates() ? guess.velocity : std::nullopt);
-    });
-    if (pose_source_ == PoseSource::kNavigation) {
-      placed.refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
-    } else if (given_pose) {
-      if (registers()) placed.refined.cloud = refiner_.prepare(placed.scan_lidar, clock);
-      placed.refined.T_odom_lidar = *given_pose;
-    } else {
-      placed.refined = refiner_.refine(placed.scan_lidar, guess.T_odom_lidar, clock);
-    }
-    if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
-  }
-  return std::move(*best);
-}
-
-bool Mapper::compensates() const { return options_.compensate_motion && !drive_.sweep_compensated; }
-
-bool Mapper::registers() const {
-  return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
-}
-
-void Mapper::follow_submaps() {
-  const std::vector<RigidMotion>& poses = fusion_.submaps();
+void Mapper::follow_submaps(const std::vector<RigidMotion>& poses) {
   for (std::size_t id = 0; id < poses.size(); ++id) {
     if (id < map_.submaps().size()) {
       map_.move_submap(id, poses[id]);
     } else {
       map_.add_submap(poses[id]);
     }
-  }
-}
-
-void Mapper::settle(std::vector<FrameRecord>& records) const {
-  for (FrameRecord& record : records) {
-    if (record.submap >= 0) record.T_local_lidar = fusion_.T_local_lidar(record);
   }
 }
 
@@ -292,8 +217,7 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
       transform_cloud(std::move(visible_cam), T_local_cam, T_local_lidar.translation());
   if (options_.moving.remove) {
     added_local = clock.time("filter", [&] {
-      const std::vector<std::uint8_t> moving =
-          moving_things_.marks(added_local, fusion_.T_local_odom().inverse());
+      const std::vector<std::uint8_t> moving = moving_things_.marks(added_local, T_odom_local_);
       return without(std::move(added_local), moving, record.figures["filter_moving"]);
     });
   }
@@ -345,13 +269,11 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
   const int first_looked_at = first_to_replay(records);
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
-    motion_model_.update(record.stamp.value(), record.T_odom_lidar);
-    FrameRecord tracked = record;
-    fusion_.track(tracked);
-    follow_submaps();
+    tracker_.follow(record);
+    follow_submaps(tracker_.submaps());
     if (record.status == FrameStatus::kHeldOut) continue;
     const bool looked_at = record.index >= first_looked_at;
-    if (!looked_at && !fusion_.wants_scan()) continue;
+    if (!looked_at && !tracker_.wants_scan()) continue;
     const FrameResult frame = source.load(record.index);
     if (!std::holds_alternative<Frame>(frame)) continue;
     replay(std::get<Frame>(frame).scan, record, looked_at);
@@ -359,23 +281,18 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
 }
 
 void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool looked_at) {
-  const PointCloud scan_lidar = compensated(scan, record.velocity);
-  if (registers()) {
-    StageClock unused;
-    RegistrationCloud cloud = refiner_.prepare(scan_lidar, unused);
-    fusion_.replay(record, cloud.points);
-    follow_submaps();
-    refiner_.keep(std::move(cloud), record.T_odom_lidar, unused);
-  }
+  const PointCloud scan_lidar = tracker_.compensated(scan, record.velocity);
+  tracker_.replay(scan_lidar, record);
+  follow_submaps(tracker_.submaps());
   if (looked_at) {
-    moving_things_.replay(map_, scan_lidar, record.T_odom_lidar, fusion_.T_local_odom().inverse(),
+    moving_things_.replay(map_, scan_lidar, record.T_odom_lidar, tracker_.T_local_odom().inverse(),
                           record.index);
   }
 }
 
 int Mapper::first_to_replay(const std::vector<FrameRecord>& records) const {
   const std::size_t count =
-      std::max(std::size_t(refiner_.memory()), std::size_t(MovingThings::kJudges));
+      std::max(std::size_t(tracker_.memory()), std::size_t(MovingThings::kJudges));
   std::vector<int> mapped;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kMapped) mapped.push_back(record.index);

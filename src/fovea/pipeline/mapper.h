@@ -10,21 +10,11 @@
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/pipeline/map_colors.h"
 #include "fovea/pipeline/mapper_options.h"
-#include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/moving_things.h"
-#include "fovea/pipeline/pose_refiner.h"
-#include "fovea/pipeline/stage_clock.h"
+#include "fovea/pipeline/tracker.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
-
-/// Where poses come from.
-enum class PoseSource {
-  kRefine,
-  kNavigation,
-  kGiven,
-  kGivenFirst,  ///< given for the first frames; those after them are registered
-};
 
 /// Builds a map incrementally. Feed it frames in increasing order of their stamps.
 class Mapper {
@@ -39,28 +29,24 @@ class Mapper {
   FrameRecord process(const Frame& frame, bool held_out,
                       const std::optional<RigidMotion>& given_pose = std::nullopt);
 
+  /// The two halves of process(), each to be called for every frame in order: where the frame is,
+  /// and then its points and colours into the map. track() of later frames may run, in one other
+  /// thread, while add() runs: the map is the same.
+  TrackedFrame track(const Frame& frame, bool held_out,
+                     const std::optional<RigidMotion>& given_pose);
+  FrameRecord add(const Frame& frame, TrackedFrame tracked);
+
   const TileMap& map() const { return map_; }
 
   /// Puts the frames mapped so far where their submaps are now.
-  void settle(std::vector<FrameRecord>& records) const;
+  void settle(std::vector<FrameRecord>& records) const { tracker_.settle(records); }
 
   /// Takes up a map where an earlier run left it: its tiles, and the frames' records in order.
   /// `load` reads the latest frames again, which registration needs as targets.
   void resume(TileMap map, const std::vector<FrameRecord>& records, const FrameSource& source);
 
  private:
-  /// A frame's scan as it is mapped, and what registration said of it.
-  struct Placed {
-    PointCloud scan_lidar;
-    std::optional<Twist> velocity;
-    RefinedPose refined;
-  };
-  PointCloud compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const;
-  Placed place(const Frame& frame, const MotionPrediction& motion,
-               const std::optional<RigidMotion>& given_pose, StageClock& clock) const;
-  bool compensates() const;
-  bool registers() const;
-  void follow_submaps();
+  void follow_submaps(const std::vector<RigidMotion>& poses);
   /// Index of the first frame of an earlier run whose scan targets or evidence now depend on.
   int first_to_replay(const std::vector<FrameRecord>& records) const;
   void replay(const PointCloud& scan, const FrameRecord& record, bool looked_at);
@@ -84,10 +70,7 @@ class Mapper {
 
   const DriveInfo& drive_;
   MapperOptions options_;
-  PoseSource pose_source_;
-  MotionModel motion_model_;
-  PoseRefiner refiner_;
-  Fusion fusion_;
+  Tracker tracker_;
   RayFilter ray_filter_;
   MovingThings moving_things_;
   TileMap map_;
@@ -95,6 +78,7 @@ class Mapper {
   std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid
   /// Where the cameras were when the images of the frame at hand were taken.
   std::vector<Camera> cameras_;
+  RigidMotion T_odom_local_ = RigidMotion::Identity();  // as of the frame at hand
 };
 
 }  // namespace fovea

@@ -1,0 +1,128 @@
+#include "fovea/pipeline/tracker.h"
+
+#include "fovea/sensor/motion_compensation.h"
+
+namespace fovea {
+namespace {
+
+double as_figure(std::size_t count) { return static_cast<double>(count); }
+
+/// Poses that are given are not corrected, nor those of the paper's pairwise chain.
+bool fuses(const MapperOptions& options, PoseSource pose_source) {
+  return options.fusion.enabled && pose_source == PoseSource::kRefine &&
+         options.refinement.target == RegistrationTarget::kLocalMap;
+}
+
+FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_source) {
+  FusionOptions fusion = options.fusion;
+  fusion.enabled = fuses(options, pose_source);
+  return fusion;
+}
+
+}  // namespace
+
+Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
+    : drive_(drive),
+      compensate_motion_(options.compensate_motion),
+      pose_source_(pose_source),
+      motion_model_(
+          drive.navigation ? &*drive.navigation : nullptr,
+          {.interpolate = options.interpolate_navigation, .doubt = fuses(options, pose_source)}),
+      refiner_(options.refinement, drive.calibration.cameras),
+      fusion_(fusion_options(options, pose_source), options.refinement.registration, drive) {}
+
+TrackedFrame Tracker::track(const Frame& frame, bool held_out,
+                            const std::optional<RigidMotion>& given_pose) {
+  TrackedFrame tracked;
+  StageClock& clock = tracked.clock;
+  FrameRecord& record = tracked.record;
+  record.index = frame.index;
+  record.stamp = frame.stamp;
+  record.status = held_out ? FrameStatus::kHeldOut : FrameStatus::kMapped;
+  record.figures["points_scan"] = as_figure(frame.scan.size());
+  record.figures["points_dropped"] = as_figure(frame.dropped_points);
+
+  // Where are we, and how do we move?
+  const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
+  const MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
+  record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
+
+  // Pose refinement.
+  Placed placed = place(frame, motion, given_pose, clock);
+  if (compensates()) record.velocity = placed.velocity;
+  record.note = placed.refined.note;
+  record.figures.merge(placed.refined.figures);
+  record.T_odom_lidar = placed.refined.T_odom_lidar;
+  motion_model_.update(frame.stamp, record.T_odom_lidar);
+  clock.time("register", [&] {
+    fusion_.track(record);
+    if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
+  });
+  if (!held_out && registers()) {
+    refiner_.keep(std::move(placed.refined.cloud), record.T_odom_lidar, clock);
+  }
+
+  tracked.scan_lidar = std::move(placed.scan_lidar);
+  tracked.velocity = placed.velocity;
+  tracked.submaps = fusion_.submaps();
+  tracked.T_local_odom = fusion_.T_local_odom();
+  return tracked;
+}
+
+PointCloud Tracker::compensated(const PointCloud& scan,
+                                const std::optional<Twist>& velocity) const {
+  PointCloud scan_lidar = scan;
+  if (velocity) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
+  return scan_lidar;
+}
+
+Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motion,
+                               const std::optional<RigidMotion>& given_pose,
+                               StageClock& clock) const {
+  std::optional<Placed> best;
+  for (const MotionGuess& guess : motion.guesses) {
+    Placed placed;
+    placed.velocity = guess.velocity;
+    placed.scan_lidar = clock.time("register", [&] {
+      return compensated(frame.scan, compensates() ? guess.velocity : std::nullopt);
+    });
+    if (pose_source_ == PoseSource::kNavigation) {
+      placed.refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
+    } else if (given_pose) {
+      if (registers()) placed.refined.cloud = refiner_.prepare(placed.scan_lidar, clock);
+      placed.refined.T_odom_lidar = *given_pose;
+    } else {
+      placed.refined = refiner_.refine(placed.scan_lidar, guess.T_odom_lidar, clock);
+    }
+    if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
+  }
+  return std::move(*best);
+}
+
+bool Tracker::compensates() const { return compensate_motion_ && !drive_.sweep_compensated; }
+
+bool Tracker::registers() const {
+  return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
+}
+
+void Tracker::settle(std::vector<FrameRecord>& records) const {
+  for (FrameRecord& record : records) {
+    if (record.submap >= 0) record.T_local_lidar = fusion_.T_local_lidar(record);
+  }
+}
+
+void Tracker::follow(const FrameRecord& record) {
+  motion_model_.update(record.stamp.value(), record.T_odom_lidar);
+  FrameRecord tracked = record;
+  fusion_.track(tracked);
+}
+
+void Tracker::replay(const PointCloud& scan_lidar, const FrameRecord& record) {
+  if (!registers()) return;
+  StageClock unused;
+  RegistrationCloud cloud = refiner_.prepare(scan_lidar, unused);
+  fusion_.replay(record, cloud.points);
+  refiner_.keep(std::move(cloud), record.T_odom_lidar, unused);
+}
+
+}  // namespace fovea

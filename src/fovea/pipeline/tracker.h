@@ -1,0 +1,85 @@
+// Where the vehicle is, scan by scan: motion prediction, registration, fusion. It looks at scans
+// alone, never at the map, so that the next scan can be tracked while this one's colours are
+// mapped.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/pipeline/fusion.h"
+#include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/motion_model.h"
+#include "fovea/pipeline/pose_refiner.h"
+#include "fovea/pipeline/stage_clock.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// Where poses come from.
+enum class PoseSource {
+  kRefine,
+  kNavigation,
+  kGiven,
+  kGivenFirst,  ///< given for the first frames; those after them are registered
+};
+
+/// All that mapping a frame needs to know of its tracking. Later frames do not change it.
+struct TrackedFrame {
+  FrameRecord record;
+  PointCloud scan_lidar;          ///< motion compensated
+  std::optional<Twist> velocity;  ///< per second, of the LiDAR in its own frame
+  /// T_local_submap of all submaps, and the motion that puts the latest into local, as of this
+  /// frame.
+  std::vector<RigidMotion> submaps;
+  RigidMotion T_local_odom = RigidMotion::Identity();
+  StageClock clock;  ///< goes on with the frame
+};
+
+class Tracker {
+ public:
+  /// @param drive  must outlive the tracker
+  Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source);
+
+  /// The next frame's pose; see Mapper::process.
+  TrackedFrame track(const Frame& frame, bool held_out,
+                     const std::optional<RigidMotion>& given_pose);
+
+  /// Puts the frames tracked so far where their submaps are now.
+  void settle(std::vector<FrameRecord>& records) const;
+
+  /// Follows the next frame of an earlier run, which was not skipped.
+  void follow(const FrameRecord& record);
+  /// Whether a frame just followed that was not held out has to be given to replay().
+  bool wants_scan() const { return fusion_.wants_scan(); }
+  /// Takes the compensated scan of a frame just followed, as a target and a place to come back to.
+  void replay(const PointCloud& scan_lidar, const FrameRecord& record);
+  /// How many of the latest target scans registration depends on.
+  int memory() const { return refiner_.memory(); }
+
+  PointCloud compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const;
+  /// T_local_submap by number.
+  const std::vector<RigidMotion>& submaps() const { return fusion_.submaps(); }
+  RigidMotion T_local_odom() const { return fusion_.T_local_odom(); }
+
+ private:
+  /// A frame's scan as it is mapped, and what registration said of it.
+  struct Placed {
+    PointCloud scan_lidar;
+    std::optional<Twist> velocity;
+    RefinedPose refined;
+  };
+  Placed place(const Frame& frame, const MotionPrediction& motion,
+               const std::optional<RigidMotion>& given_pose, StageClock& clock) const;
+  bool compensates() const;
+  bool registers() const;
+
+  const DriveInfo& drive_;
+  bool compensate_motion_;
+  PoseSource pose_source_;
+  MotionModel motion_model_;
+  PoseRefiner refiner_;
+  Fusion fusion_;
+};
+
+}  // namespace fovea
