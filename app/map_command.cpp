@@ -27,6 +27,7 @@ struct MapArguments {
   std::string output, preset = "default", config, hold_out, poses = "refine", variant, report;
   std::vector<std::string> settings;
   int threads = 0;
+  double rate = 0;
   bool calibrate = false, resume = false, force = false, quiet = false;
 };
 
@@ -44,6 +45,10 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
              summary.frames_mapped);
   if (summary.frames_held_out > 0) fmt::print(", {} held out", summary.frames_held_out);
   fmt::print(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
+  if (summary.rate > 0) {
+    fmt::print("at {} Hz: {} frame{} late: not yet in the map when the next one was due\n",
+               summary.rate, summary.late_frames, summary.late_frames == 1 ? "" : "s");
+  }
   for (const auto& [reason, count] : summary.frames_skipped) {
     fmt::print("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
   }
@@ -69,6 +74,7 @@ void run(const MapArguments& arguments) {
   job.options = resolve_options(arguments);
   job.variant = arguments.variant;
   job.hold_out = parse_hold_out(arguments.hold_out);
+  job.rate = arguments.rate;
   job.calibrate = arguments.calibrate;
   job.force = arguments.force;
   job.resume = arguments.resume;
@@ -130,8 +136,15 @@ void add_map_command(CLI::App& app) {
       ->add_option("--variant", arguments->variant,
                    "Row of the paper's table: E0..E11, baseline-gicp, -icp or -plane")
       ->check(CLI::IsMember(variant_names()));
-  command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Threads that a stage may use (default: all); with 1, one stage at a time")
       ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--rate", arguments->rate,
+                   "Play the drive as a live sensor would, and count late frames; none is dropped")
+      ->type_name("HZ")
+      ->check(CLI::Range(1e-3, 1e6));
   command->add_flag("--calibrate", arguments->calibrate,
                     "First estimate rotation and delay of the cameras from the drive's edges, and "
                     "map under them");

@@ -77,7 +77,7 @@ std::vector<std::string> calibration_lines(const MapSummary& summary) {
 nlohmann::ordered_json to_json(const MapSummary& summary) {
   nlohmann::ordered_json latency;
   for (const char* stage : {"decode", "upsample", "register", "fovea", "filter", "texture", "store",
-                            "calibration", "frame"}) {
+                            "calibration", "wait", "frame"}) {
     // A stage that never ran (say, the filter of a baseline) took no time.
     const auto found = summary.latency_ms.find(stage);
     const StageLatency l = found != summary.latency_ms.end() ? found->second : StageLatency{};
@@ -87,6 +87,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
   for (const auto& [camera, count] : summary.images_missing) {
     images_missing[std::to_string(camera)] = count;
   }
+  const bool at_rate = summary.rate > 0;
   return {{"frames", summary.frames_mapped},
           {"frames_held_out", summary.frames_held_out},
           {"frames_skipped", summary.frames_skipped},
@@ -95,6 +96,8 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"loops_closed", summary.loops_closed},
           {"points", summary.points},
           {"fps", summary.frames_per_second},
+          {"rate_hz", at_rate ? nlohmann::ordered_json(summary.rate) : nullptr},
+          {"late_frames", at_rate ? nlohmann::ordered_json(summary.late_frames) : nullptr},
           {"peak_rss_mb", summary.peak_rss_mb},
           {"interrupted", summary.interrupted},
           {"latency_ms", latency},

@@ -187,6 +187,29 @@ TEST_F(Program, SameDigestAtAnyThreadCountAndAfterResume) {
   }
 }
 
+// As a live sensor would give it: at a million frames a second every one is late, and mapped alike.
+TEST_F(Program, LateFramesAreCountedAndNeverDropped) {
+  const auto report = own_ / "report.json";
+  const auto figures = [&](const std::string& more) {
+    const ProgramRun run = map(drive_, "--force --report '" + report.string() + "' " + more);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return std::pair(nlohmann::json::parse(read_text(report)).at("map"), run.out);
+  };
+  const auto [unhurried, nothing_said] = figures("");
+  EXPECT_TRUE(unhurried.at("late_frames").is_null());
+  EXPECT_TRUE(unhurried.at("rate_hz").is_null());
+  EXPECT_THAT(nothing_said, Not(HasSubstr("late")));
+  const std::string whole = digest();
+  for (const char* threads : {"", " --threads 1"}) {
+    const auto [live, said] = figures(std::string("--rate 1e6") + threads);
+    EXPECT_EQ(live.at("late_frames"), 6);
+    EXPECT_EQ(live.at("rate_hz"), 1e6);
+    EXPECT_EQ(live.at("frames"), 6);
+    EXPECT_THAT(said, HasSubstr("6 frames late"));
+    EXPECT_EQ(digest(), whole);
+  }
+}
+
 // Without navigation and poses nothing says how the vehicle moves.
 TEST_F(Program, CalibratingNeedsToKnowTheMotion) {
   const auto damaged = damaged_drive();
@@ -205,7 +228,7 @@ TEST_F(Program, WrongUsageIsExitCode2) {
   for (const char* arguments :
        {"", "nonsense", "map", "map x", "map x -o y --frames five", "map x -o y --variant E12",
         "map x -o y --preset nonsense", "map x -o y --cameras two", "map x -o y --hold-out eight",
-        "map x -o y --threads -1", "info", "info a --json --digest",
+        "map x -o y --threads -1", "map x -o y --rate 0", "info", "info a --json --digest",
         "evaluate a b --protocol nonsense", "evaluate a b --protocol in-sample --color-rules",
         "evaluate a b --truth --color-rules", "export a", "map x -o y --nonsense"}) {
     const ProgramRun run = run_fovea(arguments);

@@ -91,8 +91,8 @@ std::string latency_panel(const ScoredMap& map, const DriveInfo& drive) {
   }
   return chart_panel(
       "Time of each frame",
-      "Wall time of the stages while the map was made. Decoding runs beside the other "
-      "stages; held-out frames end after registration.",
+      "Wall time of the stages while the map was made. Decoding, registration and mapping of "
+      "neighbouring frames run side by side; held-out frames end after registration.",
       stacked_chart(chart));
 }
 

@@ -127,6 +127,10 @@ TEST(Parallel, LimitIsKept) {
     return seen.size();
   };
   EXPECT_EQ(threads_used(1), 1u);
+  {
+    const ThreadLimit guard(3);
+    EXPECT_EQ(available_threads(), 3);
+  }
   EXPECT_LE(threads_used(2), 2u);
 }
 

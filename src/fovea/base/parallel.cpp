@@ -65,6 +65,11 @@ void parallel_chunks(std::size_t count, std::size_t grain,
 
 void run_alone(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 
+int available_threads() {
+  return static_cast<int>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 // Made in place: a copied global_control is lifted when the copy's source dies.
 struct ThreadLimit::Control {
   explicit Control(std::size_t threads)

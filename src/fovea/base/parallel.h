@@ -37,6 +37,9 @@ T parallel_sum(std::size_t count, std::size_t grain, T zero, Map&& map) {
 /// threads then does it the same way everywhere.
 void run_alone(const std::function<void()>& body);
 
+/// How many threads the loops above may use.
+int available_threads();
+
 /// While it lives, at most `threads` threads work (0: as many as the machine has).
 class ThreadLimit {
  public:

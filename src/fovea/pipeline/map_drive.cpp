@@ -6,10 +6,11 @@
 #include <chrono>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
 #include "fovea/base/version.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/config.h"
-#include "fovea/pipeline/frame_prefetcher.h"
+#include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/pipeline/stored_calibration.h"
 
@@ -18,9 +19,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+double milliseconds(Clock::duration duration) {
+  return std::chrono::duration<double, std::milli>(duration).count();
 }
+
+double milliseconds_since(Clock::time_point start) { return milliseconds(Clock::now() - start); }
 
 /// A skipped frame gets a pose between its neighbours', by index: a line for every frame index.
 void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
@@ -74,7 +77,7 @@ MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   meta["calibration"] = job.calibrate ? "corrected" : "as given";
   meta["config"] = to_toml(job.options);
   meta["map.tile_size"] = fmt::format("{}", job.options.tile_size);
-  meta["georeferenced"] = drive.origin ? "1" : "0";
+  meta["georeferenced"] = fmt::to_string(drive.origin ? 1 : 0);
   if (drive.origin) {
     meta["origin.latitude"] = fmt::format("{}", drive.origin->latitude);
     meta["origin.longitude"] = fmt::format("{}", drive.origin->longitude);
@@ -126,6 +129,22 @@ void note_missing_images(const Frame& frame, FrameRecord& record) {
   }
 }
 
+/// The last stage of a frame.
+FrameRecord map_frame(Mapper& mapper, const FrameSource& source, LocatedFrame& located) {
+  if (const auto* skipped = std::get_if<SkippedFrame>(&located.result)) {
+    return skipped_record(*skipped, source.stamp(skipped->index));
+  }
+  const Clock::time_point mapping_began = Clock::now();
+  const Frame& frame = std::get<Frame>(located.result);
+  FrameRecord record = mapper.add(frame, std::move(*located.tracked));
+  record.milliseconds["frame"] = milliseconds_since(located.arrival);
+  record.milliseconds["wait"] = milliseconds(located.tracking_began - located.arrival) +
+                                milliseconds(mapping_began - located.tracking_ended);
+  record.milliseconds["decode"] = located.decode_ms;
+  note_missing_images(frame, record);
+  return record;
+}
+
 void store_map(MapWriter& writer, const MapMeta& meta, const std::vector<FrameRecord>& records,
                const TileMap& map, bool complete) {
   for (const auto& [key, value] : meta) writer.put_meta(key, value);
@@ -160,11 +179,37 @@ std::vector<CameraCalibration> correct_calibration(const FrameSource& source, co
   return correction;
 }
 
-void check_calibration(CalibrationCheck& check, const Frame& frame,
+void check_calibration(CalibrationCheck& check, const LocatedFrame& located,
                        std::vector<FrameRecord>& records) {
+  if (records.back().status != FrameStatus::kMapped) return;
+  const Frame& frame = std::get<Frame>(located.result);
+  if (!check.wants(frame.index)) return;
   const Clock::time_point start = Clock::now();
   if (const auto motion = mapped_motion(records)) check.add(frame, *motion);
   records.back().milliseconds["calibration"] = milliseconds_since(start);
+}
+
+/// Appends to the records of an earlier run.
+void map_frames(const FrameSource& source, const MapJob& job, Mapper& mapper,
+                CalibrationCheck* check, std::vector<FrameRecord>& records,
+                const std::function<void(const MapProgress&)>& progress) {
+  const DriveInfo& drive = source.info();
+  const int total = drive.end - drive.begin;
+  const auto track = [&](const Frame& frame) {
+    std::optional<RigidMotion> given;
+    const auto place = static_cast<std::size_t>(frame.index - drive.begin);
+    if (place < job.given_poses.size()) given = job.given_poses[place];
+    return mapper.track(frame, job.hold_out.contains(frame.index), given);
+  };
+  FramePipeline frames(source, drive.begin + static_cast<int>(records.size()), drive.end, track,
+                       {job.rate, job.overlap && available_threads() > 1, job.stop});
+  while (std::optional<LocatedFrame> located = frames.next()) {
+    records.push_back(map_frame(mapper, source, *located));
+    if (check != nullptr) check_calibration(*check, *located, records);
+    if (progress) {
+      progress({static_cast<int>(records.size()), total, mapper.map().size(), &records.back()});
+    }
+  }
 }
 
 /// InputError if the drive does not say of its motion what the job has to know.
@@ -214,36 +259,14 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   if (job.options.check_calibration && !job.calibrate) {
     check.emplace(drive, has_sweep_motion(drive, job));
   }
-  FramePrefetcher frames(source, drive.begin + static_cast<int>(first_new), drive.end);
-  while (static_cast<int>(records.size()) < total && !job.stop.stop_requested()) {
-    const LoadedFrame loaded = frames.take();
-    const Clock::time_point frame_start = Clock::now();
-    if (const auto* skipped = std::get_if<SkippedFrame>(&loaded.result)) {
-      records.push_back(skipped_record(*skipped, source.stamp(skipped->index)));
-    } else {
-      const Frame& frame = std::get<Frame>(loaded.result);
-      std::optional<RigidMotion> given;
-      const auto place = static_cast<std::size_t>(frame.index - drive.begin);
-      if (place < job.given_poses.size()) given = job.given_poses[place];
-      records.push_back(mapper.process(frame, job.hold_out.contains(frame.index), given));
-      note_missing_images(frame, records.back());
-      if (check && check->wants(frame.index) && !job.hold_out.contains(frame.index)) {
-        check_calibration(*check, frame, records);
-      }
-      records.back().milliseconds["decode"] = loaded.milliseconds;
-      records.back().milliseconds["frame"] = loaded.milliseconds + milliseconds_since(frame_start);
-    }
-    if (progress) {
-      progress({static_cast<int>(records.size()), total, mapper.map().size(), &records.back()});
-    }
-  }
+  map_frames(source, job, mapper, check ? &*check : nullptr, records, progress);
   require_mapped(records, drive);
   const bool complete = static_cast<int>(records.size()) == total;
   mapper.settle(records);
   interpolate_skipped_poses(records);
   store_map(*writer, meta, records, mapper.map(), complete);
 
-  MapSummary summary = summarise(records, first_new, drive);
+  MapSummary summary = summarise(records, first_new, drive, job.rate);
   if (job.pose_source == PoseSource::kGivenFirst) {
     summary.notes.push_back(
         fmt::format("{} poses for {} frames: the frames after them are registered",

@@ -24,10 +24,15 @@ struct MapJob {
   /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven, or of its first
   /// ones (kGivenFirst).
   std::vector<RigidMotion> given_poses;
+  /// Frames a second, released by the clock as a live sensor does; 0: as fast as they are mapped.
+  double rate = 0;
+  /// Stages work side by side on neighbouring frames where there are threads for it; the map is the
+  /// same.
+  bool overlap = true;
   bool calibrate = false;  ///< correct the calibration first (pipeline/self_calibration.h)
   bool force = false;      ///< overwrite `output`
   bool resume = false;     ///< go on with `output`, which an earlier run left unfinished
-  std::stop_token stop;    ///< ends after the frame at hand; what was mapped is committed
+  std::stop_token stop;    ///< ends after the frames at hand; what was mapped is committed
 };
 
 struct MapProgress {
@@ -36,9 +41,10 @@ struct MapProgress {
   const FrameRecord* latest = nullptr;
 };
 
-/// Maps the frames of a drive into a map file. Errors as in MapWriter; InputError if no frame of
-/// the range can be used, if navigation's poses are wanted and there are none, or if the map to
-/// resume was made with other settings.
+/// Maps the frames of a drive into a map file. `progress` is called in the caller's thread after
+/// each frame, in order. Errors as in MapWriter; InputError if no frame of the range can be used,
+/// if navigation's poses are wanted and there are none, or if the map to resume was made with other
+/// settings.
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress);
 

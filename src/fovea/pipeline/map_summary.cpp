@@ -24,6 +24,12 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+/// A skipped frame has nothing to be late with.
+bool is_late(const FrameRecord& record, double rate) {
+  const auto latency = record.milliseconds.find("frame");
+  return rate > 0 && latency != record.milliseconds.end() && latency->second > 1000 / rate;
+}
+
 /// Frames with a flaw of one kind.
 struct Flaw {
   int frames = 0, first = 0;
@@ -77,8 +83,9 @@ int MapSummary::skipped() const {
 }
 
 MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_new,
-                     const DriveInfo& drive) {
+                     const DriveInfo& drive, double rate) {
   MapSummary summary;
+  summary.rate = rate;
   summary.notes = drive.notes;
   std::map<std::string, std::vector<double>> by_stage;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -100,6 +107,7 @@ MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_
       if (record.lacks_image(camera.index)) ++summary.images_missing[camera.index];
     }
     if (i < first_new) continue;
+    if (is_late(record, rate)) ++summary.late_frames;
     for (const auto& [stage, ms] : record.milliseconds) by_stage[stage].push_back(ms);
   }
   for (auto& [stage, times] : by_stage) summary.latency_ms[stage] = latency_of(std::move(times));

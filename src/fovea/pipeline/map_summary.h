@@ -23,6 +23,9 @@ struct MapSummary {
   int loops_closed = 0;  ///< scans registered to a place seen before
   std::size_t points = 0;
   double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
+  double rate = 0;  ///< Hz, at which frames were released; 0: as fast as they were mapped
+  /// At a rate: frames whose points and colours were not yet in the map when the next one was due.
+  int late_frames = 0;
   double peak_rss_mb = 0;
   std::map<std::string, StageLatency> latency_ms;
   bool interrupted = false;
@@ -33,9 +36,10 @@ struct MapSummary {
   int skipped() const;
 };
 
-/// Counts frames, skips and failures of all records; latencies of those from `first_new` on, which
-/// this run made. Points, rate and interruption are the caller's to add.
+/// Counts frames, skips and failures of all records; latencies and late frames of those from
+/// `first_new` on, which this run made at `rate` Hz or, with 0, without one. Points, rate and
+/// interruption are the caller's to add.
 MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_new,
-                     const DriveInfo& drive);
+                     const DriveInfo& drive, double rate);
 
 }  // namespace fovea

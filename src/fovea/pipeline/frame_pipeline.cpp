@@ -1,0 +1,71 @@
+#include "fovea/pipeline/frame_pipeline.h"
+
+#include <condition_variable>
+#include <mutex>
+
+namespace fovea {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Frames that a stage is ahead of the next one, the one at hand included: what overlap needs. More
+/// would only wait.
+constexpr std::size_t kAhead = 1;
+
+/// Whether the time has come; not if `stop` came before.
+bool wait_until(Clock::time_point due, const std::stop_token& stop) {
+  std::mutex guard;
+  std::unique_lock lock(guard);
+  std::condition_variable_any woken;
+  woken.wait_until(lock, stop, due, [] { return false; });
+  return !stop.stop_requested();
+}
+
+}  // namespace
+
+FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
+                             std::function<TrackedFrame(const Frame&)> track,
+                             const FramePipelineOptions& options)
+    : source_(source),
+      begin_(begin),
+      next_(begin),
+      end_(end),
+      track_(std::move(track)),
+      options_(options),
+      arrived_(options.overlap ? kAhead : 0,
+               [this](const std::stop_token& stop) { return arrive(stop); }),
+      stop_arrivals_(options.stop, [this] { arrived_.stop(); }),
+      located_(options.overlap ? kAhead : 0,
+               [this](const std::stop_token& stop) { return locate(stop); }) {}
+
+std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
+  if (next_ == end_) return std::nullopt;
+  const int index = next_++;
+  const Clock::time_point start = Clock::now();
+  FrameResult result = source_.load(index);
+  const Clock::time_point loaded = Clock::now();
+  const double decode_ms = std::chrono::duration<double, std::milli>(loaded - start).count();
+  if (options_.rate == 0) return Arrived{std::move(result), decode_ms, std::nullopt};
+
+  if (index == begin_) first_arrival_ = loaded;
+  const Clock::time_point due =
+      first_arrival_ + std::chrono::duration_cast<Clock::duration>(
+                           std::chrono::duration<double>((index - begin_) / options_.rate));
+  if (!wait_until(due, stop)) return std::nullopt;
+  return Arrived{std::move(result), decode_ms, due};
+}
+
+std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
+  std::optional<Arrived> arrived = arrived_.next(stop);
+  if (!arrived || options_.stop.stop_requested()) return std::nullopt;
+  LocatedFrame located;
+  located.decode_ms = arrived->decode_ms;
+  located.result = std::move(arrived->result);
+  located.tracking_began = Clock::now();
+  located.arrival = arrived->due.value_or(located.tracking_began);
+  if (const auto* frame = std::get_if<Frame>(&located.result)) located.tracked = track_(*frame);
+  located.tracking_ended = Clock::now();
+  return located;
+}
+
+}  // namespace fovea

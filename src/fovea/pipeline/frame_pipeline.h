@@ -1,0 +1,68 @@
+// Frames on their way to the map: decoding of the next one, tracking of this one and, by whoever
+// takes them here, mapping of the one before, side by side (docs/performance.md).
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <stop_token>
+
+#include "fovea/base/producer.h"
+#include "fovea/pipeline/tracker.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+struct FramePipelineOptions {
+  /// Frames a second that a live sensor would give; 0: as fast as they are wanted.
+  double rate = 0;
+  bool overlap = true;        ///< false: one after the other, all in the thread that takes them
+  std::stop_token stop = {};  ///< ends after the frames that tracking has begun
+};
+
+/// A frame that has been tracked, or was skipped.
+struct LocatedFrame {
+  using TimePoint = std::chrono::steady_clock::time_point;
+  FrameResult result;
+  std::optional<TrackedFrame> tracked;  ///< absent: skipped
+  /// When the frame could be tracked: at a rate, when it was due, be it decoded or not; otherwise
+  /// when it was decoded and tracking took it, since a drive's files arrive as they are wanted.
+  TimePoint arrival;
+  TimePoint tracking_began, tracking_ended;
+  double decode_ms = 0;  ///< wall time of reading and decoding
+};
+
+class FramePipeline {
+ public:
+  /// Of frames [begin, end).
+  /// @param source  must outlive the pipeline
+  /// @param track   called for each usable frame in order, in one thread at a time
+  FramePipeline(const FrameSource& source, int begin, int end,
+                std::function<TrackedFrame(const Frame&)> track,
+                const FramePipelineOptions& options);
+
+  /// The next frame, in order; nothing at the end. Errors of decoding and tracking come when all
+  /// frames before have been taken.
+  std::optional<LocatedFrame> next() { return located_.next(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Arrived {
+    FrameResult result;
+    double decode_ms;
+    std::optional<Clock::time_point> due;
+  };
+  std::optional<Arrived> arrive(const std::stop_token& stop);
+  std::optional<LocatedFrame> locate(const std::stop_token& stop);
+
+  const FrameSource& source_;
+  int begin_, next_, end_;
+  std::function<TrackedFrame(const Frame&)> track_;
+  FramePipelineOptions options_;
+  Clock::time_point first_arrival_;
+  Producer<Arrived> arrived_;
+  std::stop_callback<std::function<void()>> stop_arrivals_;  // nobody waits for a frame not due yet
+  Producer<LocatedFrame> located_;
+};
+
+}  // namespace fovea
