@@ -346,6 +346,33 @@ TEST(Mapper, SameMapAtAnyThreadCount) {
   }
 }
 
+// Mapping sees submaps as they were at its frame, however far tracking is ahead.
+TEST(Mapper, TrackingAheadChangesNothing) {
+  SyntheticDrive drive(street_scene(), 10, 1.3);
+  std::vector<StampedPose> poses = drive.info().navigation->poses();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].T_local_body.translation().y() += 0.02 * double(i % 2);  // submaps move
+  }
+  drive.editable_info().navigation = Trajectory(poses);
+  MapperOptions options;
+  options.fusion.submap_duration = 0.25;
+  Mapper stepwise(drive.info(), options, PoseSource::kRefine);
+  const auto records = map_frames(stepwise, drive, 0, 10, 3);
+
+  Mapper ahead(drive.info(), options, PoseSource::kRefine);
+  std::vector<TrackedFrame> tracked;
+  for (int i = 0; i < 10; ++i) {
+    tracked.push_back(ahead.track(std::get<Frame>(drive.load(i)), i == 3, std::nullopt));
+  }
+  for (int i = 0; i < 10; ++i) {
+    const FrameRecord record =
+        ahead.add(std::get<Frame>(drive.load(i)), std::move(tracked[std::size_t(i)]));
+    EXPECT_EQ(record.figures, records[std::size_t(i)].figures) << i;
+  }
+  EXPECT_GT(ahead.map().submaps().size(), 2u);
+  expect_same_maps(stepwise.map(), ahead.map());
+}
+
 TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
   for (const auto target : {RegistrationTarget::kLocalMap, RegistrationTarget::kPreviousScan}) {
     MapperOptions options;
