@@ -107,7 +107,7 @@ TEST(Mapper, ManyViewsGiveTrueColoursAtOnePointACell) {
   EXPECT_LT(double(wrong), 0.02 * double(count));
   EXPECT_GT(views / double(count), 2.0);
   EXPECT_GT(records[7].figures.at("points_recoloured"), 10'000);
-  EXPECT_LT(double(crowded_points(mapper.map(), 4.0 / 200)), 1e-3 * double(count));
+  EXPECT_LT(double(crowded_points(mapper.map(), 4.0 / 216)), 1e-3 * double(count));
 }
 
 // The same scan and image again: nothing is new, and every point is seen again.
