@@ -1,5 +1,8 @@
 #include "bench/bench_data.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "app/reproduce/upsampling_times.h"
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
@@ -11,10 +14,11 @@ namespace fovea::bench {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr int kScansBefore = 20;
 
 BenchData data_of(const fs::path& folder) {
   const auto drive = open_drive(folder, {});
-  BenchData data{app::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}};
+  BenchData data{app::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}, {}};
   const fs::path images =
       drive->info().path / ("image_0" + std::to_string(data.camera.index)) / "data";
   const NumberedFiles files = list_numbered_files(images, {".png"});
@@ -22,6 +26,12 @@ BenchData data_of(const fs::path& folder) {
     throw InputError("the drive has no PNG image", images.string(), "give a KITTI raw drive");
   }
   data.png = read_bytes(files.begin()->second);
+  const int last = (drive->info().begin + drive->info().end) / 2;
+  for (int k = std::max(drive->info().begin, last - kScansBefore); k <= last; ++k) {
+    FrameResult frame = drive->load(k);
+    if (!std::holds_alternative<Frame>(frame)) continue;
+    data.scans_lidar.push_back(std::move(std::get<Frame>(frame).scan.position));
+  }
   return data;
 }
 
@@ -31,7 +41,7 @@ BenchData load_bench_data(const std::string& drive) {
   if (!drive.empty()) return data_of(drive);
   const TemporaryFolder folder;
   SimulationOptions options;
-  options.frames = 1;
+  options.frames = 3;
   return data_of(simulate(options, folder / "drive"));
 }
 

@@ -1,4 +1,4 @@
-// What the benchmarks work on: one frame of a real drive, or of a simulated one.
+// What the benchmarks work on: frames of a real drive, or of a simulated one.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,9 @@ struct BenchData {
   PointCloud scan_cam;  ///< in view of `camera`, its frame, in the order of the scan
   Camera camera;
   std::vector<std::uint8_t> png;  ///< an image file of that camera
+  /// Whole scans one after another, the last of them the one above: what a local map holds, and
+  /// one more where the drive has as many. LiDAR frame.
+  std::vector<std::vector<Eigen::Vector3f>> scans_lidar;
 };
 
 /// The middle scan of a drive and its first image.

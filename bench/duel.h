@@ -6,6 +6,8 @@
 #include <time.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace fovea::bench {
@@ -15,6 +17,11 @@ inline double thread_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// A wrong result ends the program: Google Benchmark would note it and report success.
+inline void check(bool right, const std::string& wrong) {
+  if (!right) throw std::logic_error("wrong result: " + wrong);
 }
 
 template <class Work>

@@ -4,13 +4,13 @@
 #include <malloc.h>
 
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "bench/bench_data.h"
 #include "bench/cgal_peer.h"
 #include "bench/duel.h"
+#include "bench/registration_bench.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/image_mesh.h"
@@ -20,11 +20,6 @@
 
 namespace fovea::bench {
 namespace {
-
-/// A wrong result ends the program: Google Benchmark would note it and report success.
-void check(bool right, const std::string& wrong) {
-  if (!right) throw std::logic_error("wrong result: " + wrong);
-}
 
 void decode(benchmark::State& state, const BenchData& data) {
   const Image image = decode_png(data.png);
@@ -127,6 +122,10 @@ void add_all(const BenchData& data) {
       ->Arg(450'000)
       ->Arg(1'000'000);
   add("upsample/rate", [&](auto& state) { densify(state, data); })->DenseRange(1, 3);
+  add("register/thin", [&](auto& state) { bench_thinning(state, data); });
+  add("register/normals", [&](auto& state) { bench_normals(state, data); });
+  add("register/align", [&](auto& state) { bench_alignment(state, data); });
+  add("register/local_map", [&](auto& state) { bench_local_map(state, data); });
   add("sample_surfaces", [&](auto& state) { sample(state, data); });
 }
 

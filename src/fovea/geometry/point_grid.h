@@ -16,7 +16,7 @@ namespace fovea {
 /// was built from.
 class PointGrid {
  public:
-  /// @param cell  edge, m: about twice the points' spacing
+  /// @param cell  edge, m: some times the points' spacing
   PointGrid(std::span<const Eigen::Vector3f> points, float cell);
 
   /// Nearest point within `max_distance`, of equally near ones that of the lowest index;
