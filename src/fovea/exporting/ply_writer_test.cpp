@@ -183,7 +183,8 @@ TEST_F(PlyWriter, UncolouredPointsAreLeftOutByTheirCamera) {
   options.where = PointFilter::parse("camera>=0");
   const PlyFigures coloured = write(options);
   EXPECT_EQ(coloured.points, MapReader(folder_ / "a.fovea").colored_size());
-  for (const double camera : Ply(folder_ / "a.ply").columns.at("camera")) EXPECT_GE(camera, 0);
+  const Ply ply(folder_ / "a.ply");
+  for (const double camera : ply.columns.at("camera")) EXPECT_GE(camera, 0);
   options.where = PointFilter::parse("camera == -1");
   options.force = true;
   EXPECT_EQ(write(options).points + coloured.points, sample_tile_map().size());
