@@ -2,10 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
+
+#include "fovea/base/flat_map.h"
 
 namespace fovea {
 
@@ -47,42 +48,19 @@ class CellSet {
     const Eigen::Array3i brick = cell.unaryExpr([](int i) { return i >> 3; });
     const std::uint64_t key = cell_key(brick);
     if (bricks_.empty() || key != last_key_) {
-      last_ = place_of(key);
+      const auto [brick_number, is_new] =
+          number_of_brick_.try_emplace(key, static_cast<std::uint32_t>(bricks_.size()));
+      if (is_new) bricks_.emplace_back();
+      last_ = *brick_number;
       last_key_ = key;
     }
     return bricks_[last_].mark(cell - brick * CellBrick::kEdge);
   }
 
  private:
-  // A hash table with open addressing: numbers of bricks, kEmpty where there is none.
-  static constexpr std::uint32_t kEmpty = ~0u;
-
-  std::size_t slot_of(std::uint64_t key) const {
-    std::size_t slot = (key * 0x9e3779b97f4a7c15u) >> 32 & (slots_.size() - 1);
-    while (slots_[slot] != kEmpty && keys_[slots_[slot]] != key) {
-      slot = (slot + 1) & (slots_.size() - 1);
-    }
-    return slot;
-  }
-  std::size_t place_of(std::uint64_t key) {
-    if (2 * keys_.size() >= slots_.size()) grow();
-    std::uint32_t& place = slots_[slot_of(key)];
-    if (place == kEmpty) {
-      place = static_cast<std::uint32_t>(bricks_.size());
-      keys_.push_back(key);
-      bricks_.emplace_back();
-    }
-    return place;
-  }
-  void grow() {
-    slots_.assign(std::max<std::size_t>(1024, 2 * slots_.size()), kEmpty);
-    for (std::uint32_t i = 0; i < keys_.size(); ++i) slots_[slot_of(keys_[i])] = i;
-  }
-
-  std::vector<std::uint32_t> slots_;  // a power of two of them
-  std::vector<std::uint64_t> keys_;   // by brick
+  FlatMap<std::uint32_t> number_of_brick_;
   std::vector<CellBrick> bricks_;
-  std::size_t last_ = 0;  // the brick of last_key_
+  std::uint32_t last_ = 0;  // the brick of last_key_
   std::uint64_t last_key_ = 0;
 };
 

@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "fovea/base/flat_map.h"
+#include "fovea/geometry/cell_brick.h"
+
 namespace fovea {
 
-/// Hash table from voxels to numbers 0, 1, 2, ...; open addressing, because it is asked once for
-/// every point of a map, and of bricks of 4 x 4 x 4 voxels, because who asks for a voxel asks for
-/// its neighbours next: they are in the cache. Holds coordinates within +-4 million voxels.
+/// Hash table from voxels to numbers 0, 1, 2, ...; of bricks of 4 x 4 x 4 voxels, because who asks
+/// for a voxel asks for its neighbours next: they are in the cache. Holds coordinates within +-4
+/// million voxels.
 class VoxelTable {
  public:
   using Voxel = Eigen::Vector3i;
@@ -30,8 +33,8 @@ class VoxelTable {
   std::uint32_t insert(const Voxel& voxel);
   /// Number of a voxel, or kNone. Thread-safe while nothing is inserted.
   std::uint32_t find(const Voxel& voxel) const {
-    const std::uint32_t brick = slots_[place_of(brick_key(voxel))].brick;
-    return brick == kNone ? kNone : bricks_[brick][place_in_brick(voxel)];
+    const std::uint32_t* brick = number_of_brick_.find(brick_key(voxel));
+    return brick == nullptr ? kNone : bricks_[*brick][place_in_brick(voxel)];
   }
 
   /// The voxel and its 26 neighbours.
@@ -40,15 +43,8 @@ class VoxelTable {
  private:
   static constexpr int kBits = 2;  // of a coordinate, in its brick
   using Brick = std::array<std::uint32_t, 1 << 3 * kBits>;
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t brick = kNone;
-  };
   static std::uint64_t brick_key(const Voxel& voxel) {
-    const auto axis = [](int value) {
-      return static_cast<std::uint64_t>(value >> kBits) & 0x1fffff;
-    };
-    return axis(voxel.x()) | axis(voxel.y()) << 21 | axis(voxel.z()) << 42;
+    return cell_key(voxel.array().unaryExpr([](int i) { return i >> kBits; }));
   }
   static std::size_t place_in_brick(const Voxel& voxel) {
     const auto axis = [](int value) {
@@ -56,20 +52,9 @@ class VoxelTable {
     };
     return axis(voxel.x()) | axis(voxel.y()) << kBits | axis(voxel.z()) << 2 * kBits;
   }
-  /// Of the slot with this key, or of the free one where it belongs.
-  std::size_t place_of(std::uint64_t key) const {
-    // Fibonacci hashing (Knuth 6.4): the product's highest bits depend on all of the key's.
-    std::size_t place = key * 0x9e3779b97f4a7c15ull >> shift_;
-    while (slots_[place].key != key && slots_[place].brick != kNone) {
-      place = (place + 1) & (slots_.size() - 1);
-    }
-    return place;
-  }
-  void grow();
 
   float inverse_edge_;
-  int shift_;                // 64 less the binary logarithm of the number of slots
-  std::vector<Slot> slots_;  // a power of two of them, at most half in use
+  FlatMap<std::uint32_t> number_of_brick_;
   std::vector<Brick> bricks_;
   std::vector<Voxel> voxels_;
 };

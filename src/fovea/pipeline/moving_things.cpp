@@ -72,7 +72,7 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
   if (!options_.remove || scans_.size() < std::size_t(kMinFree)) return marks;
 
   // One verdict a voxel: its first point's.
-  std::unordered_map<std::uint64_t, std::uint32_t> voxel_of_key;
+  FlatMap<std::uint32_t> voxel_of_key;
   std::vector<std::uint32_t> voxel(points_local.size()), first_point;
   const float inverse = static_cast<float>(1 / kVoxel);
   std::uint64_t last_key = 0;
@@ -86,7 +86,7 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
     last_key = key;
     const auto [place, is_new] = voxel_of_key.try_emplace(key, std::uint32_t(first_point.size()));
     if (is_new) first_point.push_back(i);
-    voxel[i] = place->second;
+    voxel[i] = *place;
   }
   std::vector<std::uint8_t> moving(first_point.size());
   parallel_for(first_point.size(), kVoxelGrain, [&](std::size_t v) {
@@ -141,7 +141,7 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
       const auto [place, is_new] =
           block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
       if (is_new) block.voxels.push_back({cell, 0, 0});
-      last = &block.voxels[place->second];
+      last = &block.voxels[*place];
     }
     last->filled |= aged(1, frame - point_frame[i]);
   }
@@ -175,25 +175,27 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   std::uint32_t last_cell = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t cell = cell_of(tile.points->position[i], cells_per_metre, edge);
-    voxel[i] = i > 0 && cell == last_cell ? voxel[i - 1] : &block.voxels[block.place.at(cell)];
+    voxel[i] = i > 0 && cell == last_cell ? voxel[i - 1] : &block.voxels[*block.place.find(cell)];
     last_cell = cell;
   }
-  std::unordered_map<std::uint32_t, std::uint32_t> foot;  // by cell: frames whose points go
+  FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
   for (std::size_t i = 0; i < n; ++i) {
     if (!gone(*voxel[i])) continue;
     const std::uint32_t cell = voxel[i]->cell;
     for (std::uint32_t k = 1; k <= kFoot && cell >= k * layer; ++k) {
-      foot[cell - k * layer] |= frame_bit(i);
+      *foot.try_emplace(cell - k * layer).first |= frame_bit(i);
     }
   }
   for (std::uint32_t i = 0; i < n; ++i) {
     if (gone(*voxel[i])) continue;
-    const auto beneath = foot.find(voxel[i]->cell);
-    if (beneath == foot.end() || (beneath->second & frame_bit(i)) == 0) tile.kept.push_back(i);
+    const std::uint32_t* beneath = foot.find(voxel[i]->cell);
+    if (beneath == nullptr || (*beneath & frame_bit(i)) == 0) tile.kept.push_back(i);
   }
   std::erase_if(block.voxels, gone);
   block.place.clear();
-  for (std::uint32_t v = 0; v < block.voxels.size(); ++v) block.place[block.voxels[v].cell] = v;
+  for (std::uint32_t v = 0; v < block.voxels.size(); ++v) {
+    block.place.try_emplace(block.voxels[v].cell, v);
+  }
   block.known_points = tile.kept.size();
 }
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <unordered_map>
 #include <vector>
 
+#include "fovea/base/flat_map.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/moving/range_image.h"
 
@@ -55,7 +55,7 @@ class MovingThings {
     int frame = 0;
     std::size_t known_points = 0;  // of the tile's, the rest is new
     std::vector<Voxel> voxels;
-    std::unordered_map<std::uint32_t, std::uint32_t> place;  // of each cell in voxels
+    FlatMap<std::uint32_t> place;  // of each cell in voxels
   };
   struct Tile {
     TileId id;
