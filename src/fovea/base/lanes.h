@@ -18,6 +18,14 @@ inline Lanes where(LaneMask mask, Lanes value) {
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(value) & mask);
 }
 
+inline Lanes min_of(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
+
+inline float min_of_lanes(const Lanes& v) {
+  float least = v[0];
+  for (int i = 1; i < kLanes; ++i) least = v[i] < least ? v[i] : least;
+  return least;
+}
+
 /// Pairs first: the same on every processor.
 inline float sum_of_lanes(const Lanes& v) {
   return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]));

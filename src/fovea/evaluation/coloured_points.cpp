@@ -3,11 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/voxel_grid.h"
-#include "fovea/geometry/voxel_table.h"
+#include "fovea/geometry/voxel_members.h"
 
 namespace fovea {
 namespace {
@@ -17,28 +16,11 @@ constexpr float kVoxelEdge = 0.1f;
 constexpr float kMaxSpacing = 0.1f;  // a lone point says nothing of a surface farther off
 constexpr std::size_t kGrain = 4096;
 
-/// Points by voxel: those of voxel v are members[first[v]] ... members[first[v + 1] - 1].
-struct VoxelMembers {
-  std::vector<std::uint32_t> first;
-  std::vector<std::uint32_t> members;
-};
-
 VoxelMembers sort_into(const VoxelTable& table, const std::vector<Eigen::Vector3f>& points) {
   std::vector<std::uint32_t> voxel(points.size());
   parallel_for(points.size(), kGrain,
                [&](std::size_t i) { voxel[i] = table.find(table.voxel_of(points[i])); });
-  VoxelMembers sorted;
-  sorted.first.assign(table.size() + 1, 0);
-  for (const std::uint32_t id : voxel) {
-    if (id != VoxelTable::kNone) ++sorted.first[id + 1];
-  }
-  std::partial_sum(sorted.first.begin(), sorted.first.end(), sorted.first.begin());
-  sorted.members.resize(sorted.first.back());
-  std::vector<std::uint32_t> next(sorted.first.begin(), sorted.first.end() - 1);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (voxel[i] != VoxelTable::kNone) sorted.members[next[voxel[i]]++] = i;
-  }
-  return sorted;
+  return {voxel, table.size()};
 }
 
 }  // namespace
@@ -117,9 +99,8 @@ double surface_density(const std::vector<Eigen::Vector3f>& map,
     for (std::size_t s = begin; s < end; ++s) {
       const Eigen::Vector3f& center = evaluated[samples[s]];
       for (const VoxelTable::Voxel& v : VoxelTable::block_around(table.voxel_of(center))) {
-        const std::uint32_t id = table.find(v);
-        for (std::uint32_t k = sorted.first[id]; k < sorted.first[id + 1]; ++k) {
-          if ((map[sorted.members[k]] - center).squaredNorm() <= kRadius * kRadius) ++count;
+        for (const std::uint32_t i : sorted.of(table.find(v))) {
+          if ((map[i] - center).squaredNorm() <= kRadius * kRadius) ++count;
         }
       }
     }

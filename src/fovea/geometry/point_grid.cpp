@@ -1,49 +1,103 @@
 #include "fovea/geometry/point_grid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <stdexcept>
+#include <tuple>
 
 namespace fovea {
 namespace {
 
 /// A cell is taken for this much nearer than computed, so that rounding loses nothing in it.
 constexpr float kRounding = 0.9999f;
+constexpr float kNowhere = 1e15f;  // m; its square is still a number
+constexpr std::uint32_t kNobody = 0xffffffffu;
+
+constexpr std::size_t kAtOnce = 8;  // blocks
 
 }  // namespace
 
-PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, float cell)
-    : cell_(cell), table_(cell), index_(points.size()), position_(points.size()) {
-  std::vector<std::uint32_t> cell_of_point(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    cell_of_point[i] = table_.insert(table_.voxel_of(points[i]));
+void PointGrid::Block::put(std::size_t lane, const Eigen::Vector3f& p, std::uint32_t number) {
+  x[lane] = p.x();
+  y[lane] = p.y();
+  z[lane] = p.z();
+  index[lane] = number;
+}
+
+PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, float cell) : PointGrid(cell) {
+  for (std::uint32_t i = 0; i < points.size(); ++i) insert(i, points[i]);
+}
+
+void PointGrid::insert(std::uint32_t index, const Eigen::Vector3f& p) {
+  const std::uint32_t id = table_.insert(table_.voxel_of(p));
+  if (id == cells_.size()) cells_.emplace_back();
+  Cell& cell = cells_[id];
+  const std::size_t lane = cell.count++ % kLanes;
+  if (lane == 0) {
+    const Lanes nowhere = all_lanes(kNowhere);
+    cell.blocks.push_back({nowhere, nowhere, nowhere, {}});
   }
-  first_.assign(table_.size() + 1, 0);
-  for (const std::uint32_t id : cell_of_point) ++first_[id + 1];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t place = next[cell_of_point[i]]++;
-    index_[place] = i;
-    position_[place] = points[i];
+  cell.blocks.back().put(lane, p, index);
+}
+
+void PointGrid::erase(std::uint32_t index, const Eigen::Vector3f& p) {
+  const std::uint32_t id = table_.find(table_.voxel_of(p));
+  if (id != VoxelTable::kNone) {
+    Cell& cell = cells_[id];
+    for (std::size_t i = 0; i < cell.count; ++i) {
+      Block& block = cell.blocks[i / kLanes];
+      if (block.index[i % kLanes] != index) continue;
+      // The last point takes its place.
+      Block& last = cell.blocks.back();
+      const std::size_t lane = --cell.count % kLanes;
+      block.put(i % kLanes, last.point(lane), last.index[lane]);
+      last.put(lane, Eigen::Vector3f::Constant(kNowhere), 0);
+      if (lane == 0) cell.blocks.pop_back();
+      return;
+    }
   }
+  throw std::logic_error("a point that is not in the grid cannot be removed from it");
+}
+
+void PointGrid::take(const Best& found, Best& best) {
+  const auto place = [](const Best& b) {
+    return std::tuple(b.squared_distance, b.point.x(), b.point.y(), b.point.z(), b.index);
+  };
+  if (best.index == kNobody || place(found) < place(best)) best = found;
 }
 
 void PointGrid::look_into(const VoxelTable::Voxel& cell, const Eigen::Vector3f& query,
-                          Neighbor& best) const {
+                          Best& best) const {
   const std::uint32_t id = table_.find(cell);
   if (id == VoxelTable::kNone) return;
-  for (std::uint32_t k = first_[id], end = first_[id + 1]; k < end; ++k) {
-    const float squared = (position_[k] - query).squaredNorm();
-    if (squared > best.squared_distance) continue;
-    if (squared < best.squared_distance || index_[k] < best.index) best = {index_[k], squared};
+  const std::span<const Block> blocks(cells_[id].blocks);
+  std::array<Lanes, kAtOnce> squared;
+  for (std::size_t first = 0; first < blocks.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, blocks.size() - first);
+    Lanes least = all_lanes(kNowhere);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Block& block = blocks[first + k];
+      const Lanes dx = block.x - query.x(), dy = block.y - query.y(), dz = block.z - query.z();
+      squared[k] = dx * dx + dy * dy + dz * dz;
+      least = min_of(least, squared[k]);
+    }
+    // Which point it is, is asked last: most blocks have none.
+    const float nearest = min_of_lanes(least);
+    if (!(nearest <= best.squared_distance)) continue;
+    for (std::size_t i = 0; i < count * kLanes; ++i) {
+      if (squared[i / kLanes][i % kLanes] == nearest) {
+        take({nearest, blocks[first + i / kLanes].point(i % kLanes),
+              blocks[first + i / kLanes].index[i % kLanes]},
+             best);
+      }
+    }
   }
 }
 
 Neighbor PointGrid::nearest(const Eigen::Vector3f& query, float max_distance) const {
-  constexpr std::uint32_t kNobody = 0xffffffffu;
   // Whatever is at max_distance itself counts.
-  Neighbor best{kNobody, max_distance * max_distance};
+  Best best{max_distance * max_distance, query, kNobody};
   const VoxelTable::Voxel own = table_.voxel_of(query);
   look_into(own, query, best);  // most often it is here, and little else is to be looked at
   const float reach = std::sqrt(best.squared_distance / kRounding);
@@ -62,8 +116,8 @@ Neighbor PointGrid::nearest(const Eigen::Vector3f& query, float max_distance) co
       }
     }
   }
-  if (best.index == kNobody) best.squared_distance = std::numeric_limits<float>::infinity();
-  return best;
+  if (best.index == kNobody) return {kNobody, std::numeric_limits<float>::infinity()};
+  return {best.index, best.squared_distance};
 }
 
 }  // namespace fovea

@@ -1,56 +1,60 @@
 // Nearest neighbours among 3D points that lie on surfaces about as densely everywhere: built in a
-// tenth of a tree's time, and asked in less.
+// tenth of a tree's time, kept up to date as points come and go, and asked in less.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "fovea/base/lanes.h"
 #include "fovea/geometry/neighbor.h"
 #include "fovea/geometry/voxel_table.h"
 
 namespace fovea {
 
-/// Points sorted by the cells of a grid. Queries are thread-safe and do not need the points that it
-/// was built from.
+/// Points by the cells of a grid, eight side by side. Queries are thread-safe while nothing
+/// changes, and do not need the points that it was built from. What is found depends on the points
+/// alone, not on the order in which they came and went.
 class PointGrid {
  public:
   /// @param cell  edge, m: some times the points' spacing
+  explicit PointGrid(float cell) : cell_(cell), table_(cell) {}
+  /// Of points whose indices are their places.
   PointGrid(std::span<const Eigen::Vector3f> points, float cell);
 
-  /// Nearest point within `max_distance`, of equally near ones that of the lowest index;
-  /// squared_distance is infinite if there is none. For distances of some cells.
+  /// @param index  a number of the caller's, which no other point has
+  void insert(std::uint32_t index, const Eigen::Vector3f& p);
+  /// Removes a point that is there, just as it was inserted.
+  void erase(std::uint32_t index, const Eigen::Vector3f& p);
+
+  /// Nearest point within `max_distance`, of equally near ones that of the lowest x, y, z and
+  /// index; squared_distance is infinite if there is none. For distances of some cells.
   Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const;
 
-  /// Number of cells with points in them.
-  std::size_t cells() const { return table_.size(); }
-  float cell() const { return cell_; }  ///< edge, m
-
-  /// Indices of the points in a cell, ascending.
-  std::span<const std::uint32_t> points_of(std::uint32_t cell) const {
-    return std::span(index_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
-  }
-
-  /// Calls f(positions) for each of the 27 cells around a cell, and of these only where there are
-  /// points: among them are all within cell() of any point in that cell.
-  template <class F>
-  void for_each_around(std::uint32_t cell, F&& f) const {
-    for (const VoxelTable::Voxel& near : VoxelTable::block_around(table_.voxel(cell))) {
-      const std::uint32_t id = table_.find(near);
-      if (id == VoxelTable::kNone) continue;
-      f(std::span(position_).subspan(first_[id], first_[id + 1] - first_[id]));
-    }
-  }
-
  private:
-  void look_into(const VoxelTable::Voxel& cell, const Eigen::Vector3f& query, Neighbor& best) const;
+  struct Block {
+    Lanes x, y, z;  // m; far from everything where there is no point
+    std::array<std::uint32_t, kLanes> index;
+    Eigen::Vector3f point(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+    void put(std::size_t lane, const Eigen::Vector3f& p, std::uint32_t number);
+  };
+  struct Cell {
+    std::vector<Block> blocks;
+    std::uint32_t count = 0;  // of points: all blocks but the last are full
+  };
+  struct Best {
+    float squared_distance;
+    Eigen::Vector3f point;
+    std::uint32_t index;
+  };
+  static void take(const Best& found, Best& best);
+  void look_into(const VoxelTable::Voxel& cell, const Eigen::Vector3f& query, Best& best) const;
 
   float cell_;
   VoxelTable table_;
-  std::vector<std::uint32_t> first_;       // of each cell in the two below
-  std::vector<std::uint32_t> index_;       // ascending in a cell
-  std::vector<Eigen::Vector3f> position_;  // m
+  std::vector<Cell> cells_;  // by their numbers in the table
 };
 
 }  // namespace fovea

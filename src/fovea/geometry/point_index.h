@@ -9,7 +9,7 @@
 
 namespace fovea {
 
-/// The points must outlive it; queries are thread-safe.
+/// Without a spacing the points must outlive it; queries are thread-safe while nothing changes.
 class PointIndex {
  public:
   /// @param spacing  about which the points lie apart at least (m), as thinned ones do; 0: some lie
@@ -17,11 +17,19 @@ class PointIndex {
   explicit PointIndex(std::span<const Eigen::Vector3f> points, double spacing = 0)
       : index_(make(points, spacing)) {}
 
-  /// Nearest point within `max_distance`, of equally near ones that of the lowest index;
-  /// squared_distance is infinite if there is none.
+  /// Nearest point within `max_distance`, of equally near ones always the same; squared_distance is
+  /// infinite if there is none.
   Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const {
     return std::visit([&](const auto& index) { return index.nearest(query, max_distance); },
                       index_);
+  }
+
+  /// One more point, or one less, just as it was: of an index with a spacing only.
+  void insert(std::uint32_t index, const Eigen::Vector3f& p) {
+    std::get<PointGrid>(index_).insert(index, p);
+  }
+  void erase(std::uint32_t index, const Eigen::Vector3f& p) {
+    std::get<PointGrid>(index_).erase(index, p);
   }
 
  private:

@@ -34,7 +34,9 @@ void LocalMapOptions::validate() const {
 }
 
 LocalMap::LocalMap(const LocalMapOptions& options)
-    : options_(options), voxels_(static_cast<float>(options.voxel)) {
+    : options_(options),
+      voxels_(static_cast<float>(options.voxel)),
+      target_{{}, {}, PointIndex({})} {
   options_.validate();
 }
 
@@ -47,22 +49,20 @@ auto LocalMap::next_of() {
 void LocalMap::add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar) {
   if (keyframes_.size() == static_cast<std::size_t>(options_.max_keyframes)) forget_oldest();
   keyframes_.push_back({next_number_++, std::move(cloud_lidar), T_local_lidar, {}, {}, {}});
-  const Eigen::Vector3d center = T_local_lidar.translation();
-  const Eigen::Vector3d origin = origin_near(center);
-  if (origin == origin_local_) {
-    place(keyframes_.back());
+  const Eigen::Vector3d origin = origin_near(T_local_lidar.translation());
+  // Without voxels nothing tells which points to keep up to date.
+  if (origin != target_.origin_local || keyframes_.size() == 1 || options_.voxel == 0) {
+    start_at(origin);
   } else {
-    move_origin(origin);
+    place(keyframes_.back());
   }
-  RegistrationCloud cloud = thinned(center);
-  PointIndex index(cloud.points, options_.voxel);  // moving the cloud keeps its points in place
-  target_ = std::make_unique<Target>(Target{origin_local_, std::move(cloud), std::move(index)});
 }
 
 void LocalMap::place(Keyframe& keyframe) {
   const RegistrationCloud& source = keyframe.cloud_lidar;
   const Eigen::Matrix3f R = keyframe.T_local_lidar.linear().cast<float>();
-  const Eigen::Vector3f t = (keyframe.T_local_lidar.translation() - origin_local_).cast<float>();
+  const Eigen::Vector3f t =
+      (keyframe.T_local_lidar.translation() - target_.origin_local).cast<float>();
   const std::size_t n = source.points.size();
   keyframe.cloud.points.resize(n);
   keyframe.cloud.normals.resize(source.normals.size());
@@ -71,49 +71,55 @@ void LocalMap::place(Keyframe& keyframe) {
     keyframe.cloud.normals[i] = R * source.normals[i];
   }
   keyframe.next.resize(n);
-  keyframe.stands.assign(n, 1);
-  if (options_.voxel == 0) return;
+  keyframe.place.assign(n, kNoPlace);
+  const auto max_range2 = static_cast<float>(options_.max_range * options_.max_range);
   for (std::uint32_t i = 0; i < n; ++i) {
-    keyframe.stands[i] = voxels_.push(keyframe.cloud.points[i], {keyframe.number, i}, next_of());
+    if (source.points[i].squaredNorm() > max_range2) continue;
+    const bool is_first = options_.voxel == 0 ||
+                          voxels_.push(keyframe.cloud.points[i], {keyframe.number, i}, next_of());
+    if (is_first) stand(keyframe, i);
   }
+}
+
+void LocalMap::stand(Keyframe& keyframe, std::uint32_t index) {
+  RegistrationCloud& cloud = target_.cloud;
+  if (empty_.empty()) {
+    empty_.push_back(static_cast<std::uint32_t>(cloud.points.size()));
+    cloud.points.emplace_back();
+    if (!keyframe.cloud.normals.empty()) cloud.normals.emplace_back();
+  }
+  const std::uint32_t place = keyframe.place[index] = empty_.back();
+  empty_.pop_back();
+  cloud.points[place] = keyframe.cloud.points[index];
+  if (!keyframe.cloud.normals.empty()) cloud.normals[place] = keyframe.cloud.normals[index];
+  if (options_.voxel > 0) target_.index.insert(place, cloud.points[place]);
 }
 
 void LocalMap::forget_oldest() {
   const Keyframe& oldest = keyframes_.front();
-  for (std::size_t i = 0; options_.voxel > 0 && i < oldest.stands.size(); ++i) {
-    if (oldest.stands[i] == 0) continue;  // a second one in its voxel
-    const VoxelQueues::Item heir = voxels_.pop(oldest.cloud.points[i], next_of());
+  for (std::size_t i = 0; options_.voxel > 0 && i < oldest.place.size(); ++i) {
+    if (oldest.place[i] == kNoPlace) continue;  // a second one in its voxel
+    const Eigen::Vector3f& p = oldest.cloud.points[i];
+    target_.index.erase(oldest.place[i], p);
+    empty_.push_back(oldest.place[i]);
+    const VoxelQueues::Item heir = voxels_.pop(p, next_of());
     if (heir.owner == VoxelQueues::kNobody) continue;
-    keyframes_[heir.owner - oldest.number].stands[heir.index] = 1;
+    stand(keyframes_[heir.owner - oldest.number], heir.index);
   }
   keyframes_.pop_front();
 }
 
-void LocalMap::move_origin(const Eigen::Vector3d& origin_local) {
-  origin_local_ = origin_local;
+void LocalMap::start_at(const Eigen::Vector3d& origin_local) {
   voxels_ = VoxelQueues(static_cast<float>(options_.voxel));
+  empty_.clear();
+  target_ = {origin_local, {}, PointIndex({}, options_.voxel)};
   for (Keyframe& keyframe : keyframes_) place(keyframe);
-}
-
-RegistrationCloud LocalMap::thinned(const Eigen::Vector3d& center_local) const {
-  const Eigen::Vector3f center = (center_local - origin_local_).cast<float>();
-  const float max_range2 = static_cast<float>(options_.max_range * options_.max_range);
-  RegistrationCloud cloud;
-  for (const Keyframe& keyframe : keyframes_) {
-    const RegistrationCloud& placed = keyframe.cloud;
-    for (std::size_t i = 0; i < placed.points.size(); ++i) {
-      if (keyframe.stands[i] == 0) continue;
-      if ((placed.points[i] - center).squaredNorm() > max_range2) continue;
-      cloud.points.push_back(placed.points[i]);
-      if (!placed.normals.empty()) cloud.normals.push_back(placed.normals[i]);
-    }
-  }
-  return cloud;
+  if (options_.voxel == 0) target_.index = PointIndex(target_.cloud.points);
 }
 
 const LocalMap::Target& LocalMap::target() const {
-  if (target_ == nullptr) throw std::logic_error("the local map is empty");
-  return *target_;
+  if (empty()) throw std::logic_error("the local map is empty");
+  return target_;
 }
 
 RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deque>
-#include <memory>
 
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/rigid_motion.h"
@@ -12,10 +11,10 @@
 namespace fovea {
 
 struct LocalMapOptions {
-  int max_keyframes = 20;   ///< scans in the map
-  double max_range = 60.0;  ///< m from the newest scan's sensor; points further away are left out
-  double voxel = 0.25;      ///< m, at most one point a voxel; 0 keeps all
-  void validate() const;    ///< ConfigError that names the field
+  int max_keyframes = 20;    ///< scans in the map
+  double max_range = 120.0;  ///< m from a scan's sensor; its points further away are left out
+  double voxel = 0.25;       ///< m, at most one point a voxel; 0 keeps all
+  void validate() const;     ///< ConfigError that names the field
 };
 
 /// The last scans of known pose, thinned to one point a voxel: that of the oldest scan that has one
@@ -28,9 +27,9 @@ class LocalMap {
   /// A cloud to register against, in `local` axes relative to a point near the vehicle, so that
   /// floats stay precise however far the vehicle is from local's origin.
   struct Target {
-    Eigen::Vector3d origin_local;  ///< of the points
-    RegistrationCloud cloud;
-    PointIndex index;  // over cloud.points
+    Eigen::Vector3d origin_local = Eigen::Vector3d::Zero();  ///< of the points
+    RegistrationCloud cloud;  ///< with places in it that are empty: those that `index` never finds
+    PointIndex index;         ///< over cloud.points
   };
 
   explicit LocalMap(const LocalMapOptions& options);
@@ -41,31 +40,34 @@ class LocalMap {
   void add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar);
 
   bool empty() const { return keyframes_.empty(); }
+  /// How many points the target has.
+  std::size_t size() const { return target_.cloud.points.size() - empty_.size(); }
 
   /// std::logic_error if the map is empty. Valid until the next add().
   const Target& target() const;
 
  private:
+  static constexpr std::uint32_t kNoPlace = 0xffffffffu;
   struct Keyframe {
     std::uint32_t number = 0;
     RegistrationCloud cloud_lidar;
     RigidMotion T_local_lidar;
-    RegistrationCloud cloud;              // placed: about origin_local_
-    std::vector<std::uint8_t> stands;     // for its voxel
+    RegistrationCloud cloud;              // placed: about the target's origin
+    std::vector<std::uint32_t> place;     // in the target, of those that stand for their voxels
     std::vector<VoxelQueues::Item> next;  // behind each point in its voxel
   };
   void place(Keyframe& keyframe);
+  void stand(Keyframe& keyframe, std::uint32_t index);
   void forget_oldest();
-  void move_origin(const Eigen::Vector3d& origin_local);
-  RegistrationCloud thinned(const Eigen::Vector3d& center_local) const;
+  void start_at(const Eigen::Vector3d& origin_local);
   auto next_of();
 
   LocalMapOptions options_;
   std::deque<Keyframe> keyframes_;  // oldest first
   std::uint32_t next_number_ = 0;
-  Eigen::Vector3d origin_local_ = Eigen::Vector3d::Zero();
   VoxelQueues voxels_;
-  std::unique_ptr<Target> target_;
+  Target target_;
+  std::vector<std::uint32_t> empty_;  // places in the target
 };
 
 /// Registers a scan to the map. T_target_source of the guess and of the result is T_local_lidar.

@@ -7,7 +7,7 @@
 #include "fovea/base/lanes.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/kd_tree.h"
-#include "fovea/geometry/point_grid.h"
+#include "fovea/geometry/voxel_members.h"
 
 namespace fovea {
 namespace {
@@ -78,19 +78,34 @@ Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3f& cent
   return normal.dot(center) > 0 ? Eigen::Vector3f(-normal) : normal;
 }
 
+/// Points by the cells of a grid.
+struct PointCells {
+  VoxelTable table;
+  VoxelMembers members;
+
+  static PointCells of(std::span<const Eigen::Vector3f> points, float edge) {
+    VoxelTable table(edge);
+    std::vector<std::uint32_t> cell(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+      cell[i] = table.insert(table.voxel_of(points[i]));
+    VoxelMembers members(cell, table.size());
+    return {std::move(table), std::move(members)};
+  }
+};
+
 /// Points of some cells.
 class Surroundings {
  public:
   void clear() { size_ = 0; }
   std::size_t size() const { return size_; }
 
-  void add(std::span<const Eigen::Vector3f> points) {
-    blocks_.resize(std::max(blocks_.size(), (size_ + points.size()) / kLanes + 1));
-    for (const Eigen::Vector3f& p : points) {
+  void add(std::span<const Eigen::Vector3f> points, std::span<const std::uint32_t> members) {
+    blocks_.resize(std::max(blocks_.size(), (size_ + members.size()) / kLanes + 1));
+    for (const std::uint32_t member : members) {
       Block& block = blocks_[size_ / kLanes];
       const std::size_t lane = size_ % kLanes;
       if (lane == 0) block.fill(all_lanes(kNowhere));
-      for (std::size_t i = 0; i < 3; ++i) block[i][lane] = p[Eigen::Index(i)];
+      for (std::size_t i = 0; i < 3; ++i) block[i][lane] = points[member][Eigen::Index(i)];
       ++size_;
     }
   }
@@ -137,21 +152,26 @@ constexpr int kRadii = 8;
 constexpr float kFewest = 0.6f;
 constexpr std::size_t kCellGrain = 64;
 
-/// Normals of the points not yet done that have neighbours enough within the radius, the edge of
-/// the grid's cells.
-void look_around(const PointGrid& grid, std::span<const Eigen::Vector3f> points, float enough,
+/// Normals of the points not yet done that have neighbours enough within the radius.
+void look_around(std::span<const Eigen::Vector3f> points, float radius, float enough,
                  std::vector<std::uint8_t>& done, std::vector<Eigen::Vector3f>& normals) {
-  parallel_chunks(grid.cells(), kCellGrain, [&](std::size_t begin, std::size_t end) {
+  const auto [table, members] = PointCells::of(points, radius);
+  const auto gather = [&](std::uint32_t cell, Surroundings& surroundings) {
+    // Cells as wide as the radius: no point within it is missed.
+    for (const VoxelTable::Voxel& near : VoxelTable::block_around(table.voxel(cell))) {
+      const std::uint32_t id = table.find(near);
+      if (id != VoxelTable::kNone) surroundings.add(points, members.of(id));
+    }
+  };
+  parallel_chunks(table.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
     Surroundings surroundings;
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
       surroundings.clear();
-      for (const std::uint32_t i : grid.points_of(cell)) {
+      for (const std::uint32_t i : members.of(cell)) {
         if (done[i] != 0) continue;
-        if (surroundings.size() == 0) {
-          grid.for_each_around(cell, [&](auto near) { surroundings.add(near); });
-        }
+        if (surroundings.size() == 0) gather(cell, surroundings);
         if (static_cast<float>(surroundings.size()) < enough) break;
-        const Moments moments = surroundings.moments(points[i], grid.cell());
+        const Moments moments = surroundings.moments(points[i], radius);
         if (moments.count < enough) continue;
         normals[i] = plane_normal(moments, points[i]);
         done[i] = 1;
@@ -166,8 +186,7 @@ std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> 
   std::vector<std::uint8_t> done(points.size(), 0);
   float radius = kFirstRadius * static_cast<float>(spacing);
   for (int i = 0; i < kRadii; ++i, radius *= kWider) {
-    look_around(PointGrid(points, radius), points, kFewest * static_cast<float>(neighbors), done,
-                normals);
+    look_around(points, radius, kFewest * static_cast<float>(neighbors), done, normals);
   }
   return normals;
 }
