@@ -1,7 +1,7 @@
 // What the map keeps of every frame of the range mapped: the `frames` table.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,6 +22,9 @@ struct Revisit {
   int submap = 0;
   RigidMotion T_submap_lidar = RigidMotion::Identity();
 };
+
+/// A count as FrameRecord::figures has it.
+inline double as_figure(std::size_t count) { return static_cast<double>(count); }
 
 struct FrameRecord {
   int index = 0;

@@ -6,14 +6,12 @@
 namespace fovea {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Frames that a stage is ahead of the next one, the one at hand included: what overlap needs. More
 /// would only wait.
 constexpr std::size_t kAhead = 1;
 
 /// Whether the time has come; not if `stop` came before.
-bool wait_until(Clock::time_point due, const std::stop_token& stop) {
+bool wait_until(WallClock::time_point due, const std::stop_token& stop) {
   std::mutex guard;
   std::unique_lock lock(guard);
   std::condition_variable_any woken;
@@ -41,15 +39,15 @@ FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
 std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
   if (next_ == end_) return std::nullopt;
   const int index = next_++;
-  const Clock::time_point start = Clock::now();
+  const WallClock::time_point start = WallClock::now();
   FrameResult result = source_.load(index);
-  const Clock::time_point loaded = Clock::now();
-  const double decode_ms = std::chrono::duration<double, std::milli>(loaded - start).count();
+  const WallClock::time_point loaded = WallClock::now();
+  const double decode_ms = milliseconds(loaded - start);
   if (options_.rate == 0) return Arrived{std::move(result), decode_ms, std::nullopt};
 
   if (index == begin_) first_arrival_ = loaded;
-  const Clock::time_point due =
-      first_arrival_ + std::chrono::duration_cast<Clock::duration>(
+  const WallClock::time_point due =
+      first_arrival_ + std::chrono::duration_cast<WallClock::duration>(
                            std::chrono::duration<double>((index - begin_) / options_.rate));
   if (!wait_until(due, stop)) return std::nullopt;
   return Arrived{std::move(result), decode_ms, due};
@@ -61,10 +59,10 @@ std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
   LocatedFrame located;
   located.decode_ms = arrived->decode_ms;
   located.result = std::move(arrived->result);
-  located.tracking_began = Clock::now();
+  located.tracking_began = WallClock::now();
   located.arrival = arrived->due.value_or(located.tracking_began);
   if (const auto* frame = std::get_if<Frame>(&located.result)) located.tracked = track_(*frame);
-  located.tracking_ended = Clock::now();
+  located.tracking_ended = WallClock::now();
   return located;
 }
 

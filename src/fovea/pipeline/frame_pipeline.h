@@ -2,12 +2,12 @@
 // takes them here, mapping of the one before, side by side (docs/performance.md).
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <stop_token>
 
 #include "fovea/base/producer.h"
+#include "fovea/base/wall_clock.h"
 #include "fovea/pipeline/tracker.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -22,7 +22,7 @@ struct FramePipelineOptions {
 
 /// A frame that has been tracked, or was skipped.
 struct LocatedFrame {
-  using TimePoint = std::chrono::steady_clock::time_point;
+  using TimePoint = WallClock::time_point;
   FrameResult result;
   std::optional<TrackedFrame> tracked;  ///< absent: skipped
   /// When the frame could be tracked: at a rate, when it was due, be it decoded or not; otherwise
@@ -46,11 +46,10 @@ class FramePipeline {
   std::optional<LocatedFrame> next() { return located_.next(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Arrived {
     FrameResult result;
     double decode_ms;
-    std::optional<Clock::time_point> due;
+    std::optional<WallClock::time_point> due;
   };
   std::optional<Arrived> arrive(const std::stop_token& stop);
   std::optional<LocatedFrame> locate(const std::stop_token& stop);
@@ -59,7 +58,7 @@ class FramePipeline {
   int begin_, next_, end_;
   std::function<TrackedFrame(const Frame&)> track_;
   FramePipelineOptions options_;
-  Clock::time_point first_arrival_;
+  WallClock::time_point first_arrival_;
   Producer<Arrived> arrived_;
   std::stop_callback<std::function<void()>> stop_arrivals_;  // nobody waits for a frame not due yet
   Producer<LocatedFrame> located_;

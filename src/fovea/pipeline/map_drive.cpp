@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
-
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/version.h"
@@ -16,14 +14,6 @@
 
 namespace fovea {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds(Clock::duration duration) {
-  return std::chrono::duration<double, std::milli>(duration).count();
-}
-
-double milliseconds_since(Clock::time_point start) { return milliseconds(Clock::now() - start); }
 
 /// A skipped frame gets a pose between its neighbours', by index: a line for every frame index.
 void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
@@ -134,7 +124,7 @@ FrameRecord map_frame(Mapper& mapper, const FrameSource& source, LocatedFrame& l
   if (const auto* skipped = std::get_if<SkippedFrame>(&located.result)) {
     return skipped_record(*skipped, source.stamp(skipped->index));
   }
-  const Clock::time_point mapping_began = Clock::now();
+  const WallClock::time_point mapping_began = WallClock::now();
   const Frame& frame = std::get<Frame>(located.result);
   FrameRecord record = mapper.add(frame, std::move(*located.tracked));
   record.milliseconds["frame"] = milliseconds_since(located.arrival);
@@ -184,7 +174,7 @@ void check_calibration(CalibrationCheck& check, const LocatedFrame& located,
   if (records.back().status != FrameStatus::kMapped) return;
   const Frame& frame = std::get<Frame>(located.result);
   if (!check.wants(frame.index)) return;
-  const Clock::time_point start = Clock::now();
+  const WallClock::time_point start = WallClock::now();
   if (const auto motion = mapped_motion(records)) check.add(frame, *motion);
   records.back().milliseconds["calibration"] = milliseconds_since(start);
 }
@@ -237,7 +227,7 @@ void require_mapped(const std::vector<FrameRecord>& records, const DriveInfo& dr
 
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress) {
-  const Clock::time_point start = Clock::now();
+  const WallClock::time_point start = WallClock::now();
   DriveInfo drive = source.info();
   require_motion(drive, job);
   MapMeta meta = describe(drive, job);

@@ -17,8 +17,6 @@ namespace {
 constexpr double kMargin = 1.0;
 constexpr std::size_t kGrain = 1024;  // points
 
-double as_figure(std::size_t count) { return static_cast<double>(count); }
-
 /// Whether an image can give colours; a blank one is counted, a missing one the drive has told of.
 bool shows_something(const Image& image, FrameRecord& record) {
   if (image.empty()) return false;

@@ -1,10 +1,11 @@
 // Wall time of the stages of a frame.
 #pragma once
 
-#include <chrono>
 #include <map>
 #include <string>
 #include <utility>
+
+#include "fovea/base/wall_clock.h"
 
 namespace fovea {
 
@@ -19,12 +20,11 @@ class StageClock {
   const std::map<std::string, double>& milliseconds() const { return milliseconds_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Timer {
     double& total;
-    Clock::time_point start = Clock::now();
+    WallClock::time_point start = WallClock::now();
     explicit Timer(double& total_) : total(total_) {}
-    ~Timer() { total += std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+    ~Timer() { total += milliseconds_since(start); }
   };
   std::map<std::string, double> milliseconds_;
 };

@@ -5,8 +5,6 @@
 namespace fovea {
 namespace {
 
-double as_figure(std::size_t count) { return static_cast<double>(count); }
-
 /// Poses that are given are not corrected, nor those of the paper's pairwise chain.
 bool fuses(const MapperOptions& options, PoseSource pose_source) {
   return options.fusion.enabled && pose_source == PoseSource::kRefine &&
