@@ -1,6 +1,4 @@
 // fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage.
-#include <malloc.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -22,16 +20,6 @@ void print_error(const char* message, const char* where_and_remedy = "") noexcep
   for (const char* c = message; *c != '\0'; ++c) std::fputc(*c == '\n' ? ' ' : *c, stderr);
   std::fputs(where_and_remedy, stderr);
   std::fputc('\n', stderr);
-}
-
-/// Every frame needs the same large buffers again: given back to the system in between, each would
-/// come back page by page, cleared (docs/performance.md).
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  constexpr int kMiB = 1 << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 * kMiB);  // the most that is allowed
-  mallopt(M_TRIM_THRESHOLD, 256 * kMiB);
-#endif
 }
 
 int run(int argc, char** argv) {
@@ -64,7 +52,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const fovea::Error& error) {

@@ -10,6 +10,8 @@ namespace {
 
 /// The origin moves in steps of this (m): a whole number of any voxels that divide it, and seldom.
 constexpr double kOriginStep = 64;
+/// How many points ahead of the one at hand voxels are fetched: all of them are megabytes.
+constexpr std::size_t kAhead = 8;
 
 Eigen::Vector3d origin_near(const Eigen::Vector3d& p_local) {
   return (p_local.array() / kOriginStep).round() * kOriginStep;
@@ -74,6 +76,7 @@ void LocalMap::place(Keyframe& keyframe) {
   keyframe.place.assign(n, kNoPlace);
   const auto max_range2 = static_cast<float>(options_.max_range * options_.max_range);
   for (std::uint32_t i = 0; i < n; ++i) {
+    if (i + kAhead < n) voxels_.prefetch(keyframe.cloud.points[i + kAhead]);
     if (source.points[i].squaredNorm() > max_range2) continue;
     const bool is_first = options_.voxel == 0 ||
                           voxels_.push(keyframe.cloud.points[i], {keyframe.number, i}, next_of());
@@ -97,7 +100,9 @@ void LocalMap::stand(Keyframe& keyframe, std::uint32_t index) {
 
 void LocalMap::forget_oldest() {
   const Keyframe& oldest = keyframes_.front();
-  for (std::size_t i = 0; options_.voxel > 0 && i < oldest.place.size(); ++i) {
+  const std::size_t n = options_.voxel > 0 ? oldest.place.size() : 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i + kAhead < n) voxels_.prefetch(oldest.cloud.points[i + kAhead]);
     if (oldest.place[i] == kNoPlace) continue;  // a second one in its voxel
     const Eigen::Vector3f& p = oldest.cloud.points[i];
     target_.index.erase(oldest.place[i], p);

@@ -36,6 +36,9 @@ class VoxelQueues {
     return false;
   }
 
+  /// Something will be asked of this voxel soon.
+  void prefetch(const Eigen::Vector3f& p) const { queues_.prefetch(key_of(p)); }
+
   /// Removes the first item of a voxel that has one.
   /// @return the one that is first now; of owner kNobody if there is none
   template <class NextOf>
