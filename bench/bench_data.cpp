@@ -18,7 +18,8 @@ constexpr int kScansBefore = 20;
 
 BenchData data_of(const fs::path& folder) {
   const auto drive = open_drive(folder, {});
-  BenchData data{app::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}, {}};
+  BenchData data{
+      app::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}, drive->info(), {}};
   const fs::path images =
       drive->info().path / ("image_0" + std::to_string(data.camera.index)) / "data";
   const NumberedFiles files = list_numbered_files(images, {".png"});
@@ -30,7 +31,7 @@ BenchData data_of(const fs::path& folder) {
   for (int k = std::max(drive->info().begin, last - kScansBefore); k <= last; ++k) {
     FrameResult frame = drive->load(k);
     if (!std::holds_alternative<Frame>(frame)) continue;
-    data.scans_lidar.push_back(std::move(std::get<Frame>(frame).scan.position));
+    data.frames.push_back(std::move(std::get<Frame>(frame)));
   }
   return data;
 }

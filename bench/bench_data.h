@@ -8,6 +8,7 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/sensor/frame_source.h"
 
 namespace fovea::bench {
 
@@ -15,9 +16,15 @@ struct BenchData {
   PointCloud scan_cam;  ///< in view of `camera`, its frame, in the order of the scan
   Camera camera;
   std::vector<std::uint8_t> png;  ///< an image file of that camera
-  /// Whole scans one after another, the last of them the one above: what a local map holds, and
-  /// one more where the drive has as many. LiDAR frame.
-  std::vector<std::vector<Eigen::Vector3f>> scans_lidar;
+  DriveInfo drive;
+  /// One after another, the last of them that of the scan above: as many as a local map holds, and
+  /// one more where the drive has as many.
+  std::vector<Frame> frames;
+
+  /// Points of a frame's scan, LiDAR frame.
+  const std::vector<Eigen::Vector3f>& scan(std::size_t frame) const {
+    return frames[frame].scan.position;
+  }
 };
 
 /// The middle scan of a drive and its first image.

@@ -10,6 +10,7 @@
 #include "bench/bench_data.h"
 #include "bench/cgal_peer.h"
 #include "bench/duel.h"
+#include "bench/mapping_bench.h"
 #include "bench/registration_bench.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
@@ -127,6 +128,13 @@ void add_all(const BenchData& data) {
   add("register/align", [&](auto& state) { bench_alignment(state, data); });
   add("register/local_map", [&](auto& state) { bench_local_map(state, data); });
   add("sample_surfaces", [&](auto& state) { sample(state, data); });
+  const auto street = map_street(data);
+  add("map/look", [street](auto& state) { bench_look(state, *street); });
+  add("map/recolour", [street](auto& state) { bench_recolour(state, *street); });
+  add("map/moving", [street](auto& state) { bench_moving(state, *street); });
+  add("map/paper_filter", [street](auto& state) { bench_paper_filter(state, *street); });
+  add("map/store", [street](auto& state) { bench_store(state, *street); });
+  add("chain", [&](auto& state) { bench_chain(state, data); });
 }
 
 /// Takes "--drive DIR" or "--drive=DIR" and "--json" out of the arguments.

@@ -51,9 +51,9 @@ void race(const BenchData& data, int runs) {
       {"Fovea's GICP", {}, {}}, {"PCL's GICP", {}, {}}, {"PCL's ICP", {}, {}}};
   RigidMotion guess = RigidMotion::Identity();
   std::size_t points = 0;
-  for (std::size_t k = 1; k < data.scans_lidar.size(); ++k) {
+  for (std::size_t k = 1; k < data.frames.size(); ++k) {
     const auto thinned = [&](std::size_t i) {
-      return voxel_thinned(data.scans_lidar[i], static_cast<float>(kVoxel));
+      return voxel_thinned(data.scan(i), static_cast<float>(kVoxel));
     };
     const std::vector<Eigen::Vector3f> before = thinned(k - 1), scan = thinned(k);
     const RegistrationCloud target = prepare_cloud(before, options(), kVoxel);
@@ -82,7 +82,7 @@ void race(const BenchData& data, int runs) {
     }
     guess = truth.T_target_source;
   }
-  const std::size_t scans = data.scans_lidar.size() - 1;
+  const std::size_t scans = data.frames.size() - 1;
   fmt::print(
       "{} scans of {} points\n\n| | ms | times Fovea | mm from Fovea's pose |\n"
       "| --- | --- | --- | --- |\n",

@@ -30,8 +30,8 @@ struct Street {
 
   explicit Street(const BenchData& data) {
     RigidMotion pose = RigidMotion::Identity(), step = pose;
-    for (std::size_t k = 0; k + 1 < data.scans_lidar.size(); ++k) {
-      RegistrationCloud scan = prepared(data.scans_lidar[k]);
+    for (std::size_t k = 0; k + 1 < data.frames.size(); ++k) {
+      RegistrationCloud scan = prepared(data.scan(k));
       if (k > 0) {
         const RegistrationResult found = register_to(map, scan, pose * step, options());
         check(found.converged, "a scan that does not fit the ones before");
@@ -47,7 +47,7 @@ struct Street {
 }  // namespace
 
 void bench_thinning(benchmark::State& state, const BenchData& data) {
-  const std::vector<Eigen::Vector3f>& scan = data.scans_lidar.back();
+  const std::vector<Eigen::Vector3f>& scan = data.frames.back().scan.position;
   const std::size_t points = voxel_sample(scan, float{kVoxel}).size();
   check(points > 0 && points < scan.size(), "nothing thinned");
   solo(state, [&] { return voxel_sample(scan, float{kVoxel}).size(); });
@@ -55,7 +55,8 @@ void bench_thinning(benchmark::State& state, const BenchData& data) {
 }
 
 void bench_normals(benchmark::State& state, const BenchData& data) {
-  const std::vector<Eigen::Vector3f> points = voxel_thinned(data.scans_lidar.back(), float{kVoxel});
+  const std::vector<Eigen::Vector3f> points =
+      voxel_thinned(data.frames.back().scan.position, float{kVoxel});
   constexpr int kNeighbors = 10;
   const auto ours = [&] { return estimate_normals(points, kNeighbors, kVoxel); };
   const auto by_tree = [&] { return estimate_normals(points, kNeighbors); };
@@ -74,7 +75,7 @@ void bench_normals(benchmark::State& state, const BenchData& data) {
 
 void bench_alignment(benchmark::State& state, const BenchData& data) {
   const Street street(data);
-  const RegistrationCloud scan = prepared(data.scans_lidar.back());
+  const RegistrationCloud scan = prepared(data.frames.back().scan.position);
   const LocalMap::Target& target = street.map.target();
   const PointIndex tree(target.cloud.points);
   const Eigen::Translation3d T_origin_local(-target.origin_local);
@@ -94,7 +95,7 @@ void bench_alignment(benchmark::State& state, const BenchData& data) {
 
 void bench_local_map(benchmark::State& state, const BenchData& data) {
   Street street(data);
-  const RegistrationCloud scan = prepared(data.scans_lidar.back());
+  const RegistrationCloud scan = prepared(data.frames.back().scan.position);
   RigidMotion pose = street.guess;
   const RigidMotion step(Eigen::Translation3d(0.2, 0, 0));
   std::vector<double> ms;

@@ -1,0 +1,151 @@
+#include "bench/mapping_bench.h"
+
+#include "bench/duel.h"
+#include "fovea/mapping/upsample.h"
+#include "fovea/pipeline/config.h"
+#include "fovea/pipeline/foveal_query.h"
+#include "fovea/pipeline/map_colors.h"
+#include "fovea/pipeline/mapper.h"
+
+namespace fovea::bench {
+namespace {
+
+/// The first frames meet an empty map.
+constexpr std::size_t kFirstCounted = 5;
+
+}  // namespace
+
+struct MappedStreet {
+  MapperOptions options = load_preset("default");
+  const BenchData& data;
+  TileMap map;
+  FrameRecord last;  // pose of the frame at hand, which is not in the map
+  FovealRegion region;
+
+  explicit MappedStreet(const BenchData& bench_data)
+      : data(bench_data), region(foveal_options_of(options, data.camera.index), data.camera) {
+    Mapper mapper(data.drive, options, PoseSource::kRefine);
+    for (std::size_t k = 0; k < data.frames.size(); ++k) {
+      const bool is_last = k + 1 == data.frames.size();
+      last = mapper.process(data.frames[k], is_last);
+    }
+    map = mapper.map();
+    check(map.size() > 10'000, "a map without points");
+  }
+  const Frame& frame() const { return data.frames.back(); }
+  RigidMotion T_cam_local() const { return data.camera.T_cam_lidar * last.T_local_lidar.inverse(); }
+  ColorView view(const ImagePyramid& image) const {
+    return {image, data.camera, frame().index, options.texture.footprint};
+  }
+};
+
+std::shared_ptr<const MappedStreet> map_street(const BenchData& data) {
+  return std::make_shared<MappedStreet>(data);
+}
+
+void bench_look(benchmark::State& state, const MappedStreet& street) {
+  SeenMap seen;
+  solo(state, [&] {
+    seen.look(street.map, street.region, street.T_cam_local(), street.options.surface.spacing);
+    return &seen;
+  });
+  state.counters["map"] = static_cast<double>(street.map.size());
+}
+
+void bench_recolour(benchmark::State& state, const MappedStreet& street) {
+  TileMap map = street.map;
+  SeenMap seen;
+  seen.look(map, street.region, street.T_cam_local(), street.options.surface.spacing);
+  const ImagePyramid image(street.frame().images.front());
+  std::size_t points = 0;
+  solo(state, [&] {
+    const ColorView view = street.view(image);
+    benchmark::DoNotOptimize(seen.gain_to_map(view));
+    return points = seen.recolour(map, view);
+  });
+  check(points > 1000, "nothing in view");
+  state.counters["points"] = static_cast<double>(points);
+}
+
+void bench_moving(benchmark::State& state, const MappedStreet& street) {
+  MovingThings moving(street.options.moving);
+  int frame = street.frame().index;
+  const RigidMotion T_odom_local = street.last.T_odom_lidar * street.last.T_local_lidar.inverse();
+  solo(state, [&] {
+    moving.replay(street.map, street.frame().scan, street.last.T_odom_lidar, T_odom_local, ++frame);
+    return frame;
+  });
+}
+
+void bench_paper_filter(benchmark::State& state, const MappedStreet& street) {
+  const RayFilterOptions options{.mode = RayFilterMode::kPaper};
+  const PointCloud dense = upsample(street.data.scan_cam, street.data.camera, UpsampleOptions());
+  RayFilter filter;
+  std::size_t in_view = 0;
+  solo(state, [&] {
+    const std::vector<Ray> map = map_rays(street.map, street.region, street.last.T_local_lidar);
+    in_view = map.size();
+    return filter.filter(rays_of(dense, street.data.camera), map, street.data.camera, options)
+        .size();
+  });
+  check(in_view > 1000, "no map in view");
+  state.counters["points"] = static_cast<double>(dense.size());
+  state.counters["map"] = static_cast<double>(in_view);
+}
+
+void bench_store(benchmark::State& state, const MappedStreet& street) {
+  // As many points as a frame adds, and where: those of the map's last frame.
+  PointCloud added;
+  const int newest = street.data.frames[street.data.frames.size() - 2].index;
+  for (const Submap& submap : street.map.submaps()) {
+    for (const auto& [key, tile] : submap.tiles) {
+      std::vector<std::uint32_t> of_frame;
+      for (std::uint32_t i = 0; i < tile.size(); ++i) {
+        if (tile.frame[i] == newest) of_frame.push_back(i);
+      }
+      if (of_frame.empty()) continue;
+      PointCloud part = tile.select(of_frame);
+      for (Eigen::Vector3f& p : part.position) {
+        p = (submap.T_local_submap * (part.origin + p.cast<double>())).cast<float>();
+      }
+      part.origin.setZero();
+      added.append(part);
+    }
+  }
+  check(!added.empty(), "a frame without points");
+  std::vector<double> ms;
+  for (auto _ : state) {
+    TileMap map = street.map;
+    const double seconds = seconds_of([&] { return map.add(added).size(); });
+    state.SetIterationTime(seconds);
+    ms.push_back(1e3 * seconds);
+  }
+  state.counters["median_ms"] = median(ms);
+  state.counters["points"] = static_cast<double>(added.size());
+}
+
+void bench_chain(benchmark::State& state, const BenchData& data) {
+  const MapperOptions options = load_preset("default");
+  std::vector<double> ms;
+  std::unique_ptr<Mapper> mapper;
+  std::size_t next = data.frames.size();
+  for (auto _ : state) {
+    if (next == data.frames.size()) {
+      mapper = std::make_unique<Mapper>(data.drive, options, PoseSource::kRefine);
+      for (next = 0; next < std::min(kFirstCounted, data.frames.size() - 1); ++next) {
+        mapper->process(data.frames[next], false);
+      }
+    }
+    FrameRecord record;
+    const double seconds = seconds_of([&] {
+      record = mapper->process(data.frames[next++], false);
+      return record.index;
+    });
+    check(!record.has("registration_failed"), "a scan that does not fit the ones before");
+    state.SetIterationTime(seconds);
+    ms.push_back(1e3 * seconds);
+  }
+  state.counters["median_ms"] = median(ms);
+}
+
+}  // namespace fovea::bench
