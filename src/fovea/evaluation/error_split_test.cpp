@@ -7,15 +7,7 @@
 namespace fovea {
 namespace {
 
-Camera small_camera() {
-  Camera camera;
-  camera.width = 20;
-  camera.height = 10;
-  camera.fx = camera.fy = 10;
-  camera.cx = 10;
-  camera.cy = 5;
-  return camera;
-}
+Camera small_camera() { return {0, 20, 10, 10, 10, 10, 5, RigidMotion::Identity()}; }
 
 /// Red grows by 10 a column.
 Image ramp() {

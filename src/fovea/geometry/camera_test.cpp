@@ -6,12 +6,7 @@ namespace fovea {
 namespace {
 
 Camera small_camera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 500;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
+  Camera camera{0, 640, 480, 500, 500, 319.5, 239.5, RigidMotion::Identity()};
   // The LiDAR's x (forward) is the camera's z; the camera stands 1 m ahead of the LiDAR.
   camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   camera.T_cam_lidar.translation() = Eigen::Vector3d(0, 0, -1);

@@ -7,13 +7,7 @@ namespace fovea {
 
 /// About KITTI's.
 inline Camera test_camera() {
-  Camera camera;
-  camera.width = 1242;
-  camera.height = 375;
-  camera.fx = camera.fy = 720;
-  camera.cx = 610;
-  camera.cy = 170;
-  return camera;
+  return {0, 1242, 375, 720, 720, 610, 170, RigidMotion::Identity()};
 }
 
 }  // namespace fovea

@@ -8,13 +8,8 @@ namespace fovea {
 namespace {
 
 Camera camera_of(int width, int height) {
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = camera.fy = 100;
-  camera.cx = (width - 1) / 2.0;
-  camera.cy = (height - 1) / 2.0;
-  return camera;
+  return {
+      0, width, height, 100, 100, (width - 1) / 2.0, (height - 1) / 2.0, RigidMotion::Identity()};
 }
 
 /// @param radius  pixels

@@ -13,12 +13,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// A camera that looks along the LiDAR's x axis from its place, 90 degrees wide.
 Camera forward_camera() {
-  Camera camera;
-  camera.width = 1001;
-  camera.height = 801;
-  camera.fx = camera.fy = 500;
-  camera.cx = 500;
-  camera.cy = 400;
+  Camera camera{0, 1001, 801, 500, 500, 500, 400, RigidMotion::Identity()};
   camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   return camera;
 }

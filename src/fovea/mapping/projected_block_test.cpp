@@ -7,16 +7,7 @@
 namespace fovea {
 namespace {
 
-Camera test_camera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 200;
-  camera.fx = 350;
-  camera.fy = 360;
-  camera.cx = 310;
-  camera.cy = 94;
-  return camera;
-}
+Camera test_camera() { return {0, 640, 200, 350, 360, 310, 94, RigidMotion::Identity()}; }
 
 TEST(ProjectedBlock, ProjectsAsTheCameraDoes) {
   const Camera camera = test_camera();

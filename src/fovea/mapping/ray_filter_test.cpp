@@ -8,15 +8,7 @@
 namespace fovea {
 namespace {
 
-Camera test_camera() {
-  Camera camera;
-  camera.width = 200;
-  camera.height = 100;
-  camera.fx = camera.fy = 100;
-  camera.cx = 99.5;
-  camera.cy = 49.5;
-  return camera;
-}
+Camera test_camera() { return {0, 200, 100, 100, 100, 99.5, 49.5, RigidMotion::Identity()}; }
 
 Ray ray_of(const Eigen::Vector3f& p, const Camera& c) {
   return {{float(c.fx) * p.x() / p.z() + float(c.cx), float(c.fy) * p.y() / p.z() + float(c.cy)},

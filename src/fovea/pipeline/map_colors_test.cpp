@@ -14,16 +14,7 @@ namespace {
 
 constexpr double kSpacing = 0.02;
 
-Camera test_camera() {
-  Camera camera;
-  camera.index = 3;
-  camera.width = 621;
-  camera.height = 188;
-  camera.fx = camera.fy = 360;
-  camera.cx = 310;
-  camera.cy = 94;
-  return camera;
-}
+Camera test_camera() { return {3, 621, 188, 360, 360, 310, 94, RigidMotion::Identity()}; }
 
 Image image_of(const Rgb& color) {
   Image image(621, 188, 3);
