@@ -6,46 +6,14 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
+#include "fovea/evaluation/voxel_moments.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/voxel_grid.h"
-#include "fovea/geometry/voxel_table.h"
 
 namespace fovea {
 namespace {
 
 constexpr std::size_t kGrain = 512;
-
-struct Moments {
-  std::size_t count = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-
-  void add(const Moments& other) {
-    count += other.count;
-    sum += other.sum;
-    squares += other.squares;
-  }
-  Eigen::Vector3d mean() const { return sum / static_cast<double>(count); }
-  /// Mean of (p - center)(p - center)^T.
-  Eigen::Matrix3d spread_about(const Eigen::Vector3d& center) const {
-    const auto n = static_cast<double>(count);
-    const Eigen::Matrix3d cross = sum * center.transpose() / n;
-    return squares / n - cross - cross.transpose() + center * center.transpose();
-  }
-};
-
-std::vector<Moments> gather(VoxelTable& table, const std::vector<Eigen::Vector3f>& points) {
-  std::vector<Moments> moments;
-  for (const Eigen::Vector3f& point : points) {
-    const std::uint32_t id = table.insert(table.voxel_of(point));
-    if (id == moments.size()) moments.emplace_back();
-    const Eigen::Vector3d p = point.cast<double>();
-    ++moments[id].count;
-    moments[id].sum += p;
-    moments[id].squares += p * p.transpose();
-  }
-  return moments;
-}
 
 /// RMS distance of the patch's points to the plane of the block; negative where it is not flat.
 float patch_thickness(const Moments& patch, const Moments& block) {
@@ -64,18 +32,11 @@ float patch_thickness(const Moments& patch, const Moments& block) {
 }  // namespace
 
 PlaneThickness plane_thickness(const std::vector<Eigen::Vector3f>& map) {
-  VoxelTable table(PlaneThickness::kPatch);
-  const std::vector<Moments> moments = gather(table, map);
-  std::vector<float> thickness(moments.size(), -1);
-  parallel_for(moments.size(), kGrain, [&](std::size_t id) {
-    if (moments[id].count < PlaneThickness::kMinPoints) return;
-    Moments block;
-    for (const VoxelTable::Voxel& voxel :
-         VoxelTable::block_around(table.voxel(static_cast<std::uint32_t>(id)))) {
-      const std::uint32_t neighbor = table.find(voxel);
-      if (neighbor != VoxelTable::kNone) block.add(moments[neighbor]);
-    }
-    thickness[id] = patch_thickness(moments[id], block);
+  const VoxelMoments patches(map, PlaneThickness::kPatch);
+  std::vector<float> thickness(patches.size(), -1);
+  parallel_for(patches.size(), kGrain, [&](std::size_t patch) {
+    if (patches.of(patch).count < PlaneThickness::kMinPoints) return;
+    thickness[patch] = patch_thickness(patches.of(patch), patches.around(patch));
   });
   std::erase_if(thickness, [](float value) { return value < 0; });
   PlaneThickness result;

@@ -6,8 +6,6 @@
 namespace fovea {
 
 /// About KITTI's.
-inline Camera test_camera() {
-  return {0, 1242, 375, 720, 720, 610, 170, RigidMotion::Identity()};
-}
+inline Camera test_camera() { return {0, 1242, 375, 720, 720, 610, 170, RigidMotion::Identity()}; }
 
 }  // namespace fovea
