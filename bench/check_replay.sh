@@ -11,12 +11,9 @@ drive=$(echo "$scratch"/street/*/*_sync)
 "$replay" "$drive" --times 3 -o "$scratch/replay" >/dev/null
 replayed=$(echo "$scratch"/replay/*/*_sync)
 [[ $(find "$replayed" -type f -size +100k | wc -l) == 0 ]] || { echo "a picture or scan was copied"; exit 1; }
-map() {  # poses by navigation: where the replay puts the vehicle
-  "$fovea" map "$1" -o "$2.fovea" --poses navigation --quiet --report "$2.json"
-  "$fovea" export "$2.fovea" "$2.txt" --quiet --format kitti-poses
-}
-map "$drive" "$scratch/once"
-map "$replayed" "$scratch/thrice"
+# Poses by navigation: where the replay puts the vehicle.
+"$fovea" map "$replayed" -o "$scratch/thrice.fovea" --poses navigation --quiet
+"$fovea" export "$scratch/thrice.fovea" "$scratch/thrice.txt" --quiet --format kitti-poses
 # Every run moves as the first one does, and begins a step beyond the one before. (At its ends poses lie between records
 # of two runs, whose times jitter.)
 awk 'function step(i) { return sqrt((x[i] - x[i-1])^2 + (y[i] - y[i-1])^2 + (z[i] - z[i-1])^2) }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fovea::bench {
@@ -53,16 +54,23 @@ void duel(benchmark::State& state, Ours&& ours, Peer&& peer) {
   state.counters["ratio"] = median(ratio);
 }
 
-/// Times `ours` alone; counter `median_ms`.
-template <class Ours>
-void solo(benchmark::State& state, Ours&& ours) {
+/// Times `ours` alone; counter `median_ms`. `prepare` is called before each turn, and not timed.
+template <class Prepare, class Ours>
+void solo(benchmark::State& state, Prepare&& prepare, Ours&& ours) {
   std::vector<double> our_ms;
   for (auto _ : state) {
+    prepare();
     const double seconds = seconds_of(ours);
     state.SetIterationTime(seconds);
     our_ms.push_back(1e3 * seconds);
   }
   state.counters["median_ms"] = median(our_ms);
+}
+
+template <class Ours>
+void solo(benchmark::State& state, Ours&& ours) {
+  solo(
+      state, [] {}, std::forward<Ours>(ours));
 }
 
 }  // namespace fovea::bench

@@ -1,6 +1,7 @@
 #include "bench/mapping_bench.h"
 
 #include "bench/duel.h"
+#include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/foveal_query.h"
@@ -104,48 +105,32 @@ void bench_store(benchmark::State& state, const MappedStreet& street) {
         if (tile.frame[i] == newest) of_frame.push_back(i);
       }
       if (of_frame.empty()) continue;
-      PointCloud part = tile.select(of_frame);
-      for (Eigen::Vector3f& p : part.position) {
-        p = (submap.T_local_submap * (part.origin + p.cast<double>())).cast<float>();
-      }
-      part.origin.setZero();
-      added.append(part);
+      added.append(transform_cloud(tile.select(of_frame), submap.T_local_submap));
     }
   }
   check(!added.empty(), "a frame without points");
-  std::vector<double> ms;
-  for (auto _ : state) {
-    TileMap map = street.map;
-    const double seconds = seconds_of([&] { return map.add(added).size(); });
-    state.SetIterationTime(seconds);
-    ms.push_back(1e3 * seconds);
-  }
-  state.counters["median_ms"] = median(ms);
+  TileMap map;
+  solo(
+      state, [&] { map = street.map; }, [&] { return map.add(added).size(); });
   state.counters["points"] = static_cast<double>(added.size());
 }
 
 void bench_chain(benchmark::State& state, const BenchData& data) {
   const MapperOptions options = load_preset("default");
-  std::vector<double> ms;
   std::unique_ptr<Mapper> mapper;
   std::size_t next = data.frames.size();
-  for (auto _ : state) {
-    if (next == data.frames.size()) {
-      mapper = std::make_unique<Mapper>(data.drive, options, PoseSource::kRefine);
-      for (next = 0; next < std::min(kFirstCounted, data.frames.size() - 1); ++next) {
-        mapper->process(data.frames[next], false);
-      }
+  const auto start_anew = [&] {
+    if (next < data.frames.size()) return;
+    mapper = std::make_unique<Mapper>(data.drive, options, PoseSource::kRefine);
+    for (next = 0; next < std::min(kFirstCounted, data.frames.size() - 1); ++next) {
+      mapper->process(data.frames[next], false);
     }
-    FrameRecord record;
-    const double seconds = seconds_of([&] {
-      record = mapper->process(data.frames[next++], false);
-      return record.index;
-    });
+  };
+  solo(state, start_anew, [&] {
+    const FrameRecord record = mapper->process(data.frames[next++], false);
     check(!record.has("registration_failed"), "a scan that does not fit the ones before");
-    state.SetIterationTime(seconds);
-    ms.push_back(1e3 * seconds);
-  }
-  state.counters["median_ms"] = median(ms);
+    return record.index;
+  });
 }
 
 }  // namespace fovea::bench

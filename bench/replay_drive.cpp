@@ -51,8 +51,8 @@ struct Record {
 };
 
 Record read_record(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string text((std::istreambuf_iterator<char>(stream)), {});
+  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::string text(bytes.begin(), bytes.end());
   const auto record = parse_oxts(text);
   if (const auto* reason = std::get_if<std::string>(&record)) {
     throw InputError("the GPS/INS record " + *reason, file.string(), "replay a whole drive");
@@ -69,23 +69,23 @@ class Replay {
       : from_(fs::canonical(drive)),
         to_(folder / from_.parent_path().filename() / from_.filename()),
         times_(times) {
-    for (const auto& entry : fs::directory_iterator(from_ / "oxts/data")) {
-      frames_ = std::max(frames_, std::stoi(entry.path().stem().string()) + 1);
+    const NumberedFiles records = list_numbered_files(from_ / "oxts/data", {".txt"});
+    const auto period = median_period(read_date_times(from_ / "velodyne_points/timestamps.txt"));
+    if (records.size() < 2 || !period) {
+      throw InputError("the drive has no two GPS/INS records or time stamps", from_.string(),
+                       "give a longer one");
     }
+    frames_ = records.rbegin()->first + 1;
     for (int i = 0; i < frames_; ++i) {
       records_.push_back(read_record(from_ / "oxts/data" / file_name(i, ".txt")));
     }
-    if (frames_ < 2) {
-      throw InputError("the drive has no two GPS/INS records", from_.string(), "give a longer one");
-    }
-    const auto period = median_period(read_date_times(from_ / "velodyne_points/timestamps.txt"));
-    lap_ = frames_ * from_seconds(period.value());
+    lap_ = frames_ * from_seconds(*period);
   }
 
   void write() const {
+    fs::create_directories(to_);
     for (const auto& entry : fs::directory_iterator(from_.parent_path())) {  // the calibration
       const std::string name = entry.path().filename().string();
-      fs::create_directories(to_);
       if (name.starts_with("calib_")) fs::copy(entry.path(), to_.parent_path() / name);
     }
     for (const auto& entry : fs::directory_iterator(from_)) {
@@ -102,12 +102,11 @@ class Replay {
  private:
   void link_files(const std::string& name) const {
     fs::create_directories(to_ / name / "data");
-    for (const auto& entry : fs::directory_iterator(from_ / name / "data")) {
-      const int frame = std::stoi(entry.path().stem().string());
+    for (const auto& [frame, file] :
+         list_numbered_files(from_ / name / "data", {".bin", ".png", ".jpg", ".jpeg"})) {
       for (int lap = 0; lap < times_; ++lap) {
-        fs::create_symlink(entry.path(),
-                           to_ / name / "data" /
-                               file_name(lap * frames_ + frame, entry.path().extension().string()));
+        fs::create_symlink(file, to_ / name / "data" /
+                                     file_name(lap * frames_ + frame, file.extension().string()));
       }
     }
   }
