@@ -149,6 +149,15 @@ class OutputFile::Buffer : public std::streambuf {
     return 0;
   }
 
+  /// For headers that are known only behind what they describe.
+  pos_type seekpos(pos_type position, std::ios_base::openmode) override {
+    if (!is_open()) return pos_type(off_type(-1));
+    flush();
+    const off_t reached = ::lseek(fd_, position, SEEK_SET);
+    if (reached < 0) throw_output_error(target_, errno);
+    return reached;
+  }
+
  private:
   void write_all(const char* data, std::size_t count) {
     while (count > 0) {

@@ -33,6 +33,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
+  /// Of seeking it knows seekp(POSITION).
   std::ostream& stream() { return stream_; }
   /// Flushes everything to disk and gives the file its name. Nothing can be written afterwards.
   void commit();

@@ -54,6 +54,17 @@ TEST(OutputFile, AppearsWholeAtCommit) {
   EXPECT_THAT(folder.names(), ElementsAre("out.bin"));
 }
 
+TEST(OutputFile, ItsBeginningCanBeWrittenAgain) {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "out.bin", false);
+  const std::string rest(3 << 20, 'x');  // more than the buffer
+  file.stream() << "????" << rest;
+  file.stream().seekp(0);
+  file.stream() << "head";
+  file.commit();
+  EXPECT_EQ(content(folder / "out.bin"), "head" + rest);
+}
+
 TEST(OutputFile, LeavesNothingWithoutCommit) {
   const TemporaryFolder folder;
   {

@@ -1,9 +1,26 @@
 #include "fovea/geometry/geodesy.h"
 
+#include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <vector>
 
 namespace fovea {
+namespace {
+
+using RowMajorMatrix3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+}  // namespace
+
+RigidMotion T_ecef_enu(const GeodeticPoint& point) {
+  Eigen::Vector3d p;
+  std::vector<double> rotation(9);  // row-major
+  GeographicLib::Geocentric::WGS84().Forward(point.latitude, point.longitude, point.altitude, p.x(),
+                                             p.y(), p.z(), rotation);
+  RigidMotion T = RigidMotion::Identity();
+  T.linear() = Eigen::Map<const RowMajorMatrix3>(rotation.data());
+  T.translation() = p;
+  return T;
+}
 
 struct LocalTangentPlane::Projection {
   GeographicLib::LocalCartesian cartesian;
@@ -23,7 +40,7 @@ RigidMotion LocalTangentPlane::T_local_enu(const GeodeticPoint& point) const {
   projection_->cartesian.Forward(point.latitude, point.longitude, point.altitude, p.x(), p.y(),
                                  p.z(), rotation);
   RigidMotion T = RigidMotion::Identity();
-  T.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
+  T.linear() = Eigen::Map<const RowMajorMatrix3>(rotation.data());
   T.translation() = p;
   return T;
 }

@@ -12,6 +12,9 @@ struct GeodeticPoint {
   double altitude = 0;                 ///< m above the ellipsoid
 };
 
+/// The east-north-up frame at `point` in earth-centred, earth-fixed coordinates (WGS 84).
+RigidMotion T_ecef_enu(const GeodeticPoint& point);
+
 /// East-north-up frame tangent to the ellipsoid at `origin`.
 class LocalTangentPlane {
  public:
