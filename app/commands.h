@@ -9,8 +9,11 @@ namespace fovea::app {
 void add_map_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
+void add_crop_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_recolor_command(CLI::App& app);
+void add_repair_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "fovea/base/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::app {
@@ -14,7 +15,7 @@ namespace {
 
 struct InfoArguments {
   std::string map;
-  bool json = false, digest = false;
+  bool json = false, digest = false, check = false;
 };
 
 struct Contents {
@@ -97,7 +98,24 @@ void print_json(const Contents& c) {
   fmt::print("{}\n", json.dump(2));
 }
 
+/// Names what of a map cannot be read; InputError if there is anything.
+void check(const std::string& path) {
+  std::size_t damages = 0, tiles = 0;
+  const MapReader reader(path, [&](const std::string& damage) {
+    ++damages;
+    fmt::print("{}\n", damage);
+  });
+  reader.frames();
+  reader.for_each_tile([&](std::size_t, const TileKey&, const PointCloud&) { ++tiles; });
+  if (damages > 0) {
+    throw InputError(fmt::format("{} parts of the map cannot be read", damages), path,
+                     "save the rest with 'fovea repair' or map the drive again");
+  }
+  fmt::print("{}: whole, {} tiles\n", path, tiles);
+}
+
 void run(const InfoArguments& arguments) {
+  if (arguments.check) return check(arguments.map);
   const MapReader reader(arguments.map);
   if (arguments.digest) {
     fmt::print("{}\n", reader.digest());
@@ -119,6 +137,8 @@ void add_info_command(CLI::App& app) {
       ->add_flag("--digest", arguments->digest,
                  "Only a hash of everything but timings: equal for equal maps")
       ->excludes(json);
+  command->add_flag("--check", arguments->check,
+                    "Read everything and name what is damaged, tile by tile");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -32,8 +32,11 @@ int run(int argc, char** argv) {
   fovea::app::add_map_command(app);
   fovea::app::add_info_command(app);
   fovea::app::add_evaluate_command(app);
+  fovea::app::add_crop_command(app);
   fovea::app::add_export_command(app);
   fovea::app::add_render_command(app);
+  fovea::app::add_recolor_command(app);
+  fovea::app::add_repair_command(app);
   fovea::app::add_reproduce_command(app);
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);

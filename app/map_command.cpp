@@ -28,6 +28,7 @@ struct MapArguments {
   std::vector<std::string> settings;
   int threads = 0;
   double rate = 0;
+  std::size_t memory = std::size_t{1} << 30;
   bool calibrate = false, resume = false, force = false, quiet = false;
 };
 
@@ -75,6 +76,7 @@ void run(const MapArguments& arguments) {
   job.variant = arguments.variant;
   job.hold_out = parse_hold_out(arguments.hold_out);
   job.rate = arguments.rate;
+  job.memory = arguments.memory;
   job.calibrate = arguments.calibrate;
   job.force = arguments.force;
   job.resume = arguments.resume;
@@ -145,6 +147,12 @@ void add_map_command(CLI::App& app) {
                    "Play the drive as a live sensor would, and count late frames; none is dropped")
       ->type_name("HZ")
       ->check(CLI::Range(1e-3, 1e6));
+  command
+      ->add_option("--memory", arguments->memory,
+                   "Memory to keep to (default: 1GiB): the map's parts out of reach are in the "
+                   "file alone")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
   command->add_flag("--calibrate", arguments->calibrate,
                     "First estimate rotation and delay of the cameras from the drive's edges, and "
                     "map under them");

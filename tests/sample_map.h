@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -114,7 +115,8 @@ inline void put_sample_map(MapWriter& writer, const TileMap& map) {
   for (const FrameRecord& frame : sample_frames()) writer.put_frame(frame);
   for (std::size_t id = 0; id < map.submaps().size(); ++id) {
     writer.put_submap(id, map.submaps()[id].T_local_submap);
-    for (const auto& [key, tile] : map.submaps()[id].tiles) writer.put_tile(id, key, tile);
+    for (const auto& [key, tile] : map.submaps()[id].tiles)
+      writer.put_tile({id, key}, *tile.points);
   }
 }
 
@@ -122,6 +124,21 @@ inline void write_sample_map(const std::filesystem::path& path) {
   const auto writer = MapWriter::create(path, false);
   put_sample_map(*writer, sample_tile_map());
   writer->commit();
+}
+
+/// Points of the sample map in the order of its file, with their positions in the local frame.
+inline void for_each_sample_point(
+    const std::function<void(const Eigen::Vector3d& p_local, const PointCloud& tile,
+                             std::size_t index)>& f) {
+  const TileMap map = sample_tile_map();
+  for (const Submap& submap : map.submaps()) {
+    for (const auto& [key, stored] : submap.tiles) {
+      const PointCloud& tile = *stored.points;
+      for (std::size_t i = 0; i < tile.size(); ++i) {
+        f(submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()), tile, i);
+      }
+    }
+  }
 }
 
 }  // namespace fovea

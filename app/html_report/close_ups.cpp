@@ -34,7 +34,8 @@ ColouredPoints baseline_points(const FrameSource& drive, const std::vector<Place
   PointCloud all;
   all.origin = origin_local;
   for (const Submap& submap : mapper.map().submaps()) {
-    for (const auto& [key, tile] : submap.tiles) {
+    for (const auto& [key, stored] : submap.tiles) {
+      const PointCloud& tile = *stored.points;
       all.append(transform_cloud(tile, submap.T_local_submap, origin_local));
     }
   }

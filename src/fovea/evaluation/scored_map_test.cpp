@@ -198,7 +198,8 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
     points.reason = {0, reason_of(PointRule::kPlanar)};
     tiles.add(points);
     writer->put_submap(0, tiles.submaps()[0].T_local_submap);
-    for (const auto& [key, tile] : tiles.submaps()[0].tiles) writer->put_tile(0, key, tile);
+    for (const auto& [key, tile] : tiles.submaps()[0].tiles)
+      writer->put_tile({0, key}, *tile.points);
     writer->put_meta("cameras", "3");
     writer->commit();
   }

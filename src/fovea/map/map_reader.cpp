@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
 #include "fovea/base/errors.h"
@@ -9,6 +10,7 @@
 #include "fovea/map/number_text.h"
 #include "fovea/map/sqlite_database.h"
 #include "fovea/map/tile_codec.h"
+#include "fovea/map/tile_query.h"
 
 namespace fovea {
 namespace {
@@ -51,11 +53,15 @@ std::unique_ptr<sqlite::Database> open_for_reading(const fs::path& path) {
   require_file(path);
   auto database = std::make_unique<sqlite::Database>(path, Access::kRead, path);
   // SQLite reads nothing before the first statement.
-  if (database->attempt("SELECT count(*) FROM sqlite_master") == sqlite::Outcome::kFailed &&
-      !has_log(path)) {
-    database = std::make_unique<sqlite::Database>(path, Access::kReadImmutable, path);
+  constexpr const char* kLook = "SELECT count(*) FROM sqlite_master";
+  if (database->attempt(kLook) != sqlite::Outcome::kFailed) return database;
+  if (!has_log(path)) {
+    return std::make_unique<sqlite::Database>(path, Access::kReadImmutable, path);
   }
-  return database;
+  // A program was killed while it changed how the file is journalled: whoever may write sets the
+  // file right, and then it can be read.
+  sqlite::Database(path, Access::kWrite, path).attempt(kLook);
+  return std::make_unique<sqlite::Database>(path, Access::kRead, path);
 }
 
 void require_schema(sqlite::Database& database) {
@@ -85,25 +91,6 @@ class Snapshot {
  private:
   sqlite::Database& database_;
 };
-
-TileRow tile_row(const Statement& statement, const std::string& map_path) {
-  const auto key = [&](int column) {
-    const std::int64_t value = statement.integer(column);
-    if (!std::in_range<std::int32_t>(value)) {
-      throw InputError(fmt::format("a tile has the impossible key {}", value), map_path, kRestore);
-    }
-    return static_cast<std::int32_t>(value);
-  };
-  TileRow row;
-  row.submap = statement.integer(0);
-  row.key = {key(1), key(2), key(3)};
-  row.points = statement.integer(4);
-  row.colored = statement.integer(5);
-  row.origin = {statement.real(6), statement.real(7), statement.real(8)};
-  for (int i = 0; i < static_cast<int>(kStoredColumns); ++i) row.blobs[i] = statement.blob(9 + i);
-  row.checksum = static_cast<std::uint64_t>(statement.integer(9 + int{kStoredColumns}));
-  return row;
-}
 
 std::optional<int> submap_number(std::int64_t value) {
   if (value < -1 || !std::in_range<int>(value)) return std::nullopt;
@@ -148,15 +135,80 @@ FrameRecord frame_record(const Statement& row, const std::string& map_path) {
 }  // namespace
 
 struct MapReader::Database {
-  explicit Database(const fs::path& path) : sqlite(open_for_reading(path)) {
+  Database(const fs::path& path, std::function<void(const std::string&)> on_damage_)
+      : sqlite(open_for_reading(path)), on_damage(std::move(on_damage_)) {
+    // Only so does SQLite open a file that is shorter than it should be.
+    if (on_damage) sqlite->attempt("PRAGMA writable_schema=ON");
     require_schema(*sqlite);
   }
+  /// Does a step of reading; where damage is to be told of, tells of it and returns false.
+  template <class Step>
+  bool read(Step&& step) {
+    if (!on_damage) {
+      step();
+      return true;
+    }
+    try {
+      step();
+      return true;
+    } catch (const InputError& error) {
+      on_damage(error.problem() + ", " + error.where());
+      return false;
+    }
+  }
+  void for_each_tile(const std::function<void(const TileRow&)>& f);
+  void for_each_whole_tile(const std::function<void(const TileRow&)>& f);
+
   std::unique_ptr<sqlite::Database> sqlite;
+  std::function<void(const std::string&)> on_damage;
 };
 
-MapReader::MapReader(const fs::path& path) : database_(std::make_unique<Database>(path)) {}
+void MapReader::Database::for_each_tile(const std::function<void(const TileRow&)>& f) {
+  if (on_damage) return for_each_whole_tile(f);
+  Statement rows(*sqlite,
+                 fmt::format("SELECT {} FROM tiles ORDER BY submap, x, y, z", kTileColumns));
+  while (rows.step()) f(tile_row(rows, sqlite->where()));
+}
+
+void MapReader::Database::for_each_whole_tile(const std::function<void(const TileRow&)>& f) {
+  // First the keys, which stand apart: one row that cannot be read ends a query.
+  std::vector<std::array<std::int64_t, 4>> keys;
+  read([&] {
+    Statement rows(*sqlite, "SELECT submap, x, y, z FROM tiles ORDER BY submap, x, y, z");
+    while (rows.step()) {
+      keys.push_back({rows.integer(0), rows.integer(1), rows.integer(2), rows.integer(3)});
+    }
+  });
+  for (const auto& key : keys) {
+    read([&] {
+      Statement row(*sqlite, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile));
+      for (int i = 0; i < 4; ++i) row.bind(i + 1, key[std::size_t(i)]);
+      bool is_there = false;
+      try {
+        is_there = row.step();
+      } catch (const InputError&) {
+        // Named below: SQLite says of the file alone that it is damaged.
+      }
+      if (!is_there) {
+        throw InputError("a tile cannot be read",
+                         fmt::format("{}, tile {} {} {} of submap {}", sqlite->where(), key[1],
+                                     key[2], key[3], key[0]),
+                         kRestore);
+      }
+      f(tile_row(row, sqlite->where()));
+    });
+  }
+}
+
+MapReader::MapReader(const fs::path& path) : MapReader(path, {}) {}
+MapReader::MapReader(const fs::path& path, std::function<void(const std::string&)> on_damage)
+    : database_(std::make_unique<Database>(path, std::move(on_damage))) {}
 MapReader::~MapReader() = default;
 MapReader::MapReader(MapReader&&) noexcept = default;
+
+std::shared_ptr<const void> MapReader::hold_state() const {
+  return std::make_shared<const Snapshot>(*database_->sqlite);
+}
 
 MapMeta MapReader::meta() const {
   Statement rows(*database_->sqlite, "SELECT key, value FROM meta");
@@ -169,7 +221,10 @@ std::vector<FrameRecord> MapReader::frames() const {
   Statement rows(*database_->sqlite,
                  fmt::format("SELECT {}, timings FROM frames ORDER BY idx", kFrameColumns));
   std::vector<FrameRecord> frames;
-  while (rows.step()) frames.push_back(frame_record(rows, database_->sqlite->where()));
+  bool more = true;
+  while (database_->read([&] { more = rows.step(); }) && more) {
+    database_->read([&] { frames.push_back(frame_record(rows, database_->sqlite->where())); });
+  }
   return frames;
 }
 
@@ -198,25 +253,34 @@ std::size_t MapReader::colored_size() const {
       database_->sqlite->integer("SELECT coalesce(sum(colored), 0) FROM tiles"));
 }
 
+std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
+  const std::string where = database_->sqlite->where();
+  Statement rows(*database_->sqlite,
+                 "SELECT submap, x, y, z, points FROM tiles ORDER BY submap, x, y, z");
+  std::vector<std::pair<TileId, std::size_t>> sizes;
+  while (rows.step()) {
+    if (!std::in_range<std::size_t>(rows.integer(0)) || rows.integer(4) < 0) {
+      throw InputError("a tile has an impossible submap or size", where, kRestore);
+    }
+    sizes.emplace_back(TileId{static_cast<std::size_t>(rows.integer(0)), tile_key(rows, 1, where)},
+                       static_cast<std::size_t>(rows.integer(4)));
+  }
+  return sizes;
+}
+
 void MapReader::for_each_tile(
     const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const {
   sqlite::Database& database = *database_->sqlite;
   const Snapshot snapshot(database);
   const std::size_t submap_count = submaps().size();
-  Statement rows(database,
-                 "SELECT submap, x, y, z, points, colored, origin_x, origin_y, origin_z, position, "
-                 "color, camera, frame, range, incidence, interpolated, views, spread, weight, "
-                 "reason, intensity, checksum "
-                 "FROM tiles ORDER BY submap, x, y, z");
   TileDecoder decoder;
-  while (rows.step()) {
-    const TileRow row = tile_row(rows, database.where());
+  database_->for_each_tile([&](const TileRow& row) {
     if (row.submap < 0 || row.submap >= static_cast<std::int64_t>(submap_count)) {
       throw InputError(fmt::format("a tile belongs to submap {}, which is missing", row.submap),
                        database.where(), kRestore);
     }
     f(static_cast<std::size_t>(row.submap), row.key, decoder.decode(row, database.where()));
-  }
+  });
 }
 
 PointCloud MapReader::all_points_local() const {
@@ -262,17 +326,30 @@ std::string MapReader::digest() const {
   Statement submaps(database, "SELECT id, pose FROM submaps ORDER BY id");
   while (submaps.step()) digest.row(submaps.integer(0), submaps.text(1));
   digest.section("tiles");
+  TileColumns columns;
   for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
     digest.row(static_cast<std::int64_t>(submap), std::int64_t{key.x}, std::int64_t{key.y},
                std::int64_t{key.z}, static_cast<std::int64_t>(tile.size()), tile.origin.x(),
                tile.origin.y(), tile.origin.z());
-    std::size_t i = 0;
-    for_each_stored_column(tile, [&](const auto& column) {
-      const bool missing = i++ == kIntensityColumn && column.empty();
-      missing ? digest.null() : digest.value(std::as_bytes(std::span(column)));
-    });
+    const auto& packed = columns.pack(tile);
+    for (std::size_t i = 0; i < kStoredColumns; ++i) {
+      const bool missing = i == kIntensityColumn && tile.intensity.empty();
+      missing ? digest.null() : digest.value(std::span<const std::byte>(packed[i]));
+    }
   });
   return digest.hex();
+}
+
+std::vector<RigidMotion> copy_all_but_tiles(const MapReader& map, MapWriter& output) {
+  for (const auto& [key, value] : map.meta()) {
+    if (key != kSchemaVersionKey) output.put_meta(key, value);
+  }
+  for (const FrameRecord& frame : map.frames()) output.put_frame(frame);
+  std::vector<RigidMotion> T_local_submap = map.submaps();
+  for (std::size_t id = 0; id < T_local_submap.size(); ++id) {
+    output.put_submap(id, T_local_submap[id]);
+  }
+  return T_local_submap;
 }
 
 }  // namespace fovea

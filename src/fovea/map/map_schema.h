@@ -7,7 +7,6 @@ namespace fovea {
 
 /// "FVEA": how a map is told from other SQLite files.
 inline constexpr int kMapApplicationId = 0x46564541;
-inline constexpr const char* kSchemaVersionKey = "schema_version";
 /// Meta keys with this prefix are left out of the digest.
 inline constexpr const char* kTimingPrefix = "timing.";
 

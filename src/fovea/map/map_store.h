@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
@@ -15,7 +16,11 @@
 namespace fovea {
 
 /// Version of the schema; a file of another version is refused.
-inline constexpr int kMapSchemaVersion = 4;
+inline constexpr int kMapSchemaVersion = 5;
+
+/// Keys of meta: the store's own, and what crop_map() has kept of another map.
+inline constexpr const char* kSchemaVersionKey = "schema_version";
+inline constexpr const char* kCropKey = "crop";
 
 using MapMeta = std::map<std::string, std::string>;
 
@@ -37,8 +42,13 @@ class MapWriter {
   /// std::invalid_argument if a pose or velocity is not finite.
   virtual void put_frame(const FrameRecord& record) = 0;
   virtual void put_submap(std::size_t id, const RigidMotion& T_local_submap) = 0;
-  /// std::logic_error if the tile lacks a column (see Submap::tiles).
-  virtual void put_tile(std::size_t submap, const TileKey& key, const PointCloud& tile) = 0;
+  /// Of a frame that has been put; std::invalid_argument if not finite.
+  virtual void put_pose(int frame, const RigidMotion& T_local_lidar) = 0;
+  /// std::logic_error if the tile lacks a column (see Tile::points).
+  virtual void put_tile(const TileId& id, const PointCloud& tile) = 0;
+  virtual void remove_tile(const TileId& id) = 0;
+  /// A tile as it was put, committed or not; InputError if it is not there or damaged.
+  virtual PointCloud read_tile(const TileId& id) = 0;
   /// OutputError when the disk is full or the file cannot be written.
   virtual void commit() = 0;
 };
@@ -49,14 +59,24 @@ class MapReader {
  public:
   /// InputError if the file is missing, is not a Fovea map, or has another schema version.
   explicit MapReader(const std::filesystem::path& path);
+  /// Reads what is whole of a file that may be damaged: tiles and frames that cannot be read are
+  /// told of, a line each, and left out. InputError if it is no map, or not even its meta data and
+  /// submaps are whole.
+  MapReader(const std::filesystem::path& path,
+            std::function<void(const std::string& damage)> on_damage);
   ~MapReader();
   MapReader(MapReader&&) noexcept;
+
+  /// While the result lives, all methods give the same committed state; this reader outlives it.
+  [[nodiscard]] std::shared_ptr<const void> hold_state() const;
 
   MapMeta meta() const;
   std::vector<FrameRecord> frames() const;   ///< by index
   std::vector<RigidMotion> submaps() const;  ///< T_local_submap by id
   std::size_t size() const;                  ///< number of points
   std::size_t colored_size() const;          ///< number of those that a camera has coloured
+  /// The tiles that there are, in the order of submap and key, and how many points each has.
+  std::vector<std::pair<TileId, std::size_t>> tile_sizes() const;
   /// Calls f(submap, key, tile) in the order of submap and key; positions as in Submap::tiles.
   void for_each_tile(
       const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const;
@@ -69,5 +89,9 @@ class MapReader {
   struct Database;
   std::unique_ptr<Database> database_;
 };
+
+/// Puts all that a map has but its tiles: meta data, frames and submaps.
+/// @return T_local_submap by id
+std::vector<RigidMotion> copy_all_but_tiles(const MapReader& map, MapWriter& output);
 
 }  // namespace fovea

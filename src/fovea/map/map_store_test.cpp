@@ -7,12 +7,15 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <numeric>
 #include <set>
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
+#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -47,7 +50,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   const MapReader reader(folder / "a.fovea");
   const MapMeta meta = reader.meta();
   EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
-  EXPECT_EQ(meta.at("schema_version"), "4");
+  EXPECT_EQ(meta.at("schema_version"), "5");
   EXPECT_EQ(meta.size(), 6u);
   const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
   ASSERT_EQ(frames.size(), expected.size());
@@ -62,7 +65,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   std::size_t colored = 0;
   reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
     order.emplace_back(submap, key);
-    expect_same_columns(tile, map.submaps()[submap].tiles.at(key));
+    expect_same_columns(tile, *map.submaps()[submap].tiles.at(key).points);
     colored += std::count(tile.camera.begin(), tile.camera.end(), std::int8_t{2});
   });
   EXPECT_EQ(order.size(), map.submaps()[0].tiles.size() + map.submaps()[1].tiles.size());
@@ -72,12 +75,15 @@ TEST(MapStore, EverythingComesBackBitForBit) {
 
 TEST(MapStore, TilesWithoutIntensityOrPointsComeBack) {
   const TemporaryFolder folder;
-  const PointCloud tile = one_point_each({{1, 2, 3}, {3, 2, 1}});
+  PointCloud tile = one_point_each({{1, 2, 3}, {3, 2, 1}});
+  for (Eigen::Vector3f& p : tile.position) p = kept_position(p.cast<double>());
+  for (float& range : tile.range) range = kept_range(range);
+  for (float& incidence : tile.incidence) incidence = kept_incidence(incidence);
   {
     const auto writer = MapWriter::create(folder / "a.fovea", false);
     writer->put_submap(0, RigidMotion::Identity());
-    writer->put_tile(0, {0, 0, 0}, tile);
-    writer->put_tile(0, {-1, 0, 0}, PointCloud());
+    writer->put_tile({0, {0, 0, 0}}, tile);
+    writer->put_tile({0, {-1, 0, 0}}, PointCloud());
     writer->commit();
   }
   std::vector<std::size_t> sizes;
@@ -99,7 +105,8 @@ TEST(MapStore, AllPointsLieInTheLocalFrame) {
   EXPECT_EQ(points_local.origin, Eigen::Vector3d::Zero());
   std::size_t i = 0;
   for (const Submap& submap : map.submaps()) {
-    for (const auto& [key, tile] : submap.tiles) {
+    for (const auto& [key, stored] : submap.tiles) {
+      const PointCloud& tile = *stored.points;
       for (std::size_t j = 0; j < tile.size(); ++j, ++i) {
         const Eigen::Vector3d expected =
             submap.T_local_submap * (tile.origin + tile.position[j].cast<double>());
@@ -124,7 +131,7 @@ TEST(MapStore, PuttingAgainReplaces) {
     frame.velocity.reset();
     writer->put_frame(frame);
     writer->put_submap(1, RigidMotion::Identity());
-    writer->put_tile(0, {0, 0, 0}, one_point_each({{1, 1, 1}}));
+    writer->put_tile({0, {0, 0, 0}}, one_point_each({{1, 1, 1}}));
     writer->commit();
   }
   const MapReader reader(folder / "a.fovea");
@@ -145,7 +152,7 @@ TEST(MapStore, RefusesWhatItCannotKeep) {
   const auto writer = MapWriter::create(folder / "a.fovea", false);
   PointCloud tile = one_point_each({{1, 1, 1}});
   tile.range.clear();
-  EXPECT_THROW(writer->put_tile(0, {}, tile), std::logic_error);
+  EXPECT_THROW(writer->put_tile({0, {}}, tile), std::logic_error);
   EXPECT_THROW(writer->put_meta("schema_version", "7"), std::invalid_argument);
   FrameRecord frame;
   frame.T_local_lidar.translation().x() = std::nan("");
@@ -178,11 +185,11 @@ TEST(MapDigest, DoesNotDependOnTheOrderOrNumberOfPuts) {
     for (std::size_t id = map.submaps().size(); id-- > 0;) {
       const auto& tiles = map.submaps()[id].tiles;
       for (auto it = tiles.rbegin(); it != tiles.rend(); ++it) {
-        writer->put_tile(id, it->first, one_point_each({{0, 0, 0}}));  // replaced below
+        writer->put_tile({id, it->first}, one_point_each({{0, 0, 0}}));  // replaced below
       }
       writer->commit();
       for (auto it = tiles.rbegin(); it != tiles.rend(); ++it) {
-        writer->put_tile(id, it->first, it->second);
+        writer->put_tile({id, it->first}, *it->second.points);
       }
       writer->put_submap(id, map.submaps()[id].T_local_submap);
     }
@@ -231,17 +238,22 @@ TEST(MapDigest, LeavesOutTimingsOnly) {
 
 TEST(MapDigest, ChangesWithAnyBitOfATile) {
   const TileMap map = sample_tile_map();
-  const auto& [key, tile] = *std::max_element(
-      map.submaps()[1].tiles.begin(), map.submaps()[1].tiles.end(),
-      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  const auto& [key, largest] =
+      *std::max_element(map.submaps()[1].tiles.begin(), map.submaps()[1].tiles.end(),
+                        [](const auto& a, const auto& b) {
+                          return a.second.points->size() < b.second.points->size();
+                        });
+  const PointCloud& tile = *largest.points;
   std::set<std::string> digests = {digest_with([](MapWriter&) {})};
   const auto expect_new = [&, key = key](const PointCloud& changed) {
-    EXPECT_TRUE(
-        digests.insert(digest_with([&](MapWriter& w) { w.put_tile(1, key, changed); })).second);
+    EXPECT_TRUE(digests.insert(digest_with([&](MapWriter& w) {
+                         w.put_tile({1, key}, changed);
+                       }))
+                    .second);
   };
   const std::size_t last = tile.size() - 1;
   PointCloud changed = tile;
-  changed.position[last].z() = std::nextafter(changed.position[last].z(), 100.f);
+  changed.position[last].z() += 0.001f;
   expect_new(changed);
   changed = tile;
   changed.color[last].b ^= 1;
@@ -253,11 +265,10 @@ TEST(MapDigest, ChangesWithAnyBitOfATile) {
   changed.frame[0] ^= 1 << 30;
   expect_new(changed);
   changed = tile;
-  changed.range[0] = std::nextafter(changed.range[0], 0.f);
+  changed.range[0] += 0.01f;
   expect_new(changed);
   changed = tile;
-  changed.incidence[0] += 0.1f;
-  changed.incidence[last] = 0.25f;
+  changed.incidence[last] = changed.incidence[last] == 0.25f ? 0.5f : 0.25f;
   expect_new(changed);
   changed = tile;
   changed.interpolated[last] ^= 1;
@@ -307,6 +318,19 @@ std::vector<T> inflate(sqlite3_stmt* row, int column, std::size_t count) {
   return values;
 }
 
+/// Whole numbers from a plane of differences that begins at a byte.
+std::vector<unsigned> plane(const std::vector<std::uint8_t>& bytes, std::size_t begin,
+                            std::size_t count) {
+  std::vector<unsigned> numbers(count);
+  int last = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int d = bytes[begin + i] + 256 * bytes[begin + count + i];
+    last = (last + (d % 2 == 0 ? d / 2 : -(d + 1) / 2)) & 65535;
+    numbers[i] = static_cast<unsigned>(last);
+  }
+  return numbers;
+}
+
 TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
   const TemporaryFolder folder;
   write_sample_map(folder / "a.fovea");
@@ -320,19 +344,30 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
     const auto submap = static_cast<std::size_t>(sqlite3_column_int64(row, 0));
     const TileKey key = {sqlite3_column_int(row, 1), sqlite3_column_int(row, 2),
                          sqlite3_column_int(row, 3)};
-    const PointCloud& tile = map.submaps()[submap].tiles.at(key);
+    const PointCloud& tile = *map.submaps()[submap].tiles.at(key).points;
     const auto count = static_cast<std::size_t>(sqlite3_column_int64(row, 4));
     ASSERT_EQ(count, tile.size());
     points += count;
     EXPECT_EQ(sqlite3_column_double(row, 7), tile.origin.y());
-    const auto position = inflate<float>(row, 9, 3 * count);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<unsigned> steps =
+          plane(inflate<std::uint8_t>(row, 9, 6 * count), std::size_t(axis) * 2 * count, count);
+      for (std::size_t i = 0; i < count; ++i) {
+        ASSERT_EQ(static_cast<float>(steps[i]) * 0.001f, tile.position[i][axis]);
+      }
+    }
+    const std::vector<unsigned> range = plane(inflate<std::uint8_t>(row, 13, 2 * count), 0, count);
+    const auto incidence = inflate<std::uint8_t>(row, 14, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(static_cast<float>(range[i]) * 0.01f, tile.range[i]);
+      ASSERT_EQ(incidence[i] == 255, std::isnan(tile.incidence[i]));
+      if (incidence[i] == 255) continue;
+      ASSERT_NEAR(incidence[i] * std::numbers::pi / 360, tile.incidence[i], 1e-6);
+    }
     const auto color = inflate<std::uint8_t>(row, 10, 3 * count);
-    EXPECT_EQ(position[3 * count - 1], tile.position.back().z());
     EXPECT_EQ(color[1], tile.color[0].g);
     EXPECT_TRUE(same_bits(inflate<std::int8_t>(row, 11, count), tile.camera));
     EXPECT_TRUE(same_bits(inflate<std::int32_t>(row, 12, count), tile.frame));
-    EXPECT_TRUE(same_bits(inflate<float>(row, 13, count), tile.range));
-    EXPECT_TRUE(same_bits(inflate<float>(row, 14, count), tile.incidence));
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 15, count), tile.interpolated));
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 16, count), tile.views));
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 17, count), tile.spread));

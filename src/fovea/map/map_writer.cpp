@@ -10,6 +10,7 @@
 #include "fovea/map/number_text.h"
 #include "fovea/map/sqlite_database.h"
 #include "fovea/map/tile_codec.h"
+#include "fovea/map/tile_query.h"
 
 namespace fovea {
 namespace {
@@ -55,8 +56,12 @@ struct Puts {
         tile(database,
              "INSERT OR REPLACE INTO tiles VALUES"
              "(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,?17,?18,?19,"
-             "?20,?21,?22)") {}
-  Statement meta, frame, submap, tile;
+             "?20,?21,?22)"),
+        pose(database, "UPDATE frames SET pose = ?2 WHERE idx = ?1"),
+        no_tile(database, fmt::format("DELETE FROM tiles WHERE {}", kThisTile)),
+        read_tile(database, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile)) {
+  }
+  Statement meta, frame, submap, tile, pose, no_tile, read_tile;
 };
 
 void require_finite(bool finite, const std::string& what) {
@@ -97,7 +102,10 @@ class SqliteMapWriter : public MapWriter {
 
   void put_frame(const FrameRecord& record) override;
   void put_submap(std::size_t id, const RigidMotion& T_local_submap) override;
-  void put_tile(std::size_t submap, const TileKey& key, const PointCloud& tile) override;
+  void put_pose(int frame, const RigidMotion& T_local_lidar) override;
+  void put_tile(const TileId& id, const PointCloud& tile) override;
+  void remove_tile(const TileId& id) override;
+  PointCloud read_tile(const TileId& id) override;
 
   void commit() override {
     write([&] {
@@ -140,6 +148,7 @@ class SqliteMapWriter : public MapWriter {
   bool published_ = false;
   bool failed_ = false;
   TileEncoder encoder_;
+  TileDecoder decoder_;
   std::unique_ptr<Database> database_;
   std::unique_ptr<Puts> puts_;
 };
@@ -193,9 +202,10 @@ void SqliteMapWriter::publish() {
 void SqliteMapWriter::open_published_file() {
   database_ = std::make_unique<Database>(target_, Access::kWrite, path_);
   // Write-ahead log: others can read the map while it grows. The log is folded in after each
-  // commit.
+  // commit. Extra syncs come first: a rollback journal of the change to the log that reappears
+  // after a power failure would undo commits.
   database_->execute(
-      "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA wal_autocheckpoint=0;");
+      "PRAGMA synchronous=EXTRA; PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0;");
   // The lock of one writer, held from commit to commit.
   database_->execute("BEGIN IMMEDIATE");
   puts_ = std::make_unique<Puts>(*database_);
@@ -255,15 +265,54 @@ void SqliteMapWriter::put_submap(std::size_t id, const RigidMotion& T_local_subm
   });
 }
 
-void SqliteMapWriter::put_tile(std::size_t submap, const TileKey& key, const PointCloud& tile) {
-  const TileRow row = encoder_.encode(submap, key, tile);
+void SqliteMapWriter::put_pose(int frame, const RigidMotion& T_local_lidar) {
+  require_finite(T_local_lidar.matrix().allFinite(), fmt::format("frame {}: a pose", frame));
+  const std::string pose = format_pose(T_local_lidar);
+  write([&] {
+    puts_->pose.bind(1, std::int64_t{frame});
+    puts_->pose.bind(2, std::string_view(pose));
+    puts_->pose.run();
+  });
+}
+
+void bind_tile(Statement& statement, const TileId& id) {
+  int parameter = 0;
+  for (const std::int64_t number : {static_cast<std::int64_t>(id.submap), std::int64_t{id.key.x},
+                                    std::int64_t{id.key.y}, std::int64_t{id.key.z}}) {
+    statement.bind(++parameter, number);
+  }
+}
+
+void SqliteMapWriter::remove_tile(const TileId& id) {
+  write([&] {
+    bind_tile(puts_->no_tile, id);
+    puts_->no_tile.run();
+  });
+}
+
+PointCloud SqliteMapWriter::read_tile(const TileId& id) {
+  PointCloud tile;
+  write([&] {
+    Statement& read = puts_->read_tile;
+    bind_tile(read, id);
+    if (!read.step()) {
+      throw InputError(fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y,
+                                   id.key.z, id.submap),
+                       path_.string(), "map the drive again");
+    }
+    tile = decoder_.decode(tile_row(read, path_.string()), path_.string());
+    read.run();
+  });
+  return tile;
+}
+
+void SqliteMapWriter::put_tile(const TileId& id, const PointCloud& tile) {
+  const TileRow row = encoder_.encode(id, tile);
   write([&] {
     Statement& put = puts_->tile;
-    int parameter = 0;
-    for (const std::int64_t number : {row.submap, std::int64_t{key.x}, std::int64_t{key.y},
-                                      std::int64_t{key.z}, row.points, row.colored}) {
-      put.bind(++parameter, number);
-    }
+    bind_tile(put, id);
+    int parameter = 4;
+    for (const std::int64_t number : {row.points, row.colored}) put.bind(++parameter, number);
     for (const double coordinate : row.origin) put.bind(++parameter, coordinate);
     for (const std::span<const std::byte> blob : row.blobs) {
       ++parameter;

@@ -4,21 +4,15 @@
 #include <xxhash.h>
 #include <zstd.h>
 
-#include <bit>
 #include <new>
 #include <stdexcept>
-#include <type_traits>
 
 #include "fovea/base/errors.h"
 
 namespace fovea {
 namespace {
 
-// The columns are stored as they lie in memory; the format says little endian and packed.
-static_assert(std::endian::native == std::endian::little);
-static_assert(sizeof(Eigen::Vector3f) == 12 && sizeof(Rgb) == 3);
-
-/// Float columns hardly shrink at any level; the fastest keeps up with the mapper.
+/// The fastest keeps up with the mapper; the columns are packed so that it finds what there is.
 constexpr int kCompressionLevel = 1;
 
 void add_bytes(XXH3_state_t* state, const void* data, std::size_t size) {
@@ -28,15 +22,6 @@ void add_bytes(XXH3_state_t* state, const void* data, std::size_t size) {
 std::int64_t count_colored(const PointCloud& tile) {
   return std::count_if(tile.camera.begin(), tile.camera.end(),
                        [](std::int8_t camera) { return camera != kNoCamera; });
-}
-
-template <class T>
-bool decompress(ZSTD_DCtx* context, std::span<const std::byte> blob, std::size_t count,
-                std::vector<T>& column) {
-  const std::size_t size = count * sizeof(T);
-  if (ZSTD_getFrameContentSize(blob.data(), blob.size()) != size) return false;
-  column.resize(count);
-  return ZSTD_decompressDCtx(context, column.data(), size, blob.data(), blob.size()) == size;
 }
 
 }  // namespace
@@ -64,34 +49,32 @@ TileEncoder::TileEncoder() : context_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
 }
 TileEncoder::~TileEncoder() = default;
 
-TileRow TileEncoder::encode(std::size_t submap, const TileKey& key, const PointCloud& tile) {
+TileRow TileEncoder::encode(const TileId& id, const PointCloud& tile) {
   check_tile_columns(tile);
   if (static_cast<std::int64_t>(tile.size()) > kMaxTilePoints || !tile.origin.allFinite()) {
     throw std::invalid_argument(fmt::format("tile {} {} {} has {} points and the origin {} {} {}",
-                                            key.x, key.y, key.z, tile.size(), tile.origin.x(),
-                                            tile.origin.y(), tile.origin.z()));
+                                            id.key.x, id.key.y, id.key.z, tile.size(),
+                                            tile.origin.x(), tile.origin.y(), tile.origin.z()));
   }
   TileRow row;
-  row.submap = static_cast<std::int64_t>(submap);
-  row.key = key;
+  row.submap = static_cast<std::int64_t>(id.submap);
+  row.key = id.key;
   row.points = static_cast<std::int64_t>(tile.size());
   row.colored = count_colored(tile);
   // Adding zero turns -0, which SQLite cannot keep, into 0.
   row.origin = tile.origin.array() + 0.0;
-  std::size_t i = 0;
-  for_each_stored_column(tile, [&](const auto& column) {
+  const auto& columns = columns_.pack(tile);
+  for (std::size_t i = 0; i < kStoredColumns; ++i) {
+    if (i == kIntensityColumn && tile.intensity.empty()) continue;
     std::vector<std::byte>& memory = memory_[i];
-    if (i != kIntensityColumn || !column.empty()) {
-      const std::span<const std::byte> bytes = std::as_bytes(std::span(column));
-      memory.resize(ZSTD_compressBound(bytes.size()));
-      const std::size_t size = ZSTD_compressCCtx(context_.get(), memory.data(), memory.size(),
-                                                 bytes.data(), bytes.size(), kCompressionLevel);
-      // With this bound only memory can run out.
-      if (ZSTD_isError(size) != 0) throw std::bad_alloc();
-      row.blobs[i] = std::span(memory.data(), size);
-    }
-    ++i;
-  });
+    memory.resize(ZSTD_compressBound(columns[i].size()));
+    const std::size_t size =
+        ZSTD_compressCCtx(context_.get(), memory.data(), memory.size(), columns[i].data(),
+                          columns[i].size(), kCompressionLevel);
+    // With this bound only memory can run out.
+    if (ZSTD_isError(size) != 0) throw std::bad_alloc();
+    row.blobs[i] = std::span(memory.data(), size);
+  }
   row.checksum = checksum(row);
   return row;
 }
@@ -114,15 +97,20 @@ PointCloud TileDecoder::decode(const TileRow& row, const std::string& map_path) 
   }
   PointCloud tile;
   tile.origin = row.origin;
-  std::size_t i = 0;
-  for_each_stored_column(tile, [&](auto& column) {
-    const bool missing = i == kIntensityColumn && row.blobs[i].empty();
-    if (!missing &&
-        !decompress(context_.get(), row.blobs[i], static_cast<std::size_t>(row.points), column)) {
-      fail("a column of a tile cannot be decoded");
-    }
-    ++i;
-  });
+  const auto points = static_cast<std::size_t>(row.points);
+  for (std::size_t i = 0; i < kStoredColumns; ++i) {
+    const std::span<const std::byte> blob = row.blobs[i];
+    if (i == kIntensityColumn && blob.empty()) continue;
+    const std::size_t size = packed_size(i, points);
+    const auto unpacked = [&] {
+      if (ZSTD_getFrameContentSize(blob.data(), blob.size()) != size) return false;
+      memory_.resize(size);
+      return ZSTD_decompressDCtx(context_.get(), memory_.data(), size, blob.data(), blob.size()) ==
+             size;
+    };
+    if (!unpacked()) fail("a column of a tile cannot be decoded");
+    unpack_column(i, memory_, points, tile);
+  }
   if (count_colored(tile) != row.colored) fail("a tile has another number of coloured points");
   return tile;
 }

@@ -10,31 +10,13 @@
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
+#include "fovea/map/tile_columns.h"
 #include "fovea/map/tile_map.h"
 
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
 
 namespace fovea {
-
-/// Calls `f(column)` for each column of a tile that is stored, in the order of the table.
-template <class Cloud, class F>
-void for_each_stored_column(Cloud& tile, F&& f) {
-  f(tile.position);
-  f(tile.color);
-  f(tile.camera);
-  f(tile.frame);
-  f(tile.range);
-  f(tile.incidence);
-  f(tile.interpolated);
-  f(tile.views);
-  f(tile.spread);
-  f(tile.weight);
-  f(tile.reason);
-  f(tile.intensity);
-}
-inline constexpr std::size_t kStoredColumns = 12;
-inline constexpr std::size_t kIntensityColumn = 11;  // the only one that may be missing
 
 /// Points that one tile may hold; bounds what a damaged row can make a reader allocate.
 inline constexpr std::int64_t kMaxTilePoints = std::int64_t{1} << 26;
@@ -62,10 +44,11 @@ class TileEncoder {
   /// The row of a tile; its blobs are valid until the next call. std::logic_error if a column is
   /// missing, std::invalid_argument if the tile has too many points or an origin that is not
   /// finite.
-  TileRow encode(std::size_t submap, const TileKey& key, const PointCloud& tile);
+  TileRow encode(const TileId& id, const PointCloud& tile);
 
  private:
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> context_;
+  TileColumns columns_;
   std::array<std::vector<std::byte>, kStoredColumns> memory_;
 };
 
@@ -79,6 +62,7 @@ class TileDecoder {
 
  private:
   std::unique_ptr<ZSTD_DCtx_s, std::size_t (*)(ZSTD_DCtx_s*)> context_;
+  std::vector<std::byte> memory_;
 };
 
 }  // namespace fovea

@@ -4,9 +4,13 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "fovea/base/parallel.h"
+#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -31,7 +35,7 @@ TileKey key_of(const Eigen::Vector3d& p_submap, double tile_size) {
   return {tile_index(tiles.x()), tile_index(tiles.y()), tile_index(tiles.z())};
 }
 
-/// Appends the chosen points, positions apart, to a tile.
+/// Appends the chosen points, positions apart, to a tile, as the file keeps them.
 void append_columns(const PointCloud& points, const std::vector<std::uint32_t>& indices,
                     PointCloud& tile) {
   const auto gather = [&](const auto& from, auto& to) {
@@ -39,8 +43,10 @@ void append_columns(const PointCloud& points, const std::vector<std::uint32_t>& 
     to.resize(next + indices.size());
     for (const std::uint32_t i : indices) to[next++] = from[i];
   };
-  gather(points.range, tile.range);
-  gather(points.incidence, tile.incidence);
+  for (const std::uint32_t i : indices) {
+    tile.range.push_back(kept_range(points.range[i]));
+    tile.incidence.push_back(kept_incidence(points.incidence[i]));
+  }
   gather(points.color, tile.color);
   gather(points.frame, tile.frame);
   gather(points.camera, tile.camera);
@@ -58,6 +64,19 @@ std::pair<std::int32_t, std::int32_t> index_range(double low, double high, doubl
   constexpr double kMax = std::numeric_limits<std::int32_t>::max();
   return {static_cast<std::int32_t>(std::clamp(std::floor(low / tile_size), kMin, kMax)),
           static_cast<std::int32_t>(std::clamp(std::floor(high / tile_size), kMin, kMax))};
+}
+
+std::string name_of(const TileId& id) {
+  return fmt::format("tile {} {} {} of submap {}", id.key.x, id.key.y, id.key.z, id.submap);
+}
+
+/// Has the submap's box hold a tile.
+void widen(Submap& submap, const TileKey& key) {
+  if (submap.tiles.size() + submap.stored.size() == 1) submap.low = submap.high = key;
+  submap.low = {std::min(submap.low.x, key.x), std::min(submap.low.y, key.y),
+                std::min(submap.low.z, key.z)};
+  submap.high = {std::max(submap.high.x, key.x), std::max(submap.high.y, key.y),
+                 std::max(submap.high.z, key.z)};
 }
 
 }  // namespace
@@ -83,8 +102,9 @@ void check_tile_columns(const PointCloud& cloud) {
 }
 
 TileMap::TileMap(double tile_size) : tile_size_(tile_size) {
-  if (!(tile_size > 0) || !std::isfinite(tile_size)) {
-    throw std::invalid_argument(fmt::format("tile size {} m is not positive", tile_size));
+  if (!(tile_size > 0 && tile_size <= kMaxTileSize)) {
+    throw std::invalid_argument(
+        fmt::format("tile size {} m is not within 0 and {} m", tile_size, kMaxTileSize));
   }
 }
 
@@ -105,7 +125,7 @@ void TileMap::add_submap(const RigidMotion& T_local_submap) {
   if (!T_local_submap.matrix().allFinite()) {
     throw std::invalid_argument("the pose of a submap is not finite");
   }
-  submaps_.push_back({T_local_submap, {}});
+  submaps_.push_back({T_local_submap, {}, {}, {}, {}});
 }
 
 void TileMap::move_submap(std::size_t submap, const RigidMotion& T_local_submap) {
@@ -118,9 +138,9 @@ void TileMap::move_submap(std::size_t submap, const RigidMotion& T_local_submap)
   submaps_[submap].T_local_submap = T_local_submap;
 }
 
-std::vector<TileKey> TileMap::add(const PointCloud& points_local) {
+void TileMap::add(const PointCloud& points_local) {
   if (submaps_.empty()) throw std::logic_error("points need a submap to be added to");
-  if (points_local.empty()) return {};
+  if (points_local.empty()) return;
   require_same_columns(points_local);
   Submap& submap = submaps_.back();
 
@@ -140,89 +160,162 @@ std::vector<TileKey> TileMap::add(const PointCloud& points_local) {
     group->second.push_back(static_cast<std::uint32_t>(i));
   }
 
-  std::vector<TileKey> grown;
-  std::vector<std::pair<PointCloud*, const std::vector<std::uint32_t>*>> additions;
+  std::vector<std::pair<Tile*, const std::vector<std::uint32_t>*>> additions;
   for (const auto& [key, indices] : groups) {
-    PointCloud& tile = submap.tiles[key];
-    tile.origin = corner(key);
-    additions.emplace_back(&tile, &indices);
-    grown.push_back(key);
+    if (submap.stored.contains(key)) {
+      throw std::logic_error(fmt::format("points for {}, which is not in memory",
+                                         name_of({submaps_.size() - 1, key})));
+    }
+    const auto [place, is_new] = submap.tiles.try_emplace(key);
+    if (is_new) {
+      place->second.points.write().origin = corner(key);
+      widen(submap, key);
+    }
+    place->second.changed = true;
+    additions.emplace_back(&place->second, &indices);
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
-    const auto& [tile, indices] = additions[k];
-    append_columns(points_local, *indices, *tile);
-    std::size_t next = tile->position.size();
-    tile->position.resize(next + indices->size());
-    for (const std::uint32_t i : *indices) {
-      tile->position[next++] = (p_submap[i] - tile->origin).cast<float>();
+    const std::vector<std::uint32_t>& indices = *additions[k].second;
+    PointCloud& tile = additions[k].first->points.write();
+    append_columns(points_local, indices, tile);
+    for (const std::uint32_t i : indices) {
+      tile.position.push_back(kept_position(p_submap[i] - tile.origin));
     }
   });
   size_ += points_local.size();
-  return grown;
+  size_in_memory_ += points_local.size();
 }
 
-void TileMap::restore_tile(std::size_t submap, const TileKey& key, PointCloud tile) {
-  if (submap >= submaps_.size()) {
-    throw std::logic_error(fmt::format("submap {} of a restored tile does not exist", submap));
-  }
-  if (submaps_[submap].tiles.contains(key)) {
-    throw std::logic_error(
-        fmt::format("tile {} {} {} of submap {} is there already", key.x, key.y, key.z, submap));
-  }
-  if (tile.origin != corner(key)) {
-    throw std::logic_error(fmt::format("tile {} {} {} of submap {} has another tile size", key.x,
-                                       key.y, key.z, submap));
-  }
-  if (tile.empty()) return;
-  require_same_columns(tile);
-  tile.normal.clear();
-  size_ += tile.size();
-  submaps_[submap].tiles.emplace(key, std::move(tile));
-}
-
-PointCloud& TileMap::existing_tile(const TileId& id) {
+Tile& TileMap::existing_tile(const TileId& id) {
   if (id.submap < submaps_.size()) {
     const auto found = submaps_[id.submap].tiles.find(id.key);
     if (found != submaps_[id.submap].tiles.end()) return found->second;
   }
-  throw std::logic_error(fmt::format("tile {} {} {} of submap {} does not exist", id.key.x,
-                                     id.key.y, id.key.z, id.submap));
+  throw std::logic_error(name_of(id) + " is not in memory");
 }
 
 void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& indices) {
-  PointCloud& tile = existing_tile(id);
-  size_ -= tile.size() - indices.size();
+  Tile& tile = existing_tile(id);
+  const std::size_t lost = tile.points->size() - indices.size();
+  size_ -= lost;
+  size_in_memory_ -= lost;
   if (indices.empty()) {
     submaps_[id.submap].tiles.erase(id.key);
+    removed_.push_back(id);
   } else {
-    tile.keep(indices);
+    tile.points.write().keep(indices);
+    tile.changed = true;
   }
 }
 
 TileColors TileMap::colors(const TileId& id) {
-  PointCloud& tile = existing_tile(id);
-  return {tile.color, tile.views, tile.spread, tile.weight};
+  Tile& tile = existing_tile(id);
+  tile.changed = true;
+  PointCloud& points = tile.points.write();
+  return {points.color, points.views, points.spread, points.weight, points.camera};
+}
+
+template <class Tiles, class F>
+void TileMap::for_each_near(Tiles Submap::*tiles, const Eigen::Vector3d& center_local,
+                            double radius, F&& f) const {
+  const double reach = radius + kRoundingMargin * tile_size_;
+  if (!(reach >= 0)) return;
+  constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
+  const auto touches = [&](const Eigen::Array3d& center, const TileKey& low, const TileKey& high) {
+    const Eigen::Array3d nearest =
+        center.max(corner(low).array()).min(corner(high).array() + tile_size_);
+    return (nearest - center).matrix().squaredNorm() <= reach * reach;
+  };
+  for (std::size_t id = 0; id < submaps_.size(); ++id) {
+    const Submap& submap = submaps_[id];
+    const auto& of_submap = submap.*tiles;
+    if (of_submap.empty()) continue;
+    const Eigen::Vector3d center = submap.T_local_submap.inverse() * center_local;
+    if (!touches(center.array(), submap.low, submap.high)) continue;  // most of a long drive's
+    const auto [x_first, x_last] = index_range(center.x() - reach, center.x() + reach, tile_size_);
+    for (auto it = of_submap.lower_bound({x_first, kLowest, kLowest});
+         it != of_submap.end() && it->first.x <= x_last; ++it) {
+      if (touches(center.array(), it->first, it->first)) f(TileId{id, it->first}, it->second);
+    }
+  }
 }
 
 void TileMap::for_each_tile_near(
     const Eigen::Vector3d& center_local, double radius,
     const std::function<void(const TileId&, const PointCloud&)>& f) const {
-  const double reach = radius + kRoundingMargin * tile_size_;
-  if (!(reach >= 0)) return;
-  constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
+  for_each_near(&Submap::tiles, center_local, radius,
+                [&](const TileId& id, const Tile& tile) { f(id, *tile.points); });
+}
+
+TileChanges TileMap::take_changes() {
+  TileChanges changes;
   for (std::size_t id = 0; id < submaps_.size(); ++id) {
-    const Submap& submap = submaps_[id];
-    const Eigen::Vector3d center = submap.T_local_submap.inverse() * center_local;
-    const auto [x_first, x_last] = index_range(center.x() - reach, center.x() + reach, tile_size_);
-    for (auto it = submap.tiles.lower_bound({x_first, kLowest, kLowest});
-         it != submap.tiles.end() && it->first.x <= x_last; ++it) {
-      const Eigen::Array3d low = corner(it->first).array();
-      const Eigen::Array3d nearest = center.array().max(low).min(low + tile_size_);
-      if ((nearest - center.array()).matrix().squaredNorm() <= reach * reach) {
-        f({id, it->first}, it->second);
-      }
+    for (auto& [key, tile] : submaps_[id].tiles) {
+      if (!std::exchange(tile.changed, false)) continue;
+      changes.changed.push_back({{id, key}, tile.points});
     }
   }
+  // One that went and came again is among the changed.
+  std::erase_if(removed_,
+                [&](const TileId& id) { return submaps_[id.submap].tiles.contains(id.key); });
+  changes.removed = std::exchange(removed_, {});
+  return changes;
+}
+
+void TileMap::drop_beyond(const Eigen::Vector3d& center_local, double radius) {
+  std::set<TileId> near;
+  for_each_near(&Submap::tiles, center_local, radius,
+                [&](const TileId& id, const Tile&) { near.insert(id); });
+  for (std::size_t id = 0; id + 1 < submaps_.size(); ++id) {
+    Submap& submap = submaps_[id];
+    std::erase_if(submap.tiles, [&](const auto& entry) {
+      const auto& [key, tile] = entry;
+      if (tile.changed || near.contains({id, key})) return false;
+      submap.stored.emplace(key, tile.points->size());
+      size_in_memory_ -= tile.points->size();
+      return true;
+    });
+  }
+}
+
+std::vector<TileId> TileMap::stored_near(const Eigen::Vector3d& center_local, double radius) const {
+  std::vector<TileId> near;
+  for_each_near(&Submap::stored, center_local, radius, [&](const TileId& id, std::size_t) {
+    if (id.submap + 1 < submaps_.size()) near.push_back(id);
+  });
+  if (!submaps_.empty()) {
+    for (const auto& [key, points] : submaps_.back().stored) {
+      near.push_back({submaps_.size() - 1, key});
+    }
+  }
+  return near;
+}
+
+void TileMap::declare_stored(const TileId& id, std::size_t points) {
+  if (id.submap >= submaps_.size()) {
+    throw std::logic_error(name_of(id) + ": the submap does not exist");
+  }
+  Submap& submap = submaps_[id.submap];
+  if (submap.tiles.contains(id.key) || !submap.stored.emplace(id.key, points).second) {
+    throw std::logic_error(name_of(id) + " is there already");
+  }
+  widen(submap, id.key);
+  size_ += points;
+}
+
+void TileMap::restore(const TileId& id, PointCloud tile) {
+  const auto submap = id.submap < submaps_.size() ? &submaps_[id.submap] : nullptr;
+  const auto stored = submap ? submap->stored.find(id.key) : decltype(submap->stored.end()){};
+  if (submap == nullptr || stored == submap->stored.end()) {
+    throw std::logic_error(name_of(id) + " is not stored");
+  }
+  if (tile.origin != corner(id.key) || tile.size() != stored->second) {
+    throw std::logic_error(name_of(id) + " comes back as another one");
+  }
+  require_same_columns(tile);
+  size_in_memory_ += tile.size();
+  submap->stored.erase(stored);
+  submap->tiles.emplace(id.key, Tile{CopyOnWrite(std::move(tile)), false});
 }
 
 }  // namespace fovea

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/base/copy_on_write.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/rigid_motion.h"
 
@@ -27,14 +28,34 @@ struct TileId {
   friend auto operator<=>(const TileId&, const TileId&) = default;
 };
 
+/// A tile in memory.
+struct Tile {
+  /// Submap frame, relative to the cloud's `origin` = the tile's lowest corner. Columns range,
+  /// incidence, color, frame, camera, interpolated, views, spread, weight and reason are always
+  /// there; intensity in all tiles of a map or in none; normals are not kept. Positions, range and
+  /// incidence in the steps that the file keeps (docs/map-format.md).
+  CopyOnWrite<PointCloud> points;
+  bool changed = false;  ///< since take_changes()
+};
+
 /// Some seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
-  /// Points of each tile, submap frame, relative to the cloud's `origin` = the tile's lowest
-  /// corner. Columns range, incidence, color, frame, camera, interpolated, views, spread,
-  /// weight and reason are always there; intensity in all tiles of a map or in none; normals are
-  /// not kept.
-  std::map<TileKey, PointCloud> tiles;
+  std::map<TileKey, Tile> tiles;
+  /// Tiles that a store keeps while they are out of reach, and how many points each has.
+  std::map<TileKey, std::size_t> stored;
+  /// The box of tiles around all of them.
+  TileKey low, high;
+};
+
+/// What has become of the tiles since a store last looked.
+struct TileChanges {
+  struct Changed {
+    TileId id;
+    CopyOnWrite<PointCloud> points;
+  };
+  std::vector<Changed> changed;
+  std::vector<TileId> removed;
 };
 
 /// What tells of the points' colours in a tile, to be changed in place.
@@ -42,20 +63,26 @@ struct TileColors {
   std::span<Rgb> color;
   std::span<std::uint8_t> views, spread;
   std::span<std::uint16_t> weight;
+  std::span<std::int8_t> camera;  ///< that gave the first
 };
 
 /// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a
 /// column of a wrong length.
 void check_tile_columns(const PointCloud& cloud);
 
+/// Points are added to the last submap. Tiles that are far away may be given to a store and taken
+/// back when they are near: whoever adds, removes, colours or looks for points sees only those in
+/// memory.
 class TileMap {
  public:
-  /// @param tile_size  edge of a tile, m; std::invalid_argument unless positive and finite
+  /// @param tile_size  edge of a tile, m; std::invalid_argument unless positive and at most 65.5
   explicit TileMap(double tile_size = 4.0);
 
   double tile_size() const { return tile_size_; }
   const std::vector<Submap>& submaps() const { return submaps_; }
+  /// Points of all tiles, and of those in memory.
   std::size_t size() const { return size_; }
+  std::size_t size_in_memory() const { return size_in_memory_; }
 
   /// Opens a new submap, which becomes the last.
   void add_submap(const RigidMotion& T_local_submap);
@@ -65,36 +92,52 @@ class TileMap {
   void move_submap(std::size_t submap, const RigidMotion& T_local_submap);
 
   /// Adds points to the last submap; std::logic_error without one, if a column of a tile is
-  /// missing, if intensity is there in some calls only, or if a position is not finite.
+  /// missing, if intensity is there in some calls only, if a position is not finite or if a tile
+  /// that they belong to is stored.
   /// @param points_local  local frame, any origin
-  /// @return the tiles of the last submap that grew, ascending: what a store must write again
-  std::vector<TileKey> add(const PointCloud& points_local);
-
-  /// Puts back a tile that a store has kept (resume); std::logic_error if the submap does not
-  /// exist, the tile does already, or its columns or origin are not those of a tile with this key.
-  void restore_tile(std::size_t submap, const TileKey& key, PointCloud tile);
+  void add(const PointCloud& points_local);
 
   /// Keeps only the points at `indices` (ascending) of a tile, and drops a tile that gets empty;
-  /// std::logic_error if the tile does not exist.
+  /// std::logic_error if the tile is not in memory.
   void keep_points(const TileId& id, const std::vector<std::uint32_t>& indices);
 
-  /// The colours of a tile; std::logic_error if it does not exist. For two tiles at a time from two
-  /// threads.
+  /// The colours of a tile; std::logic_error if it is not in memory. For two tiles at a time from
+  /// two threads.
   TileColors colors(const TileId& id);
 
-  /// Calls f for every tile that a ball of `radius` m around `center_local` touches, in the order
-  /// of submaps and keys.
+  /// Calls f for every tile in memory that a ball of `radius` m around `center_local` touches, in
+  /// the order of submaps and keys.
   void for_each_tile_near(const Eigen::Vector3d& center_local, double radius,
                           const std::function<void(const TileId&, const PointCloud&)>& f) const;
 
+  /// What changed since the last call. The points are shared, not copied.
+  TileChanges take_changes();
+  /// Drops from memory the unchanged tiles that a ball does not touch, but none of the last submap:
+  /// the store has them.
+  void drop_beyond(const Eigen::Vector3d& center_local, double radius);
+  /// The stored tiles that a ball touches, and those of the last submap, which points are added to
+  /// wherever they are; in the order of submaps and keys.
+  std::vector<TileId> stored_near(const Eigen::Vector3d& center_local, double radius) const;
+  /// Tells of a tile of an earlier run that a store has; std::logic_error if the submap does not
+  /// exist or the tile does already.
+  void declare_stored(const TileId& id, std::size_t points);
+  /// Puts a stored tile back into memory; std::logic_error if it is not stored, or its number of
+  /// points, columns or origin are not those of the tile.
+  void restore(const TileId& id, PointCloud tile);
+
  private:
   Eigen::Vector3d corner(const TileKey& key) const;
-  PointCloud& existing_tile(const TileId& id);
+  Tile& existing_tile(const TileId& id);
   void require_same_columns(const PointCloud& cloud);
+  /// Calls f(id, value) for what a map by keys of each submap has within a ball.
+  template <class Tiles, class F>
+  void for_each_near(Tiles Submap::*tiles, const Eigen::Vector3d& center_local, double radius,
+                     F&& f) const;
 
   double tile_size_;
   std::vector<Submap> submaps_;
-  std::size_t size_ = 0;
+  std::vector<TileId> removed_;
+  std::size_t size_ = 0, size_in_memory_ = 0;
   std::optional<bool> has_intensity_;  // known from the first points on
 };
 

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 
 #include "../../../tests/sample_map.h"
 #include "fovea/base/random.h"
+#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -29,35 +32,78 @@ TEST(TileMap, PointsComeBackWithTheirColumns) {
 
   // `frame` numbers the points of random_map_points().
   std::vector<int> seen(points.size(), 0);
-  for (const auto& [key, tile] : map.submaps()[0].tiles) {
+  for (const auto& [key, stored] : map.submaps()[0].tiles) {
+    const PointCloud& tile = *stored.points;
     EXPECT_EQ(tile.origin, Eigen::Vector3d(key.x * 4.0, key.y * 4.0, key.z * 4.0));
     std::vector<std::uint32_t> chosen(tile.frame.begin(), tile.frame.end());
     PointCloud expected = points.select(chosen);
     for (std::size_t i = 0; i < tile.size(); ++i) {
       ++seen[chosen[i]];
       const Eigen::Vector3d p_local = points.origin + expected.position[i].cast<double>();
-      EXPECT_LT((stored_local(map.submaps()[0], tile, i) - p_local).norm(), 1e-6);
+      EXPECT_LT((stored_local(map.submaps()[0], tile, i) - p_local).cwiseAbs().maxCoeff(),
+                0.5e-3 * std::sqrt(3.0) + 1e-6);
       EXPECT_GE(tile.position[i].minCoeff(), 0.f);
       EXPECT_LE(tile.position[i].maxCoeff(), 4.f);
     }
     expected.origin = tile.origin;
     expected.position = tile.position;
+    for (float& range : expected.range) range = kept_range(range);
+    for (float& incidence : expected.incidence) incidence = kept_incidence(incidence);
     expect_same_columns(tile, expected);
   }
   EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ptrdiff_t(points.size()));
 }
 
-TEST(TileMap, AddReportsTheTilesThatGrew) {
-  PointCloud points = one_point_each({{0.5f, 0.5f, 0.5f}, {-0.5f, 0.5f, 0.5f}, {0.6f, 0.f, 0.f}});
+std::vector<TileId> ids_of(const std::vector<TileChanges::Changed>& changed) {
+  std::vector<TileId> ids;
+  for (const TileChanges::Changed& tile : changed) ids.push_back(tile.id);
+  return ids;
+}
+
+TEST(TileMap, TellsOfTheTilesThatChanged) {
   TileMap map(1.0);
   map.add_submap(RigidMotion::Identity());
-  const std::vector<TileKey> expected = {{-1, 0, 0}, {0, 0, 0}};
-  EXPECT_EQ(map.add(points), expected);
-  EXPECT_EQ(map.add(one_point_each({{1.5f, 0.f, 0.f}})), (std::vector<TileKey>{{1, 0, 0}}));
-  EXPECT_TRUE(map.add(PointCloud()).empty());
-  const PointCloud& tile = map.submaps()[0].tiles.at({0, 0, 0});
+  map.add(one_point_each({{0.5f, 0.5f, 0.5f}, {-0.5f, 0.5f, 0.5f}, {0.6f, 0.f, 0.f}}));
+  const std::vector<TileId> both = {{0, {-1, 0, 0}}, {0, {0, 0, 0}}};
+  EXPECT_EQ(ids_of(map.take_changes().changed), both);
+  EXPECT_TRUE(map.take_changes().changed.empty());
+  map.add(one_point_each({{1.5f, 0.f, 0.f}}));
+  EXPECT_EQ(ids_of(map.take_changes().changed), (std::vector<TileId>{{0, {1, 0, 0}}}));
+  map.add(PointCloud());
+  map.colors(both[1]);
+  EXPECT_EQ(ids_of(map.take_changes().changed), (std::vector<TileId>{both[1]}));
+  map.keep_points(both[1], {1});
+  map.keep_points(both[0], {});
+  TileChanges changes = map.take_changes();
+  EXPECT_EQ(ids_of(changes.changed), (std::vector<TileId>{both[1]}));
+  EXPECT_EQ(changes.removed, (std::vector<TileId>{both[0]}));
+  // One that goes and comes again is changed, not removed.
+  map.keep_points(both[1], {});
+  map.add(one_point_each({{0.5f, 0.5f, 0.5f}}));
+  changes = map.take_changes();
+  EXPECT_EQ(ids_of(changes.changed), (std::vector<TileId>{both[1]}));
+  EXPECT_TRUE(changes.removed.empty());
+}
+
+TEST(TileMap, ChangesToldOfStayAsTheyWere) {
+  TileMap map(1.0);
+  map.add_submap(RigidMotion::Identity());
+  map.add(one_point_each({{0.5f, 0.5f, 0.5f}}));
+  const TileChanges changes = map.take_changes();
+  map.colors({0, {0, 0, 0}}).views[0] = 99;
+  map.add(one_point_each({{0.25f, 0.5f, 0.5f}}));
+  EXPECT_EQ(changes.changed[0].points->size(), 1u);
+  EXPECT_NE(changes.changed[0].points->views[0], 99);
+  EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).points->views[0], 99);
+}
+
+TEST(TileMap, PointsOfATileComeInTheOrderOfAdding) {
+  TileMap map(1.0);
+  map.add_submap(RigidMotion::Identity());
+  map.add(one_point_each({{0.5f, 0.5f, 0.5f}, {-0.5f, 0.5f, 0.5f}, {0.6f, 0.f, 0.f}}));
+  const PointCloud& tile = *map.submaps()[0].tiles.at({0, 0, 0}).points;
   ASSERT_EQ(tile.size(), 2u);
-  EXPECT_EQ(tile.frame[0], 0);  // in the order of adding
+  EXPECT_EQ(tile.frame[0], 0);
   EXPECT_EQ(tile.frame[1], 2);
 }
 
@@ -69,8 +115,8 @@ TEST(TileMap, PointsGoToTheLastSubmap) {
   T.translation().x() = 100;
   map.add_submap(T);
   map.add(one_point_each({{101.f, 1.f, 1.f}, {102.f, 1.f, 1.f}}));
-  EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).size(), 1u);
-  EXPECT_EQ(map.submaps()[1].tiles.at({0, 0, 0}).size(), 2u);
+  EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).points->size(), 1u);
+  EXPECT_EQ(map.submaps()[1].tiles.at({0, 0, 0}).points->size(), 2u);
   EXPECT_EQ(map.size(), 3u);
 }
 
@@ -96,7 +142,8 @@ TEST(TileMap, TilesNearCoverEveryPointInTheBallAndNoTileBeyondIt) {
       visited += near.size();
       for (const Submap& submap : map.submaps()) {
         const double half = tile_size / 2;
-        for (const auto& [key, tile] : submap.tiles) {
+        for (const auto& [key, stored] : submap.tiles) {
+          const PointCloud& tile = *stored.points;
           ++all;
           if (near.contains(&tile)) {
             // Distance from the box by way of its centre: another formula than the code's.
@@ -140,11 +187,12 @@ TEST(TileMap, KeptPointsStayAndEmptyTilesGo) {
   TileMap map(2.0);
   map.add_submap(RigidMotion::Identity());
   map.add(random_map_points(20000, random, 3.0));
-  const auto [key, before] = *map.submaps()[0].tiles.begin();
+  const auto [key, first] = *map.submaps()[0].tiles.begin();
+  const PointCloud before = *first.points;
   ASSERT_GT(before.size(), 3u);
   const std::size_t size = map.size(), tiles = map.submaps()[0].tiles.size();
   map.keep_points({0, key}, {0, 2});
-  expect_same_columns(map.submaps()[0].tiles.at(key), before.select({0, 2}));
+  expect_same_columns(*map.submaps()[0].tiles.at(key).points, before.select({0, 2}));
   EXPECT_EQ(map.size(), size - before.size() + 2);
   map.keep_points({0, key}, {});
   EXPECT_FALSE(map.submaps()[0].tiles.contains(key));
@@ -154,27 +202,107 @@ TEST(TileMap, KeptPointsStayAndEmptyTilesGo) {
   EXPECT_THROW(map.keep_points({1, key}, {}), std::logic_error);
 }
 
-TEST(TileMap, RestoredTilesEqualTheKeptOnes) {
+TEST(TileMap, FarTilesLeaveTheMemoryAndComeBack) {
   Random random(5);
   TileMap map(2.0);
-  map.add_submap(RigidMotion::Identity());
-  map.add(random_map_points(1000, random, 10.0));
-  TileMap restored(2.0);
-  restored.add_submap(RigidMotion::Identity());
-  for (const auto& [key, tile] : map.submaps()[0].tiles) restored.restore_tile(0, key, tile);
-  EXPECT_EQ(restored.size(), map.size());
-  for (const auto& [key, tile] : map.submaps()[0].tiles) {
-    expect_same_columns(restored.submaps()[0].tiles.at(key), tile);
+  for (int submap = 0; submap < 3; ++submap) {
+    map.add_submap(RigidMotion(Eigen::Translation3d(submap, 0.3, 0)));
+    map.add(random_map_points(1000, random, 10.0));
   }
-  const auto& [key, tile] = *map.submaps()[0].tiles.begin();
-  EXPECT_THROW(restored.restore_tile(0, key, tile), std::logic_error);
-  EXPECT_THROW(restored.restore_tile(1, key, tile), std::logic_error);
-  EXPECT_THROW(restored.restore_tile(0, {99, 0, 0}, tile), std::logic_error);  // its origin differs
+  const TileMap whole = map;
+  std::map<TileId, CopyOnWrite<PointCloud>> store;
+  for (const TileChanges::Changed& tile : map.take_changes().changed) {
+    store.emplace(tile.id, tile.points);
+  }
+  map.colors({0, whole.submaps()[0].tiles.begin()->first}).views[0] ^= 1;  // not in the store
+  const Eigen::Vector3d center(1, 2, 3);
+  map.drop_beyond(center, 4);
+  EXPECT_EQ(map.size(), whole.size());
+  EXPECT_LT(map.size_in_memory(), whole.size() * 2 / 3);
+  const auto visited = [&](const TileMap& from) {
+    std::vector<TileId> ids;
+    from.for_each_tile_near(center, 4,
+                            [&](const TileId& id, const PointCloud&) { ids.push_back(id); });
+    return ids;
+  };
+  EXPECT_EQ(visited(map), visited(whole));
+  EXPECT_TRUE(map.stored_near(center, 4).empty());
+  EXPECT_TRUE(map.submaps()[0].tiles.contains(whole.submaps()[0].tiles.begin()->first));
+  EXPECT_EQ(map.submaps()[2].tiles.size(), whole.submaps()[2].tiles.size());
+
+  const std::vector<TileId> near = map.stored_near(center, 6);
+  ASSERT_GT(near.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(near.begin(), near.end()));
+  EXPECT_THROW(map.colors(near[0]), std::logic_error);
+  EXPECT_THROW(map.restore(near[0], *store.at(near[1])), std::logic_error);
+  for (const TileId& id : map.stored_near(center, 100)) map.restore(id, *store.at(id));
+  EXPECT_THROW(map.restore(near[0], *store.at(near[0])), std::logic_error);  // is there
+  EXPECT_EQ(map.size(), whole.size());
+  EXPECT_EQ(map.size_in_memory(), whole.size());
+  for (const auto& [id, points] : store) {
+    if (id == TileId{0, whole.submaps()[0].tiles.begin()->first}) continue;
+    expect_same_columns(*map.submaps()[id.submap].tiles.at(id.key).points, *points);
+  }
+}
+
+TEST(TileMap, TakesUpAnEarlierRunsTiles) {
+  Random random(6);
+  TileMap map(2.0), resumed(2.0);
+  map.add_submap(RigidMotion::Identity());
+  resumed.add_submap(RigidMotion::Identity());
+  map.add(random_map_points(500, random, 5.0));
+  for (const auto& [key, tile] : map.submaps()[0].tiles) {
+    resumed.declare_stored({0, key}, tile.points->size());
+  }
+  EXPECT_EQ(resumed.size(), map.size());
+  EXPECT_EQ(resumed.size_in_memory(), 0u);
+  const TileKey first = map.submaps()[0].tiles.begin()->first;
+  EXPECT_THROW(resumed.declare_stored({0, first}, 1), std::logic_error);
+  EXPECT_THROW(resumed.declare_stored({1, first}, 1), std::logic_error);
+  // The last submap's are wanted wherever they are, since points are added to them.
+  EXPECT_EQ(resumed.stored_near({1000, 0, 0}, 1).size(), map.submaps()[0].tiles.size());
+  EXPECT_THROW(resumed.add(random_map_points(500, random, 5.0)), std::logic_error);
+  for (const auto& [key, tile] : map.submaps()[0].tiles) resumed.restore({0, key}, *tile.points);
+  EXPECT_TRUE(resumed.take_changes().changed.empty());
+  resumed.add_submap(RigidMotion::Identity());
+  EXPECT_TRUE(resumed.stored_near({1000, 0, 0}, 1).empty());
+}
+
+// What is written and read again is what was there: the mapper goes on alike.
+TEST(TileMap, KeepsWhatTheFileKeeps) {
+  Random random(8);
+  TileMap map(2.0);
+  map.add_submap(exp_se3((Twist() << 0.1, 0.2, 0.3, 4, 5, 6).finished()));
+  PointCloud points = random_map_points(1000, random, 5.0);
+  points.range[0] = 1e9f;
+  points.range[1] = -3;
+  points.incidence[2] = std::nanf("");
+  map.add(points);
+  std::size_t unknown = 0;
+  for (const auto& [key, tile] : map.submaps()[0].tiles) {
+    for (std::size_t i = 0; i < tile.points->size(); ++i) {
+      const Eigen::Vector3f& p = tile.points->position[i];
+      EXPECT_EQ(p, kept_position(p.cast<double>()));
+      const float range = tile.points->range[i], incidence = tile.points->incidence[i];
+      EXPECT_EQ(range, kept_range(range));
+      const auto from = static_cast<std::size_t>(tile.points->frame[i]);
+      if (from > 1) {
+        EXPECT_NEAR(range, points.range[from], 0.00501);
+      }
+      unknown += std::isnan(incidence);
+      if (std::isnan(incidence)) continue;
+      EXPECT_EQ(incidence, kept_incidence(incidence));
+      EXPECT_NEAR(incidence, points.incidence[from], 0.00437);
+    }
+  }
+  EXPECT_EQ(unknown, std::size_t(std::count_if(points.incidence.begin(), points.incidence.end(),
+                                               [](float x) { return std::isnan(x); })));
 }
 
 TEST(TileMap, RefusesWhatATileCannotHold) {
   EXPECT_THROW(TileMap(0), std::invalid_argument);
   EXPECT_THROW(TileMap(-1), std::invalid_argument);
+  EXPECT_THROW(TileMap(66), std::invalid_argument);
   EXPECT_THROW(TileMap(std::nan("")), std::invalid_argument);
   TileMap map;
   const PointCloud point = one_point_each({{1.f, 2.f, 3.f}});
@@ -203,8 +331,8 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   map.add_submap(RigidMotion::Identity());
   map.add(random_map_points(300, random, 1.5));
   const TileId id{1, {-1, 0, -1}};
-  const PointCloud before = map.submaps()[1].tiles.at(id.key);
-  const PointCloud other = map.submaps()[1].tiles.at({0, 0, 0});
+  const PointCloud before = *map.submaps()[1].tiles.at(id.key).points;
+  const PointCloud other = *map.submaps()[1].tiles.at({0, 0, 0}).points;
   const TileColors colors = map.colors(id);
   ASSERT_GT(before.size(), 5u);
   ASSERT_EQ(colors.color.size(), before.size());
@@ -216,8 +344,8 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   expected.views[3] = colors.views[3] = 77;
   expected.spread[2] = colors.spread[2] = 66;
   expected.weight[1] = colors.weight[1] = 55'555;
-  expect_same_columns(map.submaps()[1].tiles.at(id.key), expected);
-  expect_same_columns(map.submaps()[1].tiles.at({0, 0, 0}), other);
+  expect_same_columns(*map.submaps()[1].tiles.at(id.key).points, expected);
+  expect_same_columns(*map.submaps()[1].tiles.at({0, 0, 0}).points, other);
   EXPECT_EQ(map.size(), 300u);
   EXPECT_THROW(map.colors({0, id.key}), std::logic_error);
   EXPECT_THROW(map.colors({1, {50, 0, 0}}), std::logic_error);

@@ -32,13 +32,11 @@ std::optional<FrameMotion> known_motion(const FrameSource& source,
                  given_poses.at(std::size_t(other - drive.begin)), *other_stamp);
 }
 
-std::optional<FrameMotion> mapped_motion(const std::vector<FrameRecord>& records) {
-  const FrameRecord& latest = records.back();
-  if (latest.velocity) return FrameMotion{latest.T_local_lidar, *latest.velocity};
-  if (records.size() < 2) return std::nullopt;
-  const FrameRecord& before = records[records.size() - 2];
-  if (before.status == FrameStatus::kSkipped) return std::nullopt;
-  return between(latest.T_local_lidar, *latest.stamp, before.T_local_lidar, *before.stamp);
+std::optional<FrameMotion> mapped_motion(const FrameRecord& record,
+                                         const std::optional<FrameRecord>& before) {
+  if (record.velocity) return FrameMotion{record.T_local_lidar, *record.velocity};
+  if (!before || before->status == FrameStatus::kSkipped) return std::nullopt;
+  return between(record.T_local_lidar, *record.stamp, before->T_local_lidar, *before->stamp);
 }
 
 }  // namespace fovea

@@ -19,8 +19,9 @@ struct FrameMotion {
 std::optional<FrameMotion> known_motion(const FrameSource& source,
                                         const std::vector<RigidMotion>& given_poses, int index);
 
-/// Of the latest of the records, which is no skipped frame: its velocity is that by which its sweep
-/// was compensated, or else follows from the poses of it and the one before.
-std::optional<FrameMotion> mapped_motion(const std::vector<FrameRecord>& records);
+/// Of a frame that was not skipped: its velocity is that by which its sweep was compensated, or
+/// else follows from the poses of it and the frame before, if that is known and was not skipped.
+std::optional<FrameMotion> mapped_motion(const FrameRecord& record,
+                                         const std::optional<FrameRecord>& before);
 
 }  // namespace fovea

@@ -66,16 +66,16 @@ TEST(FrameMotion, OfTheLatestMappedFrame) {
     r.T_local_lidar = pose_at(0.1 * index);
     return r;
   };
-  std::vector<FrameRecord> records{record(10)};
-  EXPECT_FALSE(mapped_motion(records));  // nothing to compare with
-  records.push_back(record(11));
-  expect_motion(mapped_motion(records), 1.1);
+  EXPECT_FALSE(mapped_motion(record(10), std::nullopt));  // nothing to compare with
+  std::optional<FrameRecord> before = record(10);
+  FrameRecord latest = record(11);
+  expect_motion(mapped_motion(latest, before), 1.1);
   // That by which its sweep was compensated comes first.
-  records.back().velocity = 2 * kTwist;
-  EXPECT_EQ(mapped_motion(records)->velocity, Twist(2 * kTwist));
-  records.back().velocity.reset();
-  records.front().status = FrameStatus::kSkipped;
-  EXPECT_FALSE(mapped_motion(records));
+  latest.velocity = 2 * kTwist;
+  EXPECT_EQ(mapped_motion(latest, before)->velocity, Twist(2 * kTwist));
+  latest.velocity.reset();
+  before->status = FrameStatus::kSkipped;
+  EXPECT_FALSE(mapped_motion(latest, before));
 }
 
 }  // namespace

@@ -85,7 +85,8 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   if ((view.gain != 1).any()) {
     for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
   }
-  const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight};
+  const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight,
+                          points_cam.camera};
   const PatchColors patches(view);
   parallel_chunks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     PatchPlaces places;
@@ -241,6 +242,7 @@ Eigen::Array3f SeenMap::gain_to_map(const ColorView& view) const {
 
 std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,
                                     const PatchColors& patches, const Random::Items& noise) const {
+  const auto this_camera = static_cast<std::int8_t>(camera_.index);
   std::array<const Point*, kBlock> visible;
   std::size_t n = 0;
   for (const Point& point : points) {
@@ -261,21 +263,45 @@ std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileCol
   }
   patches.at(places, n, seen.color);
   fuse(fused, seen, n);
-  for (std::size_t j = 0; j < n; ++j) put(colors, visible[j]->index, fused, j);
+  for (std::size_t j = 0; j < n; ++j) {
+    const std::uint32_t i = visible[j]->index;
+    put(colors, i, fused, j);
+    if (colors.camera[i] == kNoCamera) colors.camera[i] = this_camera;
+  }
   return n;
+}
+
+std::vector<TileColors> SeenMap::colors_of_pieces(TileMap& map) const {
+  std::vector<TileColors> colors(pieces_.size());
+  parallel_for(pieces_.size(), 1, [&](std::size_t first) {
+    if (pieces_[first].begin != 0) return;
+    // All of a tile in one thread, and only if there is something to change: the map may have to
+    // copy it.
+    const auto end =
+        std::find_if(pieces_.begin() + static_cast<std::ptrdiff_t>(first), pieces_.end(),
+                     [&](const Piece& piece) { return piece.tile != pieces_[first].tile; });
+    const auto last = static_cast<std::size_t>(end - pieces_.begin());
+    std::size_t seen = 0;
+    for (std::size_t k = first; k < last; ++k) seen += pieces_[k].seen;
+    if (seen == 0) return;
+    const TileColors of_tile = map.colors(pieces_[first].tile);
+    std::fill(colors.begin() + static_cast<std::ptrdiff_t>(first),
+              colors.begin() + static_cast<std::ptrdiff_t>(last), of_tile);
+  });
+  return colors;
 }
 
 std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
   const auto camera = static_cast<std::uint64_t>(view.camera.index);
   const Random::Items noise(static_cast<std::uint64_t>(view.frame) << 8 | camera, kRounding);
   const PatchColors patches(view);
+  const std::vector<TileColors> colors = colors_of_pieces(map);
   return parallel_sum(pieces_.size(), 1, std::size_t{0}, [&](std::size_t k, std::size_t) {
-    const TileColors colors = map.colors(pieces_[k].tile);
     const std::span<const Point> points = seen(pieces_[k]);
     std::size_t count = 0;
     for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
       count += recolour_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),
-                              colors, patches, noise);
+                              colors[k], patches, noise);
     }
     return count;
   });

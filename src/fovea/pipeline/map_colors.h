@@ -77,6 +77,8 @@ class SeenMap {
                Piece& piece, DepthBuffer& front);
   /// What brings the view's colours to the map's, of some points of a piece.
   std::vector<Eigen::Array3f> gains_at(const Piece& piece, const PatchColors& patches) const;
+  /// The colours of each piece's tile, empty where nothing of the tile was seen.
+  std::vector<TileColors> colors_of_pieces(TileMap& map) const;
   /// @return how many of the points were in view
   std::size_t recolour_block(std::span<const Point> points, const TileColors& colors,
                              const PatchColors& patches, const Random::Items& noise) const;

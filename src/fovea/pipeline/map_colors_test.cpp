@@ -99,7 +99,8 @@ void for_each_point(
     const TileMap& map,
     const std::function<void(const Eigen::Vector3d&, const PointCloud&, std::size_t)>& f) {
   for (const Submap& submap : map.submaps()) {
-    for (const auto& [key, tile] : submap.tiles) {
+    for (const auto& [key, stored] : submap.tiles) {
+      const PointCloud& tile = *stored.points;
       for (std::size_t i = 0; i < tile.size(); ++i) {
         f(submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()), tile, i);
       }
@@ -379,8 +380,9 @@ TEST(Recolour, GivesTheSameAtAnyThreadCount) {
   };
   const TileMap one = run(1), two = run(2);
   for (std::size_t id = 0; id < 2; ++id) {
-    for (const auto& [key, tile] : one.submaps()[id].tiles) {
-      expect_same_columns(tile, two.submaps()[id].tiles.at(key));
+    for (const auto& [key, stored] : one.submaps()[id].tiles) {
+      const PointCloud& tile = *stored.points;
+      expect_same_columns(tile, *two.submaps()[id].tiles.at(key).points);
     }
   }
 }

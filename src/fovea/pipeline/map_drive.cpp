@@ -6,36 +6,15 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/version.h"
-#include "fovea/map/map_store.h"
+#include "fovea/map/map_keeper.h"
 #include "fovea/pipeline/config.h"
+#include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/pipeline/stored_calibration.h"
 
 namespace fovea {
 namespace {
-
-/// A skipped frame gets a pose between its neighbours', by index: a line for every frame index.
-void interpolate_skipped_poses(std::vector<FrameRecord>& records) {
-  std::vector<const FrameRecord*> known;
-  for (const FrameRecord& record : records) {
-    if (record.status != FrameStatus::kSkipped) known.push_back(&record);
-  }
-  if (known.empty()) return;
-  for (FrameRecord& record : records) {
-    if (record.status != FrameStatus::kSkipped) continue;
-    if (known.size() == 1) {
-      record.T_local_lidar = known.front()->T_local_lidar;
-      continue;
-    }
-    const auto after =
-        std::upper_bound(known.begin() + 1, known.end() - 1, record.index,
-                         [](int index, const FrameRecord* other) { return index < other->index; });
-    const FrameRecord &a = **(after - 1), &b = **after;
-    record.T_local_lidar = interpolate(a.T_local_lidar, b.T_local_lidar,
-                                       double(record.index - a.index) / (b.index - a.index));
-  }
-}
 
 const char* to_string(PoseSource source) {
   switch (source) {
@@ -77,15 +56,13 @@ MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   return meta;
 }
 
-struct EarlierRun {
-  TileMap map;
-  std::vector<FrameRecord> records;
-};
-
-/// Reads what an interrupted run left; InputError if it was made with other settings.
-EarlierRun read_earlier_run(const MapJob& job, const MapMeta& meta) {
-  const MapReader reader(job.output);
+/// InputError if a map was made with other settings.
+void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta& meta) {
   const MapMeta before = reader.meta();
+  if (before.contains(kCropKey)) {
+    throw InputError("the map is a part of another one", job.output.string(),
+                     "resume the whole map, or start a new one");
+  }
   for (const auto& [key, value] : meta) {
     const auto found = before.find(key);
     if (found == before.end() || found->second != value) {
@@ -93,12 +70,14 @@ EarlierRun read_earlier_run(const MapJob& job, const MapMeta& meta) {
                        "resume with the drive and settings of the first run, or start a new map");
     }
   }
-  EarlierRun run{TileMap(job.options.tile_size), reader.frames()};
-  for (const RigidMotion& T_local_submap : reader.submaps()) run.map.add_submap(T_local_submap);
-  reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
-    run.map.restore_tile(submap, key, tile);
-  });
-  return run;
+}
+
+/// What a file has of the map; the tiles stay there until they are needed.
+TileMap stored_map(const MapReader& reader, double tile_size) {
+  TileMap map(tile_size);
+  for (const RigidMotion& T_local_submap : reader.submaps()) map.add_submap(T_local_submap);
+  for (const auto& [id, points] : reader.tile_sizes()) map.declare_stored(id, points);
+  return map;
 }
 
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
@@ -135,18 +114,6 @@ FrameRecord map_frame(Mapper& mapper, const FrameSource& source, LocatedFrame& l
   return record;
 }
 
-void store_map(MapWriter& writer, const MapMeta& meta, const std::vector<FrameRecord>& records,
-               const TileMap& map, bool complete) {
-  for (const auto& [key, value] : meta) writer.put_meta(key, value);
-  writer.put_meta("complete", complete ? "1" : "0");
-  for (const FrameRecord& record : records) writer.put_frame(record);
-  for (std::size_t id = 0; id < map.submaps().size(); ++id) {
-    writer.put_submap(id, map.submaps()[id].T_local_submap);
-    for (const auto& [key, tile] : map.submaps()[id].tiles) writer.put_tile(id, key, tile);
-  }
-  writer.commit();
-}
-
 bool has_sweep_motion(const DriveInfo& drive, const MapJob& job) {
   return job.options.compensate_motion && !drive.sweep_compensated;
 }
@@ -169,37 +136,135 @@ std::vector<CameraCalibration> correct_calibration(const FrameSource& source, co
   return correction;
 }
 
-void check_calibration(CalibrationCheck& check, const LocatedFrame& located,
-                       std::vector<FrameRecord>& records) {
-  if (records.back().status != FrameStatus::kMapped) return;
-  const Frame& frame = std::get<Frame>(located.result);
-  if (!check.wants(frame.index)) return;
-  const WallClock::time_point start = WallClock::now();
-  if (const auto motion = mapped_motion(records)) check.add(frame, *motion);
-  records.back().milliseconds["calibration"] = milliseconds_since(start);
+/// A run of the mapper over a drive, with its accounts and its file.
+class MapRun {
+ public:
+  MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta)
+      : source_(source),
+        drive_(drive),
+        job_(job),
+        meta_(std::move(meta)),
+        threaded_(job.overlap && available_threads() > 1),
+        keeper_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
+                {threaded_, job.memory}),
+        mapper_(drive, job.options, job.pose_source,
+                [this](TileMap& map, const Eigen::Vector3d& center_local, double radius) {
+                  keeper_.bring_near(map, center_local, radius);
+                }),
+        figures_(drive, job.rate) {
+    if (job.options.check_calibration && !job.calibrate) {
+      check_.emplace(drive, has_sweep_motion(drive, job));
+    }
+    if (job.resume) take_up_earlier_run();
+    frames_before_ = log_.size();
+  }
+
+  void map_frames(const std::function<void(const MapProgress&)>& progress);
+  /// Ends the file. InputError if no frame could be mapped.
+  void finish();
+  MapSummary summary() const;
+
+ private:
+  void take_up_earlier_run();
+  void check_calibration(const LocatedFrame& located, FrameRecord& record);
+  void checkpoint(bool last);
+  bool complete() const { return log_.size() == std::size_t(drive_.end - drive_.begin); }
+
+  const FrameSource& source_;
+  const DriveInfo& drive_;
+  const MapJob& job_;
+  MapMeta meta_;
+  bool threaded_;
+  MapKeeper keeper_;
+  Mapper mapper_;
+  DriveLog log_;
+  DriveFigures figures_;
+  std::optional<CalibrationCheck> check_;
+  std::optional<FrameRecord> latest_;
+  std::size_t frames_before_ = 0;  // of an earlier run
+};
+
+void MapRun::take_up_earlier_run() {
+  const MapReader reader(job_.output);
+  require_same_run(reader, job_, meta_);
+  const std::vector<FrameRecord> records = reader.frames();
+  for (const FrameRecord& record : records) {
+    log_.add_stored(record);
+    figures_.add(record, /*is_new=*/false);
+  }
+  mapper_.resume(stored_map(reader, job_.options.tile_size), records, source_);
+  if (!records.empty()) latest_ = records.back();
 }
 
-/// Appends to the records of an earlier run.
-void map_frames(const FrameSource& source, const MapJob& job, Mapper& mapper,
-                CalibrationCheck* check, std::vector<FrameRecord>& records,
-                const std::function<void(const MapProgress&)>& progress) {
-  const DriveInfo& drive = source.info();
-  const int total = drive.end - drive.begin;
+void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record) {
+  if (!check_ || record.status != FrameStatus::kMapped) return;
+  const Frame& frame = std::get<Frame>(located.result);
+  if (!check_->wants(frame.index)) return;
+  const WallClock::time_point start = WallClock::now();
+  if (const auto motion = mapped_motion(record, latest_)) check_->add(frame, *motion);
+  record.milliseconds["calibration"] = milliseconds_since(start);
+}
+
+void MapRun::checkpoint(bool last) {
+  MapRows rows = log_.rows(mapper_.map(), /*exact=*/last);
+  rows.meta = std::exchange(meta_, {});
+  rows.meta["complete"] = last && complete() ? "1" : "0";
+  keeper_.checkpoint(mapper_.map(), std::move(rows), latest_->T_local_lidar.translation(),
+                     mapper_.reach());
+}
+
+void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress) {
+  const int total = drive_.end - drive_.begin;
   const auto track = [&](const Frame& frame) {
     std::optional<RigidMotion> given;
-    const auto place = static_cast<std::size_t>(frame.index - drive.begin);
-    if (place < job.given_poses.size()) given = job.given_poses[place];
-    return mapper.track(frame, job.hold_out.contains(frame.index), given);
+    const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
+    if (place < job_.given_poses.size()) given = job_.given_poses[place];
+    return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
-  FramePipeline frames(source, drive.begin + static_cast<int>(records.size()), drive.end, track,
-                       {job.rate, job.overlap && available_threads() > 1, job.stop});
+  FramePipeline frames(source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
+                       {job_.rate, threaded_, job_.stop});
   while (std::optional<LocatedFrame> located = frames.next()) {
-    records.push_back(map_frame(mapper, source, *located));
-    if (check != nullptr) check_calibration(*check, *located, records);
-    if (progress) {
-      progress({static_cast<int>(records.size()), total, mapper.map().size(), &records.back()});
+    FrameRecord record = map_frame(mapper_, source_, *located);
+    check_calibration(*located, record);
+    figures_.add(record, /*is_new=*/true);
+    log_.add(record);
+    if (progress) progress({static_cast<int>(log_.size()), total, mapper_.map().size(), &record});
+    latest_ = std::move(record);
+    const bool due = log_.fresh() >= job_.checkpoint_frames && !keeper_.is_writing();
+    if (log_.has_mapped() && (due || keeper_.needs_memory(mapper_.map()))) {
+      checkpoint(/*last=*/false);
     }
   }
+}
+
+void MapRun::finish() {
+  if (!log_.has_mapped()) {
+    throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
+                     "check that the drive has scans and images for the frames asked for");
+  }
+  checkpoint(/*last=*/true);
+  keeper_.finish();
+}
+
+MapSummary MapRun::summary() const {
+  MapSummary summary = figures_.summary();
+  if (job_.pose_source == PoseSource::kGivenFirst) {
+    summary.notes.push_back(
+        fmt::format("{} poses for {} frames: the frames after them are registered",
+                    job_.given_poses.size(), drive_.end - drive_.begin));
+  }
+  const double limit_mb = double(job_.memory) / (1024 * 1024);
+  if (summary.peak_rss_mb > limit_mb) {
+    summary.notes.push_back(fmt::format(
+        "{:.0f} MB of memory were needed at the peak, more than the {:.0f} MB given: what lies "
+        "within the cameras' reach takes so much",
+        summary.peak_rss_mb, limit_mb));
+  }
+  summary.points = mapper_.map().size();
+  summary.frames_new = log_.size() - frames_before_;
+  summary.interrupted = !complete();
+  if (check_) summary.calibration = check_->estimates();
+  return summary;
 }
 
 /// InputError if the drive does not say of its motion what the job has to know.
@@ -214,15 +279,6 @@ void require_motion(const DriveInfo& drive, const MapJob& job) {
   }
 }
 
-void require_mapped(const std::vector<FrameRecord>& records, const DriveInfo& drive) {
-  if (std::none_of(records.begin(), records.end(),
-                   [](const FrameRecord& r) { return r.status != FrameStatus::kSkipped; })) {
-    throw InputError("no frame could be mapped",
-                     records.empty() ? drive.path.string() : records.front().note,
-                     "check that the drive has scans and images for the frames asked for");
-  }
-}
-
 }  // namespace
 
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
@@ -231,43 +287,14 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   DriveInfo drive = source.info();
   require_motion(drive, job);
   MapMeta meta = describe(drive, job);
-  const auto writer =
-      job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force);
-
   const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
-  Mapper mapper(drive, job.options, job.pose_source);
-  std::vector<FrameRecord> records;
-  if (job.resume) {
-    EarlierRun run = read_earlier_run(job, meta);
-    records = std::move(run.records);
-    mapper.resume(std::move(run.map), records, source);
-  }
-  const std::size_t first_new = records.size();
-  const int total = drive.end - drive.begin;
-
-  std::optional<CalibrationCheck> check;
-  if (job.options.check_calibration && !job.calibrate) {
-    check.emplace(drive, has_sweep_motion(drive, job));
-  }
-  map_frames(source, job, mapper, check ? &*check : nullptr, records, progress);
-  require_mapped(records, drive);
-  const bool complete = static_cast<int>(records.size()) == total;
-  mapper.settle(records);
-  interpolate_skipped_poses(records);
-  store_map(*writer, meta, records, mapper.map(), complete);
-
-  MapSummary summary = summarise(records, first_new, drive, job.rate);
-  if (job.pose_source == PoseSource::kGivenFirst) {
-    summary.notes.push_back(
-        fmt::format("{} poses for {} frames: the frames after them are registered",
-                    job.given_poses.size(), total));
-  }
-  summary.points = mapper.map().size();
-  summary.interrupted = !complete;
-  summary.calibration = check ? check->estimates() : correction;
+  MapRun run(source, drive, job, std::move(meta));
+  run.map_frames(progress);
+  run.finish();
+  MapSummary summary = run.summary();
+  if (job.calibrate) summary.calibration = correction;
   summary.calibrated = job.calibrate;
-  summary.frames_per_second =
-      double(records.size() - first_new) / (milliseconds_since(start) / 1000);
+  summary.frames_per_second = double(summary.frames_new) / (milliseconds_since(start) / 1000);
   return summary;
 }
 

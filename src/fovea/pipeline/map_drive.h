@@ -32,7 +32,12 @@ struct MapJob {
   bool calibrate = false;  ///< correct the calibration first (pipeline/self_calibration.h)
   bool force = false;      ///< overwrite `output`
   bool resume = false;     ///< go on with `output`, which an earlier run left unfinished
-  std::stop_token stop;    ///< ends after the frames at hand; what was mapped is committed
+  /// Bytes that the process should keep to: tiles of the map that are out of reach are in the file
+  /// alone.
+  std::size_t memory = std::size_t{1} << 30;
+  /// Frames from one commit to the next, at least: what a crash can cost.
+  std::size_t checkpoint_frames = 20;
+  std::stop_token stop;  ///< ends after the frames at hand; what was mapped is committed
 };
 
 struct MapProgress {
@@ -44,7 +49,7 @@ struct MapProgress {
 /// Maps the frames of a drive into a map file. `progress` is called in the caller's thread after
 /// each frame, in order. Errors as in MapWriter; InputError if no frame of the range can be used,
 /// if navigation's poses are wanted and there are none, or if the map to resume was made with other
-/// settings.
+/// settings. Where frames have been committed before an error, the file stays, to be resumed.
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress);
 

@@ -94,6 +94,92 @@ TEST_F(MapDrive, AnErrorEndsTheRunAndLeavesNothing) {
   }
 }
 
+// A run that ends by an error or a crash has what was committed before, and goes on from there.
+TEST_F(MapDrive, AnErrorAfterACommitLeavesAMapToGoOnWith) {
+  for (const bool overlap : {false, true}) {
+    MapJob job = this->job();
+    job.overlap = overlap;
+    map_drive(drive_, job, {});
+    const std::string whole = digest();
+    job.checkpoint_frames = 2;
+    for (const int error_at : {3, 5, 7}) {
+      job.force = true;
+      job.resume = false;
+      drive_.error_at = error_at;
+      EXPECT_THROW(map_drive(drive_, job, {}), InputError);
+      drive_.error_at = -1;
+      const std::size_t committed = MapReader(job.output).frames().size();
+      EXPECT_GE(committed, 2u);
+      EXPECT_LE(committed, std::size_t(error_at));
+      EXPECT_EQ(MapReader(job.output).meta().at("complete"), "0");
+      job.force = false;
+      job.resume = true;
+      const MapSummary rest = map_drive(drive_, job, {});
+      EXPECT_EQ(rest.frames_new, 8 - committed);
+      EXPECT_EQ(rest.frames_mapped + rest.frames_held_out, 8);
+      EXPECT_EQ(digest(), whole) << error_at;
+    }
+  }
+}
+
+/// Leaves a place and comes back to it twice; 100 m lie between the two.
+class ThereAndBack : public BrokenDrive {
+ public:
+  ThereAndBack() {
+    scene.boxes = {{{-30, -30, -2}, {150, 30, -1.73}}, {{-30, 6, -2}, {150, 8, 4}}};
+    std::vector<StampedPose> navigation;
+    for (int i = 0; i < 8; ++i) {
+      RigidMotion& T = T_local_lidar[std::size_t(i)];
+      T = RigidMotion(Eigen::Translation3d((i % 4 < 2 ? 0 : 100) + i, 0, 0));
+      navigation.push_back({stamp_of(i), T});
+    }
+    editable_info().navigation = Trajectory(navigation);
+  }
+};
+
+TEST_F(MapDrive, WhatIsOutOfReachNeedNotBeInMemory) {
+  const ThereAndBack drive;
+  MapJob job = this->job();
+  job.pose_source = PoseSource::kNavigation;
+  job.options.fusion.submap_duration = 0.05;
+  std::vector<std::string> digests;
+  std::vector<std::size_t> points;
+  for (const auto& [frames, memory] :
+       {std::pair(100, std::size_t{1} << 30), {1, std::size_t{1} << 30}, {2, std::size_t{1}}}) {
+    for (const bool overlap : {false, true}) {
+      job.overlap = overlap;
+      job.checkpoint_frames = std::size_t(frames);
+      job.memory = memory;
+      const MapSummary summary = map_drive(drive, job, {});
+      digests.push_back(digest());
+      EXPECT_EQ(digests.back(), digests.front()) << frames;
+      EXPECT_EQ(summary.points, MapReader(job.output).size());
+    }
+  }
+  // The same while it is resumed again and again.
+  job.checkpoint_frames = 1;
+  std::filesystem::remove(job.output);
+  for (int end = 1; end <= 8; ++end) {
+    std::stop_source stop;
+    job.stop = stop.get_token();
+    job.resume = end > 1;
+    map_drive(drive, job, [&](const MapProgress& progress) {
+      if (progress.done >= end) stop.request_stop();
+    });
+  }
+  EXPECT_EQ(digest(), digests.front());
+}
+
+TEST_F(MapDrive, TellsWhatMemoryItNeededBeyondTheLimit) {
+  drive_.editable_info().end = 2;
+  MapJob job = this->job();
+  EXPECT_THAT(map_drive(drive_, job, {}).notes,
+              testing::Not(testing::Contains(testing::HasSubstr("memory"))));
+  job.memory = 1 << 20;
+  EXPECT_THAT(map_drive(drive_, job, {}).notes,
+              testing::Contains(testing::HasSubstr("more than the 1 MB")));
+}
+
 TEST_F(MapDrive, LateFramesAreCountedAndMapped) {
   drive_.editable_info().end = 4;
   EXPECT_EQ(map_drive(drive_, job(), {}).late_frames, 0);

@@ -22,6 +22,7 @@ struct MapSummary {
   int registrations_failed = 0;
   int loops_closed = 0;  ///< scans registered to a place seen before
   std::size_t points = 0;
+  std::size_t frames_new = 0;    ///< of all kinds, made by this run and not by one that it resumes
   double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
   double rate = 0;  ///< Hz, at which frames were released; 0: as fast as they were mapped
   /// At a rate: frames whose points and colours were not yet in the map when the next one was due.
@@ -36,10 +37,34 @@ struct MapSummary {
   int skipped() const;
 };
 
-/// Counts frames, skips and failures of all records; latencies and late frames of those from
-/// `first_new` on, which this run made at `rate` Hz or, with 0, without one. Points, rate and
-/// interruption are the caller's to add.
-MapSummary summarise(const std::vector<FrameRecord>& records, std::size_t first_new,
-                     const DriveInfo& drive, double rate);
+/// Gathers a summary, frame by frame.
+class DriveFigures {
+ public:
+  /// @param drive  must outlive the figures
+  /// @param rate   Hz, at which frames of this run are released, or 0
+  DriveFigures(const DriveInfo& drive, double rate) : drive_(drive) { summary_.rate = rate; }
+
+  /// Counts a frame, its skip or its failures; of one that this run has made (not an earlier one,
+  /// which it resumes) latencies and lateness, too.
+  void add(const FrameRecord& record, bool is_new);
+
+  /// Points, rate of frames, calibration and interruption are the caller's to add.
+  MapSummary summary() const;
+
+ private:
+  /// Frames with a flaw of one kind.
+  struct Flaw {
+    int frames = 0, first = 0;
+    void add(int index);
+  };
+  static void note(const Flaw& flaw, const std::string& what, std::vector<std::string>& notes);
+  void note_flaws(const FrameRecord& record);
+
+  const DriveInfo& drive_;
+  MapSummary summary_;
+  std::map<std::string, std::vector<float>> by_stage_;  // ms
+  Flaw absent_, jumped_, degenerate_, blank_, exposed_;
+  std::map<int, Flaw> missing_;  // by camera
+};
 
 }  // namespace fovea

@@ -53,11 +53,26 @@ PointCloud without(PointCloud points, const std::vector<std::uint8_t>& marks, do
   return points;
 }
 
+/// How far from the LiDAR any stage looks at the map.
+double reach_of(const DriveInfo& drive, const MapperOptions& options) {
+  double reach = options.moving.remove ? options.moving.range : 0;
+  if (options.foveal_enabled) {
+    reach = std::max(reach, options.foveal.far_range);
+    for (const Camera& camera : drive.calibration.cameras) {
+      reach = std::max(reach, foveal_options_of(options, camera.index).far_range);
+    }
+  }
+  return reach + 2 * kMargin;
+}
+
 }  // namespace
 
-Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
+Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
+               BringNear bring_near)
     : drive_(drive),
       options_(options),
+      bring_near_(std::move(bring_near)),
+      reach_(reach_of(drive, options)),
       tracker_(drive, options, pose_source),
       moving_things_(options.moving),
       map_(options.tile_size) {
@@ -81,6 +96,7 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
   const PointCloud& scan_lidar = tracked.scan_lidar;
   follow_submaps(tracked.submaps);
   T_odom_local_ = tracked.T_local_odom.inverse();
+  bring_near_(map_, record.T_local_lidar.translation(), reach_);
 
   // Foveal processing, ray filtering and texture mapping, camera by camera.
   if (record.status != FrameStatus::kHeldOut) {
@@ -283,6 +299,7 @@ void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool look
   tracker_.replay(scan_lidar, record);
   follow_submaps(tracker_.submaps());
   if (looked_at) {
+    bring_near_(map_, (tracker_.T_local_odom() * record.T_odom_lidar).translation(), reach_);
     moving_things_.replay(map_, scan_lidar, record.T_odom_lidar, tracker_.T_local_odom().inverse(),
                           record.index);
   }

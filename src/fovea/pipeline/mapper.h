@@ -1,6 +1,7 @@
 // The paper's method, frame by frame: the only place that knows the order of the stages.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,7 +21,13 @@ namespace fovea {
 class Mapper {
  public:
   /// @param drive  calibration, navigation and sweep; must outlive the mapper
-  Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source);
+  /// @param bring_near  called before tiles within a ball around the LiDAR are looked at, where
+  ///        some of them may be in a store (TileMap::restore)
+  using BringNear =
+      std::function<void(TileMap& map, const Eigen::Vector3d& center_local, double radius)>;
+  Mapper(
+      const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
+      BringNear bring_near = [](TileMap&, const Eigen::Vector3d&, double) {});
 
   /// Maps one frame and returns what is to be kept of it.
   /// @param held_out    registered like any other, but adds no point, colour or registration target
@@ -37,9 +44,9 @@ class Mapper {
   FrameRecord add(const Frame& frame, TrackedFrame tracked);
 
   const TileMap& map() const { return map_; }
-
-  /// Puts the frames mapped so far where their submaps are now.
-  void settle(std::vector<FrameRecord>& records) const { tracker_.settle(records); }
+  TileMap& map() { return map_; }  ///< for a store
+  /// How far from the LiDAR tiles are looked at, m; those of the last submap may be anywhere.
+  double reach() const { return reach_; }
 
   /// Takes up a map where an earlier run left it: its tiles, and the frames' records in order.
   /// `load` reads the latest frames again, which registration needs as targets.
@@ -70,6 +77,8 @@ class Mapper {
 
   const DriveInfo& drive_;
   MapperOptions options_;
+  BringNear bring_near_;
+  double reach_;
   Tracker tracker_;
   RayFilter ray_filter_;
   MovingThings moving_things_;

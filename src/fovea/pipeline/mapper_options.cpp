@@ -60,8 +60,8 @@ void MapperOptions::validate() const {
   surface.validate();
   texture.validate();
   fusion.validate();
-  if (!(tile_size >= 0.5 && tile_size <= 100)) {
-    reject("a size is out of range", "map.tile_size", "give metres from 0.5 to 100");
+  if (!(tile_size >= 0.5 && tile_size <= 65)) {
+    reject("a size is out of range", "map.tile_size", "give metres from 0.5 to 65");
   }
 }
 

@@ -103,12 +103,6 @@ bool Tracker::registers() const {
   return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
 }
 
-void Tracker::settle(std::vector<FrameRecord>& records) const {
-  for (FrameRecord& record : records) {
-    if (record.submap >= 0) record.T_local_lidar = fusion_.T_local_lidar(record);
-  }
-}
-
 void Tracker::follow(const FrameRecord& record) {
   motion_model_.update(record.stamp.value(), record.T_odom_lidar);
   FrameRecord tracked = record;

@@ -45,9 +45,6 @@ class Tracker {
   TrackedFrame track(const Frame& frame, bool held_out,
                      const std::optional<RigidMotion>& given_pose);
 
-  /// Puts the frames tracked so far where their submaps are now.
-  void settle(std::vector<FrameRecord>& records) const;
-
   /// Follows the next frame of an earlier run, which was not skipped.
   void follow(const FrameRecord& record);
   /// Whether a frame just followed that was not held out has to be given to replay().

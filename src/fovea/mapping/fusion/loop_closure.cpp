@@ -71,27 +71,31 @@ LoopCloser::LoopCloser(const RegistrationOptions& registration) : registration_(
 
 void LoopCloser::add(std::size_t submap, const std::vector<Eigen::Vector3f>& points_lidar,
                      const RigidMotion& T_submap_lidar) {
-  scans_.insert_or_assign(submap, Scan{thin(points_lidar, registration_), T_submap_lidar});
+  const RegistrationCloud cloud_lidar = thin(points_lidar, registration_);
+  scans_.insert_or_assign(submap, Scan{clouds_.append(cloud_lidar.points),
+                                       clouds_.append(cloud_lidar.normals), T_submap_lidar});
 }
 
 std::optional<LoopClosure> LoopCloser::verify(const RegistrationCloud& cloud_lidar,
                                               const LoopCandidate& candidate) const {
   const Scan& scan = scans_.at(candidate.submap);
-  const PointIndex index(scan.cloud_lidar.points, kVoxel);
+  const RegistrationCloud target{clouds_.read<Eigen::Vector3f>(scan.points),
+                                 clouds_.read<Eigen::Vector3f>(scan.normals)};
+  const PointIndex index(target.points, kVoxel);
   RigidMotion T_scan_lidar = scan.T_submap_lidar.inverse() * candidate.T_submap_lidar;
   RegistrationResult result;
   for (const double distance :
        {std::max(kCoarseDistance, registration_.max_distance), registration_.max_distance}) {
     RegistrationOptions options = registration_;
     options.max_distance = distance;
-    result = register_clouds(scan.cloud_lidar, index, cloud_lidar, T_scan_lidar, options);
+    result = register_clouds(target, index, cloud_lidar, T_scan_lidar, options);
     if (!result.converged || result.degenerate_directions > 0) return std::nullopt;
     T_scan_lidar = result.T_target_source;
   }
   const RigidMotion T_submap_lidar = scan.T_submap_lidar * T_scan_lidar;
   const double moved =
       (T_submap_lidar.translation() - candidate.T_submap_lidar.translation()).norm();
-  const Fit fit = fit_of(scan.cloud_lidar, index, cloud_lidar, T_scan_lidar);
+  const Fit fit = fit_of(target, index, cloud_lidar, T_scan_lidar);
   if (fit.overlap < kMinOverlap || fit.on_plane < kMinFit) return std::nullopt;
   if (moved > kCoarseDistance + drift_of(candidate)) return std::nullopt;
   return LoopClosure{candidate.submap, T_submap_lidar};

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/base/scratch_file.h"
 #include "fovea/mapping/registration/registration.h"
 
 namespace fovea {
@@ -23,7 +24,8 @@ struct LoopCandidate {
   double path = 0;                                       ///< m driven since the submap was made
 };
 
-/// One scan a submap, thinned, to register later scans against.
+/// One scan a submap, thinned, to register later scans against. The scans lie in a scratch file, so
+/// that memory does not grow with the drive.
 class LoopCloser {
  public:
   /// @param registration  of the front end; the method here is always generalised ICP
@@ -43,7 +45,7 @@ class LoopCloser {
 
  private:
   struct Scan {
-    RegistrationCloud cloud_lidar;
+    ScratchFile::Place points, normals;  // of a RegistrationCloud
     RigidMotion T_submap_lidar;
   };
   std::optional<LoopClosure> verify(const RegistrationCloud& cloud_lidar,
@@ -51,6 +53,7 @@ class LoopCloser {
 
   RegistrationOptions registration_;
   std::map<std::size_t, Scan> scans_;
+  ScratchFile clouds_;
 };
 
 }  // namespace fovea

@@ -1,0 +1,109 @@
+// fovea recolor: new colours for a map, without mapping again.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/drive_arguments.h"
+#include "app/progress_bar.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/pipeline/config.h"
+#include "fovea/pipeline/recolor.h"
+#include "fovea/pipeline/stored_calibration.h"
+
+namespace fovea::app {
+namespace {
+
+struct RecolorArguments {
+  std::string map, output, config;
+  DriveArguments drive;
+  std::vector<std::string> settings;
+  int threads = 0;
+  bool force = false, quiet = false;
+};
+
+/// The map's own settings, with what is to be different.
+MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta) {
+  const auto stored = meta.find("config");
+  if (stored == meta.end()) {
+    throw InputError("the map does not tell its settings", arguments.map,
+                     "give a map that 'fovea map' wrote");
+  }
+  MapperOptions options;
+  apply_config_text(stored->second, arguments.map, options);
+  const double tile_size = options.tile_size;
+  if (!arguments.config.empty()) apply_config_file(arguments.config, options);
+  for (const std::string& setting : arguments.settings) apply_setting(setting, options);
+  if (options.tile_size != tile_size) {
+    throw ConfigError("the tiles of a map keep their size", "map.tile_size",
+                      "map the drive again for another");
+  }
+  return options;
+}
+
+void run(RecolorArguments arguments) {
+  const ThreadLimit threads(arguments.threads);
+  const MapReader map(arguments.map);
+  const MapMeta meta = map.meta();
+  RecolorJob job;
+  job.output = arguments.output;
+  job.options = options_of(arguments, meta);
+  job.force = arguments.force;
+  std::error_code ignored;
+  if (std::filesystem::equivalent(arguments.map, arguments.output, ignored)) {
+    throw OutputError("a map cannot be recoloured into itself", arguments.output,
+                      "give another name");
+  }
+  if (arguments.drive.cameras.empty() && meta.contains("cameras")) {
+    arguments.drive.cameras = meta.at("cameras");
+  }
+  auto drive = arguments.drive.open();
+  if (has_stored_calibration(meta)) {
+    drive = with_stored_calibration(std::move(drive), meta, arguments.map);
+  }
+  const RecolorFigures figures = [&] {
+    ProgressBar bar(arguments.quiet);
+    return recolor_map(map, *drive, job, [&](int done, int total) { bar.draw(done, total); });
+  }();
+  if (arguments.quiet) return;
+  fmt::print("{}: {} points coloured by {} frames\n", arguments.output,
+             figures.points - figures.uncolored, figures.frames);
+  if (figures.uncolored > 0) fmt::print("without colour: {} points\n", figures.uncolored);
+  if (figures.unread > 0) fmt::print("not to be read: {} frames of the map\n", figures.unread);
+  if (figures.images_left_out > 0) {
+    fmt::print("left out: {} images, blank or exposed otherwise than the others\n",
+               figures.images_left_out);
+  }
+}
+
+}  // namespace
+
+void add_recolor_command(CLI::App& app) {
+  auto arguments = std::make_shared<RecolorArguments>();
+  CLI::App* command = app.add_subcommand(
+      "recolor", "Colour a map anew from its drive: points and poses stay as they are");
+  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  command->add_option("DRIVE", arguments->drive.drive, "The drive that it was made of")->required();
+  command->add_option("-o,--output", arguments->output, "Map file to write")
+      ->required()
+      ->type_name("OUT.fovea");
+  command->add_option("--cameras", arguments->drive.cameras, "Cameras (default: the map's)")
+      ->type_name("K,...");
+  command->add_option("--config", arguments->config, "Keys that differ from the map's settings")
+      ->type_name("FILE.toml");
+  command->add_option("--set", arguments->settings, "One key, may be repeated")
+      ->type_name("key=value")
+      ->allow_extra_args(false);
+  command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--force", arguments->force, "Overwrite OUT");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""All coloured points of a Fovea map as text, `x y z red green blue` a line, m in the local frame.
+
+Reads the file as docs/map-format.md describes it: with SQLite and zstd, and nothing of Fovea's.
+Usage: read_map.py MAP.fovea > POINTS.txt
+"""
+import itertools
+import sqlite3
+import sys
+
+import zstandard
+
+
+def unpack(blob):
+    return zstandard.ZstdDecompressor().decompress(blob)
+
+
+def plane(data, n, k):
+    """The n numbers of the k-th plane of differences in `data`."""
+    low, high = data[2 * n * k:][:n], data[2 * n * k + n:][:n]
+    coded = (a + 256 * b for a, b in zip(low, high))
+    differences = (d // 2 if d % 2 == 0 else -(d + 1) // 2 for d in coded)
+    return [number % 65536 for number in itertools.accumulate(differences)]
+
+
+database = sqlite3.connect(f"file:{sys.argv[1]}?mode=ro", uri=True)
+if database.execute("PRAGMA user_version").fetchone() != (5,):
+    sys.exit("read_map: not a Fovea map of format version 5")
+pose = {number: [float(word) for word in text.split()]
+        for number, text in database.execute("SELECT id, pose FROM submaps")}
+for submap, n, ox, oy, oz, position, color, camera in database.execute(
+        "SELECT submap, points, origin_x, origin_y, origin_z, position, color, camera"
+        " FROM tiles ORDER BY submap, x, y, z"):
+    T, position, color, camera = pose[submap], unpack(position), unpack(color), unpack(camera)
+    axes = [[o + mm / 1000 for mm in plane(position, n, k)] for k, o in enumerate((ox, oy, oz))]
+    for i, (x, y, z) in enumerate(zip(*axes)):
+        if camera[i] == 255:  # -1: no camera saw it
+            continue
+        p = (T[r] * x + T[r + 1] * y + T[r + 2] * z + T[r + 3] for r in (0, 4, 8))
+        print(*(f"{value:.4f}" for value in p), *color[3 * i:3 * i + 3])

@@ -1,0 +1,83 @@
+#include "fovea/map/map_keeper.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace fovea {
+namespace {
+
+/// Tiles are asked for so far before they are needed, and dropped so far beyond: a second or two of
+/// drive, in which the disk answers, and a vehicle that turns on the spot moves none of them twice.
+constexpr double kAhead = 20, kBeyond = 30;  // m
+
+/// Of a tile in memory: all columns, and what vectors that grow hold in reserve.
+constexpr std::size_t kBytesPerPoint = 38 * 3 / 2;
+
+template <class T>
+bool is_ready(const std::future<T>& result) {
+  return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+void put(MapWriter& writer, const MapRows& rows, const TileChanges& tiles) {
+  for (const auto& [key, value] : rows.meta) writer.put_meta(key, value);
+  for (const FrameRecord& frame : rows.frames) writer.put_frame(frame);
+  for (const auto& [frame, T_local_lidar] : rows.poses) writer.put_pose(frame, T_local_lidar);
+  for (const auto& [id, T_local_submap] : rows.submaps) writer.put_submap(id, T_local_submap);
+  for (const TileId& id : tiles.removed) writer.remove_tile(id);
+}
+
+}  // namespace
+
+MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& options)
+    : most_points_(options.memory / 2 / kBytesPerPoint),
+      writer_(std::move(writer)),
+      worker_(options.threaded) {}
+
+MapKeeper::~MapKeeper() {
+  if (written_.valid()) written_.wait();
+}
+
+void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, double radius) {
+  for (const TileId& id : map.stored_near(center_local, radius + kAhead)) {
+    if (requested_.contains(id)) continue;
+    requested_.emplace(id, worker_.post([this, id] { return writer_->read_tile(id); }));
+  }
+  for (const TileId& id : map.stored_near(center_local, radius)) requested_.at(id).wait();
+  for (auto entry = requested_.begin(); entry != requested_.end();) {
+    auto& [id, tile] = *entry;
+    if (is_ready(tile)) {
+      map.restore(id, tile.get());
+      entry = requested_.erase(entry);
+    } else {
+      ++entry;
+    }
+  }
+}
+
+bool MapKeeper::is_writing() const { return written_.valid() && !is_ready(written_); }
+
+void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local,
+                           double radius) {
+  if (written_.valid()) written_.get();
+  written_ = worker_.post([this, rows = std::move(rows), tiles = map.take_changes()]() mutable {
+    put(*writer_, rows, tiles);
+    for (TileChanges::Changed& tile : tiles.changed) {
+      writer_->put_tile(tile.id, *tile.points);
+      tile.points = {};  // the map need not copy it any more when it changes it
+    }
+    writer_->commit();
+  });
+  map.drop_beyond(center_local, radius + (needs_memory(map) ? kAhead : kBeyond));
+  undroppable_ = map.size_in_memory();
+}
+
+bool MapKeeper::needs_memory(const TileMap& map) const {
+  // What is in reach stays, however much it is: trying again each frame would not help.
+  return map.size_in_memory() > std::max(most_points_, undroppable_ + undroppable_ / 4);
+}
+
+void MapKeeper::finish() {
+  if (written_.valid()) written_.get();
+}
+
+}  // namespace fovea

@@ -1,0 +1,67 @@
+// The map of a run that goes on, in its file: what changed is written from a thread of its own,
+// what is out of reach is dropped from memory and read again when it comes near.
+#pragma once
+
+#include <future>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "fovea/base/worker.h"
+#include "fovea/map/frame_record.h"
+#include "fovea/map/map_store.h"
+#include "fovea/map/tile_map.h"
+
+namespace fovea {
+
+/// What a checkpoint writes besides tiles.
+struct MapRows {
+  MapMeta meta;
+  std::vector<FrameRecord> frames;
+  std::vector<std::pair<int, RigidMotion>> poses;  ///< T_local_lidar of frames written before
+  std::vector<std::pair<std::size_t, RigidMotion>> submaps;  ///< T_local_submap
+};
+
+struct MapKeeperOptions {
+  bool threaded = true;  ///< false: all is done by whoever asks for it
+  /// Bytes that the process should keep to: half of them are the tiles'.
+  std::size_t memory = std::size_t{1} << 30;
+};
+
+/// Each checkpoint is one transaction: after a crash the file has the state of the last that was
+/// committed, whole. Whether and when one is made never changes the map that comes out.
+class MapKeeper {
+ public:
+  MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& options);
+  /// Waits for the checkpoint that was begun: whatever ends the run, what it was given is kept.
+  ~MapKeeper();
+
+  /// Has all tiles that a ball touches in memory, and those of the last submap, and sees to it that
+  /// those somewhat beyond come. InputError if the file has been damaged meanwhile.
+  void bring_near(TileMap& map, const Eigen::Vector3d& center_local, double radius);
+
+  /// Begins to write what has changed since the last one, and returns: the tiles are shared until
+  /// they are written. Drops from memory what lies well beyond the ball, but no tile of the last
+  /// submap. Waits for the checkpoint before. OutputError of an earlier one, e.g. of a full disk.
+  void checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local, double radius);
+
+  /// Whether a checkpoint would have to wait.
+  bool is_writing() const;
+
+  /// Whether the tiles in memory take more than they should and a checkpoint would drop some.
+  bool needs_memory(const TileMap& map) const;
+
+  /// Waits until all is written and committed.
+  void finish();
+
+ private:
+  std::size_t most_points_;            // in memory
+  std::size_t undroppable_ = 0;        // points that stayed there at the last checkpoint
+  std::unique_ptr<MapWriter> writer_;  // the worker's, once there is one
+  std::future<void> written_;          // of the latest checkpoint
+  std::map<TileId, std::future<PointCloud>> requested_;
+  Worker worker_;
+};
+
+}  // namespace fovea

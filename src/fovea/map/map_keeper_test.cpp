@@ -1,0 +1,162 @@
+#include "fovea/map/map_keeper.h"
+
+#include <gtest/gtest.h>
+
+#include "../../../tests/sample_map.h"
+#include "../../../tests/temporary_folder.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kNear = 5;  // m
+
+PointCloud points_at(double x, Random& random) {
+  PointCloud points = random_map_points(500, random, 3.0);
+  points.origin = {x, 0, 0};
+  return points;
+}
+
+MapRows rows_of(const TileMap& map) {
+  MapRows rows;
+  for (std::size_t id = 0; id < map.submaps().size(); ++id) {
+    rows.submaps.emplace_back(id, map.submaps()[id].T_local_submap);
+  }
+  return rows;
+}
+
+void expect_stored(const std::filesystem::path& path, const TileMap& map) {
+  std::size_t tiles = 0;
+  MapReader(path).for_each_tile(
+      [&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+        ++tiles;
+        ASSERT_TRUE(map.submaps()[submap].tiles.contains(key));
+        expect_same_columns(tile, *map.submaps()[submap].tiles.at(key).points);
+      });
+  std::size_t expected = 0;
+  for (const Submap& submap : map.submaps()) expected += submap.tiles.size();
+  EXPECT_EQ(tiles, expected);
+}
+
+class Keeper : public testing::TestWithParam<bool> {
+ protected:
+  std::unique_ptr<MapKeeper> keeper(std::size_t memory = std::size_t{1} << 30) {
+    return std::make_unique<MapKeeper>(MapWriter::create(path_, true),
+                                       MapKeeperOptions{GetParam(), memory});
+  }
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "a.fovea";
+  Random random_{4};
+};
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutThread, Keeper, testing::Bool());
+
+// A map that grows, shrinks and changes colour along a road and back, beside one that never leaves
+// the memory.
+TEST_P(Keeper, TheMapIsTheSameAsInMemory) {
+  const auto keeper = this->keeper();
+  TileMap map(2.0), whole(2.0);
+  const auto both = [&](const auto& change) { change(map), change(whole); };
+  std::size_t dropped = 0;
+  for (const int place : {0, 1, 2, 3, 4, 3, 2, 1, 0}) {
+    const Eigen::Vector3d center(40.0 * place, 0, 0);
+    keeper->bring_near(map, center, kNear);
+    both([&](TileMap& m) { m.add_submap(RigidMotion(Eigen::Translation3d(center))); });
+    const PointCloud points = points_at(center.x(), random_);
+    std::vector<TileId> near;
+    whole.for_each_tile_near(center, kNear,
+                             [&](const TileId& id, const PointCloud&) { near.push_back(id); });
+    both([&](TileMap& m) {
+      m.add(points);
+      for (std::size_t i = 0; i < near.size(); ++i) {
+        if (i % 3 == 0) m.colors(near[i]).spread[0] ^= 5;
+        if (i % 3 == 1) m.keep_points(near[i], {});
+      }
+    });
+    keeper->checkpoint(map, rows_of(map), center, kNear);
+    dropped += map.size() - map.size_in_memory();
+    EXPECT_EQ(map.size(), whole.size());
+  }
+  keeper->finish();
+  EXPECT_GT(dropped, 0u);
+  expect_stored(path_, whole);
+}
+
+TEST_P(Keeper, EachCheckpointIsCommitted) {
+  const auto keeper = this->keeper();
+  TileMap map;
+  map.add_submap(RigidMotion::Identity());
+  map.add(points_at(0, random_));
+  EXPECT_FALSE(keeper->is_writing());
+  MapRows rows = rows_of(map);
+  rows.meta["complete"] = "0";
+  rows.frames = sample_frames();
+  keeper->checkpoint(map, std::move(rows), {0, 0, 0}, kNear);
+  keeper->finish();
+  EXPECT_FALSE(keeper->is_writing());
+  expect_stored(path_, map);
+  EXPECT_EQ(MapReader(path_).frames().size(), 3u);
+  rows = {};
+  rows.poses.emplace_back(8, RigidMotion(Eigen::Translation3d(1, 2, 3)));
+  keeper->checkpoint(map, std::move(rows), {0, 0, 0}, kNear);
+  keeper->finish();
+  EXPECT_EQ(MapReader(path_).frames()[1].T_local_lidar.translation(), Eigen::Vector3d(1, 2, 3));
+}
+
+TEST_P(Keeper, WantsACheckpointWhenMemoryRunsOut) {
+  const auto keeper = this->keeper(/*memory=*/100'000);
+  TileMap map(2.0);
+  for (int place = 0; place < 4; ++place) {
+    map.add_submap(RigidMotion::Identity());
+    map.add(points_at(100.0 * place, random_));
+  }
+  EXPECT_TRUE(keeper->needs_memory(map));
+  keeper->checkpoint(map, rows_of(map), {300, 0, 0}, kNear);
+  EXPECT_EQ(map.size_in_memory(), 500u);
+  EXPECT_FALSE(keeper->needs_memory(map));
+  // What cannot be dropped is no reason to try again.
+  map.add(points_at(300, random_));
+  map.add(points_at(300, random_));
+  EXPECT_TRUE(keeper->needs_memory(map));
+  keeper->checkpoint(map, {}, {300, 0, 0}, kNear);
+  EXPECT_FALSE(keeper->needs_memory(map));
+}
+
+TEST_P(Keeper, AnErrorOfWritingComesOut) {
+  const auto keeper = this->keeper();
+  TileMap map;
+  map.add_submap(RigidMotion::Identity());
+  MapRows rows;
+  rows.meta["schema_version"] = "9";  // the store's own
+  keeper->checkpoint(map, std::move(rows), {0, 0, 0}, kNear);
+  EXPECT_THROW(keeper->finish(), std::invalid_argument);
+}
+
+TEST_P(Keeper, WhatIsNotFinishedIsNotLost) {
+  TileMap map;
+  map.add_submap(RigidMotion::Identity());
+  map.add(points_at(0, random_));
+  {
+    const auto keeper = this->keeper();
+    keeper->checkpoint(map, rows_of(map), {0, 0, 0}, kNear);
+    keeper->finish();
+    map.add(points_at(1, random_));  // never told
+  }
+  EXPECT_EQ(MapReader(path_).size(), 500u);
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"a.fovea"});
+}
+
+// An error elsewhere ends a run while its checkpoint still waits for the thread.
+TEST_P(Keeper, ACheckpointBegunIsCommittedHoweverTheRunEnds) {
+  TileMap map;
+  map.add_submap(RigidMotion::Identity());
+  map.add(points_at(0, random_));
+  for (int trial = 0; trial < 20; ++trial) {
+    TileMap copy = map;
+    this->keeper()->checkpoint(copy, rows_of(copy), {0, 0, 0}, kNear);
+    EXPECT_EQ(MapReader(path_).size(), 500u);
+    std::filesystem::remove(path_);
+  }
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,35 @@
+#include "fovea/map/tile_query.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+
+TileKey tile_key(const sqlite::Statement& statement, int column, const std::string& map_path) {
+  const auto number = [&](int at) {
+    const std::int64_t value = statement.integer(at);
+    if (!std::in_range<std::int32_t>(value)) {
+      throw InputError(fmt::format("a tile has the impossible key {}", value), map_path,
+                       "restore the map from a copy or map the drive again");
+    }
+    return static_cast<std::int32_t>(value);
+  };
+  return {number(column), number(column + 1), number(column + 2)};
+}
+
+TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path) {
+  TileRow row;
+  row.submap = statement.integer(0);
+  row.key = tile_key(statement, 1, map_path);
+  row.points = statement.integer(4);
+  row.colored = statement.integer(5);
+  row.origin = {statement.real(6), statement.real(7), statement.real(8)};
+  for (int i = 0; i < static_cast<int>(kStoredColumns); ++i) row.blobs[i] = statement.blob(9 + i);
+  row.checksum = static_cast<std::uint64_t>(statement.integer(9 + int{kStoredColumns}));
+  return row;
+}
+
+}  // namespace fovea

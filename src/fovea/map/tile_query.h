@@ -1,0 +1,26 @@
+// Rows of the table `tiles`, as both the reader and the writer of a map see them. Private to map/.
+#pragma once
+
+#include <string>
+
+#include "fovea/map/sqlite_database.h"
+#include "fovea/map/tile_codec.h"
+
+namespace fovea {
+
+/// What tile_row() wants, in this order.
+inline constexpr const char* kTileColumns =
+    "submap, x, y, z, points, colored, origin_x, origin_y, origin_z, position, color, camera, "
+    "frame, range, incidence, interpolated, views, spread, weight, reason, intensity, checksum";
+
+/// The condition for one tile: submap, x, y, z are its first four parameters.
+inline constexpr const char* kThisTile = "submap = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
+
+/// The present row of a query for kTileColumns; its blobs are valid until the next step. InputError
+/// that names `map_path` if a number is impossible.
+TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path);
+
+/// The key in three columns from `column` on; InputError as above.
+TileKey tile_key(const sqlite::Statement& statement, int column, const std::string& map_path);
+
+}  // namespace fovea

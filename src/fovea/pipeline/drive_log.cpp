@@ -1,0 +1,113 @@
+#include "fovea/pipeline/drive_log.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace fovea {
+namespace {
+
+/// A pose is written again when it has moved by so much: each new submap moves those before by a
+/// hair, and a long drive has thousands.
+constexpr double kNoticeable = 1e-3;  // m, and a hundred times that in radians
+
+bool has_moved(const RigidMotion& from, const RigidMotion& to, bool exact) {
+  if (exact) return from.matrix() != to.matrix();
+  return (from.translation() - to.translation()).norm() > kNoticeable ||
+         (from.linear() - to.linear()).norm() > kNoticeable / 100;
+}
+
+}  // namespace
+
+void DriveLog::remember(const FrameRecord& record) {
+  Frame frame{record.index, -1, record.T_odom_lidar, record.T_local_lidar};
+  if (record.status != FrameStatus::kSkipped) {
+    frame.submap = record.submap;
+    const auto submap = static_cast<std::size_t>(record.submap);
+    // A submap begins where its first frame is.
+    if (submap == T_odom_submap_.size()) T_odom_submap_.push_back(record.T_odom_lidar);
+  }
+  frames_.push_back(frame);
+}
+
+void DriveLog::add(FrameRecord record) {
+  remember(record);
+  fresh_.push_back(std::move(record));
+}
+
+void DriveLog::add_stored(const FrameRecord& record) {
+  if (!fresh_.empty()) throw std::logic_error("an earlier run's frame after those of this run");
+  remember(record);
+}
+
+bool DriveLog::has_mapped() const {
+  return std::any_of(frames_.begin(), frames_.end(),
+                     [](const Frame& frame) { return frame.submap >= 0; });
+}
+
+std::vector<RigidMotion> DriveLog::poses(const TileMap& map) const {
+  std::vector<RigidMotion> T_local_odom;  // by submap
+  for (std::size_t id = 0; id < T_odom_submap_.size(); ++id) {
+    const RigidMotion& T_local_submap = map.submaps().at(id).T_local_submap;
+    // Where nothing has moved it, to the bit: poses that were given come out as they were.
+    const bool stays = T_local_submap.matrix() == T_odom_submap_[id].matrix();
+    T_local_odom.push_back(stays ? RigidMotion::Identity()
+                                 : T_local_submap * T_odom_submap_[id].inverse());
+  }
+  std::vector<RigidMotion> poses;
+  std::vector<std::size_t> known;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const Frame& frame = frames_[i];
+    if (frame.submap < 0) {
+      poses.push_back(frame.T_local_lidar);
+      continue;
+    }
+    known.push_back(i);
+    poses.push_back(T_local_odom[std::size_t(frame.submap)] * frame.T_odom_lidar);
+  }
+  if (known.empty()) return poses;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (frames_[i].submap >= 0) continue;
+    if (known.size() == 1) {
+      poses[i] = poses[known.front()];
+      continue;
+    }
+    const auto after = std::upper_bound(known.begin() + 1, known.end() - 1, i);
+    const std::size_t a = *(after - 1), b = *after;
+    poses[i] = interpolate(
+        poses[a], poses[b],
+        double(frames_[i].index - frames_[a].index) / (frames_[b].index - frames_[a].index));
+  }
+  return poses;
+}
+
+MapRows DriveLog::rows(const TileMap& map, bool exact) {
+  MapRows rows;
+  const std::vector<RigidMotion> T_local_lidar = poses(map);
+  const std::size_t stored = frames_.size() - fresh_.size();
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    Frame& frame = frames_[i];
+    if (i >= stored) {
+      fresh_[i - stored].T_local_lidar = T_local_lidar[i];
+    } else if (has_moved(frame.T_local_lidar, T_local_lidar[i], exact)) {
+      rows.poses.emplace_back(frame.index, T_local_lidar[i]);
+    } else {
+      continue;
+    }
+    frame.T_local_lidar = T_local_lidar[i];
+  }
+  rows.frames = std::exchange(fresh_, {});
+  for (std::size_t id = 0; id < map.submaps().size(); ++id) {
+    const RigidMotion& T_local_submap = map.submaps()[id].T_local_submap;
+    if (id == T_local_submap_.size()) {
+      T_local_submap_.push_back(T_local_submap);
+    } else if (has_moved(T_local_submap_[id], T_local_submap, exact)) {
+      T_local_submap_[id] = T_local_submap;
+    } else {
+      continue;
+    }
+    rows.submaps.emplace_back(id, T_local_submap);
+  }
+  return rows;
+}
+
+}  // namespace fovea

@@ -1,0 +1,132 @@
+#include "fovea/pipeline/recolor.h"
+
+#include <algorithm>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/map/occupancy.h"
+#include "fovea/mapping/blank_image.h"
+#include "fovea/mapping/image_pyramid.h"
+#include "fovea/pipeline/config.h"
+#include "fovea/pipeline/map_colors.h"
+
+namespace fovea {
+namespace {
+
+constexpr int kCheckpointFrames = 20;
+/// Tiles are looked at this much farther than the region reaches, m: poses round.
+constexpr double kMargin = 1;
+
+/// What fusion takes for a point that no view has shown.
+void forget_colors(PointCloud& tile) {
+  std::fill(tile.color.begin(), tile.color.end(), Rgb{});
+  std::fill(tile.views.begin(), tile.views.end(), std::uint8_t{0});
+  std::fill(tile.spread.begin(), tile.spread.end(), std::uint8_t{0});
+  std::fill(tile.weight.begin(), tile.weight.end(), std::uint16_t{0});
+  std::fill(tile.camera.begin(), tile.camera.end(), kNoCamera);
+  for (std::uint8_t& reason : tile.reason) reason &= static_cast<std::uint8_t>(~kExposureMatched);
+}
+
+/// The map without its colours, committed; its tiles are in the file alone.
+TileMap copy_uncolored(const MapReader& map, const MapperOptions& options, MapWriter& writer) {
+  const auto held_state = map.hold_state();
+  TileMap copy(options.tile_size);
+  for (const RigidMotion& T_local_submap : copy_all_but_tiles(map, writer)) {
+    copy.add_submap(T_local_submap);
+  }
+  writer.put_meta("config", to_toml(options));
+  map.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+    PointCloud uncolored = tile;
+    forget_colors(uncolored);
+    writer.put_tile({submap, key}, uncolored);
+    copy.declare_stored({submap, key}, tile.size());
+  });
+  writer.commit();
+  return copy;
+}
+
+class Recolorer {
+ public:
+  Recolorer(const DriveInfo& drive, const MapperOptions& options, TileMap map, MapKeeper& keeper)
+      : drive_(drive), options_(options), map_(std::move(map)), keeper_(keeper) {
+    for (const Camera& camera : drive.calibration.cameras) {
+      reach_ = std::max(reach_, foveal_options_of(options, camera.index).far_range + kMargin);
+    }
+    spacing_ = options.surface.spacing > 0
+                   ? Occupancy(options.tile_size, options.surface.spacing).cell()
+                   : options.texture.footprint;
+  }
+
+  void see(const Frame& frame, const FrameRecord& record, RecolorFigures& figures) {
+    position_local_ = record.T_local_lidar.translation();
+    keeper_.bring_near(map_, position_local_, reach_);
+    for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
+      const Image& image = frame.images[slot];
+      if (image.empty()) continue;
+      const Camera camera = drive_.calibration.cameras[slot].at_image(record.velocity);
+      const FovealRegion region(foveal_options_of(options_, camera.index), camera);
+      seen_map_.look(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(), spacing_);
+      const ImagePyramid pyramid(image);
+      const ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
+      if (is_blank(image) || is_exposure_off(seen_map_.gain_to_map(view))) {
+        ++figures.images_left_out;
+      } else {
+        seen_map_.recolour(map_, view);
+      }
+    }
+    if (++unwritten_ >= kCheckpointFrames || keeper_.needs_memory(map_)) checkpoint();
+  }
+
+  void checkpoint() {
+    unwritten_ = 0;
+    keeper_.checkpoint(map_, {}, position_local_, reach_);
+  }
+
+ private:
+  const DriveInfo& drive_;
+  const MapperOptions& options_;
+  TileMap map_;
+  MapKeeper& keeper_;
+  SeenMap seen_map_;
+  double reach_ = 0, spacing_ = 0;  // m
+  Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();
+  int unwritten_ = 0;
+};
+
+}  // namespace
+
+RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, const RecolorJob& job,
+                           const std::function<void(int, int)>& progress) {
+  job.options.validate();
+  std::vector<FrameRecord> records = map.frames();
+  std::erase_if(records, [](const FrameRecord& r) { return r.status != FrameStatus::kMapped; });
+  // Before anything is written.
+  if (std::none_of(records.begin(), records.end(), [&](const FrameRecord& record) {
+        return std::holds_alternative<Frame>(source.load(record.index));
+      })) {
+    throw InputError("none of the map's frames can be read", source.info().path.string(),
+                     "give the drive that the map was made of");
+  }
+  RecolorFigures figures;
+  {
+    auto writer = MapWriter::create(job.output, job.force);
+    TileMap uncolored = copy_uncolored(map, job.options, *writer);
+    MapKeeper keeper(std::move(writer), {available_threads() > 1, job.memory});
+    Recolorer recolorer(source.info(), job.options, std::move(uncolored), keeper);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const FrameResult loaded = source.load(records[i].index);
+      const auto* frame = std::get_if<Frame>(&loaded);
+      if (frame != nullptr) recolorer.see(*frame, records[i], figures);
+      ++(frame != nullptr ? figures.frames : figures.unread);
+      if (progress) progress(int(i) + 1, int(records.size()));
+    }
+    recolorer.checkpoint();
+    keeper.finish();
+  }
+  const MapReader recolored(job.output);
+  figures.points = recolored.size();
+  figures.uncolored = figures.points - recolored.colored_size();
+  return figures;
+}
+
+}  // namespace fovea
