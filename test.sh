@@ -25,7 +25,7 @@ for argument in "$@"; do
       ;;
   esac
 done
-scripts/setup.sh $install_flag
+scripts/setup.sh --tests $install_flag
 
 run_tests() { # PRESET [CTEST OPTION...]
   local preset=$1

@@ -1,44 +1,61 @@
 // fovea export: a map in a form that other programs read.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/commands.h"
+#include "fovea/exporting/las_writer.h"
+#include "fovea/exporting/pcd_writer.h"
 #include "fovea/exporting/ply_writer.h"
 #include "fovea/exporting/pose_writer.h"
+#include "fovea/exporting/tileset/tileset_writer.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::app {
 namespace {
 
 struct ExportArguments {
-  std::string map, output, format, where;
-  PlyOptions ply;
-  bool quiet = false;
+  std::string map, output, format, where, crs = "local";
+  PointChoice points;
+  double utc_offset = seconds(LasOptions().utc_offset) / 3600;
+  bool double_positions = false, force = false, quiet = false;
 };
+
+constexpr const char* kFormats = "ply, pcd, las, 3dtiles or kitti-poses";
 
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
 std::string format_of(const ExportArguments& arguments) {
   if (!arguments.format.empty()) return arguments.format;
-  if (std::filesystem::path(arguments.output).extension() == ".ply") return "ply";
+  const std::string ending = std::filesystem::path(arguments.output).extension().string();
+  for (const char* format : {"ply", "pcd", "las"}) {
+    if (ending == std::string(".") + format) return format;
+  }
   throw CLI::ValidationError("--format",
-                             "give ply or kitti-poses: the output's ending names neither");
+                             fmt::format("give {}: the output's ending names none", kFormats));
 }
 
-void run(ExportArguments& arguments) {
-  const std::string format = format_of(arguments);
-  const MapReader map(arguments.map);
-  if (format == "kitti-poses") {
-    write_kitti_poses(map.frames(), arguments.output, arguments.ply.force);
-    return;
-  }
-  if (!arguments.where.empty()) arguments.ply.where = PointFilter::parse(arguments.where);
-  const PlyFigures figures = write_ply(map, arguments.output, arguments.ply);
-  if (arguments.quiet) return;
+/// What would otherwise be ignored without a word.
+void check_options(const CLI::App& command, const std::string& format) {
+  const auto only_for = [&](const char* option, const std::vector<std::string>& formats) {
+    const bool applies = std::find(formats.begin(), formats.end(), format) != formats.end();
+    if (applies || command.count(option) == 0) return;
+    throw CLI::ValidationError(option, fmt::format("is for {}", fmt::join(formats, ", ")));
+  };
+  only_for("--crs", {"ply", "pcd", "las"});  // a tileset's root places it on earth by itself
+  only_for("--double", {"ply", "pcd"});
+  only_for("--utc-offset", {"las"});
+  only_for("--uncolored", {"ply", "pcd", "las", "3dtiles"});
+  only_for("--where", {"ply", "pcd", "las", "3dtiles"});
+}
+
+void print_figures(const ExportArguments& arguments, const ExportFigures& figures) {
   fmt::print("{}: {} points\n", arguments.output, figures.points);
   if (figures.uncolored_left_out > 0) {
     fmt::print("left out: {} points that no camera coloured (--uncolored keeps them)\n",
@@ -49,6 +66,49 @@ void run(ExportArguments& arguments) {
   }
 }
 
+void print_times(const LasFigures& figures) {
+  if (!figures.dated) {
+    fmt::print("the drive's stamps have no date: LAS has them in seconds, as GPS week time\n");
+  }
+  if (figures.points_without_time > 0) {
+    fmt::print("{} points are of frames without a stamp and have time 0\n",
+               figures.points_without_time);
+  }
+}
+
+void run(ExportArguments& arguments, const CLI::App& command) {
+  const std::string format = format_of(arguments);
+  check_options(command, format);
+  const MapReader map(arguments.map);
+  if (format == "kitti-poses") {
+    write_kitti_poses(map.frames(), arguments.output, arguments.force);
+    return;
+  }
+  if (!arguments.where.empty()) arguments.points.where = PointFilter::parse(arguments.where);
+  arguments.points.crs = *crs_of(arguments.crs);
+  const auto report = [&](const ExportFigures& figures) {
+    if (!arguments.quiet) print_figures(arguments, figures);
+  };
+  if (format == "las") {
+    const LasFigures figures =
+        write_las(map, arguments.output,
+                  {arguments.points, from_seconds(3600 * arguments.utc_offset), arguments.force});
+    report(figures);
+    if (!arguments.quiet) print_times(figures);
+    return;
+  }
+  if (format == "3dtiles") {
+    const TilesetFigures figures = write_tileset(
+        map, arguments.output, {.points = arguments.points, .force = arguments.force});
+    report(figures);
+    if (!arguments.quiet) fmt::print("{} tiles\n", figures.tiles);
+    return;
+  }
+  const auto write = format == "pcd" ? write_pcd : write_ply;
+  report(write(map, arguments.output,
+               {arguments.points, arguments.double_positions, arguments.force}));
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& app) {
@@ -56,22 +116,36 @@ void add_export_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("export", "Write a map in a form that other programs read");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
-  command->add_option("OUT", arguments->output, "File to write")->required();
+  command->add_option("OUT", arguments->output, "File to write, or folder of 3dtiles")->required();
   command
       ->add_option("--format", arguments->format,
-                   "ply (points) or kitti-poses (T_local_lidar a line); default: by OUT's ending")
-      ->check(CLI::IsMember({"ply", "kitti-poses"}));
-  command->add_flag("--double", arguments->ply.double_positions, "PLY positions as double");
-  command->add_flag("--uncolored", arguments->ply.include_uncolored,
-                    "PLY: also points that no camera coloured, in grey with camera -1");
+                   "ply, pcd, las or 3dtiles (points; the last a folder), or kitti-poses "
+                   "(T_local_lidar a line); default: by OUT's "
+                   "ending")
+      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "kitti-poses"}));
+  command
+      ->add_option("--crs", arguments->crs,
+                   "Coordinates: local (the map's), utm (the origin's zone on WGS 84, ellipsoidal "
+                   "heights) or ecef (EPSG 4978); default: local")
+      ->check(CLI::IsMember({"local", "utm", "ecef"}));
+  command->add_flag("--double", arguments->double_positions,
+                    "PLY, PCD: positions as double, as they are in utm and ecef anyway");
+  command
+      ->add_option(
+          "--utc-offset", arguments->utc_offset,
+          "LAS: hours that the drive's clock is ahead of UTC, for GPS times; KITTI's names "
+          "no zone; default: 2, Karlsruhe's summer time")
+      ->check(CLI::Range(-24.0, 24.0));
+  command->add_flag("--uncolored", arguments->points.include_uncolored,
+                    "Also points that no camera coloured, in grey with camera -1");
   command->add_option(
       "--where", arguments->where,
-      "PLY: only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "
+      "Only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "
       "views, spread, range, incidence (degrees), frame, camera, rule (measured, short-edges, "
       "planar, centroid), matched (exposure, 0 or 1), interpolated, intensity");
-  command->add_flag("--force", arguments->ply.force, "Overwrite OUT");
+  command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, command] { run(*arguments, *command); });
 }
 
 }  // namespace fovea::app

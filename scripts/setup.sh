@@ -1,44 +1,91 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of scripts/packages.txt that are missing. Source or run it:
-#   scripts/setup.sh [--no-install]
+# Installs the Debian packages of scripts/packages.txt that are missing, and with --tests also the readers
+# of tests/web (npm, exact versions, into tests/web/node_modules):
+#   scripts/setup.sh [--tests] [--no-install]
 # --no-install only says what is missing, and fails if anything is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+web=$here/../tests/web
 
-mapfile -t wanted < <(sed -e 's/#.*//' "$here/packages.txt" | awk 'NF {print $1}')
-missing=()
-for package in "${wanted[@]}"; do
-  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [[ $status == installed ]] || missing+=("$package")
+tests=false
+may_install=true
+for argument in "$@"; do
+  case $argument in
+    --tests) tests=true ;;
+    --no-install) may_install=false ;;
+    *)
+      echo "setup: unknown option $argument" >&2
+      exit 2
+      ;;
+  esac
 done
-[[ ${#missing[@]} -eq 0 ]] && exit 0
 
-if [[ ${1:-} == --no-install ]]; then
-  echo "setup: missing packages: ${missing[*]}" >&2
-  echo "setup: install them with: apt-get install ${missing[*]}" >&2
-  exit 1
-fi
-if [[ $(id -u) -eq 0 ]]; then
-  as_root=()
-elif command -v sudo >/dev/null; then
-  as_root=(sudo)
-else
-  echo "setup: missing packages: ${missing[*]}; run as root, or install sudo" >&2
-  exit 1
-fi
-echo "setup: installing ${missing[*]}"
-log=$(mktemp)
-install() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y --no-install-recommends "${missing[@]}" >"$log" 2>&1
+# Some packages are provided by others: npm by other builds of nodejs.
+missing_packages() {
+  local provided package
+  provided=$(dpkg-query -W -f='${db:Status-Status} ${Package}, ${Provides}\n' |
+    sed -n 's/^installed //p' | tr ',' '\n' | awk 'NF {print $1}')
+  sed -e 's/#.*//' "$here/packages.txt" | awk 'NF {print $1}' | while read -r package; do
+    grep -qxF "$package" <<<"$provided" || echo "$package"
+  done
 }
-# A new machine may have no package lists, an old one stale ones.
-if ! install; then
-  "${as_root[@]}" apt-get update >>"$log" 2>&1 || true
-  if ! install; then
+
+install_packages() { # PACKAGE...
+  local as_root=() log
+  if [[ $(id -u) -ne 0 ]]; then
+    if ! command -v sudo >/dev/null; then
+      echo "setup: missing packages: $*; run as root, or install sudo" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  echo "setup: installing $*"
+  log=$(mktemp)
+  apt_install() {
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y --no-install-recommends "$@" >"$log" 2>&1
+  }
+  # A new machine may have no package lists, an old one stale ones.
+  if ! apt_install "$@"; then
+    "${as_root[@]}" apt-get update >>"$log" 2>&1 || true
+    if ! apt_install "$@"; then
+      tail -n 20 "$log" >&2
+      echo "setup: apt-get could not install them, see above" >&2
+      return 1
+    fi
+  fi
+  rm -f "$log"
+}
+
+# What is installed is what the lock file says.
+readers_installed() { cmp -s "$web/package-lock.json" "$web/node_modules/.installed-lock.json"; }
+
+install_readers() {
+  local log
+  echo "setup: installing the readers of tests/web"
+  log=$(mktemp)
+  if ! npm ci --prefix "$web" --no-audit --no-fund --ignore-scripts >"$log" 2>&1; then
     tail -n 20 "$log" >&2
-    echo "setup: apt-get could not install them, see above" >&2
+    echo "setup: npm could not install them, see above" >&2
+    return 1
+  fi
+  cp "$web/package-lock.json" "$web/node_modules/.installed-lock.json"
+  rm -f "$log"
+}
+
+mapfile -t missing < <(missing_packages)
+if [[ ${#missing[@]} -gt 0 ]]; then
+  if ! $may_install; then
+    echo "setup: missing packages: ${missing[*]}" >&2
+    echo "setup: install them with: apt-get install ${missing[*]}" >&2
     exit 1
   fi
+  install_packages "${missing[@]}"
 fi
-rm -f "$log"
+if $tests && ! readers_installed; then
+  if ! $may_install; then
+    echo "setup: the readers of tests/web are missing; install them with: scripts/setup.sh --tests" >&2
+    exit 1
+  fi
+  install_readers
+fi

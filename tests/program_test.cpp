@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fovea/map/map_store.h"
 #include "tests/kitti_writer.h"
 
 namespace fovea {
@@ -113,6 +114,42 @@ TEST_F(Program, MapsInfoExportEvaluate) {
   // A cloud knows no sweep velocities: they come from its poses, and differ a little.
   EXPECT_NEAR(cloud_score.at("me_mean"), score.at("me_mean"), 5e-4);
   EXPECT_NEAR(cloud_score.at("te_mean"), score.at("te_mean"), 0.1);
+}
+
+TEST_F(Program, ExportsScoreTheSameInEveryFormat) {
+  ASSERT_EQ(map(drive_, "--hold-out 4:2").exit_code, 0);
+  const auto scores = own_ / "scores.json", poses = own_ / "poses.txt";
+  const auto exported = [&](const std::filesystem::path& to, const std::string& more) {
+    return run_fovea(fmt::format("export '{}' '{}' {}", output().string(), to.string(), more));
+  };
+  ASSERT_EQ(exported(poses, "--format kitti-poses").exit_code, 0);
+  const auto score = [&](const std::string& name, const std::string& more) {
+    const ProgramRun made = exported(own_ / name, more);
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_THAT(made.out, HasSubstr(" points\n"));
+    const ProgramRun run = run_fovea(
+        fmt::format("evaluate {} '{}' --protocol held-out --hold-out 4:2 --cameras 2 --poses {} "
+                    "--json {}",
+                    (own_ / name).string(), drive_.string(), poses.string(), scores.string()));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(read_text(scores));
+  };
+  const auto ply = score("map.ply", "--double");
+  for (const auto& other : {score("float.ply", ""), score("map.pcd", ""),
+                            score("double.pcd", "--double"), score("map.las", "")}) {
+    EXPECT_EQ(other.at("map_points"), ply.at("map_points"));
+    EXPECT_NEAR(other.at("me_mean"), ply.at("me_mean"), 2e-4);
+    EXPECT_NEAR(other.at("te_mean"), ply.at("te_mean"), 0.05);
+  }
+  const ProgramRun tiles = exported(own_ / "tiles", "--format 3dtiles");
+  ASSERT_EQ(tiles.exit_code, 0) << tiles.err;
+  EXPECT_THAT(tiles.out, HasSubstr(" tiles\n"));
+  EXPECT_TRUE(std::filesystem::exists(own_ / "tiles/tileset.json"));
+  // A folder of other things is not replaced.
+  const ProgramRun other = exported(own_.path(), "--format 3dtiles --force");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("something else"));
+  EXPECT_TRUE(std::filesystem::exists(output()));
 }
 
 // A map of whole scans: what no camera saw is in the map, and in no score and no export unasked.
@@ -225,12 +262,29 @@ TEST_F(Program, ResumeRefusesOtherSettings) {
 }
 
 TEST_F(Program, WrongUsageIsExitCode2) {
-  for (const char* arguments :
-       {"", "nonsense", "map", "map x", "map x -o y --frames five", "map x -o y --variant E12",
-        "map x -o y --preset nonsense", "map x -o y --cameras two", "map x -o y --hold-out eight",
-        "map x -o y --threads -1", "map x -o y --rate 0", "info", "info a --json --digest",
-        "evaluate a b --protocol nonsense", "evaluate a b --protocol in-sample --color-rules",
-        "evaluate a b --truth --color-rules", "export a", "map x -o y --nonsense"}) {
+  for (const char* arguments : {"",
+                                "nonsense",
+                                "map",
+                                "map x",
+                                "map x -o y --frames five",
+                                "map x -o y --variant E12",
+                                "map x -o y --preset nonsense",
+                                "map x -o y --cameras two",
+                                "map x -o y --hold-out eight",
+                                "map x -o y --threads -1",
+                                "map x -o y --rate 0",
+                                "info",
+                                "info a --json --digest",
+                                "evaluate a b --protocol nonsense",
+                                "evaluate a b --protocol in-sample --color-rules",
+                                "evaluate a b --truth --color-rules",
+                                "export a",
+                                "export a b",
+                                "export a b.ply --crs wgs84",
+                                "export a b --format 3dtiles --crs utm",
+                                "export a b.las --double",
+                                "export a b.las --utc-offset soon",
+                                "map x -o y --nonsense"}) {
     const ProgramRun run = run_fovea(arguments);
     EXPECT_EQ(run.exit_code, 2) << arguments << "\n" << run.err;
     EXPECT_THAT(run.err, testing::StartsWith("fovea: error: ")) << arguments;
@@ -338,9 +392,68 @@ TEST_F(Program, BadOutputs) {
 
 TEST_F(Program, FullDiskLeavesNothingBehind) {
   // A file-size limit stands in for the disk; SIGXFSZ ignored, writes fail with EFBIG.
-  const ProgramRun run = run_fovea("map '" + drive_.string() + "' -o '" + output().string() + "'",
-                                   "trap '' XFSZ; ulimit -f 64;");
-  expect_failure(run, "out.fovea");
+  const auto run = [&](const std::string& more) {
+    return run_fovea("map '" + drive_.string() + "' -o '" + output().string() + "' " + more,
+                     "trap '' XFSZ; ulimit -f 64;");
+  };
+  expect_failure(run("--set fusion.loop_closure=false"), "out.fovea");
+  expect_failure(run(""), "folder for temporary files");  // scans for closures come first
+}
+
+TEST_F(Program, ADamagedMapIsToldOfAndTheRestSaved) {
+  ASSERT_EQ(map(drive_).exit_code, 0);
+  const std::string name = fmt::format("'{}'", output().string());
+  const ProgramRun whole = run_fovea("info --check " + name);
+  EXPECT_EQ(whole.exit_code, 0);
+  EXPECT_THAT(whole.out, HasSubstr("whole"));
+  std::string bytes = read_text(output());
+  for (std::size_t i = bytes.size() / 3; i < bytes.size() / 2; i += 997) bytes[i] ^= 0x20;
+  write_text(output(), bytes);
+  const ProgramRun check = run_fovea("info --check " + name);
+  EXPECT_EQ(check.exit_code, 1);
+  EXPECT_THAT(check.out, HasSubstr("tile "));
+  EXPECT_THAT(check.err, HasSubstr("fovea repair"));
+
+  const auto saved = own_ / "saved.fovea";
+  const ProgramRun repair = run_fovea(fmt::format("repair {} -o '{}'", name, saved.string()));
+  EXPECT_EQ(repair.exit_code, 0) << repair.err;
+  EXPECT_THAT(repair.out, HasSubstr("left out: "));
+  EXPECT_EQ(run_fovea(fmt::format("info --check '{}'", saved.string())).exit_code, 0);
+  EXPECT_GT(MapReader(saved).size(), 1000u);
+  // A part cannot be resumed.
+  const ProgramRun resume =
+      run_fovea(fmt::format("map '{}' -o '{}' --resume", drive_.string(), saved.string()));
+  EXPECT_EQ(resume.exit_code, 1);
+  EXPECT_THAT(resume.err, HasSubstr("part of another"));
+}
+
+TEST_F(Program, CropAndRecolor) {
+  ASSERT_EQ(map(drive_).exit_code, 0);
+  const std::string name = fmt::format("'{}'", output().string());
+  const auto part = own_ / "part.fovea", again = own_ / "again.fovea";
+  const auto crop_with = [&](const std::string& more) {
+    return run_fovea(fmt::format("crop {} -o '{}' {}", name, part.string(), more));
+  };
+  const float middle = MapReader(output()).all_points_local().position[0].x();
+  const std::string half = fmt::format("--box=-999,-999,-99,{},999,99", middle);
+  const ProgramRun crop = crop_with(half);
+  ASSERT_EQ(crop.exit_code, 0) << crop.err;
+  EXPECT_LT(MapReader(part).size(), MapReader(output()).size());
+  EXPECT_EQ(crop_with(half).exit_code, 1);
+  EXPECT_EQ(crop_with("--force").exit_code, 2);
+  EXPECT_EQ(crop_with("--force --box 1,2").exit_code, 1);
+  EXPECT_GT(MapReader(part).size(), 0u);  // none of these has touched it
+
+  const auto recolor = [&](const std::filesystem::path& to, const char* more) {
+    return run_fovea(fmt::format("recolor '{}' '{}' -o '{}' {}", part.string(), drive_.string(),
+                                 to.string(), more));
+  };
+  const ProgramRun run = recolor(again, "--set foveal.far_range=12");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(MapReader(again).size(), MapReader(part).size());
+  EXPECT_THAT(MapReader(again).meta().at("config"), HasSubstr("far_range = 12"));
+  EXPECT_EQ(recolor(part, "--force").exit_code, 1);  // into itself
+  EXPECT_EQ(recolor(again, "--force --set map.tile_size=8").exit_code, 1);
 }
 
 TEST_F(Program, BadConfiguration) {

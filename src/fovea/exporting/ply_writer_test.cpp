@@ -73,34 +73,21 @@ struct Ply {
   std::map<std::string, std::vector<double>> columns;
 };
 
-/// Points of the sample map in the order of the file, with their positions in the local frame.
-void for_each_sample_point(
-    const std::function<void(const Eigen::Vector3d&, const PointCloud&, std::size_t)>& f) {
-  const TileMap map = sample_tile_map();
-  for (const Submap& submap : map.submaps()) {
-    for (const auto& [key, tile] : submap.tiles) {
-      for (std::size_t i = 0; i < tile.size(); ++i) {
-        f(submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()), tile, i);
-      }
-    }
-  }
-}
-
 class PlyWriter : public testing::Test {
  protected:
   void SetUp() override { write_sample_map(folder_ / "a.fovea"); }
-  PlyFigures write(const PlyOptions& options = {}) {
+  ExportFigures write(const PointFileOptions& options = {}) {
     return write_ply(MapReader(folder_ / "a.fovea"), folder_ / "a.ply", options);
   }
   TemporaryFolder folder_;
 };
 
 TEST_F(PlyWriter, OnlyPointsThatMeetTheConditions) {
-  const PlyFigures all = write();
-  PlyOptions options;
-  options.where = PointFilter::parse("views >= 100 and range < 9");
+  const ExportFigures all = write();
+  PointFileOptions options;
+  options.points.where = PointFilter::parse("views >= 100 and range < 9");
   options.force = true;
-  const PlyFigures some = write(options);
+  const ExportFigures some = write(options);
   std::size_t expected = 0;
   for_each_sample_point([&](const Eigen::Vector3d&, const PointCloud& tile, std::size_t i) {
     expected += tile.camera[i] != kNoCamera && tile.views[i] >= 100 && tile.range[i] < 9;
@@ -115,7 +102,7 @@ TEST_F(PlyWriter, OnlyPointsThatMeetTheConditions) {
 }
 
 TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
-  const PlyFigures figures = write();
+  const ExportFigures figures = write();
   const Ply ply(folder_ / "a.ply");
   const std::vector<std::pair<std::string, std::string>> expected_properties = {
       {"x", "float"},     {"y", "float"},
@@ -158,7 +145,8 @@ TEST_F(PlyWriter, ColouredPointsWithAllProperties) {
 }
 
 TEST_F(PlyWriter, DoublePositionsAndUncolouredPoints) {
-  const PlyFigures figures = write({.double_positions = true, .include_uncolored = true});
+  const ExportFigures figures =
+      write({.points = {.include_uncolored = true}, .double_positions = true});
   const Ply ply(folder_ / "a.ply");
   EXPECT_EQ(figures.points, sample_tile_map().size());
   EXPECT_EQ(figures.uncolored_left_out, 0u);
@@ -177,15 +165,39 @@ TEST_F(PlyWriter, DoublePositionsAndUncolouredPoints) {
   });
 }
 
+TEST_F(PlyWriter, CoordinatesOfTheEarthAreDoubles) {
+  PointFileOptions options;
+  for (const Crs crs : {Crs::kUtm, Crs::kEcef}) {
+    options.points.crs = crs;
+    write(options);
+    options.force = true;
+    const Ply ply(folder_ / "a.ply");
+    EXPECT_EQ(ply.properties[0].second, "double");
+    const Georeference expected(crs, map_origin(MapReader(folder_ / "a.fovea").meta()), "a.fovea");
+    EXPECT_THAT(ply.comments, Contains(expected.description()));
+    EXPECT_THAT(ply.comments, Contains("crs " + expected.wkt2()));
+    std::size_t row = 0;
+    for_each_sample_point(
+        [&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
+          if (tile.camera[i] == kNoCamera) return;
+          const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
+          const Eigen::Vector3d p(at("x"), at("y"), at("z"));
+          EXPECT_LT((p - expected.from_local(p_local)).norm(), 1e-8);
+          ++row;
+        });
+    EXPECT_EQ(row, ply.count);
+  }
+}
+
 TEST_F(PlyWriter, UncolouredPointsAreLeftOutByTheirCamera) {
-  PlyOptions options;
-  options.include_uncolored = true;
-  options.where = PointFilter::parse("camera>=0");
-  const PlyFigures coloured = write(options);
+  PointFileOptions options;
+  options.points.include_uncolored = true;
+  options.points.where = PointFilter::parse("camera>=0");
+  const ExportFigures coloured = write(options);
   EXPECT_EQ(coloured.points, MapReader(folder_ / "a.fovea").colored_size());
   const Ply ply(folder_ / "a.ply");
   for (const double camera : ply.columns.at("camera")) EXPECT_GE(camera, 0);
-  options.where = PointFilter::parse("camera == -1");
+  options.points.where = PointFilter::parse("camera == -1");
   options.force = true;
   EXPECT_EQ(write(options).points + coloured.points, sample_tile_map().size());
 }
@@ -207,7 +219,7 @@ TEST_F(PlyWriter, LeavesNothingWhenTheDiskIsFull) {
 
 TEST_F(PlyWriter, AnEmptyMapGivesAnEmptyCloud) {
   MapWriter::create(folder_ / "b.fovea", false)->commit();
-  const PlyFigures figures = write_ply(MapReader(folder_ / "b.fovea"), folder_ / "b.ply");
+  const ExportFigures figures = write_ply(MapReader(folder_ / "b.fovea"), folder_ / "b.ply");
   EXPECT_EQ(figures.points, 0u);
   const Ply ply(folder_ / "b.ply");
   EXPECT_EQ(ply.count, 0u);

@@ -1,0 +1,51 @@
+#include "fovea/exporting/pcd_writer.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "fovea/base/output_file.h"
+#include "fovea/base/version.h"
+#include "fovea/exporting/point_packing.h"
+
+namespace fovea {
+namespace {
+
+std::string header(const PointStream& points, const PointFileOptions& options) {
+  std::string text =
+      fmt::format("# .PCD v0.7 - Point Cloud Data file format\n# fovea {}\n", version());
+  const Georeference& georeference = points.georeference();
+  if (georeference.origin()) {
+    text += fmt::format("# {}\n# crs {}\n", georeference.description(), georeference.wkt2());
+  }
+  const char real = options.doubles() ? '8' : '4';
+  return text + fmt::format(
+                    "VERSION 0.7\n"
+                    "FIELDS x y z rgb camera frame range interpolated views spread reason\n"
+                    "SIZE {0} {0} {0} 4 1 4 4 1 1 1 1\n"
+                    "TYPE F F F F I I F U U U U\n"
+                    "COUNT 1 1 1 1 1 1 1 1 1 1 1\n"
+                    "WIDTH {1}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA binary\n",
+                    real, points.figures().points);
+}
+
+}  // namespace
+
+ExportFigures write_pcd(const MapReader& map, const std::filesystem::path& path,
+                        const PointFileOptions& options) {
+  OutputFile file(path, options.force);
+  const PointStream points(map, options.points);
+  file.stream() << header(points, options);
+  write_points(points, file.stream(), [&](const ExportPoint& point, BytePacker& packer) {
+    pack_position(point, options.doubles(), packer);
+    packer.put(point.color.b);
+    packer.put(point.color.g);
+    packer.put(point.color.r);
+    packer.put(std::uint8_t{0});
+    pack_provenance(point, packer);
+  });
+  file.commit();
+  return points.figures();
+}
+
+}  // namespace fovea

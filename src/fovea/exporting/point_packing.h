@@ -1,0 +1,42 @@
+// What the formats that store points one behind the other have in common.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "fovea/exporting/byte_packer.h"
+#include "fovea/exporting/point_stream.h"
+
+namespace fovea {
+
+/// x y z as double or float.
+inline void pack_position(const ExportPoint& point, bool doubles, BytePacker& packer) {
+  for (const double coordinate : point.position) {
+    doubles ? packer.put(coordinate) : packer.put(static_cast<float>(coordinate));
+  }
+}
+
+/// camera (int8), frame (int32), range (float), interpolated, views, spread, reason (uint8).
+inline void pack_provenance(const ExportPoint& point, BytePacker& packer) {
+  packer.put(point.camera);
+  packer.put(point.frame);
+  packer.put(point.range);
+  packer.put(point.interpolated);
+  packer.put(point.views);
+  packer.put(point.spread);
+  packer.put(point.reason);
+}
+
+/// Writes all points with `pack(point, packer)`.
+template <class Pack>
+void write_points(const PointStream& points, std::ostream& stream, Pack&& pack) {
+  std::string bytes;
+  points.for_each_block([&](std::span<const ExportPoint> block) {
+    bytes.clear();
+    BytePacker packer(bytes);
+    for (const ExportPoint& point : block) pack(point, packer);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+}  // namespace fovea

@@ -1,0 +1,106 @@
+#include "fovea/exporting/point_stream.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "fovea/base/errors.h"
+#include "fovea/map/number_text.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kBlockPoints = 65536;
+constexpr const char* kRestore = "restore the map from a copy or map the drive again";
+
+/// A number of the map's meta; parsed, for a map from elsewhere can hold any text.
+std::optional<double> number(const MapMeta& meta, const char* key) {
+  const auto found = meta.find(key);
+  if (found == meta.end()) return std::nullopt;
+  const std::optional<std::vector<double>> numbers = numbers_from_text(found->second);
+  if (!numbers || numbers->size() != 1) return std::nullopt;
+  return numbers->front();
+}
+
+}  // namespace
+
+std::optional<GeodeticPoint> map_origin(const MapMeta& meta) {
+  const auto stated = meta.find("georeferenced");
+  if (stated != meta.end() && stated->second == "0") return std::nullopt;
+  const auto latitude = number(meta, "origin.latitude"),
+             longitude = number(meta, "origin.longitude"),
+             altitude = number(meta, "origin.altitude");
+  if (!latitude || !longitude || !altitude) return std::nullopt;
+  return GeodeticPoint{*latitude, *longitude, *altitude};
+}
+
+PointStream::PointStream(const MapReader& map, const PointChoice& choice)
+    : map_(map),
+      choice_(choice),
+      held_state_(map.hold_state()),
+      georeference_(choice.crs, map_origin(map.meta()), "the map's table 'meta'") {
+  const std::size_t total = map_.size();
+  const std::size_t unfiltered = choice_.include_uncolored ? total : map_.colored_size();
+  figures_.points = choice_.where.empty() ? unfiltered : count_chosen();
+  figures_.uncolored_left_out = total - unfiltered;
+  figures_.filtered_out = unfiltered - figures_.points;
+}
+
+bool PointStream::is_chosen(const PointCloud& tile, std::size_t index) const {
+  return (choice_.include_uncolored || tile.camera[index] != kNoCamera) &&
+         choice_.where.matches(tile, index);
+}
+
+std::size_t PointStream::count_chosen() const {
+  std::size_t count = 0;
+  map_.for_each_tile([&](std::size_t, const TileKey&, const PointCloud& tile) {
+    for (std::size_t i = 0; i < tile.size(); ++i) count += is_chosen(tile, i);
+  });
+  return count;
+}
+
+ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
+                               const RigidMotion& T_local_submap) const {
+  ExportPoint point;
+  point.position = georeference_.from_local(T_local_submap *
+                                            (tile.origin + tile.position[index].cast<double>()));
+  if (!point.position.allFinite()) {
+    throw InputError("the position of a point is not finite", "the map's tiles", kRestore);
+  }
+  point.range = tile.range[index];
+  if (!tile.intensity.empty()) point.intensity = tile.intensity[index];
+  point.frame = tile.frame[index];
+  point.camera = tile.camera[index];
+  if (point.camera != kNoCamera) point.color = tile.color[index];
+  point.interpolated = tile.interpolated[index];
+  point.views = tile.views[index];
+  point.spread = tile.spread[index];
+  point.reason = tile.reason[index];
+  return point;
+}
+
+void PointStream::for_each_block(const std::function<void(std::span<const ExportPoint>)>& f) const {
+  const std::vector<RigidMotion> T_local_submap = map_.submaps();
+  std::size_t streamed = 0;
+  std::vector<ExportPoint> block;
+  const auto hand_over = [&] {
+    if (!block.empty()) f(block);
+    streamed += block.size();
+    block.clear();
+  };
+  map_.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      if (!is_chosen(tile, i)) continue;
+      block.push_back(point(tile, i, T_local_submap.at(submap)));
+      if (block.size() == kBlockPoints) hand_over();
+    }
+    hand_over();
+  });
+  if (streamed != figures_.points) {
+    throw InputError(
+        fmt::format("the map holds {} points to export and says {}", streamed, figures_.points),
+        "the map's tiles", "export it again when nothing writes to it, or map the drive again");
+  }
+}
+
+}  // namespace fovea

@@ -1,0 +1,74 @@
+// The chosen points of a map, a block at a time, in the coordinates wanted: what every export of
+// points begins with.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "fovea/geometry/georeference.h"
+#include "fovea/map/map_store.h"
+#include "fovea/map/point_filter.h"
+
+namespace fovea {
+
+/// Colour of points that no camera has coloured, so that no program shows them as black things.
+inline constexpr Rgb kUncolored{128, 128, 128};
+
+struct PointChoice {
+  bool include_uncolored = false;  ///< also points that no camera has coloured: grey, camera -1
+  PointFilter where = {};          ///< only points that pass
+  Crs crs = Crs::kLocal;           ///< coordinates of the positions
+};
+
+struct ExportFigures {
+  std::size_t points = 0;  ///< chosen
+  std::size_t uncolored_left_out = 0;
+  std::size_t filtered_out = 0;  ///< by `where`, of the others
+};
+
+/// A point as it is exported; see PointCloud for what the columns mean.
+struct ExportPoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, in the CRS chosen
+  float range = 0;
+  float intensity = 0;  ///< 0 in a map without
+  std::int32_t frame = 0;
+  Rgb color = kUncolored;
+  std::int8_t camera = kNoCamera;
+  std::uint8_t interpolated = 0, views = 0, spread = 0, reason = 0;
+};
+
+/// Where a map says that its frame `local` begins; nothing if it is not georeferenced.
+std::optional<GeodeticPoint> map_origin(const MapMeta& meta);
+
+/// Counts first and streams then, both of one committed state, however the map grows meanwhile.
+class PointStream {
+ public:
+  /// @param map     outlives the stream
+  /// @param choice  likewise
+  /// InputError if the map is damaged, or has no georeference and `choice.crs` needs one.
+  PointStream(const MapReader& map, const PointChoice& choice);
+
+  const ExportFigures& figures() const { return figures_; }
+  const Georeference& georeference() const { return georeference_; }
+
+  /// Calls f with the chosen points in the map's order, at most 65536 of one tile at a time, whose
+  /// memory is f's until it returns. InputError if the map is damaged, if a position is not finite,
+  /// or if the points are not as many as counted.
+  void for_each_block(const std::function<void(std::span<const ExportPoint>)>& f) const;
+
+ private:
+  bool is_chosen(const PointCloud& tile, std::size_t index) const;
+  ExportPoint point(const PointCloud& tile, std::size_t index,
+                    const RigidMotion& T_local_submap) const;
+  std::size_t count_chosen() const;
+
+  const MapReader& map_;
+  const PointChoice& choice_;
+  std::shared_ptr<const void> held_state_;
+  Georeference georeference_;
+  ExportFigures figures_;
+};
+
+}  // namespace fovea
