@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/map_arguments.h"
 #include "fovea/map/crop.h"
 
 namespace fovea::app {
@@ -19,6 +20,7 @@ struct CropArguments {
 void run(const CropArguments& arguments) {
   const CropRegion region = arguments.box.empty() ? CropRegion::polygon(arguments.polygon)
                                                   : CropRegion::box(arguments.box);
+  require_other_file(arguments.map, arguments.output);
   const MapReader map(arguments.map);
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const CropFigures figures = crop_map(map, region, *writer);

@@ -59,8 +59,4 @@ std::unique_ptr<FrameSource> DriveArguments::open(bool use_navigation) const {
   return open_drive(drive, wanted);
 }
 
-std::string name_of(const std::filesystem::path& path) {
-  return std::filesystem::absolute(path / "").lexically_normal().parent_path().filename().string();
-}
-
 }  // namespace fovea::app

@@ -27,7 +27,4 @@ std::vector<int> parse_cameras(const std::string& text);
 /// HoldOut::parse, whose error on a command line is wrong usage: CLI::ValidationError.
 HoldOut parse_hold_out(const std::string& spec);
 
-/// What people call a file or folder: its own name, also of "." and of "folder/".
-std::string name_of(const std::filesystem::path& path);
-
 }  // namespace fovea::app

@@ -13,6 +13,7 @@
 #include "app/html_report/truth_page.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/path_name.h"
 #include "fovea/evaluation/compare_color_rules.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
@@ -76,6 +77,7 @@ void run(EvaluateArguments arguments) {
   ScoredMapOptions loading;
   if (!arguments.poses.empty()) loading.poses = arguments.poses;
   loading.first_frame = arguments.first_frame;
+  loading.drive = name_of(arguments.drive.drive);
   const ScoredMap map = load_scored_map(arguments.map, loading);
   if (!arguments.drive.cameras.empty()) {
     options.cameras = parse_cameras(arguments.drive.cameras);

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "app/commands.h"
 #include "fovea/base/errors.h"
+#include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::app {
@@ -20,6 +22,7 @@ struct InfoArguments {
 
 struct Contents {
   MapMeta meta;
+  std::vector<MergedDrive> drives;  // of a merged map
   std::size_t points = 0, submaps = 0, tiles = 0;
   int mapped = 0, held_out = 0, skipped = 0;
   double path_length = 0;  // m, along the refined poses
@@ -32,11 +35,16 @@ Contents read_contents(const MapReader& reader) {
   contents.points = reader.size();
   const FrameRecord* before = nullptr;
   const std::vector<FrameRecord> frames = reader.frames();
+  contents.drives = merged_drives(contents.meta);
+  const auto begins_a_drive = [&](const FrameRecord& frame) {
+    return std::any_of(contents.drives.begin(), contents.drives.end(),
+                       [&](const MergedDrive& d) { return d.first_frame == frame.index; });
+  };
   for (const FrameRecord& frame : frames) {
     contents.mapped += frame.status == FrameStatus::kMapped;
     contents.held_out += frame.status == FrameStatus::kHeldOut;
     contents.skipped += frame.status == FrameStatus::kSkipped;
-    if (before != nullptr) {
+    if (before != nullptr && !begins_a_drive(frame)) {
       contents.path_length +=
           (frame.T_local_lidar.translation() - before->T_local_lidar.translation()).norm();
     }
@@ -62,6 +70,10 @@ void print_text(const Contents& c, const std::string& path) {
   fmt::print("  drive      {} ({}), frames {} to {}, cameras {}\n", meta("drive.name"),
              meta("drive.kind"), meta("frames.begin"), std::stoi("0" + meta("frames.end")) - 1,
              meta("cameras"));
+  for (const MergedDrive& d : c.drives) {
+    fmt::print("  merged     {}: frames {} to {}, in the drive {} to {}\n", d.name, d.first_frame,
+               d.end_frame - 1, d.first_frame - d.frame_shift, d.end_frame - 1 - d.frame_shift);
+  }
   fmt::print("  frames     {} mapped, {} held out{}, {} skipped\n", c.mapped, c.held_out,
              meta("hold_out").empty() ? "" : " (" + meta("hold_out") + ")", c.skipped);
   fmt::print("  points     {} in {} tiles of {} submaps\n", c.points, c.tiles, c.submaps);

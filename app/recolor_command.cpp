@@ -2,16 +2,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/map_arguments.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/map/map_meta.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/recolor.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -29,13 +30,7 @@ struct RecolorArguments {
 
 /// The map's own settings, with what is to be different.
 MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta) {
-  const auto stored = meta.find("config");
-  if (stored == meta.end()) {
-    throw InputError("the map does not tell its settings", arguments.map,
-                     "give a map that 'fovea map' wrote");
-  }
-  MapperOptions options;
-  apply_config_text(stored->second, arguments.map, options);
+  MapperOptions options = stored_options(meta, arguments.map);
   const double tile_size = options.tile_size;
   if (!arguments.config.empty()) apply_config_file(arguments.config, options);
   for (const std::string& setting : arguments.settings) apply_setting(setting, options);
@@ -54,10 +49,10 @@ void run(RecolorArguments arguments) {
   job.output = arguments.output;
   job.options = options_of(arguments, meta);
   job.force = arguments.force;
-  std::error_code ignored;
-  if (std::filesystem::equivalent(arguments.map, arguments.output, ignored)) {
-    throw OutputError("a map cannot be recoloured into itself", arguments.output,
-                      "give another name");
+  require_other_file(arguments.map, arguments.output);
+  if (!merged_drives(meta).empty()) {
+    throw InputError("the map is of several drives", arguments.map,
+                     "recolour the maps of each, then merge them");
   }
   if (arguments.drive.cameras.empty() && meta.contains("cameras")) {
     arguments.drive.cameras = meta.at("cameras");

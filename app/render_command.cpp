@@ -12,6 +12,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/base/path_name.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -91,7 +92,9 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map, const Fr
 
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
-  const ScoredMap map = load_scored_map(arguments.map, {});
+  ScoredMapOptions loading;
+  if (!arguments.drive.empty()) loading.drive = name_of(arguments.drive);
+  const ScoredMap map = load_scored_map(arguments.map, loading);
   const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
   const std::vector<std::uint8_t> png =
       encode_png(arguments.drive.empty() ? from_view(arguments, map, frame)

@@ -16,6 +16,7 @@
 #include "app/reproduce/rows.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/path_name.h"
 
 namespace fovea::app {
 namespace {

@@ -9,6 +9,7 @@
 #include "app/html_report/report_page.h"
 #include "app/reports.h"
 #include "app/reproduce/ablations.h"
+#include "fovea/base/path_name.h"
 #include "fovea/base/version.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
@@ -26,11 +27,14 @@ struct ScoredMapOptions {
   /// T_local_lidar, 12 numbers a line (3x4, row-major); needed for a cloud, and for a cloud only.
   std::optional<std::filesystem::path> poses;
   int first_frame = 0;  ///< frame index of the first line of `poses`
+  /// Of a merged map only this drive's frames, by their numbers in it; points of other drives then
+  /// are of frame -1. Empty: all, by the map's own numbers.
+  std::string drive = {};
 };
 
 /// Loads a Fovea map, or a coloured cloud (PLY, PCD, LAS) with its poses, told apart by the file's
-/// ending. InputError if a file is missing, damaged or of a format that is not read (LAZ);
-/// ConfigError for poses that are missing or not wanted.
+/// ending. InputError if a file is missing, damaged or of a format that is not read (LAZ), or if a
+/// merged map was not made of the drive; ConfigError for poses that are missing or not wanted.
 ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options);
 
 }  // namespace fovea

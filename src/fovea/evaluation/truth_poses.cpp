@@ -1,27 +1,14 @@
 #include "fovea/evaluation/truth_poses.h"
 
-#include <charconv>
 #include <numbers>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/map_meta.h"
 
 namespace fovea {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-std::optional<double> number_of(const MapMeta& meta, const std::string& key) {
-  const auto found = meta.find(key);
-  if (found == meta.end()) return std::nullopt;
-  double value = 0;
-  const char* end = found->second.data() + found->second.size();
-  const auto [rest, error] = std::from_chars(found->second.data(), end, value);
-  if (error != std::errc() || rest != end) {
-    throw InputError("the map's " + key + " is \"" + found->second + "\"", "meta data",
-                     "map the drive again");
-  }
-  return value;
-}
 
 void add_error(const RigidMotion& difference, PoseErrors& errors) {
   errors.position_m.push_back(static_cast<float>(difference.translation().norm()));
@@ -53,11 +40,9 @@ std::vector<PosePair> pose_pairs(const std::vector<FrameRecord>& frames, const D
 }
 
 std::optional<RigidMotion> georeference(const MapMeta& meta, const GeodeticPoint& truth_origin) {
-  const auto latitude = number_of(meta, "origin.latitude");
-  const auto longitude = number_of(meta, "origin.longitude");
-  const auto altitude = number_of(meta, "origin.altitude");
-  if (!latitude || !longitude || !altitude) return std::nullopt;
-  return LocalTangentPlane(truth_origin).T_local_enu({*latitude, *longitude, *altitude});
+  const std::optional<GeodeticPoint> origin = map_origin(meta);
+  if (!origin) return std::nullopt;
+  return LocalTangentPlane(truth_origin).T_local_enu(*origin);
 }
 
 RigidMotion align_trajectories(const std::vector<PosePair>& pairs) {

@@ -102,7 +102,7 @@ TEST(TruthPoses, TheGeoreferenceTakesTheMapToTheTruth) {
   EXPECT_TRUE(T_true_map->translation().isApprox(Eigen::Vector3d(100, 50, 2), 1e-8));
   EXPECT_LT(rotation_angle(T_true_map->linear()), 1e-4);
   EXPECT_FALSE(georeference({}, truth));
-  EXPECT_THROW(georeference({{"origin.latitude", "north"}}, truth), InputError);
+  EXPECT_FALSE(georeference({{"origin.latitude", "north"}}, truth));
 }
 
 TEST(TruthPoses, PairsAreTheFramesThatBothKnow) {

@@ -11,6 +11,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
+#include "fovea/map/map_meta.h"
 
 namespace fovea {
 namespace {

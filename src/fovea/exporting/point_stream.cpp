@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
-#include "fovea/map/number_text.h"
+#include "fovea/map/map_meta.h"
 
 namespace fovea {
 namespace {
@@ -13,26 +13,7 @@ namespace {
 constexpr std::size_t kBlockPoints = 65536;
 constexpr const char* kRestore = "restore the map from a copy or map the drive again";
 
-/// A number of the map's meta; parsed, for a map from elsewhere can hold any text.
-std::optional<double> number(const MapMeta& meta, const char* key) {
-  const auto found = meta.find(key);
-  if (found == meta.end()) return std::nullopt;
-  const std::optional<std::vector<double>> numbers = numbers_from_text(found->second);
-  if (!numbers || numbers->size() != 1) return std::nullopt;
-  return numbers->front();
-}
-
 }  // namespace
-
-std::optional<GeodeticPoint> map_origin(const MapMeta& meta) {
-  const auto stated = meta.find("georeferenced");
-  if (stated != meta.end() && stated->second == "0") return std::nullopt;
-  const auto latitude = number(meta, "origin.latitude"),
-             longitude = number(meta, "origin.longitude"),
-             altitude = number(meta, "origin.altitude");
-  if (!latitude || !longitude || !altitude) return std::nullopt;
-  return GeodeticPoint{*latitude, *longitude, *altitude};
-}
 
 PointStream::PointStream(const MapReader& map, const PointChoice& choice)
     : map_(map),

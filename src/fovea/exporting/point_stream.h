@@ -39,9 +39,6 @@ struct ExportPoint {
   std::uint8_t interpolated = 0, views = 0, spread = 0, reason = 0;
 };
 
-/// Where a map says that its frame `local` begins; nothing if it is not georeferenced.
-std::optional<GeodeticPoint> map_origin(const MapMeta& meta);
-
 /// Counts first and streams then, both of one committed state, however the map grows meanwhile.
 class PointStream {
  public:

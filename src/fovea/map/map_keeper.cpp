@@ -30,6 +30,7 @@ void put(MapWriter& writer, const MapRows& rows, const TileChanges& tiles) {
 
 MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& options)
     : most_points_(options.memory / 2 / kBytesPerPoint),
+      commit_at_end_(options.commit_at_end),
       writer_(std::move(writer)),
       worker_(options.threaded) {}
 
@@ -65,7 +66,7 @@ void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& ce
       writer_->put_tile(tile.id, *tile.points);
       tile.points = {};  // the map need not copy it any more when it changes it
     }
-    writer_->commit();
+    if (!commit_at_end_) writer_->commit();
   });
   map.drop_beyond(center_local, radius + (needs_memory(map) ? kAhead : kBeyond));
   undroppable_ = map.size_in_memory();
@@ -78,6 +79,7 @@ bool MapKeeper::needs_memory(const TileMap& map) const {
 
 void MapKeeper::finish() {
   if (written_.valid()) written_.get();
+  if (commit_at_end_) worker_.post([this] { writer_->commit(); }).get();
 }
 
 }  // namespace fovea

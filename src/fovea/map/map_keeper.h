@@ -27,10 +27,13 @@ struct MapKeeperOptions {
   bool threaded = true;  ///< false: all is done by whoever asks for it
   /// Bytes that the process should keep to: half of them are the tiles'.
   std::size_t memory = std::size_t{1} << 30;
+  /// Nothing is committed before finish(): for a map that is of use only when whole.
+  bool commit_at_end = false;
 };
 
 /// Each checkpoint is one transaction: after a crash the file has the state of the last that was
-/// committed, whole. Whether and when one is made never changes the map that comes out.
+/// committed, whole; unless all is to be committed at the end. Whether and when one is made never
+/// changes the map that comes out.
 class MapKeeper {
  public:
   MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& options);
@@ -52,11 +55,12 @@ class MapKeeper {
   /// Whether the tiles in memory take more than they should and a checkpoint would drop some.
   bool needs_memory(const TileMap& map) const;
 
-  /// Waits until all is written and committed.
+  /// Waits until all checkpoints are written and committed.
   void finish();
 
  private:
-  std::size_t most_points_;            // in memory
+  std::size_t most_points_;  // in memory
+  bool commit_at_end_;
   std::size_t undroppable_ = 0;        // points that stayed there at the last checkpoint
   std::unique_ptr<MapWriter> writer_;  // the worker's, once there is one
   std::future<void> written_;          // of the latest checkpoint

@@ -39,9 +39,10 @@ void expect_stored(const std::filesystem::path& path, const TileMap& map) {
 
 class Keeper : public testing::TestWithParam<bool> {
  protected:
-  std::unique_ptr<MapKeeper> keeper(std::size_t memory = std::size_t{1} << 30) {
+  std::unique_ptr<MapKeeper> keeper(std::size_t memory = std::size_t{1} << 30,
+                                    bool commit_at_end = false) {
     return std::make_unique<MapKeeper>(MapWriter::create(path_, true),
-                                       MapKeeperOptions{GetParam(), memory});
+                                       MapKeeperOptions{GetParam(), memory, commit_at_end});
   }
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_ / "a.fovea";
@@ -142,6 +143,31 @@ TEST_P(Keeper, WhatIsNotFinishedIsNotLost) {
     map.add(points_at(1, random_));  // never told
   }
   EXPECT_EQ(MapReader(path_).size(), 500u);
+  EXPECT_EQ(folder_.names(), std::vector<std::string>{"a.fovea"});
+}
+
+TEST_P(Keeper, AMapThatIsOfUseOnlyWhenWholeAppearsAtTheEnd) {
+  TileMap map;
+  map.add_submap(RigidMotion::Identity());
+  for (const bool finish : {false, true}) {
+    const auto keeper = this->keeper(1, /*commit_at_end=*/true);
+    for (const double x : {0, 100, 0, 100}) {
+      const Eigen::Vector3d center(x, 0, 0);
+      keeper->bring_near(map, center, kNear);
+      map.add_submap(RigidMotion::Identity());
+      map.add(points_at(x, random_));
+      keeper->checkpoint(map, rows_of(map), center, kNear);
+      EXPECT_FALSE(std::filesystem::exists(path_));
+    }
+    EXPECT_EQ(map.size(), 2000u);
+    if (!finish) {
+      map = TileMap();
+      map.add_submap(RigidMotion::Identity());
+      continue;
+    }
+    keeper->finish();
+    EXPECT_EQ(MapReader(path_).size(), map.size());
+  }
   EXPECT_EQ(folder_.names(), std::vector<std::string>{"a.fovea"});
 }
 

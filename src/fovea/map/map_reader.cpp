@@ -156,11 +156,16 @@ struct MapReader::Database {
       return false;
     }
   }
+  TileQuery& tile() {
+    if (!tile_query) tile_query.emplace(*sqlite);
+    return *tile_query;
+  }
   void for_each_tile(const std::function<void(const TileRow&)>& f);
   void for_each_whole_tile(const std::function<void(const TileRow&)>& f);
 
   std::unique_ptr<sqlite::Database> sqlite;
   std::function<void(const std::string&)> on_damage;
+  std::optional<TileQuery> tile_query;  // once it is needed
 };
 
 void MapReader::Database::for_each_tile(const std::function<void(const TileRow&)>& f) {
@@ -266,6 +271,10 @@ std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
                        static_cast<std::size_t>(rows.integer(4)));
   }
   return sizes;
+}
+
+PointCloud MapReader::read_tile(const TileId& id) const {
+  return database_->tile().read(id, database_->sqlite->where());
 }
 
 void MapReader::for_each_tile(

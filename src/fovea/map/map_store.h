@@ -77,6 +77,8 @@ class MapReader {
   std::size_t colored_size() const;          ///< number of those that a camera has coloured
   /// The tiles that there are, in the order of submap and key, and how many points each has.
   std::vector<std::pair<TileId, std::size_t>> tile_sizes() const;
+  /// InputError if the tile is not there or damaged.
+  PointCloud read_tile(const TileId& id) const;
   /// Calls f(submap, key, tile) in the order of submap and key; positions as in Submap::tiles.
   void for_each_tile(
       const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const;

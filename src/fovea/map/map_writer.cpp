@@ -59,9 +59,9 @@ struct Puts {
              "?20,?21,?22)"),
         pose(database, "UPDATE frames SET pose = ?2 WHERE idx = ?1"),
         no_tile(database, fmt::format("DELETE FROM tiles WHERE {}", kThisTile)),
-        read_tile(database, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile)) {
-  }
-  Statement meta, frame, submap, tile, pose, no_tile, read_tile;
+        read_tile(database) {}
+  Statement meta, frame, submap, tile, pose, no_tile;
+  TileQuery read_tile;
 };
 
 void require_finite(bool finite, const std::string& what) {
@@ -148,7 +148,6 @@ class SqliteMapWriter : public MapWriter {
   bool published_ = false;
   bool failed_ = false;
   TileEncoder encoder_;
-  TileDecoder decoder_;
   std::unique_ptr<Database> database_;
   std::unique_ptr<Puts> puts_;
 };
@@ -275,14 +274,6 @@ void SqliteMapWriter::put_pose(int frame, const RigidMotion& T_local_lidar) {
   });
 }
 
-void bind_tile(Statement& statement, const TileId& id) {
-  int parameter = 0;
-  for (const std::int64_t number : {static_cast<std::int64_t>(id.submap), std::int64_t{id.key.x},
-                                    std::int64_t{id.key.y}, std::int64_t{id.key.z}}) {
-    statement.bind(++parameter, number);
-  }
-}
-
 void SqliteMapWriter::remove_tile(const TileId& id) {
   write([&] {
     bind_tile(puts_->no_tile, id);
@@ -292,17 +283,7 @@ void SqliteMapWriter::remove_tile(const TileId& id) {
 
 PointCloud SqliteMapWriter::read_tile(const TileId& id) {
   PointCloud tile;
-  write([&] {
-    Statement& read = puts_->read_tile;
-    bind_tile(read, id);
-    if (!read.step()) {
-      throw InputError(fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y,
-                                   id.key.z, id.submap),
-                       path_.string(), "map the drive again");
-    }
-    tile = decoder_.decode(tile_row(read, path_.string()), path_.string());
-    read.run();
-  });
+  write([&] { tile = puts_->read_tile.read(id, path_.string()); });
   return tile;
 }
 

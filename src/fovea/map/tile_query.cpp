@@ -32,4 +32,27 @@ TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path
   return row;
 }
 
+void bind_tile(sqlite::Statement& statement, const TileId& id) {
+  int parameter = 0;
+  for (const std::int64_t number : {static_cast<std::int64_t>(id.submap), std::int64_t{id.key.x},
+                                    std::int64_t{id.key.y}, std::int64_t{id.key.z}}) {
+    statement.bind(++parameter, number);
+  }
+}
+
+TileQuery::TileQuery(sqlite::Database& database)
+    : row_(database, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile)) {}
+
+PointCloud TileQuery::read(const TileId& id, const std::string& map_path) {
+  bind_tile(row_, id);
+  if (!row_.step()) {
+    throw InputError(fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y,
+                                 id.key.z, id.submap),
+                     map_path, "map the drive again");
+  }
+  PointCloud tile = decoder_.decode(tile_row(row_, map_path), map_path);
+  row_.run();
+  return tile;
+}
+
 }  // namespace fovea

@@ -23,4 +23,19 @@ TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path
 /// The key in three columns from `column` on; InputError as above.
 TileKey tile_key(const sqlite::Statement& statement, int column, const std::string& map_path);
 
+/// Binds the parameters of kThisTile.
+void bind_tile(sqlite::Statement& statement, const TileId& id);
+
+/// Reads one tile at a time.
+class TileQuery {
+ public:
+  explicit TileQuery(sqlite::Database& database);
+  /// InputError that names tile and `map_path` if it is not there or damaged.
+  PointCloud read(const TileId& id, const std::string& map_path);
+
+ private:
+  sqlite::Statement row_;
+  TileDecoder decoder_;
+};
+
 }  // namespace fovea

@@ -49,4 +49,25 @@ void fuse(FusedColors& points, const SeenColors& seen, std::size_t count) {
   }
 }
 
+FusedColor fused(const FusedColor& a, const FusedColor& b) {
+  if (a.views == 0 || b.views == 0) return a.views == 0 ? b : a;
+  const auto weight_a = static_cast<float>(a.weight), weight_b = static_cast<float>(b.weight);
+  const float total = std::max(weight_a + weight_b, 1.0f), share_b = weight_b / total;
+  float square = 0;
+  const auto mean = [&](std::uint8_t of_a, std::uint8_t of_b) {
+    const auto from = static_cast<float>(of_a), difference = static_cast<float>(of_b) - from;
+    square += difference * difference;
+    return rounded(from + share_b * difference, 0.5f);
+  };
+  FusedColor both;
+  both.color = {mean(a.color.r, b.color.r), mean(a.color.g, b.color.g), mean(a.color.b, b.color.b)};
+  const auto spread_a = static_cast<float>(a.spread), spread_b = static_cast<float>(b.spread);
+  const float variance = (1 - share_b) * spread_a * spread_a + share_b * spread_b * spread_b +
+                         share_b * (1 - share_b) * square / 3;
+  both.spread = rounded(std::sqrt(variance), 0.5f);
+  both.views = static_cast<std::uint8_t>(std::min(int{a.views} + int{b.views}, 255));
+  both.weight = static_cast<std::uint16_t>(std::min(int{a.weight} + int{b.weight}, 65535));
+  return both;
+}
+
 }  // namespace fovea

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "fovea/base/color_block.h"
+#include "fovea/base/image.h"
 
 namespace fovea {
 
@@ -37,5 +38,16 @@ struct SeenColors {
 /// Takes in one more view of the first `count` points: weighted running mean and deviation (West
 /// 1979). The first view of a point is its colour, rounded to the nearest.
 void fuse(FusedColors& points, const SeenColors& seen, std::size_t count);
+
+/// What is known of one point's colour; see FusedColors.
+struct FusedColor {
+  Rgb color;
+  std::uint8_t views = 0, spread = 0;
+  std::uint16_t weight = 0;
+};
+
+/// What two accounts of one point's colour say together, as if all their views had been fused
+/// (Chan, Golub and LeVeque 1979).
+FusedColor fused(const FusedColor& a, const FusedColor& b);
 
 }  // namespace fovea

@@ -16,12 +16,6 @@ struct SeenView {
   std::uint16_t weight;
 };
 
-struct FusedColor {
-  Rgb color;
-  std::uint8_t views = 0, spread = 0;
-  std::uint16_t weight = 0;
-};
-
 void put(FusedColors& points, std::size_t i, const FusedColor& point) {
   points.red[i] = point.color.r;
   points.green[i] = point.color.g;
@@ -139,6 +133,24 @@ TEST(ColorFusion, TwoViewsGiveTheWeightedMeanAndDeviation) {
   // Channels deviate by 17.32, 0 and 17.32: 14.14 together, rounded down without noise, ...
   EXPECT_EQ(fused.spread, 14);
   EXPECT_EQ(fuse(first, {140, 50, 160}, 30, ~std::uint64_t{0}).spread, 15);  // ... or up
+}
+
+TEST(ColorFusion, TwoAccountsOfAColourAreOneOfAllTheirViews) {
+  // Weight 40: mean 130 50 170, mean square deviation (300 + 0 + 300) / 3; weight 60: 180 100 90.
+  const FusedColor a{{130, 50, 170}, 2, 14, 40}, b{{180, 100, 90}, 3, 5, 60};
+  const FusedColor both = fused(a, b);
+  EXPECT_EQ(both.color, (Rgb{160, 80, 122}));
+  EXPECT_EQ(both.views, 5);
+  EXPECT_EQ(both.weight, 100);
+  const double square = (2 * 50.0 * 50 + 80.0 * 80) / 3;
+  EXPECT_NEAR(both.spread, std::sqrt(0.4 * 14 * 14 + 0.6 * 5 * 5 + 0.24 * square), 0.5);
+  const FusedColor unseen;
+  EXPECT_EQ(fused(a, unseen).color, a.color);
+  EXPECT_EQ(fused(unseen, a).weight, a.weight);
+  const FusedColor many{{1, 2, 3}, 250, 0, 65000};
+  EXPECT_EQ(fused(many, many).views, 255);
+  EXPECT_EQ(fused(many, many).weight, 65535);
+  EXPECT_EQ(fused(many, many).color, many.color);
 }
 
 TEST(ColorFusion, RoundsUpWithTheProbabilityOfTheFraction) {

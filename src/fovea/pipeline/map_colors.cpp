@@ -7,6 +7,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/color_fusion.h"
+#include "fovea/mapping/exposure.h"
 #include "fovea/mapping/projected_block.h"
 #include "fovea/pipeline/foveal_query.h"
 
@@ -36,24 +37,12 @@ void put(const TileColors& colors, std::size_t i, const FusedColors& fused, std:
   colors.weight[i] = fused.weight[j];
 }
 
-/// Of the exposure: every how many points in view are asked, how many must tell at least, and which
-/// grey values do (darker ones are noise, brighter ones saturated).
-constexpr std::size_t kExposureStep = 32, kMinExposurePoints = 150;
-constexpr float kDark = 12, kBright = 240;
+/// Every how many points in view are asked for the exposure.
+constexpr std::size_t kExposureStep = 32;
 /// Logarithm of the gain that is off, and the share of it that is undone.
 constexpr float kOffGain = 0.34f, kUndone = 0.9f;
 
 static_assert(kGrain / kExposureStep <= kBlock);
-
-bool tells_exposure(const Eigen::Array3f& color) {
-  return color.minCoeff() > kDark && color.maxCoeff() < kBright;
-}
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Whether a ball in the camera's frame may reach into its view.
 bool may_be_in_view(const Camera& camera, const Eigen::Vector3d& center, double radius) {
@@ -219,7 +208,7 @@ std::vector<Eigen::Array3f> SeenMap::gains_at(const Piece& piece,
   std::vector<Eigen::Array3f> gains;
   for (std::size_t j = 0; j < n; ++j) {
     const Eigen::Array3f color(here.red[j], here.green[j], here.blue[j]);
-    if (tells_exposure(known[j]) && tells_exposure(color)) gains.push_back(known[j] / color);
+    if (const auto gain = gain_between(known[j], color)) gains.push_back(*gain);
   }
   return gains;
 }
@@ -229,15 +218,9 @@ Eigen::Array3f SeenMap::gain_to_map(const ColorView& view) const {
   std::vector<std::vector<Eigen::Array3f>> of_piece(pieces_.size());
   parallel_for(pieces_.size(), 1,
                [&](std::size_t k) { of_piece[k] = gains_at(pieces_[k], patches); });
-  Eigen::Array3f gain = Eigen::Array3f::Ones();
-  parallel_for(3, 1, [&](std::size_t channel) {
-    std::vector<float> gains;
-    for (const std::vector<Eigen::Array3f>& piece : of_piece) {
-      for (const Eigen::Array3f& ratio : piece) gains.push_back(ratio[Eigen::Index(channel)]);
-    }
-    if (gains.size() >= kMinExposurePoints) gain[Eigen::Index(channel)] = median(gains);
-  });
-  return gain;
+  std::vector<Eigen::Array3f> gains;
+  for (const auto& piece : of_piece) gains.insert(gains.end(), piece.begin(), piece.end());
+  return median_gain(gains);
 }
 
 std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,

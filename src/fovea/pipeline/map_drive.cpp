@@ -5,8 +5,10 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/path_name.h"
 #include "fovea/base/version.h"
 #include "fovea/map/map_keeper.h"
+#include "fovea/map/map_meta.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/frame_pipeline.h"
@@ -33,7 +35,7 @@ const char* to_string(PoseSource source) {
 MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   MapMeta meta;
   meta["fovea.version"] = version();
-  meta["drive.name"] = std::filesystem::absolute(drive.path).lexically_normal().filename().string();
+  meta["drive.name"] = name_of(drive.path);
   meta["drive.kind"] = drive.kind;
   std::vector<int> cameras;
   for (const Camera& camera : drive.calibration.cameras) cameras.push_back(camera.index);
@@ -62,6 +64,10 @@ void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta&
   if (before.contains(kCropKey)) {
     throw InputError("the map is a part of another one", job.output.string(),
                      "resume the whole map, or start a new one");
+  }
+  if (!merged_drives(before).empty()) {
+    throw InputError("the map is of several drives", job.output.string(),
+                     "resume the map of one drive, and merge it when it is whole");
   }
   for (const auto& [key, value] : meta) {
     const auto found = before.find(key);
@@ -208,7 +214,7 @@ void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record)
 void MapRun::checkpoint(bool last) {
   MapRows rows = log_.rows(mapper_.map(), /*exact=*/last);
   rows.meta = std::exchange(meta_, {});
-  rows.meta["complete"] = last && complete() ? "1" : "0";
+  rows.meta["complete"] = fmt::to_string(last && complete() ? 1 : 0);
   keeper_.checkpoint(mapper_.map(), std::move(rows), latest_->T_local_lidar.translation(),
                      mapper_.reach());
 }

@@ -13,7 +13,6 @@
 namespace fovea {
 namespace {
 
-constexpr int kCheckpointFrames = 20;
 /// Tiles are looked at this much farther than the region reaches, m: poses round.
 constexpr double kMargin = 1;
 
@@ -27,7 +26,7 @@ void forget_colors(PointCloud& tile) {
   for (std::uint8_t& reason : tile.reason) reason &= static_cast<std::uint8_t>(~kExposureMatched);
 }
 
-/// The map without its colours, committed; its tiles are in the file alone.
+/// The map without its colours; its tiles are in the file alone.
 TileMap copy_uncolored(const MapReader& map, const MapperOptions& options, MapWriter& writer) {
   const auto held_state = map.hold_state();
   TileMap copy(options.tile_size);
@@ -41,7 +40,6 @@ TileMap copy_uncolored(const MapReader& map, const MapperOptions& options, MapWr
     writer.put_tile({submap, key}, uncolored);
     copy.declare_stored({submap, key}, tile.size());
   });
-  writer.commit();
   return copy;
 }
 
@@ -74,13 +72,10 @@ class Recolorer {
         seen_map_.recolour(map_, view);
       }
     }
-    if (++unwritten_ >= kCheckpointFrames || keeper_.needs_memory(map_)) checkpoint();
+    if (keeper_.needs_memory(map_)) checkpoint();
   }
 
-  void checkpoint() {
-    unwritten_ = 0;
-    keeper_.checkpoint(map_, {}, position_local_, reach_);
-  }
+  void checkpoint() { keeper_.checkpoint(map_, {}, position_local_, reach_); }
 
  private:
   const DriveInfo& drive_;
@@ -90,7 +85,6 @@ class Recolorer {
   SeenMap seen_map_;
   double reach_ = 0, spacing_ = 0;  // m
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();
-  int unwritten_ = 0;
 };
 
 }  // namespace
@@ -111,7 +105,8 @@ RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, cons
   {
     auto writer = MapWriter::create(job.output, job.force);
     TileMap uncolored = copy_uncolored(map, job.options, *writer);
-    MapKeeper keeper(std::move(writer), {available_threads() > 1, job.memory});
+    MapKeeper keeper(std::move(writer),
+                     {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     Recolorer recolorer(source.info(), job.options, std::move(uncolored), keeper);
     for (std::size_t i = 0; i < records.size(); ++i) {
       const FrameResult loaded = source.load(records[i].index);

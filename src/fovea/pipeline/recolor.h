@@ -26,8 +26,8 @@ struct RecolorFigures {
 
 /// Shows the images of a map's frames to its points anew, in order, under the poses that the map
 /// has; held-out frames stay held out. What hides a point is all of the map, also what came later.
-/// The colours are fused as the mapper fuses them. `progress` is called after each frame with how
-/// many are done, and of how many.
+/// The colours are fused as the mapper fuses them. The output appears when it is whole. `progress`
+/// is called after each frame with how many are done, and of how many.
 /// @param source  the drive, under the calibration that is to be used
 /// @throws InputError   if map or drive cannot be read, or no frame of the map is to be had
 /// @throws OutputError  as MapWriter

@@ -1,0 +1,28 @@
+#include "app/map_arguments.h"
+
+#include <filesystem>
+
+#include "fovea/base/errors.h"
+#include "fovea/pipeline/config.h"
+
+namespace fovea::app {
+
+MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
+  const auto stored = meta.find("config");
+  if (stored == meta.end()) {
+    throw InputError("the map does not tell its settings", map,
+                     "give a map that 'fovea map' wrote");
+  }
+  MapperOptions options;
+  apply_config_text(stored->second, map, options);
+  return options;
+}
+
+void require_other_file(const std::string& map, const std::string& output) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(map, output, ignored)) {
+    throw OutputError("a map cannot be written over while it is read", output, "give another name");
+  }
+}
+
+}  // namespace fovea::app

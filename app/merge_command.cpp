@@ -1,0 +1,80 @@
+// fovea merge: two maps of one place as one.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "app/commands.h"
+#include "app/map_arguments.h"
+#include "fovea/base/parallel.h"
+#include "fovea/merging/merge_maps.h"
+
+namespace fovea::app {
+namespace {
+
+struct MergeArguments {
+  std::string a, b, output;
+  std::size_t memory = MergeJob().memory;
+  int threads = 0;
+  bool force = false, quiet = false;
+};
+
+void print(const MergeFigures& figures, const std::string& output) {
+  fmt::print("{}: {} points\n", output, figures.points);
+  if (figures.drives_added == 0) {
+    fmt::print("nothing new: the first map has what the second one shows\n");
+    return;
+  }
+  const MapAlignment& alignment = figures.alignment;
+  fmt::print(
+      "submaps registered: {} of {} that have the other map around them, moved by {:.2f} m\n",
+      alignment.registered, alignment.met, alignment.moved);
+  if (alignment.registered == 0) {
+    fmt::print("not registered: the maps lie to each other as {}\n",
+               figures.georeferenced ? "their georeference says" : "if they had one local frame");
+  }
+  fmt::print("points added: {}, known already: {}, coloured by both: {}\n", figures.merged.added,
+             figures.merged.known, figures.merged.fused);
+  fmt::print("brightness of the second map: x {:.2f} {:.2f} {:.2f}\n", figures.gain[0],
+             figures.gain[1], figures.gain[2]);
+}
+
+void run(const MergeArguments& arguments) {
+  const ThreadLimit threads(arguments.threads);
+  for (const std::string& map : {arguments.a, arguments.b}) {
+    require_other_file(map, arguments.output);
+  }
+  const MapReader a(arguments.a), b(arguments.b);
+  MergeJob job;
+  job.output = arguments.output;
+  job.force = arguments.force;
+  job.memory = arguments.memory;
+  job.spacing = stored_options(a.meta(), arguments.a).surface.spacing;
+  const MergeFigures figures = merge_maps(a, b, job);
+  if (!arguments.quiet) print(figures, arguments.output);
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app) {
+  auto arguments = std::make_shared<MergeArguments>();
+  CLI::App* command =
+      app.add_subcommand("merge", "Put two maps of one place together, in the first one's frame");
+  command->add_option("A.fovea", arguments->a, "Map file")->required();
+  command->add_option("B.fovea", arguments->b, "Map file")->required();
+  command->add_option("-o,--output", arguments->output, "Map file to write")
+      ->required()
+      ->type_name("OUT.fovea");
+  command->add_option("--memory", arguments->memory, "As of 'fovea map'")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
+      ->type_name("SIZE");
+  command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--force", arguments->force,
+                    "Overwrite OUT, and merge also what does not overlap or has no georeference");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

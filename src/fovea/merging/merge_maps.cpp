@@ -1,0 +1,276 @@
+#include "fovea/merging/merge_maps.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/geometry/geodesy.h"
+#include "fovea/map/map_meta.h"
+
+namespace fovea {
+namespace {
+
+/// What is read of a map before its points.
+struct MapContent {
+  explicit MapContent(const MapReader& map)
+      : meta(map.meta()), frames(map.frames()), T_local_submap(map.submaps()) {
+    drives = merged_drives(meta);
+    if (!drives.empty()) return;
+    MergedDrive drive;
+    drive.digest = map.digest();
+    drive.name = text("drive.name");
+    if (!frames.empty()) {
+      drive.first_frame = frames.front().index;
+      drive.end_frame = frames.back().index + 1;
+    }
+    drive.end_submap = static_cast<int>(T_local_submap.size());
+    drives.push_back(drive);
+  }
+
+  std::string text(const std::string& key) const {
+    const auto found = meta.find(key);
+    return found == meta.end() ? "" : found->second;
+  }
+  int end_frame() const { return drives.back().end_frame; }
+
+  MapMeta meta;
+  std::vector<FrameRecord> frames;
+  std::vector<RigidMotion> T_local_submap;
+  std::vector<MergedDrive> drives;  // one at least
+};
+
+const MergedDrive* find_drive(const MapContent& map, const std::string& digest) {
+  const auto found = std::find_if(map.drives.begin(), map.drives.end(),
+                                  [&](const MergedDrive& drive) { return drive.digest == digest; });
+  return found == map.drives.end() ? nullptr : &*found;
+}
+
+/// How the local frames of the maps lie to each other, as far as they tell; nothing if they do not.
+std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b) {
+  for (const MergedDrive& drive : b.drives) {
+    const MergedDrive* same = find_drive(a, drive.digest);
+    if (same == nullptr || drive.first_submap == drive.end_submap) continue;
+    return a.T_local_submap.at(std::size_t(same->first_submap)) *
+           b.T_local_submap.at(std::size_t(drive.first_submap)).inverse();
+  }
+  const auto origin_a = map_origin(a.meta), origin_b = map_origin(b.meta);
+  if (!origin_a || !origin_b) return std::nullopt;
+  return LocalTangentPlane(*origin_a).T_local_enu(*origin_b);
+}
+
+/// A drive of B that A has not, and what becomes of it.
+struct AddedDrive {
+  MergedDrive in_b, merged;
+};
+
+std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b) {
+  std::vector<AddedDrive> added;
+  int frame = a.end_frame();
+  auto submap = static_cast<int>(a.T_local_submap.size());
+  for (const MergedDrive& drive : b.drives) {
+    if (find_drive(a, drive.digest) != nullptr) continue;
+    MergedDrive merged = drive;
+    merged.first_frame = frame;
+    frame += drive.end_frame - drive.first_frame;
+    merged.end_frame = frame;
+    merged.frame_shift += merged.first_frame - drive.first_frame;
+    merged.first_submap = submap;
+    submap += drive.end_submap - drive.first_submap;
+    merged.end_submap = submap;
+    added.push_back({drive, merged});
+  }
+  return added;
+}
+
+void require_fit(const MapContent& a, const MapContent& b, const std::string& where) {
+  if (a.text("map.tile_size") != b.text("map.tile_size")) {
+    throw InputError(fmt::format("the maps' tiles differ in size, {} m and {} m",
+                                 a.text("map.tile_size"), b.text("map.tile_size")),
+                     where, "map one of the drives again with the other's map.tile_size");
+  }
+}
+
+void require_overlap(const MapAlignment& alignment, const std::string& where) {
+  if (alignment.registered > 0) return;
+  if (alignment.met == 0) {
+    throw InputError("the maps do not overlap", where,
+                     "give maps of one place, or put them into one map all the same (--force)");
+  }
+  throw InputError("the maps overlap, but nowhere do their surfaces fit", where,
+                   "check that both are georeferenced well, or merge them by that alone (--force)");
+}
+
+std::string cameras_of_both(const MapContent& a, const MapContent& b) {
+  std::set<int> cameras;
+  for (const MapContent* map : {&a, &b}) {
+    std::string text = map->text("cameras");
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream numbers(text);
+    for (int camera = 0; numbers >> camera;) cameras.insert(camera);
+  }
+  return fmt::format("{}", fmt::join(cameras, ","));
+}
+
+/// A frame of a drive as it is in the merged map.
+FrameRecord moved_frame(FrameRecord frame, const AddedDrive& drive, const MapContent& b,
+                        const MapAlignment& alignment, const RigidMotion& stated_T_a_b,
+                        std::size_t& latest_submap) {
+  const int to_submap = drive.merged.first_submap - drive.in_b.first_submap;
+  if (frame.submap >= 0) latest_submap = std::size_t(frame.submap);  // a skipped one goes along
+  frame.T_local_lidar = alignment.T_a_submap.at(latest_submap) *
+                        b.T_local_submap.at(latest_submap).inverse() * frame.T_local_lidar;
+  if (frame.T_local_lidar_navigation) {
+    frame.T_local_lidar_navigation = stated_T_a_b * *frame.T_local_lidar_navigation;
+  }
+  frame.index += drive.merged.first_frame - drive.in_b.first_frame;
+  if (frame.submap >= 0) frame.submap += to_submap;
+  if (frame.revisit && frame.revisit->submap >= 0) frame.revisit->submap += to_submap;
+  return frame;
+}
+
+/// B's colours, made as bright as A's.
+void match_exposure(const Eigen::Array3f& gain, PointCloud& tile) {
+  if ((gain == 1).all()) return;
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    if (tile.camera[i] == kNoCamera) continue;
+    const Eigen::Array3f color = (to_float(tile.color[i]).array() * gain + 0.5f).min(255.0f);
+    tile.color[i] = {std::uint8_t(color[0]), std::uint8_t(color[1]), std::uint8_t(color[2])};
+    tile.reason[i] |= kExposureMatched;
+  }
+}
+
+/// Puts both maps into one file, as they are, and where their tiles are into `map`.
+class MapJoiner {
+ public:
+  MapJoiner(const MapReader& a, const MapReader& b, MapWriter& output, TileMap& map)
+      : a_(a), b_(b), output_(output), map_(map) {}
+
+  void copy_a(const MapContent& content) {
+    for (const RigidMotion& T : content.T_local_submap) add_submap(T);
+    for (const FrameRecord& frame : content.frames) output_.put_frame(frame);
+    a_.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+      put_tile({submap, key}, tile);
+    });
+  }
+
+  void add_b(const MapContent& content, const std::vector<AddedDrive>& drives,
+             const MapAlignment& alignment, const RigidMotion& stated_T_a_b,
+             const Eigen::Array3f& gain) {
+    // Of each submap of B the drive that it comes with, if it does.
+    std::vector<const AddedDrive*> drive_of(content.T_local_submap.size(), nullptr);
+    for (const AddedDrive& drive : drives) {
+      for (int id = drive.in_b.first_submap; id < drive.in_b.end_submap; ++id) {
+        drive_of.at(std::size_t(id)) = &drive;
+        add_submap(alignment.T_a_submap.at(std::size_t(id)));
+      }
+      auto latest_submap = std::size_t(drive.in_b.first_submap);
+      for (const FrameRecord& frame : content.frames) {
+        if (frame.index < drive.in_b.first_frame || frame.index >= drive.in_b.end_frame) continue;
+        output_.put_frame(
+            moved_frame(frame, drive, content, alignment, stated_T_a_b, latest_submap));
+      }
+    }
+    b_.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+      const AddedDrive* drive = drive_of[submap];
+      if (drive == nullptr) return;
+      PointCloud moved = tile;
+      match_exposure(gain, moved);
+      for (std::int32_t& frame : moved.frame) {
+        frame += drive->merged.first_frame - drive->in_b.first_frame;
+      }
+      put_tile({submap + std::size_t(drive->merged.first_submap - drive->in_b.first_submap), key},
+               std::move(moved));
+    });
+  }
+
+ private:
+  void add_submap(const RigidMotion& T_local_submap) {
+    output_.put_submap(map_.submaps().size(), T_local_submap);
+    map_.add_submap(T_local_submap);
+  }
+  void put_tile(const TileId& id, PointCloud tile) {
+    // A map has intensities in all tiles or in none.
+    if (!has_intensity_) has_intensity_ = !tile.intensity.empty();
+    if (!*has_intensity_) tile.intensity.clear();
+    if (*has_intensity_ && tile.intensity.empty()) tile.intensity.assign(tile.size(), 0.0f);
+    output_.put_tile(id, tile);
+    map_.declare_stored(id, tile.size());
+  }
+
+  const MapReader& a_;
+  const MapReader& b_;
+  MapWriter& output_;
+  TileMap& map_;
+  std::optional<bool> has_intensity_;
+};
+
+MapMeta merged_meta(const MapContent& a, const MapContent& b,
+                    const std::vector<AddedDrive>& added) {
+  MapMeta meta = a.meta;
+  std::vector<MergedDrive> drives = a.drives;
+  for (const AddedDrive& drive : added) drives.push_back(drive.merged);
+  set_merged_drives(drives, meta);
+  meta["frames.end"] = fmt::to_string(drives.back().end_frame);
+  meta["cameras"] = cameras_of_both(a, b);
+  if (b.text("complete") != "1") meta["complete"] = fmt::to_string(0);
+  meta.erase(kSchemaVersionKey);
+  return meta;
+}
+
+}  // namespace
+
+MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& job) {
+  const auto held_a = a.hold_state(), held_b = b.hold_state();
+  const MapContent content_a(a), content_b(b);
+  const std::string where = job.output.string();
+  require_fit(content_a, content_b, where);
+  const std::vector<AddedDrive> added = drives_to_add(content_a, content_b);
+  MergeFigures figures;
+  figures.drives_added = added.size();
+  const auto stated = stated_T_a_b(content_a, content_b);
+  figures.georeferenced = stated.has_value();
+  if (!stated && !job.force) {
+    throw InputError("a map without georeference: nothing says how the two lie to each other",
+                     where, "merge them as if they had one local frame (--force)");
+  }
+  const RigidMotion T_a_b = stated.value_or(RigidMotion::Identity());
+  double tile_size = 0;
+  std::istringstream(content_a.text("map.tile_size")) >> tile_size;
+  if (!added.empty()) {
+    figures.alignment = align_maps(MapGeometry(a), MapGeometry(b), content_b.frames, T_a_b);
+    if (!job.force) require_overlap(figures.alignment, where);
+    figures.gain = gain_of_maps(a, b, figures.alignment.T_a_submap, tile_size);
+  }
+
+  TileMap map(tile_size);
+  auto writer = MapWriter::create(job.output, job.force);
+  MapJoiner joiner(a, b, *writer, map);
+  const MapMeta meta = added.empty() ? content_a.meta : merged_meta(content_a, content_b, added);
+  for (const auto& [key, value] : meta) {
+    if (key != kSchemaVersionKey) writer->put_meta(key, value);
+  }
+  joiner.copy_a(content_a);
+  if (!added.empty()) {
+    joiner.add_b(content_b, added, figures.alignment, T_a_b, figures.gain);
+  }
+  MapKeeper keeper(std::move(writer),
+                   {available_threads() > 1, job.memory, /*commit_at_end=*/true});
+  if (!added.empty()) {
+    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, keeper);
+    keeper.checkpoint(map, {}, Eigen::Vector3d::Zero(), 0);
+  }
+  keeper.finish();
+  figures.points = map.size();
+  return figures;
+}
+
+}  // namespace fovea
