@@ -74,7 +74,9 @@ void require_schema(sqlite::Database& database) {
     throw InputError(fmt::format("the map has format version {}, this program reads {}", version,
                                  kMapSchemaVersion),
                      database.where(),
-                     version > kMapSchemaVersion ? "use a newer Fovea" : "map the drive again");
+                     version > kMapSchemaVersion
+                         ? "use a newer Fovea"
+                         : "map the drive again (fovea map DRIVE -o MAP --force)");
   }
 }
 
