@@ -155,7 +155,9 @@ constexpr std::size_t kCellGrain = 64;
 /// Normals of the points not yet done that have neighbours enough within the radius.
 void look_around(std::span<const Eigen::Vector3f> points, float radius, float enough,
                  std::vector<std::uint8_t>& done, std::vector<Eigen::Vector3f>& normals) {
-  const auto [table, members] = PointCells::of(points, radius);
+  const PointCells cells = PointCells::of(points, radius);
+  const VoxelTable& table = cells.table;
+  const VoxelMembers& members = cells.members;
   const auto gather = [&](std::uint32_t cell, Surroundings& surroundings) {
     // Cells as wide as the radius: no point within it is missed.
     for (const VoxelTable::Voxel& near : VoxelTable::block_around(table.voxel(cell))) {

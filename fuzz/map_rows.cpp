@@ -1,0 +1,221 @@
+// The rows of a map behind SQLite, checksums and zstd: a small map with cells of the input's, its
+// tiles with checksums that are right.
+#include <fuzzer/FuzzedDataProvider.h>
+#include <sqlite3.h>
+#include <zstd.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "fovea/map/tile_codec.h"
+#include "fuzz_input.h"
+#include "map_reading.h"
+#include "sample_tile.h"
+#include "scratch_folder.h"
+
+using namespace fovea;
+
+namespace {
+
+/// A map as the project writes it: a mapped and a skipped frame, a submap, a tile.
+std::string sample_map(const std::filesystem::path& path) {
+  const auto map = MapWriter::create(path, true);
+  map->put_meta("config", "[registration]\nmethod = \"gicp\"\n");
+  FrameRecord frame;
+  frame.index = 0;
+  frame.stamp = 1'317'046'453'072'943'357;
+  frame.T_local_lidar_navigation = RigidMotion::Identity();
+  frame.velocity = Twist::Ones();
+  frame.submap = 0;
+  frame.revisit = Revisit{};
+  frame.figures = {{"points_scan", 19'329}};
+  map->put_frame(frame);
+  map->put_frame({.index = 1, .status = FrameStatus::kSkipped, .note = "no scan"});
+  map->put_submap(0, RigidMotion::Identity());
+  map->put_tile({0, {0, 0, 0}}, sample_tile());
+  map->commit();
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  return bytes.str();
+}
+
+class Sql {
+ public:
+  explicit Sql(const std::filesystem::path& path) {
+    require(sqlite3_open(path.c_str(), &handle_) == SQLITE_OK, "a map can be opened");
+    run("PRAGMA synchronous=OFF; PRAGMA journal_mode=MEMORY; BEGIN");
+  }
+  ~Sql() {
+    run("COMMIT");
+    sqlite3_close(handle_);
+  }
+  Sql(const Sql&) = delete;
+  Sql& operator=(const Sql&) = delete;
+
+  void run(const char* sql) { sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr); }
+
+  /// Runs a statement whose parameters are bound by `bind`; what the schema refuses is left out.
+  template <class Bind>
+  void run(const std::string& sql, Bind&& bind) {
+    sqlite3_stmt* statement = nullptr;
+    require(sqlite3_prepare_v2(handle_, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK, sql);
+    bind(statement);
+    sqlite3_step(statement);
+    sqlite3_finalize(statement);
+  }
+
+ private:
+  sqlite3* handle_ = nullptr;
+};
+
+void bind_any(FuzzedDataProvider& input, sqlite3_stmt* statement, int parameter) {
+  switch (input.ConsumeIntegralInRange(0, 4)) {
+    case 0:
+      sqlite3_bind_null(statement, parameter);
+      break;
+    case 1:
+      sqlite3_bind_int64(statement, parameter, input.ConsumeIntegral<std::int64_t>());
+      break;
+    case 2:
+      sqlite3_bind_double(statement, parameter, input.ConsumeFloatingPoint<double>());
+      break;
+    default: {
+      const std::string bytes = input.ConsumeRandomLengthString();
+      const int size = static_cast<int>(bytes.size());
+      input.ConsumeBool()
+          ? sqlite3_bind_text(statement, parameter, bytes.data(), size, SQLITE_TRANSIENT)
+          : sqlite3_bind_blob(statement, parameter, bytes.data(), size, SQLITE_TRANSIENT);
+    }
+  }
+}
+
+void change_cell(FuzzedDataProvider& input, Sql& sql) {
+  constexpr std::array kUpdates{"meta SET key=?1",         "meta SET value=?1",
+                                "frames SET idx=?1",       "frames SET stamp_ns=?1",
+                                "frames SET status=?1",    "frames SET note=?1",
+                                "frames SET pose=?1",      "frames SET navigation_pose=?1",
+                                "frames SET odom_pose=?1", "frames SET submap=?1",
+                                "frames SET revisited=?1", "frames SET revisited_pose=?1",
+                                "frames SET velocity=?1",  "frames SET figures=?1",
+                                "frames SET timings=?1",   "submaps SET id=?1",
+                                "submaps SET pose=?1",     "tiles SET submap=?1",
+                                "tiles SET x=?1",          "tiles SET points=?1",
+                                "tiles SET origin_x=?1",   "tiles SET position=?1",
+                                "tiles SET intensity=?1",  "tiles SET checksum=?1"};
+  const std::string update =
+      kUpdates[input.ConsumeIntegralInRange<std::size_t>(0, kUpdates.size() - 1)];
+  sql.run("UPDATE " + update, [&](sqlite3_stmt* s) { bind_any(input, s, 1); });
+}
+
+std::string compressed(const std::string& bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
+  return packed;
+}
+
+/// A column: of the right size, of any, as the input packs it, or missing.
+std::string any_blob(FuzzedDataProvider& input, std::size_t column, std::int64_t points) {
+  constexpr std::int64_t kLargest = 1 << 12;
+  switch (input.ConsumeIntegralInRange(0, 7)) {
+    case 0:
+      return compressed(input.ConsumeRandomLengthString());
+    case 1:
+      return input.ConsumeRandomLengthString();
+    case 2:
+      return {};
+    default:
+      const auto size = packed_size(
+          column, static_cast<std::size_t>(std::clamp<std::int64_t>(points, 0, kLargest)));
+      std::string bytes = input.ConsumeBytesAsString(size);
+      bytes.resize(size);
+      return compressed(bytes);
+  }
+}
+
+std::int64_t any_small(FuzzedDataProvider& input, std::int64_t most) {
+  return input.ConsumeIntegralInRange(0, 15) == 0
+             ? input.ConsumeIntegral<std::int64_t>()
+             : input.ConsumeIntegralInRange<std::int64_t>(0, most);
+}
+
+/// Coloured points of a tile, where its column of cameras can be read.
+std::int64_t count_colored(const std::string& cameras, std::int64_t points) {
+  std::string bytes(static_cast<std::size_t>(std::clamp<std::int64_t>(points, 0, 1 << 12)), '\0');
+  ZSTD_decompress(bytes.data(), bytes.size(), cameras.data(), cameras.size());
+  return std::ssize(bytes) - std::count(bytes.begin(), bytes.end(), char{kNoCamera});
+}
+
+void put_tile(FuzzedDataProvider& input, Sql& sql) {
+  constexpr std::size_t kCameraColumn = 2;
+  TileRow row;
+  row.submap = any_small(input, 1);
+  row.key = {static_cast<std::int32_t>(any_small(input, 2)), 0, 0};
+  row.points = any_small(input, 40);
+  for (int axis = 0; axis < 3; ++axis) {
+    row.origin[axis] = input.ConsumeBool() ? 4.0 * row.key.x : input.ConsumeFloatingPoint<double>();
+  }
+  std::array<std::string, kStoredColumns> blobs;
+  for (std::size_t i = 0; i < kStoredColumns; ++i) {
+    blobs[i] = any_blob(input, i, row.points);
+    row.blobs[i] = std::as_bytes(std::span(blobs[i]));
+  }
+  const std::int64_t colored = count_colored(blobs[kCameraColumn], row.points);
+  row.colored = input.ConsumeIntegralInRange(0, 7) == 0 ? any_small(input, 40) : colored;
+  row.checksum = checksum(row);
+  sql.run(
+      "INSERT OR REPLACE INTO tiles VALUES(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,"
+      "?17,?18,?19,?20,?21,?22)",
+      [&](sqlite3_stmt* s) {
+        int parameter = 0;
+        for (const std::int64_t number :
+             {row.submap, std::int64_t{row.key.x}, std::int64_t{row.key.y}, std::int64_t{row.key.z},
+              row.points, row.colored}) {
+          sqlite3_bind_int64(s, ++parameter, number);
+        }
+        for (const double number : row.origin) sqlite3_bind_double(s, ++parameter, number);
+        for (std::size_t i = 0; i < kStoredColumns; ++i) {
+          const std::string& blob = blobs[i];
+          ++parameter;
+          if (i == kIntensityColumn && blob.empty()) continue;  // NULL
+          sqlite3_bind_blob(s, parameter, blob.data(), static_cast<int>(blob.size()),
+                            SQLITE_STATIC);
+        }
+        sqlite3_bind_int64(s, ++parameter, static_cast<std::int64_t>(row.checksum));
+      });
+}
+
+/// What is read of a tile is what is written for it, bit for bit.
+void write_and_read_again(const std::filesystem::path& path) {
+  read_or_refuse([&] {
+    TileEncoder encoder;
+    TileDecoder decoder;
+    TileColumns columns, columns_again;
+    MapReader(path).for_each_tile(
+        [&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+          const PointCloud again = decoder.decode(encoder.encode({submap, key}, tile), "again");
+          require(columns.pack(tile) == columns_again.pack(again) && tile.origin == again.origin,
+                  "a tile is written as it is read");
+        });
+  });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const ScratchFolder folder;
+  static const std::string sample = sample_map(folder / "a.fovea");
+  const std::filesystem::path path = folder / "a.fovea";
+  std::ofstream(path, std::ios::binary) << sample;
+  FuzzedDataProvider input(data, size);
+  const auto way = input.ConsumeIntegral<std::uint8_t>();
+  {
+    Sql sql(path);
+    for (int changes = 0; changes < 8 && input.remaining_bytes() > 0; ++changes) {
+      input.ConsumeBool() ? put_tile(input, sql) : change_cell(input, sql);
+    }
+  }
+  use_map(path, way);
+  if (way % 3 == 0) write_and_read_again(path);
+  folder.clear();
+  return 0;
+}

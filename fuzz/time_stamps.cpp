@@ -1,0 +1,34 @@
+// KITTI's time stamps, both forms.
+#include "fovea/sensor/time_stamps.h"
+
+#include <algorithm>
+
+#include "fuzz_input.h"
+
+using namespace fovea;
+
+namespace {
+
+void check(const TimeStamps& stamps, std::string_view text) {
+  const auto lines =
+      std::count(text.begin(), text.end(), '\n') + (text.empty() || text.back() == '\n' ? 0 : 1);
+  require(std::ssize(stamps.times) == lines, "there is an entry a line");
+  std::optional<TimeNs> last;
+  for (const std::optional<TimeNs>& time : stamps.times) {
+    require(!time || !last || *time > *last, "times increase");
+    if (time) last = time;
+  }
+  const std::optional<double> period = median_period(stamps);
+  require(!period || *period > 0, "the period is positive");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static FileInMemory file;
+  const std::string_view text = as_text(data, size);
+  const std::filesystem::path& path = file.hold(text);
+  read_or_refuse([&] { check(read_date_times(path), text); });
+  read_or_refuse([&] { check(read_seconds(path), text); });
+  return 0;
+}
