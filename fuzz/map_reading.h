@@ -9,11 +9,19 @@
 namespace fovea {
 
 inline void check_frames(const std::vector<FrameRecord>& frames) {
+  for (const FrameRecord& frame : frames) {
+    require(frame.T_local_lidar.matrix().allFinite(), "poses are finite");
+  }
+}
+
+inline void check_order(const MapReader& map) {
+  const std::vector<FrameRecord> frames = map.frames();
   for (std::size_t i = 1; i < frames.size(); ++i) {
     require(frames[i - 1].index < frames[i].index, "frames are in order");
   }
-  for (const FrameRecord& frame : frames) {
-    require(frame.T_local_lidar.matrix().allFinite(), "poses are finite");
+  const auto tiles = map.tile_sizes();
+  for (std::size_t i = 1; i < tiles.size(); ++i) {
+    require(tiles[i - 1].first < tiles[i].first, "tiles are in order");
   }
 }
 
@@ -47,7 +55,11 @@ inline void go_on_with_map(const std::filesystem::path& path) {
 inline void use_map(const std::filesystem::path& path, unsigned way) {
   switch (way % 3) {
     case 0:
-      read_or_refuse([&] { ask_all(MapReader(path)); });
+      read_or_refuse([&] {
+        const MapReader map(path);
+        ask_all(map);
+        check_order(map);
+      });
       break;
     case 1:
       read_or_refuse([&] {
