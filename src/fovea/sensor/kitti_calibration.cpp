@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kCameras = 10;                 // KITTI has four; simulated drives may have more
 constexpr double kRotationTolerance = 1e-3;  // the files round to 7 digits
+constexpr double kMaxLever = 1000;           // m between sensors; no vehicle is as long
 constexpr const char* kRemedy = "restore the file from the KITTI archive's calibration";
 
 /// "key: numbers" lines of one file.
@@ -60,7 +61,8 @@ class CalibrationFile {
   RigidMotion motion() const {
     RigidMotion T = RigidMotion::Identity();
     T.linear() = rotation("R");
-    T.translation() = Eigen::Map<const Eigen::Vector3d>(numbers<3>("T").data());
+    T.translation() =
+        checked_translation("T", Eigen::Map<const Eigen::Vector3d>(numbers<3>("T").data()));
     return T;
   }
 
@@ -70,7 +72,7 @@ class CalibrationFile {
         Eigen::Map<const RowMajor<4>>(numbers<12>(key).data());
     RigidMotion T = RigidMotion::Identity();
     T.linear() = checked_rotation(key, matrix.leftCols<3>());
-    T.translation() = matrix.col(3);
+    T.translation() = checked_translation(key, matrix.col(3));
     return T;
   }
 
@@ -87,7 +89,7 @@ class CalibrationFile {
     camera.cx = P(0, 2);
     camera.cy = P(1, 2);
     const Eigen::Matrix3d K = P.leftCols<3>();
-    camera.T_cam_lidar.translation() = K.inverse() * P.col(3);
+    camera.T_cam_lidar.translation() = checked_translation(key, K.inverse() * P.col(3));
     return camera;
   }
 
@@ -117,6 +119,12 @@ class CalibrationFile {
   Eigen::Matrix3d checked_rotation(const std::string& key, const Eigen::Matrix3d& R) const {
     if (!is_rotation(R, kRotationTolerance)) fail(key, "is not a rotation");
     return nearest_rotation(R);
+  }
+
+  /// Written so that NaN fails, too: the inverse of a tiny focal length has it.
+  Eigen::Vector3d checked_translation(const std::string& key, const Eigen::Vector3d& t) const {
+    if (!(t.norm() <= kMaxLever)) fail(key, "has a translation of over 1 km");
+    return t;
   }
 
   std::filesystem::path file_;
