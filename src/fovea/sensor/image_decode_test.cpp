@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <jpeglib.h>
 
+#include <span>
+
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
@@ -29,7 +31,7 @@ Image gradient(int width, int height, int channels) {
 }
 
 void write_jpeg(const test::fs::path& file, const Image& image, bool progressive = false,
-                J_COLOR_SPACE color = JCS_UNKNOWN) {
+                J_COLOR_SPACE color = JCS_UNKNOWN, std::span<const jpeg_scan_info> scans = {}) {
   std::FILE* stream = std::fopen(file.c_str(), "wb");
   ASSERT_NE(stream, nullptr);
   jpeg_compress_struct codec{};
@@ -46,6 +48,10 @@ void write_jpeg(const test::fs::path& file, const Image& image, bool progressive
   jpeg_set_defaults(&codec);
   jpeg_set_quality(&codec, 98, TRUE);
   if (progressive) jpeg_simple_progression(&codec);
+  if (!scans.empty()) {
+    codec.scan_info = scans.data();
+    codec.num_scans = static_cast<int>(scans.size());
+  }
   jpeg_start_compress(&codec, TRUE);
   while (codec.next_scanline < codec.image_height) {
     JSAMPROW row = const_cast<JSAMPROW>(image.pixel(0, static_cast<int>(codec.next_scanline)));
@@ -160,6 +166,30 @@ TEST_F(ImageDecode, JpegThatIsNoRgbOrAbsurdIsRefused) {
   EXPECT_TRUE(fails_with("JPEG image cannot be read"));
   write_jpeg(file_, gradient(static_cast<int>(kMaxImageSide) + 1, 1, 1));
   EXPECT_TRUE(fails_with("too many")) << message();
+}
+
+TEST_F(ImageDecode, JpegThatNoFileOfItsLengthHoldsIsRefused) {
+  write_jpeg(file_, gradient(16, 16, 1));
+  std::string bytes = test::read_text(file_);
+  const std::size_t size = bytes.find("\xff\xc0") + 5;
+  for (const std::size_t side : {size, size + 2}) {
+    bytes[side] = static_cast<char>(kMaxImageSide >> 8);
+    bytes[side + 1] = 0;
+  }
+  write_text(file_, bytes);
+  EXPECT_TRUE(fails_with("too short for its pixels")) << message();
+}
+
+TEST_F(ImageDecode, JpegOfCountlessScansIsRefused) {
+  // A scan that refines nothing may be repeated.
+  constexpr std::array<jpeg_scan_info, 2> kScans{{{1, {0}, 0, 0, 0, 0}, {1, {0}, 1, 63, 0, 0}}};
+  write_jpeg(file_, gradient(16, 16, 1), true, JCS_UNKNOWN, kScans);
+  const std::string bytes = test::read_text(file_);
+  const std::size_t begin = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
+  std::string many = bytes.substr(0, end);
+  for (int i = 0; i < 200; ++i) many += bytes.substr(begin, end - begin);
+  write_text(file_, many + bytes.substr(end));
+  EXPECT_TRUE(fails_with("scans are too many")) << message();
 }
 
 TEST_F(ImageDecode, OtherFilesAreNoImages) {

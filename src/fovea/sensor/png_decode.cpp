@@ -19,7 +19,7 @@ namespace {
 
 /// What libpng's callbacks reach. Outlives every longjmp, so that its members are destroyed.
 struct PngInput {
-  std::span<const std::uint8_t> rest;
+  std::span<const std::uint8_t> file, rest;
   std::string error;
 };
 
@@ -37,10 +37,20 @@ void read_from_memory(png_structp png, png_bytep out, std::size_t count) {
 
 void ignore_warning(png_structp, png_const_charp) {}  // odd metadata; never of the pixels
 
+/// Before memory is taken: a damaged header must not ask for what the file cannot fill.
+void require_samples(png_structp png, png_infop header) {
+  const auto& input = *static_cast<const PngInput*>(png_get_io_ptr(png));
+  const std::size_t bytes = png_get_rowbytes(png, header) * png_get_image_height(png, header);
+  if (bytes > input.file.size() * kDeflateMaxRatio) {
+    png_error(png, "the file is too short for its pixels");
+  }
+}
+
 /// Reads the header and asks for 8-bit grey or RGB rows. Calls png_error, so holds no destructors.
 void read_header(png_structp png, png_infop header) {
   png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
   png_read_info(png, header);
+  require_samples(png, header);
   if (png_get_bit_depth(png, header) == 16) png_error(png, "it has 16 bits a channel, not 8");
   png_set_expand(png);
   png_set_strip_alpha(png);
@@ -67,6 +77,7 @@ bool decode(png_structp png, png_infop header, Image& image, std::vector<png_byt
 void read_header_16(png_structp png, png_infop header) {
   png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
   png_read_info(png, header);
+  require_samples(png, header);
   if (png_get_bit_depth(png, header) != 16 ||
       png_get_color_type(png, header) != PNG_COLOR_TYPE_GRAY) {
     png_error(png, "it has not one channel of 16 bits");
@@ -115,7 +126,7 @@ Image decode_png(std::span<const std::uint8_t> file) {
 }
 
 Image decode_png_by_libpng(std::span<const std::uint8_t> file) {
-  PngInput input{file, {}};
+  PngInput input{file, file, {}};
   PngReader reader(input);
   if (reader.header == nullptr) throw std::bad_alloc();
   Image image;
@@ -126,7 +137,7 @@ Image decode_png_by_libpng(std::span<const std::uint8_t> file) {
 
 Samples16 decode_png_16(std::span<const std::uint8_t> file) {
   static_assert(std::endian::native == std::endian::little, "samples are swapped to little endian");
-  PngInput input{file, {}};
+  PngInput input{file, file, {}};
   PngReader reader(input);
   if (reader.header == nullptr) throw std::bad_alloc();
   Samples16 samples;

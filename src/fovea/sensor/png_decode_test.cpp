@@ -264,5 +264,22 @@ TEST(PngDecode, SizesThatTheSamplesDoNotFillAreErrors) {
   }
 }
 
+TEST(PngDecode, SizesThatNoFileOfItsLengthHoldsAreRefusedBeforeMemoryIsTaken) {
+  for (const int bits : {8, 16}) {
+    Bytes file = png_file(20, 9, natural_samples(20, 9, bits / 8, 9),
+                          {PNG_COLOR_TYPE_GRAY, PNG_ALL_FILTERS, bits});
+    for (const std::size_t side : {18u, 22u}) {
+      file[side] = kMaxImageSide >> 8;
+      file[side + 1] = 0;
+    }
+    mend_checksums(file);
+    const auto decode = [&](const Bytes& bytes) {
+      if (bits == 16) decode_png_16(bytes);
+      return decode_png(bytes);
+    };
+    EXPECT_EQ(outcome_of(file, decode).error, "the file is too short for its pixels") << bits;
+  }
+}
+
 }  // namespace
 }  // namespace fovea

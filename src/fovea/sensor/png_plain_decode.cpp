@@ -161,7 +161,8 @@ bool unfilter_rows(const Header& header, std::vector<std::uint8_t>& data) {
 std::optional<Image> decode_plain_png(Bytes file) {
   std::vector<std::uint8_t> zlib;
   const std::optional<Header> header = read_chunks(file, zlib);
-  if (!header) return std::nullopt;
+  // Before memory is taken: a damaged header must not ask for what the file cannot fill.
+  if (!header || header->filtered_bytes() > zlib.size() * kDeflateMaxRatio) return std::nullopt;
   Image image;
   image.width = header->width;
   image.height = header->height;

@@ -1,6 +1,7 @@
 // The PNG files that cameras write, without libpng: 8 bits a sample, rows in order.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,6 +9,9 @@
 #include "fovea/base/image.h"
 
 namespace fovea {
+
+/// No deflate stream grows more than this when unpacked: two bits stand for up to 258 bytes.
+inline constexpr std::size_t kDeflateMaxRatio = 1032;
 
 /// Decodes a PNG of 8-bit grey or RGB samples, with alpha (dropped) or without, that is not
 /// interlaced. All checksums are checked.
