@@ -143,7 +143,8 @@ class LasFile {
   template <class F>
   void for_each_record(F&& f) {
     constexpr std::size_t kBlock = 1 << 10;
-    std::string buffer(kBlock * record_bytes_, '\0');
+    // No larger than the file needs: a header may give a point 64 KiB.
+    std::string buffer(std::min<std::size_t>(kBlock, points_) * record_bytes_, '\0');
     stream_.seekg(static_cast<std::streamoff>(begin_));
     for (std::size_t begin = 0; begin < points_; begin += kBlock) {
       const std::size_t count = std::min<std::size_t>(kBlock, points_ - begin);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "../../../tests/peak_memory.h"
 #include "fovea/evaluation/cloud_test_files.h"
 
 namespace fovea {
@@ -124,6 +125,12 @@ TEST_F(LasReaderTest, RejectsWhatItCannotRead) {
   expect_rejected(many, "too short");
   EXPECT_THROW(read_las(folder_ / "missing.las", {0, 0, 0}), InputError);
   EXPECT_THROW(read_las(folder_, {0, 0, 0}), InputError);
+}
+
+TEST_F(LasReaderTest, PointsOf64KiBTakeNoMemoryWhereThereAreNone) {
+  std::string bytes = las(kFormats[0], {});
+  put_at(bytes, 105, std::uint16_t{65535});
+  EXPECT_LT(rise_of_peak_memory([&] { read(bytes); }), kMemoryOfASmallFile);
 }
 
 TEST_F(LasReaderTest, DamageIsHarmless) {

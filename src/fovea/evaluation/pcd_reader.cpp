@@ -260,7 +260,8 @@ class PcdFile {
   void read_binary() {
     constexpr std::size_t kBlock = 1 << 10;  // points
     const std::uintmax_t begin_of_data = static_cast<std::uintmax_t>(lines_.stream().tellg());
-    std::string buffer(kBlock * point_bytes_, '\0');
+    // No larger than the file needs: a header may give a point 64 KiB.
+    std::string buffer(std::min(kBlock, points_) * point_bytes_, '\0');
     for (std::size_t begin = 0; begin < points_; begin += kBlock) {
       const std::size_t count = std::min(kBlock, points_ - begin);
       if (!lines_.stream().read(buffer.data(), std::streamsize(count * point_bytes_))) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "../../../tests/peak_memory.h"
 #include "fovea/evaluation/cloud_test_files.h"
 #include "fovea/evaluation/lzf.h"
 
@@ -191,6 +192,12 @@ TEST_F(PcdReaderTest, RejectsMalformedClouds) {
   const std::string many = header(kPacked, "binary", 1'000'000'000);
   expect_rejected(many + "0123456789abcdef", "too short");
   expect_rejected(header(kPacked, "binary", 2) + "0123456789abcdef", "too short");
+}
+
+TEST_F(PcdReaderTest, PointsOf64KiBTakeNoMemoryWhereThereAreNone) {
+  const std::string bytes =
+      header("FIELDS x y z pad\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 65000\n", "binary", 0);
+  EXPECT_LT(rise_of_peak_memory([&] { read(bytes); }), kMemoryOfASmallFile);
 }
 
 TEST_F(PcdReaderTest, RejectsDamagedCompression) {

@@ -150,7 +150,8 @@ class PlyFile {
 
   void read_binary() {
     constexpr std::size_t kBlock = 1 << 14;
-    std::vector<char> buffer(kBlock * header_.vertex_bytes);
+    // No larger than the file needs: a header may give a vertex thousands of properties.
+    std::vector<char> buffer(std::min(kBlock, header_.vertices) * header_.vertex_bytes);
     for (std::size_t begin = 0; begin < header_.vertices; begin += kBlock) {
       const std::size_t count = std::min(kBlock, header_.vertices - begin);
       const auto bytes = static_cast<std::streamsize>(count * header_.vertex_bytes);

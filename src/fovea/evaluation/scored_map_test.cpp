@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "../../../tests/peak_memory.h"
 #include "fovea/base/errors.h"
 #include "fovea/evaluation/ply_reader.h"
 
@@ -97,6 +98,16 @@ TEST_F(ScoredMapTest, CloudsWithoutColorsAreUncoloured) {
                      "property float z\nend_header\n1 2 3\n"),
                Eigen::Vector3d::Zero());
   EXPECT_THAT(ply.points.camera, ElementsAre(kNoCamera));
+}
+
+TEST_F(ScoredMapTest, ManyPropertiesTakeNoMemoryWhereThereAreFewVertices) {
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\n"
+      "property double y\nproperty double z\n";
+  for (int i = 0; i < 900; ++i) bytes += "property double a\n";
+  bytes += "end_header\n" + std::string(8 * 903, '\0');
+  const auto file = write("many.ply", bytes);
+  EXPECT_LT(rise_of_peak_memory([&] { read_ply(file, {0, 0, 0}); }), kMemoryOfASmallFile);
 }
 
 TEST_F(ScoredMapTest, RejectsMalformedClouds) {

@@ -1,0 +1,27 @@
+// What a step takes of memory: readers must not take what a header asks for and the file cannot
+// fill.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <cstddef>
+
+namespace fovea {
+
+/// Bytes by which a step raises the most that the process has ever used. Less than it took where an
+/// earlier step took more.
+template <class Step>
+std::size_t rise_of_peak_memory(Step&& step) {
+  const auto peak = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  };
+  const std::size_t before = peak();
+  step();
+  return peak() - before;
+}
+
+inline constexpr std::size_t kMemoryOfASmallFile = std::size_t{20} << 20;
+
+}  // namespace fovea
