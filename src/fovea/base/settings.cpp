@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -100,7 +101,9 @@ class Reader : public SettingVisitor {
   void read(const toml::node& node, std::string_view key, Degrees& value) const {
     double degrees = 0;
     read(node, key, degrees);
-    value.radians = degrees * kDegree;
+    const double radians = degrees * kDegree;
+    // A number too small for its digits could not be printed and read back.
+    value.radians = std::fpclassify(radians) == FP_SUBNORMAL ? 0 : radians;
   }
   void read(const toml::node& node, std::string_view key, DegreeRows& value) const {
     const std::string expected = fmt::format("an array of {} in degrees", value.columns);

@@ -70,6 +70,16 @@ TEST(Settings, ArePrintedByTable) {
             "rows = []\nshade = \"light\"\n");
 }
 
+TEST(Settings, AnglesTooSmallForTheirDigitsAreZero) {
+  Options options;
+  read("b.angle = 1e-310\nb.rows = [[-1e-310, 0, 0, 0]]", options);
+  EXPECT_EQ(options.angle, 0);
+  EXPECT_THAT(text_of(options), HasSubstr("angle = 0.0"));
+  Options back;
+  read(text_of(options), back);
+  EXPECT_EQ(back.rows, options.rows);
+}
+
 TEST(Settings, ReadBackTheSame) {
   Options options{false, -0, 1e-7, 33.3 * kDegree, {5}, {}, Shade::kDark, 1.5};
   options.rows = {{1 * kDegree, 2 * kDegree, 3 * kDegree, -4.5 * kDegree}};
