@@ -80,6 +80,28 @@ void require_schema(sqlite::Database& database) {
   }
 }
 
+/// InputError of a tile that the map should not have so.
+[[noreturn]] void fail_at(const TileId& id, const char* what, const std::string& map_path) {
+  throw InputError(what,
+                   fmt::format("{}, tile {} {} {} of submap {}", map_path, id.key.x, id.key.y,
+                               id.key.z, id.submap),
+                   kRestore);
+}
+
+/// The order of the tiles, which SQLite takes from the file.
+class TileOrder {
+ public:
+  explicit TileOrder(std::string map_path) : map_path_(std::move(map_path)) {}
+  void require_after_last(const TileId& id) {
+    if (last_ && id <= *last_) fail_at(id, "the tiles are not in order", map_path_);
+    last_ = id;
+  }
+
+ private:
+  std::string map_path_;
+  std::optional<TileId> last_;
+};
+
 /// While it lives, all statements see one committed state; they may nest.
 class Snapshot {
  public:
@@ -227,10 +249,19 @@ MapMeta MapReader::meta() const {
 std::vector<FrameRecord> MapReader::frames() const {
   Statement rows(*database_->sqlite,
                  fmt::format("SELECT {}, timings FROM frames ORDER BY idx", kFrameColumns));
+  const std::string where = database_->sqlite->where();
   std::vector<FrameRecord> frames;
   bool more = true;
   while (database_->read([&] { more = rows.step(); }) && more) {
-    database_->read([&] { frames.push_back(frame_record(rows, database_->sqlite->where())); });
+    database_->read([&] {
+      FrameRecord frame = frame_record(rows, where);
+      // SQLite takes the order from the file. Of a damaged one every whole frame is wanted.
+      if (!database_->on_damage && !frames.empty() && frame.index <= frames.back().index) {
+        throw InputError("the frames are not in order",
+                         fmt::format("{}, frame {}", where, frame.index), kRestore);
+      }
+      frames.push_back(std::move(frame));
+    });
   }
   return frames;
 }
@@ -265,12 +296,14 @@ std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
   Statement rows(*database_->sqlite,
                  "SELECT submap, x, y, z, points FROM tiles ORDER BY submap, x, y, z");
   std::vector<std::pair<TileId, std::size_t>> sizes;
+  TileOrder order(where);
   while (rows.step()) {
     if (!std::in_range<std::size_t>(rows.integer(0)) || rows.integer(4) < 0) {
       throw InputError("a tile has an impossible submap or size", where, kRestore);
     }
-    sizes.emplace_back(TileId{static_cast<std::size_t>(rows.integer(0)), tile_key(rows, 1, where)},
-                       static_cast<std::size_t>(rows.integer(4)));
+    const TileId id{static_cast<std::size_t>(rows.integer(0)), tile_key(rows, 1, where)};
+    order.require_after_last(id);
+    sizes.emplace_back(id, static_cast<std::size_t>(rows.integer(4)));
   }
   return sizes;
 }
@@ -285,12 +318,15 @@ void MapReader::for_each_tile(
   const Snapshot snapshot(database);
   const std::size_t submap_count = submaps().size();
   TileDecoder decoder;
+  TileOrder order(database.where());
   database_->for_each_tile([&](const TileRow& row) {
     if (row.submap < 0 || row.submap >= static_cast<std::int64_t>(submap_count)) {
       throw InputError(fmt::format("a tile belongs to submap {}, which is missing", row.submap),
                        database.where(), kRestore);
     }
-    f(static_cast<std::size_t>(row.submap), row.key, decoder.decode(row, database.where()));
+    const TileId id{static_cast<std::size_t>(row.submap), row.key};
+    if (!database_->on_damage) order.require_after_last(id);
+    f(id.submap, id.key, decoder.decode(row, database.where()));
   });
 }
 
@@ -298,7 +334,12 @@ PointCloud MapReader::all_points_local() const {
   const Snapshot snapshot(*database_->sqlite);
   const std::vector<RigidMotion> T_local_submap = submaps();
   PointCloud points_local;
-  for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+  for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+    const bool joins = points_local.empty() || tile.empty() ||
+                       points_local.intensity.empty() == tile.intensity.empty();
+    if (!joins) {
+      fail_at({submap, key}, "only some tiles have intensities", database_->sqlite->where());
+    }
     PointCloud tile_local = tile;
     tile_local.origin.setZero();
     for (Eigen::Vector3f& p : tile_local.position) {

@@ -61,7 +61,7 @@ class MapReader {
   explicit MapReader(const std::filesystem::path& path);
   /// Reads what is whole of a file that may be damaged: tiles and frames that cannot be read are
   /// told of, a line each, and left out. InputError if it is no map, or not even its meta data and
-  /// submaps are whole.
+  /// submaps are whole. What a damaged file has out of order comes out of order.
   MapReader(const std::filesystem::path& path,
             std::function<void(const std::string& damage)> on_damage);
   ~MapReader();

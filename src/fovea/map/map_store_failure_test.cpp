@@ -437,6 +437,58 @@ TEST(MapReader, OfADamagedFileWhatIsWholeIsRead) {
   EXPECT_GT(partly, 60u);
 }
 
+// Bytes of an index put where others are: SQLite gives rows in the order in which they lie there.
+TEST(MapReader, RowsOutOfOrderAreDamage) {
+  const TemporaryFolder folder;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    FrameRecord frame;
+    frame.note = "frame of a test";
+    for (frame.index = 3; frame.index <= 4; ++frame.index) writer->put_frame(frame);
+    writer->put_submap(0, RigidMotion::Identity());
+    writer->commit();
+  }
+  std::string bytes = read_file(folder / "a.fovea");
+  // A row of a table is its length, its number and then its columns; the later lies before.
+  const std::size_t at = bytes.find("frame of a test");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t begin = bytes.rfind(char{4}, at);
+  bytes[begin] = 2;
+  write_file(folder / "b.fovea", bytes);
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "b.fovea").frames(); }),
+              AllOf(HasSubstr("not in order"), HasSubstr("frame 2")));
+  std::vector<std::string> damages;
+  const MapReader salvage(folder / "b.fovea",
+                          [&](const std::string& what) { damages.push_back(what); });
+  EXPECT_EQ(salvage.frames().size(), 2u);
+  EXPECT_THAT(damages, IsEmpty());
+}
+
+TEST(MapReader, IntensitiesAreInAllTilesOrNone) {
+  const TemporaryFolder folder;
+  PointCloud with = one_point_each({{1, 1, 1}});
+  with.intensity = {0.5f};
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    writer->put_submap(0, RigidMotion::Identity());
+    writer->put_tile({0, {0, 0, 0}}, one_point_each({{1, 1, 1}}));
+    writer->put_tile({0, {1, 0, 0}}, with);
+    writer->commit();
+  }
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea").all_points_local(); }),
+              AllOf(HasSubstr("only some tiles have intensities"), HasSubstr("tile 1 0 0")));
+}
+
+// A map may come from anybody, and a view of his can be a query without end.
+TEST(MapReader, AViewInPlaceOfATableIsRefused) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  run_sql(folder / "a.fovea",
+          "DROP TABLE meta; CREATE VIEW meta(key, value) AS SELECT id, pose FROM submaps");
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea").meta(); }),
+              HasSubstr("prohibited"));
+}
+
 TEST(MapReader, NamesTheDamagedFrameOrSubmap) {
   const TemporaryFolder folder;
   const auto damage = [&](const std::string& sql) {

@@ -59,6 +59,9 @@ Database::Database(const std::filesystem::path& path, Access access,
     sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
     // A map may come from anybody: nothing in its schema gets to run code.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    // Nor to be a query without end under a table's name.
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   } catch (...) {
     sqlite3_close(handle_);
     throw;

@@ -15,6 +15,9 @@ namespace {
 /// The fastest keeps up with the mapper; the columns are packed so that it finds what there is.
 constexpr int kCompressionLevel = 1;
 
+/// Bytes of the smallest block of a zstd frame, and of the largest that it unpacks to.
+constexpr std::size_t kLeastBlock = 4, kMostOfBlock = 1 << 17;
+
 void add_bytes(XXH3_state_t* state, const void* data, std::size_t size) {
   XXH3_64bits_update(state, data, size);
 }
@@ -104,6 +107,8 @@ PointCloud TileDecoder::decode(const TileRow& row, const std::string& map_path) 
     const std::size_t size = packed_size(i, points);
     const auto unpacked = [&] {
       if (ZSTD_getFrameContentSize(blob.data(), blob.size()) != size) return false;
+      // Before memory is taken: a forged row must not ask for what its blobs cannot fill.
+      if (size / kMostOfBlock > blob.size() / kLeastBlock) return false;
       memory_.resize(size);
       return ZSTD_decompressDCtx(context_.get(), memory_.data(), size, blob.data(), blob.size()) ==
              size;

@@ -1,0 +1,38 @@
+#include "fovea/map/tile_codec.h"
+
+#include <gtest/gtest.h>
+
+#include "../../../tests/peak_memory.h"
+#include "../../../tests/sample_map.h"
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+TEST(TileDecoder, AForgedSizeTakesNoMemory) {
+  TileEncoder encoder;
+  TileRow row = encoder.encode({}, one_point_each({{1, 1, 1}}));
+  row.points = kMaxTilePoints;
+  // zstd: a frame whose header has its size in 8 bytes, and one block that repeats a byte.
+  std::vector<std::uint8_t> frame{0x28, 0xb5, 0x2f, 0xfd, 0xe0};
+  const std::uint64_t size = packed_size(0, static_cast<std::size_t>(row.points));
+  for (int i = 0; i < 8; ++i) frame.push_back(static_cast<std::uint8_t>(size >> (8 * i)));
+  frame.insert(frame.end(), {0x03, 0x00, 0x10, 0});
+  row.blobs[0] = std::as_bytes(std::span(frame));
+  row.checksum = checksum(row);
+  TileDecoder decoder;
+  EXPECT_LT(rise_of_peak_memory([&] { EXPECT_THROW(decoder.decode(row, "map"), InputError); }),
+            kMemoryOfASmallFile);
+}
+
+// A column that is the same everywhere compresses to a thousandth and less.
+TEST(TileDecoder, LargeTilesOfOneValueComeBack) {
+  const PointCloud tile =
+      one_point_each(std::vector<Eigen::Vector3f>(1 << 20, Eigen::Vector3f::Zero()));
+  TileEncoder encoder;
+  TileDecoder decoder;
+  expect_same_columns(decoder.decode(encoder.encode({}, tile), "map"), tile);
+}
+
+}  // namespace
+}  // namespace fovea
