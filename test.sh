@@ -4,19 +4,26 @@
 #   ./test.sh --sanitize [address|thread] [--no-install]
 #                                        the unit tests under address + undefined behaviour and under
 #                                        thread sanitizers (or one of them)
+#   ./test.sh --fuzz [SECONDS] [--no-install]
+#                                        the fuzzers of the readers (fuzz/), each for so long (600)
 set -euo pipefail
+shopt -s extglob
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 install_flag=
 sanitizers=()
 sanitize=false
+fuzz=false
+fuzz_seconds=600
 for argument in "$@"; do
   case $argument in
     --no-install) install_flag=--no-install ;;
     --sanitize) sanitize=true ;;
     address | thread) sanitizers+=("$argument") ;;
+    --fuzz) fuzz=true ;;
+    [1-9]*([0-9])) fuzz_seconds=$argument ;;
     -h | --help)
-      sed -n '2,6s/^# //p' "$0"
+      sed -n '2,8s/^# //p' "$0"
       exit 0
       ;;
     *)
@@ -32,6 +39,12 @@ run_tests() { # PRESET [CTEST OPTION...]
   shift
   ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" "$@"
 }
+
+if $fuzz; then
+  scripts/build.sh fuzz fuzzers
+  FOVEA_FUZZ_SECONDS=$fuzz_seconds run_tests fuzz
+  exit 0
+fi
 
 if ! $sanitize; then
   scripts/check_layers.sh

@@ -30,7 +30,11 @@ std::string sample_map(const std::filesystem::path& path) {
   frame.revisit = Revisit{};
   frame.figures = {{"points_scan", 19'329}};
   map->put_frame(frame);
-  map->put_frame({.index = 1, .status = FrameStatus::kSkipped, .note = "no scan"});
+  FrameRecord skipped;
+  skipped.index = 1;
+  skipped.status = FrameStatus::kSkipped;
+  skipped.note = "no scan";
+  map->put_frame(skipped);
   map->put_submap(0, RigidMotion::Identity());
   map->put_tile({0, {0, 0, 0}}, sample_tile());
   map->commit();

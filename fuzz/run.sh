@@ -17,7 +17,7 @@ export TMPDIR
 trap 'rm -rf "$TMPDIR"' EXIT
 
 options=(-max_total_time="${FOVEA_FUZZ_SECONDS:-600}" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024
-  -print_final_stats=1 -verbosity=1 -artifact_prefix="$findings/$name-")
+  -print_final_stats=1 -artifact_prefix="$findings/$name-")
 [[ ! -e fuzz/dictionaries/$name.dict ]] || options+=(-dict="fuzz/dictionaries/$name.dict")
 if ! "$program" "${options[@]}" "$@" "$found" "fuzz/corpus/$name"; then
   echo "fuzz: $name has a finding, its input is kept as $findings/$name-*; see CONTRIBUTING.md" >&2
