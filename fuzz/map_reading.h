@@ -23,6 +23,10 @@ inline void check_order(const MapReader& map) {
   for (std::size_t i = 1; i < tiles.size(); ++i) {
     require(tiles[i - 1].first < tiles[i].first, "tiles are in order");
   }
+  // As a run that is resumed takes them over.
+  TileMap in_memory;
+  for (const RigidMotion& T_local_submap : map.submaps()) in_memory.add_submap(T_local_submap);
+  for (const auto& [id, points] : tiles) in_memory.declare_stored(id, points);
 }
 
 inline void ask_all(const MapReader& map) {

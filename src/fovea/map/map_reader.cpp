@@ -293,17 +293,21 @@ std::size_t MapReader::colored_size() const {
 
 std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
   const std::string where = database_->sqlite->where();
+  const Snapshot snapshot(*database_->sqlite);
+  const std::size_t submap_count = submaps().size();
   Statement rows(*database_->sqlite,
                  "SELECT submap, x, y, z, points FROM tiles ORDER BY submap, x, y, z");
   std::vector<std::pair<TileId, std::size_t>> sizes;
   TileOrder order(where);
   while (rows.step()) {
-    if (!std::in_range<std::size_t>(rows.integer(0)) || rows.integer(4) < 0) {
+    const std::int64_t submap = rows.integer(0), points = rows.integer(4);
+    if (submap < 0 || submap >= static_cast<std::int64_t>(submap_count) || points < 0 ||
+        points > kMaxTilePoints) {
       throw InputError("a tile has an impossible submap or size", where, kRestore);
     }
-    const TileId id{static_cast<std::size_t>(rows.integer(0)), tile_key(rows, 1, where)};
+    const TileId id{static_cast<std::size_t>(submap), tile_key(rows, 1, where)};
     order.require_after_last(id);
-    sizes.emplace_back(id, static_cast<std::size_t>(rows.integer(4)));
+    sizes.emplace_back(id, static_cast<std::size_t>(points));
   }
   return sizes;
 }

@@ -510,6 +510,14 @@ TEST(MapReader, NamesTheDamagedFrameOrSubmap) {
   EXPECT_THAT(damage("UPDATE submaps SET pose='' WHERE id=1"), HasSubstr("submap 1"));
   EXPECT_THAT(damage("DELETE FROM submaps WHERE id=0"), HasSubstr("submap 0"));
   EXPECT_THAT(damage("DELETE FROM submaps WHERE id=1"), HasSubstr("submap 1"));
+  const auto sizes_damaged_by = [&](const std::string& sql) {
+    damage(sql);
+    return message<InputError>([&] { MapReader(folder / "a.fovea").tile_sizes(); });
+  };
+  EXPECT_THAT(sizes_damaged_by("UPDATE tiles SET submap=2 WHERE rowid=1"),
+              HasSubstr("impossible submap"));
+  EXPECT_THAT(sizes_damaged_by("UPDATE tiles SET points=1<<27 WHERE rowid=1"),
+              HasSubstr("impossible submap or size"));
   EXPECT_THAT(damage("UPDATE tiles SET x=1<<40 WHERE rowid=1"), HasSubstr("impossible key"));
   EXPECT_THAT(damage("ALTER TABLE tiles DROP COLUMN range"), HasSubstr("cannot be read"));
 }
