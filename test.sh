@@ -7,7 +7,6 @@
 #   ./test.sh --fuzz [SECONDS] [--no-install]
 #                                        the fuzzers of the readers (fuzz/), each for so long (600)
 set -euo pipefail
-shopt -s extglob
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 install_flag=
@@ -21,14 +20,16 @@ for argument in "$@"; do
     --sanitize) sanitize=true ;;
     address | thread) sanitizers+=("$argument") ;;
     --fuzz) fuzz=true ;;
-    [1-9]*([0-9])) fuzz_seconds=$argument ;;
     -h | --help)
       sed -n '2,8s/^# //p' "$0"
       exit 0
       ;;
     *)
-      echo "test: unknown option $argument, see ./test.sh --help" >&2
-      exit 2
+      if ! $fuzz || [[ ! $argument =~ ^[1-9][0-9]*$ ]]; then
+        echo "test: unknown option $argument, see ./test.sh --help" >&2
+        exit 2
+      fi
+      fuzz_seconds=$argument
       ;;
   esac
 done
