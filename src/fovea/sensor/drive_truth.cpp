@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "fovea/base/errors.h"
 #include "fovea/geometry/pose_file.h"
@@ -22,6 +23,20 @@ static_assert(std::endian::native == std::endian::little, "the files are little 
 constexpr int kVersion = 1;
 constexpr std::size_t kReturnBytes = 28;
 constexpr const char* kRemedy = "write the drive anew with 'fovea simulate'";
+
+/// The library converts what it finds, and 1e300 to no int that there is.
+template <class Int>
+Int whole_number(const Json& json, const fs::path& file) {
+  if (json.is_number_unsigned() && std::in_range<Int>(json.get<std::uint64_t>())) {
+    return static_cast<Int>(json.get<std::uint64_t>());
+  }
+  if (json.is_number_integer() && !json.is_number_unsigned() &&
+      std::in_range<Int>(json.get<std::int64_t>())) {
+    return static_cast<Int>(json.get<std::int64_t>());
+  }
+  throw InputError("the truth's description is damaged (a whole number is none)", file.string(),
+                   kRemedy);
+}
 
 std::string file_stem(int frame) { return fmt::format("{:010d}", frame); }
 
@@ -76,15 +91,17 @@ void DriveTruth::read_description() {
   const std::vector<std::uint8_t> bytes = read_bytes(file);
   try {
     const Json json = Json::parse(bytes);
-    const int version = json.at("version").get<int>();
+    const int version = whole_number<int>(json.at("version"), file);
     if (version != kVersion) {
       throw InputError(
           fmt::format("the truth has format version {}, this program reads {}", version, kVersion),
           file.string(), version > kVersion ? "use a newer Fovea" : kRemedy);
     }
     scene_ = json.at("scene").get<std::string>();
-    described_frames_ = json.at("frames").get<std::size_t>();
-    camera_numbers_ = json.at("cameras").get<std::vector<int>>();
+    described_frames_ = whole_number<std::size_t>(json.at("frames"), file);
+    for (const Json& number : json.at("cameras")) {
+      camera_numbers_.push_back(whole_number<int>(number, file));
+    }
     sweep_period_ = json.at("sweep_period").get<double>();
     const Json& origin = json.at("origin");
     origin_ = {origin.at("latitude").get<double>(), origin.at("longitude").get<double>(),

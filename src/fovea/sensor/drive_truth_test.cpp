@@ -116,6 +116,8 @@ TEST_F(DriveTruthFiles, DamageIsNamed) {
   EXPECT_THAT(error(), HasSubstr("3 lines for 4 frames"));
   edit(truth_ / "truth.json", "\"version\": 1", "\"version\": 2");
   EXPECT_THAT(error(), HasSubstr("newer Fovea"));
+  edit(truth_ / "truth.json", "\"version\": 2", "\"version\": 1e300");
+  EXPECT_THAT(error(), HasSubstr("a whole number is none"));
   edit(truth_ / "truth.json", "\"version\"", "\"verse\"");
   EXPECT_THAT(error(), HasSubstr("damaged"));
   write_text(truth_ / "truth.json", "{");

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
@@ -41,6 +42,14 @@ Eigen::Matrix<float, N, 1> vector_of(const Json& json) {
   return Eigen::Map<const Eigen::Matrix<float, N, 1>>(numbers.data());
 }
 
+/// The library converts what it finds, and 1e300 to no integer that there is.
+std::uint32_t seed_of(const Json& json) {
+  if (!json.is_number_unsigned() || !std::in_range<std::uint32_t>(json.get<std::uint64_t>())) {
+    throw std::invalid_argument("a seed is no whole number");
+  }
+  return static_cast<std::uint32_t>(json.get<std::uint64_t>());
+}
+
 Material material_of(const Json& json) {
   Material m;
   m.name = json.at("name").get<std::string>();
@@ -50,7 +59,7 @@ Material material_of(const Json& json) {
   m.scale = json.at("scale").get<float>();
   m.size = vector_of<2>(json.at("size"));
   m.contrast = json.at("contrast").get<float>();
-  m.seed = json.at("seed").get<std::uint32_t>();
+  m.seed = seed_of(json.at("seed"));
   m.text = json.at("text").get<std::string>();
   m.gloss = json.at("gloss").get<float>();
   m.reflectance = json.at("reflectance").get<float>();

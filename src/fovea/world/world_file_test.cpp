@@ -144,6 +144,11 @@ TEST(WorldFile, DamageIsNamedWithItsFile) {
   unknown.replace(unknown.find("lettering"), 9, "scribbles");
   overwrite(folder / "world.json", unknown);
   EXPECT_THAT(error_of(folder.path()), testing::HasSubstr("damaged"));
+  std::string endless = json;
+  const std::size_t seed = endless.find("\"seed\": ") + 8;
+  endless.replace(seed, endless.find(',', seed) - seed, "1e300");
+  overwrite(folder / "world.json", endless);
+  EXPECT_THAT(error_of(folder.path()), testing::HasSubstr("no whole number"));
 }
 
 TEST(WorldFile, AMissingFolderIsAnOutputError) {
