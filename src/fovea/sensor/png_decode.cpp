@@ -37,8 +37,13 @@ void read_from_memory(png_structp png, png_bytep out, std::size_t count) {
 
 void ignore_warning(png_structp, png_const_charp) {}  // odd metadata; never of the pixels
 
-/// Before memory is taken: a damaged header must not ask for what the file cannot fill.
-void require_samples(png_structp png, png_infop header) {
+/// Reads what comes before the samples. A damaged file must not ask for memory that it cannot fill:
+/// libpng would give a note the 2 GB that its length claims.
+void read_info(png_structp png, png_infop header) {
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
+  constexpr int kAllNotes = -1;  // all that pixels do not need
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllNotes);
+  png_read_info(png, header);
   const auto& input = *static_cast<const PngInput*>(png_get_io_ptr(png));
   const std::size_t bytes = png_get_rowbytes(png, header) * png_get_image_height(png, header);
   if (bytes > input.file.size() * kDeflateMaxRatio) {
@@ -48,9 +53,7 @@ void require_samples(png_structp png, png_infop header) {
 
 /// Reads the header and asks for 8-bit grey or RGB rows. Calls png_error, so holds no destructors.
 void read_header(png_structp png, png_infop header) {
-  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
-  png_read_info(png, header);
-  require_samples(png, header);
+  read_info(png, header);
   if (png_get_bit_depth(png, header) == 16) png_error(png, "it has 16 bits a channel, not 8");
   png_set_expand(png);
   png_set_strip_alpha(png);
@@ -75,9 +78,7 @@ bool decode(png_structp png, png_infop header, Image& image, std::vector<png_byt
 
 /// As read_header, for samples of 16 bits, which a PNG file stores high byte first.
 void read_header_16(png_structp png, png_infop header) {
-  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
-  png_read_info(png, header);
-  require_samples(png, header);
+  read_info(png, header);
   if (png_get_bit_depth(png, header) != 16 ||
       png_get_color_type(png, header) != PNG_COLOR_TYPE_GRAY) {
     png_error(png, "it has not one channel of 16 bits");

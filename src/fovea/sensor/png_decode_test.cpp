@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../../../tests/peak_memory.h"
 #include "fovea/base/random.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/png_plain_decode.h"
@@ -262,6 +263,15 @@ TEST(PngDecode, SizesThatTheSamplesDoNotFillAreErrors) {
     EXPECT_FALSE(decode_plain_png(file)) << height;
     expect_as_libpng(file, "height " + std::to_string(height));
   }
+}
+
+TEST(PngDecode, AChunkThatClaimsGigabytesTakesNoMemory) {
+  Bytes file = png_file(7, 3, natural_samples(7, 3, 3, 10), {});
+  file.resize(33);  // the header
+  file.insert(file.end(), {0x7c, 0xff, 0xff, 0xff, 'z', 'T', 'X', 't', 'a', 0, 0});
+  EXPECT_LT(rise_of_peak_memory(
+                [&] { EXPECT_EQ(outcome_of(file, &decode_png).error, "the file is truncated"); }),
+            kMemoryOfASmallFile);
 }
 
 TEST(PngDecode, SizesThatNoFileOfItsLengthHoldsAreRefusedBeforeMemoryIsTaken) {
