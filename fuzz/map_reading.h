@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
 #include "fuzz_input.h"
 
@@ -26,11 +27,19 @@ inline void check_order(const MapReader& map) {
   // As a run that is resumed takes them over.
   TileMap in_memory;
   for (const RigidMotion& T_local_submap : map.submaps()) in_memory.add_submap(T_local_submap);
-  for (const auto& [id, points] : tiles) in_memory.declare_stored(id, points);
+  for (const auto& [id, points] : tiles) {
+    in_memory.declare_stored(id, points);
+    read_or_refuse([&, id = id] { map.read_tile(id).check(); });
+  }
 }
 
 inline void ask_all(const MapReader& map) {
-  read_or_refuse([&] { map.meta(); });
+  read_or_refuse([&] {
+    const MapMeta meta = map.meta();
+    map_origin(meta);
+    read_or_refuse([&] { map_tile_size(meta); });
+    read_or_refuse([&] { merged_drives(meta); });
+  });
   read_or_refuse([&] { check_frames(map.frames()); });
   read_or_refuse([&] { map.submaps(); });
   read_or_refuse([&] { map.size(); });
