@@ -6,6 +6,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/map/number_text.h"
+#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -50,6 +51,15 @@ std::optional<GeodeticPoint> map_origin(const MapMeta& meta) {
              altitude = numbers(meta, "origin.altitude", 1);
   if (!latitude || !longitude || !altitude) return std::nullopt;
   return GeodeticPoint{latitude->front(), longitude->front(), altitude->front()};
+}
+
+double map_tile_size(const MapMeta& meta) {
+  const auto size = numbers(meta, "map.tile_size", 1);
+  if (!size || !(size->front() > 0 && size->front() <= kMaxTileSize)) {
+    throw InputError("the map does not tell the size of its tiles", "the map's table 'meta'",
+                     "give a map that 'fovea map' wrote");
+  }
+  return size->front();
 }
 
 std::vector<MergedDrive> merged_drives(const MapMeta& meta) {

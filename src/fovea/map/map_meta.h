@@ -13,6 +13,9 @@ namespace fovea {
 /// Where a map says that its frame `local` begins; nothing if it does not.
 std::optional<GeodeticPoint> map_origin(const MapMeta& meta);
 
+/// Edge of a map's tiles, m; InputError if it does not tell one that tiles may have.
+double map_tile_size(const MapMeta& meta);
+
 /// One of the drives of a merged map, and what is its own there.
 struct MergedDrive {
   std::string digest;  ///< of the map that it was before

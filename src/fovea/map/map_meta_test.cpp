@@ -31,6 +31,14 @@ TEST(MapMeta, TellsWhereLocalBegins) {
   }
 }
 
+TEST(MapMeta, TellsTheSizeOfItsTiles) {
+  EXPECT_EQ(map_tile_size({{"map.tile_size", "4"}}), 4);
+  EXPECT_THROW(map_tile_size({}), InputError);
+  for (const char* text : {"", "four", "0", "-4", "nan", "1000"}) {
+    EXPECT_THROW(map_tile_size(with({}, "map.tile_size", text)), InputError) << text;
+  }
+}
+
 TEST(MapMeta, TellsItsDrives) {
   MapMeta meta = georeferenced();
   EXPECT_TRUE(merged_drives(meta).empty());

@@ -15,6 +15,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/merging/map_gain.h"
 
 namespace fovea {
 namespace {
@@ -22,7 +23,10 @@ namespace {
 /// What is read of a map before its points.
 struct MapContent {
   explicit MapContent(const MapReader& map)
-      : meta(map.meta()), frames(map.frames()), T_local_submap(map.submaps()) {
+      : meta(map.meta()),
+        frames(map.frames()),
+        T_local_submap(map.submaps()),
+        tile_size(map_tile_size(meta)) {
     drives = merged_drives(meta);
     if (!drives.empty()) return;
     MergedDrive drive;
@@ -46,6 +50,7 @@ struct MapContent {
   std::vector<FrameRecord> frames;
   std::vector<RigidMotion> T_local_submap;
   std::vector<MergedDrive> drives;  // one at least
+  double tile_size = 0;             // m
 };
 
 const MergedDrive* find_drive(const MapContent& map, const std::string& digest) {
@@ -92,10 +97,10 @@ std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b) 
 }
 
 void require_fit(const MapContent& a, const MapContent& b, const std::string& where) {
-  if (a.text("map.tile_size") != b.text("map.tile_size")) {
-    throw InputError(fmt::format("the maps' tiles differ in size, {} m and {} m",
-                                 a.text("map.tile_size"), b.text("map.tile_size")),
-                     where, "map one of the drives again with the other's map.tile_size");
+  if (a.tile_size != b.tile_size) {
+    throw InputError(
+        fmt::format("the maps' tiles differ in size, {} m and {} m", a.tile_size, b.tile_size),
+        where, "map one of the drives again with the other's map.tile_size");
   }
 }
 
@@ -155,8 +160,8 @@ class MapJoiner {
       : a_(a), b_(b), output_(output), map_(map) {}
 
   void copy_a(const MapContent& content) {
-    for (const RigidMotion& T : content.T_local_submap) add_submap(T);
-    for (const FrameRecord& frame : content.frames) output_.put_frame(frame);
+    copy_all_but_tiles(a_, output_);
+    for (const RigidMotion& T : content.T_local_submap) map_.add_submap(T);
     a_.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
       put_tile({submap, key}, tile);
     });
@@ -226,16 +231,11 @@ MapMeta merged_meta(const MapContent& a, const MapContent& b,
   return meta;
 }
 
-}  // namespace
-
-MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& job) {
-  const auto held_a = a.hold_state(), held_b = b.hold_state();
-  const MapContent content_a(a), content_b(b);
+/// How the two lie to each other and differ in brightness, into the figures.
+/// @return T_a_b of the local frames as stated, or identity
+RigidMotion compare(const MapReader& a, const MapReader& b, const MapContent& content_a,
+                    const MapContent& content_b, const MergeJob& job, MergeFigures& figures) {
   const std::string where = job.output.string();
-  require_fit(content_a, content_b, where);
-  const std::vector<AddedDrive> added = drives_to_add(content_a, content_b);
-  MergeFigures figures;
-  figures.drives_added = added.size();
   const auto stated = stated_T_a_b(content_a, content_b);
   figures.georeferenced = stated.has_value();
   if (!stated && !job.force) {
@@ -243,32 +243,42 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
                      where, "merge them as if they had one local frame (--force)");
   }
   const RigidMotion T_a_b = stated.value_or(RigidMotion::Identity());
-  double tile_size = 0;
-  std::istringstream(content_a.text("map.tile_size")) >> tile_size;
-  if (!added.empty()) {
+  if (figures.drives_added > 0) {
     figures.alignment = align_maps(MapGeometry(a), MapGeometry(b), content_b.frames, T_a_b);
     if (!job.force) require_overlap(figures.alignment, where);
-    figures.gain = gain_of_maps(a, b, figures.alignment.T_a_submap, tile_size);
+    figures.gain = gain_of_maps(a, b, figures.alignment.T_a_submap, content_a.tile_size);
   }
+  return T_a_b;
+}
 
-  TileMap map(tile_size);
+}  // namespace
+
+MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& job) {
+  const auto held_a = a.hold_state(), held_b = b.hold_state();
+  const MapContent content_a(a), content_b(b);
+  require_fit(content_a, content_b, job.output.string());
+  const std::vector<AddedDrive> added = drives_to_add(content_a, content_b);
+  MergeFigures figures;
+  figures.drives_added = added.size();
+  const RigidMotion T_a_b = compare(a, b, content_a, content_b, job, figures);
+
+  TileMap map(content_a.tile_size);
   auto writer = MapWriter::create(job.output, job.force);
   MapJoiner joiner(a, b, *writer, map);
-  const MapMeta meta = added.empty() ? content_a.meta : merged_meta(content_a, content_b, added);
-  for (const auto& [key, value] : meta) {
-    if (key != kSchemaVersionKey) writer->put_meta(key, value);
-  }
   joiner.copy_a(content_a);
-  if (!added.empty()) {
+  if (added.empty()) {
+    writer->commit();
+  } else {
     joiner.add_b(content_b, added, figures.alignment, T_a_b, figures.gain);
-  }
-  MapKeeper keeper(std::move(writer),
-                   {available_threads() > 1, job.memory, /*commit_at_end=*/true});
-  if (!added.empty()) {
+    for (const auto& [key, value] : merged_meta(content_a, content_b, added)) {
+      writer->put_meta(key, value);
+    }
+    MapKeeper keeper(std::move(writer),
+                     {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, keeper);
     keeper.checkpoint(map, {}, Eigen::Vector3d::Zero(), 0);
+    keeper.finish();
   }
-  keeper.finish();
   figures.points = map.size();
   return figures;
 }

@@ -7,21 +7,14 @@
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/point_index.h"
 #include "fovea/mapping/color_fusion.h"
-#include "fovea/mapping/exposure.h"
+#include "fovea/merging/place_points.h"
 
 namespace fovea {
 namespace {
 
-/// Points of two maps nearer than this show one surface: what is left of registration and of the
-/// LiDAR's noise.
-constexpr float kSameSurface = 0.05f;  // m
-/// What an index of a map's points is built for.
-constexpr double kIndexSpacing = kSameSurface / 4;
 /// Edge of the cubes that are merged one after the other, m.
 constexpr double kCube = 32;
 constexpr std::size_t kGrain = 4096;
-/// How many of B's tiles are asked for the gain at most, and every how many of their points.
-constexpr std::size_t kGainTiles = 256, kGainStep = 8;
 
 using Cube = std::array<int, 3>;
 
@@ -36,39 +29,6 @@ Eigen::Vector3d middle_of(const Cube& cube) {
 
 /// So far from its middle may lie what has to do with a cube's points.
 const double kCubeReach = kCube / 2 * std::sqrt(3.0) + kSameSurface;
-
-/// Points of some tiles around a place, and where each comes from.
-class PlacePoints {
- public:
-  explicit PlacePoints(const Eigen::Vector3d& center_local) : center_local_(center_local) {}
-
-  void add(std::size_t tile, const PointCloud& points, const RigidMotion& T_local_submap,
-           double radius) {
-    const Eigen::Matrix3f R = T_local_submap.linear().cast<float>();
-    const Eigen::Vector3f t = (T_local_submap * points.origin - center_local_).cast<float>();
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3f p = R * points.position[i] + t;
-      if (p.norm() > float(radius)) continue;
-      position_.push_back(p);
-      from_.push_back({std::uint32_t(tile), i});
-    }
-  }
-
-  struct From {
-    std::uint32_t tile, point;
-  };
-  const std::vector<Eigen::Vector3f>& position() const { return position_; }
-  const From& from(std::size_t i) const { return from_[i]; }
-
- private:
-  Eigen::Vector3d center_local_;
-  std::vector<Eigen::Vector3f> position_;
-  std::vector<From> from_;
-};
-
-FusedColor color_of(const PointCloud& tile, std::size_t i) {
-  return {tile.color[i], tile.views[i], tile.spread[i], tile.weight[i]};
-}
 
 /// Merges what one cube holds.
 class CubeMerger {
@@ -197,12 +157,6 @@ class CubeMerger {
   TileColors changed_;
 };
 
-/// Middle of a tile, and how far its points may lie from there.
-Eigen::Vector3d middle_of(const TileKey& key, double tile_size) {
-  return tile_size * (Eigen::Vector3d(key.x, key.y, key.z) + Eigen::Vector3d::Constant(0.5));
-}
-double reach_of_tile(double tile_size) { return tile_size / 2 * std::sqrt(3.0) + 0.01; }
-
 /// The cubes that B's tiles reach into, along B's way.
 std::vector<Cube> cubes_of(const TileMap& map, std::size_t first_b) {
   std::vector<Cube> cubes;
@@ -221,10 +175,7 @@ std::vector<Cube> cubes_of(const TileMap& map, std::size_t first_b) {
   };
   for (std::size_t id = first_b; id < map.submaps().size(); ++id) {
     const Submap& submap = map.submaps()[id];
-    std::set<TileKey> keys;  // of both kinds in one order: which are in memory must not matter
-    for (const auto& [key, tile] : submap.tiles) keys.insert(key);
-    for (const auto& [key, points] : submap.stored) keys.insert(key);
-    for (const TileKey& key : keys) take_tile(submap, key);
+    for (const auto& [key, points] : submap.stored) take_tile(submap, key);
   }
   return cubes;
 }
@@ -240,46 +191,6 @@ PointMergeFigures merge_points(TileMap& map, std::size_t first_b, double spacing
     if (keeper.needs_memory(map)) keeper.checkpoint(map, {}, middle_of(cube), kCubeReach);
   }
   return figures;
-}
-
-Eigen::Array3f gain_of_maps(const MapReader& a, const MapReader& b,
-                            const std::vector<RigidMotion>& T_a_submap_b, double tile_size) {
-  TileMap places(tile_size);  // of A's tiles: none of them is ever in memory
-  const std::vector<RigidMotion> T_a_submap = a.submaps();
-  for (const RigidMotion& T : T_a_submap) places.add_submap(T);
-  for (const auto& [id, points] : a.tile_sizes()) places.declare_stored(id, points);
-  places.add_submap(RigidMotion::Identity());  // the last one's tiles count as near everywhere
-  const auto tiles_b = b.tile_sizes();
-  const std::size_t step = std::max<std::size_t>(1, tiles_b.size() / kGainTiles);
-  std::vector<Eigen::Array3f> gains;
-  for (std::size_t k = 0; k < tiles_b.size(); k += step) {
-    const TileId id = tiles_b[k].first;
-    const RigidMotion& T_a_b = T_a_submap_b.at(id.submap);
-    const Eigen::Vector3d center_a = T_a_b * middle_of(id.key, tile_size);
-    const double radius = reach_of_tile(tile_size);
-    const std::vector<TileId> near = places.stored_near(center_a, radius);
-    if (near.empty()) continue;
-    PlacePoints points_a(center_a), points_b(center_a);
-    std::vector<PointCloud> clouds;
-    for (const TileId& id_a : near) {
-      clouds.push_back(a.read_tile(id_a));
-      points_a.add(clouds.size() - 1, clouds.back(), T_a_submap[id_a.submap], radius);
-    }
-    const PointCloud tile_b = b.read_tile(id);
-    points_b.add(0, tile_b, T_a_b, radius);
-    const PointIndex index_a(points_a.position(), kIndexSpacing);
-    for (std::size_t i = 0; i < points_b.position().size(); i += kGainStep) {
-      const Neighbor nearest = index_a.nearest(points_b.position()[i], kSameSurface);
-      if (!std::isfinite(nearest.squared_distance)) continue;
-      const FusedColor seen = color_of(tile_b, points_b.from(i).point);
-      const PlacePoints::From from = points_a.from(nearest.index);
-      const FusedColor known = color_of(clouds[from.tile], from.point);
-      if (seen.views < 2 || known.views < 2) continue;
-      const auto gain = gain_between(to_float(known.color).array(), to_float(seen.color).array());
-      if (gain) gains.push_back(*gain);
-    }
-  }
-  return median_gain(gains);
 }
 
 }  // namespace fovea

@@ -1,7 +1,6 @@
 // The points of two maps that lie in one frame, as the points of one map.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 
 #include "fovea/map/map_keeper.h"
@@ -16,17 +15,12 @@ struct PointMergeFigures {
 
 /// Removes the points of the later of two maps where the earlier one knows the surface, and fuses
 /// their colours into its points.
-/// @param map      both, in one local frame: A's submaps, then B's; its tiles may all be stored
+/// @param map      both, in one local frame: A's submaps, then B's; all tiles in the keeper's file
 /// @param first_b  B's first submap
 /// @param spacing  of the points, m: of a surface that A knows but no camera of its own has
 ///                 coloured, B's points stay unless they are as near as this
 /// @param keeper   of the map; no change is committed yet when it returns
 PointMergeFigures merge_points(TileMap& map, std::size_t first_b, double spacing,
                                MapKeeper& keeper);
-
-/// The gain, a channel, that brings B's colours to A's: median over some of the points that both
-/// have. 1 where too few tell.
-Eigen::Array3f gain_of_maps(const MapReader& a, const MapReader& b,
-                            const std::vector<RigidMotion>& T_a_submap_b, double tile_size);
 
 }  // namespace fovea

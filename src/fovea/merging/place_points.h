@@ -1,0 +1,63 @@
+// Points of tiles of two maps at one place.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/geometry/rigid_motion.h"
+#include "fovea/map/tile_map.h"
+#include "fovea/mapping/color_fusion.h"
+
+namespace fovea {
+
+/// Points of two maps nearer than this show one surface: what is left of registration and of the
+/// LiDAR's noise, m.
+inline constexpr float kSameSurface = 0.05f;
+/// What an index of a map's points is built for, m.
+inline constexpr double kIndexSpacing = kSameSurface / 4;
+
+/// Points of some tiles around a place, and where each comes from.
+class PlacePoints {
+ public:
+  explicit PlacePoints(const Eigen::Vector3d& center_local) : center_local_(center_local) {}
+
+  /// The points of a tile that lie in a ball of `radius` m around the place.
+  /// @param tile  a number by which from() names it
+  void add(std::size_t tile, const PointCloud& points, const RigidMotion& T_local_submap,
+           double radius) {
+    const Eigen::Matrix3f R = T_local_submap.linear().cast<float>();
+    const Eigen::Vector3f t = (T_local_submap * points.origin - center_local_).cast<float>();
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3f p = R * points.position[i] + t;
+      if (p.norm() > float(radius)) continue;
+      position_.push_back(p);
+      from_.push_back({std::uint32_t(tile), i});
+    }
+  }
+
+  struct From {
+    std::uint32_t tile, point;
+  };
+  /// In the axes of local, relative to the place.
+  const std::vector<Eigen::Vector3f>& position() const { return position_; }
+  const From& from(std::size_t i) const { return from_[i]; }
+
+ private:
+  Eigen::Vector3d center_local_;
+  std::vector<Eigen::Vector3f> position_;
+  std::vector<From> from_;
+};
+
+inline FusedColor color_of(const PointCloud& tile, std::size_t i) {
+  return {tile.color[i], tile.views[i], tile.spread[i], tile.weight[i]};
+}
+
+/// Middle of a tile in its submap's frame, and how far from there its points may lie, m.
+inline Eigen::Vector3d middle_of(const TileKey& key, double tile_size) {
+  return tile_size * (Eigen::Vector3d(key.x, key.y, key.z) + Eigen::Vector3d::Constant(0.5));
+}
+inline double reach_of_tile(double tile_size) { return tile_size / 2 * std::sqrt(3.0) + 0.01; }
+
+}  // namespace fovea
