@@ -2,9 +2,9 @@
 // fill.
 #pragma once
 
-#include <sys/resource.h>
-
 #include <cstddef>
+
+#include "fovea/base/process_memory.h"
 
 namespace fovea {
 
@@ -12,14 +12,9 @@ namespace fovea {
 /// earlier step took more.
 template <class Step>
 std::size_t rise_of_peak_memory(Step&& step) {
-  const auto peak = [] {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-  };
-  const std::size_t before = peak();
+  const std::size_t before = peak_resident_memory();
   step();
-  return peak() - before;
+  return peak_resident_memory() - before;
 }
 
 inline constexpr std::size_t kMemoryOfASmallFile = std::size_t{20} << 20;

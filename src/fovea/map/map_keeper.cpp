@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "fovea/base/process_memory.h"
+
 namespace fovea {
 namespace {
 
@@ -29,7 +31,8 @@ void put(MapWriter& writer, const MapRows& rows, const TileChanges& tiles) {
 }  // namespace
 
 MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& options)
-    : most_points_(options.memory / 2 / kBytesPerPoint),
+    : memory_(options.memory),
+      most_points_(options.memory / 2 / kBytesPerPoint),
       commit_at_end_(options.commit_at_end),
       writer_(std::move(writer)),
       worker_(options.threaded) {}
@@ -67,6 +70,7 @@ void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& ce
       tile.points = {};  // the map need not copy it any more when it changes it
     }
     if (!commit_at_end_) writer_->commit();
+    if (resident_memory() > memory_ - memory_ / 4) release_free_memory();
   });
   map.drop_beyond(center_local, radius + (needs_memory(map) ? kAhead : kBeyond));
   undroppable_ = map.size_in_memory();

@@ -59,6 +59,7 @@ class MapKeeper {
   void finish();
 
  private:
+  std::size_t memory_;       // bytes that the process should keep to
   std::size_t most_points_;  // in memory
   bool commit_at_end_;
   std::size_t undroppable_ = 0;        // points that stayed there at the last checkpoint

@@ -1,10 +1,11 @@
 #include "fovea/pipeline/map_summary.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "fovea/base/process_memory.h"
 
 namespace fovea {
 namespace {
@@ -16,12 +17,6 @@ StageLatency latency_of(std::vector<float> milliseconds) {
         std::lround(share * double(milliseconds.size() - 1)))];
   };
   return {at(0.5), at(0.95), milliseconds.back()};
-}
-
-double peak_rss_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
 /// A skipped frame has nothing to be late with.
@@ -105,7 +100,7 @@ MapSummary DriveFigures::summary() const {
                      camera),
          summary.notes);
   }
-  summary.peak_rss_mb = peak_rss_mb();
+  summary.peak_rss_mb = double(peak_resident_memory()) / (1024 * 1024);
   return summary;
 }
 

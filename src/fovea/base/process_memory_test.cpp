@@ -1,0 +1,36 @@
+#include "fovea/base/process_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+namespace fovea {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kOwnAllocator = true;  // the sanitizer's, which keeps what is freed
+#else
+constexpr bool kOwnAllocator = false;
+#endif
+
+TEST(ProcessMemory, WhatIsFreedAmongWhatStaysIsGivenBack) {
+  constexpr std::size_t kBlock = 1 << 14, kBlocks = 4096;
+  release_free_memory();  // of earlier tests
+  const std::size_t before = resident_memory();
+  std::vector<std::unique_ptr<std::vector<char>>> blocks;
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    blocks.push_back(std::make_unique<std::vector<char>>(kBlock, 'x'));
+  }
+  EXPECT_GT(resident_memory(), before + kBlock * kBlocks * 3 / 4);
+  EXPECT_GT(peak_resident_memory(), before + kBlock * kBlocks * 3 / 4);
+  for (std::size_t i = 0; i + 1 < kBlocks; ++i) {
+    if (i % 8 != 0) blocks[i].reset();  // no end of the heap is free
+  }
+  release_free_memory();
+  if (kOwnAllocator) GTEST_SKIP() << "under a sanitizer memory stays";
+  EXPECT_LT(resident_memory(), before + kBlock * kBlocks / 2);
+}
+
+}  // namespace
+}  // namespace fovea
