@@ -11,7 +11,6 @@ namespace fovea {
 namespace {
 
 constexpr std::size_t kBlockPoints = 65536;
-constexpr const char* kRestore = "restore the map from a copy or map the drive again";
 
 }  // namespace
 
@@ -46,7 +45,7 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
   point.position = georeference_.from_local(T_local_submap *
                                             (tile.origin + tile.position[index].cast<double>()));
   if (!point.position.allFinite()) {
-    throw InputError("the position of a point is not finite", "the map's tiles", kRestore);
+    throw InputError("the position of a point is not finite", "the map's tiles", kRestoreMap);
   }
   point.range = tile.range[index];
   if (!tile.intensity.empty()) point.intensity = tile.intensity[index];

@@ -23,7 +23,6 @@ constexpr const char* kFrameColumns =
     "idx, stamp_ns, status, note, pose, navigation_pose, odom_pose, submap, revisited, "
     "revisited_pose, velocity, figures";
 constexpr int kFrameColumnCount = 12, kStampColumn = 1, kSubmapColumn = 7, kRevisitedColumn = 8;
-constexpr const char* kRestore = "restore the map from a copy or map the drive again";
 
 void require_file(const fs::path& path) {
   std::error_code ignored;
@@ -85,7 +84,7 @@ void require_schema(sqlite::Database& database) {
   throw InputError(what,
                    fmt::format("{}, tile {} {} {} of submap {}", map_path, id.key.x, id.key.y,
                                id.key.z, id.submap),
-                   kRestore);
+                   kRestoreMap);
 }
 
 /// The order of the tiles, which SQLite takes from the file.
@@ -124,14 +123,14 @@ std::optional<int> submap_number(std::int64_t value) {
 FrameRecord frame_record(const Statement& row, const std::string& map_path) {
   if (!std::in_range<int>(row.integer(0))) {
     throw InputError(fmt::format("a frame has the impossible index {}", row.integer(0)), map_path,
-                     kRestore);
+                     kRestoreMap);
   }
   FrameRecord record;
   record.index = static_cast<int>(row.integer(0));
   const auto require = [&](const auto& value, const char* column) {
     if (!value) {
       throw InputError(fmt::format("the column '{}' of a frame cannot be read", column),
-                       fmt::format("{}, frame {}", map_path, record.index), kRestore);
+                       fmt::format("{}, frame {}", map_path, record.index), kRestoreMap);
     }
     return *value;
   };
@@ -222,7 +221,7 @@ void MapReader::Database::for_each_whole_tile(const std::function<void(const Til
         throw InputError("a tile cannot be read",
                          fmt::format("{}, tile {} {} {} of submap {}", sqlite->where(), key[1],
                                      key[2], key[3], key[0]),
-                         kRestore);
+                         kRestoreMap);
       }
       f(tile_row(row, sqlite->where()));
     });
@@ -258,7 +257,7 @@ std::vector<FrameRecord> MapReader::frames() const {
       // SQLite takes the order from the file. Of a damaged one every whole frame is wanted.
       if (!database_->on_damage && !frames.empty() && frame.index <= frames.back().index) {
         throw InputError("the frames are not in order",
-                         fmt::format("{}, frame {}", where, frame.index), kRestore);
+                         fmt::format("{}, frame {}", where, frame.index), kRestoreMap);
       }
       frames.push_back(std::move(frame));
     });
@@ -274,7 +273,7 @@ std::vector<RigidMotion> MapReader::submaps() const {
     if (!pose || rows.integer(0) != static_cast<std::int64_t>(submaps.size())) {
       throw InputError("a submap is missing or its pose cannot be read",
                        fmt::format("{}, submap {}", database_->sqlite->where(), submaps.size()),
-                       kRestore);
+                       kRestoreMap);
     }
     submaps.push_back(*pose);
   }
@@ -303,7 +302,7 @@ std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
     const std::int64_t submap = rows.integer(0), points = rows.integer(4);
     if (submap < 0 || submap >= static_cast<std::int64_t>(submap_count) || points < 0 ||
         points > kMaxTilePoints) {
-      throw InputError("a tile has an impossible submap or size", where, kRestore);
+      throw InputError("a tile has an impossible submap or size", where, kRestoreMap);
     }
     const TileId id{static_cast<std::size_t>(submap), tile_key(rows, 1, where)};
     order.require_after_last(id);
@@ -326,7 +325,7 @@ void MapReader::for_each_tile(
   database_->for_each_tile([&](const TileRow& row) {
     if (row.submap < 0 || row.submap >= static_cast<std::int64_t>(submap_count)) {
       throw InputError(fmt::format("a tile belongs to submap {}, which is missing", row.submap),
-                       database.where(), kRestore);
+                       database.where(), kRestoreMap);
     }
     const TileId id{static_cast<std::size_t>(row.submap), row.key};
     if (!database_->on_damage) order.require_after_last(id);

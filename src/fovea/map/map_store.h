@@ -22,6 +22,9 @@ inline constexpr int kMapSchemaVersion = 5;
 inline constexpr const char* kSchemaVersionKey = "schema_version";
 inline constexpr const char* kCropKey = "crop";
 
+/// What to do about a map that is damaged.
+inline constexpr const char* kRestoreMap = "restore the map from a copy or map the drive again";
+
 using MapMeta = std::map<std::string, std::string>;
 
 /// Writes a map. Everything put between two commits is on disk together or not at all; what was

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/map_store.h"
 
 namespace fovea {
 namespace {
@@ -92,7 +93,7 @@ PointCloud TileDecoder::decode(const TileRow& row, const std::string& map_path) 
     throw InputError(what,
                      fmt::format("{}, tile {} {} {} of submap {}", map_path, row.key.x, row.key.y,
                                  row.key.z, row.submap),
-                     "restore the map from a copy or map the drive again");
+                     kRestoreMap);
   };
   if (checksum(row) != row.checksum) fail("the checksum of a tile is wrong");
   if (row.points < 0 || row.points > kMaxTilePoints || !row.origin.allFinite()) {

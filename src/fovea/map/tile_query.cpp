@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/map_store.h"
 
 namespace fovea {
 
@@ -13,7 +14,7 @@ TileKey tile_key(const sqlite::Statement& statement, int column, const std::stri
     const std::int64_t value = statement.integer(at);
     if (!std::in_range<std::int32_t>(value)) {
       throw InputError(fmt::format("a tile has the impossible key {}", value), map_path,
-                       "restore the map from a copy or map the drive again");
+                       kRestoreMap);
     }
     return static_cast<std::int32_t>(value);
   };
@@ -48,7 +49,7 @@ PointCloud TileQuery::read(const TileId& id, const std::string& map_path) {
   if (!row_.step()) {
     throw InputError(fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y,
                                  id.key.z, id.submap),
-                     map_path, "map the drive again");
+                     map_path, kRestoreMap);
   }
   PointCloud tile = decoder_.decode(tile_row(row_, map_path), map_path);
   row_.run();
