@@ -1,6 +1,7 @@
 #include "fovea/mapping/exposure.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fovea/base/parallel.h"
 
@@ -10,6 +11,7 @@ namespace {
 /// Grey values that tell: darker ones are noise, brighter ones saturated.
 constexpr float kDark = 12, kBright = 240;
 constexpr std::size_t kMinPoints = 150;
+constexpr float kOffGain = 0.34f;  // its logarithm
 
 bool tells_exposure(const Eigen::Array3f& color) {
   return color.minCoeff() > kDark && color.maxCoeff() < kBright;
@@ -21,6 +23,10 @@ std::optional<Eigen::Array3f> gain_between(const Eigen::Array3f& known,
                                            const Eigen::Array3f& seen) {
   if (!tells_exposure(known) || !tells_exposure(seen)) return std::nullopt;
   return known / seen;
+}
+
+bool is_exposure_off(const Eigen::Array3f& gain_to_map) {
+  return std::abs(gain_to_map.log().mean()) > kOffGain;
 }
 
 Eigen::Array3f median_gain(const std::vector<Eigen::Array3f>& gains) {

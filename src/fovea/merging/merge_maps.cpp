@@ -15,6 +15,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/mapping/exposure.h"
 #include "fovea/merging/map_gain.h"
 
 namespace fovea {
@@ -28,7 +29,16 @@ struct MapContent {
         T_local_submap(map.submaps()),
         tile_size(map_tile_size(meta)) {
     drives = merged_drives(meta);
-    if (!drives.empty()) return;
+    for (const MergedDrive& drive : drives) {
+      if (std::size_t(drive.end_submap) > T_local_submap.size()) {
+        throw InputError(fmt::format("the submaps of its drive '{}' are missing", drive.name),
+                         "the map's table 'submaps'", kRestoreMap);
+      }
+    }
+    if (drives.empty()) drives.push_back(only_drive(map));
+  }
+
+  MergedDrive only_drive(const MapReader& map) const {
     MergedDrive drive;
     drive.digest = map.digest();
     drive.name = text("drive.name");
@@ -37,7 +47,7 @@ struct MapContent {
       drive.end_frame = frames.back().index + 1;
     }
     drive.end_submap = static_cast<int>(T_local_submap.size());
-    drives.push_back(drive);
+    return drive;
   }
 
   std::string text(const std::string& key) const {
@@ -75,6 +85,12 @@ std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b
 /// A drive of B that A has not, and what becomes of it.
 struct AddedDrive {
   MergedDrive in_b, merged;
+
+  /// Of one of its frames; -1 for another one, which a damaged map may name.
+  int number_of(int frame_in_b) const {
+    if (frame_in_b < in_b.first_frame || frame_in_b >= in_b.end_frame) return -1;
+    return merged.first_frame + (frame_in_b - in_b.first_frame);
+  }
 };
 
 std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b) {
@@ -85,6 +101,11 @@ std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b) 
     if (find_drive(a, drive.digest) != nullptr) continue;
     MergedDrive merged = drive;
     merged.first_frame = frame;
+    constexpr int kMostFrames = 1 << 30;
+    if (drive.first_frame < 0 || drive.end_frame - drive.first_frame > kMostFrames - frame) {
+      throw InputError("the maps have more frames than one can number", drive.name,
+                       "merge maps of shorter drives");
+    }
     frame += drive.end_frame - drive.first_frame;
     merged.end_frame = frame;
     merged.frame_shift += merged.first_frame - drive.first_frame;
@@ -136,7 +157,7 @@ FrameRecord moved_frame(FrameRecord frame, const AddedDrive& drive, const MapCon
   if (frame.T_local_lidar_navigation) {
     frame.T_local_lidar_navigation = stated_T_a_b * *frame.T_local_lidar_navigation;
   }
-  frame.index += drive.merged.first_frame - drive.in_b.first_frame;
+  frame.index = drive.number_of(frame.index);
   if (frame.submap >= 0) frame.submap += to_submap;
   if (frame.revisit && frame.revisit->submap >= 0) frame.revisit->submap += to_submap;
   return frame;
@@ -145,11 +166,12 @@ FrameRecord moved_frame(FrameRecord frame, const AddedDrive& drive, const MapCon
 /// B's colours, made as bright as A's.
 void match_exposure(const Eigen::Array3f& gain, PointCloud& tile) {
   if ((gain == 1).all()) return;
+  const std::uint8_t mark = is_exposure_off(gain) ? kExposureMatched : 0;
   for (std::size_t i = 0; i < tile.size(); ++i) {
     if (tile.camera[i] == kNoCamera) continue;
     const Eigen::Array3f color = (to_float(tile.color[i]).array() * gain + 0.5f).min(255.0f);
     tile.color[i] = {std::uint8_t(color[0]), std::uint8_t(color[1]), std::uint8_t(color[2])};
-    tile.reason[i] |= kExposureMatched;
+    tile.reason[i] |= mark;
   }
 }
 
@@ -179,7 +201,7 @@ class MapJoiner {
       }
       auto latest_submap = std::size_t(drive.in_b.first_submap);
       for (const FrameRecord& frame : content.frames) {
-        if (frame.index < drive.in_b.first_frame || frame.index >= drive.in_b.end_frame) continue;
+        if (drive.number_of(frame.index) < 0) continue;
         output_.put_frame(
             moved_frame(frame, drive, content, alignment, stated_T_a_b, latest_submap));
       }
@@ -189,9 +211,7 @@ class MapJoiner {
       if (drive == nullptr) return;
       PointCloud moved = tile;
       match_exposure(gain, moved);
-      for (std::int32_t& frame : moved.frame) {
-        frame += drive->merged.first_frame - drive->in_b.first_frame;
-      }
+      for (std::int32_t& frame : moved.frame) frame = drive->number_of(frame);
       put_tile({submap + std::size_t(drive->merged.first_submap - drive->in_b.first_submap), key},
                std::move(moved));
     });

@@ -279,6 +279,21 @@ TEST_F(Merge, MapsThatDoNotMeetAreRefusedUnlessForced) {
   EXPECT_GT(identity.alignment.registered, 0u);
 }
 
+TEST_F(Merge, AMapThatDoesNotHaveItsDrivesIsRefused) {
+  map(first_, "a.fovea");
+  map(second_, "b.fovea");
+  for (const MergedDrive& damaged : {MergedDrive{"digest", "gone", 0, 6, 0, 0, 1000},
+                                     MergedDrive{"digest", "endless", 0, 1 << 30, 0, 0, 1}}) {
+    MapMeta meta;
+    set_merged_drives({damaged}, meta);
+    const auto writer = MapWriter::open(folder_ / "b.fovea");
+    for (const auto& [key, text] : meta) writer->put_meta(key, text);
+    writer->commit();
+    EXPECT_THROW(merge("a.fovea", "b.fovea", "c.fovea"), InputError) << damaged.name;
+  }
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.fovea", "b.fovea"}));
+}
+
 TEST_F(Merge, MapsOfOtherTilesAreRefused) {
   map(first_, "a.fovea");
   MapJob job;

@@ -7,7 +7,6 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/color_fusion.h"
-#include "fovea/mapping/exposure.h"
 #include "fovea/mapping/projected_block.h"
 #include "fovea/pipeline/foveal_query.h"
 
@@ -39,8 +38,8 @@ void put(const TileColors& colors, std::size_t i, const FusedColors& fused, std:
 
 /// Every how many points in view are asked for the exposure.
 constexpr std::size_t kExposureStep = 32;
-/// Logarithm of the gain that is off, and the share of it that is undone.
-constexpr float kOffGain = 0.34f, kUndone = 0.9f;
+/// Share of a gain that is undone.
+constexpr float kUndone = 0.9f;
 
 static_assert(kGrain / kExposureStep <= kBlock);
 
@@ -56,10 +55,6 @@ bool may_be_in_view(const Camera& camera, const Eigen::Vector3d& center, double 
 }
 
 }  // namespace
-
-bool is_exposure_off(const Eigen::Array3f& gain_to_map) {
-  return std::abs(gain_to_map.log().mean()) > kOffGain;
-}
 
 Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map) { return gain_to_map.pow(kUndone); }
 

@@ -8,17 +8,14 @@
 #include "fovea/base/random.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/depth_buffer.h"
+#include "fovea/mapping/exposure.h"
 #include "fovea/mapping/foveal_region.h"
 #include "fovea/pipeline/patch_colors.h"
 
 namespace fovea {
 
-/// Whether an image's exposure is so far off the map's that its colours must not be mixed with
-/// those of others: by over 40 %. What automatic exposure does from frame to frame is less.
-bool is_exposure_off(const Eigen::Array3f& gain_to_map);
-
-/// The gain under which such an image colours new points: nine tenths of the way to the map's
-/// exposure, so that light that changes for good is followed within seconds.
+/// The gain under which an image whose exposure is off colours new points: nine tenths of the way
+/// to the map's exposure, so that light that changes for good is followed within seconds.
 Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map);
 
 /// Gives new points, all in view, the view's colours, as their first ones.
