@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "fovea/base/output_file.h"
 #include "fovea/base/version.h"
 #include "fovea/exporting/point_packing.h"
 
@@ -36,18 +35,14 @@ std::string header(const PointStream& points, const PointFileOptions& options) {
 
 ExportFigures write_ply(const MapReader& map, const std::filesystem::path& path,
                         const PointFileOptions& options) {
-  OutputFile file(path, options.force);
-  const PointStream points(map, options.points);
-  file.stream() << header(points, options);
-  write_points(points, file.stream(), [&](const ExportPoint& point, BytePacker& packer) {
-    pack_position(point, options.doubles(), packer);
-    packer.put(point.color.r);
-    packer.put(point.color.g);
-    packer.put(point.color.b);
-    pack_provenance(point, packer);
-  });
-  file.commit();
-  return points.figures();
+  return write_point_file(map, path, options, header,
+                          [&](const ExportPoint& point, BytePacker& packer) {
+                            pack_position(point, options.doubles(), packer);
+                            packer.put(point.color.r);
+                            packer.put(point.color.g);
+                            packer.put(point.color.b);
+                            pack_provenance(point, packer);
+                          });
 }
 
 }  // namespace fovea

@@ -1,10 +1,13 @@
 // What the formats that store points one behind the other have in common.
 #pragma once
 
+#include <filesystem>
 #include <ostream>
 #include <string>
 
+#include "fovea/base/output_file.h"
 #include "fovea/exporting/byte_packer.h"
+#include "fovea/exporting/point_file_options.h"
 #include "fovea/exporting/point_stream.h"
 
 namespace fovea {
@@ -37,6 +40,20 @@ void write_points(const PointStream& points, std::ostream& stream, Pack&& pack) 
     for (const ExportPoint& point : block) pack(point, packer);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   });
+}
+
+/// Writes a file of a header and all points, with `pack(point, packer)`; it appears when it is
+/// whole.
+/// @param header  the text of `header(points, options)`
+template <class Header, class Pack>
+ExportFigures write_point_file(const MapReader& map, const std::filesystem::path& path,
+                               const PointFileOptions& options, Header&& header, Pack&& pack) {
+  OutputFile file(path, options.force);
+  const PointStream points(map, options.points);
+  file.stream() << header(points, options);
+  write_points(points, file.stream(), pack);
+  file.commit();
+  return points.figures();
 }
 
 }  // namespace fovea
