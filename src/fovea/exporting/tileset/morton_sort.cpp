@@ -39,28 +39,28 @@ bool MortonSort::refill(Run& run) const {
   return wanted > 0;
 }
 
+auto MortonSort::later() const {
+  return [this](std::size_t a, std::size_t b) {
+    return morton_less(runs_[b].buffer[runs_[b].at], runs_[a].buffer[runs_[a].at]);
+  };
+}
+
 void MortonSort::finish() {
   if (!pending_.empty()) write_run();
   std::vector<CubePoint>().swap(pending_);  // merging needs the memory
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     if (refill(runs_[i])) heap_.push_back(i);
   }
-  const auto later = [this](std::size_t a, std::size_t b) {
-    return morton_less(runs_[b].buffer[runs_[b].at], runs_[a].buffer[runs_[a].at]);
-  };
-  std::make_heap(heap_.begin(), heap_.end(), later);
+  std::make_heap(heap_.begin(), heap_.end(), later());
 }
 
 bool MortonSort::next(CubePoint& point) {
   if (heap_.empty()) return false;
-  const auto later = [this](std::size_t a, std::size_t b) {
-    return morton_less(runs_[b].buffer[runs_[b].at], runs_[a].buffer[runs_[a].at]);
-  };
-  std::pop_heap(heap_.begin(), heap_.end(), later);
+  std::pop_heap(heap_.begin(), heap_.end(), later());
   Run& run = runs_[heap_.back()];
   point = run.buffer[run.at++];
   if (run.at < run.buffer.size() || refill(run)) {
-    std::push_heap(heap_.begin(), heap_.end(), later);
+    std::push_heap(heap_.begin(), heap_.end(), later());
   } else {
     heap_.pop_back();
   }

@@ -35,6 +35,7 @@ class MortonSort {
 
   void write_run();
   bool refill(Run& run) const;
+  auto later() const;  // the order of the heap
 
   std::size_t run_points_;
   ScratchFile file_;
