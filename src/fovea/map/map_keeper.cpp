@@ -30,6 +30,13 @@ void put(MapWriter& writer, const MapRows& rows, const TileChanges& tiles) {
 
 }  // namespace
 
+TileMap stored_map(const MapReader& reader, double tile_size) {
+  TileMap map(tile_size);
+  for (const RigidMotion& T_local_submap : reader.submaps()) map.add_submap(T_local_submap);
+  for (const auto& [id, points] : reader.tile_sizes()) map.declare_stored(id, points);
+  return map;
+}
+
 MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& options)
     : memory_(options.memory),
       most_points_(options.memory / 2 / kBytesPerPoint),

@@ -31,6 +31,10 @@ struct MapKeeperOptions {
   bool commit_at_end = false;
 };
 
+/// What a file has of a map; all tiles stay there until they are needed.
+/// @param tile_size  of the map, m
+TileMap stored_map(const MapReader& reader, double tile_size);
+
 /// Each checkpoint is one transaction: after a crash the file has the state of the last that was
 /// committed, whole; unless all is to be committed at the end. Whether and when one is made never
 /// changes the map that comes out.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fovea/geometry/point_index.h"
+#include "fovea/map/map_keeper.h"
 #include "fovea/mapping/exposure.h"
 #include "fovea/merging/place_points.h"
 
@@ -17,9 +18,7 @@ constexpr std::size_t kTiles = 256, kStep = 8;
 class TilesOfA {
  public:
   TilesOfA(const MapReader& map, double tile_size)
-      : map_(map), T_local_submap_(map.submaps()), places_(tile_size) {
-    for (const RigidMotion& T : T_local_submap_) places_.add_submap(T);
-    for (const auto& [id, points] : map.tile_sizes()) places_.declare_stored(id, points);
+      : map_(map), places_(stored_map(map, tile_size)) {
     places_.add_submap(RigidMotion::Identity());  // the last one's tiles count as near everywhere
   }
 
@@ -28,14 +27,14 @@ class TilesOfA {
     std::vector<PointCloud> tiles;
     for (const TileId& id : places_.stored_near(center_a, radius)) {
       tiles.push_back(map_.read_tile(id));
-      points.add(tiles.size() - 1, tiles.back(), T_local_submap_[id.submap], radius);
+      points.add(tiles.size() - 1, tiles.back(), places_.submaps()[id.submap].T_local_submap,
+                 radius);
     }
     return tiles;
   }
 
  private:
   const MapReader& map_;
-  std::vector<RigidMotion> T_local_submap_;
   TileMap places_;
 };
 

@@ -78,14 +78,6 @@ void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta&
   }
 }
 
-/// What a file has of the map; the tiles stay there until they are needed.
-TileMap stored_map(const MapReader& reader, double tile_size) {
-  TileMap map(tile_size);
-  for (const RigidMotion& T_local_submap : reader.submaps()) map.add_submap(T_local_submap);
-  for (const auto& [id, points] : reader.tile_sizes()) map.declare_stored(id, points);
-  return map;
-}
-
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
   FrameRecord record;
   record.index = skipped.index;
