@@ -57,6 +57,7 @@ PointCloud street_tile(const TileKey& key, std::size_t count, Random& random) {
 
 void write_street(const fs::path& path, std::size_t points) {
   const auto writer = MapWriter::create(path, true);
+  writer->put_meta("map.tile_size", "4");
   writer->put_meta("georeferenced", "1");
   writer->put_meta("origin.latitude", "49.0093");
   writer->put_meta("origin.longitude", "8.4371");

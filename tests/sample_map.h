@@ -110,6 +110,7 @@ inline void put_sample_map(MapWriter& writer, const TileMap& map) {
   writer.put_meta("origin.latitude", "49.011212804408");
   writer.put_meta("origin.longitude", "8.4228850417969");
   writer.put_meta("origin.altitude", "112.83492279053");
+  writer.put_meta("map.tile_size", "4");
   writer.put_meta("config", "[registration]\nmethod = \"gicp\"\n");
   writer.put_meta("timing.total", "12.5");
   for (const FrameRecord& frame : sample_frames()) writer.put_frame(frame);

@@ -51,6 +51,7 @@ nlohmann::json point_json(const Eigen::Vector3d& p_local, const PointCloud& tile
 void write(const std::filesystem::path& folder) {
   const TileMap map = map_points();
   const auto writer = MapWriter::create(folder / "map.fovea", true);
+  writer->put_meta("map.tile_size", "4");
   writer->put_meta("georeferenced", "1");
   writer->put_meta("origin.latitude", "49.011212804408");
   writer->put_meta("origin.longitude", "8.4228850417969");

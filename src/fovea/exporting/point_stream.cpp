@@ -18,6 +18,7 @@ PointStream::PointStream(const MapReader& map, const PointChoice& choice)
     : map_(map),
       choice_(choice),
       held_state_(map.hold_state()),
+      T_local_submap_(map.submaps()),
       georeference_(choice.crs, map_origin(map.meta()), "the map's table 'meta'") {
   const std::size_t total = map_.size();
   const std::size_t unfiltered = choice_.include_uncolored ? total : map_.colored_size();
@@ -40,14 +41,15 @@ std::size_t PointStream::count_chosen() const {
 }
 
 ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
-                               const RigidMotion& T_local_submap) const {
+                               std::size_t submap) const {
   ExportPoint point;
-  point.position = georeference_.from_local(T_local_submap *
+  point.position = georeference_.from_local(T_local_submap_.at(submap) *
                                             (tile.origin + tile.position[index].cast<double>()));
   if (!point.position.allFinite()) {
     throw InputError("the position of a point is not finite", "the map's tiles", kRestoreMap);
   }
   point.range = tile.range[index];
+  point.incidence = tile.incidence[index];
   if (!tile.intensity.empty()) point.intensity = tile.intensity[index];
   point.frame = tile.frame[index];
   point.camera = tile.camera[index];
@@ -60,7 +62,6 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
 }
 
 void PointStream::for_each_block(const std::function<void(std::span<const ExportPoint>)>& f) const {
-  const std::vector<RigidMotion> T_local_submap = map_.submaps();
   std::size_t streamed = 0;
   std::vector<ExportPoint> block;
   const auto hand_over = [&] {
@@ -71,16 +72,26 @@ void PointStream::for_each_block(const std::function<void(std::span<const Export
   map_.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
     for (std::size_t i = 0; i < tile.size(); ++i) {
       if (!is_chosen(tile, i)) continue;
-      block.push_back(point(tile, i, T_local_submap.at(submap)));
+      block.push_back(point(tile, i, submap));
       if (block.size() == kBlockPoints) hand_over();
     }
     hand_over();
   });
-  if (streamed != figures_.points) {
-    throw InputError(
-        fmt::format("the map holds {} points to export and says {}", streamed, figures_.points),
-        "the map's tiles", "export it again when nothing writes to it, or map the drive again");
+  require_all(streamed);
+}
+
+void PointStream::append_tile(const TileId& id, std::vector<ExportPoint>& points) const {
+  const PointCloud tile = map_.read_tile(id);
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    if (is_chosen(tile, i)) points.push_back(point(tile, i, id.submap));
   }
+}
+
+void PointStream::require_all(std::size_t streamed) const {
+  if (streamed == figures_.points) return;
+  throw InputError(
+      fmt::format("the map holds {} points to export and says {}", streamed, figures_.points),
+      "the map's tiles", "export it again when nothing writes to it, or map the drive again");
 }
 
 }  // namespace fovea

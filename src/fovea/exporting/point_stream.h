@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "fovea/geometry/georeference.h"
 #include "fovea/map/map_store.h"
@@ -32,6 +33,7 @@ struct ExportFigures {
 struct ExportPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, in the CRS chosen
   float range = 0;
+  float incidence = 0;  ///< NaN if unknown
   float intensity = 0;  ///< 0 in a map without
   std::int32_t frame = 0;
   Rgb color = kUncolored;
@@ -55,15 +57,21 @@ class PointStream {
   /// or if the points are not as many as counted.
   void for_each_block(const std::function<void(std::span<const ExportPoint>)>& f) const;
 
+  /// Appends the chosen points of one tile, in the map's order. InputError as above.
+  void append_tile(const TileId& id, std::vector<ExportPoint>& points) const;
+
+  /// InputError unless as many points have come as counted.
+  void require_all(std::size_t streamed) const;
+
  private:
   bool is_chosen(const PointCloud& tile, std::size_t index) const;
-  ExportPoint point(const PointCloud& tile, std::size_t index,
-                    const RigidMotion& T_local_submap) const;
+  ExportPoint point(const PointCloud& tile, std::size_t index, std::size_t submap) const;
   std::size_t count_chosen() const;
 
   const MapReader& map_;
   const PointChoice& choice_;
   std::shared_ptr<const void> held_state_;
+  std::vector<RigidMotion> T_local_submap_;
   Georeference georeference_;
   ExportFigures figures_;
 };

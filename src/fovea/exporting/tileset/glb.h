@@ -1,11 +1,10 @@
 // Points as a binary glTF 2.0 file.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <span>
 #include <string>
-#include <vector>
 
-#include "fovea/base/image.h"
+#include "fovea/exporting/point_stream.h"
 
 namespace fovea {
 
@@ -17,8 +16,9 @@ struct Glb {
 /// Points (glTF mode 0) with positions quantised to 16 bits of their bounding cube
 /// (KHR_mesh_quantization), unlit, and colours in linear light, 16 bits. glTF's axes are y up; the
 /// node's matrix turns z-up positions into them, which 3D Tiles turns back.
-/// @param positions  z up, m; at least one
-/// @param colors     sRGB, as many
-Glb make_glb(const std::vector<Eigen::Vector3d>& positions, const std::vector<Rgb>& colors);
+/// @param points        z up, m; none: a file with an empty scene
+/// @param with_sources  also where each point comes from, as attributes _FRAME, _SIGHT and _SOURCE
+///                      (docs/viewer-protocol.md)
+Glb make_glb(std::span<const ExportPoint> points, bool with_sources);
 
 }  // namespace fovea

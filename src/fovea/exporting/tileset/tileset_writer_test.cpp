@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "../../../../tests/file_size_limit.h"
@@ -32,10 +33,18 @@ T at(const std::string& bytes, std::size_t offset) {
   return value;
 }
 
+std::vector<ExportPoint> three_points() {
+  std::vector<ExportPoint> points(3);
+  points[0].position = {10, 20, 30};
+  points[1].position = {14, 21, 30};
+  points[2].position = {10, 20, 33};
+  points[0].color = {0, 128, 255};
+  return points;
+}
+
 // That it is valid glTF and lies where it should is for tests/web to show, by readers of others.
 TEST(Glb, QuantisedPositionsAndLinearColours) {
-  const std::vector<Eigen::Vector3d> positions = {{10, 20, 30}, {14, 21, 30}, {10, 20, 33}};
-  const Glb glb = make_glb(positions, {{0, 128, 255}, {1, 2, 3}, {255, 255, 255}});
+  const Glb glb = make_glb(three_points(), /*with_sources=*/false);
   EXPECT_DOUBLE_EQ(glb.step, 4.0 / 65535);
   EXPECT_EQ(at<std::uint32_t>(glb.bytes, 8), glb.bytes.size());
   const std::size_t json = at<std::uint32_t>(glb.bytes, 12), binary = 28 + json;
@@ -47,6 +56,40 @@ TEST(Glb, QuantisedPositionsAndLinearColours) {
   EXPECT_EQ(at<std::uint16_t>(glb.bytes, binary + 24), 0);
   EXPECT_EQ(at<std::uint16_t>(glb.bytes, binary + 26), 14146);  // sRGB 128 is 21.6 % of white
   EXPECT_EQ(at<std::uint16_t>(glb.bytes, binary + 28), 65535);
+}
+
+TEST(Glb, WhereEachPointComesFrom) {
+  std::vector<ExportPoint> points = three_points();
+  points[1].frame = 123'456;
+  points[1].range = 12.345f;
+  points[1].incidence = 0.5f;  // 28.65 degrees
+  points[1].camera = 2;
+  points[1].reason = 0x12;
+  points[1].interpolated = 1;
+  points[1].views = 7;
+  points[1].spread = 9;
+  points[2].range = 1e9f;
+  points[2].incidence = std::numeric_limits<float>::quiet_NaN();
+  const Glb glb = make_glb(points, /*with_sources=*/true);
+  const std::size_t sources = 28 + at<std::uint32_t>(glb.bytes, 12) + 3 * 16;
+  EXPECT_EQ(glb.bytes.size(), sources + 3 * 12);
+  EXPECT_EQ(at<float>(glb.bytes, sources + 4), 123'456.f);
+  EXPECT_EQ(at<std::uint16_t>(glb.bytes, sources + 12 + 4), 1235);  // 12.345 is a little more
+  EXPECT_EQ(at<std::uint16_t>(glb.bytes, sources + 12 + 6), 2865);
+  EXPECT_EQ(at<std::uint16_t>(glb.bytes, sources + 12 + 8), 65534);
+  EXPECT_EQ(at<std::uint16_t>(glb.bytes, sources + 12 + 10), 65535);
+  EXPECT_EQ(at<std::uint8_t>(glb.bytes, sources + 24), 255);  // no camera
+  const std::size_t second = sources + 24 + 4;
+  EXPECT_EQ(at<std::uint8_t>(glb.bytes, second), 2);
+  EXPECT_EQ(at<std::uint8_t>(glb.bytes, second + 1), 0x92);
+  EXPECT_EQ(at<std::uint8_t>(glb.bytes, second + 2), 7);
+  EXPECT_EQ(at<std::uint8_t>(glb.bytes, second + 3), 9);
+}
+
+TEST(Glb, NoPointsAnEmptyScene) {
+  const Glb glb = make_glb({}, true);
+  EXPECT_EQ(at<std::uint32_t>(glb.bytes, 8), glb.bytes.size());
+  EXPECT_THAT(glb.bytes, HasSubstr("\"scenes\":[{}]"));
 }
 
 class TilesetWriter : public testing::Test {
@@ -64,7 +107,7 @@ class TilesetWriter : public testing::Test {
 };
 
 TEST_F(TilesetWriter, AFolderOfTilesOnEarth) {
-  const TilesetFigures figures = write({.octree = {.leaf_points = 200}, .sort_points = 300});
+  const TilesetFigures figures = write({.tree = {.leaf_points = 200}});
   EXPECT_EQ(figures.points, MapReader(folder_ / "a.fovea").colored_size());
   EXPECT_GT(figures.tiles, 10u);
   EXPECT_THAT(folder_.names(), ElementsAre("a.fovea", "a.tiles"));
@@ -94,9 +137,9 @@ TEST_F(TilesetWriter, TheSameMapGivesTheSameBytes) {
     }
     return files;
   };
-  write({.octree = {.leaf_points = 100}});
+  write({.tree = {.leaf_points = 100}});
   const auto first = bytes();
-  write({.octree = {.leaf_points = 100}, .sort_points = 77, .force = true});
+  write({.tree = {.leaf_points = 100}, .force = true});
   EXPECT_EQ(bytes(), first);
 }
 

@@ -1,0 +1,30 @@
+// The points of a tileset's nodes.
+#pragma once
+
+#include <vector>
+
+#include "fovea/exporting/point_stream.h"
+#include "fovea/exporting/tileset/tile_tree.h"
+
+namespace fovea {
+
+/// Reads leaves. Neighbours that are parts of the same tiles read these once.
+class LeafReader {
+ public:
+  /// @param points  of local coordinates; outlives the reader
+  explicit LeafReader(const PointStream& points) : points_(points) {}
+
+  /// The chosen points of a leaf, in the map's order. InputError if the map is damaged.
+  std::vector<ExportPoint> read(const TileNode& leaf);
+
+ private:
+  const PointStream& points_;
+  std::vector<TileId> tiles_;
+  std::vector<ExportPoint> of_tiles_;
+};
+
+/// Of a node's children's points the one nearest to the middle of each cell of the node's grid; the
+/// same for the same points in the same order.
+std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const TileNode& node);
+
+}  // namespace fovea

@@ -1,0 +1,21 @@
+// A tree of tiles as a 3D Tiles 1.1 tileset.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "fovea/exporting/tileset/tile_tree.h"
+#include "fovea/geometry/geodesy.h"
+
+namespace fovea {
+
+/// tileset.json: tiles replace their parents, a tile's geometric error is the spacing that its
+/// points were thinned to.
+/// @param root    of a leaf without tiles: a tileset without content
+/// @param origin  where the local frame lies on earth: the root's transform; nothing: none
+/// @param uri     of a node's content, by the node's name
+std::string tileset_json(const TileNode& root, const std::optional<GeodeticPoint>& origin,
+                         const std::function<std::string(const std::string& name)>& uri);
+
+}  // namespace fovea
