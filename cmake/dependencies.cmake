@@ -11,6 +11,8 @@ find_package(JPEG REQUIRED)
 find_package(SQLite3 REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(PkgConfig REQUIRED)
+find_package(Boost 1.74 REQUIRED)
+find_package(Threads REQUIRED)
 
 if(NOT TARGET nanoflann::nanoflann)
   find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)

@@ -184,8 +184,7 @@ std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) co
   return marks;
 }
 
-std::vector<Eigen::Array3f> SeenMap::gains_at(const Piece& piece,
-                                              const PatchColors& patches) const {
+SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColors& patches) const {
   const PointCloud& tile = *piece.points;
   const std::span<const Point> points = seen(piece);
   PatchPlaces places;
@@ -200,22 +199,32 @@ std::vector<Eigen::Array3f> SeenMap::gains_at(const Piece& piece,
   }
   ColorBlock here;
   patches.at(places, n, here);
-  std::vector<Eigen::Array3f> gains;
+  Differences differences;
+  differences.points = n;
   for (std::size_t j = 0; j < n; ++j) {
     const Eigen::Array3f color(here.red[j], here.green[j], here.blue[j]);
-    if (const auto gain = gain_between(known[j], color)) gains.push_back(*gain);
+    differences.sum += double((known[j] - color).abs().mean());
+    if (const auto gain = gain_between(known[j], color)) differences.gains.push_back(*gain);
   }
-  return gains;
+  return differences;
 }
 
-Eigen::Array3f SeenMap::gain_to_map(const ColorView& view) const {
+SeenMap::Comparison SeenMap::compare(const ColorView& view) const {
   const PatchColors patches(view);
-  std::vector<std::vector<Eigen::Array3f>> of_piece(pieces_.size());
+  std::vector<Differences> of_piece(pieces_.size());
   parallel_for(pieces_.size(), 1,
-               [&](std::size_t k) { of_piece[k] = gains_at(pieces_[k], patches); });
+               [&](std::size_t k) { of_piece[k] = differences_at(pieces_[k], patches); });
   std::vector<Eigen::Array3f> gains;
-  for (const auto& piece : of_piece) gains.insert(gains.end(), piece.begin(), piece.end());
-  return median_gain(gains);
+  Comparison comparison;
+  double sum = 0;
+  for (const Differences& piece : of_piece) {
+    gains.insert(gains.end(), piece.gains.begin(), piece.gains.end());
+    comparison.points += piece.points;
+    sum += piece.sum;
+  }
+  comparison.gain = median_gain(gains);
+  if (comparison.points > 0) comparison.error = sum / double(comparison.points);
+  return comparison;
 }
 
 std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,

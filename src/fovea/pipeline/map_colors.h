@@ -42,9 +42,16 @@ class SeenMap {
   /// From now on these points, new ones that are not in the map, hide what is behind them, too.
   void put_in_front(const PointCloud& points_cam);
 
-  /// The gain, a channel, that brings the view's colours to those of the map: the median over
-  /// points of two views and more. 1 where too few tell.
-  Eigen::Array3f gain_to_map(const ColorView& view) const;
+  /// How a view compares with the colours that the map has so far, where these are of two views and
+  /// more.
+  struct Comparison {
+    /// What brings the view's colours to those of the map: the median of each channel; 1 where too
+    /// few tell.
+    Eigen::Array3f gain = Eigen::Array3f::Ones();
+    std::size_t points = 0;  ///< compared
+    double error = 0;        ///< mean difference of their channels, grey values, no gain applied
+  };
+  Comparison compare(const ColorView& view) const;
 
   /// Fuses the view's colours into the points in the region that nothing hides. Once for each
   /// look().
@@ -72,8 +79,13 @@ class SeenMap {
   void gather(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local);
   void look_at(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
                Piece& piece, DepthBuffer& front);
-  /// What brings the view's colours to the map's, of some points of a piece.
-  std::vector<Eigen::Array3f> gains_at(const Piece& piece, const PatchColors& patches) const;
+  /// Some points of a piece, as compare() wants them.
+  struct Differences {
+    std::vector<Eigen::Array3f> gains;
+    std::size_t points = 0;
+    double sum = 0;  // of the differences
+  };
+  Differences differences_at(const Piece& piece, const PatchColors& patches) const;
   /// The colours of each piece's tile, empty where nothing of the tile was seen.
   std::vector<TileColors> colors_of_pieces(TileMap& map) const;
   /// @return how many of the points were in view

@@ -329,7 +329,7 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
   map.add(points);
   const auto gain_of = [&](const Rgb& color) {
     const TestView view(image_of(color));
-    return view.look(map).gain_to_map(view.view);
+    return view.look(map).compare(view.view).gain;
   };
   EXPECT_LT((gain_of({100, 60, 80}) - 1).abs().maxCoeff(), 1e-3);
   EXPECT_LT((gain_of({200, 120, 160}) - 0.5f).abs().maxCoeff(), 1e-3);
@@ -338,6 +338,12 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
   EXPECT_FALSE(is_exposure_off(gain_of({120, 72, 96})));
   EXPECT_TRUE(is_exposure_off(gain_of({200, 120, 160})));
   EXPECT_TRUE(is_exposure_off(gain_of({50, 30, 40})));
+
+  // How far off an image is: (100, 60, 80) against (120, 60, 90).
+  const TestView other(image_of({120, 60, 90}));
+  const SeenMap::Comparison off = other.look(map).compare(other.view);
+  EXPECT_GT(off.points, 100u);
+  EXPECT_NEAR(off.error, 10, 0.1);
 
   // New points under the matching gain lie close to the map's colours.
   const TestView bright(image_of({200, 120, 160}));
@@ -353,7 +359,7 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
 TEST(Exposure, FewPointsSayNothing) {
   TileMap map = map_of(wall(8, -0.1, 0.1, -0.1, 0.1));
   const TestView view(image_of({200, 200, 200}));
-  EXPECT_EQ(view.look(map).gain_to_map(view.view).matrix(), Eigen::Vector3f::Ones());
+  EXPECT_EQ(view.look(map).compare(view.view).gain.matrix(), Eigen::Vector3f::Ones());
 }
 
 TEST(Recolour, AnEmptyMapAndAViewOfNothingAreNormal) {

@@ -25,6 +25,17 @@ bool shows_something(const Image& image, FrameRecord& record) {
   return false;
 }
 
+/// How well the map foretold an image that it had not seen; of several cameras the mean over all
+/// points. Of too few it would be chance.
+void note_texture_error(const SeenMap::Comparison& view, FrameRecord& record) {
+  constexpr std::size_t kEnough = 100;
+  if (view.points < kEnough) return;
+  double& points = record.figures["texture_compared"];
+  double& error = record.figures["texture_error"];
+  points += as_figure(view.points);
+  error += (view.error - error) * as_figure(view.points) / points;
+}
+
 /// The points that passed the filter; the others are counted by verdict.
 PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>& verdicts,
                         std::map<std::string, double>& figures) {
@@ -217,9 +228,10 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
     }
     const ImagePyramid pyramid(image);
     ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
-    const Eigen::Array3f gain = seen_map_.gain_to_map(view);
-    if (is_exposure_off(gain)) {
-      view.gain = matching_gain(gain);
+    const SeenMap::Comparison before = seen_map_.compare(view);
+    note_texture_error(before, record);
+    if (is_exposure_off(before.gain)) {
+      view.gain = matching_gain(before.gain);
       ++record.figures["exposure_off"];
     } else {
       record.figures["points_recoloured"] += as_figure(seen_map_.recolour(map_, view));

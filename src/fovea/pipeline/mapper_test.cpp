@@ -111,6 +111,9 @@ TEST(Mapper, ManyViewsGiveTrueColoursAtOnePointACell) {
   EXPECT_LT(double(wrong), 0.02 * double(count));
   EXPECT_GT(views / double(count), 2.0);
   EXPECT_GT(records[7].figures.at("points_recoloured"), 10'000);
+  EXPECT_GT(records[7].figures.at("texture_compared"), 1000);
+  EXPECT_GT(records[7].figures.at("texture_error"), 0);
+  EXPECT_LT(records[7].figures.at("texture_error"), 30);
   EXPECT_LT(double(crowded_points(mapper.map(), 4.0 / 216)), 1e-3 * double(count));
 }
 

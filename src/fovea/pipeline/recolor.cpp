@@ -66,7 +66,7 @@ class Recolorer {
       seen_map_.look(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(), spacing_);
       const ImagePyramid pyramid(image);
       const ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
-      if (is_blank(image) || is_exposure_off(seen_map_.gain_to_map(view))) {
+      if (is_blank(image) || is_exposure_off(seen_map_.compare(view).gain)) {
         ++figures.images_left_out;
       } else {
         seen_map_.recolour(map_, view);

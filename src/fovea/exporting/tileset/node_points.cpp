@@ -58,4 +58,21 @@ std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const T
   return kept;
 }
 
+std::vector<ExportPoint> for_each_node(
+    const TileNode& node, LeafReader& leaves,
+    const std::function<void(const TileNode&, const std::vector<ExportPoint>&)>& f) {
+  std::vector<ExportPoint> points;
+  if (node.is_leaf()) {
+    points = leaves.read(node);
+  } else {
+    for (const TileNode& child : node.children) {
+      const std::vector<ExportPoint> below = for_each_node(child, leaves, f);
+      points.insert(points.end(), below.begin(), below.end());
+    }
+    points = thinned(points, node);
+  }
+  f(node, points);
+  return points;
+}
+
 }  // namespace fovea

@@ -1,6 +1,7 @@
 // The points of a tileset's nodes.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "fovea/exporting/point_stream.h"
@@ -26,5 +27,12 @@ class LeafReader {
 /// Of a node's children's points the one nearest to the middle of each cell of the node's grid; the
 /// same for the same points in the same order.
 std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const TileNode& node);
+
+/// Calls f(node, points) for a node and all below it, children before parents. Memory: the points
+/// of a leaf, and thinned ones of one path from the root.
+/// @return the node's points
+std::vector<ExportPoint> for_each_node(
+    const TileNode& node, LeafReader& leaves,
+    const std::function<void(const TileNode&, const std::vector<ExportPoint>&)>& f);
 
 }  // namespace fovea

@@ -1,5 +1,6 @@
 #include "fovea/exporting/tileset/tileset_writer.h"
 
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -13,60 +14,19 @@ namespace {
 
 std::string uri(const std::string& tile) { return "tiles/" + tile + ".glb"; }
 
-/// Writes the tiles of a tree, children before parents.
-class TileWriter {
- public:
-  TileWriter(const PointStream& points, const OutputFolder& folder, bool with_sources)
-      : leaves_(points), folder_(folder), with_sources_(with_sources) {}
+using Boxes = std::map<std::string, Eigen::AlignedBox3d>;
 
-  /// Gives the node and those below it the boxes that their points have; nodes without points are
-  /// gone, and a node with one child is that child.
-  /// @return what the parent is made of; nothing if the node has no points
-  std::vector<ExportPoint> write(TileNode& node) {
-    std::vector<ExportPoint> points;
-    if (node.is_leaf()) {
-      points = leaves_.read(node);
-      streamed_ += points.size();
-      node.box.setEmpty();
-    } else {
-      std::vector<TileNode> children;
-      for (TileNode& child : node.children) {
-        const std::vector<ExportPoint> below = write(child);
-        points.insert(points.end(), below.begin(), below.end());
-        if (!below.empty()) children.push_back(std::move(child));
-      }
-      if (children.size() == 1) {
-        node = TileNode(std::move(children.front()));
-        return points;
-      }
-      node.children = std::move(children);
-      points = thinned(points, node);
-      node.box.setEmpty();
-      for (const TileNode& child : node.children) node.box.extend(child.box);
-    }
-    if (!points.empty()) put(node, points);
-    return points;
+/// Gives the nodes the boxes that their points have; those without any are gone.
+/// @param boxes  by name, of the nodes that have points
+void fit(TileNode& node, const Boxes& boxes) {
+  std::erase_if(node.children, [&](const TileNode& child) { return !boxes.contains(child.name); });
+  const auto own = boxes.find(node.name);
+  node.box = own == boxes.end() ? Eigen::AlignedBox3d() : own->second;
+  for (TileNode& child : node.children) {
+    fit(child, boxes);
+    node.box.extend(child.box);
   }
-
-  std::size_t tiles() const { return tiles_; }
-  std::size_t streamed() const { return streamed_; }
-
- private:
-  void put(TileNode& node, const std::vector<ExportPoint>& points) {
-    Eigen::AlignedBox3d box;
-    for (const ExportPoint& point : points) box.extend(point.position);
-    const Glb glb = make_glb(points, with_sources_);
-    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(glb.step);
-    node.box.extend(Eigen::AlignedBox3d(box.min() - margin, box.max() + margin));
-    folder_.write(uri(node.name), glb.bytes);
-    ++tiles_;
-  }
-
-  LeafReader leaves_;
-  const OutputFolder& folder_;
-  bool with_sources_;
-  std::size_t tiles_ = 0, streamed_ = 0;
-};
+}
 
 }  // namespace
 
@@ -75,15 +35,32 @@ TilesetFigures write_tileset(const MapReader& map, const std::filesystem::path& 
   if (options.points.crs != Crs::kLocal) {
     throw std::invalid_argument("a tileset's points are local, its root is placed on earth");
   }
-  OutputFolder folder(path, options.force, {"tileset.json", "tiles"});
+  std::vector<std::string> contents = {"tileset.json", "tiles"};
+  for (const auto& [name, bytes] : options.beside) {
+    contents.push_back(std::filesystem::path(name).begin()->string());
+  }
+  OutputFolder folder(path, options.force, contents);
   const PointStream points(map, options.points);
   TileNode root = make_tile_tree(map, options.tree);
-  TileWriter writer(points, folder, options.with_sources);
-  writer.write(root);
-  points.require_all(writer.streamed());
+  LeafReader leaves(points);
+  Boxes boxes;
+  std::size_t streamed = 0;
+  for_each_node(root, leaves, [&](const TileNode& node, const std::vector<ExportPoint>& of_node) {
+    if (node.is_leaf()) streamed += of_node.size();
+    if (of_node.empty()) return;
+    const Glb glb = make_glb(of_node, options.with_sources);
+    folder.write(uri(node.name), glb.bytes);
+    Eigen::AlignedBox3d& box = boxes[node.name];
+    for (const ExportPoint& point : of_node) box.extend(point.position);
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(glb.step);
+    box = Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
+  });
+  points.require_all(streamed);
+  fit(root, boxes);
   folder.write("tileset.json", tileset_json(root, points.georeference().origin(), uri));
+  for (const auto& [name, bytes] : options.beside) folder.write(name, bytes);
   folder.commit();
-  return {points.figures(), writer.tiles()};
+  return {points.figures(), boxes.size()};
 }
 
 }  // namespace fovea

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "fovea/exporting/point_stream.h"
 #include "fovea/exporting/tileset/tile_tree.h"
@@ -12,6 +14,8 @@ struct TilesetOptions {
   PointChoice points = {};    ///< of local coordinates: the tileset's root says where these are
   bool with_sources = false;  ///< also where each point comes from (make_glb)
   TileTreeOptions tree = {};
+  /// Files that lie beside the tileset: their bytes, by their place in the folder.
+  std::map<std::string, std::string> beside = {};
   bool force = false;  ///< replace an existing tileset
 };
 
@@ -21,9 +25,9 @@ struct TilesetFigures : ExportFigures {
 
 /// Writes a folder with a 3D Tiles 1.1 tileset: tileset.json and tiles/*.glb. The leaves have every
 /// point, to a third of a millimetre; the root's transform takes the local frame to EPSG 4978 where
-/// the map is georeferenced. Memory: the points of a leaf, and thinned ones of one path from the
-/// root. The folder appears when it is whole. OutputError if it cannot be written, or exists and
-/// `force` is false or it is no tileset; InputError as PointStream and make_tile_tree().
+/// the map is georeferenced. Memory as for_each_node(). The folder appears when it is whole.
+/// OutputError if it cannot be written, or exists and `force` is false or it is no tileset;
+/// InputError as PointStream and make_tile_tree().
 TilesetFigures write_tileset(const MapReader& map, const std::filesystem::path& path,
                              const TilesetOptions& options = {});
 

@@ -1,0 +1,64 @@
+// A finished map as a web site: the viewer's page, the map's tiles and frames, the drive's images.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "fovea/sensor/frame_source.h"
+#include "fovea/server/tile_source.h"
+#include "fovea/server/web_server.h"
+
+namespace fovea {
+
+/// A file of the page, built into the program.
+struct PageFile {
+  std::string_view name;  ///< its place in the site
+  std::string_view bytes;
+};
+
+/// The media type that a file's ending stands for.
+std::string media_type(std::string_view name);
+
+/// A file of the page as a response; "" is index.html. Status 404 if there is none of that name.
+WebResponse page_response(std::span<const PageFile> page, const std::string& path);
+
+/// A drive's images as JPEG, by the frames' numbers in the map.
+class DriveImages {
+ public:
+  /// @param drive        with the cameras that the map shows
+  /// @param frame_shift  a frame's number in the map less that in the drive
+  explicit DriveImages(std::shared_ptr<const FrameSource> drive, int frame_shift = 0);
+  const DriveInfo& info() const { return drive_->info(); }
+  /// "FRAME/CAMERA.jpg"; status 404 where there is no such image.
+  WebResponse response(std::string_view path) const;
+
+ private:
+  std::shared_ptr<const FrameSource> drive_;
+  int frame_shift_;
+};
+
+/// docs/viewer-protocol.md, what there is over HTTP. For several threads.
+class MapSite {
+ public:
+  /// @param page    outlives the site
+  /// @param images  nullptr: none
+  /// InputError if the map cannot be read.
+  MapSite(const std::filesystem::path& map, std::span<const PageFile> page,
+          std::shared_ptr<const DriveImages> images);
+
+  void answer(const std::string& path, WebServer::Reply reply);
+
+ private:
+  std::string status_json() const;
+
+  std::span<const PageFile> page_;
+  std::shared_ptr<const DriveImages> images_;
+  std::shared_ptr<const std::string> map_json_, frames_json_;
+  TileSource tiles_;
+};
+
+}  // namespace fovea
