@@ -1,0 +1,41 @@
+import {
+  parseFrames, parseMapInfo, parseServerStatus, ProtocolError, type Frame, type MapInfo,
+} from './protocol';
+
+async function json(path: string): Promise<unknown> {
+  const response = await fetch(path, { cache: 'no-cache' });
+  if (!response.ok) throw new Error(`${path}: ${response.status} ${response.statusText}`.trim());
+  try {
+    return await response.json();
+  } catch {
+    throw new ProtocolError(`${path} is not JSON`);
+  }
+}
+
+export async function loadMapInfo(): Promise<MapInfo> {
+  return parseMapInfo(await json('map.json'));
+}
+
+export async function loadFrames(path: string): Promise<Frame[]> {
+  return parseFrames(await json(path));
+}
+
+const pause = (milliseconds: number) =>
+  new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+
+/** Until the server has read the map; a finished folder has nothing to wait for. */
+export async function untilReady(progress: (read: number) => void): Promise<void> {
+  for (;;) {
+    const response = await fetch('status.json', { cache: 'no-cache' });
+    if (response.status === 404) return;
+    if (!response.ok) throw new Error(`status.json: ${response.status}`);
+    const status = parseServerStatus(await response.json());
+    if (status.state === 'ready') return;
+    progress(status.read);
+    await pause(200);
+  }
+}
+
+export function imagePath(frame: number, camera: number): string {
+  return `images/${frame}/${camera}.jpg`;
+}

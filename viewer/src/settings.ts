@@ -1,0 +1,38 @@
+import type { ColorMode } from './color_modes';
+
+/** What the user has chosen to see. */
+export interface Settings {
+  readonly mode: ColorMode;
+  readonly uncoloredInPhotograph: boolean;
+  readonly uncoloredElsewhere: boolean;
+  readonly splatSize: number;
+  readonly paraboloids: boolean;
+  readonly eyeDome: boolean;
+  readonly eyeDomeStrength: number;
+  /** Points to draw at most; null: as many as go smoothly. */
+  readonly fixedBudget: number | null;
+  readonly trajectory: boolean;
+  readonly foveal: boolean;
+  readonly rays: boolean;
+  readonly follow: boolean;
+}
+
+export const defaultSettings: Settings = {
+  mode: 'photograph',
+  uncoloredInPhotograph: false,
+  uncoloredElsewhere: true,
+  splatSize: 1,
+  paraboloids: false,
+  eyeDome: true,
+  eyeDomeStrength: 0.5,
+  fixedBudget: null,
+  trajectory: true,
+  foveal: false,
+  rays: false,
+  follow: true,
+};
+
+export function showsUncolored(settings: Settings): boolean {
+  return settings.mode === 'photograph' ?
+    settings.uncoloredInPhotograph : settings.uncoloredElsewhere;
+}

@@ -1,0 +1,250 @@
+import {
+  Box3, Group, Points, Vector2, Vector3, type Camera, type Object3D, type PerspectiveCamera,
+} from 'three';
+import { TilesRenderer } from '3d-tiles-renderer/three';
+
+import type { PointMaterials } from './point_material';
+import { PointObject } from './point_object';
+import { estimatedSpacing } from './spacing';
+import {
+  nearestDistance, selectError, viewpointOf, type Selection, type TileNode,
+} from './tile_selection';
+
+/** A tile of the tileset's JSON; the renderer adds to it what it needs. */
+interface JsonTile {
+  boundingVolume: { box: number[] };
+  geometricError: number;
+  children?: JsonTile[];
+  content?: { uri: string };
+  transform?: number[];
+}
+
+interface JsonTileset {
+  asset: { version: string };
+  root: JsonTile;
+}
+
+interface ViewError {
+  inView: boolean;
+  error: number;
+}
+
+/** Finer than this nobody sees (pixels). */
+const finestError = 1;
+const bytesPerPoint = 40;
+
+/** 3D Tiles whose errors stay finite where the camera is inside a tile. */
+class MapTiles extends TilesRenderer {
+  pixelsPerUnit = 1;
+
+  // The library calls this for each tile in sight; its typings leave it out.
+  calculateTileViewError(tile: JsonTile, target: ViewError): void {
+    const base = TilesRenderer.prototype as unknown as {
+      calculateTileViewError(tile: JsonTile, target: ViewError): void;
+    };
+    base.calculateTileViewError.call(this, tile, target);
+    const highest = tile.geometricError * this.pixelsPerUnit / nearestDistance;
+    target.error = Math.min(target.error, highest);
+  }
+}
+
+function nodeOf(tile: JsonTile, nodes: Map<JsonTile, TileNode>): TileNode {
+  const b = tile.boundingVolume.box;
+  const center = new Vector3(b[0], b[1], b[2]);
+  const half = new Vector3(
+    Math.abs(b[3]!) + Math.abs(b[6]!) + Math.abs(b[9]!),
+    Math.abs(b[4]!) + Math.abs(b[7]!) + Math.abs(b[10]!),
+    Math.abs(b[5]!) + Math.abs(b[8]!) + Math.abs(b[11]!));
+  const node: TileNode = {
+    box: new Box3(center.clone().sub(half), center.clone().add(half)),
+    geometricError: tile.geometricError,
+    children: (tile.children ?? []).map((child) => nodeOf(child, nodes)),
+    points: tile.content ? null : 0,
+  };
+  nodes.set(tile, node);
+  return node;
+}
+
+/** What happens to the tiles, for those who must act on it. */
+export interface TileEvents {
+  changed(): void;
+  firstTile(points: PointObject): void;
+  failed(count: number, error: Error): void;
+}
+
+/** The finished map: 3D Tiles, as many as the budget of points allows. */
+export class TileLayer {
+  readonly group = new Group();
+  readonly cameras = new Set<number>();
+  private readonly tiles: MapTiles;
+  private readonly nodes = new Map<JsonTile, TileNode>();
+  private root: TileNode | null = null;
+  private selection: Selection = { errorTarget: finestError, points: 0, limited: false };
+  private failures = 0;
+  private seenFirst = false;
+  private rootFailed = false;
+  private readonly size = new Vector2(1, 1);
+
+  constructor(url: string, private readonly materials: PointMaterials,
+              private readonly events: TileEvents) {
+    this.tiles = new MapTiles(url);
+    this.tiles.autoDisableRendererCulling = false;
+    this.tiles.registerPlugin({
+      // The page works in `local`: the root's way to the earth's centre is left out, not undone,
+      // so that nothing is rounded.
+      async fetchData(address: string | URL, options: RequestInit) {
+        const response = await fetch(address, options);
+        if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+        if (!/\.json$/.test(new URL(response.url).pathname)) return response;
+        const tileset = await response.json() as JsonTileset;
+        delete tileset.root.transform;
+        tileset.asset.version = '1.0';  // of 1.1 it has nothing but glTF, which the reader knows
+        return tileset;
+      },
+    });
+    this.tiles.addEventListener('load-root-tileset', ({ tileset }) => {
+      this.root = nodeOf((tileset as unknown as JsonTileset).root, this.nodes);
+    });
+    this.tiles.addEventListener('load-model', ({ scene, tile }) => {
+      this.adopt(scene, tile as unknown as JsonTile);
+      this.events.changed();
+    });
+    this.tiles.addEventListener('load-error', ({ tile, error }) => {
+      this.rootFailed ||= tile === null;
+      this.events.failed(++this.failures, error);
+    });
+    this.tiles.addEventListener('needs-update', () => this.events.changed());
+    this.tiles.addEventListener('tile-visibility-change', () => this.events.changed());
+    this.group.add(this.tiles.group);
+  }
+
+  get isEmpty(): boolean {
+    return this.root !== null && this.root.points === 0 && this.root.children.length === 0;
+  }
+
+  /** Tiles that are on their way. */
+  get loading(): number {
+    const { queued = 0, downloading = 0, parsing = 0 } = (this.tiles as unknown as {
+      stats: Record<string, number>;
+    }).stats;
+    return queued + downloading + parsing + (this.root || this.rootFailed ? 0 : 1);
+  }
+
+  /** Whether all that the present view wants is drawn. */
+  get settled(): boolean {
+    return this.root !== null && this.loading === 0;
+  }
+
+  get limited(): boolean {
+    return this.selection.limited;
+  }
+
+  get box(): Box3 | null {
+    return this.root?.box ?? null;
+  }
+
+  get pointsLoaded(): number {
+    let points = 0;
+    this.tiles.forEachLoadedModel((scene) => {
+      scene.traverse((object) => { if (object instanceof PointObject) points += object.pointCount; });
+    });
+    return points;
+  }
+
+  retryFailed(): void {
+    this.failures = 0;
+    this.rootFailed = false;
+    this.tiles.resetFailedTiles();
+    this.events.changed();
+  }
+
+  /** What is in the picture now. */
+  visible(): PointObject[] {
+    const found: PointObject[] = [];
+    this.tiles.group.traverse((object) => { if (object instanceof PointObject) found.push(object); });
+    return found;
+  }
+
+  /** Chooses tiles for this camera; `height` in pixels of the screen. */
+  update(camera: PerspectiveCamera, width: number, height: number, budget: number): void {
+    this.size.set(width, height);
+    this.tiles.setCamera(camera);
+    this.tiles.setResolution(camera, this.size);
+    const view = viewpointOf(camera, height);
+    this.tiles.pixelsPerUnit = view.pixelsPerUnit;
+    if (this.root) this.select(selectError(this.root, view, budget, finestError));
+    const cache = this.tiles.lruCache;
+    cache.minBytesSize = Math.max(2e8, 2 * budget * bytesPerPoint);
+    cache.maxBytesSize = 1.5 * cache.minBytesSize;
+    this.tiles.update();
+  }
+
+  /** Also loads what another camera sees, for a picture of its own. */
+  setExtraCamera(camera: Camera | null, width: number, height: number, main: Camera): void {
+    for (const known of [...this.tiles.cameras]) {
+      if (known !== main && known !== camera) this.tiles.deleteCamera(known);
+    }
+    if (!camera) return;
+    this.tiles.setCamera(camera);
+    this.tiles.setResolution(camera, width, height);
+  }
+
+  dispose(): void {
+    this.tiles.dispose();
+    this.group.removeFromParent();
+  }
+
+  /** A target that follows each small step of the camera would have tiles come and go. */
+  private select(wanted: Selection): void {
+    const { errorTarget } = this.tiles;
+    const keep = wanted.limited && wanted.errorTarget <= errorTarget &&
+      wanted.errorTarget > 0.85 * errorTarget;
+    if (!keep) this.tiles.errorTarget = wanted.errorTarget;
+    this.selection = wanted;
+  }
+
+  private adopt(scene: Object3D, tile: JsonTile): void {
+    const found: Points[] = [];
+    scene.traverse((object) => { if (object instanceof Points) found.push(object); });
+    let points = 0;
+    for (const object of found) {
+      const own = this.pointsOf(object, tile);
+      own.position.copy(object.position);
+      own.quaternion.copy(object.quaternion);
+      own.scale.copy(object.scale);
+      object.parent!.add(own);
+      object.removeFromParent();
+      points += own.pointCount;
+      this.noteCameras(own);
+      if (!this.seenFirst) {
+        this.seenFirst = true;
+        own.parent!.updateWorldMatrix(true, true);
+        this.events.firstTile(own);
+      }
+    }
+    const node = this.nodes.get(tile);
+    if (node) node.points = points;
+  }
+
+  private pointsOf(from: Points, tile: JsonTile): PointObject {
+    const position = from.geometry.getAttribute('position');
+    const scale = from.getWorldScale(new Vector3()).x;
+    const spacing = tile.geometricError > 0 ? tile.geometricError :
+      estimatedSpacing(position.count, (i, axis) => position.getComponent(i, axis), scale, 0.25);
+    return new PointObject(from.geometry, this.materials.pictureMaterial, spacing, true);
+  }
+
+  /** Which cameras coloured points is known of the points alone where no drive is at hand. */
+  private noteCameras(points: PointObject): void {
+    if (!points.known) return;
+    const source = points.geometry.getAttribute('_source');
+    const stride = Math.max(1, Math.floor(source.count / 500));
+    for (let i = 0; i < source.count; i += stride) this.cameras.add(source.getX(i));
+  }
+}
+
+/** The position of a point of an object, in `local`. */
+export function localPosition(points: PointObject, i: number): Vector3 {
+  const position = points.geometry.getAttribute('position');
+  return new Vector3().fromBufferAttribute(position, i).applyMatrix4(points.matrixWorld);
+}
