@@ -19,5 +19,6 @@ void add_reproduce_command(CLI::App& app);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 
 }  // namespace fovea::app

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <future>
 
 namespace fovea::app {
 
@@ -26,6 +27,12 @@ InterruptGuard::~InterruptGuard() {
   waiter_.request_stop();
   waiter_.join();
   pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
+}
+
+void wait_for(const std::stop_token& stop) {
+  std::promise<void> stopped;
+  const std::stop_callback tell(stop, [&] { stopped.set_value(); });
+  stopped.get_future().wait();
 }
 
 }  // namespace fovea::app

@@ -24,4 +24,7 @@ class InterruptGuard {
   std::jthread waiter_;
 };
 
+/// Returns when a stop has been requested.
+void wait_for(const std::stop_token& stop);
+
 }  // namespace fovea::app

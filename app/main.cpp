@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);
   fovea::app::add_simulate_command(app);
+  fovea::app::add_view_command(app);
   try {
     app.parse(argc, argv);
     return 0;

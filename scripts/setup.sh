@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of scripts/packages.txt that are missing, and with --tests also the readers
-# of tests/web (npm, exact versions, into tests/web/node_modules):
+# Installs the Debian packages of scripts/packages.txt that are missing, and what viewer/ is built with;
+# with --tests also what tests/web needs (both by npm, exact versions, into node_modules beside them):
 #   scripts/setup.sh [--tests] [--no-install]
 # --no-install only says what is missing, and fails if anything is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-web=$here/../tests/web
 
 tests=false
 may_install=true
@@ -58,18 +57,21 @@ install_packages() { # PACKAGE...
 }
 
 # What is installed is what the lock file says.
-readers_installed() { cmp -s "$web/package-lock.json" "$web/node_modules/.installed-lock.json"; }
+npm_packages_installed() { # FOLDER
+  cmp -s "$1/package-lock.json" "$1/node_modules/.installed-lock.json"
+}
 
-install_readers() {
+install_npm_packages() { # FOLDER
   local log
-  echo "setup: installing the readers of tests/web"
+  echo "setup: installing the packages of ${1#"$here/../"}"
   log=$(mktemp)
-  if ! npm ci --prefix "$web" --no-audit --no-fund --ignore-scripts >"$log" 2>&1; then
+  # Not `npm ci`: it refuses lock files without the optional packages of all other platforms.
+  if ! npm install --no-save --prefix "$1" --no-audit --no-fund --ignore-scripts >"$log" 2>&1; then
     tail -n 20 "$log" >&2
     echo "setup: npm could not install them, see above" >&2
     return 1
   fi
-  cp "$web/package-lock.json" "$web/node_modules/.installed-lock.json"
+  cp "$1/package-lock.json" "$1/node_modules/.installed-lock.json"
   rm -f "$log"
 }
 
@@ -82,10 +84,13 @@ if [[ ${#missing[@]} -gt 0 ]]; then
   fi
   install_packages "${missing[@]}"
 fi
-if $tests && ! readers_installed; then
+npm_folders=("$here/../viewer")
+if $tests; then npm_folders+=("$here/../tests/web"); fi
+for folder in "${npm_folders[@]}"; do
+  if npm_packages_installed "$folder"; then continue; fi
   if ! $may_install; then
-    echo "setup: the readers of tests/web are missing; install them with: scripts/setup.sh --tests" >&2
+    echo "setup: npm's packages of ${folder#"$here/../"} are missing; install them with: scripts/setup.sh --tests" >&2
     exit 1
   fi
-  install_readers
-fi
+  install_npm_packages "$folder"
+done

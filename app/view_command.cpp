@@ -1,0 +1,105 @@
+// fovea view: a finished map in a browser.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/commands.h"
+#include "app/drive_arguments.h"
+#include "app/interrupt.h"
+#include "app/view_arguments.h"
+#include "app/viewer_page.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/path_name.h"
+#include "fovea/map/map_meta.h"
+#include "fovea/pipeline/stored_calibration.h"
+#include "fovea/server/map_show.h"
+
+namespace fovea::app {
+namespace {
+
+struct ViewArguments {
+  std::string map;
+  DriveArguments drive;
+  WebServerOptions server;
+  int port = -1;
+  bool no_browser = false, quiet = false;
+};
+
+/// A frame's number in the map less that in the drive; InputError if the map is not of that drive.
+int frame_shift(const MapMeta& meta, const ViewArguments& arguments) {
+  const std::string name = name_of(arguments.drive.drive);
+  const std::vector<MergedDrive> merged = merged_drives(meta);
+  if (!merged.empty()) {
+    const auto found = std::find_if(merged.begin(), merged.end(),
+                                    [&](const MergedDrive& drive) { return drive.name == name; });
+    if (found != merged.end()) return found->frame_shift;
+  } else {
+    const auto known = meta.find("drive.name");
+    if (known == meta.end() || known->second == name) return 0;
+  }
+  throw InputError(fmt::format("the map was not made of the drive '{}'", name), arguments.map,
+                   "give the drive that 'fovea info' names");
+}
+
+std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
+  if (arguments.drive.drive.empty()) return nullptr;
+  const MapMeta meta = MapReader(arguments.map).meta();
+  const int shift = frame_shift(meta, arguments);
+  DriveArguments drive = arguments.drive;
+  if (drive.cameras.empty() && meta.contains("cameras")) drive.cameras = meta.at("cameras");
+  std::unique_ptr<FrameSource> source = drive.open();
+  if (has_stored_calibration(meta)) {
+    source = with_stored_calibration(std::move(source), meta, arguments.map);
+  }
+  return std::make_shared<const DriveImages>(std::move(source), shift);
+}
+
+void run(const ViewArguments& arguments) {
+  const InterruptGuard interrupt;
+  const auto images = open_images(arguments);
+  std::optional<MapShow> show;
+  open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
+    show.emplace(arguments.map, viewer_page(), images, options);
+  });
+  if (!arguments.quiet) {
+    fmt::print("{} is shown at {} (Ctrl-C ends)\n", arguments.map, show->url());
+    std::fflush(stdout);
+  }
+  if (!arguments.no_browser) open_browser(show->url());
+  wait_for(interrupt.token());
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app) {
+  auto arguments = std::make_shared<ViewArguments>();
+  arguments->server.threads = 2;
+  CLI::App* command = app.add_subcommand("view", "Show a map in a browser");
+  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  command
+      ->add_option("--drive", arguments->drive.drive,
+                   "The drive that the map was made of, for its cameras' images")
+      ->type_name("DRIVE");
+  command
+      ->add_option("--cameras", arguments->drive.cameras,
+                   "Cameras of the drive (default: those that the map was made of)")
+      ->type_name("K,...")
+      ->needs("--drive");
+  command
+      ->add_option("--port", arguments->port,
+                   fmt::format("Port (default: {}, or another if it is taken; 0: any)", kUsualPort))
+      ->check(CLI::Range(0, 65535));
+  command
+      ->add_option("--address", arguments->server.address,
+                   "Address to serve at: 0.0.0.0 shows the map to all that reach this machine")
+      ->capture_default_str();
+  command->add_flag("--no-browser", arguments->no_browser, "Open no browser");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

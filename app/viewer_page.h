@@ -1,0 +1,12 @@
+// The page of `fovea view`, built into the program.
+#pragma once
+
+#include <span>
+
+#include "fovea/server/map_site.h"
+
+namespace fovea::app {
+
+std::span<const PageFile> viewer_page();
+
+}  // namespace fovea::app
