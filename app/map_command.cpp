@@ -14,13 +14,18 @@
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
+#include "app/view_arguments.h"
+#include "app/viewer_page.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
+#include "fovea/server/live_show.h"
 
 namespace fovea::app {
 namespace {
+
+constexpr int kNotLive = -2;
 
 struct MapArguments {
   DriveArguments drive;
@@ -30,6 +35,7 @@ struct MapArguments {
   double rate = 0;
   std::size_t memory = std::size_t{1} << 30;
   bool calibrate = false, resume = false, force = false, quiet = false;
+  int live = kNotLive;  // port, or -1: the usual one
 };
 
 MapperOptions resolve_options(const MapArguments& arguments) {
@@ -67,6 +73,24 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
   }
 }
 
+/// Shows the map while it is made.
+std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob& job,
+                                    std::shared_ptr<const FrameSource> drive) {
+  if (arguments.live == kNotLive) return nullptr;
+  WebServerOptions server;
+  server.in_background = true;
+  std::unique_ptr<LiveShow> show;
+  const auto images = std::make_shared<const DriveImages>(std::move(drive));
+  open_at_port(server, arguments.live, [&](const WebServerOptions& options) {
+    show = std::make_unique<LiveShow>(job, images, viewer_page(), options);
+  });
+  if (!arguments.quiet) {
+    fmt::print("shown at {}\n", show->url());
+    std::fflush(stdout);
+  }
+  return show;
+}
+
 void run(const MapArguments& arguments) {
   const InterruptGuard interrupt;
   const ThreadLimit threads(arguments.threads);
@@ -84,7 +108,7 @@ void run(const MapArguments& arguments) {
 
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
-  const auto source = arguments.drive.open();
+  const std::shared_ptr<const FrameSource> source = arguments.drive.open();
   if (arguments.poses == "navigation") {
     job.pose_source = PoseSource::kNavigation;
   } else if (arguments.poses != "refine") {
@@ -95,12 +119,22 @@ void run(const MapArguments& arguments) {
       job.pose_source = PoseSource::kGivenFirst;
     }
   }
+  const std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
+  job.observer = show.get();
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
     return map_drive(*source, job, std::ref(bar));
   }();
   if (report) write_json(*report, {{"map", to_json(summary)}});
   if (!arguments.quiet) print_summary(summary, arguments);
+  if (!show) return;
+  show->finish();
+  if (interrupt.token().stop_requested()) return;
+  if (!arguments.quiet) {
+    fmt::print("the map is still shown at {} (Ctrl-C ends)\n", show->url());
+    std::fflush(stdout);
+  }
+  wait_for(interrupt.token());
 }
 
 }  // namespace
@@ -160,6 +194,13 @@ void add_map_command(CLI::App& app) {
   command->add_flag("--force", arguments->force, "Overwrite the map");
   command->add_option("--report", arguments->report, "Write figures as JSON")
       ->type_name("FILE.json");
+  command
+      ->add_flag("--live{-1}", arguments->live,
+                 fmt::format("Show the map in a browser while it grows, and after: --live or "
+                             "--live=PORT (default: {}, or another if it is taken)",
+                             kUsualPort))
+      ->type_name("")
+      ->check(CLI::Range(-1, 65535));
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });
 }

@@ -41,6 +41,7 @@ MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& 
     : memory_(options.memory),
       most_points_(options.memory / 2 / kBytesPerPoint),
       commit_at_end_(options.commit_at_end),
+      on_checkpoint_(options.on_checkpoint),
       writer_(std::move(writer)),
       worker_(options.threaded) {}
 
@@ -70,7 +71,9 @@ bool MapKeeper::is_writing() const { return written_.valid() && !is_ready(writte
 void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local,
                            double radius) {
   if (written_.valid()) written_.get();
-  written_ = worker_.post([this, rows = std::move(rows), tiles = map.take_changes()]() mutable {
+  TileChanges changes = map.take_changes();
+  if (on_checkpoint_) on_checkpoint_(changes, rows);
+  written_ = worker_.post([this, rows = std::move(rows), tiles = std::move(changes)]() mutable {
     put(*writer_, rows, tiles);
     for (TileChanges::Changed& tile : tiles.changed) {
       writer_->put_tile(tile.id, *tile.points);

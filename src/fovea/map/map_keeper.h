@@ -2,6 +2,7 @@
 // what is out of reach is dropped from memory and read again when it comes near.
 #pragma once
 
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -29,6 +30,9 @@ struct MapKeeperOptions {
   std::size_t memory = std::size_t{1} << 30;
   /// Nothing is committed before finish(): for a map that is of use only when whole.
   bool commit_at_end = false;
+  /// Told what a checkpoint is going to write, by whoever asks for it, when the one before is
+  /// committed.
+  std::function<void(const TileChanges&, const MapRows&)> on_checkpoint = {};
 };
 
 /// What a file has of a map; all tiles stay there until they are needed.
@@ -66,6 +70,7 @@ class MapKeeper {
   std::size_t memory_;       // bytes that the process should keep to
   std::size_t most_points_;  // in memory
   bool commit_at_end_;
+  std::function<void(const TileChanges&, const MapRows&)> on_checkpoint_;
   std::size_t undroppable_ = 0;        // points that stayed there at the last checkpoint
   std::unique_ptr<MapWriter> writer_;  // the worker's, once there is one
   std::future<void> written_;          // of the latest checkpoint

@@ -134,6 +134,16 @@ std::vector<CameraCalibration> correct_calibration(const FrameSource& source, co
   return correction;
 }
 
+MapKeeperOptions keeper_options(const MapJob& job, bool threaded) {
+  MapKeeperOptions options{threaded, job.memory};
+  if (job.observer != nullptr) {
+    options.on_checkpoint = [&job](const TileChanges& changes, const MapRows& rows) {
+      job.observer->map_changed(changes, rows);
+    };
+  }
+  return options;
+}
+
 /// A run of the mapper over a drive, with its accounts and its file.
 class MapRun {
  public:
@@ -144,7 +154,7 @@ class MapRun {
         meta_(std::move(meta)),
         threaded_(job.overlap && available_threads() > 1),
         keeper_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
-                {threaded_, job.memory}),
+                keeper_options(job, threaded_)),
         mapper_(drive, job.options, job.pose_source,
                 [this](TileMap& map, const Eigen::Vector3d& center_local, double radius) {
                   keeper_.bring_near(map, center_local, radius);
@@ -226,6 +236,9 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     check_calibration(*located, record);
     figures_.add(record, /*is_new=*/true);
     log_.add(record);
+    if (job_.observer != nullptr) {
+      job_.observer->frame_mapped(record, std::get_if<Frame>(&located->result), mapper_.map());
+    }
     if (progress) progress({static_cast<int>(log_.size()), total, mapper_.map().size(), &record});
     latest_ = std::move(record);
     const bool due = log_.fresh() >= job_.checkpoint_frames && !keeper_.is_writing();

@@ -8,12 +8,24 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/map/map_keeper.h"
 #include "fovea/pipeline/map_summary.h"
 #include "fovea/pipeline/mapper.h"
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/hold_out.h"
 
 namespace fovea {
+
+/// Looks on while a map is made. Called in the thread that maps, which waits for it.
+class MapObserver {
+ public:
+  virtual ~MapObserver() = default;
+  /// After each frame, in order.
+  /// @param frame  nullptr where it was skipped
+  virtual void frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) = 0;
+  /// When what has changed is handed on to be written: all before it is in the file.
+  virtual void map_changed(const TileChanges& changes, const MapRows& rows) = 0;
+};
 
 struct MapJob {
   std::filesystem::path output;
@@ -37,7 +49,8 @@ struct MapJob {
   std::size_t memory = std::size_t{1} << 30;
   /// Frames from one commit to the next, at least: what a crash can cost.
   std::size_t checkpoint_frames = 20;
-  std::stop_token stop;  ///< ends after the frames at hand; what was mapped is committed
+  MapObserver* observer = nullptr;  ///< or none; outlives the run
+  std::stop_token stop;             ///< ends after the frames at hand; what was mapped is committed
 };
 
 struct MapProgress {

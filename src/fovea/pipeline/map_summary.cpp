@@ -19,13 +19,12 @@ StageLatency latency_of(std::vector<float> milliseconds) {
   return {at(0.5), at(0.95), milliseconds.back()};
 }
 
-/// A skipped frame has nothing to be late with.
+}  // namespace
+
 bool is_late(const FrameRecord& record, double rate) {
   const auto latency = record.milliseconds.find("frame");
   return rate > 0 && latency != record.milliseconds.end() && latency->second > 1000 / rate;
 }
-
-}  // namespace
 
 int MapSummary::skipped() const {
   int total = 0;

@@ -15,6 +15,11 @@ struct StageLatency {
   double p50 = 0, p95 = 0, max = 0;  ///< ms
 };
 
+/// Whether a frame was not yet in the map when the next one was due; a skipped one has nothing to
+/// be late with.
+/// @param rate  frames a second; 0: none is due
+bool is_late(const FrameRecord& record, double rate);
+
 struct MapSummary {
   int frames_mapped = 0, frames_held_out = 0;
   std::map<std::string, int> frames_skipped;  ///< by reason

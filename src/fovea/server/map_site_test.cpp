@@ -10,6 +10,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/server/map_description.h"
 #include "fovea/server/map_show.h"
+#include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
 namespace fovea {
@@ -20,33 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr std::array kPage{PageFile{"index.html", "<html>"}, PageFile{"assets/page.js", "go()"}};
-
-/// Two frames with an image of one camera; the second's is missing.
-class TestDrive : public FrameSource {
- public:
-  TestDrive() {
-    Camera camera;
-    camera.index = 3;
-    camera.width = 8;
-    camera.height = 4;
-    camera.fx = camera.fy = 10;
-    info_.calibration.cameras = {camera};
-    info_.begin = 7;
-    info_.end = 9;
-  }
-  const DriveInfo& info() const override { return info_; }
-  FrameResult load(int index) const override {
-    if (index == 8) return SkippedFrame{8, SkipReason::kMissingImage, "gone"};
-    Frame frame;
-    frame.index = index;
-    frame.images = {Image(8, 4, 3)};
-    return frame;
-  }
-  std::optional<TimeNs> stamp(int) const override { return std::nullopt; }
-
- private:
-  DriveInfo info_;
-};
 
 class MapShowTest : public testing::Test {
  protected:

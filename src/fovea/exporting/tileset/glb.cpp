@@ -6,16 +6,14 @@
 #include <array>
 #include <cmath>
 
-#include "fovea/base/angle.h"
 #include "fovea/base/version.h"
 #include "fovea/exporting/byte_packer.h"
+#include "fovea/exporting/point_source.h"
 
 namespace fovea {
 namespace {
 
 constexpr double kMaxStep = 65535;
-constexpr std::uint16_t kUnknown = 65535;
-constexpr std::uint8_t kInterpolatedBit = 0x80;
 constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2;                // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;  // "JSON", "BIN"
 
@@ -102,22 +100,15 @@ std::string json(const Quantiser& quantiser, std::size_t points,
              s, -s, s, low.x(), low.z(), -low.y(), names, accessors, views, offset);
 }
 
-/// A value in steps, or kUnknown.
-std::uint16_t steps(double value, double step) {
-  if (!(value >= 0)) return kUnknown;
-  return static_cast<std::uint16_t>(std::min(std::round(value / step), double{kUnknown - 1}));
-}
-
 void put_sources(std::span<const ExportPoint> points, BytePacker& packer) {
   for (const ExportPoint& point : points) packer.put(static_cast<float>(point.frame));
   for (const ExportPoint& point : points) {
-    packer.put(steps(point.range, 0.01));
-    packer.put(steps(point.incidence / kDegree, 0.01));
+    packer.put(sight_range(point.range));
+    packer.put(sight_incidence(point.incidence));
   }
   for (const ExportPoint& point : points) {
     packer.put(static_cast<std::uint8_t>(point.camera));
-    packer.put(
-        static_cast<std::uint8_t>(point.reason | (point.interpolated ? kInterpolatedBit : 0)));
+    packer.put(rule_byte(point.reason, point.interpolated));
     packer.put(point.views);
     packer.put(point.spread);
   }

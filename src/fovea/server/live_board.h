@@ -1,0 +1,110 @@
+// What a growing map shows to all who look on, and what each of them has been shown.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/map/tile_map.h"
+#include "fovea/server/web_server.h"
+
+namespace fovea {
+
+/// A frame as it is told of.
+struct LiveFrame {
+  FrameRecord record;      ///< of its figures only the score
+  std::size_t points = 0;  ///< of the map, after it
+  bool late = false;
+  int late_frames = 0;         ///< up to it
+  std::int64_t mapped_at = 0;  ///< ms since 1970
+};
+
+/// A camera's image, made a JPEG by the first who wants it.
+class LiveImage {
+ public:
+  LiveImage(int frame, int camera, Image image)
+      : frame_(frame), camera_(camera), image_(std::move(image)) {}
+  /// Reduced to half its width, as a message. For several threads.
+  std::shared_ptr<const std::string> message();
+
+ private:
+  int frame_, camera_;
+  Image image_;
+  std::once_flag made_;
+  std::shared_ptr<const std::string> message_;
+};
+
+/// The mapping thread writes on it, feeds read it in the server's threads. What it holds does not
+/// grow with the map: frames' poses, the points of the last few frames, and thinned tiles of the
+/// last two checkpoints. Everything else is in the map's file.
+class LiveBoard {
+ public:
+  using Bytes = std::shared_ptr<const std::string>;
+
+  /// @param map    file, once there is one
+  /// @param total  frames of the drive
+  LiveBoard(std::filesystem::path map, double tile_size, int total);
+
+  // For the mapping thread.
+
+  /// Whether anybody looks on.
+  bool has_feeds() const;
+  /// @param points  a message; nullptr where nobody looked on
+  /// @param image   or nullptr
+  void add_frame(LiveFrame frame, const std::vector<RigidMotion>& T_local_submap, Bytes points,
+                 std::shared_ptr<LiveImage> image);
+  /// Poses of earlier frames that a closed loop has moved.
+  void move_frames(const std::vector<std::pair<int, RigidMotion>>& T_local_lidar);
+  /// What a checkpoint is going to write, when the one before is in the file.
+  /// @param changed  all tiles that it changes or removes
+  /// @param tiles    their sections of a message; none where nobody looks on
+  void checkpoint(std::vector<TileId> changed, std::map<TileId, Bytes> tiles);
+  /// All is in the file.
+  void end();
+
+  // For any thread.
+
+  std::string frames_json() const;
+  std::size_t points() const;
+  std::unique_ptr<WebFeed> make_feed();
+
+ private:
+  class Feed;
+  static constexpr std::size_t kLatest = 5;          // frames whose points are kept
+  static constexpr std::size_t kTimedFrames = 1000;  // whose stages' times are kept
+  static constexpr std::size_t kPoseChanges = 8;     // that are kept one by one
+
+  // Under the guard.
+  std::vector<FrameRecord> records() const;
+  Bytes section_of(const TileId& id) const;
+
+  std::filesystem::path map_;
+  double tile_size_;
+  int total_;
+  std::string session_;
+
+  mutable std::mutex guard_;  // of what follows
+  std::vector<LiveFrame> frames_;
+  std::optional<TimeNs> first_stamp_;
+  std::vector<RigidMotion> T_local_submap_;
+  std::size_t poses_moved_ = 0;                // how often
+  std::deque<std::vector<int>> moved_frames_;  // by place in frames_, of the last times
+  std::size_t increments_made_ = 0;
+  std::deque<Bytes> increments_;  // the last of them
+  std::shared_ptr<LiveImage> image_;
+  std::map<TileId, Bytes> tiles_, tiles_before_;  // of the last checkpoint, and of the one before
+  std::vector<TileId> changed_;                   // by the last checkpoint
+  std::set<Feed*> feeds_;
+  bool ended_ = false;
+};
+
+}  // namespace fovea

@@ -1,0 +1,99 @@
+#include "fovea/server/live_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/exporting/byte_packer.h"
+#include "fovea/exporting/point_source.h"
+
+namespace fovea {
+namespace {
+
+constexpr int kCells = 64;  // along an edge
+constexpr std::uint32_t kPointsKind = 1;
+
+std::uint32_t cell_of(const Eigen::Vector3f& p_tile, double tile_size) {
+  std::uint32_t cell = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int i = static_cast<int>(double(p_tile[axis]) / tile_size * kCells);
+    cell = cell * kCells + static_cast<std::uint32_t>(std::clamp(i, 0, kCells - 1));
+  }
+  return cell;
+}
+
+/// Positions are kept in whole millimetres.
+std::uint16_t millimetres(float metres) {
+  return static_cast<std::uint16_t>(std::clamp(std::lround(metres * 1000), 0L, 65535L));
+}
+
+}  // namespace
+
+void LiveSample::forget() { *this = LiveSample(); }
+
+std::span<const std::uint32_t> LiveSample::more(const PointCloud& tile, double tile_size) {
+  if (tile.size() < looked_at_) forget();
+  if (taken_.empty()) taken_.resize(std::size_t{kCells} * kCells * kCells);
+  const std::size_t before = chosen_.size();
+  for (; looked_at_ < tile.size(); ++looked_at_) {
+    const std::uint32_t cell = cell_of(tile.position[looked_at_], tile_size);
+    if (taken_[cell]) continue;
+    taken_[cell] = true;
+    chosen_.push_back(static_cast<std::uint32_t>(looked_at_));
+    cells_.push_back(cell);
+  }
+  return std::span(chosen_).subspan(before);
+}
+
+const std::vector<std::uint32_t>& LiveSample::all(const PointCloud& tile, double tile_size) {
+  more(tile, tile_size);
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    if (cell_of(tile.position[chosen_[i]], tile_size) == cells_[i]) continue;
+    forget();
+    more(tile, tile_size);
+    break;
+  }
+  return chosen_;
+}
+
+void append_section(std::string& message, const TileId& id, const PointCloud* tile,
+                    std::span<const std::uint32_t> points, bool whole) {
+  BytePacker packer(message);
+  packer.put(static_cast<std::uint32_t>(id.submap));
+  for (const std::int32_t axis : {id.key.x, id.key.y, id.key.z}) packer.put(axis);
+  packer.put(std::uint32_t{whole});
+  packer.put(static_cast<std::uint32_t>(points.size()));
+  if (tile == nullptr) return;
+  for (const std::uint32_t i : points) {
+    for (const float axis : tile->position[i]) packer.put(millimetres(axis));
+  }
+  packer.put_zeros(points.size() % 2 * 2);
+  for (const std::uint32_t i : points) {
+    const Rgb color = tile->color[i];
+    packer.put(color.r);
+    packer.put(color.g);
+    packer.put(color.b);
+    packer.put(static_cast<std::uint8_t>(tile->camera[i]));
+  }
+  for (const std::uint32_t i : points) {
+    packer.put(rule_byte(tile->reason[i], tile->interpolated[i]));
+    packer.put(tile->views[i]);
+    packer.put(tile->spread[i]);
+    packer.put(std::uint8_t{0});
+  }
+  for (const std::uint32_t i : points) packer.put(static_cast<float>(tile->frame[i]));
+  for (const std::uint32_t i : points) {
+    packer.put(sight_range(tile->range[i]));
+    packer.put(sight_incidence(tile->incidence[i]));
+  }
+}
+
+std::string points_header(int frame, std::size_t sections) {
+  std::string header;
+  BytePacker packer(header);
+  packer.put(kPointsKind);
+  packer.put(static_cast<std::int32_t>(frame));
+  packer.put(static_cast<std::uint32_t>(sections));
+  return header;
+}
+
+}  // namespace fovea

@@ -1,0 +1,180 @@
+#include "fovea/server/live_show.h"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "fovea/base/path_name.h"
+
+namespace fovea {
+namespace {
+
+std::int64_t now_ms() {
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count();
+}
+
+MapDescription describe_run(const DriveInfo& drive, const MapJob& job) {
+  MapDescription map;
+  map.name = name_of(drive.path);
+  map.live = true;
+  map.images = true;
+  map.origin = drive.origin;
+  map.tile_size = job.options.tile_size;
+  map.sensor_period = drive.sweep_period;
+  map.cameras = drive.calibration.cameras;
+  if (job.options.foveal_enabled) {
+    map.foveal =
+        MapDescription::Foveal{job.options.foveal.near_range, job.options.foveal.far_range};
+  }
+  return map;
+}
+
+/// What the page is told of a frame's record.
+FrameRecord told(const FrameRecord& record) {
+  FrameRecord told;
+  told.index = record.index;
+  told.stamp = record.stamp;
+  told.status = record.status;
+  told.T_local_lidar = record.T_local_lidar;
+  told.milliseconds = record.milliseconds;
+  const auto score = record.figures.find(kScoreFigure);
+  if (score != record.figures.end()) told.figures.insert(*score);
+  return told;
+}
+
+/// The first camera's image that there is.
+std::shared_ptr<LiveImage> image_of(const Frame* frame, const std::vector<Camera>& cameras) {
+  if (frame == nullptr) return nullptr;
+  for (std::size_t i = 0; i < frame->images.size(); ++i) {
+    if (frame->images[i].empty()) continue;
+    return std::make_shared<LiveImage>(frame->index, cameras.at(i).index, frame->images[i]);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
+                   std::span<const PageFile> page, const WebServerOptions& options)
+    : job_(job),
+      images_(std::move(images)),
+      page_(page),
+      description_(describe_run(images_->info(), job)),
+      board_(job.output, job.options.tile_size, images_->info().end - images_->info().begin),
+      server_(options,
+              [this](const std::string& path, WebServer::Reply reply) {
+                answer(path, std::move(reply));
+              },
+              {{"live", [this] { return board_.make_feed(); }}}) {}
+
+LiveShow::~LiveShow() {
+  server_.stop();
+  site_.reset();  // with it the replies that it keeps for later
+}
+
+void LiveShow::frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) {
+  LiveFrame live;
+  live.record = told(record);
+  live.points = map.size();
+  live.late = is_late(record, job_.rate);
+  late_frames_ += live.late;
+  live.late_frames = late_frames_;
+  live.mapped_at = now_ms();
+  std::vector<RigidMotion> T_local_submap;
+  for (const Submap& submap : map.submaps()) T_local_submap.push_back(submap.T_local_submap);
+  const bool watched = board_.has_feeds();
+  if (!watched) samples_.clear();
+  board_.add_frame(std::move(live), T_local_submap,
+                   watched ? new_points(record.index, map) : nullptr,
+                   watched ? image_of(frame, description_.cameras) : nullptr);
+  server_.wake();
+}
+
+std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap& map) {
+  if (map.submaps().empty()) return nullptr;
+  const std::size_t submap = map.submaps().size() - 1;
+  std::string sections;
+  std::size_t count = 0;
+  for (const auto& [key, tile] : map.submaps().back().tiles) {
+    const PointCloud& points = *tile.points;
+    if (points.frame.back() != frame) continue;
+    const TileId id{submap, key};
+    std::vector<std::uint32_t> fresh;  // of a tile that was not looked at before, not the others
+    for (const std::uint32_t i : samples_[id].more(points, map.tile_size())) {
+      if (points.frame[i] == frame) fresh.push_back(i);
+    }
+    if (fresh.empty()) continue;
+    append_section(sections, id, &points, fresh, /*whole=*/false);
+    ++count;
+  }
+  return std::make_shared<const std::string>(points_header(frame, count) + sections);
+}
+
+void LiveShow::map_changed(const TileChanges& changes, const MapRows& rows) {
+  board_.move_frames(rows.poses);
+  std::vector<TileId> changed = changes.removed;
+  std::map<TileId, LiveBoard::Bytes> sections;
+  std::map<TileId, LiveSample> samples;  // those of tiles that change no more are dropped
+  const bool watched = board_.has_feeds();
+  const auto keep = [&](const TileId& id, std::string section) {
+    sections[id] = std::make_shared<const std::string>(std::move(section));
+  };
+  for (const TileId& id : changes.removed) {
+    std::string section;
+    append_section(section, id, nullptr, {}, /*whole=*/true);
+    if (watched) keep(id, std::move(section));
+  }
+  for (const TileChanges::Changed& tile : changes.changed) {
+    changed.push_back(tile.id);
+    if (!watched) continue;
+    const auto known = samples_.extract(tile.id);
+    LiveSample sample = known.empty() ? LiveSample() : std::move(known.mapped());
+    const auto& points = sample.all(*tile.points, job_.options.tile_size);
+    std::string section;
+    append_section(section, tile.id, &*tile.points, points, /*whole=*/true);
+    keep(tile.id, std::move(section));
+    samples.emplace(tile.id, std::move(sample));
+  }
+  samples_ = std::move(samples);
+  board_.checkpoint(std::move(changed), std::move(sections));
+  server_.wake();
+}
+
+void LiveShow::finish() {
+  auto site = std::make_shared<MapSite>(job_.output, page_, images_);
+  {
+    const std::lock_guard lock(guard_);
+    site_ = std::move(site);
+  }
+  board_.end();
+  server_.wake();
+}
+
+std::string LiveShow::live_json() const {
+  MapDescription now = description_;
+  now.points = board_.points();
+  now.colored_points = now.points;
+  return to_json(now);
+}
+
+void LiveShow::answer(const std::string& path, WebServer::Reply reply) {
+  std::shared_ptr<MapSite> site;
+  {
+    const std::lock_guard lock(guard_);
+    site = site_;
+  }
+  if (site) return site->answer(path, std::move(reply));
+  const auto json = [&](std::string text) {
+    reply({200, media_type(".json"), std::make_shared<const std::string>(std::move(text))});
+  };
+  if (path == "map.json") return json(live_json());
+  if (path == "frames.json") return json(board_.frames_json());
+  constexpr std::string_view kImages = "images/";
+  if (path.starts_with(kImages)) {
+    return reply(images_->response(std::string_view(path).substr(kImages.size())));
+  }
+  reply(page_response(page_, path));
+}
+
+}  // namespace fovea
