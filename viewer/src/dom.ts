@@ -25,3 +25,15 @@ export function short(count: number): string {
   if (count >= 1e4) return `${Math.round(count / 1e3)} k`;
   return String(Math.round(count));
 }
+
+/** A button that is only a picture: its label is for the tooltip and for screen readers. */
+export function iconButton(picture: SVGElement, label: string, run: () => void,
+                           attributes: Attributes = {}): HTMLButtonElement {
+  return el('button', {
+    type: 'button', class: 'icon', title: label, 'aria-label': label, onclick: run, ...attributes,
+  }, picture);
+}
+
+export function setPressed(button: HTMLElement, pressed: boolean): void {
+  button.setAttribute('aria-pressed', String(pressed));
+}

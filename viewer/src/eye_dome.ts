@@ -1,10 +1,12 @@
 import {
-  Color, DepthTexture, FloatType, GLSL3, Mesh, NearestFilter, OrthographicCamera, PlaneGeometry, RGBAFormat,
-  ShaderMaterial, UnsignedByteType, Vector2, WebGLRenderTarget, type PerspectiveCamera,
+  Color, DepthTexture, FloatType, GLSL3, Mesh, NearestFilter, OrthographicCamera, PlaneGeometry,
+  RGBAFormat, ShaderMaterial, UnsignedByteType, Vector2, WebGLRenderTarget, type PerspectiveCamera,
   type WebGLRenderer,
 } from 'three';
 
 // Eye-dome lighting after C. Boucheny: what lies behind its neighbours on the screen is darker.
+// Neighbours are taken in pairs across the pixel, so that a plane stays evenly bright however
+// slanted, and steps as small as those between splats of one surface are none.
 const fragmentShader = /* glsl */`
 precision highp float;
 precision highp sampler2D;
@@ -19,9 +21,16 @@ uniform vec3 below;
 in vec2 at;
 out vec4 fragment;
 
+const float tolerance = 0.004;
+
 float logDistance(float d) {
   float z = 2.0 * d - 1.0;
   return log2(2.0 * range.x * range.y / (range.y + range.x - z * (range.y - range.x)));
+}
+
+float distanceAt(vec2 where, float own) {
+  float d = texture(depth, where).r;
+  return d < 1.0 ? logDistance(d) : own;
 }
 
 void main() {
@@ -35,13 +44,13 @@ void main() {
   if (strength > 0.0) {
     float own = logDistance(d);
     float behind = 0.0;
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 4; ++i) {
       float angle = 0.7853981634 * float(i);
-      vec2 where = at + radius * texel * vec2(cos(angle), sin(angle));
-      float other = texture(depth, where).r;
-      if (other < 1.0) behind += max(0.0, own - logDistance(other));
+      vec2 step = radius * texel * vec2(cos(angle), sin(angle));
+      behind += max(0.0, own - 0.5 * (distanceAt(at + step, own) + distanceAt(at - step, own)) -
+                    tolerance);
     }
-    color *= exp(-behind * 37.5 * strength);
+    color *= exp(-min(behind * 40.0, 2.2) * strength);
   }
   fragment = vec4(color, 1.0);
 }
@@ -89,7 +98,7 @@ export class EyeDome {
   setSize(width: number, height: number, ratio: number): void {
     this.target.setSize(width, height);
     this.uniform<Vector2>('texel').value.set(1 / width, 1 / height);
-    this.uniform<number>('radius').value = 1.2 * ratio;
+    this.uniform<number>('radius').value = 2.0 * ratio;
   }
 
   /** 0 to 1; 0 is off. */

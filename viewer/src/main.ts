@@ -1,23 +1,29 @@
 import './page.css';
 
-import { showInstead } from './notices';
+import { Notices, showInstead } from './notices';
 import { loadFrames, loadMapInfo, untilReady } from './server';
 import { Viewer } from './viewer';
 
 async function start(root: HTMLElement): Promise<void> {
   if (!document.createElement('canvas').getContext('webgl2')) {
-    return showInstead(root, 'This browser cannot draw the map', 'It needs WebGL 2.');
+    return showInstead(root, 'This browser cannot draw the map',
+      'It needs WebGL 2, which this browser lacks or has switched off.');
   }
   const map = await loadMapInfo();
   document.title = `${map.name} - Fovea`;
-  await untilReady(() => undefined);
-  const frames = await loadFrames(map.frames);
-  new Viewer(root, map, frames);
+  const waiting = new Notices();
+  root.replaceChildren(waiting.element);
+  await untilReady((progress) =>
+    waiting.show('reading', { text: 'The map is being read for its coarse levels', progress }));
+  const viewer = new Viewer(root, map, await loadFrames(map.frames));
+  window.fovea = { state: () => viewer.state(), pick: (x, y) => viewer.pick(x, y) };
 }
 
 const root = document.getElementById('app')!;
 start(root).catch((error: unknown) => {
-  const text = error instanceof Error ? error.message : String(error);
+  const text = error instanceof TypeError ?
+    'The server does not answer. Is fovea view still running?' :
+    error instanceof Error ? error.message : String(error);
   showInstead(root, 'The map cannot be shown', text,
     { label: 'Try again', run: () => location.reload() });
 });

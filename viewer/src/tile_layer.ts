@@ -242,9 +242,3 @@ export class TileLayer {
     for (let i = 0; i < source.count; i += stride) this.cameras.add(source.getX(i));
   }
 }
-
-/** The position of a point of an object, in `local`. */
-export function localPosition(points: PointObject, i: number): Vector3 {
-  const position = points.geometry.getAttribute('position');
-  return new Vector3().fromBufferAttribute(position, i).applyMatrix4(points.matrixWorld);
-}

@@ -1,100 +1,737 @@
 import { Vector3 } from 'three';
 
+import { AddressBar, stateOf, tripleOf, type AddressState } from './address';
 import { Budget } from './budget';
-import { el, short } from './dom';
-import { MapScene } from './map_scene';
+import { modesOf, type DataRanges } from './color_modes';
 import { DepthProbe } from './depth_probe';
-import { Navigation } from './navigation/navigation';
-import { matrixOfView, place } from './navigation/view';
+import { el, short } from './dom';
+import { FovealOverlay } from './foveal_overlay';
+import { FrameView } from './frame_view';
+import { Help } from './help';
+import { ImageComparison } from './image_comparison';
+import type { Rectangle } from './intrinsics';
+import { TopBar } from './layout';
+import { LiveSession } from './live_session';
+import { liveUrl } from './live_socket';
+import { LiveStrip } from './live_strip';
+import { MapScene } from './map_scene';
+import { Measure } from './measure';
+import { Navigation, type NavigationMode } from './navigation/navigation';
+import { forwardOf, matrixOfView, place, viewAlong, viewOfMatrix } from './navigation/view';
 import { chasing } from './navigation/walk';
-import { Notices } from './notices';
+import { Notices, showInstead } from './notices';
+import { Panel } from './panel';
+import { localPosition, Picking, type PickedPoint } from './picking';
+import { PointCard } from './point_card';
+import { factsOf } from './point_facts';
+import type { PointObject } from './point_object';
 import type { Frame, MapInfo } from './protocol';
 import { RenderLoop } from './render_loop';
-import { defaultSettings, type Settings } from './settings';
+import { saveImage } from './screenshot';
+import { placeOnScreen } from './screen_place';
+import { loadFrames, loadMapInfo } from './server';
+import { defaultSettings, showsUncolored, type Settings } from './settings';
+import { listenToKeys, type Shortcuts } from './shortcuts';
 import { Store } from './store';
+import type { PageState, PickedState } from './test_hook';
 import { backgroundOf, ThemeChoice } from './theme';
 import { TileLayer } from './tile_layer';
+import { Timeline } from './timeline';
 import { Trajectory } from './trajectory';
+import { TrajectoryLine } from './trajectory_line';
 
+/** Below this width (CSS pixels) the settings are a sheet that is closed at first. */
+const narrow = 760;
+const toggles = ['trajectory', 'foveal', 'rays'] as const;
+/** Rays are found again at most this often while tiles come and go (ms). */
+const rayPause = 300;
+
+/** Puts the parts together: what is drawn, who moves the camera, what the panels say. */
 export class Viewer {
   private readonly settings = new Store<Settings>(defaultSettings);
   private readonly notices = new Notices();
   private readonly canvas = el('canvas', { tabindex: 0, 'aria-label': 'The map in 3D' });
+  private readonly ring = el('span', { class: 'ring', hidden: true });
+  private readonly status = el('p', { class: 'status' });
+  private readonly bottom: HTMLElement;
+  private readonly element: HTMLElement;
   private readonly scene = new MapScene(this.canvas);
   private readonly probe = new DepthProbe(this.scene.eyeDome.target.depthTexture!);
+  private readonly picking = new Picking(this.scene);
   private readonly budget = new Budget();
   private readonly trajectory: Trajectory;
   private readonly navigation: Navigation;
   private readonly loop = new RenderLoop((seconds) => this.step(seconds));
+  private readonly theme: ThemeChoice;
+  private readonly topBar: TopBar;
+  private readonly panel: Panel;
+  private readonly timeline: Timeline;
+  private readonly help: Help;
+  private readonly frameView: FrameView;
+  private readonly card: PointCard;
+  private readonly measure = new Measure();
+  private readonly line: TrajectoryLine;
+  private readonly foveal: FovealOverlay;
+  private readonly comparison: ImageComparison;
+  private readonly address = new AddressBar(() => this.addressState());
   private tiles: TileLayer | null = null;
+  private live: LiveSession | null = null;
+  private strip: LiveStrip | null = null;
+  private ranges: DataRanges;
   private row = 0;
+  private playing = false;
+  private measuring = false;
+  private picked: PickedPoint | null = null;
+  private raysStale = true;
+  private raysAt = -Infinity;
 
-  constructor(root: HTMLElement, map: MapInfo, frames: Frame[]) {
+  constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[]) {
     this.trajectory = new Trajectory(frames);
-    root.replaceChildren(el('div', { class: 'viewer' }, this.canvas,
-      el('header', { class: 'top' }, el('div', { class: 'title card' },
-        el('h1', {}, map.name), el('p', {}, `${short(map.points)} points`))),
-      this.notices.element));
-    this.navigation = new Navigation(this.canvas, {
+    this.ranges = { height: [-2, 8], frame: [0, 1] };
+    this.navigation = this.makeNavigation();
+    this.topBar = this.makeTopBar();
+    this.panel = new Panel(map, this.settings);
+    this.panel.element.hidden = innerWidth < narrow;
+    this.timeline = new Timeline(this.trajectory, {
+      setRow: (row) => this.setRow(row),
+      setPlaying: (playing) => this.setPlaying(playing),
+      setFollow: (follow) => this.settings.set({ follow }),
+    });
+    this.help = new Help(map.generator);
+    this.frameView = new FrameView(map, this.trajectory, {
+      changed: () => this.loop.invalidate(),
+      close: () => this.leaveFrame(),
+      step: (frames_) => this.stepFrame(frames_),
+      failed: (path) => this.notices.show('image',
+        { text: `There is no image ${path}. Look at another frame.` }, 6),
+    });
+    this.card = new PointCard(map, this.trajectory, {
+      lookFrom: (frame, camera) => this.lookFrom(frame, camera),
+      close: () => this.drop(),
+    });
+    this.line = new TrajectoryLine(this.trajectory);
+    this.foveal = new FovealOverlay(map);
+    this.comparison = new ImageComparison(this.scene, () => this.loop.invalidate(),
+      (path) => this.notices.show('image', { text: `There is no image ${path} to compare.` }, 6));
+    this.scene.lines.add(this.line.group, this.foveal.group, this.measure.line);
+    this.bottom = el('footer', { class: 'bottom' }, this.status, this.timeline.element);
+    this.element = el('div', { class: 'viewer' }, this.canvas, this.frameView.element,
+      el('div', { class: 'labels' }, this.measure.labels, this.ring), this.topBar.element,
+      this.panel.element, this.card.element, this.bottom, this.notices.element,
+      this.help.element);
+    root.replaceChildren(this.element);
+    this.theme = new ThemeChoice((theme) => {
+      this.scene.setBackground(...backgroundOf(theme));
+      this.timeline.draw();
+      this.strip?.draw();
+      this.loop.invalidate();
+    });
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+    this.canvas.addEventListener('webglcontextlost', (event) => this.lostContext(event));
+    listenToKeys(this.shortcuts(), this.navigation);
+    this.resize();
+    this.framesChanged();
+    if (map.live) this.goLive();
+    else if (map.tileset) this.tiles = this.makeTiles(map.tileset);
+    if (this.tiles) this.scene.add(this.tiles.group);
+    if (!map.live && map.points === 0) this.sayEmpty();
+    this.navigation.setView(chasing(this.trajectory, 0));
+    this.restore(stateOf(location.hash));
+    window.addEventListener('hashchange', () => this.restore(stateOf(location.hash)));
+    this.settings.listen((now) => this.apply(now));
+  }
+
+  state(): PageState {
+    const { camera } = this.scene;
+    const { live } = this;
+    return {
+      pointsDrawn: this.scene.pointsDrawn,
+      pointsLoaded: (this.tiles?.pointsLoaded ?? 0) + (live?.layer.points ?? 0),
+      budget: this.budget.points,
+      fps: this.budget.fps,
+      mode: this.settings.get().mode,
+      frame: this.frame?.index ?? null,
+      tilesLoading: this.tiles?.loading ?? 0,
+      live: live && {
+        connected: live.connected, frames: live.frames, lastLatencyMs: live.lastLatencyMs,
+        reconnects: live.reconnects, warnings: live.warnings,
+      },
+      measured: this.measure.lengths,
+      picked: this.picked && this.pickedState(this.picked),
+      camera: {
+        pose: camera.matrixWorld.clone().transpose().toArray(),
+        projection: camera.projectionMatrix.clone().transpose().toArray(),
+      },
+    };
+  }
+
+  pick(x: number, y: number): PickedState | null {
+    const point = this.picking.at(x, y);
+    return point && this.pickedState(point);
+  }
+
+  private get frame(): Frame | undefined {
+    return this.trajectory.frame(Math.round(this.row));
+  }
+
+  private get wide(): boolean {
+    return innerWidth >= narrow;
+  }
+
+  private pickedState(point: PickedPoint): PickedState {
+    const { frame, camera, color } = factsOf(point, this.map);
+    return { position: point.position.toArray(), frame, camera, color };
+  }
+
+  // --- parts ---
+
+  private makeNavigation(): Navigation {
+    return new Navigation(this.canvas, {
       probe: (x, y) => this.probe.at(this.scene.renderer, this.scene.camera, x, y),
       pixelsPerUnit: () => this.scene.pixelsPerUnit / this.scene.ratio,
       trajectory: this.trajectory,
       row: () => this.row,
-      setRow: (row) => { this.row = row; this.loop.invalidate(); },
+      setRow: (row) => this.setRow(row),
       changed: () => this.loop.invalidate(),
-      moved: () => undefined,
-      click: () => undefined,
+      moved: () => this.settings.set({ follow: false }),
+      click: (x, y) => this.click(x, y),
+      doubleClick: (x, y) => {
+        if (this.measuring) this.click(x, y);
+        else this.navigation.approach(x, y);
+      },
     });
-    new ThemeChoice((theme) => {
-      this.scene.setBackground(...backgroundOf(theme));
-      this.loop.invalidate();
-    });
-    this.settings.listen((settings) => {
-      this.scene.materials.choose(settings);
-      this.scene.eyeDome.setStrength(settings.eyeDome ? settings.eyeDomeStrength : 0);
-      this.loop.invalidate();
-    });
-    new ResizeObserver(() => this.resize()).observe(this.canvas);
-    this.resize();
-    if (map.tileset) this.addTiles(map.tileset);
-    this.navigation.setView(chasing(this.trajectory, 0));
   }
 
-  private addTiles(url: string): void {
-    this.tiles = new TileLayer(url, this.scene.materials, {
-      changed: () => this.loop.invalidate(),
-      firstTile: () => undefined,
+  private makeTopBar(): TopBar {
+    return new TopBar(this.map, {
+      navigate: (mode) => this.navigate(mode),
+      frameView: () => this.toggleFrameView(),
+      measure: () => this.setMeasuring(!this.measuring),
+      copyLink: () => void this.copyLink(),
+      saveImage: () => this.saveImage(),
+      theme: () => this.theme.toggle(),
+      fullScreen: () => this.toggleFullScreen(),
+      help: () => this.help.toggle(),
+      panel: () => this.togglePanel(),
+    });
+  }
+
+  private makeTiles(url: string): TileLayer {
+    return new TileLayer(url, this.scene.materials, {
+      changed: () => {
+        this.raysStale = true;
+        this.loop.invalidate();
+      },
+      firstTile: (points) => this.measureHeights(points),
       failed: (count, error) => this.notices.show('tiles', {
         text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ${error.message}`,
-        action: { label: 'Try again', run: () => this.tiles?.retryFailed() },
+        action: {
+          label: 'Try again',
+          run: () => {
+            this.notices.clear('tiles');
+            this.tiles?.retryFailed();
+          },
+        },
       }),
     });
-    this.scene.add(this.tiles.group);
   }
+
+  private shortcuts(): Shortcuts {
+    const set = (change: Partial<Settings>) => this.settings.set(change);
+    const get = () => this.settings.get();
+    return new Map<string, () => void>([
+      ['1', () => this.navigate('orbit')],
+      ['2', () => this.navigate('fly')],
+      ['3', () => this.navigate('walk')],
+      [' ', () => this.setPlaying(!this.playing)],
+      [',', () => this.stepFrame(-1)],
+      ['.', () => this.stepFrame(1)],
+      ['[', () => this.stepMode(-1)],
+      [']', () => this.stepMode(1)],
+      ['?', () => this.help.toggle()],
+      ['Escape', () => this.escape()],
+      ['Backspace', () => this.measure.undo()],
+      ['KeyI', () => this.toggleFrameView()],
+      ['KeyC', () => set({ follow: !get().follow })],
+      ['KeyM', () => this.setMeasuring(!this.measuring)],
+      ['KeyU', () => set(get().mode === 'photograph' ?
+        { uncoloredInPhotograph: !get().uncoloredInPhotograph } :
+        { uncoloredElsewhere: !get().uncoloredElsewhere })],
+      ['KeyL', () => set({ eyeDome: !get().eyeDome })],
+      ['KeyR', () => this.resetView()],
+      ['KeyP', () => this.saveImage()],
+      ['KeyH', () => this.togglePanel()],
+      ['KeyT', () => this.theme.toggle()],
+    ]);
+  }
+
+  // --- settings and places ---
+
+  private apply(now: Settings): void {
+    this.scene.materials.choose(now);
+    this.scene.materials.scale(now, this.ranges);
+    this.scene.eyeDome.setStrength(now.eyeDome ? now.eyeDomeStrength : 0);
+    this.budget.fix(now.fixedBudget);
+    this.timeline.setFollow(now.follow);
+    this.panel.setLegend(this.ranges, this.tiles?.cameras ?? this.live?.layer.cameras ?? new Set());
+    if (now.mode !== 'error') this.comparison.stop();
+    this.placeChanged();
+  }
+
+  private setRanges(change: Partial<DataRanges>): void {
+    this.ranges = { ...this.ranges, ...change };
+    this.scene.materials.scale(this.settings.get(), this.ranges);
+    this.panel.setLegend(this.ranges, this.tiles?.cameras ?? this.live?.layer.cameras ?? new Set());
+  }
+
+  /** Colours for the heights that most points have. */
+  private measureHeights(points: PointObject): void {
+    const heights: number[] = [];
+    const stride = Math.max(1, Math.floor(points.pointCount / 5000));
+    for (let i = 0; i < points.pointCount; i += stride) heights.push(localPosition(points, i).z);
+    heights.sort((a, b) => a - b);
+    const at = (share: number) => heights[Math.floor(share * (heights.length - 1))]!;
+    if (heights.length > 0) this.setRanges({ height: [at(0.02), Math.max(at(0.98), at(0.02) + 1)] });
+  }
+
+  private framesChanged(): void {
+    this.timeline.update();
+    this.line.update();
+    const { length } = this.trajectory;
+    this.setRanges({
+      frame: [this.trajectory.frame(0)?.index ?? 0, this.trajectory.frame(length - 1)?.index ?? 1],
+    });
+    this.setRow(this.row);
+  }
+
+  private setRow(row: number): void {
+    this.row = Math.min(Math.max(row, 0), Math.max(this.trajectory.length - 1, 0));
+    this.timeline.show(this.row);
+    if (this.frameView.active) this.frameView.open(Math.round(this.row), null);
+    this.placeChanged();
+  }
+
+  /** The current frame or what is shown of it has changed. */
+  private placeChanged(): void {
+    const now = this.settings.get();
+    const pose = this.trajectory.pose(Math.round(this.row));
+    const inside = this.navigation.mode === 'walk' || this.frameView.active;
+    this.line.group.visible = now.trajectory;
+    this.line.show(this.row, inside);
+    if (pose) this.foveal.place(pose, now.foveal);
+    if (now.mode === 'error' && this.map.cameras.length > 0) {
+      this.comparison.choose(this.trajectory, Math.round(this.row),
+        this.frameView.camera ?? this.map.cameras[0]!);
+    }
+    this.raysStale = true;
+    this.topBar.show(this.navigation.mode, this.frameView.active, this.measuring,
+      !this.panel.element.hidden);
+    this.loop.invalidate();
+  }
+
+  private setPlaying(playing: boolean): void {
+    const last = this.trajectory.length - 1;
+    if (playing && this.row >= last) this.setRow(0);
+    this.playing = playing && last > 0;
+    this.timeline.setPlaying(this.playing);
+    this.loop.invalidate();
+  }
+
+  private stepFrame(frames: number): void {
+    this.setPlaying(false);
+    this.setRow(Math.round(this.row) + frames);
+  }
+
+  private stepMode(step: number): void {
+    const modes = modesOf(this.map);
+    const at = modes.indexOf(this.settings.get().mode);
+    this.settings.set({ mode: modes[(at + step + modes.length) % modes.length]! });
+  }
+
+  private navigate(mode: NavigationMode): void {
+    this.leaveFrame();
+    this.navigation.setMode(mode);
+    this.placeChanged();
+  }
+
+  private resetView(): void {
+    this.leaveFrame();
+    this.navigation.setMode('orbit');
+    this.navigation.flyTo(chasing(this.trajectory, this.row));
+    this.placeChanged();
+  }
+
+  private escape(): void {
+    if (this.frameView.active) this.leaveFrame();
+    else if (this.measuring) this.setMeasuring(false);
+    else this.drop();
+  }
+
+  private togglePanel(): void {
+    this.panel.element.hidden = !this.panel.element.hidden;
+    this.placeChanged();
+  }
+
+  private toggleFullScreen(): void {
+    if (document.fullscreenElement) void document.exitFullscreen();
+    else void this.root.requestFullscreen().catch(() => undefined);
+  }
+
+  // --- the frame's own view ---
+
+  private toggleFrameView(): void {
+    if (this.frameView.active) this.leaveFrame();
+    else this.lookFrom(this.frame?.index ?? 0, null);
+  }
+
+  private lookFrom(frame: number, camera: number | null): void {
+    const row = this.trajectory.row(frame);
+    if (row === undefined) return;
+    this.setPlaying(false);
+    this.settings.set({ follow: false });
+    if (this.map.cameras.length === 0) {
+      const pose = this.trajectory.pose(row)!;
+      this.setRow(row);
+      this.navigation.setMode('fly');
+      this.navigation.flyTo(viewAlong(new Vector3().setFromMatrixPosition(pose),
+        new Vector3().setFromMatrixColumn(pose, 0)));
+      this.notices.show('no-images', {
+        text: 'From the LiDAR, forward. For the cameras and their images the drive must be at ' +
+          'hand: fovea view MAP --drive DRIVE',
+      }, 12);
+      return this.placeChanged();
+    }
+    this.frameView.open(row, camera);
+    this.navigation.hands = {
+      pan: (dx, dy) => this.frameView.pan(dx, dy),
+      zoom: (factor, x, y) => this.frameView.magnify(factor, x, y),
+    };
+    this.setRow(row);
+  }
+
+  private leaveFrame(): void {
+    if (!this.frameView.active) return;
+    const view = viewOfMatrix(this.frameView.pose());
+    this.frameView.close();
+    this.navigation.hands = null;
+    if (this.navigation.mode === 'walk') this.navigation.setMode('walk', view);
+    else this.navigation.setView(view);
+    this.placeChanged();
+  }
+
+  /** Where the image may lie, free of bars and panel. */
+  private frameArea(): Rectangle {
+    const side = this.wide ? 12 : 0;
+    const right = this.wide && !this.panel.element.hidden ? 292 : side;
+    const top = this.wide ? 118 : 112;
+    return {
+      x: side, y: top,
+      width: Math.max(60, this.scene.width - side - right),
+      height: Math.max(60, this.scene.height - top - this.bottom.offsetHeight - 24),
+    };
+  }
+
+  // --- picking and measuring ---
+
+  private click(x: number, y: number): void {
+    const point = this.picking.at(x, y);
+    if (this.measuring) {
+      if (point) this.measure.add(point.position);
+    } else if (point) {
+      this.picked = point;
+      this.card.show(point);
+    } else {
+      this.drop();
+    }
+    this.loop.invalidate();
+  }
+
+  /** The picked point is no longer. */
+  private drop(): void {
+    this.picked = null;
+    this.card.hide();
+    this.ring.hidden = true;
+  }
+
+  private setMeasuring(measuring: boolean): void {
+    this.measuring = measuring;
+    this.element.classList.toggle('picks', measuring);
+    if (measuring) {
+      this.drop();
+      this.measure.set([]);
+      this.notices.show('measure', { text: 'Click two or more points.' }, 5);
+    } else {
+      this.notices.clear('measure');
+    }
+    this.placeChanged();
+  }
+
+  // --- links and pictures ---
+
+  private addressState(): AddressState {
+    const now = this.settings.get();
+    const { view, mode } = this.navigation;
+    const camera = this.frameView.camera?.index;
+    const show = [
+      ...toggles.filter((name) => now[name]), ...(showsUncolored(now) ? ['uncolored'] : []),
+    ];
+    return {
+      at: tripleOf(view.eye),
+      to: tripleOf(view.eye.clone().addScaledVector(forwardOf(view), 10)),
+      ...(this.frame && { frame: this.frame.index }),
+      mode: now.mode,
+      navigation: mode,
+      ...(camera !== undefined && { camera }),
+      show,
+      line: this.measure.corners.map(tripleOf),
+    };
+  }
+
+  private restore(state: AddressState): void {
+    const { mode, show } = state;
+    if (mode && modesOf(this.map).includes(mode)) this.settings.set({ mode });
+    if (show) {
+      const uncolored = show.includes('uncolored');
+      this.settings.set({
+        trajectory: show.includes('trajectory'),
+        foveal: show.includes('foveal'),
+        rays: show.includes('rays'),
+        ...(this.settings.get().mode === 'photograph' ?
+          { uncoloredInPhotograph: uncolored } : { uncoloredElsewhere: uncolored }),
+      });
+    }
+    if (state.frame !== undefined && this.trajectory.length > 0) {
+      this.setRow(this.trajectory.nearestRow(state.frame));
+    }
+    if (state.line) this.measure.set(state.line.map((point) => new Vector3(...point)));
+    if (state.at && state.to) {
+      const eye = new Vector3(...state.at);
+      const view = viewAlong(eye, new Vector3(...state.to).sub(eye));
+      this.settings.set({ follow: false });
+      this.navigation.setMode(state.navigation ?? 'orbit', view);
+      this.navigation.setView(view);
+    }
+    if (state.camera !== undefined && this.frame) this.lookFrom(this.frame.index, state.camera);
+    this.placeChanged();
+  }
+
+  private async copyLink(): Promise<void> {
+    this.address.write();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      this.notices.show('link', { text: 'The link to this view is copied.' }, 3);
+    } catch {
+      this.notices.show('link', { text: 'Copy the link from the address bar.' }, 5);
+    }
+  }
+
+  private saveImage(): void {
+    this.scene.draw();
+    const frame = this.frame ? `_${this.frame.index}` : '';
+    saveImage(this.canvas, `${this.map.name}${frame}.png`);
+  }
+
+  // --- a map that grows ---
+
+  private goLive(): void {
+    this.strip = new LiveStrip(1000 * this.map.sensorPeriod);
+    this.bottom.prepend(this.strip.element);
+    let first = true;
+    this.live = new LiveSession(liveUrl(location.href), this.scene.materials, this.map.tileSize,
+      this.trajectory, {
+        changed: () => {
+          this.raysStale = true;
+          this.loop.invalidate();
+        },
+        framesChanged: () => {
+          const { length } = this.trajectory;
+          if (this.atEnd) this.row = Math.max(length - 1, 0);
+          this.framesChanged();
+          this.atEnd = this.row >= length - 1;
+          const { z } = length > 0 ? this.trajectory.position(length - 1) : { z: 0 };
+          this.setRanges({ height: [Math.round(z) - 3, Math.round(z) + 7] });
+          if (first && length > 0 && this.settings.get().follow) {
+            first = false;
+            this.navigation.setView(chasing(this.trajectory, this.row));
+          }
+        },
+        frame: (frame) => this.strip!.addFrame(frame),
+        image: (jpeg) => this.strip!.setImage(jpeg),
+        figures: (figures) => {
+          this.strip!.show(figures);
+          this.topBar.setFigures(`live, ${short(figures.points)} points`);
+        },
+        restarted: () => {
+          this.strip!.clear();
+          this.drop();
+          this.measure.set([]);
+          this.row = 0;
+          this.atEnd = first = true;
+        },
+        connection: (connected) => {
+          if (connected) this.notices.clear('live');
+          else {
+            this.notices.show('live', {
+              text: 'The server is away. The map stays; what is missed comes when it is back.',
+            });
+          }
+        },
+        odd: (count) => this.notices.show('odd', {
+          text: `${count} ${count === 1 ? 'message' : 'messages'} of the server made no sense ` +
+            'and were left out.',
+        }),
+        ended: () => void this.finish(),
+      });
+    this.scene.add(this.live.layer.group);
+  }
+
+  /** In a live map: whether the current frame is always the newest. */
+  private atEnd = true;
+
+  /** The drive has ended: the finished map takes over as soon as it has this view ready. */
+  private async finish(): Promise<void> {
+    try {
+      this.map = await loadMapInfo();
+      const frames = await loadFrames(this.map.frames);
+      this.trajectory.clear();
+      for (const frame of frames) this.trajectory.put(frame);
+      this.framesChanged();
+    } catch (error) {
+      this.notices.show('live', {
+        text: `The drive has ended, but its map cannot be read: ${(error as Error).message}`,
+        action: { label: 'Reload', run: () => location.reload() },
+      });
+      return;
+    }
+    this.topBar.setLive(false);
+    this.notices.show('end', { text: 'The drive has ended. The map is finished.' }, 8);
+    if (!this.map.tileset) return;
+    this.tiles = this.makeTiles(this.map.tileset);
+    this.tiles.group.visible = false;
+    this.scene.add(this.tiles.group);
+    this.loop.invalidate();
+  }
+
+  private takeOver(): void {
+    if (!this.tiles || this.tiles.group.visible || !this.tiles.settled) return;
+    this.tiles.group.visible = true;
+    this.drop();
+    this.live?.layer.clear();
+    this.strip?.element.remove();
+    this.strip = null;
+    this.raysStale = true;
+  }
+
+  // --- drawing ---
 
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     this.scene.setSize(clientWidth, clientHeight, Math.min(devicePixelRatio, 2));
+    this.line.setResolution(clientWidth, clientHeight);
+    this.measure.setResolution(clientWidth, clientHeight);
     this.loop.invalidate();
   }
 
   private step(seconds: number | null): boolean {
-    this.navigation.step(Math.min(seconds ?? 0.016, 0.1), false);
-    const { scene } = this;
-    scene.camera.aspect = scene.width / scene.height;
-    scene.camera.updateProjectionMatrix();
-    place(scene.camera, matrixOfView(this.navigation.view));
-    const { canvas } = this;
-    this.tiles?.update(scene.camera, canvas.width, canvas.height, this.budget.points);
-    const limited = this.tiles?.limited ?? false;
-    if (seconds === null) this.budget.pause();
-    else this.budget.frame(1000 * seconds, limited);
-    scene.draw();
+    const passed = Math.min(seconds ?? 0.016, 0.1);
+    if (this.playing) this.advance(passed);
+    const { follow } = this.settings.get();
+    this.navigation.step(passed, follow && !this.frameView.active && this.trajectory.length > 0);
+    this.placeCamera();
+    this.updateTiles(seconds);
+    this.updateRays();
+    this.draw();
+    this.address.touch();
+    this.showStatus();
     const loading = (this.tiles?.loading ?? 0) > 0;
-    return this.navigation.moving || loading || limited && this.budget.mayGrow;
+    const chasing_ = follow && this.navigation.mode !== 'walk' && !this.frameView.active &&
+      this.trajectory.length > 0 && this.navigation.distanceToChase() > 0.02;
+    return this.playing || this.navigation.moving || loading || chasing_ ||
+      (this.tiles?.limited ?? false) && this.budget.mayGrow;
   }
 
-  get pivotDistance(): number {
-    return this.navigation.view.eye.distanceTo(new Vector3());
+  private advance(seconds: number): void {
+    const row = this.trajectory.rowAfter(
+      this.row, seconds * this.timeline.speed, this.map.sensorPeriod);
+    this.setRow(row);
+    if (row >= this.trajectory.length - 1) this.setPlaying(false);
+  }
+
+  private placeCamera(): void {
+    const { camera, width, height } = this.scene;
+    if (this.frameView.active) {
+      camera.projectionMatrix.copy(this.frameView.projection(width, height, this.frameArea()));
+      camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
+      place(camera, this.frameView.pose());
+      return;
+    }
+    camera.aspect = width / height;
+    camera.fov = camera.aspect < 1 ? 75 : 60;
+    camera.updateProjectionMatrix();
+    place(camera, matrixOfView(this.navigation.view));
+  }
+
+  private updateTiles(seconds: number | null): void {
+    const { camera } = this.scene;
+    if (this.tiles) {
+      const { comparison } = this;
+      this.tiles.setExtraCamera(comparison.active ? comparison.camera : null,
+        comparison.width, comparison.height, camera);
+      this.tiles.update(camera, this.canvas.width, this.canvas.height, this.budget.points);
+      this.takeOver();
+      if (this.tiles.isEmpty) this.sayEmpty();
+    }
+    if (seconds === null) this.budget.pause();
+    else this.budget.frame(1000 * seconds, this.tiles?.limited ?? false);
+  }
+
+  private updateRays(): void {
+    if (!this.settings.get().rays) return this.foveal.clearRays();
+    const now = performance.now();
+    if (!this.raysStale || now - this.raysAt < rayPause) return;
+    const row = Math.round(this.row);
+    const pose = this.trajectory.pose(row);
+    if (!pose || !this.frame) return;
+    this.foveal.showRays(this.frame.index, pose, this.scene.drawnObjects());
+    this.raysStale = false;
+    this.raysAt = now;
+  }
+
+  private draw(): void {
+    const { camera, width, height } = this.scene;
+    if (this.comparison.active) this.comparison.drawDepth();
+    this.scene.draw();
+    this.live?.drawn();
+    this.measure.place(camera, width, height);
+    if (this.picked) placeOnScreen(this.ring, this.picked.position, camera, width, height);
+  }
+
+  private showStatus(): void {
+    const parts = [`${short(this.scene.pointsDrawn)} points drawn`];
+    if (this.budget.fps > 0) parts.push(`${Math.round(this.budget.fps)} fps`);
+    const loading = this.tiles?.loading ?? 0;
+    if (loading > 0) parts.push(`${loading} tiles on their way`);
+    this.status.textContent = parts.join(' · ');
+    this.panel.setBudget(this.budget.points);
+    if (!this.map.live) {
+      const { length } = this.trajectory;
+      this.topBar.setFigures(`${short(this.map.points)} points, ${length} frames`);
+    }
+  }
+
+  private sayEmpty(): void {
+    this.notices.show('empty', {
+      text: 'This map has no points. Was the drive mapped to its end?',
+    });
+  }
+
+  private lostContext(event: Event): void {
+    event.preventDefault();
+    this.loop.stop();
+    this.live?.stop();
+    showInstead(this.root, 'The graphics card has dropped the map',
+      'It was reset, or too much was asked of it. The view is kept in the address.',
+      { label: 'Load again', run: () => location.reload() });
   }
 }
+

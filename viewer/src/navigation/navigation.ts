@@ -20,6 +20,13 @@ export interface NavigationHost {
   /** The user moved the camera by hand. */
   moved(): void;
   click(x: number, y: number): void;
+  doubleClick(x: number, y: number): void;
+}
+
+/** Who has the picture in hand while the camera stands fast. */
+export interface Hands {
+  pan(dx: number, dy: number): void;
+  zoom(factor: number, x: number, y: number): void;
 }
 
 const flightSeconds = 0.7;
@@ -32,7 +39,7 @@ function smooth(x: number): number {
 /** The camera under the user's hands: orbit, fly, walk, and flights from one view to another. */
 export class Navigation {
   mode: NavigationMode = 'orbit';
-  enabled = true;
+  hands: Hands | null = null;
   private current: View = { eye: new Vector3(0, 0, 20), yaw: 0, pitch: -0.5 };
   private pivot = new Vector3();
   private turned = { yaw: 0, pitch: 0 };
@@ -48,7 +55,7 @@ export class Navigation {
       pan: (dx, dy) => this.pan(dx, dy),
       zoom: (factor, x, y) => this.zoom(factor, x, y),
       click: (x, y) => this.host.click(x, y),
-      doubleClick: (x, y) => this.approach(x, y),
+      doubleClick: (x, y) => this.host.doubleClick(x, y),
     });
     window.addEventListener('blur', () => this.keys.clear());
   }
@@ -74,9 +81,12 @@ export class Navigation {
     this.host.changed();
   }
 
-  setMode(mode: NavigationMode): void {
+  /** Walking begins in the direction of the drive, or in that of `view`. */
+  setMode(mode: NavigationMode, view: View | null = null): void {
     this.mode = mode;
-    this.turned = { yaw: 0, pitch: 0 };
+    this.turned = view === null ? { yaw: 0, pitch: 0 } : {
+      yaw: view.yaw - this.host.trajectory.heading(this.host.row()), pitch: view.pitch,
+    };
     this.flight = null;
     this.host.changed();
   }
@@ -85,7 +95,7 @@ export class Navigation {
   keyDown(code: string): boolean {
     const shift = code.startsWith('Shift');
     if (!shift && !flyKeys.has(code)) return false;
-    if (!this.enabled) return false;
+    if (this.hands) return false;
     this.keys.add(code);
     this.host.changed();
     return !shift;
@@ -93,6 +103,14 @@ export class Navigation {
 
   keyUp(code: string): void {
     this.keys.delete(code);
+  }
+
+  /** Nearer to what is under the cursor. */
+  approach(x: number, y: number): void {
+    const hit = this.hands || this.mode === 'walk' ? null : this.host.probe(x, y);
+    if (!hit) return;
+    this.host.moved();
+    this.flyTo(zoomed(this.current, hit, 0.4));
   }
 
   /** One step in time. `follow`: stay behind the vehicle. */
@@ -125,7 +143,7 @@ export class Navigation {
   }
 
   private begin(x: number, y: number): void {
-    if (!this.enabled) return;
+    if (this.hands) return;
     const hit = this.host.probe(x, y);
     if (hit) {
       this.pivot.copy(hit);
@@ -136,7 +154,7 @@ export class Navigation {
   }
 
   private rotate(dx: number, dy: number): void {
-    if (!this.enabled) return;
+    if (this.hands) return this.hands.pan(dx, dy);
     this.flight = null;
     if (this.mode === 'orbit') {
       this.host.moved();
@@ -153,7 +171,8 @@ export class Navigation {
   }
 
   private pan(dx: number, dy: number): void {
-    if (!this.enabled || this.mode === 'walk') return;
+    if (this.hands) return this.hands.pan(dx, dy);
+    if (this.mode === 'walk') return;
     this.flight = null;
     this.host.moved();
     const depth = depthOf(this.current, this.pivot);
@@ -162,7 +181,7 @@ export class Navigation {
   }
 
   private zoom(factor: number, x: number, y: number): void {
-    if (!this.enabled) return;
+    if (this.hands) return this.hands.zoom(factor, x, y);
     if (this.mode === 'walk') {
       this.host.setRow(this.host.row() - Math.log(factor) / 0.16);
       return;
@@ -184,13 +203,5 @@ export class Navigation {
     this.begin(x, y);
     this.zoomTarget = { x, y, point: this.pivot.clone(), at: now };
     return this.zoomTarget.point;
-  }
-
-  private approach(x: number, y: number): void {
-    if (!this.enabled || this.mode === 'walk') return;
-    const hit = this.host.probe(x, y);
-    if (!hit) return;
-    this.host.moved();
-    this.flyTo(zoomed(this.current, hit, 0.4));
   }
 }
