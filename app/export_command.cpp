@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
 #include "fovea/exporting/pcd_writer.h"
 #include "fovea/exporting/ply_writer.h"
@@ -24,7 +25,7 @@ struct ExportArguments {
   std::string map, output, format, where, crs = "local";
   PointChoice points;
   double utc_offset = seconds(LasOptions().utc_offset) / 3600;
-  bool double_positions = false, force = false, quiet = false;
+  bool double_positions = false, viewer = false, force = false, quiet = false;
 };
 
 constexpr const char* kFormats = "ply, pcd, las, 3dtiles or kitti-poses";
@@ -51,6 +52,7 @@ void check_options(const CLI::App& command, const std::string& format) {
   only_for("--crs", {"ply", "pcd", "las"});  // a tileset's root places it on earth by itself
   only_for("--double", {"ply", "pcd"});
   only_for("--utc-offset", {"las"});
+  only_for("--viewer", {"3dtiles"});
   only_for("--uncolored", {"ply", "pcd", "las", "3dtiles"});
   only_for("--where", {"ply", "pcd", "las", "3dtiles"});
 }
@@ -98,8 +100,12 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     return;
   }
   if (format == "3dtiles") {
-    const TilesetFigures figures = write_tileset(
-        map, arguments.output, {.points = arguments.points, .force = arguments.force});
+    TilesetOptions options{.points = arguments.points, .force = arguments.force};
+    if (arguments.viewer) {
+      options.with_sources = true;
+      options.beside = viewer_files(map, viewer_page());
+    }
+    const TilesetFigures figures = write_tileset(map, arguments.output, options);
     report(figures);
     if (!arguments.quiet) fmt::print("{} tiles\n", figures.tiles);
     return;
@@ -136,6 +142,8 @@ void add_export_command(CLI::App& app) {
           "LAS: hours that the drive's clock is ahead of UTC, for GPS times; KITTI's names "
           "no zone; default: 2, Karlsruhe's summer time")
       ->check(CLI::Range(-24.0, 24.0));
+  command->add_flag("--viewer", arguments->viewer,
+                    "3dtiles: with the page of 'fovea view', for any web server to show");
   command->add_flag("--uncolored", arguments->points.include_uncolored,
                     "Also points that no camera coloured, in grey with camera -1");
   command->add_option(

@@ -25,7 +25,8 @@
 namespace fovea::app {
 namespace {
 
-constexpr int kNotLive = -2;
+/// What --live without a port stands for.
+constexpr const char* kSomePort = "some";
 
 struct MapArguments {
   DriveArguments drive;
@@ -35,7 +36,7 @@ struct MapArguments {
   double rate = 0;
   std::size_t memory = std::size_t{1} << 30;
   bool calibrate = false, resume = false, force = false, quiet = false;
-  int live = kNotLive;  // port, or -1: the usual one
+  std::string live;  // empty: no; a port, or kSomePort
 };
 
 MapperOptions resolve_options(const MapArguments& arguments) {
@@ -76,12 +77,13 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
 /// Shows the map while it is made.
 std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob& job,
                                     std::shared_ptr<const FrameSource> drive) {
-  if (arguments.live == kNotLive) return nullptr;
+  if (arguments.live.empty()) return nullptr;
   WebServerOptions server;
   server.in_background = true;
   std::unique_ptr<LiveShow> show;
   const auto images = std::make_shared<const DriveImages>(std::move(drive));
-  open_at_port(server, arguments.live, [&](const WebServerOptions& options) {
+  const int port = arguments.live == kSomePort ? -1 : std::stoi(arguments.live);
+  open_at_port(server, port, [&](const WebServerOptions& options) {
     show = std::make_unique<LiveShow>(job, images, viewer_page(), options);
   });
   if (!arguments.quiet) {
@@ -195,12 +197,15 @@ void add_map_command(CLI::App& app) {
   command->add_option("--report", arguments->report, "Write figures as JSON")
       ->type_name("FILE.json");
   command
-      ->add_flag("--live{-1}", arguments->live,
+      ->add_flag(fmt::format("--live{{{}}}", kSomePort), arguments->live,
                  fmt::format("Show the map in a browser while it grows, and after: --live or "
                              "--live=PORT (default: {}, or another if it is taken)",
                              kUsualPort))
-      ->type_name("")
-      ->check(CLI::Range(-1, 65535));
+      ->option_text("[=PORT]")
+      ->check([](const std::string& port) {
+        const bool is_port = port == kSomePort || CLI::Range(0, 65535)(port).empty();
+        return is_port ? std::string() : port + " is no port: 0 to 65535";
+      });
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });
 }

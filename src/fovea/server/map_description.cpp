@@ -72,6 +72,7 @@ std::string to_json(const MapDescription& map) {
                {"live", map.live},
                {"tileset", nullptr},
                {"frames", "frames.json"},
+               {"status", nullptr},
                {"images", map.images},
                {"origin", nullptr},
                {"tile_size", map.tile_size},
@@ -79,6 +80,7 @@ std::string to_json(const MapDescription& map) {
                {"foveal", nullptr},
                {"cameras", Json::array()},
                {"rules", kPointRuleNames}};
+  if (map.status) json["status"] = "status.json";
   if (!map.tileset.empty()) json["tileset"] = map.tileset;
   if (map.origin) {
     json["origin"] = {{"latitude", map.origin->latitude},

@@ -22,6 +22,7 @@ struct MapDescription {
   std::size_t points = 0, colored_points = 0;
   bool live = false;
   std::string tileset;  ///< its address; empty: none yet
+  bool status = false;  ///< whether status.json tells how far it has been read
   bool images = false;
   std::optional<GeodeticPoint> origin;
   double tile_size = 4;        ///< m

@@ -56,6 +56,17 @@ WebResponse page_response(std::span<const PageFile> page, const std::string& pat
   return not_found();
 }
 
+std::map<std::string, std::string> viewer_files(const MapReader& map,
+                                                std::span<const PageFile> page) {
+  std::map<std::string, std::string> files;
+  for (const PageFile& file : page) files.emplace(file.name, file.bytes);
+  MapDescription description = describe_map(map);
+  description.tileset = "tileset.json";
+  files["map.json"] = to_json(description);
+  files["frames.json"] = frames_json(map.frames()).dump();
+  return files;
+}
+
 DriveImages::DriveImages(std::shared_ptr<const FrameSource> drive, int frame_shift)
     : drive_(std::move(drive)), frame_shift_(frame_shift) {}
 
@@ -87,6 +98,7 @@ MapSite::MapSite(const std::filesystem::path& map, std::span<const PageFile> pag
   const MapReader reader(map);
   MapDescription description = describe_map(reader);
   description.tileset = "tiles/tileset.json";
+  description.status = true;
   if (images_) {
     description.images = true;
     description.cameras = images_->info().calibration.cameras;

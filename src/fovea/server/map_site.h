@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,6 +26,11 @@ std::string media_type(std::string_view name);
 
 /// A file of the page as a response; "" is index.html. Status 404 if there is none of that name.
 WebResponse page_response(std::span<const PageFile> page, const std::string& path);
+
+/// What makes a folder with a tileset one that any web server shows: the page, map.json and
+/// frames.json, by their places in it. InputError if the map's meta data are damaged.
+std::map<std::string, std::string> viewer_files(const MapReader& map,
+                                                std::span<const PageFile> page);
 
 /// A drive's images as JPEG, by the frames' numbers in the map.
 class DriveImages {
