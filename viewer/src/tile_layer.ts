@@ -32,6 +32,8 @@ interface ViewError {
 /** Finer than this nobody sees (pixels). */
 const finestError = 1;
 const bytesPerPoint = 40;
+/** Of a grid's cells each keeps one point, not just in its middle. */
+const thinnedSpread = 1.15;
 
 /** 3D Tiles whose errors stay finite where the camera is inside a tile. */
 class MapTiles extends TilesRenderer {
@@ -229,7 +231,7 @@ export class TileLayer {
   private pointsOf(from: Points, tile: JsonTile): PointObject {
     const position = from.geometry.getAttribute('position');
     const scale = from.getWorldScale(new Vector3()).x;
-    const spacing = tile.geometricError > 0 ? tile.geometricError :
+    const spacing = tile.geometricError > 0 ? thinnedSpread * tile.geometricError :
       estimatedSpacing(position.count, (i, axis) => position.getComponent(i, axis), scale, 0.25);
     return new PointObject(from.geometry, this.materials.pictureMaterial, spacing, true);
   }

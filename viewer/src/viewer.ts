@@ -7,6 +7,7 @@ import { DepthProbe } from './depth_probe';
 import { el, short } from './dom';
 import { FovealOverlay } from './foveal_overlay';
 import { FrameView } from './frame_view';
+import type { Graphics } from './graphics';
 import { Help } from './help';
 import { ImageComparison } from './image_comparison';
 import type { Rectangle } from './intrinsics';
@@ -48,16 +49,16 @@ const rayPause = 300;
 
 /** Puts the parts together: what is drawn, who moves the camera, what the panels say. */
 export class Viewer {
-  private readonly settings = new Store<Settings>(defaultSettings);
+  private readonly settings: Store<Settings>;
   private readonly notices = new Notices();
   private readonly canvas = el('canvas', { tabindex: 0, 'aria-label': 'The map in 3D' });
   private readonly ring = el('span', { class: 'ring', hidden: true });
   private readonly status = el('p', { class: 'status' });
   private readonly bottom: HTMLElement;
   private readonly element: HTMLElement;
-  private readonly scene = new MapScene(this.canvas);
-  private readonly probe = new DepthProbe(this.scene.eyeDome.target.depthTexture!);
-  private readonly picking = new Picking(this.scene);
+  private readonly scene: MapScene;
+  private readonly probe: DepthProbe;
+  private readonly picking: Picking;
   private readonly budget = new Budget();
   private readonly trajectory: Trajectory;
   private readonly navigation: Navigation;
@@ -85,8 +86,14 @@ export class Viewer {
   private raysStale = true;
   private raysAt = -Infinity;
 
-  constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[]) {
+  constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[],
+              graphics: Graphics) {
+    this.settings = new Store(defaultSettings(graphics.software));
+    this.scene = new MapScene(this.canvas, !graphics.software);
+    this.probe = new DepthProbe(this.scene.eyeDome.target.depthTexture!);
+    this.picking = new Picking(this.scene);
     this.trajectory = new Trajectory(frames);
+    if (map.foveal) this.scene.materials.setFovea(map.foveal.near, map.foveal.far);
     this.ranges = { height: [-2, 8], frame: [0, 1] };
     this.navigation = this.makeNavigation();
     this.topBar = this.makeTopBar();
