@@ -134,6 +134,8 @@ export class Viewer {
       this.loop.invalidate();
     });
     new ResizeObserver(() => this.resize()).observe(this.canvas);
+    new ResizeObserver(() => this.element.style.setProperty(
+      '--bottom', `${this.bottom.offsetHeight}px`)).observe(this.bottom);
     this.canvas.addEventListener('webglcontextlost', (event) => this.lostContext(event));
     listenToKeys(this.shortcuts(), this.navigation);
     this.resize();
@@ -403,11 +405,13 @@ export class Viewer {
       this.navigation.flyTo(viewAlong(new Vector3().setFromMatrixPosition(pose),
         new Vector3().setFromMatrixColumn(pose, 0)));
       this.notices.show('no-images', {
+        calm: true,
         text: 'From the LiDAR, forward. For the cameras and their images the drive must be at ' +
           'hand: fovea view MAP --drive DRIVE',
       }, 12);
       return this.placeChanged();
     }
+    if (!this.wide) this.panel.element.hidden = true;
     this.frameView.open(row, camera);
     this.navigation.hands = {
       pan: (dx, dy) => this.frameView.pan(dx, dy),
@@ -430,7 +434,7 @@ export class Viewer {
   private frameArea(): Rectangle {
     const side = this.wide ? 12 : 0;
     const right = this.wide && !this.panel.element.hidden ? 292 : side;
-    const top = this.wide ? 118 : 112;
+    const top = this.wide ? 118 : 142;
     return {
       x: side, y: top,
       width: Math.max(60, this.scene.width - side - right),
@@ -466,7 +470,7 @@ export class Viewer {
     if (measuring) {
       this.drop();
       this.measure.set([]);
-      this.notices.show('measure', { text: 'Click two or more points.' }, 5);
+      this.notices.show('measure', { text: 'Click two or more points.', calm: true }, 5);
     } else {
       this.notices.clear('measure');
     }
@@ -526,9 +530,9 @@ export class Viewer {
     this.address.write();
     try {
       await navigator.clipboard.writeText(location.href);
-      this.notices.show('link', { text: 'The link to this view is copied.' }, 3);
+      this.notices.show('link', { text: 'The link to this view is copied.', calm: true }, 3);
     } catch {
-      this.notices.show('link', { text: 'Copy the link from the address bar.' }, 5);
+      this.notices.show('link', { text: 'Copy the link from the address bar.', calm: true }, 5);
     }
   }
 
@@ -611,7 +615,7 @@ export class Viewer {
       return;
     }
     this.topBar.setLive(false);
-    this.notices.show('end', { text: 'The drive has ended. The map is finished.' }, 8);
+    this.notices.show('end', { text: 'The drive has ended. The map is finished.', calm: true }, 8);
     if (!this.map.tileset) return;
     this.tiles = this.makeTiles(this.map.tileset);
     this.tiles.group.visible = false;
