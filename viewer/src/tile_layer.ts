@@ -38,6 +38,8 @@ const thinnedSpread = 1.15;
 /** 3D Tiles whose errors stay finite where the camera is inside a tile. */
 class MapTiles extends TilesRenderer {
   pixelsPerUnit = 1;
+  /** Not refined any more: of their children one could not be loaded, and would be a hole. */
+  readonly stuck = new Set<object>();
 
   // The library calls this for each tile in sight; its typings leave it out.
   calculateTileViewError(tile: JsonTile, target: ViewError): void {
@@ -46,7 +48,7 @@ class MapTiles extends TilesRenderer {
     };
     base.calculateTileViewError.call(this, tile, target);
     const highest = tile.geometricError * this.pixelsPerUnit / nearestDistance;
-    target.error = Math.min(target.error, highest);
+    target.error = this.stuck.has(tile) ? 0 : Math.min(target.error, highest);
   }
 }
 
@@ -113,6 +115,8 @@ export class TileLayer {
     });
     this.tiles.addEventListener('load-error', ({ tile, error }) => {
       this.rootFailed ||= tile === null;
+      const parent = (tile as { parent?: object } | null)?.parent;
+      if (parent) this.tiles.stuck.add(parent);
       this.events.failed(++this.failures, error);
     });
     this.tiles.addEventListener('needs-update', () => this.events.changed());
@@ -156,6 +160,7 @@ export class TileLayer {
   retryFailed(): void {
     this.failures = 0;
     this.rootFailed = false;
+    this.tiles.stuck.clear();
     this.tiles.resetFailedTiles();
     this.events.changed();
   }

@@ -233,7 +233,8 @@ export class Viewer {
       },
       firstTile: (points) => this.measureHeights(points),
       failed: (count, error) => this.notices.show('tiles', {
-        text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ${error.message}`,
+        text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ` +
+          (error instanceof TypeError ? 'the server does not answer.' : error.message),
         action: {
           label: 'Try again',
           run: () => {
