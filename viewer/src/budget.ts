@@ -4,7 +4,7 @@ export class Budget {
   static readonly highest = 8_000_000;
   private static readonly start = 300_000;
   /** Frames to look at before each step. */
-  private static readonly window = 12;
+  private static readonly window = 8;
   private static readonly slow = 25;
   private static readonly quick = 50;
 
@@ -39,16 +39,16 @@ export class Budget {
    * to draw than the budget allows. Returns whether the budget has changed.
    */
   frame(milliseconds: number, limited: boolean): boolean {
-    this.intervals.push(milliseconds);
+    this.intervals = [...this.intervals.slice(1 - Budget.window), milliseconds];
     if (this.intervals.length < Budget.window) return false;
     const sorted = [...this.intervals].sort((a, b) => a - b);
     const median = sorted[sorted.length >> 1]!;
     this.rate = 1000 / Math.max(median, 1e-3);
-    this.intervals.shift();
     if (this.fixed !== null) return false;
     const before = this.adapted;
     if (this.rate < Budget.slow) {
-      this.adapted = Math.max(Budget.lowest, Math.round(this.adapted * 0.8));
+      const share = Math.min(0.8, Math.max(0.4, this.rate / Budget.slow));
+      this.adapted = Math.max(Budget.lowest, Math.round(this.adapted * share));
     } else if (this.rate > Budget.quick && limited) {
       this.adapted = Math.min(Budget.highest, Math.round(this.adapted * 1.25));
     }

@@ -56,7 +56,7 @@ export function rampOf(mode: ColorMode, ranges: DataRanges): Ramp | null {
       return { map: 'turbo', low: ranges.height[0], high: ranges.height[1], unit: 'm' };
     case 'range': return { map: 'turbo', low: 0, high: 60, unit: 'm' };
     case 'age':
-      return { map: 'viridis', low: ranges.frame[0], high: ranges.frame[1], unit: 'frame' };
+      return { map: 'viridis', low: ranges.frame[0], high: ranges.frame[1], unit: '(frame)' };
     case 'views': return { map: 'viridis', low: 1, high: 20, unit: 'images' };
     case 'error': return { map: 'inferno', low: 0, high: 64, unit: 'grey values' };
     default: return null;

@@ -50,7 +50,7 @@ void main() {
       behind += max(0.0, own - 0.5 * (distanceAt(at + step, own) + distanceAt(at - step, own)) -
                     tolerance);
     }
-    color *= exp(-min(behind * 40.0, 2.2) * strength);
+    color *= exp(-min(behind * 25.0, 2.0) * strength);
   }
   fragment = vec4(color, 1.0);
 }

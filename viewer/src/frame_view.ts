@@ -22,6 +22,7 @@ export class FrameView {
   readonly element: HTMLElement;
   private readonly image = el('img', { alt: 'Photograph of the frame', draggable: 'false' });
   private readonly picture: HTMLElement;
+  private readonly shade = el('div', { class: 'shade' });
   private readonly divider = el('div', { class: 'divider' });
   private readonly slider = el('input', {
     type: 'range', min: 0, max: 100, step: 1, value: 50, class: 'visually-hidden',
@@ -48,7 +49,7 @@ export class FrameView {
       iconButton(icon('next'), 'Next frame (.)', () => events.step(1)),
       iconButton(icon('close'), 'Leave the frame (Esc)', () => events.close()));
     this.element = el('div', { class: 'frame-view', hidden: true },
-      this.picture, this.divider, bar, this.slider);
+      this.shade, this.picture, this.divider, bar, this.slider);
     this.slider.addEventListener('input', () => this.setCut(Number(this.slider.value) / 100));
     this.image.addEventListener('load', () => this.element.classList.add('has-image'));
     this.image.addEventListener('error', () => {
@@ -140,10 +141,10 @@ export class FrameView {
 
   private lay(): void {
     const { x, y, width, height } = this.rectangle;
-    Object.assign(this.picture.style, {
-      left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px`,
-      clipPath: `inset(0 ${100 * (1 - this.cut)}% 0 0)`,
-    });
+    const box = { left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px` };
+    Object.assign(this.shade.style, box);
+    Object.assign(this.picture.style, box);
+    this.picture.style.clipPath = `inset(0 ${100 * (1 - this.cut)}% 0 0)`;
     Object.assign(this.divider.style, {
       left: `${x + this.cut * width}px`, top: `${y}px`, height: `${height}px`,
     });

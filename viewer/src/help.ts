@@ -38,7 +38,9 @@ export class Help {
       el('h2', {}, 'Keys and gestures'), list,
       el('p', { class: 'hint' }, 'Touch: one finger orbits, two move and zoom, a tap picks a point.'),
       el('p', { class: 'hint' }, `Map by ${generator}.`),
-      el('form', { method: 'dialog' }, el('button', { class: 'primary', autofocus: true }, 'Close')));
+      el('p', { class: 'close-row' }, el('button', {
+        type: 'button', class: 'primary', autofocus: true, onclick: () => this.element.close(),
+      }, 'Close')));
     this.element.addEventListener('click', (event) => {
       if (event.target === this.element) this.element.close();
     });

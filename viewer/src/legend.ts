@@ -23,10 +23,9 @@ export function legendOf(mode: ColorMode, map: MapInfo, ranges: DataRanges,
   if (ramp) {
     const bar = el('div', { class: 'bar' });
     bar.style.background = cssGradient(ramp.map);
-    const unit = ramp.unit === 'frame' ? ['frame ', ''] : ['', ` ${ramp.unit}`];
-    const end = (value: number) => el('span', {}, `${unit[0]}${number(value)}${unit[1]}`);
-    legend.append(bar, el('div', { class: 'ends' }, end(ramp.low),
-      end((ramp.low + ramp.high) / 2), end(ramp.high)));
+    legend.append(bar, el('div', { class: 'ends' }, el('span', {}, number(ramp.low)),
+      el('span', {}, number((ramp.low + ramp.high) / 2)),
+      el('span', {}, `${number(ramp.high)} ${ramp.unit}`)));
   }
   const kinds = kindsOf(mode, map, cameras).map(({ name, color }) => item(cssColor(color), name));
   if (mode === 'error') kinds.push(item(cssColor(outsideGrey), 'not in this image'));

@@ -1,11 +1,13 @@
 import './page.css';
 
+import { graphicsOfBrowser } from './graphics';
 import { Notices, showInstead } from './notices';
 import { loadFrames, loadMapInfo, untilReady } from './server';
 import { Viewer } from './viewer';
 
 async function start(root: HTMLElement): Promise<void> {
-  if (!document.createElement('canvas').getContext('webgl2')) {
+  const graphics = graphicsOfBrowser();
+  if (!graphics) {
     return showInstead(root, 'This browser cannot draw the map',
       'It needs WebGL 2, which this browser lacks or has switched off.');
   }
@@ -14,8 +16,8 @@ async function start(root: HTMLElement): Promise<void> {
   const waiting = new Notices();
   root.replaceChildren(waiting.element);
   await untilReady((progress) =>
-    waiting.show('reading', { text: 'The map is being read for its coarse levels', progress }));
-  const viewer = new Viewer(root, map, await loadFrames(map.frames));
+    waiting.show('reading', { text: 'The map is being read for its coarse levels', progress, calm: true }));
+  const viewer = new Viewer(root, map, await loadFrames(map.frames), graphics);
   window.fovea = { state: () => viewer.state(), pick: (x, y) => viewer.pick(x, y) };
 }
 

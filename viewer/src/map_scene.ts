@@ -27,9 +27,9 @@ export class MapScene {
   height = 1;
   ratio = 1;
 
-  constructor(readonly canvas: HTMLCanvasElement) {
+  constructor(readonly canvas: HTMLCanvasElement, antialias: boolean) {
     this.renderer = new WebGLRenderer({
-      canvas, antialias: true, alpha: false, stencil: false, powerPreference: 'high-performance',
+      canvas, antialias, alpha: false, stencil: false, powerPreference: 'high-performance',
     });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.autoClear = false;

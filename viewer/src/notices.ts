@@ -2,6 +2,8 @@ import { el } from './dom';
 
 export interface Notice {
   readonly text: string;
+  /** Good to know, rather than something that went wrong. */
+  readonly calm?: boolean;
   /** 0 to 1 draws a bar. */
   readonly progress?: number;
   readonly action?: { readonly label: string; readonly run: () => void };
@@ -15,8 +17,8 @@ export class Notices {
   /** With `seconds` it goes by itself. */
   show(matter: string, notice: Notice, seconds = 0): void {
     this.clear(matter);
-    const { text, progress, action } = notice;
-    const element = el('div', { class: 'notice' }, el('span', {}, text),
+    const { text, progress, action, calm } = notice;
+    const element = el('div', { class: calm ? 'notice calm' : 'notice' }, el('span', {}, text),
       action ? el('button', { type: 'button', class: 'text', onclick: action.run }, action.label) :
         null,
       progress === undefined ? null :

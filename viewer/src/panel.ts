@@ -72,7 +72,7 @@ export class Panel {
     });
     this.budgetSlider.setAttribute('aria-label', 'Points to draw at most');
     return el('section', {}, el('h2', {}, 'Points'),
-      row('As many as go smoothly', this.automatic, this.budgetText),
+      row('As many as go well', this.automatic, this.budgetText),
       this.budgetSlider,
       this.slider('Splat size', 'splatSize', 0.4, 3),
       row('Eye-dome lighting', this.toggle('eyeDome')),

@@ -28,7 +28,7 @@ export class PointCard {
     const facts = factsOf(point, this.map);
     const rows: [string, string][] = [];
     const { x, y, z } = point.position;
-    rows.push(['Position', `${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)} m`]);
+    rows.push(['Position (m)', `${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)}`]);
     if (this.map.origin) {
       const { latitude, longitude, altitude } = geodeticOfEnu(this.map.origin, point.position);
       rows.push(['Latitude', `${latitude.toFixed(8)}°`], ['Longitude', `${longitude.toFixed(8)}°`],

@@ -14,7 +14,7 @@ import { showsUncolored, type Settings } from './settings';
 const tableWidth = 256;
 
 /** Spacing alone leaves gaps where points of a surface are not in rows. */
-const overlap = 1.6;
+const overlap = 1.7;
 
 function table(data: Uint8Array<ArrayBuffer>, width: number, height: number): DataTexture {
   const texture = new DataTexture(data, width, height, RGBAFormat);
@@ -94,6 +94,7 @@ export class PointMaterials {
     this.pickMaterial = material(
       { ...objectUniforms(), ...this.shared }, { PICK: '', BULGED: '' });
     this.depthPass.showUncolored.value = true;
+    this.depthPass.splatSize.value = 1.1;
     this.depthMaterial = material({ ...objectUniforms(), ...this.depthPass }, {});
     this.depthMaterial.colorWrite = false;
   }
@@ -116,6 +117,10 @@ export class PointMaterials {
 
   depthUniforms(): PassUniforms {
     return this.depthPass;
+  }
+
+  setFovea(near: number, far: number): void {
+    this.picture.fovea.value.set(near, far);
   }
 
   choose(settings: Settings): void {

@@ -67,7 +67,8 @@ vec3 imageError(vec3 own) {
   float z = 2.0 * textureLod(imageDepth, vec2(at.x, 1.0 - at.y), 0.0).r - 1.0;
   float front = 2.0 * imageRange.x * imageRange.y /
       (imageRange.y + imageRange.x - z * (imageRange.y - imageRange.x));
-  if (p.z > 1.02 * front + 0.15) return outside;
+  // A splat of ground in front, seen from low, reaches over what lies some spacings behind it.
+  if (p.z > 1.02 * front + 0.1 + 4.0 * spacing) return outside;
   vec3 seen = textureLod(image, at, 0.0).rgb;
   return onRamp(255.0 * dot(abs(own - seen), vec3(1.0 / 3.0)));
 }

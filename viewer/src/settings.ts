@@ -17,7 +17,7 @@ export interface Settings {
   readonly follow: boolean;
 }
 
-export const defaultSettings: Settings = {
+const basicSettings: Settings = {
   mode: 'photograph',
   uncoloredInPhotograph: false,
   uncoloredElsewhere: true,
@@ -31,6 +31,11 @@ export const defaultSettings: Settings = {
   rays: false,
   follow: true,
 };
+
+/** Without a graphics card splats stay flat, as bulging ones cost half as much again. */
+export function defaultSettings(software: boolean): Settings {
+  return { ...basicSettings, paraboloids: !software };
+}
 
 export function showsUncolored(settings: Settings): boolean {
   return settings.mode === 'photograph' ?

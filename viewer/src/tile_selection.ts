@@ -30,8 +30,10 @@ export function viewpointOf(camera: Camera, height: number): Viewpoint {
 /** Inside a tile the error would be infinite, and no target could choose between such tiles (m). */
 export const nearestDistance = 2;
 
-/** Until a tile has been counted: what tiles tend to have. */
+/** Of a first tile that nobody has counted. */
 const usualPoints = 20000;
+/** Half the spacing on surfaces: all children together have up to four times a tile's points. */
+const childrenShare = 4;
 
 interface Candidate {
   readonly node: TileNode;
@@ -94,7 +96,9 @@ export function selectError(root: TileNode, view: Viewpoint, budget: number,
                             finest: number): Selection {
   const errorOf = (node: TileNode) => node.geometricError * view.pixelsPerUnit /
     Math.max(node.box.distanceToPoint(view.eye), nearestDistance);
-  const points = (node: TileNode) => node.points ?? usualPoints;
+  // Tiles are counted when they come; until then they are taken to be like those above them.
+  const guessed = new Map<TileNode, number>();
+  const points = (node: TileNode) => node.points ?? guessed.get(node) ?? usualPoints;
   const heap = new Heap();
   let drawn = 0;
   if (view.frustum.intersectsBox(root.box)) {
@@ -106,6 +110,9 @@ export function selectError(root: TileNode, view: Viewpoint, budget: number,
     if (error <= finest) break;
     const children = node.children.filter((child) => view.frustum.intersectsBox(child.box));
     if (node.children.length === 0) continue;
+    for (const child of children) {
+      guessed.set(child, points(node) * childrenShare / node.children.length);
+    }
     const refined = drawn - points(node) + children.reduce((sum, c) => sum + points(c), 0);
     if (refined > budget) {
       return { errorTarget: Math.max(error, finest), points: drawn, limited: true };

@@ -20,10 +20,9 @@ function vehicleMarker(): Group {
   const edges = new LineSegments(
     new EdgesGeometry(box), new LineBasicMaterial({ color: vehicleColor }));
   edges.position.z = vehicle.height / 2 - vehicle.lidarHeight;
-  const nose = new Mesh(new ConeGeometry(0.25, 0.8, 16),
+  // An arrow that lies flat over the roof.
+  const nose = new Mesh(new ConeGeometry(0.6, 1.6, 4).rotateZ(-Math.PI / 2).scale(1, 1, 0.1),
     new MeshBasicMaterial({ color: vehicleColor }));
-  nose.rotation.z = -Math.PI / 2;
-  nose.position.x = 0.4;
   const marker = new Group();
   marker.add(edges, nose);
   return marker;

@@ -7,6 +7,7 @@ import { DepthProbe } from './depth_probe';
 import { el, short } from './dom';
 import { FovealOverlay } from './foveal_overlay';
 import { FrameView } from './frame_view';
+import type { Graphics } from './graphics';
 import { Help } from './help';
 import { ImageComparison } from './image_comparison';
 import type { Rectangle } from './intrinsics';
@@ -48,16 +49,16 @@ const rayPause = 300;
 
 /** Puts the parts together: what is drawn, who moves the camera, what the panels say. */
 export class Viewer {
-  private readonly settings = new Store<Settings>(defaultSettings);
+  private readonly settings: Store<Settings>;
   private readonly notices = new Notices();
   private readonly canvas = el('canvas', { tabindex: 0, 'aria-label': 'The map in 3D' });
   private readonly ring = el('span', { class: 'ring', hidden: true });
   private readonly status = el('p', { class: 'status' });
   private readonly bottom: HTMLElement;
   private readonly element: HTMLElement;
-  private readonly scene = new MapScene(this.canvas);
-  private readonly probe = new DepthProbe(this.scene.eyeDome.target.depthTexture!);
-  private readonly picking = new Picking(this.scene);
+  private readonly scene: MapScene;
+  private readonly probe: DepthProbe;
+  private readonly picking: Picking;
   private readonly budget = new Budget();
   private readonly trajectory: Trajectory;
   private readonly navigation: Navigation;
@@ -85,8 +86,14 @@ export class Viewer {
   private raysStale = true;
   private raysAt = -Infinity;
 
-  constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[]) {
+  constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[],
+              graphics: Graphics) {
+    this.settings = new Store(defaultSettings(graphics.software));
+    this.scene = new MapScene(this.canvas, !graphics.software);
+    this.probe = new DepthProbe(this.scene.eyeDome.target.depthTexture!);
+    this.picking = new Picking(this.scene);
     this.trajectory = new Trajectory(frames);
+    if (map.foveal) this.scene.materials.setFovea(map.foveal.near, map.foveal.far);
     this.ranges = { height: [-2, 8], frame: [0, 1] };
     this.navigation = this.makeNavigation();
     this.topBar = this.makeTopBar();
@@ -127,6 +134,8 @@ export class Viewer {
       this.loop.invalidate();
     });
     new ResizeObserver(() => this.resize()).observe(this.canvas);
+    new ResizeObserver(() => this.element.style.setProperty(
+      '--bottom', `${this.bottom.offsetHeight}px`)).observe(this.bottom);
     this.canvas.addEventListener('webglcontextlost', (event) => this.lostContext(event));
     listenToKeys(this.shortcuts(), this.navigation);
     this.resize();
@@ -224,7 +233,8 @@ export class Viewer {
       },
       firstTile: (points) => this.measureHeights(points),
       failed: (count, error) => this.notices.show('tiles', {
-        text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ${error.message}`,
+        text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ` +
+          (error instanceof TypeError ? 'the server does not answer.' : error.message),
         action: {
           label: 'Try again',
           run: () => {
@@ -396,11 +406,13 @@ export class Viewer {
       this.navigation.flyTo(viewAlong(new Vector3().setFromMatrixPosition(pose),
         new Vector3().setFromMatrixColumn(pose, 0)));
       this.notices.show('no-images', {
+        calm: true,
         text: 'From the LiDAR, forward. For the cameras and their images the drive must be at ' +
           'hand: fovea view MAP --drive DRIVE',
       }, 12);
       return this.placeChanged();
     }
+    if (!this.wide) this.panel.element.hidden = true;
     this.frameView.open(row, camera);
     this.navigation.hands = {
       pan: (dx, dy) => this.frameView.pan(dx, dy),
@@ -423,7 +435,7 @@ export class Viewer {
   private frameArea(): Rectangle {
     const side = this.wide ? 12 : 0;
     const right = this.wide && !this.panel.element.hidden ? 292 : side;
-    const top = this.wide ? 118 : 112;
+    const top = this.wide ? 118 : 142;
     return {
       x: side, y: top,
       width: Math.max(60, this.scene.width - side - right),
@@ -459,7 +471,7 @@ export class Viewer {
     if (measuring) {
       this.drop();
       this.measure.set([]);
-      this.notices.show('measure', { text: 'Click two or more points.' }, 5);
+      this.notices.show('measure', { text: 'Click two or more points.', calm: true }, 5);
     } else {
       this.notices.clear('measure');
     }
@@ -519,9 +531,9 @@ export class Viewer {
     this.address.write();
     try {
       await navigator.clipboard.writeText(location.href);
-      this.notices.show('link', { text: 'The link to this view is copied.' }, 3);
+      this.notices.show('link', { text: 'The link to this view is copied.', calm: true }, 3);
     } catch {
-      this.notices.show('link', { text: 'Copy the link from the address bar.' }, 5);
+      this.notices.show('link', { text: 'Copy the link from the address bar.', calm: true }, 5);
     }
   }
 
@@ -604,7 +616,7 @@ export class Viewer {
       return;
     }
     this.topBar.setLive(false);
-    this.notices.show('end', { text: 'The drive has ended. The map is finished.' }, 8);
+    this.notices.show('end', { text: 'The drive has ended. The map is finished.', calm: true }, 8);
     if (!this.map.tileset) return;
     this.tiles = this.makeTiles(this.map.tileset);
     this.tiles.group.visible = false;

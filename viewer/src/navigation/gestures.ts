@@ -43,7 +43,7 @@ export class Gestures {
   private down(event: PointerEvent): void {
     const at = this.place(event);
     this.canvas.setPointerCapture(event.pointerId);
-    this.canvas.focus({ preventScroll: true });
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
     this.fingers.set(event.pointerId, at);
     if (this.fingers.size === 1) {
       this.start = { ...at, time: event.timeStamp };
