@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-function programNamedBy(variable) {
+export function programNamedBy(variable) {
   const program = process.env[variable];
   assert.ok(program, `${variable} must name the built program`);
   return program;

@@ -1,4 +1,5 @@
-// Writes a small georeferenced map, and as JSON what its exports must hold: for tests/web.
+// Writes maps for tests/web: map.fovea, a small georeferenced one, with points.json, what its
+// exports must hold; and plain.fovea, a large one with known distances.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -75,6 +76,71 @@ void write(const std::filesystem::path& folder) {
   std::ofstream(folder / "points.json") << points;
 }
 
+constexpr double kTile = 4, kSpacing = 0.02;  // m
+
+/// A tile of a plain: a chequered floor at z = 0, seen by frame x.
+PointCloud floor_tile(const TileKey& key) {
+  constexpr int kAlong = 200;
+  PointCloud tile;
+  tile.origin = kTile * Eigen::Vector3d(key.x, key.y, key.z);
+  for (int i = 0; i < kAlong * kAlong; ++i) {
+    const float x = static_cast<float>(kSpacing * (i % kAlong) + 0.01),
+                y = static_cast<float>(kSpacing * (i / kAlong) + 0.01);
+    tile.position.emplace_back(x, y, 0.f);
+    const bool dark = (int(x) + int(y)) % 2 == 0;
+    tile.color.push_back(dark ? Rgb{70, 90, 70} : Rgb{120, 140, 120});
+  }
+  return tile;
+}
+
+/// A red post of 1 m at the middle of the tile.
+void put_post(PointCloud& tile) {
+  for (int i = 0; i < 3600; ++i) {
+    const double angle = 0.1 * (i % 60), height = i / 60 / 60.0;
+    tile.position.push_back(
+        Eigen::Vector3d(2 + 0.1 * std::cos(angle), 2 + 0.1 * std::sin(angle), height)
+            .cast<float>());
+    tile.color.push_back({255, 0, 0});
+  }
+}
+
+void fill_columns(PointCloud& tile, int frame) {
+  const std::size_t n = tile.size();
+  tile.range.assign(n, 8.f);
+  tile.incidence.assign(n, 0.5f);
+  tile.frame.assign(n, frame);
+  tile.camera.assign(n, 2);
+  tile.interpolated.assign(n, 1);
+  tile.views.assign(n, 3);
+  tile.spread.assign(n, 4);
+  tile.weight.assign(n, 100);
+  tile.reason.assign(n, 1);
+}
+
+/// 100 m x 20 m with 5 million points, from x = 0 and around y = 0, and two posts 20 m apart: at
+/// (10, -4) and (26, 8). A frame each metre along the middle, 1.7 m above the floor.
+void write_plain(const std::filesystem::path& folder) {
+  const auto writer = MapWriter::create(folder / "plain.fovea", true);
+  writer->put_meta("map.tile_size", "4");
+  for (int i = 0; i < 100; ++i) {
+    FrameRecord frame;
+    frame.index = i;
+    frame.stamp = from_seconds(0.1 * i);
+    frame.T_local_lidar.translation() = Eigen::Vector3d(i, 0, 1.7);
+    writer->put_frame(frame);
+  }
+  writer->put_submap(0, RigidMotion(Eigen::Translation3d(0, -2, 0)));
+  for (int x = 0; x < 25; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      PointCloud tile = floor_tile({x, y, 0});
+      if ((x == 2 && y == -1) || (x == 6 && y == 2)) put_post(tile);
+      fill_columns(tile, std::min(4 * x, 99));
+      writer->put_tile({0, {x, y, 0}}, tile);
+    }
+  }
+  writer->commit();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -83,5 +149,6 @@ int main(int argc, char** argv) {
     return 2;
   }
   write(argv[1]);
+  write_plain(argv[1]);
   return 0;
 }

@@ -28,6 +28,8 @@ export interface MapInfo {
   readonly live: boolean;
   readonly tileset: string | null;
   readonly frames: string;
+  /** Tells how far the server has read the map; null: there is no such thing. */
+  readonly status: string | null;
   readonly images: boolean;
   readonly origin: GeodeticPoint | null;
   readonly tileSize: number;
@@ -121,6 +123,7 @@ export function parseMapInfo(value: unknown): MapInfo {
     live: map.live === true,
     tileset: typeof map.tileset === 'string' ? map.tileset : null,
     frames: String(map.frames ?? 'frames.json'),
+    status: typeof map.status === 'string' ? map.status : null,
     images: map.images === true,
     origin: origin && {
       latitude: number(origin, 'latitude'),
@@ -176,6 +179,7 @@ export function parseFrames(value: unknown): Frame[] {
 
 export function parseServerStatus(value: unknown): ServerStatus {
   const status = asObject(value, 'status.json');
+  if (typeof status.failure === 'string') throw new ProtocolError(status.failure);
   return {
     state: status.state === 'reading' ? 'reading' : 'ready',
     read: Math.min(1, Math.max(0, asNumberOrNull(status.read) ?? 0)),

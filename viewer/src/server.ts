@@ -23,13 +23,14 @@ export async function loadFrames(path: string): Promise<Frame[]> {
 const pause = (milliseconds: number) =>
   new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 
-/** Until the server has read the map; a finished folder has nothing to wait for. */
-export async function untilReady(progress: (read: number) => void): Promise<void> {
+/** Until the server has read the map.
+ *  @param path  of what tells how far it is; null: an exported folder, nothing to wait for */
+export async function untilReady(
+  path: string | null, progress: (read: number) => void,
+): Promise<void> {
+  if (path === null) return;
   for (;;) {
-    const response = await fetch('status.json', { cache: 'no-cache' });
-    if (response.status === 404) return;
-    if (!response.ok) throw new Error(`status.json: ${response.status}`);
-    const status = parseServerStatus(await response.json());
+    const status = parseServerStatus(await json(path));
     if (status.state === 'ready') return;
     progress(status.read);
     await pause(200);

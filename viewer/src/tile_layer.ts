@@ -91,7 +91,8 @@ export class TileLayer {
 
   constructor(url: string, private readonly materials: PointMaterials,
               private readonly events: TileEvents) {
-    this.tiles = new MapTiles(url);
+    // Whole: against an address without a folder the renderer takes the tileset itself for one.
+    this.tiles = new MapTiles(new URL(url, document.baseURI).href);
     this.tiles.autoDisableRendererCulling = false;
     this.tiles.registerPlugin({
       // The page works in `local`: the root's way to the earth's centre is left out, not undone,
