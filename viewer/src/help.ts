@@ -36,7 +36,8 @@ export class Help {
     ]));
     this.element = el('dialog', { class: 'help card', 'aria-label': 'Keys and gestures' },
       el('h2', {}, 'Keys and gestures'), list,
-      el('p', { class: 'hint' }, 'Touch: one finger orbits, two move and zoom, a tap picks a point.'),
+      el('p', { class: 'hint' },
+        'Touch: one finger orbits, two move and zoom, a tap picks a point.'),
       el('p', { class: 'hint' }, `Map by ${generator}.`),
       el('p', { class: 'close-row' }, el('button', {
         type: 'button', class: 'primary', autofocus: true, onclick: () => this.element.close(),

@@ -152,7 +152,9 @@ export class TileLayer {
   get pointsLoaded(): number {
     let points = 0;
     this.tiles.forEachLoadedModel((scene) => {
-      scene.traverse((object) => { if (object instanceof PointObject) points += object.pointCount; });
+      scene.traverse((object) => {
+        if (object instanceof PointObject) points += object.pointCount;
+      });
     });
     return points;
   }
@@ -163,13 +165,6 @@ export class TileLayer {
     this.tiles.stuck.clear();
     this.tiles.resetFailedTiles();
     this.events.changed();
-  }
-
-  /** What is in the picture now. */
-  visible(): PointObject[] {
-    const found: PointObject[] = [];
-    this.tiles.group.traverse((object) => { if (object instanceof PointObject) found.push(object); });
-    return found;
   }
 
   /** Chooses tiles for this camera; `height` in pixels of the screen. */

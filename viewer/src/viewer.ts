@@ -46,6 +46,10 @@ const narrow = 760;
 const toggles = ['trajectory', 'foveal', 'rays'] as const;
 /** Rays are found again at most this often while tiles come and go (ms). */
 const rayPause = 300;
+/** How long nothing moves before the picture becomes finer (ms). */
+const restAfter = 400;
+/** While it does, it is drawn at most this often (ms). */
+const restPause = 500;
 
 /** Puts the parts together: what is drawn, who moves the camera, what the panels say. */
 export class Viewer {
@@ -85,6 +89,8 @@ export class Viewer {
   private picked: PickedPoint | null = null;
   private raysStale = true;
   private raysAt = -Infinity;
+  private drawnAt = -Infinity;
+  private restTimer = 0;
 
   constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[],
               graphics: Graphics) {
@@ -201,7 +207,7 @@ export class Viewer {
       trajectory: this.trajectory,
       row: () => this.row,
       setRow: (row) => this.setRow(row),
-      changed: () => this.loop.invalidate(),
+      changed: () => this.wake(),
       moved: () => this.settings.set({ follow: false }),
       click: (x, y) => this.click(x, y),
       doubleClick: (x, y) => {
@@ -301,7 +307,8 @@ export class Viewer {
     for (let i = 0; i < points.pointCount; i += stride) heights.push(localPosition(points, i).z);
     heights.sort((a, b) => a - b);
     const at = (share: number) => heights[Math.floor(share * (heights.length - 1))]!;
-    if (heights.length > 0) this.setRanges({ height: [at(0.02), Math.max(at(0.98), at(0.02) + 1)] });
+    if (heights.length === 0) return;
+    this.setRanges({ height: [at(0.02), Math.max(at(0.98), at(0.02) + 1)] });
   }
 
   private framesChanged(): void {
@@ -650,16 +657,37 @@ export class Viewer {
     const { follow } = this.settings.get();
     this.navigation.step(passed, follow && !this.frameView.active && this.trajectory.length > 0);
     this.placeCamera();
+    const limited = this.tiles?.limited ?? false;
+    const behind = follow && this.navigation.mode !== 'walk' && !this.frameView.active &&
+      this.trajectory.length > 0 && this.navigation.distanceToChase() > 0.02;
+    const moving = this.playing || this.navigation.moving || behind;
+    if (moving) this.budget.wake();
     this.updateTiles(seconds);
+    const loading = (this.tiles?.loading ?? 0) > 0;
+    if (loading && this.budget.atRest && performance.now() - this.drawnAt < restPause) return true;
     this.updateRays();
     this.draw();
+    this.drawnAt = performance.now();
     this.address.touch();
     this.showStatus();
-    const loading = (this.tiles?.loading ?? 0) > 0;
-    const chasing_ = follow && this.navigation.mode !== 'walk' && !this.frameView.active &&
-      this.trajectory.length > 0 && this.navigation.distanceToChase() > 0.02;
-    return this.playing || this.navigation.moving || loading || chasing_ ||
-      (this.tiles?.limited ?? false) && this.budget.mayGrow;
+    const on = moving || loading || limited && this.budget.mayGrow;
+    if (!on && limited && !this.budget.atRest) this.restSoon();
+    return on;
+  }
+
+  /** The user moves something: now the picture must be quick. */
+  private wake(): void {
+    clearTimeout(this.restTimer);
+    this.budget.wake();
+    this.loop.invalidate();
+  }
+
+  private restSoon(): void {
+    clearTimeout(this.restTimer);
+    this.restTimer = window.setTimeout(() => {
+      this.budget.rest();
+      this.loop.invalidate();
+    }, restAfter);
   }
 
   private advance(seconds: number): void {
