@@ -237,7 +237,10 @@ export class Viewer {
         this.raysStale = true;
         this.loop.invalidate();
       },
-      firstTile: (points) => this.measureHeights(points),
+      firstTile: (points) => {
+        this.measureHeights(points);
+        if (!points.known) this.sayPlain();
+      },
       failed: (count, error) => this.notices.show('tiles', {
         text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ` +
           (error instanceof TypeError ? 'the server does not answer.' : error.message),
@@ -332,9 +335,8 @@ export class Viewer {
   private placeChanged(): void {
     const now = this.settings.get();
     const pose = this.trajectory.pose(Math.round(this.row));
-    const inside = this.navigation.mode === 'walk' || this.frameView.active;
     this.line.group.visible = now.trajectory;
-    this.line.show(this.row, inside);
+    this.line.show(this.row);
     if (pose) this.foveal.place(pose, now.foveal);
     if (now.mode === 'error' && this.map.cameras.length > 0) {
       this.comparison.choose(this.trajectory, Math.round(this.row),
@@ -739,6 +741,7 @@ export class Viewer {
 
   private draw(): void {
     const { camera, width, height } = this.scene;
+    this.line.seenFrom(camera.position, this.navigation.mode === 'walk' || this.frameView.active);
     if (this.comparison.active) this.comparison.drawDepth();
     this.scene.draw();
     this.live?.drawn();
@@ -757,6 +760,13 @@ export class Viewer {
       const { length } = this.trajectory;
       this.topBar.setFigures(`${short(this.map.points)} points, ${length} frames`);
     }
+  }
+
+  private sayPlain(): void {
+    this.notices.show('plain', {
+      calm: true,
+      text: 'These tiles have positions and colours alone: frame, range and rule are not known.',
+    }, 8);
   }
 
   private sayEmpty(): void {
