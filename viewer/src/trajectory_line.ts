@@ -80,7 +80,7 @@ export class TrajectoryLine {
       .decompose(this.marker.position, this.marker.quaternion, this.marker.scale);
   }
 
-  /** From inside the vehicle its box would be all that one sees; `along`: one looks along the line. */
+  /** From inside the vehicle its box would be all that one sees. `along`: one is on the line. */
   seenFrom(eye: Vector3, along: boolean): void {
     this.marker.visible = this.trajectory.length > 0 && !along &&
       eye.distanceTo(this.marker.position) > 0.8 * vehicle.length;

@@ -50,6 +50,8 @@ const rayPause = 300;
 const restAfter = 400;
 /** While it does, it is drawn at most this often (ms). */
 const restPause = 500;
+/** Levels of tiles come one after another, with steps between in which nothing is on its way. */
+const stepsToSettle = 4;
 
 /** Puts the parts together: what is drawn, who moves the camera, what the panels say. */
 export class Viewer {
@@ -91,6 +93,7 @@ export class Viewer {
   private raysAt = -Infinity;
   private drawnAt = -Infinity;
   private restTimer = 0;
+  private settledSteps = 0;
 
   constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[],
               graphics: Graphics) {
@@ -630,11 +633,14 @@ export class Viewer {
     this.tiles = this.makeTiles(this.map.tileset);
     this.tiles.group.visible = false;
     this.scene.add(this.tiles.group);
+    this.budget.rest();
     this.loop.invalidate();
   }
 
   private takeOver(): void {
-    if (!this.tiles || this.tiles.group.visible || !this.tiles.settled) return;
+    if (!this.tiles || this.tiles.group.visible) return;
+    this.settledSteps = this.tiles.settled ? this.settledSteps + 1 : 0;
+    if (this.settledSteps < stepsToSettle) return;
     this.tiles.group.visible = true;
     this.drop();
     this.live?.layer.clear();
@@ -665,7 +671,7 @@ export class Viewer {
     const moving = this.playing || this.navigation.moving || behind;
     if (moving) this.budget.wake();
     this.updateTiles(seconds);
-    const loading = (this.tiles?.loading ?? 0) > 0;
+    const loading = (this.tiles?.loading ?? 0) > 0 || this.tiles?.group.visible === false;
     if (loading && this.budget.atRest && performance.now() - this.drawnAt < restPause) return true;
     this.updateRays();
     this.draw();
