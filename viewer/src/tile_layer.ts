@@ -128,6 +128,11 @@ export class TileLayer {
     return this.root !== null && this.root.points === 0 && this.root.children.length === 0;
   }
 
+  /** Whether there is no tile yet, and one will come. */
+  get awaitsFirst(): boolean {
+    return !this.seenFirst && this.loading > 0;
+  }
+
   /** Tiles that are on their way. */
   get loading(): number {
     const { queued = 0, downloading = 0, parsing = 0 } = (this.tiles as unknown as {

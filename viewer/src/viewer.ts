@@ -512,6 +512,7 @@ export class Viewer {
   }
 
   private restore(state: AddressState): void {
+    if (state.camera === undefined) this.leaveFrame();
     const { mode, show } = state;
     if (mode && modesOf(this.map).includes(mode)) this.settings.set({ mode });
     if (show) {
@@ -672,10 +673,13 @@ export class Viewer {
     if (moving) this.budget.wake();
     this.updateTiles(seconds);
     const loading = (this.tiles?.loading ?? 0) > 0 || this.tiles?.group.visible === false;
+    // A first picture of nothing would only keep the first tile waiting.
+    if (this.tiles?.awaitsFirst && !this.live) return true;
     if (loading && this.budget.atRest && performance.now() - this.drawnAt < restPause) return true;
     this.updateRays();
     this.draw();
     this.drawnAt = performance.now();
+    this.canvas.classList.add('drawn');
     this.address.touch();
     this.showStatus();
     const on = moving || loading || limited && this.budget.mayGrow;
