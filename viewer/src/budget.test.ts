@@ -47,6 +47,19 @@ describe('the budget of points', () => {
     expect(budget.points).toBe(300_000);
   });
 
+  test('is larger for a picture that rests, and that tells nothing of speed', () => {
+    const budget = new Budget();
+    budget.rest();
+    expect(budget.points).toBe(1_200_000);
+    run(budget, 500, 100);
+    expect(budget.mayGrow).toBe(false);
+    budget.wake();
+    expect(budget.points).toBe(300_000);
+    budget.fix(500_000);
+    budget.rest();
+    expect(budget.points).toBe(500_000);
+  });
+
   test('stays where the user has put it, within bounds', () => {
     const budget = new Budget();
     budget.fix(2_000_000);

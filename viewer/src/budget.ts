@@ -1,4 +1,4 @@
-/** How many points to draw: as many as go smoothly. */
+/** How many points to draw: as many as go smoothly, and more of them once the picture rests. */
 export class Budget {
   static readonly lowest = 100_000;
   static readonly highest = 8_000_000;
@@ -7,14 +7,33 @@ export class Budget {
   private static readonly window = 8;
   private static readonly slow = 25;
   private static readonly quick = 50;
+  /** A picture that rests may take longer. */
+  private static readonly restFactor = 4;
 
   private adapted = Budget.start;
   private fixed: number | null = null;
   private intervals: number[] = [];
   private rate = 0;
+  private resting = false;
 
   get points(): number {
-    return this.fixed ?? this.adapted;
+    if (this.fixed !== null) return this.fixed;
+    return this.resting ? Math.min(Budget.highest, Budget.restFactor * this.adapted) :
+      this.adapted;
+  }
+
+  get atRest(): boolean {
+    return this.resting;
+  }
+
+  /** Nothing moves any more: quality before speed. */
+  rest(): void {
+    this.resting = true;
+  }
+
+  /** Something moves again: speed before quality. */
+  wake(): void {
+    this.resting = false;
   }
 
   /** Frames per second of late, 0 before the first. */
@@ -30,7 +49,7 @@ export class Budget {
 
   /** Whether drawing on would tell if more points are possible. */
   get mayGrow(): boolean {
-    return this.fixed === null && this.adapted < Budget.highest &&
+    return this.fixed === null && !this.resting && this.adapted < Budget.highest &&
       (this.intervals.length < Budget.window || this.rate > Budget.quick);
   }
 
@@ -39,6 +58,7 @@ export class Budget {
    * to draw than the budget allows. Returns whether the budget has changed.
    */
   frame(milliseconds: number, limited: boolean): boolean {
+    if (this.resting) return false;
     this.intervals = [...this.intervals.slice(1 - Budget.window), milliseconds];
     if (this.intervals.length < Budget.window) return false;
     const sorted = [...this.intervals].sort((a, b) => a - b);

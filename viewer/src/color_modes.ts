@@ -44,7 +44,8 @@ export const neutralGrey: Rgb = [0.5, 0.5, 0.5];
 export const outsideGrey: Rgb = [0.32, 0.34, 0.37];
 
 // Okabe and Ito's colours, which differ for all kinds of eyes.
-const kindColors = [0x56b4e9, 0xe69f00, 0x009e73, 0xf0e442, 0xcc79a7, 0xd55e00, 0x0072b2].map(rgbOf);
+const kindColors =
+  [0x56b4e9, 0xe69f00, 0x009e73, 0xf0e442, 0xcc79a7, 0xd55e00, 0x0072b2].map(rgbOf);
 
 function kind(index: number, name: string): Kind {
   return { index, name, color: kindColors[index % kindColors.length]! };
@@ -75,7 +76,8 @@ export function kindsOf(mode: ColorMode, map: MapInfo, seenCameras: ReadonlySet<
     case 'zone': {
       const { near, far } = map.foveal ?? { near: 0, far: 0 };
       return [
-        kind(0, `Below ${near} m`), kind(1, `${near} to ${far} m: fovea`), kind(2, `From ${far} m on`),
+        kind(0, `Below ${near} m`), kind(1, `${near} to ${far} m: fovea`),
+        kind(2, `From ${far} m on`),
       ];
     }
     default: return [];

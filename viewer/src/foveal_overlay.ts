@@ -29,7 +29,7 @@ function rays(camera: CameraInfo): { center: Vector3; along: (u: number, v: numb
   };
 }
 
-/** The region that a frame textures: between two shells round the LiDAR, as far as a camera sees. */
+/** The region that a frame textures: between two shells round the LiDAR, where a camera sees. */
 function regionGeometries(camera: CameraInfo, near: number, far: number) {
   const { center, along } = rays(camera);
   const at = (column: number, row: number, r: number) => {

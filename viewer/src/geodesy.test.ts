@@ -38,7 +38,7 @@ describe('east, north, up', () => {
     expect(at.altitude).toBeCloseTo(100, 6);
   });
 
-  test('up is up, a minute of latitude north is about 1853.3 m there, east falls off the curve', () => {
+  test('up is up, a minute of latitude is about 1853.3 m, east falls off the curve', () => {
     expect(geodeticOfEnu(origin, new Vector3(0, 0, 50)).altitude).toBeCloseTo(150, 6);
     const north = geodeticOfEnu(origin, new Vector3(0, 1853.32, 0));
     expect((north.latitude - 49) * 60).toBeCloseTo(1, 3);

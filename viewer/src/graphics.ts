@@ -8,8 +8,11 @@ export interface Graphics {
 export function graphicsOfBrowser(): Graphics | null {
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl) return null;
-  const info = gl.getExtension('WEBGL_debug_renderer_info');
-  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  let name = String(gl.getParameter(gl.RENDERER));
+  if (name === 'WebKit WebGL') {  // Chromium's and Safari's general answer
+    const info = gl.getExtension('WEBGL_debug_renderer_info');
+    if (info) name = String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  }
   gl.getExtension('WEBGL_lose_context')?.loseContext();
   return { software: /swiftshader|llvmpipe|software/i.test(name) };
 }

@@ -2,12 +2,13 @@ const paths = {
   orbit: '<circle cx="12" cy="12" r="2.5"/><ellipse cx="12" cy="12" rx="9.5" ry="4"/>' +
     '<path d="M12 2.5v3M12 18.5v3"/>',
   fly: '<path d="M3 11.5 21 4l-6 17-4-7z"/><path d="m11 14 4-4"/>',
-  walk: '<circle cx="13" cy="4.5" r="1.8"/><path d="m9 21 2.5-6L9 12l1.5-4.5L14 9l3 2M13.5 14l2 7"/>',
+  walk: '<circle cx="13" cy="4.5" r="1.8"/>' +
+    '<path d="m9 21 2.5-6L9 12l1.5-4.5L14 9l3 2M13.5 14l2 7"/>',
   frame: '<rect x="3" y="6.5" width="18" height="13" rx="2"/><circle cx="12" cy="13" r="3.5"/>' +
     '<path d="M8 6.5 9.5 4h5L16 6.5"/>',
   measure: '<path d="M3 17 17 3l4 4L7 21z"/><path d="m7 13 2 2M10 10l2.5 2.5M13 7l2 2"/>',
-  link: '<path d="M10 14a4 4 0 0 0 6 0l3-3a4.2 4.2 0 0 0-6-6l-1 1M14 10a4 4 0 0 0-6 0l-3 3a4.2 4.2' +
-    ' 0 0 0 6 6l1-1"/>',
+  link: '<path d="M10 14a4 4 0 0 0 6 0l3-3a4.2 4.2 0 0 0-6-6l-1 1' +
+    'M14 10a4 4 0 0 0-6 0l-3 3a4.2 4.2 0 0 0 6 6l1-1"/>',
   picture: '<rect x="3" y="4" width="18" height="16" rx="2"/><circle cx="8.5" cy="9.5" r="1.5"/>' +
     '<path d="m4 18 5-5 3 3 4-5 4 5"/>',
   theme: '<path d="M20 14.5A8.5 8.5 0 1 1 9.5 4a7 7 0 0 0 10.5 10.5z"/>',

@@ -9,7 +9,7 @@ import { matrixOfPose } from './pose';
 import type { Pose } from './protocol';
 
 /** Live points are thinned to about this (m). */
-const liveSpacing = 0.055;
+const liveSpacing = 0.06;
 const millimetre = 0.001;
 
 interface Column {

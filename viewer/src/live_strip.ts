@@ -107,6 +107,7 @@ export class LiveStrip {
     context.stroke();
     context.fillStyle = color('--ink-2');
     context.font = '11px system-ui, sans-serif';
-    context.fillText(`${Math.round(this.periodMs)} ms`, 3, y(this.periodMs) - 3);
+    context.textAlign = 'right';
+    context.fillText(`${Math.round(this.periodMs)} ms`, w - 2, y(this.periodMs) - 3);
   }
 }

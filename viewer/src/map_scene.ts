@@ -54,6 +54,10 @@ export class MapScene {
     this.points.add(layer);
   }
 
+  remove(layer: Group): void {
+    this.points.remove(layer);
+  }
+
   /** Of something 1 m wide, 1 m in front of the camera. */
   get pixelsPerUnit(): number {
     return this.camera.projectionMatrix.elements[5]! * this.canvas.height / 2;

@@ -1,6 +1,6 @@
 import { Budget } from './budget';
 import { colorModeTexts, modesOf, type ColorMode, type DataRanges } from './color_modes';
-import { el, short } from './dom';
+import { el, setPressed, short } from './dom';
 import { legendOf } from './legend';
 import type { MapInfo } from './protocol';
 import { showsUncolored, type Settings } from './settings';
@@ -45,11 +45,11 @@ export class Panel {
   }
 
   private colors(): HTMLElement {
-    const group = el('div', { class: 'modes', role: 'radiogroup', 'aria-label': 'Colours' });
+    const group = el('div', { class: 'modes', role: 'group', 'aria-label': 'Colours' });
     for (const mode of modesOf(this.map)) {
       const [name, title] = colorModeTexts[mode];
       const button = el('button', {
-        type: 'button', role: 'radio', title, onclick: () => this.settings.set({ mode }),
+        type: 'button', title, onclick: () => this.settings.set({ mode }),
       }, name);
       this.modes.set(mode, button);
       group.append(button);
@@ -110,7 +110,7 @@ export class Panel {
 
   private show(now: Settings): void {
     for (const [mode, button] of this.modes) {
-      button.setAttribute('aria-checked', String(mode === now.mode));
+      setPressed(button, mode === now.mode);
     }
     this.hint.textContent = colorModeTexts[now.mode][1];
     this.uncolored.checked = showsUncolored(now);

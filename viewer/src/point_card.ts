@@ -31,8 +31,8 @@ export class PointCard {
     rows.push(['Position (m)', `${x.toFixed(3)}, ${y.toFixed(3)}, ${z.toFixed(3)}`]);
     if (this.map.origin) {
       const { latitude, longitude, altitude } = geodeticOfEnu(this.map.origin, point.position);
-      rows.push(['Latitude', `${latitude.toFixed(8)}°`], ['Longitude', `${longitude.toFixed(8)}°`],
-        ['Altitude', `${altitude.toFixed(3)} m`]);
+      rows.push(['Latitude', `${latitude.toFixed(8)}°`],
+        ['Longitude', `${longitude.toFixed(8)}°`], ['Altitude', `${altitude.toFixed(3)} m`]);
     }
     const row = facts.frame === null ? undefined : this.trajectory.row(facts.frame);
     const time = row === undefined ? null : this.trajectory.frame(row)!.time;

@@ -8,7 +8,8 @@ export class PointObject extends Points<BufferGeometry, ShaderMaterial> {
   readonly known: boolean;
   readonly linear: boolean;
 
-  constructor(geometry: BufferGeometry, material: ShaderMaterial, spacing: number, linear: boolean) {
+  constructor(geometry: BufferGeometry, material: ShaderMaterial, spacing: number,
+              linear: boolean) {
     super(geometry, material);
     this.spacing = spacing;
     this.linear = linear;

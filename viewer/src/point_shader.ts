@@ -57,6 +57,24 @@ vec3 ofKind(int index) {
   return texelFetch(kinds, ivec2(index & 15, 0), 0).rgb;
 }
 
+// How far away what the image shows there is: the farthest of neighbouring pixels, for on ground
+// seen from low a pixel is metres long.
+float frontOf(vec2 at) {
+  ivec2 size = textureSize(imageDepth, 0);
+  ivec2 middle = ivec2(at * vec2(size));
+  float d = 0.0;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      ivec2 pixel = clamp(middle + ivec2(x, y), ivec2(0), size - 1);
+      float there = texelFetch(imageDepth, pixel, 0).r;
+      if (there < 1.0) d = max(d, there);
+    }
+  }
+  float z = 2.0 * d - 1.0;
+  return 2.0 * imageRange.x * imageRange.y /
+      (imageRange.y + imageRange.x - z * (imageRange.y - imageRange.x));
+}
+
 // How far the point's colour is from the image; grey where the image does not show the point.
 vec3 imageError(vec3 own) {
   if (!imageReady) return outside;
@@ -64,9 +82,7 @@ vec3 imageError(vec3 own) {
   if (p.z < imageRange.x) return outside;
   vec2 at = (intrinsics.xy * p.xy / p.z + intrinsics.zw + 0.5) / imageSize;
   if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(1.0)))) return outside;
-  float z = 2.0 * textureLod(imageDepth, vec2(at.x, 1.0 - at.y), 0.0).r - 1.0;
-  float front = 2.0 * imageRange.x * imageRange.y /
-      (imageRange.y + imageRange.x - z * (imageRange.y - imageRange.x));
+  float front = frontOf(vec2(at.x, 1.0 - at.y));
   // A splat of ground in front, seen from low, reaches over what lies some spacings behind it.
   if (p.z > 1.02 * front + 0.1 + 4.0 * spacing) return outside;
   vec3 seen = textureLod(image, at, 0.0).rgb;

@@ -24,7 +24,7 @@ const basicSettings: Settings = {
   splatSize: 1,
   paraboloids: false,
   eyeDome: true,
-  eyeDomeStrength: 0.5,
+  eyeDomeStrength: 0.4,
   fixedBudget: null,
   trajectory: true,
   foveal: false,

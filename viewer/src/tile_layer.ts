@@ -129,6 +129,11 @@ export class TileLayer {
     return this.root !== null && this.root.points === 0 && this.root.children.length === 0;
   }
 
+  /** Whether there is no tile yet, and one will come. */
+  get awaitsFirst(): boolean {
+    return !this.seenFirst && this.loading > 0;
+  }
+
   /** Tiles that are on their way. */
   get loading(): number {
     const { queued = 0, downloading = 0, parsing = 0 } = (this.tiles as unknown as {
@@ -153,7 +158,9 @@ export class TileLayer {
   get pointsLoaded(): number {
     let points = 0;
     this.tiles.forEachLoadedModel((scene) => {
-      scene.traverse((object) => { if (object instanceof PointObject) points += object.pointCount; });
+      scene.traverse((object) => {
+        if (object instanceof PointObject) points += object.pointCount;
+      });
     });
     return points;
   }
@@ -164,13 +171,6 @@ export class TileLayer {
     this.tiles.stuck.clear();
     this.tiles.resetFailedTiles();
     this.events.changed();
-  }
-
-  /** What is in the picture now. */
-  visible(): PointObject[] {
-    const found: PointObject[] = [];
-    this.tiles.group.traverse((object) => { if (object instanceof PointObject) found.push(object); });
-    return found;
   }
 
   /** Chooses tiles for this camera; `height` in pixels of the screen. */

@@ -46,7 +46,8 @@ describe('the error that a budget affords', () => {
 
   test('nothing finer than can be seen', () => {
     const { root, view } = world();
-    expect(selectError(root, view, 1e6, 3)).toEqual({ errorTarget: 3, points: 1100, limited: false });
+    expect(selectError(root, view, 1e6, 3)).toEqual(
+      { errorTarget: 3, points: 1100, limited: false });
   });
 
   test('stays finite with the eye inside a tile', () => {

@@ -90,7 +90,7 @@ export interface Selection {
 
 /**
  * The smallest error on the screen, not below `finest` pixels, at which the tiles in view have no
- * more than `budget` points. Refines the largest error first, as the errors of children are smaller.
+ * more than `budget` points. Refines the largest error first, as those of children are smaller.
  */
 export function selectError(root: TileNode, view: Viewpoint, budget: number,
                             finest: number): Selection {

@@ -1,6 +1,7 @@
 import {
   BoxGeometry, BufferGeometry, Color, ConeGeometry, EdgesGeometry, Float32BufferAttribute, Group,
   LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, Points, PointsMaterial,
+  type Vector3,
 } from 'three';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
@@ -64,8 +65,7 @@ export class TrajectoryLine {
     });
     this.line.geometry.dispose();
     this.line.geometry = new LineSegmentsGeometry();
-    this.line.visible = positions.length > 0;
-    if (this.line.visible) {
+    if (positions.length > 0) {
       this.line.geometry.setPositions(positions);
       this.line.geometry.setColors(colors);
     }
@@ -73,14 +73,17 @@ export class TrajectoryLine {
     this.dots.geometry = new BufferGeometry();
     this.dots.geometry.setAttribute('position', new Float32BufferAttribute(places, 3));
     this.dots.geometry.setAttribute('color', new Float32BufferAttribute(placeColors, 3));
-    this.marker.visible = this.trajectory.length > 0;
   }
 
-  /** `inside`: one looks from the vehicle, whose box would be in the way. */
-  show(row: number, inside: boolean): void {
+  show(row: number): void {
     this.trajectory.poseAt(row)
       .decompose(this.marker.position, this.marker.quaternion, this.marker.scale);
-    this.marker.visible = this.trajectory.length > 0 && !inside;
-    this.dots.visible = this.line.visible = !inside;
+  }
+
+  /** From inside the vehicle its box would be all that one sees. `along`: one is on the line. */
+  seenFrom(eye: Vector3, along: boolean): void {
+    this.marker.visible = this.trajectory.length > 0 && !along &&
+      eye.distanceTo(this.marker.position) > 0.8 * vehicle.length;
+    this.dots.visible = this.line.visible = this.trajectory.length > 1 && !along;
   }
 }

@@ -46,6 +46,12 @@ const narrow = 760;
 const toggles = ['trajectory', 'foveal', 'rays'] as const;
 /** Rays are found again at most this often while tiles come and go (ms). */
 const rayPause = 300;
+/** How long nothing moves before the picture becomes finer (ms). */
+const restAfter = 400;
+/** While it does, it is drawn at most this often (ms). */
+const restPause = 500;
+/** Levels of tiles come one after another, with steps between in which nothing is on its way. */
+const stepsToSettle = 4;
 
 /** Puts the parts together: what is drawn, who moves the camera, what the panels say. */
 export class Viewer {
@@ -85,6 +91,9 @@ export class Viewer {
   private picked: PickedPoint | null = null;
   private raysStale = true;
   private raysAt = -Infinity;
+  private drawnAt = -Infinity;
+  private restTimer = 0;
+  private settledSteps = 0;
 
   constructor(private readonly root: HTMLElement, private map: MapInfo, frames: Frame[],
               graphics: Graphics) {
@@ -201,7 +210,7 @@ export class Viewer {
       trajectory: this.trajectory,
       row: () => this.row,
       setRow: (row) => this.setRow(row),
-      changed: () => this.loop.invalidate(),
+      changed: () => this.wake(),
       moved: () => this.settings.set({ follow: false }),
       click: (x, y) => this.click(x, y),
       doubleClick: (x, y) => {
@@ -231,7 +240,10 @@ export class Viewer {
         this.raysStale = true;
         this.loop.invalidate();
       },
-      firstTile: (points) => this.measureHeights(points),
+      firstTile: (points) => {
+        this.measureHeights(points);
+        if (!points.known) this.sayPlain();
+      },
       failed: (count, error) => this.notices.show('tiles', {
         text: `${count} ${count === 1 ? 'tile' : 'tiles'} could not be loaded: ` +
           (error instanceof TypeError ? 'the server does not answer.' : error.message),
@@ -301,7 +313,8 @@ export class Viewer {
     for (let i = 0; i < points.pointCount; i += stride) heights.push(localPosition(points, i).z);
     heights.sort((a, b) => a - b);
     const at = (share: number) => heights[Math.floor(share * (heights.length - 1))]!;
-    if (heights.length > 0) this.setRanges({ height: [at(0.02), Math.max(at(0.98), at(0.02) + 1)] });
+    if (heights.length === 0) return;
+    this.setRanges({ height: [at(0.02), Math.max(at(0.98), at(0.02) + 1)] });
   }
 
   private framesChanged(): void {
@@ -325,9 +338,8 @@ export class Viewer {
   private placeChanged(): void {
     const now = this.settings.get();
     const pose = this.trajectory.pose(Math.round(this.row));
-    const inside = this.navigation.mode === 'walk' || this.frameView.active;
     this.line.group.visible = now.trajectory;
-    this.line.show(this.row, inside);
+    this.line.show(this.row);
     if (pose) this.foveal.place(pose, now.foveal);
     if (now.mode === 'error' && this.map.cameras.length > 0) {
       this.comparison.choose(this.trajectory, Math.round(this.row),
@@ -500,6 +512,7 @@ export class Viewer {
   }
 
   private restore(state: AddressState): void {
+    if (state.camera === undefined) this.leaveFrame();
     const { mode, show } = state;
     if (mode && modesOf(this.map).includes(mode)) this.settings.set({ mode });
     if (show) {
@@ -621,14 +634,20 @@ export class Viewer {
     this.tiles = this.makeTiles(this.map.tileset);
     this.tiles.group.visible = false;
     this.scene.add(this.tiles.group);
+    this.budget.rest();
     this.loop.invalidate();
   }
 
   private takeOver(): void {
-    if (!this.tiles || this.tiles.group.visible || !this.tiles.settled) return;
+    if (!this.tiles || this.tiles.group.visible) return;
+    this.settledSteps = this.tiles.settled ? this.settledSteps + 1 : 0;
+    if (this.settledSteps < stepsToSettle) return;
     this.tiles.group.visible = true;
     this.drop();
+    if (this.live) this.scene.remove(this.live.layer.group);
+    this.live?.stop();
     this.live?.layer.clear();
+    this.live = null;
     this.strip?.element.remove();
     this.strip = null;
     this.raysStale = true;
@@ -650,16 +669,40 @@ export class Viewer {
     const { follow } = this.settings.get();
     this.navigation.step(passed, follow && !this.frameView.active && this.trajectory.length > 0);
     this.placeCamera();
+    const limited = this.tiles?.limited ?? false;
+    const behind = follow && this.navigation.mode !== 'walk' && !this.frameView.active &&
+      this.trajectory.length > 0 && this.navigation.distanceToChase() > 0.02;
+    const moving = this.playing || this.navigation.moving || behind;
+    if (moving) this.budget.wake();
     this.updateTiles(seconds);
+    const loading = (this.tiles?.loading ?? 0) > 0 || this.tiles?.group.visible === false;
+    // A first picture of nothing would only keep the first tile waiting.
+    if (this.tiles?.awaitsFirst && !this.live) return true;
+    if (loading && this.budget.atRest && performance.now() - this.drawnAt < restPause) return true;
     this.updateRays();
     this.draw();
+    this.drawnAt = performance.now();
+    this.canvas.classList.add('drawn');
     this.address.touch();
     this.showStatus();
-    const loading = (this.tiles?.loading ?? 0) > 0;
-    const chasing_ = follow && this.navigation.mode !== 'walk' && !this.frameView.active &&
-      this.trajectory.length > 0 && this.navigation.distanceToChase() > 0.02;
-    return this.playing || this.navigation.moving || loading || chasing_ ||
-      (this.tiles?.limited ?? false) && this.budget.mayGrow;
+    const on = moving || loading || limited && this.budget.mayGrow;
+    if (!on && limited && !this.budget.atRest) this.restSoon();
+    return on;
+  }
+
+  /** The user moves something: now the picture must be quick. */
+  private wake(): void {
+    clearTimeout(this.restTimer);
+    this.budget.wake();
+    this.loop.invalidate();
+  }
+
+  private restSoon(): void {
+    clearTimeout(this.restTimer);
+    this.restTimer = window.setTimeout(() => {
+      this.budget.rest();
+      this.loop.invalidate();
+    }, restAfter);
   }
 
   private advance(seconds: number): void {
@@ -711,6 +754,7 @@ export class Viewer {
 
   private draw(): void {
     const { camera, width, height } = this.scene;
+    this.line.seenFrom(camera.position, this.navigation.mode === 'walk' || this.frameView.active);
     if (this.comparison.active) this.comparison.drawDepth();
     this.scene.draw();
     this.live?.drawn();
@@ -729,6 +773,13 @@ export class Viewer {
       const { length } = this.trajectory;
       this.topBar.setFigures(`${short(this.map.points)} points, ${length} frames`);
     }
+  }
+
+  private sayPlain(): void {
+    this.notices.show('plain', {
+      calm: true,
+      text: 'These tiles have positions and colours alone: frame, range and rule are not known.',
+    }, 8);
   }
 
   private sayEmpty(): void {

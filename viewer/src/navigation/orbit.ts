@@ -1,6 +1,6 @@
 import { Matrix4, Vector3 } from 'three';
 
-import { forwardOf, rightOf, steepest, upOf, viewAlong, type View } from './view';
+import { forwardOf, rightOf, steepest, upOf, type View } from './view';
 
 /** Round a point: `turn` to the left and `tilt` upwards move the eye so that the point stays where
  * it is on the screen. */
@@ -36,10 +36,4 @@ export function zoomed(view: View, target: Vector3, factor: number): View {
 
 export function depthOf(view: View, point: Vector3): number {
   return Math.max(0.5, point.clone().sub(view.eye).dot(forwardOf(view)));
-}
-
-/** From outside, so that a box fills the picture. */
-export function overview(center: Vector3, radius: number, yaw: number): View {
-  const forward = forwardOf({ yaw, pitch: -0.7 });
-  return viewAlong(center.clone().addScaledVector(forward, -1.6 * radius), forward);
 }
