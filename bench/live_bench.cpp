@@ -1,5 +1,5 @@
 // What clients of a live view cost the mapper: a drive mapped again and again, in turns with nobody
-// looking on, and with three clients of which one never reads.
+// looking on, and with clients (three, of which one never reads).
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,15 +25,15 @@ using namespace fovea;
 
 constexpr std::array kPage{PageFile{"index.html", "<html>"}};
 
-/// Two that read all there is, and one that reads nothing.
+/// Some that read all there is, and some that read nothing.
 class Clients {
  public:
-  explicit Clients(int port) {
-    for (int i = 0; i < 3; ++i) {
-      clients_.push_back(std::make_unique<WebClient>(port, i == 2 ? 4096 : 0));
+  Clients(int port, int reading, int deaf) {
+    for (int i = 0; i < reading + deaf; ++i) {
+      clients_.push_back(std::make_unique<WebClient>(port, i < reading ? 0 : 4096));
       if (clients_.back()->open_socket("/live") != 101) throw std::runtime_error("no WebSocket");
     }
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < std::size_t(reading); ++i) {
       readers_.emplace_back([this, i] {
         while (!ended_) {
           const std::size_t count = clients_[i]->receive().size();
@@ -59,7 +59,7 @@ struct Run {
 };
 
 Run map_once(const std::shared_ptr<const FrameSource>& drive, const std::string& output,
-             bool watched) {
+             int reading, int deaf) {
   MapJob job;
   job.output = output;
   job.options = load_preset("default");
@@ -70,7 +70,9 @@ Run map_once(const std::shared_ptr<const FrameSource>& drive, const std::string&
   job.observer = &show;
   const std::string url = show.url();
   std::unique_ptr<Clients> clients;
-  if (watched) clients = std::make_unique<Clients>(std::stoi(url.substr(url.rfind(':') + 1)));
+  if (reading + deaf > 0) {
+    clients = std::make_unique<Clients>(std::stoi(url.substr(url.rfind(':') + 1)), reading, deaf);
+  }
   Run run;
   run.frames_per_second = map_drive(*drive, job, {}).frames_per_second;
   if (clients) {
@@ -92,18 +94,20 @@ double median(std::vector<double> values) {
 int main(int argc, char** argv) {
   CLI::App app("What clients of a live view cost the mapper");
   std::string drive, output = "live_bench.fovea";
-  int runs = 11;
+  int runs = 11, reading = 2, deaf = 1;
   app.add_option("DRIVE", drive, "KITTI raw drive or odometry sequence")->required();
   app.add_option("-o,--output", output, "Map file, removed in the end")->capture_default_str();
+  app.add_option("--reading", reading, "Clients that read all")->capture_default_str();
+  app.add_option("--deaf", deaf, "Clients that never read")->capture_default_str();
   app.add_option("--runs", runs, "Of each kind")->capture_default_str()->check(CLI::Range(1, 1000));
   CLI11_PARSE(app, argc, argv);
   try {
     const std::shared_ptr<const FrameSource> source = open_drive(drive, {});
-    map_once(source, output, false);  // the page cache is warm for all
+    map_once(source, output, 0, 0);  // the page cache is warm for all
     std::vector<double> alone, watched, slower, megabytes;
     for (int i = 0; i < runs; ++i) {
-      alone.push_back(map_once(source, output, false).frames_per_second);
-      const Run run = map_once(source, output, true);
+      alone.push_back(map_once(source, output, 0, 0).frames_per_second);
+      const Run run = map_once(source, output, reading, deaf);
       watched.push_back(run.frames_per_second);
       megabytes.push_back(run.megabytes);
       slower.push_back(100 * (alone.back() / watched.back() - 1));

@@ -12,24 +12,19 @@ import { Help } from './help';
 import { ImageComparison } from './image_comparison';
 import type { Rectangle } from './intrinsics';
 import { TopBar } from './layout';
-import { LiveSession } from './live_session';
-import { liveUrl } from './live_socket';
-import { LiveStrip } from './live_strip';
+import { LiveView } from './live_view';
 import { MapScene } from './map_scene';
-import { Measure } from './measure';
 import { Navigation, type NavigationMode } from './navigation/navigation';
 import { forwardOf, matrixOfView, place, viewAlong, viewOfMatrix } from './navigation/view';
 import { chasing } from './navigation/walk';
 import { Notices, showInstead } from './notices';
 import { Panel } from './panel';
-import { localPosition, Picking, type PickedPoint } from './picking';
-import { PointCard } from './point_card';
-import { factsOf } from './point_facts';
+import { localPosition } from './picking';
 import type { PointObject } from './point_object';
+import { PointTools } from './point_tools';
 import type { Frame, MapInfo } from './protocol';
 import { RenderLoop } from './render_loop';
 import { saveImage } from './screenshot';
-import { placeOnScreen } from './screen_place';
 import { loadFrames, loadMapInfo } from './server';
 import { defaultSettings, showsUncolored, type Settings } from './settings';
 import { listenToKeys, type Shortcuts } from './shortcuts';
@@ -58,13 +53,11 @@ export class Viewer {
   private readonly settings: Store<Settings>;
   private readonly notices = new Notices();
   private readonly canvas = el('canvas', { tabindex: 0, 'aria-label': 'The map in 3D' });
-  private readonly ring = el('span', { class: 'ring', hidden: true });
   private readonly status = el('p', { class: 'status' });
   private readonly bottom: HTMLElement;
   private readonly element: HTMLElement;
   private readonly scene: MapScene;
   private readonly probe: DepthProbe;
-  private readonly picking: Picking;
   private readonly budget = new Budget();
   private readonly trajectory: Trajectory;
   private readonly navigation: Navigation;
@@ -75,20 +68,20 @@ export class Viewer {
   private readonly timeline: Timeline;
   private readonly help: Help;
   private readonly frameView: FrameView;
-  private readonly card: PointCard;
-  private readonly measure = new Measure();
+  private readonly tools: PointTools;
   private readonly line: TrajectoryLine;
   private readonly foveal: FovealOverlay;
   private readonly comparison: ImageComparison;
   private readonly address = new AddressBar(() => this.addressState());
   private tiles: TileLayer | null = null;
-  private live: LiveSession | null = null;
-  private strip: LiveStrip | null = null;
+  private live: LiveView | null = null;
   private ranges: DataRanges;
   private row = 0;
   private playing = false;
-  private measuring = false;
-  private picked: PickedPoint | null = null;
+  /** In a live map: whether the current frame is always the newest. */
+  private atEnd = true;
+  /** ... and whether the camera has been taken to it. */
+  private seesDrive = false;
   private raysStale = true;
   private raysAt = -Infinity;
   private drawnAt = -Infinity;
@@ -100,7 +93,6 @@ export class Viewer {
     this.settings = new Store(defaultSettings(graphics.software));
     this.scene = new MapScene(this.canvas, !graphics.software);
     this.probe = new DepthProbe(this.scene.eyeDome.target.depthTexture!);
-    this.picking = new Picking(this.scene);
     this.trajectory = new Trajectory(frames);
     if (map.foveal) this.scene.materials.setFovea(map.foveal.near, map.foveal.far);
     this.ranges = { height: [-2, 8], frame: [0, 1] };
@@ -121,25 +113,22 @@ export class Viewer {
       failed: (path) => this.notices.show('image',
         { text: `There is no image ${path}. Look at another frame.` }, 6),
     });
-    this.card = new PointCard(map, this.trajectory, {
-      lookFrom: (frame, camera) => this.lookFrom(frame, camera),
-      close: () => this.drop(),
-    });
+    this.tools = new PointTools(this.scene, map, this.trajectory,
+      (frame, camera) => this.lookFrom(frame, camera));
     this.line = new TrajectoryLine(this.trajectory);
     this.foveal = new FovealOverlay(map);
     this.comparison = new ImageComparison(this.scene, () => this.loop.invalidate(),
       (path) => this.notices.show('image', { text: `There is no image ${path} to compare.` }, 6));
-    this.scene.lines.add(this.line.group, this.foveal.group, this.measure.line);
+    this.scene.lines.add(this.line.group, this.foveal.group);
     this.bottom = el('footer', { class: 'bottom' }, this.status, this.timeline.element);
     this.element = el('div', { class: 'viewer' }, this.canvas, this.frameView.element,
-      el('div', { class: 'labels' }, this.measure.labels, this.ring), this.topBar.element,
-      this.panel.element, this.card.element, this.bottom, this.notices.element,
-      this.help.element);
+      this.tools.labels, this.topBar.element, this.panel.element, this.tools.card.element,
+      this.bottom, this.notices.element, this.help.element);
     root.replaceChildren(this.element);
     this.theme = new ThemeChoice((theme) => {
       this.scene.setBackground(...backgroundOf(theme));
       this.timeline.draw();
-      this.strip?.draw();
+      this.live?.strip.draw();
       this.loop.invalidate();
     });
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -161,7 +150,7 @@ export class Viewer {
 
   state(): PageState {
     const { camera } = this.scene;
-    const { live } = this;
+    const live = this.live?.session ?? null;
     return {
       pointsDrawn: this.scene.pointsDrawn,
       pointsLoaded: (this.tiles?.pointsLoaded ?? 0) + (live?.layer.points ?? 0),
@@ -174,8 +163,8 @@ export class Viewer {
         connected: live.connected, frames: live.frames, lastLatencyMs: live.lastLatencyMs,
         reconnects: live.reconnects, warnings: live.warnings,
       },
-      measured: this.measure.lengths,
-      picked: this.picked && this.pickedState(this.picked),
+      measured: this.tools.measure.lengths,
+      picked: this.tools.pickedState,
       camera: {
         pose: camera.matrixWorld.clone().transpose().toArray(),
         projection: camera.projectionMatrix.clone().transpose().toArray(),
@@ -184,8 +173,7 @@ export class Viewer {
   }
 
   pick(x: number, y: number): PickedState | null {
-    const point = this.picking.at(x, y);
-    return point && this.pickedState(point);
+    return this.tools.at(x, y);
   }
 
   private get frame(): Frame | undefined {
@@ -194,11 +182,6 @@ export class Viewer {
 
   private get wide(): boolean {
     return innerWidth >= narrow;
-  }
-
-  private pickedState(point: PickedPoint): PickedState {
-    const { frame, camera, color } = factsOf(point, this.map);
-    return { position: point.position.toArray(), frame, camera, color };
   }
 
   // --- parts ---
@@ -214,7 +197,7 @@ export class Viewer {
       moved: () => this.settings.set({ follow: false }),
       click: (x, y) => this.click(x, y),
       doubleClick: (x, y) => {
-        if (this.measuring) this.click(x, y);
+        if (this.tools.measuring) this.click(x, y);
         else this.navigation.approach(x, y);
       },
     });
@@ -224,7 +207,7 @@ export class Viewer {
     return new TopBar(this.map, {
       navigate: (mode) => this.navigate(mode),
       frameView: () => this.toggleFrameView(),
-      measure: () => this.setMeasuring(!this.measuring),
+      measure: () => this.setMeasuring(!this.tools.measuring),
       copyLink: () => void this.copyLink(),
       saveImage: () => this.saveImage(),
       theme: () => this.theme.toggle(),
@@ -272,10 +255,13 @@ export class Viewer {
       [']', () => this.stepMode(1)],
       ['?', () => this.help.toggle()],
       ['Escape', () => this.escape()],
-      ['Backspace', () => this.measure.undo()],
+      ['Backspace', () => {
+        this.tools.measure.undo();
+        this.loop.invalidate();
+      }],
       ['KeyI', () => this.toggleFrameView()],
       ['KeyC', () => set({ follow: !get().follow })],
-      ['KeyM', () => this.setMeasuring(!this.measuring)],
+      ['KeyM', () => this.setMeasuring(!this.tools.measuring)],
       ['KeyU', () => set(get().mode === 'photograph' ?
         { uncoloredInPhotograph: !get().uncoloredInPhotograph } :
         { uncoloredElsewhere: !get().uncoloredElsewhere })],
@@ -295,7 +281,7 @@ export class Viewer {
     this.scene.eyeDome.setStrength(now.eyeDome ? now.eyeDomeStrength : 0);
     this.budget.fix(now.fixedBudget);
     this.timeline.setFollow(now.follow);
-    this.panel.setLegend(this.ranges, this.tiles?.cameras ?? this.live?.layer.cameras ?? new Set());
+    this.showLegend();
     if (now.mode !== 'error') this.comparison.stop();
     this.placeChanged();
   }
@@ -303,7 +289,12 @@ export class Viewer {
   private setRanges(change: Partial<DataRanges>): void {
     this.ranges = { ...this.ranges, ...change };
     this.scene.materials.scale(this.settings.get(), this.ranges);
-    this.panel.setLegend(this.ranges, this.tiles?.cameras ?? this.live?.layer.cameras ?? new Set());
+    this.showLegend();
+  }
+
+  private showLegend(): void {
+    const layer = this.tiles ?? this.live?.session.layer;
+    this.panel.setLegend(this.ranges, layer?.cameras ?? new Set());
   }
 
   /** Colours for the heights that most points have. */
@@ -329,6 +320,7 @@ export class Viewer {
 
   private setRow(row: number): void {
     this.row = Math.min(Math.max(row, 0), Math.max(this.trajectory.length - 1, 0));
+    this.atEnd = this.row >= this.trajectory.length - 1;
     this.timeline.show(this.row);
     if (this.frameView.active) this.frameView.open(Math.round(this.row), null);
     this.placeChanged();
@@ -346,7 +338,7 @@ export class Viewer {
         this.frameView.camera ?? this.map.cameras[0]!);
     }
     this.raysStale = true;
-    this.topBar.show(this.navigation.mode, this.frameView.active, this.measuring,
+    this.topBar.show(this.navigation.mode, this.frameView.active, this.tools.measuring,
       !this.panel.element.hidden);
     this.loop.invalidate();
   }
@@ -385,8 +377,8 @@ export class Viewer {
 
   private escape(): void {
     if (this.frameView.active) this.leaveFrame();
-    else if (this.measuring) this.setMeasuring(false);
-    else this.drop();
+    else if (this.tools.measuring) this.setMeasuring(false);
+    else this.tools.drop();
   }
 
   private togglePanel(): void {
@@ -458,31 +450,14 @@ export class Viewer {
   // --- picking and measuring ---
 
   private click(x: number, y: number): void {
-    const point = this.picking.at(x, y);
-    if (this.measuring) {
-      if (point) this.measure.add(point.position);
-    } else if (point) {
-      this.picked = point;
-      this.card.show(point);
-    } else {
-      this.drop();
-    }
+    this.tools.click(x, y);
     this.loop.invalidate();
   }
 
-  /** The picked point is no longer. */
-  private drop(): void {
-    this.picked = null;
-    this.card.hide();
-    this.ring.hidden = true;
-  }
-
   private setMeasuring(measuring: boolean): void {
-    this.measuring = measuring;
+    this.tools.setMeasuring(measuring);
     this.element.classList.toggle('picks', measuring);
     if (measuring) {
-      this.drop();
-      this.measure.set([]);
       this.notices.show('measure', { text: 'Click two or more points.', calm: true }, 5);
     } else {
       this.notices.clear('measure');
@@ -499,15 +474,20 @@ export class Viewer {
     const show = [
       ...toggles.filter((name) => now[name]), ...(showsUncolored(now) ? ['uncolored'] : []),
     ];
-    return {
+    // A link to the newest of a growing map leads to what is the newest then.
+    const newest = this.map.live && this.atEnd && now.follow;
+    const place = newest ? {} : {
       at: tripleOf(view.eye),
       to: tripleOf(view.eye.clone().addScaledVector(forwardOf(view), 10)),
       ...(this.frame && { frame: this.frame.index }),
+    };
+    return {
+      ...place,
       mode: now.mode,
       navigation: mode,
       ...(camera !== undefined && { camera }),
       show,
-      line: this.measure.corners.map(tripleOf),
+      line: this.tools.measure.corners.map(tripleOf),
     };
   }
 
@@ -528,7 +508,7 @@ export class Viewer {
     if (state.frame !== undefined && this.trajectory.length > 0) {
       this.setRow(this.trajectory.nearestRow(state.frame));
     }
-    if (state.line) this.measure.set(state.line.map((point) => new Vector3(...point)));
+    if (state.line) this.tools.setLine(state.line);
     if (state.at && state.to) {
       const eye = new Vector3(...state.at);
       const view = viewAlong(eye, new Vector3(...state.to).sub(eye));
@@ -559,59 +539,38 @@ export class Viewer {
   // --- a map that grows ---
 
   private goLive(): void {
-    this.strip = new LiveStrip(1000 * this.map.sensorPeriod);
-    this.bottom.prepend(this.strip.element);
-    let first = true;
-    this.live = new LiveSession(liveUrl(location.href), this.scene.materials, this.map.tileSize,
-      this.trajectory, {
-        changed: () => {
-          this.raysStale = true;
-          this.loop.invalidate();
-        },
-        framesChanged: () => {
-          const { length } = this.trajectory;
-          if (this.atEnd) this.row = Math.max(length - 1, 0);
-          this.framesChanged();
-          this.atEnd = this.row >= length - 1;
-          const { z } = length > 0 ? this.trajectory.position(length - 1) : { z: 0 };
-          this.setRanges({ height: [Math.round(z) - 3, Math.round(z) + 7] });
-          if (first && length > 0 && this.settings.get().follow) {
-            first = false;
-            this.navigation.setView(chasing(this.trajectory, this.row));
-          }
-        },
-        frame: (frame) => this.strip!.addFrame(frame),
-        image: (jpeg) => this.strip!.setImage(jpeg),
-        figures: (figures) => {
-          this.strip!.show(figures);
-          this.topBar.setFigures(`live, ${short(figures.points)} points`);
-        },
-        restarted: () => {
-          this.strip!.clear();
-          this.drop();
-          this.measure.set([]);
-          this.row = 0;
-          this.atEnd = first = true;
-        },
-        connection: (connected) => {
-          if (connected) this.notices.clear('live');
-          else {
-            this.notices.show('live', {
-              text: 'The server is away. The map stays; what is missed comes when it is back.',
-            });
-          }
-        },
-        odd: (count) => this.notices.show('odd', {
-          text: `${count} ${count === 1 ? 'message' : 'messages'} of the server made no sense ` +
-            'and were left out.',
-        }),
-        ended: () => void this.finish(),
-      });
-    this.scene.add(this.live.layer.group);
+    this.atEnd = true;
+    this.live = new LiveView(this.map, this.scene.materials, this.trajectory, this.notices, {
+      changed: () => {
+        this.raysStale = true;
+        this.loop.invalidate();
+      },
+      framesChanged: () => this.liveFramesChanged(),
+      restarted: () => {
+        this.tools.drop();
+        this.tools.setLine([]);
+        this.row = 0;
+        this.atEnd = true;
+        this.seesDrive = false;
+      },
+      points: (count) => this.topBar.setFigures(`live, ${short(count)} points`),
+      ended: () => void this.finish(),
+    });
+    this.bottom.prepend(this.live.strip.element);
+    this.scene.add(this.live.session.layer.group);
   }
 
-  /** In a live map: whether the current frame is always the newest. */
-  private atEnd = true;
+  private liveFramesChanged(): void {
+    const { length } = this.trajectory;
+    if (this.atEnd) this.row = Math.max(length - 1, 0);
+    this.framesChanged();
+    if (length === 0) return;
+    const { z } = this.trajectory.position(length - 1);
+    this.setRanges({ height: [Math.round(z) - 3, Math.round(z) + 7] });
+    if (this.seesDrive) return;
+    this.seesDrive = true;
+    if (this.settings.get().follow) this.navigation.setView(chasing(this.trajectory, this.row));
+  }
 
   /** The drive has ended: the finished map takes over as soon as it has this view ready. */
   private async finish(): Promise<void> {
@@ -643,13 +602,10 @@ export class Viewer {
     this.settledSteps = this.tiles.settled ? this.settledSteps + 1 : 0;
     if (this.settledSteps < stepsToSettle) return;
     this.tiles.group.visible = true;
-    this.drop();
-    if (this.live) this.scene.remove(this.live.layer.group);
-    this.live?.stop();
-    this.live?.layer.clear();
+    this.tools.drop();
+    if (this.live) this.scene.remove(this.live.session.layer.group);
+    this.live?.clear();
     this.live = null;
-    this.strip?.element.remove();
-    this.strip = null;
     this.raysStale = true;
   }
 
@@ -659,7 +615,7 @@ export class Viewer {
     const { clientWidth, clientHeight } = this.canvas;
     this.scene.setSize(clientWidth, clientHeight, Math.min(devicePixelRatio, 2));
     this.line.setResolution(clientWidth, clientHeight);
-    this.measure.setResolution(clientWidth, clientHeight);
+    this.tools.measure.setResolution(clientWidth, clientHeight);
     this.loop.invalidate();
   }
 
@@ -757,9 +713,8 @@ export class Viewer {
     this.line.seenFrom(camera.position, this.navigation.mode === 'walk' || this.frameView.active);
     if (this.comparison.active) this.comparison.drawDepth();
     this.scene.draw();
-    this.live?.drawn();
-    this.measure.place(camera, width, height);
-    if (this.picked) placeOnScreen(this.ring, this.picked.position, camera, width, height);
+    this.live?.session.drawn();
+    this.tools.place(camera, width, height);
   }
 
   private showStatus(): void {
@@ -791,7 +746,7 @@ export class Viewer {
   private lostContext(event: Event): void {
     event.preventDefault();
     this.loop.stop();
-    this.live?.stop();
+    this.live?.session.stop();
     showInstead(this.root, 'The graphics card has dropped the map',
       'It was reset, or too much was asked of it. The view is kept in the address.',
       { label: 'Load again', run: () => location.reload() });
