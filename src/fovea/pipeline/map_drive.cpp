@@ -134,16 +134,6 @@ std::vector<CameraCalibration> correct_calibration(const FrameSource& source, co
   return correction;
 }
 
-MapKeeperOptions keeper_options(const MapJob& job, bool threaded) {
-  MapKeeperOptions options{threaded, job.memory};
-  if (job.observer != nullptr) {
-    options.on_checkpoint = [&job](const TileChanges& changes, const MapRows& rows) {
-      job.observer->map_changed(changes, rows);
-    };
-  }
-  return options;
-}
-
 /// A run of the mapper over a drive, with its accounts and its file.
 class MapRun {
  public:
@@ -154,7 +144,7 @@ class MapRun {
         meta_(std::move(meta)),
         threaded_(job.overlap && available_threads() > 1),
         keeper_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
-                keeper_options(job, threaded_)),
+                keeper_options()),
         mapper_(drive, job.options, job.pose_source,
                 [this](TileMap& map, const Eigen::Vector3d& center_local, double radius) {
                   keeper_.bring_near(map, center_local, radius);
@@ -173,6 +163,7 @@ class MapRun {
   MapSummary summary() const;
 
  private:
+  MapKeeperOptions keeper_options();
   void take_up_earlier_run();
   void check_calibration(const LocatedFrame& located, FrameRecord& record);
   void checkpoint(bool last);
@@ -191,6 +182,16 @@ class MapRun {
   std::optional<FrameRecord> latest_;
   std::size_t frames_before_ = 0;  // of an earlier run
 };
+
+MapKeeperOptions MapRun::keeper_options() {
+  MapKeeperOptions options{threaded_, job_.memory};
+  if (job_.observer != nullptr) {
+    options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
+      job_.observer->map_changed(changes, rows, mapper_.map());
+    };
+  }
+  return options;
+}
 
 void MapRun::take_up_earlier_run() {
   const MapReader reader(job_.output);

@@ -24,7 +24,7 @@ class MapObserver {
   /// @param frame  nullptr where it was skipped
   virtual void frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) = 0;
   /// When what has changed is handed on to be written: all before it is in the file.
-  virtual void map_changed(const TileChanges& changes, const MapRows& rows) = 0;
+  virtual void map_changed(const TileChanges& changes, const MapRows& rows, const TileMap& map) = 0;
 };
 
 struct MapJob {

@@ -105,10 +105,13 @@ class LiveBoard::Feed : public WebFeed {
 
   /// Under the guard.
   void owe(const std::vector<TileId>& tiles) { owed_.insert(tiles.begin(), tiles.end()); }
-  /// Until the first checkpoint that it has seen: what the one before it wrote may not have been
-  /// in the file when the file was read for it.
-  bool is_young() const { return young_; }
-  void grow_up() { young_ = false; }
+  /// A client that has not seen the points of all frames is owed what the last checkpoints before
+  /// it did were about to write: they were not in the file when that was read for it.
+  void owe_missed(const std::vector<TileId>& written) {
+    constexpr int kCheckpoints = 2;
+    if (checkpoints_seen_ < kCheckpoints) owe(written);
+    ++checkpoints_seen_;
+  }
 
  private:
   WebMessage greeting() {
@@ -145,7 +148,10 @@ class LiveBoard::Feed : public WebFeed {
     // Of a client that has fallen behind, the points of frames left out are in tiles that it is
     // owed.
     const std::size_t oldest = board_.increments_made_ - board_.increments_.size();
-    increments_taken_ = std::max(increments_taken_, oldest);
+    if (increments_taken_ < oldest) {
+      increments_taken_ = oldest;
+      checkpoints_seen_ = 0;
+    }
     if (increments_taken_ == board_.increments_made_) return std::nullopt;
     return WebMessage{board_.increments_[increments_taken_++ - oldest], true};
   }
@@ -185,7 +191,7 @@ class LiveBoard::Feed : public WebFeed {
 
   /// The latest tiles that it is owed, as many as fit a message.
   std::optional<WebMessage> owed_tiles() {
-    if (!std::exchange(has_read_file_, true)) owe_file();
+    if (!has_read_file_) owe_file();
     std::string sections;
     std::size_t count = 0;
     while (sections.size() < kTilesMessage) {
@@ -210,11 +216,14 @@ class LiveBoard::Feed : public WebFeed {
         std::make_shared<const std::string>(points_header(kNoFrame, count) + sections), true};
   }
 
-  /// All that the file has, if there is one yet; what comes later is owed by checkpoints.
+  /// All that the file has, once there is one; what comes later is owed by checkpoints.
   void owe_file() {
+    {
+      const std::lock_guard lock(board_.guard_);
+      if (!board_.has_file_) return;
+    }
+    has_read_file_ = true;
     std::vector<TileId> tiles;
-    std::error_code ignored;
-    if (!std::filesystem::exists(board_.map_, ignored)) return;
     reader_.emplace(board_.map_);
     for (const auto& [id, points] : reader_->tile_sizes()) tiles.push_back(id);
     const std::lock_guard lock(board_.guard_);
@@ -232,7 +241,8 @@ class LiveBoard::Feed : public WebFeed {
   }
 
   LiveBoard& board_;
-  bool greeted_ = false, said_end_ = false, has_read_file_ = false, young_ = true;
+  bool greeted_ = false, said_end_ = false, has_read_file_ = false;
+  int checkpoints_seen_ = 0;  // since it has missed points
   std::size_t next_frame_ = 0, poses_known_ = 0, increments_taken_ = 0;
   std::vector<RigidMotion> T_local_submap_;
   std::shared_ptr<LiveImage> image_;
@@ -240,8 +250,8 @@ class LiveBoard::Feed : public WebFeed {
   std::optional<MapReader> reader_;
 };
 
-LiveBoard::LiveBoard(std::filesystem::path map, double tile_size, int total)
-    : map_(std::move(map)), tile_size_(tile_size), total_(total) {
+LiveBoard::LiveBoard(std::filesystem::path map, bool has_file, double tile_size, int total)
+    : map_(std::move(map)), tile_size_(tile_size), total_(total), has_file_(has_file) {
   std::random_device random;
   session_ = fmt::format("{:08x}{:08x}", random(), random());
 }
@@ -284,13 +294,14 @@ void LiveBoard::move_frames(const std::vector<std::pair<int, RigidMotion>>& T_lo
   if (moved_frames_.size() > kPoseChanges) moved_frames_.pop_front();
 }
 
-void LiveBoard::checkpoint(std::vector<TileId> changed, std::map<TileId, Bytes> tiles) {
+void LiveBoard::checkpoint(std::vector<TileId> changed, const std::vector<TileId>& settled,
+                           std::map<TileId, Bytes> tiles) {
   const std::lock_guard lock(guard_);
   for (Feed* feed : feeds_) {
-    feed->owe(changed);
-    if (feed->is_young()) feed->owe(changed_);
-    feed->grow_up();
+    feed->owe(settled);
+    feed->owe_missed(changed_);
   }
+  has_file_ = has_file_ || checkpoints_++ > 0;
   changed_ = std::move(changed);
   tiles_before_ = std::move(tiles_);
   tiles_ = std::move(tiles);
@@ -298,9 +309,10 @@ void LiveBoard::checkpoint(std::vector<TileId> changed, std::map<TileId, Bytes> 
 
 void LiveBoard::end() {
   const std::lock_guard lock(guard_);
-  for (Feed* feed : feeds_) {
-    if (feed->is_young()) feed->owe(changed_);
-  }
+  for (Feed* feed : feeds_) feed->owe(changed_);
+  tiles_.clear();
+  tiles_before_.clear();
+  has_file_ = true;
   ended_ = true;
 }
 

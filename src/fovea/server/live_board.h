@@ -43,16 +43,20 @@ class LiveImage {
   std::shared_ptr<const std::string> message_;
 };
 
-/// The mapping thread writes on it, feeds read it in the server's threads. What it holds does not
-/// grow with the map: frames' poses, the points of the last few frames, and thinned tiles of the
-/// last two checkpoints. Everything else is in the map's file.
+/// The mapping thread writes on it, feeds read it in the server's threads. A client is sent the new
+/// points of each frame, and each tile as a whole when it changes no more. What the board holds
+/// does not grow with the map: frames' poses, the points of the last few frames, and tiles of the
+/// last two checkpoints. Everything else is in the map's file, which new and slow clients are
+/// shown.
 class LiveBoard {
  public:
   using Bytes = std::shared_ptr<const std::string>;
 
-  /// @param map    file, once there is one
-  /// @param total  frames of the drive
-  LiveBoard(std::filesystem::path map, double tile_size, int total);
+  /// @param map       its file
+  /// @param has_file  whether it is there: before a new map's first commit there may be another
+  ///                  map under its name, which is not to be looked at
+  /// @param total     frames of the drive
+  LiveBoard(std::filesystem::path map, bool has_file, double tile_size, int total);
 
   // For the mapping thread.
 
@@ -64,10 +68,13 @@ class LiveBoard {
                  std::shared_ptr<LiveImage> image);
   /// Poses of earlier frames that a closed loop has moved.
   void move_frames(const std::vector<std::pair<int, RigidMotion>>& T_local_lidar);
-  /// What a checkpoint is going to write, when the one before is in the file.
-  /// @param changed  all tiles that it changes or removes
-  /// @param tiles    their sections of a message; none where nobody looks on
-  void checkpoint(std::vector<TileId> changed, std::map<TileId, Bytes> tiles);
+  /// When all that the checkpoint before has written is in the file.
+  /// @param changed  tiles that this one is going to write
+  /// @param settled  tiles that the one before has written and this one does not, or removes: to be
+  ///                 shown anew
+  /// @param tiles    sections of a message of those settled; none where nobody looks on
+  void checkpoint(std::vector<TileId> changed, const std::vector<TileId>& settled,
+                  std::map<TileId, Bytes> tiles);
   /// All is in the file.
   void end();
 
@@ -101,9 +108,11 @@ class LiveBoard {
   std::size_t increments_made_ = 0;
   std::deque<Bytes> increments_;  // the last of them
   std::shared_ptr<LiveImage> image_;
-  std::map<TileId, Bytes> tiles_, tiles_before_;  // of the last checkpoint, and of the one before
+  std::map<TileId, Bytes> tiles_, tiles_before_;  // settled at the last checkpoints
   std::vector<TileId> changed_;                   // by the last checkpoint
   std::set<Feed*> feeds_;
+  std::size_t checkpoints_ = 0;
+  bool has_file_;
   bool ended_ = false;
 };
 

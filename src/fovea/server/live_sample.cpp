@@ -12,14 +12,14 @@ namespace {
 constexpr int kCells = 64;  // along an edge
 constexpr std::uint32_t kPointsKind = 1;
 
-std::uint32_t cell_of(const Eigen::Vector3f& p_tile, double tile_size) {
-  std::uint32_t cell = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int i = static_cast<int>(double(p_tile[axis]) / tile_size * kCells);
-    cell = cell * kCells + static_cast<std::uint32_t>(std::clamp(i, 0, kCells - 1));
-  }
-  return cell;
+/// @param cells_per_m  along each axis
+std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_m) {
+  const Eigen::Array3i cell =
+      (p_tile.array() * cells_per_m).cast<int>().max(0).min(kCells - 1);  // inside but for rounding
+  return static_cast<std::uint32_t>((cell.x() * kCells + cell.y()) * kCells + cell.z());
 }
+
+float cells_per_m(double tile_size) { return static_cast<float>(kCells / tile_size); }
 
 /// Positions are kept in whole millimetres.
 std::uint16_t millimetres(float metres) {
@@ -34,8 +34,9 @@ std::span<const std::uint32_t> LiveSample::more(const PointCloud& tile, double t
   if (tile.size() < looked_at_) forget();
   if (taken_.empty()) taken_.resize(std::size_t{kCells} * kCells * kCells);
   const std::size_t before = chosen_.size();
+  const float scale = cells_per_m(tile_size);
   for (; looked_at_ < tile.size(); ++looked_at_) {
-    const std::uint32_t cell = cell_of(tile.position[looked_at_], tile_size);
+    const std::uint32_t cell = cell_of(tile.position[looked_at_], scale);
     if (taken_[cell]) continue;
     taken_[cell] = true;
     chosen_.push_back(static_cast<std::uint32_t>(looked_at_));
@@ -46,8 +47,9 @@ std::span<const std::uint32_t> LiveSample::more(const PointCloud& tile, double t
 
 const std::vector<std::uint32_t>& LiveSample::all(const PointCloud& tile, double tile_size) {
   more(tile, tile_size);
+  const float scale = cells_per_m(tile_size);
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    if (cell_of(tile.position[chosen_[i]], tile_size) == cells_[i]) continue;
+    if (cell_of(tile.position[chosen_[i]], scale) == cells_[i]) continue;
     forget();
     more(tile, tile_size);
     break;

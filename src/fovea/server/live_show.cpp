@@ -9,6 +9,9 @@
 namespace fovea {
 namespace {
 
+/// Between two images: as fast as a sensor of 10 Hz takes them.
+constexpr std::int64_t kImagePause = 90;  // ms
+
 std::int64_t now_ms() {
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count();
@@ -43,16 +46,6 @@ FrameRecord told(const FrameRecord& record) {
   return told;
 }
 
-/// The first camera's image that there is.
-std::shared_ptr<LiveImage> image_of(const Frame* frame, const std::vector<Camera>& cameras) {
-  if (frame == nullptr) return nullptr;
-  for (std::size_t i = 0; i < frame->images.size(); ++i) {
-    if (frame->images[i].empty()) continue;
-    return std::make_shared<LiveImage>(frame->index, cameras.at(i).index, frame->images[i]);
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
@@ -61,7 +54,8 @@ LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
       images_(std::move(images)),
       page_(page),
       description_(describe_run(images_->info(), job)),
-      board_(job.output, job.options.tile_size, images_->info().end - images_->info().begin),
+      board_(job.output, job.resume, job.options.tile_size,
+             images_->info().end - images_->info().begin),
       server_(options,
               [this](const std::string& path, WebServer::Reply reply) {
                 answer(path, std::move(reply));
@@ -87,8 +81,20 @@ void LiveShow::frame_mapped(const FrameRecord& record, const Frame* frame, const
   if (!watched) samples_.clear();
   board_.add_frame(std::move(live), T_local_submap,
                    watched ? new_points(record.index, map) : nullptr,
-                   watched ? image_of(frame, description_.cameras) : nullptr);
+                   watched ? next_image(frame) : nullptr);
   server_.wake();
+}
+
+/// The first camera's image that there is, unless the last one was shown just now.
+std::shared_ptr<LiveImage> LiveShow::next_image(const Frame* frame) {
+  if (frame == nullptr || now_ms() - image_at_ < kImagePause) return nullptr;
+  for (std::size_t i = 0; i < frame->images.size(); ++i) {
+    if (frame->images[i].empty()) continue;
+    image_at_ = now_ms();
+    return std::make_shared<LiveImage>(frame->index, description_.cameras.at(i).index,
+                                       frame->images[i]);
+  }
+  return nullptr;
 }
 
 std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap& map) {
@@ -111,34 +117,41 @@ std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap
   return std::make_shared<const std::string>(points_header(frame, count) + sections);
 }
 
-void LiveShow::map_changed(const TileChanges& changes, const MapRows& rows) {
+void LiveShow::map_changed(const TileChanges& changes, const MapRows& rows, const TileMap& map) {
   board_.move_frames(rows.poses);
-  std::vector<TileId> changed = changes.removed;
+  std::set<TileId> changing;
+  for (const TileChanges::Changed& tile : changes.changed) changing.insert(tile.id);
+  std::vector<TileId> settled = changes.removed;
+  for (const TileId& id : changing_) {
+    if (!changing.contains(id)) settled.push_back(id);
+  }
   std::map<TileId, LiveBoard::Bytes> sections;
-  std::map<TileId, LiveSample> samples;  // those of tiles that change no more are dropped
-  const bool watched = board_.has_feeds();
-  const auto keep = [&](const TileId& id, std::string section) {
-    sections[id] = std::make_shared<const std::string>(std::move(section));
-  };
-  for (const TileId& id : changes.removed) {
-    std::string section;
-    append_section(section, id, nullptr, {}, /*whole=*/true);
-    if (watched) keep(id, std::move(section));
+  if (board_.has_feeds()) {
+    for (const TileId& id : settled) {
+      if (auto section = whole_section(id, map)) sections[id] = std::move(section);
+    }
   }
-  for (const TileChanges::Changed& tile : changes.changed) {
-    changed.push_back(tile.id);
-    if (!watched) continue;
-    const auto known = samples_.extract(tile.id);
-    LiveSample sample = known.empty() ? LiveSample() : std::move(known.mapped());
-    const auto& points = sample.all(*tile.points, job_.options.tile_size);
-    std::string section;
-    append_section(section, tile.id, &*tile.points, points, /*whole=*/true);
-    keep(tile.id, std::move(section));
-    samples.emplace(tile.id, std::move(sample));
-  }
-  samples_ = std::move(samples);
-  board_.checkpoint(std::move(changed), std::move(sections));
+  std::erase_if(samples_, [&](const auto& sample) { return !changing.contains(sample.first); });
+  board_.checkpoint({changing.begin(), changing.end()}, settled, std::move(sections));
+  changing_ = std::move(changing);
   server_.wake();
+}
+
+/// nullptr if the tile is in the file alone.
+LiveBoard::Bytes LiveShow::whole_section(const TileId& id, const TileMap& map) {
+  std::string section;
+  const Submap& submap = map.submaps().at(id.submap);
+  const auto tile = submap.tiles.find(id.key);
+  if (tile != submap.tiles.end()) {
+    const PointCloud& points = *tile->second.points;
+    append_section(section, id, &points, samples_[id].all(points, map.tile_size()),
+                   /*whole=*/true);
+  } else if (!submap.stored.contains(id.key)) {
+    append_section(section, id, nullptr, {}, /*whole=*/true);
+  } else {
+    return nullptr;
+  }
+  return std::make_shared<const std::string>(std::move(section));
 }
 
 void LiveShow::finish() {

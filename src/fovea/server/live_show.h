@@ -33,14 +33,16 @@ class LiveShow : public MapObserver {
   std::string url() const { return server_.url(); }
 
   void frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) override;
-  void map_changed(const TileChanges& changes, const MapRows& rows) override;
+  void map_changed(const TileChanges& changes, const MapRows& rows, const TileMap& map) override;
   /// The map is whole: from now on the file is shown. InputError if it cannot be read.
   void finish();
 
  private:
   void answer(const std::string& path, WebServer::Reply reply);
   std::string live_json() const;
-  std::shared_ptr<const std::string> new_points(int frame, const TileMap& map);
+  LiveBoard::Bytes new_points(int frame, const TileMap& map);
+  LiveBoard::Bytes whole_section(const TileId& id, const TileMap& map);
+  std::shared_ptr<LiveImage> next_image(const Frame* frame);
 
   const MapJob& job_;
   std::shared_ptr<const DriveImages> images_;
@@ -50,7 +52,9 @@ class LiveShow : public MapObserver {
 
   // The mapping thread's.
   int late_frames_ = 0;
+  std::set<TileId> changing_;             // by the last checkpoint
   std::map<TileId, LiveSample> samples_;  // of tiles that change
+  std::int64_t image_at_ = 0;             // ms, of the last one shown
 
   mutable std::mutex guard_;
   std::shared_ptr<MapSite> site_;  // guarded; once the map is whole

@@ -107,14 +107,17 @@ class LiveRun : public testing::Test {
  protected:
   void SetUp() override {
     job_.output = folder_ / "a.fovea";
+    start(/*force=*/false);
+  }
+  void start(bool force) {
     show_ = std::make_unique<LiveShow>(
         job_, std::make_shared<const DriveImages>(std::make_shared<TestDrive>(0, kFrames)), kPage,
         WebServerOptions());
     MapKeeperOptions options;
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
-      show_->map_changed(changes, rows);
+      show_->map_changed(changes, rows, map_);
     };
-    keeper_ = std::make_unique<MapKeeper>(MapWriter::create(job_.output, false), options);
+    keeper_ = std::make_unique<MapKeeper>(MapWriter::create(job_.output, force), options);
   }
   int port() const {
     const std::string url = show_->url();
@@ -275,6 +278,22 @@ TEST_F(LiveRun, EverybodyHasTheWholeMapInTheEnd) {
   const Picture last = picture_of(after);
   expect_all(last);
   EXPECT_EQ(last.session, seen.session);
+}
+
+// Another map under the output's name is gone with the first commit, and never shown.
+TEST_F(LiveRun, AnOldMapOfThatNameIsNotShown) {
+  show_.reset();
+  keeper_.reset();
+  auto old = MapWriter::create(job_.output, true);
+  put_sample_map(*old, sample_tile_map());
+  old->commit();
+  old.reset();
+  start(/*force=*/true);
+  WebClient client(port());
+  ASSERT_EQ(client.open_socket("/live"), 101);
+  drive(0, kFrames);
+  finish();
+  expect_all(picture_of(client));
 }
 
 TEST_F(LiveRun, NobodyLooksOnForAWhile) {
