@@ -74,7 +74,22 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
   }
 }
 
-/// Shows the map while it is made.
+/// Shows the finished map until Ctrl-C.
+void go_on_showing(std::unique_ptr<LiveShow> show, const MapArguments& arguments,
+                   const std::stop_token& stop) {
+  show->finish();
+  if (!stop.stop_requested()) {
+    if (!arguments.quiet) {
+      fmt::print("the map is still shown at {} (Ctrl-C ends)\n", show->url());
+      std::fflush(stdout);
+    }
+    wait_for(stop);
+  }
+  show.reset();
+  fold_log(arguments.output);
+}
+
+/// Shows the map while it is made; nullptr where nobody wants that.
 std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob& job,
                                     std::shared_ptr<const FrameSource> drive) {
   if (arguments.live.empty()) return nullptr;
@@ -121,7 +136,7 @@ void run(const MapArguments& arguments) {
       job.pose_source = PoseSource::kGivenFirst;
     }
   }
-  const std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
+  std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
   job.observer = show.get();
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
@@ -129,14 +144,7 @@ void run(const MapArguments& arguments) {
   }();
   if (report) write_json(*report, {{"map", to_json(summary)}});
   if (!arguments.quiet) print_summary(summary, arguments);
-  if (!show) return;
-  show->finish();
-  if (interrupt.token().stop_requested()) return;
-  if (!arguments.quiet) {
-    fmt::print("the map is still shown at {} (Ctrl-C ends)\n", show->url());
-    std::fflush(stdout);
-  }
-  wait_for(interrupt.token());
+  if (show) go_on_showing(std::move(show), arguments, interrupt.token());
 }
 
 }  // namespace

@@ -95,6 +95,10 @@ class MapReader {
   std::unique_ptr<Database> database_;
 };
 
+/// Makes a map whose writer ended while others read it one file again, once none does any more.
+/// Errors as MapWriter::open().
+void fold_log(const std::filesystem::path& path);
+
 /// Puts all that a map has but its tiles: meta data, frames and submaps.
 /// @return T_local_submap by id
 std::vector<RigidMotion> copy_all_but_tiles(const MapReader& map, MapWriter& output);

@@ -116,6 +116,36 @@ TEST(MapWriter, ForceReplacesAtTheFirstCommit) {
   EXPECT_THAT(folder.names(), ElementsAre("a.fovea", "b.fovea"));
 }
 
+/// A map whose writer ended while it was read: its log is still beside it.
+void leave_log(const std::filesystem::path& path) {
+  auto writer = MapWriter::create(path, false);
+  put_meta_and_commit(*writer, "old");
+  const MapReader reader(path);
+  const auto held = reader.hold_state();
+  put_meta_and_commit(*writer, "older");
+  writer.reset();
+}
+
+TEST(MapWriter, TheLogOfARemovedMapIsNotTakenForItsOwn) {
+  const TemporaryFolder folder;
+  leave_log(folder / "a.fovea");
+  ASSERT_TRUE(std::filesystem::exists(folder / "a.fovea-wal"));
+  std::filesystem::remove(folder / "a.fovea");
+  put_meta_and_commit(*MapWriter::create(folder / "a.fovea", false), "new");
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "new");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+}
+
+TEST(MapWriter, ALogThatWasLeftIsFoldedIn) {
+  const TemporaryFolder folder;
+  leave_log(folder / "a.fovea");
+  fold_log(folder / "a.fovea");
+  EXPECT_THAT(folder.names(), ElementsAre("a.fovea"));
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "older");
+  fold_log(folder / "a.fovea");  // nothing to do
+  EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "older");
+}
+
 TEST(MapWriter, DoesNotReplaceWhatAppearedMeanwhile) {
   const TemporaryFolder folder;
   {

@@ -31,14 +31,19 @@ void remove_side_files(const fs::path& path) {
   }
 }
 
+bool has_side_files(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::path(path) += "-wal", ignored);
+}
+
 /// Folds everything into the one file. Best effort: what stays beside it is read by SQLite.
 void leave_one_file(Database& database) noexcept { database.attempt("PRAGMA journal_mode=DELETE"); }
 
 /// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
-/// new map's after the rename. OutputError if a program is using it.
+/// new map's after the rename; that of a map which was removed is left. OutputError if a program is
+/// using it.
 void settle_old_map(const fs::path& path) {
-  if (!fs::exists(path)) return;
-  {
+  if (fs::exists(path)) {
     Database old(path, Access::kWrite, path);
     // What fails otherwise is no map, and is replaced all the same.
     if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
@@ -308,6 +313,10 @@ void SqliteMapWriter::put_tile(const TileId& id, const PointCloud& tile) {
 
 std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
   return std::make_unique<SqliteMapWriter>(path, force);
+}
+
+void fold_log(const fs::path& path) {
+  if (has_side_files(path)) MapWriter::open(path);  // whose end it is to do so
 }
 
 std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {

@@ -211,7 +211,10 @@ class LiveBoard::Feed : public WebFeed {
         append_stored(id, sections);
       }
     }
-    if (count == 0) return std::nullopt;
+    if (count == 0) {
+      reader_.reset();  // a writer that ends makes the map one file only where nobody reads it
+      return std::nullopt;
+    }
     return WebMessage{
         std::make_shared<const std::string>(points_header(kNoFrame, count) + sections), true};
   }
