@@ -61,7 +61,7 @@ void bench_recolour(benchmark::State& state, const MappedStreet& street) {
   std::size_t points = 0;
   solo(state, [&] {
     const ColorView view = street.view(image);
-    benchmark::DoNotOptimize(seen.gain_to_map(view));
+    benchmark::DoNotOptimize(seen.compare(view).gain);
     return points = seen.recolour(map, view);
   });
   check(points > 1000, "nothing in view");

@@ -111,7 +111,7 @@ export class MapPage {
   }
 
   mode(name) {
-    return this.page.getByRole('radio', { name, exact: true });
+    return this.page.getByRole('button', { name, exact: true });
   }
 
   close() {
