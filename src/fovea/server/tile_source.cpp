@@ -34,7 +34,7 @@ TileSource::TileSource(const std::filesystem::path& map) : map_(map) {
       tileset_json(root_, std::nullopt, [](const std::string& name) { return name + ".glb"; }));
   idle_readers_.push_back(std::move(reader));
   if (!root_.is_leaf()) {
-    maker_ = std::jthread([this] { make_coarse_levels(); });
+    maker_ = std::jthread([this](const std::stop_token& stop) { make_coarse_levels(stop); });
   }
 }
 
@@ -55,8 +55,7 @@ std::string TileSource::failure() const {
   return failure_;
 }
 
-void TileSource::make_coarse_levels() {
-  const std::stop_token stop = maker_.get_stop_token();
+void TileSource::make_coarse_levels(const std::stop_token& stop) {
   try {
     Reader reader(map_);
     for_each_node(root_, reader.leaves,

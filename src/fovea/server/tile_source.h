@@ -46,7 +46,7 @@ class TileSource {
  private:
   struct Reader;
   void index(const TileNode& node);
-  void make_coarse_levels();
+  void make_coarse_levels(const std::stop_token& stop);
   void keep(const TileNode& node, const std::vector<ExportPoint>& points);
   Bytes read_coarse(const ScratchFile::Place& place);
   Bytes make_leaf(const TileNode& leaf);
