@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 
 #include "fovea/base/errors.h"
@@ -30,12 +31,22 @@ void open_browser(const std::string& url) {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
   }
+  // It goes on when this program ends, and not by this one's Ctrl-C, whose signals are blocked
+  // here.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   std::string program = "xdg-open", argument = url;
   std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
   pid_t child = 0;
   // Without such a program the user opens the address that is printed.
   static_cast<void>(
-      posix_spawnp(&child, program.c_str(), &files, nullptr, arguments.data(), environ));
+      posix_spawnp(&child, program.c_str(), &files, &attributes, arguments.data(), environ));
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
 }
 

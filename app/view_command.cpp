@@ -29,17 +29,19 @@ struct ViewArguments {
   bool no_browser = false, quiet = false;
 };
 
-/// A frame's number in the map less that in the drive; InputError if the map is not of that drive.
-int frame_shift(const MapMeta& meta, const ViewArguments& arguments) {
+/// Which of the map's frames are the drive's; InputError if the map is not of that drive.
+DriveImages::Frames frames_of_drive(const MapMeta& meta, const ViewArguments& arguments) {
   const std::string name = name_of(arguments.drive.drive);
   const std::vector<MergedDrive> merged = merged_drives(meta);
   if (!merged.empty()) {
     const auto found = std::find_if(merged.begin(), merged.end(),
                                     [&](const MergedDrive& drive) { return drive.name == name; });
-    if (found != merged.end()) return found->frame_shift;
+    if (found != merged.end()) {
+      return {found->first_frame, found->end_frame, found->frame_shift};
+    }
   } else {
     const auto known = meta.find("drive.name");
-    if (known == meta.end() || known->second == name) return 0;
+    if (known == meta.end() || known->second == name) return {};
   }
   throw InputError(fmt::format("the map was not made of the drive '{}'", name), arguments.map,
                    "give the drive that 'fovea info' names");
@@ -48,14 +50,14 @@ int frame_shift(const MapMeta& meta, const ViewArguments& arguments) {
 std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
   if (arguments.drive.drive.empty()) return nullptr;
   const MapMeta meta = MapReader(arguments.map).meta();
-  const int shift = frame_shift(meta, arguments);
+  const DriveImages::Frames frames = frames_of_drive(meta, arguments);
   DriveArguments drive = arguments.drive;
   if (drive.cameras.empty() && meta.contains("cameras")) drive.cameras = meta.at("cameras");
   std::unique_ptr<FrameSource> source = drive.open();
   if (has_stored_calibration(meta)) {
     source = with_stored_calibration(std::move(source), meta, arguments.map);
   }
-  return std::make_shared<const DriveImages>(std::move(source), shift);
+  return std::make_shared<const DriveImages>(std::move(source), frames);
 }
 
 void run(const ViewArguments& arguments) {

@@ -70,10 +70,10 @@ export class LiveSession {
     const before = this.lastLatencyMs;
     for (const frame of this.undrawn) {
       const mappedAt = this.mappedAt.get(frame);
-      if (mappedAt === undefined) continue;
+      this.undrawn.delete(frame);
+      if (mappedAt === undefined) continue;  // of a tile, or too long ago
       this.lastLatencyMs = Math.max(0, Date.now() - mappedAt);
       this.mappedAt.delete(frame);
-      this.undrawn.delete(frame);
     }
     if (this.lastLatencyMs !== before) this.tell();
   }
@@ -101,8 +101,9 @@ export class LiveSession {
   }
 
   private hello(message: HelloMessage): void {
+    // All tiles come again; what has gone meanwhile does not.
+    this.layer.clear();
     if (this.session !== null && this.session !== message.session) {
-      this.layer.clear();
       this.forget();
       this.events.restarted();
     }

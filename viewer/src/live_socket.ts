@@ -10,6 +10,8 @@ export interface LiveSocketEvents {
 
 const shortestWait = 250;
 const longestWait = 5000;
+/** A connection that ends sooner counts as none: what ends it may be what it asks for. */
+const lasting = 5000;
 
 /** The connection to a map that grows; comes back by itself until told to stop. */
 export class LiveSocket {
@@ -18,6 +20,7 @@ export class LiveSocket {
   private socket: WebSocket | null = null;
   private wait = shortestWait;
   private timer = 0;
+  private openedAt = 0;
   private stopped = false;
   private everOpened = false;
 
@@ -40,7 +43,7 @@ export class LiveSocket {
       if (this.everOpened) ++this.reconnects;
       this.everOpened = true;
       this.connected = true;
-      this.wait = shortestWait;
+      this.openedAt = performance.now();
       this.events.opened();
     };
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
@@ -50,6 +53,7 @@ export class LiveSocket {
       else this.events.odd();
     };
     socket.onclose = () => {
+      if (this.connected && performance.now() - this.openedAt > lasting) this.wait = shortestWait;
       this.connected = false;
       if (this.stopped) return;
       this.events.lost();

@@ -15,9 +15,10 @@ async function start(root: HTMLElement): Promise<void> {
   document.title = `${map.name} - Fovea`;
   const waiting = new Notices();
   root.replaceChildren(waiting.element);
-  await untilReady(map.status, (progress) => waiting.show('reading',
+  const failure = await untilReady(map.status, (progress) => waiting.show('reading',
     { text: 'The map is being read for its coarse levels', progress, calm: true }));
   const viewer = new Viewer(root, map, await loadFrames(map.frames), graphics);
+  if (failure !== null) viewer.warn(failure);
   window.fovea = { state: () => viewer.state(), pick: (x, y) => viewer.pick(x, y) };
 }
 

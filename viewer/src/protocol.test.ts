@@ -57,6 +57,7 @@ describe('frames.json', () => {
 });
 
 test("the server's status never leaves 0 to 1", () => {
-  expect(parseServerStatus({ state: 'reading', read: 7 })).toEqual({ state: 'reading', read: 1 });
-  expect(parseServerStatus({})).toEqual({ state: 'ready', read: 0 });
+  expect(parseServerStatus({ state: 'reading', read: 7 })).toEqual({ state: 'reading', read: 1, failure: null });
+  expect(parseServerStatus({})).toEqual({ state: 'ready', read: 0, failure: null });
+  expect(parseServerStatus({ state: 'reading', failure: 'torn' }).failure).toBe('torn');
 });

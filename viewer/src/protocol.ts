@@ -52,6 +52,8 @@ export interface Frame {
 }
 
 export interface ServerStatus {
+  /** What of the map cannot be read. */
+  readonly failure: string | null;
   readonly state: 'reading' | 'ready';
   readonly read: number;
 }
@@ -179,9 +181,9 @@ export function parseFrames(value: unknown): Frame[] {
 
 export function parseServerStatus(value: unknown): ServerStatus {
   const status = asObject(value, 'status.json');
-  if (typeof status.failure === 'string') throw new ProtocolError(status.failure);
   return {
     state: status.state === 'reading' ? 'reading' : 'ready',
+    failure: typeof status.failure === 'string' ? status.failure : null,
     read: Math.min(1, Math.max(0, asNumberOrNull(status.read) ?? 0)),
   };
 }

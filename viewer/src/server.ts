@@ -24,14 +24,15 @@ const pause = (milliseconds: number) =>
   new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 
 /** Until the server has read the map.
- *  @param path  of what tells how far it is; null: an exported folder, nothing to wait for */
+ *  @param path  of what tells how far it is; null: an exported folder, nothing to wait for
+ *  @return what of the map cannot be read, or null */
 export async function untilReady(
   path: string | null, progress: (read: number) => void,
-): Promise<void> {
-  if (path === null) return;
+): Promise<string | null> {
+  if (path === null) return null;
   for (;;) {
     const status = parseServerStatus(await json(path));
-    if (status.state === 'ready') return;
+    if (status.state === 'ready' || status.failure !== null) return status.failure;
     progress(status.read);
     await pause(200);
   }

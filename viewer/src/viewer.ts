@@ -148,6 +148,11 @@ export class Viewer {
     this.settings.listen((now) => this.apply(now));
   }
 
+  /** Tells of something that does not keep the map from being shown. */
+  warn(text: string): void {
+    this.notices.show('warning', { text });
+  }
+
   state(): PageState {
     const { camera } = this.scene;
     const live = this.live?.session ?? null;
@@ -547,6 +552,7 @@ export class Viewer {
       },
       framesChanged: () => this.liveFramesChanged(),
       restarted: () => {
+        void this.reloadIfOther();
         this.tools.drop();
         this.tools.setLine([]);
         this.row = 0;
@@ -570,6 +576,15 @@ export class Viewer {
     if (this.seesDrive) return;
     this.seesDrive = true;
     if (this.settings.get().follow) this.navigation.setView(chasing(this.trajectory, this.row));
+  }
+
+  /** Another run of the same program may be of another drive. */
+  private async reloadIfOther(): Promise<void> {
+    const before = this.map;
+    const now = await loadMapInfo().catch(() => before);
+    const same = now.name === before.name && now.tileSize === before.tileSize &&
+      JSON.stringify(now.cameras) === JSON.stringify(before.cameras);
+    if (!same) location.reload();
   }
 
   /** The drive has ended: the finished map takes over as soon as it has this view ready. */

@@ -315,6 +315,10 @@ PointCloud MapReader::read_tile(const TileId& id) const {
   return database_->tile().read(id, database_->sqlite->where());
 }
 
+std::optional<PointCloud> MapReader::find_tile(const TileId& id) const {
+  return database_->tile().find(id, database_->sqlite->where());
+}
+
 void MapReader::for_each_tile(
     const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const {
   sqlite::Database& database = *database_->sqlite;

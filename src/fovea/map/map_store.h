@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,6 +83,8 @@ class MapReader {
   std::vector<std::pair<TileId, std::size_t>> tile_sizes() const;
   /// InputError if the tile is not there or damaged.
   PointCloud read_tile(const TileId& id) const;
+  /// Nothing if the tile is not there; InputError if it is damaged.
+  std::optional<PointCloud> find_tile(const TileId& id) const;
   /// Calls f(submap, key, tile) in the order of submap and key; positions as in Submap::tiles.
   void for_each_tile(
       const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const;
@@ -95,8 +98,7 @@ class MapReader {
   std::unique_ptr<Database> database_;
 };
 
-/// Makes a map whose writer ended while others read it one file again, once none does any more.
-/// Errors as MapWriter::open().
+/// Makes a map whose writer ended while others read it one file again, if nobody uses it any more.
 void fold_log(const std::filesystem::path& path);
 
 /// Puts all that a map has but its tiles: meta data, frames and submaps.

@@ -15,6 +15,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
+#include "fovea/base/errors.h"
 #include "fovea/map/tile_columns.h"
 
 namespace fovea {
@@ -466,6 +467,17 @@ TEST(MapFormat, DigestIsAsStated) {
   std::string hex;
   for (const unsigned char byte : canonical.digest) hex += fmt::format("{:02x}", byte);
   EXPECT_EQ(MapReader(folder / "a.fovea").digest(), hex);
+}
+
+TEST(MapReader, AMissingTileIsNoReasonToLoseTheOthers) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const MapReader reader(folder / "a.fovea");
+  const auto tiles = reader.tile_sizes();
+  const TileId nowhere{0, {1000, 0, 0}};
+  EXPECT_FALSE(reader.find_tile(nowhere).has_value());
+  EXPECT_THROW(reader.read_tile(nowhere), InputError);
+  for (const auto& [id, points] : tiles) EXPECT_EQ(reader.find_tile(id)->size(), points);
 }
 
 }  // namespace

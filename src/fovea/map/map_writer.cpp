@@ -316,7 +316,13 @@ std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
 }
 
 void fold_log(const fs::path& path) {
-  if (has_side_files(path)) MapWriter::open(path);  // whose end it is to do so
+  std::error_code ignored;
+  const fs::path file = fs::canonical(path, ignored);
+  if (!has_side_files(file)) return;
+  try {
+    MapWriter::open(file);  // whose end it is to do so
+  } catch (const Error&) {  // somebody writes it: then it is theirs to do
+  }
 }
 
 std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {

@@ -173,6 +173,8 @@ void Statement::run() {
   check(sqlite3_reset(handle_));
 }
 
+void Statement::reset() noexcept { sqlite3_reset(handle_); }
+
 bool Statement::is_null(int column) const {
   return sqlite3_column_type(handle_, column) == SQLITE_NULL;
 }

@@ -72,6 +72,8 @@ class Statement {
   bool step();
   /// Runs a statement without result to its end and makes it ready for the next use.
   void run();
+  /// Makes it ready for the next use, wherever it stands.
+  void reset() noexcept;
 
   bool is_null(int column) const;
   std::int64_t integer(int column) const;

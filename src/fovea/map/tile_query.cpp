@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
 
 #include "fovea/base/errors.h"
@@ -44,16 +45,20 @@ void bind_tile(sqlite::Statement& statement, const TileId& id) {
 TileQuery::TileQuery(sqlite::Database& database)
     : row_(database, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile)) {}
 
-PointCloud TileQuery::read(const TileId& id, const std::string& map_path) {
+std::optional<PointCloud> TileQuery::find(const TileId& id, const std::string& map_path) {
   bind_tile(row_, id);
-  if (!row_.step()) {
-    throw InputError(fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y,
-                                 id.key.z, id.submap),
-                     map_path, kRestoreMap);
-  }
-  PointCloud tile = decoder_.decode(tile_row(row_, map_path), map_path);
-  row_.run();
-  return tile;
+  // However this ends, the next tile can be asked for.
+  const std::unique_ptr<sqlite::Statement, void (*)(sqlite::Statement*)> ready(
+      &row_, [](sqlite::Statement* row) { row->reset(); });
+  if (!row_.step()) return std::nullopt;
+  return decoder_.decode(tile_row(row_, map_path), map_path);
+}
+
+PointCloud TileQuery::read(const TileId& id, const std::string& map_path) {
+  if (std::optional<PointCloud> tile = find(id, map_path)) return std::move(*tile);
+  throw InputError(
+      fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y, id.key.z, id.submap),
+      map_path, kRestoreMap);
 }
 
 }  // namespace fovea

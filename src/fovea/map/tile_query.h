@@ -1,6 +1,7 @@
 // Rows of the table `tiles`, as both the reader and the writer of a map see them. Private to map/.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "fovea/map/sqlite_database.h"
@@ -30,7 +31,9 @@ void bind_tile(sqlite::Statement& statement, const TileId& id);
 class TileQuery {
  public:
   explicit TileQuery(sqlite::Database& database);
-  /// InputError that names tile and `map_path` if it is not there or damaged.
+  /// Nothing if there is no such tile; InputError that names `map_path` if it is damaged.
+  std::optional<PointCloud> find(const TileId& id, const std::string& map_path);
+  /// InputError that names tile and `map_path` also if it is not there.
   PointCloud read(const TileId& id, const std::string& map_path);
 
  private:

@@ -94,7 +94,14 @@ class LiveBoard::Feed : public WebFeed {
   std::optional<WebMessage> next() override {
     if (!greeted_) return greeting();
     if (auto message = small_message()) return message;
-    if (std::shared_ptr<LiveImage> image = new_image()) return WebMessage{image->message(), true};
+    // In turns: a client that takes a while for each must not wait for tiles until the end.
+    if (std::exchange(image_was_last_, false)) {
+      if (auto message = owed_tiles()) return message;
+    }
+    if (std::shared_ptr<LiveImage> image = new_image()) {
+      image_was_last_ = true;
+      return WebMessage{image->message(), true};
+    }
     if (auto message = owed_tiles()) return message;
     const std::lock_guard lock(board_.guard_);
     const bool all = next_frame_ == board_.frames_.size() && owed_.empty();
@@ -115,7 +122,7 @@ class LiveBoard::Feed : public WebFeed {
 
  private:
   WebMessage greeting() {
-    Json hello;
+    std::vector<FrameRecord> records;
     {
       const std::lock_guard lock(board_.guard_);
       greeted_ = true;
@@ -123,13 +130,14 @@ class LiveBoard::Feed : public WebFeed {
       poses_known_ = board_.poses_moved_;
       increments_taken_ = board_.increments_made_;
       T_local_submap_ = board_.T_local_submap_;
-      hello = {{"type", "hello"},
-               {"session", board_.session_},
-               {"frames", fovea::frames_json(board_.records())},
-               {"done", board_.frames_.size()},
-               {"total", board_.total_}};
+      records = board_.records();
     }
-    hello["T_local_submap"] = Json::array();
+    Json hello = {{"type", "hello"},
+                  {"session", board_.session_},
+                  {"frames", fovea::frames_json(records)},
+                  {"T_local_submap", Json::array()},
+                  {"done", records.size()},
+                  {"total", board_.total_}};
     for (const RigidMotion& T : T_local_submap_) {
       hello["T_local_submap"].push_back(matrix_rows(T));
     }
@@ -199,19 +207,23 @@ class LiveBoard::Feed : public WebFeed {
       Bytes section;
       {
         const std::lock_guard lock(board_.guard_);
-        if (owed_.empty()) break;
+        // Points that came meanwhile go first: a tile has them already, and is not to have them
+        // twice.
+        if (owed_.empty() || increments_taken_ != board_.increments_made_) break;
         id = *owed_.rbegin();
         owed_.erase(id);
         section = board_.section_of(id);
       }
-      ++count;
       if (section) {
         sections += *section;
+        ++count;
       } else {
-        append_stored(id, sections);
+        count += append_stored(id, sections);
       }
     }
     if (count == 0) {
+      const std::lock_guard lock(board_.guard_);
+      if (!owed_.empty()) return std::nullopt;
       reader_.reset();  // a writer that ends makes the map one file only where nobody reads it
       return std::nullopt;
     }
@@ -233,18 +245,22 @@ class LiveBoard::Feed : public WebFeed {
     owe(tiles);
   }
 
-  void append_stored(const TileId& id, std::string& sections) {
+  /// False if the tile cannot be read: what the client has of it stays.
+  bool append_stored(const TileId& id, std::string& sections) {
     if (!reader_) reader_.emplace(board_.map_);
     try {
-      const PointCloud tile = reader_->read_tile(id);
-      append_section(sections, id, &tile, LiveSample().more(tile, board_.tile_size_), true);
+      const std::optional<PointCloud> tile = reader_->find_tile(id);
+      LiveSample sample;
+      if (tile) sample.more(*tile, board_.tile_size_);  // else it has gone meanwhile
+      append_section(sections, id, tile ? &*tile : nullptr, sample.all(), /*whole=*/true);
+      return true;
     } catch (const InputError&) {
-      append_section(sections, id, nullptr, {}, true);  // it has gone meanwhile
+      return false;
     }
   }
 
   LiveBoard& board_;
-  bool greeted_ = false, said_end_ = false, has_read_file_ = false;
+  bool greeted_ = false, said_end_ = false, has_read_file_ = false, image_was_last_ = false;
   int checkpoints_seen_ = 0;  // since it has missed points
   std::size_t next_frame_ = 0, poses_known_ = 0, increments_taken_ = 0;
   std::vector<RigidMotion> T_local_submap_;
@@ -262,6 +278,17 @@ LiveBoard::LiveBoard(std::filesystem::path map, bool has_file, double tile_size,
 bool LiveBoard::has_feeds() const {
   const std::lock_guard lock(guard_);
   return !feeds_.empty();
+}
+
+void LiveBoard::take_up(const std::vector<FrameRecord>& frames, std::size_t points) {
+  const std::lock_guard lock(guard_);
+  for (const FrameRecord& record : frames) {
+    if (!first_stamp_) first_stamp_ = record.stamp;
+    LiveFrame frame;
+    frame.record = record;
+    frame.points = points;
+    frames_.push_back(std::move(frame));
+  }
 }
 
 void LiveBoard::add_frame(LiveFrame frame, const std::vector<RigidMotion>& T_local_submap,
@@ -297,22 +324,22 @@ void LiveBoard::move_frames(const std::vector<std::pair<int, RigidMotion>>& T_lo
   if (moved_frames_.size() > kPoseChanges) moved_frames_.pop_front();
 }
 
-void LiveBoard::checkpoint(std::vector<TileId> changed, const std::vector<TileId>& settled,
+void LiveBoard::checkpoint(std::vector<TileId> written, const std::vector<TileId>& settled,
                            std::map<TileId, Bytes> tiles) {
   const std::lock_guard lock(guard_);
   for (Feed* feed : feeds_) {
     feed->owe(settled);
-    feed->owe_missed(changed_);
+    feed->owe_missed(written_);
   }
   has_file_ = has_file_ || checkpoints_++ > 0;
-  changed_ = std::move(changed);
+  written_ = std::move(written);
   tiles_before_ = std::move(tiles_);
   tiles_ = std::move(tiles);
 }
 
 void LiveBoard::end() {
   const std::lock_guard lock(guard_);
-  for (Feed* feed : feeds_) feed->owe(changed_);
+  for (Feed* feed : feeds_) feed->owe(written_);
   tiles_.clear();
   tiles_before_.clear();
   has_file_ = true;

@@ -60,6 +60,9 @@ class LiveBoard {
 
   // For the mapping thread.
 
+  /// The frames of an earlier run that is gone on with.
+  /// @param points  of the map
+  void take_up(const std::vector<FrameRecord>& frames, std::size_t points);
   /// Whether anybody looks on.
   bool has_feeds() const;
   /// @param points  a message; nullptr where nobody looked on
@@ -69,11 +72,11 @@ class LiveBoard {
   /// Poses of earlier frames that a closed loop has moved.
   void move_frames(const std::vector<std::pair<int, RigidMotion>>& T_local_lidar);
   /// When all that the checkpoint before has written is in the file.
-  /// @param changed  tiles that this one is going to write
+  /// @param written  tiles that this one is going to write or remove
   /// @param settled  tiles that the one before has written and this one does not, or removes: to be
   ///                 shown anew
   /// @param tiles    sections of a message of those settled; none where nobody looks on
-  void checkpoint(std::vector<TileId> changed, const std::vector<TileId>& settled,
+  void checkpoint(std::vector<TileId> written, const std::vector<TileId>& settled,
                   std::map<TileId, Bytes> tiles);
   /// All is in the file.
   void end();
@@ -109,7 +112,7 @@ class LiveBoard {
   std::deque<Bytes> increments_;  // the last of them
   std::shared_ptr<LiveImage> image_;
   std::map<TileId, Bytes> tiles_, tiles_before_;  // settled at the last checkpoints
-  std::vector<TileId> changed_;                   // by the last checkpoint
+  std::vector<TileId> written_;                   // by the last checkpoint
   std::set<Feed*> feeds_;
   std::size_t checkpoints_ = 0;
   bool has_file_;

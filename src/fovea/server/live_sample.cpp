@@ -19,8 +19,6 @@ std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_m) {
   return static_cast<std::uint32_t>((cell.x() * kCells + cell.y()) * kCells + cell.z());
 }
 
-float cells_per_m(double tile_size) { return static_cast<float>(kCells / tile_size); }
-
 /// Positions are kept in whole millimetres.
 std::uint16_t millimetres(float metres) {
   return static_cast<std::uint16_t>(std::clamp(std::lround(metres * 1000), 0L, 65535L));
@@ -28,33 +26,24 @@ std::uint16_t millimetres(float metres) {
 
 }  // namespace
 
-void LiveSample::forget() { *this = LiveSample(); }
+bool LiveSample::has_lost_points(const PointCloud& tile) const {
+  if (looked_at_ == 0) return false;
+  return tile.size() < looked_at_ || tile.position[looked_at_ - 1] != last_;
+}
 
 std::span<const std::uint32_t> LiveSample::more(const PointCloud& tile, double tile_size) {
-  if (tile.size() < looked_at_) forget();
+  if (has_lost_points(tile)) *this = LiveSample();
   if (taken_.empty()) taken_.resize(std::size_t{kCells} * kCells * kCells);
   const std::size_t before = chosen_.size();
-  const float scale = cells_per_m(tile_size);
+  const auto cells_per_m = static_cast<float>(kCells / tile_size);
   for (; looked_at_ < tile.size(); ++looked_at_) {
-    const std::uint32_t cell = cell_of(tile.position[looked_at_], scale);
+    const std::uint32_t cell = cell_of(tile.position[looked_at_], cells_per_m);
     if (taken_[cell]) continue;
     taken_[cell] = true;
     chosen_.push_back(static_cast<std::uint32_t>(looked_at_));
-    cells_.push_back(cell);
   }
+  if (looked_at_ > 0) last_ = tile.position[looked_at_ - 1];
   return std::span(chosen_).subspan(before);
-}
-
-const std::vector<std::uint32_t>& LiveSample::all(const PointCloud& tile, double tile_size) {
-  more(tile, tile_size);
-  const float scale = cells_per_m(tile_size);
-  for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    if (cell_of(tile.position[chosen_[i]], scale) == cells_[i]) continue;
-    forget();
-    more(tile, tile_size);
-    break;
-  }
-  return chosen_;
 }
 
 void append_section(std::string& message, const TileId& id, const PointCloud* tile,

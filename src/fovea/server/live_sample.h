@@ -13,19 +13,21 @@ namespace fovea {
 /// Of one tile. 64 cells along its edge: 6 cm in a tile of 4 m.
 class LiveSample {
  public:
-  /// Looks at the points that have been added since the last call, the first in each cell.
+  /// Looks at the points that have been added since the last call, the first in each cell. Where
+  /// points have gone from the tile, it begins anew.
   /// @return their indices in the tile
   std::span<const std::uint32_t> more(const PointCloud& tile, double tile_size);
 
-  /// All that are chosen. Where points have gone from the tile, it begins anew.
-  const std::vector<std::uint32_t>& all(const PointCloud& tile, double tile_size);
+  /// All that are chosen, after more().
+  const std::vector<std::uint32_t>& all() const { return chosen_; }
 
  private:
-  void forget();
+  bool has_lost_points(const PointCloud& tile) const;
 
-  std::vector<bool> taken_;
-  std::vector<std::uint32_t> chosen_, cells_;  // index in the tile, and its cell
-  std::size_t looked_at_ = 0;                  // points of the tile
+  std::vector<bool> taken_;                         // by cell
+  std::vector<std::uint32_t> chosen_;               // indices in the tile
+  std::size_t looked_at_ = 0;                       // points of the tile
+  Eigen::Vector3f last_ = Eigen::Vector3f::Zero();  // of these
 };
 
 /// Appends a section of a live message (docs/viewer-protocol.md).

@@ -60,7 +60,13 @@ LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
               [this](const std::string& path, WebServer::Reply reply) {
                 answer(path, std::move(reply));
               },
-              {{"live", [this] { return board_.make_feed(); }}}) {}
+              {{"live", [this] { return board_.make_feed(); }}}) {
+  if (!job.resume) return;
+  const MapReader map(job.output);
+  std::vector<FrameRecord> frames;
+  for (const FrameRecord& record : map.frames()) frames.push_back(told(record));
+  board_.take_up(frames, map.size());
+}
 
 LiveShow::~LiveShow() {
   server_.stop();
@@ -104,7 +110,7 @@ std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap
   std::size_t count = 0;
   for (const auto& [key, tile] : map.submaps().back().tiles) {
     const PointCloud& points = *tile.points;
-    if (points.frame.back() != frame) continue;
+    if (points.empty() || points.frame.back() != frame) continue;
     const TileId id{submap, key};
     std::vector<std::uint32_t> fresh;  // of a tile that was not looked at before, not the others
     for (const std::uint32_t i : samples_[id].more(points, map.tile_size())) {
@@ -131,8 +137,10 @@ void LiveShow::map_changed(const TileChanges& changes, const MapRows& rows, cons
       if (auto section = whole_section(id, map)) sections[id] = std::move(section);
     }
   }
+  std::vector<TileId> written(changing.begin(), changing.end());
+  written.insert(written.end(), changes.removed.begin(), changes.removed.end());
   std::erase_if(samples_, [&](const auto& sample) { return !changing.contains(sample.first); });
-  board_.checkpoint({changing.begin(), changing.end()}, settled, std::move(sections));
+  board_.checkpoint(std::move(written), settled, std::move(sections));
   changing_ = std::move(changing);
   server_.wake();
 }
@@ -144,8 +152,9 @@ LiveBoard::Bytes LiveShow::whole_section(const TileId& id, const TileMap& map) {
   const auto tile = submap.tiles.find(id.key);
   if (tile != submap.tiles.end()) {
     const PointCloud& points = *tile->second.points;
-    append_section(section, id, &points, samples_[id].all(points, map.tile_size()),
-                   /*whole=*/true);
+    LiveSample& sample = samples_[id];
+    sample.more(points, map.tile_size());
+    append_section(section, id, &points, sample.all(), /*whole=*/true);
   } else if (!submap.stored.contains(id.key)) {
     append_section(section, id, nullptr, {}, /*whole=*/true);
   } else {

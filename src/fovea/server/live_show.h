@@ -25,7 +25,7 @@ class LiveShow : public MapObserver {
  public:
   /// @param job     of the run; outlives the show, as `page` does
   /// @param images  of the drive
-  /// OutputError as WebServer.
+  /// OutputError as WebServer; InputError if the map to resume cannot be read.
   LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
            std::span<const PageFile> page, const WebServerOptions& options);
   ~LiveShow() override;

@@ -156,9 +156,13 @@ class LiveRun : public testing::Test {
     }
     if (index % 7 == 3 && !near.empty()) {
       const PointCloud& tile = *map_.submaps()[near[0].submap].tiles.at(near[0].key).points;
-      std::vector<std::uint32_t> kept;  // of one tile none, else every other
-      for (std::uint32_t i = 0; i < tile.size() && index != 10; i += 2) kept.push_back(i);
+      std::vector<std::uint32_t> kept;
+      for (std::uint32_t i = 0; i < tile.size(); i += 2) kept.push_back(i);
       map_.keep_points(near[0], kept);
+    }
+    if (index > 20 && index % 5 == 3) {  // far behind, and written long ago
+      map_.keep_points({0, map_.submaps()[0].tiles.begin()->first}, {});
+      ++removed_;
     }
     PointCloud points = random_map_points(3000, random_, 3.0);
     points.origin = {double(index), 0, 0};
@@ -190,8 +194,7 @@ class LiveRun : public testing::Test {
   }
 
   /// Reads until the end has been told.
-  static Picture picture_of(WebClient& client) {
-    Picture picture;
+  static Picture picture_of(WebClient& client, Picture picture = {}) {
     while (!picture.ended) {
       const WebClient::Message message = client.message();
       if (message.opcode < 0) break;
@@ -219,6 +222,7 @@ class LiveRun : public testing::Test {
     }
     for (const auto& [id, points] : picture.tiles) tiles -= !points.empty();
     EXPECT_EQ(tiles, 0u) << "tiles are shown that have gone";
+    EXPECT_GT(removed_, 5);
   }
   static void expect_sample(const std::multiset<Picture::Point>& shown, const PointCloud& tile) {
     std::map<std::array<int, 3>, int> cells;  // of 62.5 mm
@@ -252,6 +256,7 @@ class LiveRun : public testing::Test {
   TemporaryFolder folder_;
   MapJob job_;
   Random random_{5};
+  int removed_ = 0;  // tiles
   TileMap map_{4.0};
   std::vector<FrameRecord> frames_;
   std::unique_ptr<LiveShow> show_;
@@ -266,10 +271,22 @@ TEST_F(LiveRun, EverybodyHasTheWholeMapInTheEnd) {
   std::thread reader([&] { seen = picture_of(keen); });
   drive(0, 33);
   ASSERT_EQ(late.open_socket("/live"), 101);  // between two checkpoints
-  drive(33, kFrames);
+  // These join when a checkpoint removes a tile, before the next one.
+  drive(33, 40);
+  WebClient later(port());
+  ASSERT_EQ(later.open_socket("/live"), 101);
+  Picture first;
+  first.take(later.message());
+  drive(40, 45);
+  WebClient latest(port());
+  ASSERT_EQ(latest.open_socket("/live"), 101);
+  drive(45, kFrames);
+  EXPECT_EQ(removed_, 8);
   finish();
   reader.join();
   expect_all(seen);
+  expect_all(picture_of(later, first));
+  expect_all(picture_of(latest));
   EXPECT_GT(seen.images, 0);
   expect_all(picture_of(late));
   expect_all(picture_of(deaf));  // which has read nothing so far

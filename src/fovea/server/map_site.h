@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -35,16 +36,23 @@ std::map<std::string, std::string> viewer_files(const MapReader& map,
 /// A drive's images as JPEG, by the frames' numbers in the map.
 class DriveImages {
  public:
-  /// @param drive        with the cameras that the map shows
-  /// @param frame_shift  a frame's number in the map less that in the drive
-  explicit DriveImages(std::shared_ptr<const FrameSource> drive, int frame_shift = 0);
+  /// Which frames of the map are the drive's.
+  struct Frames {
+    int first = 0, end = std::numeric_limits<int>::max();  ///< by their numbers in the map
+    std::int64_t shift = 0;  ///< a frame's number in the map less that in the drive
+  };
+  /// @param drive  with the cameras that the map shows
+  DriveImages(std::shared_ptr<const FrameSource> drive, const Frames& frames);
+  /// A map of that drive alone.
+  explicit DriveImages(std::shared_ptr<const FrameSource> drive)
+      : DriveImages(std::move(drive), Frames()) {}
   const DriveInfo& info() const { return drive_->info(); }
   /// "FRAME/CAMERA.jpg"; status 404 where there is no such image.
   WebResponse response(std::string_view path) const;
 
  private:
   std::shared_ptr<const FrameSource> drive_;
-  int frame_shift_;
+  Frames frames_;
 };
 
 /// docs/viewer-protocol.md, what there is over HTTP. For several threads.

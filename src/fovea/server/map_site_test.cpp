@@ -83,7 +83,8 @@ TEST_F(MapShowTest, EveryTileOfTheTilesetIsThere) {
 
 TEST_F(MapShowTest, ImagesByTheFramesNumbersInTheMap) {
   write_sample_map(folder_ / "a.fovea");
-  show(std::make_shared<DriveImages>(std::make_shared<TestDrive>(), /*frame_shift=*/100));
+  show(std::make_shared<DriveImages>(std::make_shared<TestDrive>(),
+                                     DriveImages::Frames{.first = 107, .end = 110, .shift = 100}));
   const json map = get_json("map.json");
   EXPECT_EQ(map["images"], true);
   EXPECT_EQ(map["cameras"][0]["index"], 3);

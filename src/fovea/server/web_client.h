@@ -89,9 +89,30 @@ class WebClient {
     int opcode = -1;  ///< 1 text, 2 binary, 8 close, 9 ping; -1: closed without one
     std::string bytes;
   };
-  /// The next whole frame of an open WebSocket.
+  /// The next message of an open WebSocket, of all its fragments; the server's questions for signs
+  /// of life only where they come between messages.
   Message message() {
+    Message message;
+    bool last = false;
+    while (!last) {
+      const Message fragment = frame(last);
+      if (fragment.opcode < 0) return {};
+      const bool is_control = fragment.opcode >= 8;
+      if (is_control && message.opcode < 0) return fragment;
+      if (is_control) {
+        last = false;
+        continue;
+      }
+      if (message.opcode < 0) message.opcode = fragment.opcode;
+      message.bytes += fragment.bytes;
+    }
+    return message;
+  }
+
+ private:
+  Message frame(bool& last) {
     if (!fill(2)) return {};
+    last = (received_[0] & 0x80) != 0;
     std::size_t length = received_[1] & 0x7f, header = 2;
     if (length >= 126) {
       header = length == 126 ? 4 : 10;
@@ -107,7 +128,6 @@ class WebClient {
     return message;
   }
 
- private:
   bool more() {
     const std::string bytes = receive();
     received_ += bytes;

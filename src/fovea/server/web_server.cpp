@@ -1,6 +1,7 @@
 // The one file that knows Boost.
 #include "fovea/server/web_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -43,9 +44,14 @@ constexpr const char* kContentPolicy =
 /// A WebSocket holds at most so much that its client has not taken: what comes later is newer.
 constexpr int kSendBuffer = 256 * 1024;  // bytes
 
+constexpr std::size_t kFragment = 64 * 1024;  // bytes
+
+/// Programs that are started, a browser say, do not keep the port.
+void keep_to_this_program(int socket) { static_cast<void>(fcntl(socket, F_SETFD, FD_CLOEXEC)); }
+
 /// On Linux a thread has a priority of its own.
 void give_way() {
-  constexpr int kNice = 10;
+  constexpr int kNice = 15;
   static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
 }
 
@@ -71,7 +77,12 @@ class WebServer::Impl {
     }
     thread_ = std::thread([this] {
       if (options_.in_background) give_way();
-      io_.run();
+      while (!io_.stopped()) {
+        try {
+          io_.run();
+        } catch (const std::exception&) {  // out of memory: of one connection, not of the program
+        }
+      }
     });
   }
 
@@ -106,6 +117,7 @@ class WebServer::Impl {
     const tcp::endpoint wanted(address, static_cast<unsigned short>(options_.port));
     acceptor_.open(wanted.protocol(), error);
     check("no server can be opened there");
+    keep_to_this_program(acceptor_.native_handle());
     acceptor_.set_option(asio::socket_base::reuse_address(true), error);
     acceptor_.bind(wanted, error);
     check("no server can be opened there");
@@ -199,14 +211,20 @@ class WebServer::Impl::Http : public std::enable_shared_from_this<Http> {
       return respond(refusal(503, "too many requests wait for an answer"));
     }
     stream_.expires_never();
-    const Reply reply = [self = shared_from_this()](WebResponse response) {
-      --self->server_.pending_;
-      asio::post(self->server_.io_,
-                 [self, response = std::move(response)] { self->respond(response); });
+    // Whoever replies lets go of the connection with that: it ends in io_'s thread.
+    const auto held = std::make_shared<std::shared_ptr<Http>>(shared_from_this());
+    const Reply reply = [held](WebResponse response) {
+      std::shared_ptr<Http> self = std::exchange(*held, nullptr);
+      if (!self) return;
+      Impl& server = self->server_;
+      --server.pending_;
+      asio::post(server.io_, [self = std::move(self), response = std::move(response)] {
+        self->respond(response);
+      });
     };
-    asio::post(server_.makers_, [this, reply, path] {
+    asio::post(server_.makers_, [&server = server_, reply, path] {
       try {
-        server_.handler_(path, reply);
+        server.handler_(path, reply);
       } catch (const std::exception& error) {
         reply(refusal(500, error.what()));
       }
@@ -283,7 +301,7 @@ class WebServer::Impl::Socket : public std::enable_shared_from_this<Socket> {
     patience.keep_alive_pings = true;
     stream_.set_option(patience);
     stream_.read_message_max(server_.options_.max_message);
-    stream_.auto_fragment(false);
+    stream_.write_buffer_bytes(kFragment);  // between fragments a slow client shows signs of life
     error_code ignored;
     beast::get_lowest_layer(stream_).socket().set_option(
         asio::socket_base::send_buffer_size(kSendBuffer), ignored);
@@ -302,15 +320,17 @@ class WebServer::Impl::Socket : public std::enable_shared_from_this<Socket> {
     }
     busy_ = true;
     again_ = false;
-    asio::post(server_.makers_, [self = shared_from_this()] {
+    asio::post(server_.makers_, [self = shared_from_this()]() mutable {
       std::optional<WebMessage> message;
       bool failed = false;
       try {
         message = self->feed_->next();
       } catch (const std::exception&) {
-        failed = true;  // of the map's file: a client that comes again is told
+        failed = true;  // the client comes again, and begins anew
       }
-      asio::post(self->server_.io_, [self, message = std::move(message), failed] {
+      // Lets go of itself here: it ends in io_'s thread.
+      Impl& server = self->server_;
+      asio::post(server.io_, [self = std::move(self), message = std::move(message), failed] {
         if (failed) return self->close();
         self->send(message);
       });
@@ -367,6 +387,7 @@ void WebServer::Impl::Http::upgrade(const std::string& path) {
 void WebServer::Impl::accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (!error) {
+      keep_to_this_program(socket.native_handle());
       // One beyond the limit closes as `socket` goes.
       if (connections_ < options_.max_connections) {
         std::make_shared<Http>(*this, std::move(socket))->read();

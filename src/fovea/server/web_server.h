@@ -20,7 +20,7 @@ struct WebServerOptions {
   bool in_background = false;
 
   std::size_t max_connections = 128;  ///< those beyond are closed at once
-  std::size_t max_pending = 256;      ///< requests waiting for a response; those beyond get 503
+  std::size_t max_pending = 112;      ///< requests waiting for a response; those beyond get 503
   std::size_t max_header = 8192;      ///< bytes
   std::size_t max_message = 4096;     ///< bytes of a WebSocket's message from the client
   std::chrono::milliseconds request_patience{
