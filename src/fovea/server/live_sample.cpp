@@ -1,7 +1,8 @@
 #include "fovea/server/live_sample.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstring>
 
 #include "fovea/exporting/byte_packer.h"
 #include "fovea/exporting/point_source.h"
@@ -21,7 +22,7 @@ std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_m) {
 
 /// Positions are kept in whole millimetres.
 std::uint16_t millimetres(float metres) {
-  return static_cast<std::uint16_t>(std::clamp(std::lround(metres * 1000), 0L, 65535L));
+  return static_cast<std::uint16_t>(std::clamp(metres * 1000 + 0.5f, 0.f, 65535.f));
 }
 
 }  // namespace
@@ -54,27 +55,30 @@ void append_section(std::string& message, const TileId& id, const PointCloud* ti
   packer.put(std::uint32_t{whole});
   packer.put(static_cast<std::uint32_t>(points.size()));
   if (tile == nullptr) return;
+  // Value by value a string grows too slowly for what the mapper waits for.
+  const std::size_t at = message.size(), padding = points.size() % 2 * 2;
+  message.resize(at + 22 * points.size() + padding);
+  char* to = message.data() + at;
+  const auto put = [&to](const auto& values) {
+    std::memcpy(to, values.data(), sizeof(values));
+    to += sizeof(values);
+  };
   for (const std::uint32_t i : points) {
-    for (const float axis : tile->position[i]) packer.put(millimetres(axis));
+    const Eigen::Vector3f& p = tile->position[i];
+    put(std::array{millimetres(p.x()), millimetres(p.y()), millimetres(p.z())});
   }
-  packer.put_zeros(points.size() % 2 * 2);
+  to += padding;
   for (const std::uint32_t i : points) {
     const Rgb color = tile->color[i];
-    packer.put(color.r);
-    packer.put(color.g);
-    packer.put(color.b);
-    packer.put(static_cast<std::uint8_t>(tile->camera[i]));
+    put(std::array{color.r, color.g, color.b, static_cast<std::uint8_t>(tile->camera[i])});
   }
   for (const std::uint32_t i : points) {
-    packer.put(rule_byte(tile->reason[i], tile->interpolated[i]));
-    packer.put(tile->views[i]);
-    packer.put(tile->spread[i]);
-    packer.put(std::uint8_t{0});
+    put(std::array{rule_byte(tile->reason[i], tile->interpolated[i]), tile->views[i],
+                   tile->spread[i], std::uint8_t{0}});
   }
-  for (const std::uint32_t i : points) packer.put(static_cast<float>(tile->frame[i]));
+  for (const std::uint32_t i : points) put(std::array{static_cast<float>(tile->frame[i])});
   for (const std::uint32_t i : points) {
-    packer.put(sight_range(tile->range[i]));
-    packer.put(sight_incidence(tile->incidence[i]));
+    put(std::array{sight_range(tile->range[i]), sight_incidence(tile->incidence[i])});
   }
 }
 
