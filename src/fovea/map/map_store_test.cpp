@@ -52,7 +52,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   const MapMeta meta = reader.meta();
   EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
   EXPECT_EQ(meta.at("schema_version"), "5");
-  EXPECT_EQ(meta.size(), 6u);
+  EXPECT_EQ(meta.size(), 7u);
   const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
   ASSERT_EQ(frames.size(), expected.size());
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same_frame(frames[i], expected[i]);
