@@ -70,7 +70,7 @@ export class MapPage {
   }
 
   /// Waits until the page's state is as wanted; on a machine without a graphics card that takes long.
-  async comesTo(what, wanted, patience = 60_000) {
+  async comesTo(what, wanted, patience = 120_000) {
     const end = Date.now() + patience;
     let state = null;
     while (Date.now() < end) {
@@ -84,7 +84,7 @@ export class MapPage {
   /// Waits until the picture is at rest: nothing loads, nothing changes.
   async settles() {
     let before = '';
-    for (let i = 0; i < 200; ++i) {
+    for (let i = 0; i < 400; ++i) {
       const state = await this.state();
       const now = JSON.stringify([state.pointsDrawn, state.camera.pose, state.mode, state.frame]);
       if (state.tilesLoading === 0 && now === before) return state;

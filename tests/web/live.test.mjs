@@ -45,7 +45,7 @@ test('the map grows while the vehicle drives, and stays when the drive ends', as
 
   // The end of the drive: what is in view is there all the time.
   let least = Infinity, state;
-  const end = Date.now() + 60_000;
+  const end = Date.now() + 150_000;
   do {
     state = await map.state();
     least = Math.min(least, state.pointsDrawn);

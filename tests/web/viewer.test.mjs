@@ -171,10 +171,13 @@ test('a link shows the view again', () => withPage(server.url, async (map) => {
   await map.page.mouse.down();
   await map.page.mouse.move(520, 340, { steps: 5 });
   await map.page.mouse.up();
-  const { camera } = await map.settles();
   await map.page.waitForFunction(() => location.hash.includes('mode=height'));
-  await map.page.waitForTimeout(700);  // the address follows the view twice a second
-  const link = map.page.url();
+  let link = '', camera;
+  while (link !== map.page.url()) {  // the address follows the view twice a second
+    link = map.page.url();
+    await map.page.waitForTimeout(1500);
+    ({ camera } = await map.settles());
+  }
   await withPage(link, async (again) => {
     const state = await again.settles();
     assert.equal(state.mode, 'height');
