@@ -31,9 +31,10 @@ function liveDrive() {
   return join(folder, 'drive');
 }
 
-test('the map grows while the vehicle drives, and stays when the drive ends', async () => {
+test('the map grows while the vehicle drives, and stays when the drive ends', async (t) => {
   const server = await serve(program, 'map', liveDrive(), '-o', join(folder, 'live.fovea'), '--live=0',
     '--rate', '2', '--set', 'surface.spacing=0.05');
+  t.after(() => server.stop('SIGKILL'));  // whatever failed
   const map = await MapPage.open(browser, server.url);
   const first = await map.comesTo('frames', (state) => state.live?.frames > 2);
   assert.ok(first.live.connected);
@@ -51,15 +52,16 @@ test('the map grows while the vehicle drives, and stays when the drive ends', as
     least = Math.min(least, state.pointsDrawn);
     assert.ok(Date.now() < end, `the page does not take over the finished map: ${JSON.stringify(state)}`);
   } while (state.live !== null);
-  const done = await map.settles();
-  assert.ok(least > 0.2 * done.pointsDrawn, `once only ${least} points were drawn, in the end ${done.pointsDrawn}`);
+  await map.settles();
+  // How many points stand for the view is the budget's; a gap would have been a picture of none.
+  assert.ok(least > 5_000, `once only ${least} points were drawn`);
   assert.match(server.said(), /still shown/);
   assert.deepEqual(map.complaints, []);
   await map.close();
   assert.equal(await server.stop(), 0);
 });
 
-test('it comes back after the server was away', async () => {
+test('it comes back after the server was away', async (t) => {
   execFileSync(program, ['simulate', '-o', join(folder, 'again'), '--frames', '40', '--seed', '2', '--quiet',
     '--set', 'camera.width=414', '--set', 'camera.height=125', '--set', 'camera.focal=240',
     '--set', 'camera.cx=203', '--set', 'camera.cy=57']);
@@ -67,11 +69,13 @@ test('it comes back after the server was away', async () => {
   const live = (port, ...more) => serve(program, 'map', join(folder, 'again'), '-o', output, `--live=${port}`,
     '--rate', '2', '--set', 'surface.spacing=0.08', ...more);
   const server = await live(0);
+  t.after(() => server.stop('SIGKILL'));
   const map = await MapPage.open(browser, server.url);
   const before = await map.comesTo('frames', (state) => state.live?.frames > 6);
   assert.equal(await server.stop(), 0);  // what was mapped is committed
   await map.comesTo('the loss is noticed', (state) => state.live && !state.live.connected);
   const again = await live(server.port, '--resume');
+  t.after(() => again.stop('SIGKILL'));
   const back = await map.comesTo('a connection', (state) => state.live?.connected && state.live.reconnects > 0);
   assert.ok(back.live.reconnects >= 1);
   const all = await map.comesTo('all points again', (state) =>
