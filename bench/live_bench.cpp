@@ -12,7 +12,6 @@
 #include <thread>
 #include <vector>
 
-#include "fovea/base/errors.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/sensor/frame_source.h"
@@ -113,10 +112,9 @@ int main(int argc, char** argv) {
       slower.push_back(100 * (alone.back() / watched.back() - 1));
     }
     std::filesystem::remove(output);
-    fmt::print(
-        "nobody: {:.2f} frames/s; three clients, one never reads: {:.2f} frames/s, {:.1f} MB "
-        "read\n",
-        median(alone), median(watched), median(megabytes));
+    fmt::print("nobody: {:.2f} frames/s; {} clients that read, {} that never do: {:.2f} frames/s, ",
+               median(alone), reading, deaf, median(watched));
+    fmt::print("{:.1f} MB read\n", median(megabytes));
     fmt::print("slower, median of {} pairs: {:.1f} %\n", runs, median(slower));
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -1,16 +1,11 @@
 // What the server says over HTTP (docs/viewer-protocol.md), checked where it comes in.
+import type { Intrinsics } from './intrinsics';
 
 /** A 3x4 matrix row by row, `T_to_from`. */
 export type Pose = readonly number[];
 
-export interface CameraInfo {
+export interface CameraInfo extends Intrinsics {
   readonly index: number;
-  readonly width: number;
-  readonly height: number;
-  readonly fx: number;
-  readonly fy: number;
-  readonly cx: number;
-  readonly cy: number;
   readonly T_cam_lidar: Pose;
 }
 

@@ -193,10 +193,7 @@ void LiveShow::answer(const std::string& path, WebServer::Reply reply) {
   if (path == "map.json") return json(live_json());
   if (path == "frames.json") return json(board_.frames_json());
   if (path == "status.json") return json(nlohmann::json{{"state", "live"}}.dump());
-  constexpr std::string_view kImages = "images/";
-  if (path.starts_with(kImages)) {
-    return reply(images_->response(std::string_view(path).substr(kImages.size())));
-  }
+  if (DriveImages::has(path)) return reply(images_->response(path));
   reply(page_response(page_, path));
 }
 

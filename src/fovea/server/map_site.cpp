@@ -13,7 +13,7 @@ namespace {
 
 using Bytes = std::shared_ptr<const std::string>;
 
-constexpr std::string_view kTiles = "tiles/", kImages = "images/", kTileEnding = ".glb";
+constexpr std::string_view kTiles = "tiles/", kTileEnding = ".glb";
 constexpr const char* kJson = "application/json";
 constexpr int kJpegQuality = 90;
 
@@ -72,6 +72,8 @@ DriveImages::DriveImages(std::shared_ptr<const FrameSource> drive, const Frames&
 
 WebResponse DriveImages::response(std::string_view path) const {
   constexpr std::string_view kEnding = ".jpg";
+  if (!has(path)) return not_found();
+  path.remove_prefix(kFolder.size());
   const std::size_t slash = path.find('/');
   if (slash == std::string_view::npos || !path.ends_with(kEnding)) return not_found();
   const std::optional<int> frame = number(path.substr(0, slash));
@@ -131,9 +133,7 @@ void MapSite::answer(const std::string& path, WebServer::Reply reply) {
           reply({200, media_type(kTileEnding), tile});
         });
   }
-  if (path.starts_with(kImages) && images_) {
-    return reply(images_->response(std::string_view(path).substr(kImages.size())));
-  }
+  if (images_ && DriveImages::has(path)) return reply(images_->response(path));
   reply(page_response(page_, path));
 }
 

@@ -47,10 +47,13 @@ class DriveImages {
   explicit DriveImages(std::shared_ptr<const FrameSource> drive)
       : DriveImages(std::move(drive), Frames()) {}
   const DriveInfo& info() const { return drive_->info(); }
-  /// "FRAME/CAMERA.jpg"; status 404 where there is no such image.
+  /// Whether a path of the site is an image's.
+  static bool has(std::string_view path) { return path.starts_with(kFolder); }
+  /// Of "images/FRAME/CAMERA.jpg"; status 404 where there is no such image.
   WebResponse response(std::string_view path) const;
 
  private:
+  static constexpr std::string_view kFolder = "images/";
   std::shared_ptr<const FrameSource> drive_;
   Frames frames_;
 };

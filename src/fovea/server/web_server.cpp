@@ -15,11 +15,10 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <cerrno>
 #include <exception>
 #include <set>
 #include <thread>
-#include <utility>  // Boost.Asio 1.74 lacks it under C++20
+#include <utility>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/version.h"
