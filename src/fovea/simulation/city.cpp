@@ -78,7 +78,7 @@ class EndlessStreet : public City {
     first_ = static_cast<int>(std::ceil(path_->begin() / kChunkLength));
     last_ = static_cast<int>(std::floor(path_->end() / kChunkLength)) - 1;
     if (options.scene == Scene::kTraffic) {
-      traffic_ = Traffic(set_, palette_, options.vehicle, options.seed);
+      traffic_ = Traffic(set_, palette_, options.vehicle, options.pass_seed());
     }
   }
 

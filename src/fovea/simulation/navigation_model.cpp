@@ -106,14 +106,14 @@ std::vector<NavigationRecord> simulate_navigation(const VehicleMotion& motion, c
   std::vector<double> times;
   for (int frame = 0; frame < options.frames; ++frame) {
     constexpr std::uint64_t kKind = 0x64656c6179;
-    Random random = Random::of_item(static_cast<std::uint64_t>(options.seed), kKind,
+    Random random = Random::of_item(static_cast<std::uint64_t>(options.pass_seed()), kKind,
                                     static_cast<std::uint64_t>(frame));
     const double delay = random.uniform(options.navigation.min_delay, options.navigation.max_delay);
     records.push_back({stamp_of(frame, options) + from_seconds(delay), {}});
     // The nanosecond that is written is when the record was taken.
     times.push_back(seconds(records.back().time - stamp_of(0, options)));
   }
-  const auto errors = navigation_errors(times, options.navigation, options.seed);
+  const auto errors = navigation_errors(times, options.navigation, options.pass_seed());
   const LocalTangentPlane local(options.navigation.origin);
   const RigidMotion T_local_world = T_world_local.inverse();
   const RigidMotion T_vehicle_imu = rig.T_vehicle_lidar * rig.T_imu_lidar.inverse();

@@ -46,12 +46,15 @@ class Simulation {
       : options_(options),
         writer_(root),
         scenery_(make_scenery(options)),
-        motion_(scenery_->path(), scenery_->lane_offset(), options.vehicle, options.seed),
+        motion_(scenery_->path(), scenery_->lane_offset(), options.vehicle, options.pass_seed()),
         rig_(make_rig(options)),
         caster_(*scenery_),
         shader_(caster_, options.light),
         labels_(*scenery_, motion_, rig_) {
-    T_world_local_.translation() = T_world_lidar(0).translation();
+    // All passes share one frame `local`: that of the first.
+    const VehicleMotion first(scenery_->path(), scenery_->lane_offset(), options.vehicle,
+                              options.seed);
+    T_world_local_.translation() = (first.T_world_vehicle(0) * rig_.T_vehicle_lidar).translation();
     camera_poses_.resize(rig_.cameras.size());
     exposures_.resize(rig_.cameras.size());
   }
@@ -64,7 +67,7 @@ class Simulation {
     lidar_poses_ += pose_line(T_world_local_.inverse() * T_world_lidar(time));
 
     const SimulatedScan scan =
-        simulate_scan(caster_, motion_, rig_, options_.lidar, options_.seed, frame, time);
+        simulate_scan(caster_, motion_, rig_, options_.lidar, options_.pass_seed(), frame, time);
     labels_.add(frame, time, scan, caster_);
     std::vector<Picture> pictures;
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k)
@@ -97,7 +100,7 @@ class Simulation {
     const RigidMotion T_world_cam = T_world_lidar(time) * camera.T_cam_lidar.inverse();
     const CameraModel model(caster_, shader_, camera);
     Rendering rendering = model.render(T_world_cam, caster_.moment(time, motion_.way(time)));
-    const double exposure = exposure_at(options_.camera, camera.index, time, options_.seed);
+    const double exposure = exposure_at(options_.camera, camera.index, time, options_.pass_seed());
     camera_poses_[k] += pose_line(T_world_local_.inverse() * T_world_cam);
     exposures_[k] += fmt::format("{:.9g}\n", exposure);
 
@@ -107,7 +110,7 @@ class Simulation {
     real.vignetting = options_.camera.vignetting;
     real.noise = options_.camera.noise;
     real.seed =
-        Random::of_item(static_cast<std::uint64_t>(options_.seed),
+        Random::of_item(static_cast<std::uint64_t>(options_.pass_seed()),
                         static_cast<std::uint64_t>(camera.index), static_cast<std::uint64_t>(frame))
             .next();
     return {develop(rendering, real), develop(rendering, perfect), std::move(rendering.depth)};

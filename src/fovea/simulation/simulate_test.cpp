@@ -134,6 +134,23 @@ TEST(Simulate, ProductReadsTheDriveAndItsTruth) {
 }
 
 // Everything that is true of a drive agrees: scans, depth maps, poses, the world.
+TEST(Simulate, AnotherPassDrivesTheSameStreetOtherwise) {
+  const TemporaryFolder folder;
+  SimulationOptions options = tiny(Scene::kTraffic, "none");
+  const fs::path first = simulate(options, folder / "first");
+  options.pass = 1;
+  const fs::path second = simulate(options, folder / "second");
+  const auto a = contents(first), b = contents(second);
+  // The world is the same, in the same local frame ...
+  EXPECT_EQ(a.at("truth/world.ply"), b.at("truth/world.ply"));
+  // ... and the vehicle is near where it was, but not just there.
+  const RigidMotion T_local_first = DriveTruth(first).T_local_lidar().front();
+  const RigidMotion T_local_second = DriveTruth(second).T_local_lidar().front();
+  EXPECT_LT(T_local_first.translation().norm(), 1e-6);
+  EXPECT_GT(T_local_second.translation().norm(), 0.01);
+  EXPECT_LT(T_local_second.translation().norm(), 1.5);
+}
+
 TEST(Simulate, TriggerDelayMovesTheImagesAndNothingElse) {
   const TemporaryFolder folder;
   SimulationOptions options = tiny();

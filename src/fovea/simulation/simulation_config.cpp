@@ -65,6 +65,7 @@ class CameraKeys {
 
 /// Calls `visit(key, reference)` for every key but those of `cameras`' list.
 void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& cameras) {
+  visit("drive.pass", o.pass);
   visit("light.sun_azimuth", Degrees{o.light.sun_azimuth});
   visit("light.sun_elevation", Degrees{o.light.sun_elevation});
   visit("light.sun", o.light.sun);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/random.h"
 
 namespace fovea {
 namespace {
@@ -180,6 +181,7 @@ void make_harsh(SimulationOptions& options) {
 
 void SimulationOptions::validate() const {
   check("--seed", seed, 0, 2'147'483'647);
+  check("drive.pass", pass, 0, 1'000'000);
   check("--frames", frames, 1, kMaxFrames);
   check(light);
   check(vehicle);
@@ -210,6 +212,14 @@ std::vector<std::string> scene_names() {
   names.reserve(kScenes.size());
   for (const auto& entry : kScenes) names.emplace_back(entry.second);
   return names;
+}
+
+int SimulationOptions::pass_seed() const {
+  constexpr std::uint64_t kPass = 0x70617373;
+  if (pass == 0) return seed;
+  Random random =
+      Random::of_item(static_cast<std::uint64_t>(seed), kPass, static_cast<std::uint64_t>(pass));
+  return static_cast<int>(random.below(2'147'483'647));
 }
 
 Scene parse_scene(std::string_view name) {

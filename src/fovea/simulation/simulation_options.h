@@ -95,6 +95,9 @@ struct SimulationOptions {
 
   Scene scene = Scene::kStreet;
   int seed = 1;
+  /// The same street on another day: another pass has the surfaces of pass 0 and its own noise,
+  /// exposure, navigation errors, traffic, and small motions of the vehicle.
+  int pass = 0;
   int frames = 100;
   LightOptions light;
   VehicleOptions vehicle;
@@ -106,6 +109,8 @@ struct SimulationOptions {
 
   /// ConfigError that names the field.
   void validate() const;
+  /// Seed of all that differs from pass to pass.
+  int pass_seed() const;
 };
 
 /// Names of all scenes ("street"), in the order of Scene.
