@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "fovea/mapping/fusion/place_match.h"
+#include "fovea/mapping/fusion/plan_view.h"
 #include "fovea/mapping/fusion/pose_graph.h"
 
 namespace fovea {
@@ -16,7 +16,6 @@ namespace {
 constexpr double kRadius = 50;  // m around a submap's middle, that are registered
 /// Fewer points of one map where the other one has some are no meeting.
 constexpr std::size_t kMinPoints = 500;
-constexpr float kColumn = 1;  // m, edge of a column in which a map has something or not
 /// Standard deviations of a registration, and of the motion from one submap to the next: rad, m.
 const Twist kRegistrationSigma{0.001, 0.001, 0.001, 0.02, 0.02, 0.02};
 const Twist kNextSigma{0.0005, 0.0005, 0.0005, 0.02, 0.02, 0.02};
@@ -43,35 +42,10 @@ std::vector<std::optional<Eigen::Vector3d>> middles(const std::vector<FrameRecor
   return middles;
 }
 
-/// Where a map has anything, seen from above. Maps end a few metres beside the road: what one has
-/// and the other has not says nothing against their being one place.
-class PlanView {
- public:
-  explicit PlanView(const std::vector<Eigen::Vector3f>& points) {
-    for (const Eigen::Vector3f& p : points) columns_.insert(column_of(p));
-  }
-  std::vector<Eigen::Vector3f> covered(const std::vector<Eigen::Vector3f>& points,
-                                       const RigidMotion& T_plan_points) const {
-    std::vector<Eigen::Vector3f> covered;
-    const Eigen::Isometry3f T = T_plan_points.cast<float>();
-    std::copy_if(points.begin(), points.end(), std::back_inserter(covered),
-                 [&](const Eigen::Vector3f& p) { return columns_.contains(column_of(T * p)); });
-    return covered;
-  }
-
- private:
-  using Column = std::pair<int, int>;
-  static Column column_of(const Eigen::Vector3f& p) {
-    return {static_cast<int>(std::floor(p.x() / kColumn)),
-            static_cast<int>(std::floor(p.y() / kColumn))};
-  }
-  std::set<Column> columns_;
-};
-
 /// Registers what B has of one of its submaps around a place to what A has there.
 /// @return T_a_b of the local frames by this submap alone
-std::optional<RigidMotion> match_submap(const MapGeometry& a, const MapGeometry& b,
-                                        std::size_t submap, const Eigen::Vector3d& center_b,
+std::optional<RigidMotion> match_submap(MapSurfaces& a, MapSurfaces& b, std::size_t submap,
+                                        const Eigen::Vector3d& center_b,
                                         const RigidMotion& guess_T_a_b, MapAlignment& account) {
   // Both relative to the same place, in the axes of their local frames.
   const RigidMotion T_b_place(Eigen::Translation3d{center_b});
@@ -81,18 +55,18 @@ std::optional<RigidMotion> match_submap(const MapGeometry& a, const MapGeometry&
   const std::vector<Eigen::Vector3f> points_b = b.points_near(center_b, kRadius, submap);
   const PlanView plan(points_a);
   const RigidMotion guess = T_a_place.inverse() * guess_T_a_b * T_b_place;
-  if (plan.covered(points_b, guess).size() < kMinPoints) return std::nullopt;
+  if (plan.covered(points_b, guess, kPlaceReach).size() < kMinPoints) return std::nullopt;
   ++account.met;
   const RegistrationOptions options = registration_options();
-  const RegistrationCloud target = prepare_cloud(points_a, options, MapGeometry::kVoxel);
-  const PointIndex index(target.points, MapGeometry::kVoxel);
+  const RegistrationCloud target = prepare_cloud(points_a, options, MapSurfaces::kVoxel);
+  const PointIndex index(target.points, MapSurfaces::kVoxel);
   RigidMotion T_target_source = guess;
   for (int pass = 0; pass < 2; ++pass) {  // what both have shows once they lie right
-    const RegistrationCloud source =
-        prepare_cloud(plan.covered(points_b, T_target_source), options, MapGeometry::kVoxel);
+    const RegistrationCloud source = prepare_cloud(
+        plan.covered(points_b, T_target_source, kPlaceReach), options, MapSurfaces::kVoxel);
     const auto match = match_place(target, index, source, T_target_source, options);
     if (!match) return std::nullopt;
-    T_target_source = *match;
+    T_target_source = match->T_target_source;
   }
   if ((guess.inverse() * T_target_source).translation().norm() > kPlaceReach) return std::nullopt;
   ++account.registered;
@@ -116,8 +90,8 @@ std::vector<std::pair<std::size_t, std::size_t>> ties(const std::vector<FrameRec
 
 }  // namespace
 
-MapAlignment align_maps(const MapGeometry& a, const MapGeometry& b,
-                        const std::vector<FrameRecord>& frames_b, const RigidMotion& guess_T_a_b) {
+MapAlignment align_maps(MapSurfaces& a, MapSurfaces& b, const std::vector<FrameRecord>& frames_b,
+                        const RigidMotion& guess_T_a_b) {
   const std::vector<RigidMotion>& T_b_submap = b.T_local_submap();
   const auto middle_b = middles(frames_b, T_b_submap.size());
   MapAlignment alignment;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
-#include "fovea/merging/map_geometry.h"
+#include "fovea/map/map_surfaces.h"
 
 namespace fovea {
 
@@ -20,7 +20,7 @@ struct MapAlignment {
 /// says of itself and what the registrations say agree best. A stays as it is.
 /// @param frames_b    of B; they tell how its submaps lie to each other where it came back
 /// @param guess_T_a_b of the local frames; good to some 5 m where the two first meet
-MapAlignment align_maps(const MapGeometry& a, const MapGeometry& b,
-                        const std::vector<FrameRecord>& frames_b, const RigidMotion& guess_T_a_b);
+MapAlignment align_maps(MapSurfaces& a, MapSurfaces& b, const std::vector<FrameRecord>& frames_b,
+                        const RigidMotion& guess_T_a_b);
 
 }  // namespace fovea

@@ -5,6 +5,7 @@
 
 #include "fovea/geometry/point_index.h"
 #include "fovea/map/map_keeper.h"
+#include "fovea/map/tile_place.h"
 #include "fovea/mapping/exposure.h"
 #include "fovea/merging/place_points.h"
 

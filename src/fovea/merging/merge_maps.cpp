@@ -263,7 +263,8 @@ RigidMotion compare(const MapReader& a, const MapReader& b, const MapContent& co
   }
   const RigidMotion T_a_b = stated.value_or(RigidMotion::Identity());
   if (figures.drives_added > 0) {
-    figures.alignment = align_maps(MapGeometry(a), MapGeometry(b), content_b.frames, T_a_b);
+    MapSurfaces surfaces_a(a), surfaces_b(b);
+    figures.alignment = align_maps(surfaces_a, surfaces_b, content_b.frames, T_a_b);
     if (!job.force) require_overlap(figures.alignment, where);
     figures.gain = gain_of_maps(a, b, figures.alignment.T_a_submap, content_a.tile_size);
   }

@@ -1,7 +1,6 @@
 // Points of tiles of two maps at one place.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -53,11 +52,5 @@ class PlacePoints {
 inline FusedColor color_of(const PointCloud& tile, std::size_t i) {
   return {tile.color[i], tile.views[i], tile.spread[i], tile.weight[i]};
 }
-
-/// Middle of a tile in its submap's frame, and how far from there its points may lie, m.
-inline Eigen::Vector3d middle_of(const TileKey& key, double tile_size) {
-  return tile_size * (Eigen::Vector3d(key.x, key.y, key.z) + Eigen::Vector3d::Constant(0.5));
-}
-inline double reach_of_tile(double tile_size) { return tile_size / 2 * std::sqrt(3.0) + 0.01; }
 
 }  // namespace fovea

@@ -6,6 +6,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/point_index.h"
+#include "fovea/map/tile_place.h"
 #include "fovea/mapping/color_fusion.h"
 #include "fovea/merging/place_points.h"
 

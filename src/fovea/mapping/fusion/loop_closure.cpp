@@ -50,10 +50,9 @@ std::optional<LoopClosure> LoopCloser::verify(const RegistrationCloud& cloud_lid
                                  clouds_.read<Eigen::Vector3f>(scan.normals)};
   const PointIndex index(target.points, kVoxel);
   const RigidMotion guess_T_scan_lidar = scan.T_submap_lidar.inverse() * candidate.T_submap_lidar;
-  const auto T_scan_lidar =
-      match_place(target, index, cloud_lidar, guess_T_scan_lidar, registration_);
-  if (!T_scan_lidar) return std::nullopt;
-  const RigidMotion T_submap_lidar = scan.T_submap_lidar * *T_scan_lidar;
+  const auto match = match_place(target, index, cloud_lidar, guess_T_scan_lidar, registration_);
+  if (!match) return std::nullopt;
+  const RigidMotion T_submap_lidar = scan.T_submap_lidar * match->T_target_source;
   const double moved =
       (T_submap_lidar.translation() - candidate.T_submap_lidar.translation()).norm();
   if (moved > kPlaceReach + drift_of(candidate)) return std::nullopt;

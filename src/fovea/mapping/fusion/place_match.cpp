@@ -13,13 +13,10 @@ constexpr float kFlat = 0.7f;       // vertical part of the normal of ground
 constexpr float kOnPlane = 0.1f;    // m
 constexpr float kPairDistance = 1;  // m
 
-struct Fit {
-  double overlap = 0;   // share of the points with a counterpart, ground apart
-  double on_plane = 0;  // of those, share on their counterpart's plane
-};
+}  // namespace
 
-Fit fit_of(const RegistrationCloud& target, const PointIndex& index,
-           const RegistrationCloud& source, const RigidMotion& T_target_source) {
+PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_index,
+                   const RegistrationCloud& source, const RigidMotion& T_target_source) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   std::size_t standing = 0, paired = 0, on_plane = 0;
@@ -27,7 +24,7 @@ Fit fit_of(const RegistrationCloud& target, const PointIndex& index,
     if (source.normals[i].isZero() || std::abs(source.normals[i].z()) > kFlat) continue;
     ++standing;
     const Eigen::Vector3f p = R * source.points[i] + t;
-    const Neighbor nearest = index.nearest(p, kPairDistance);
+    const Neighbor nearest = target_index.nearest(p, kPairDistance);
     if (!std::isfinite(nearest.squared_distance)) continue;
     ++paired;
     const Eigen::Vector3f& normal = target.normals[nearest.index];
@@ -37,29 +34,26 @@ Fit fit_of(const RegistrationCloud& target, const PointIndex& index,
   const auto share = [](std::size_t part, std::size_t of) {
     return of > 0 ? double(part) / double(of) : 0;
   };
-  return {share(paired, standing), share(on_plane, paired)};
+  return {standing, share(paired, standing), share(on_plane, paired)};
 }
 
-}  // namespace
-
-std::optional<RigidMotion> match_place(const RegistrationCloud& target,
-                                       const PointIndex& target_index,
-                                       const RegistrationCloud& source,
-                                       const RigidMotion& guess_T_target_source,
-                                       const RegistrationOptions& options) {
-  RigidMotion T_target_source = guess_T_target_source;
+std::optional<RegistrationResult> match_place(const RegistrationCloud& target,
+                                              const PointIndex& target_index,
+                                              const RegistrationCloud& source,
+                                              const RigidMotion& guess_T_target_source,
+                                              const RegistrationOptions& options) {
+  RegistrationResult result;
+  result.T_target_source = guess_T_target_source;
   for (const double distance :
        {std::max(kPlaceReach, options.max_distance), options.max_distance}) {
     RegistrationOptions step = options;
     step.max_distance = distance;
-    const RegistrationResult result =
-        register_clouds(target, target_index, source, T_target_source, step);
+    result = register_clouds(target, target_index, source, result.T_target_source, step);
     if (!result.converged || result.degenerate_directions > 0) return std::nullopt;
-    T_target_source = result.T_target_source;
   }
-  const Fit fit = fit_of(target, target_index, source, T_target_source);
+  const PlaceFit fit = place_fit(target, target_index, source, result.T_target_source);
   if (fit.overlap < kMinOverlap || fit.on_plane < kMinFit) return std::nullopt;
-  return T_target_source;
+  return result;
 }
 
 }  // namespace fovea

@@ -10,15 +10,25 @@ namespace fovea {
 /// How far off a guess may be, m.
 inline constexpr double kPlaceReach = 5;
 
+/// How well what stands on the ground fits: ground fits anywhere.
+struct PlaceFit {
+  std::size_t standing = 0;  ///< points that stand on something
+  double overlap = 0;        ///< share of those with a counterpart in the target
+  double on_plane = 0;       ///< of those, share on their counterpart's plane
+};
+/// @param target, source  with normals, z up; the index is of the target's points
+PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_index,
+                   const RegistrationCloud& source, const RigidMotion& T_target_source);
+
 /// Registers a cloud to another one that may show the same place, from a poor guess; nothing unless
 /// all directions are known and what stands on the ground there fits as well as neighbouring scans
-/// do. Ground alone fits anywhere.
+/// do.
 /// @param target   with normals; the index is of its points, z up
 /// @param options  of generalised ICP
-std::optional<RigidMotion> match_place(const RegistrationCloud& target,
-                                       const PointIndex& target_index,
-                                       const RegistrationCloud& source,
-                                       const RigidMotion& guess_T_target_source,
-                                       const RegistrationOptions& options);
+std::optional<RegistrationResult> match_place(const RegistrationCloud& target,
+                                              const PointIndex& target_index,
+                                              const RegistrationCloud& source,
+                                              const RigidMotion& guess_T_target_source,
+                                              const RegistrationOptions& options);
 
 }  // namespace fovea

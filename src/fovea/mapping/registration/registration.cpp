@@ -1,6 +1,8 @@
 #include "fovea/mapping/registration/registration.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -118,6 +120,10 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
     result.degenerate_directions = degenerate;
     result.rms_distance =
         std::sqrt(equations.squared_distance / static_cast<double>(equations.pairs));
+    // The pairs' own scatter says how much one of them is worth.
+    result.information =
+        (Factor::kNeedsNormals ? equations.H_planes : equations.H) *
+        (equations.weight / std::max(equations.error, std::numeric_limits<double>::min()));
   }
   return result;
 }

@@ -52,6 +52,9 @@ struct RegistrationResult {
   std::size_t pairs = 0;          ///< in the last iteration
   double rms_distance = 0;        ///< m, over the last iteration's pairs
   int degenerate_directions = 0;  ///< of six; the step was not taken along them
+  /// What the pairs say of the pose, as if none had anything to do with another (which it has): of
+  /// a twist of the source about its own origin, 1/rad^2, 1/m^2.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// Aligns source to target from a first guess: pairs of nearest points, a few damped Gauss-Newton
