@@ -11,6 +11,7 @@ void add_info_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_crop_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_localize_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_recolor_command(CLI::App& app);

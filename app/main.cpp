@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   fovea::app::add_evaluate_command(app);
   fovea::app::add_crop_command(app);
   fovea::app::add_export_command(app);
+  fovea::app::add_localize_command(app);
   fovea::app::add_merge_command(app);
   fovea::app::add_render_command(app);
   fovea::app::add_recolor_command(app);

@@ -153,4 +153,14 @@ inline Scene street_scene() {
            {{-20, -6, -1.73}, {-19, -4.5, 3}}}};
 }
 
+/// A street with side walls, so that registration knows where along it the vehicle is.
+inline Scene town_scene() {
+  Scene scene = street_scene();
+  for (const double x : {-28.0, -11.0, 3.0, 22.0, 41.0, 57.0}) {
+    scene.boxes.push_back({{x, 4.5, -1.73}, {x + 0.4, 6, 3}});
+    scene.boxes.push_back({{x + 5, -6, -1.73}, {x + 5.4, -4.8, 2.5}});
+  }
+  return scene;
+}
+
 }  // namespace fovea

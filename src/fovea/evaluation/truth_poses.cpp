@@ -1,5 +1,6 @@
 #include "fovea/evaluation/truth_poses.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "fovea/base/errors.h"
@@ -58,6 +59,16 @@ RigidMotion align_trajectories(const std::vector<PosePair>& pairs) {
   T_true_map.translation() =
       (true_center - T_true_map.linear() * map_center) / static_cast<double>(pairs.size());
   return T_true_map;
+}
+
+RigidMotion error_beside(const std::vector<PosePair>& map, const PosePair& pose) {
+  const auto away = [&](const PosePair& other) {
+    return (other.T_true_lidar.translation() - pose.T_true_lidar.translation()).squaredNorm();
+  };
+  return motion_error(
+      *std::min_element(map.begin(), map.end(),
+                        [&](const PosePair& a, const PosePair& b) { return away(a) < away(b); }),
+      pose);
 }
 
 PoseErrors absolute_errors(const std::vector<PosePair>& pairs, const RigidMotion& T_true_map) {

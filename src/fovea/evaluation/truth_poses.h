@@ -30,6 +30,11 @@ std::optional<RigidMotion> georeference(const MapMeta& meta, const GeodeticPoint
 /// (chordal) and the translation that then minimises the squared distances of the LiDARs.
 RigidMotion align_trajectories(const std::vector<PosePair>& pairs);
 
+/// What a pose in the map is off beside the map's own pose nearest to it, in its own frame: errors
+/// that the map has from end to end are not counted.
+/// @param map  at least one
+RigidMotion error_beside(const std::vector<PosePair>& map, const PosePair& pose);
+
 struct PoseErrors {
   std::vector<float> position_m, rotation_deg;  ///< an entry a frame, or a pair of frames
 };

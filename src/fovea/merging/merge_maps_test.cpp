@@ -15,16 +15,6 @@
 namespace fovea {
 namespace {
 
-/// A street with side walls, so that registration knows where along it the vehicle is.
-Scene town() {
-  Scene scene = street_scene();
-  for (const double x : {-28.0, -11.0, 3.0, 22.0, 41.0, 57.0}) {
-    scene.boxes.push_back({{x, 4.5, -1.73}, {x + 0.4, 6, 3}});
-    scene.boxes.push_back({{x + 5, -6, -1.73}, {x + 5.4, -4.8, 2.5}});
-  }
-  return scene;
-}
-
 constexpr GeodeticPoint kOrigin{49.0, 8.4, 110};
 constexpr double kMetresPerDegree = 111'200;  // of latitude there; errors count as GPS errors
 
@@ -36,7 +26,7 @@ class Pass : public SyntheticDrive {
 
   Pass(const char* name, double start, double lateral, const Eigen::Vector3d& gps_error,
        double heading_error, int frames = 6)
-      : SyntheticDrive(town(), frames, 1.0) {
+      : SyntheticDrive(town_scene(), frames, 1.0) {
     T_town_start = RigidMotion(Eigen::Translation3d(start, lateral, 0));
     T_town_start.rotate(Eigen::AngleAxisd(heading_error, Eigen::Vector3d::UnitZ()));
     std::vector<StampedPose> navigation;

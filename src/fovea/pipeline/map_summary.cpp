@@ -8,7 +8,6 @@
 #include "fovea/base/process_memory.h"
 
 namespace fovea {
-namespace {
 
 StageLatency latency_of(std::vector<float> milliseconds) {
   std::sort(milliseconds.begin(), milliseconds.end());
@@ -18,8 +17,6 @@ StageLatency latency_of(std::vector<float> milliseconds) {
   };
   return {at(0.5), at(0.95), milliseconds.back()};
 }
-
-}  // namespace
 
 bool is_late(const FrameRecord& record, double rate) {
   const auto latency = record.milliseconds.find("frame");

@@ -15,6 +15,9 @@ struct StageLatency {
   double p50 = 0, p95 = 0, max = 0;  ///< ms
 };
 
+/// Of times that were taken, at least one.
+StageLatency latency_of(std::vector<float> milliseconds);
+
 /// Whether a frame was not yet in the map when the next one was due; a skipped one has nothing to
 /// be late with.
 /// @param rate  frames a second; 0: none is due

@@ -32,6 +32,7 @@ std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& f
        scan != files.scans.end() && scan->first < info.end; ++scan) {
     const int index = scan->first;
     const bool images =
+        files.images.empty() ||
         std::any_of(files.images.begin(), files.images.end(),
                     [&](const NumberedFiles& camera) { return camera.contains(index); });
     if (images && frame_stamp(info, files.stamps, index)) {

@@ -35,7 +35,8 @@ class FileFrameSource : public FrameSource {
       return SkippedFrame{index, SkipReason::kDamagedScan, error.what()};
     }
     read_images(frame);
-    if (frame.missing_images.size() == files_.images.size()) return without_images(frame);
+    const std::size_t cameras = files_.images.size();
+    if (cameras > 0 && frame.missing_images.size() == cameras) return without_images(frame);
     return frame;
   }
 

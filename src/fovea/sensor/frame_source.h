@@ -62,6 +62,8 @@ struct DriveOptions {
   /// Half-open range of frame indices; an open end is the drive's own.
   std::optional<int> begin, end;
   bool use_navigation = true;
+  /// False: scans alone are read; the calibration has no cameras, and the drive needs none.
+  bool use_images = true;
 };
 
 /// What is known of a drive before any frame is read.

@@ -69,7 +69,7 @@ std::unique_ptr<FrameSource> open_kitti_odometry(const std::filesystem::path& pa
   }
   std::tie(info.begin, info.end) = frame_range(files.scans, options, path);
   const KittiCalibration calibration = read_kitti_odometry_calibration(path / "calib.txt");
-  find_images(calibration, options, "image_", "", info, files);
+  if (options.use_images) find_images(calibration, options, "image_", "", info, files);
   for (std::size_t k = 0; k < files.images.size(); ++k) {
     read_image_size(files.images[k], info.calibration.cameras[k]);
   }

@@ -105,7 +105,7 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
   }
   std::tie(info.begin, info.end) = frame_range(files.scans, options, path);
   const KittiCalibration calibration = read_kitti_raw_calibration(date_folder(path));
-  find_images(calibration, options, "image_0", "data", info, files);
+  if (options.use_images) find_images(calibration, options, "image_0", "data", info, files);
   find_stamps(scans / "timestamps.txt", read_date_times, info, files);
   if (options.use_navigation) find_navigation(calibration, info, files);
   return make_frame_source(std::move(info), std::move(files));

@@ -9,14 +9,13 @@ namespace {
 /// Of the points that stand on something, at least this share must lie on its plane, and so many
 /// must have a counterpart at all.
 constexpr double kMinFit = 0.7, kMinOverlap = 0.6;
-constexpr float kFlat = 0.7f;       // vertical part of the normal of ground
-constexpr float kOnPlane = 0.1f;    // m
-constexpr float kPairDistance = 1;  // m
+constexpr float kFlat = 0.7f;  // vertical part of the normal of ground
 
 }  // namespace
 
 PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_index,
-                   const RegistrationCloud& source, const RigidMotion& T_target_source) {
+                   const RegistrationCloud& source, const RigidMotion& T_target_source,
+                   const PlaceFitOptions& options) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   std::size_t standing = 0, paired = 0, on_plane = 0;
@@ -24,12 +23,13 @@ PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_ind
     if (source.normals[i].isZero() || std::abs(source.normals[i].z()) > kFlat) continue;
     ++standing;
     const Eigen::Vector3f p = R * source.points[i] + t;
-    const Neighbor nearest = target_index.nearest(p, kPairDistance);
+    const Neighbor nearest = target_index.nearest(p, options.pair_distance);
     if (!std::isfinite(nearest.squared_distance)) continue;
     ++paired;
     const Eigen::Vector3f& normal = target.normals[nearest.index];
     const float away = normal.dot(p - target.points[nearest.index]);
-    on_plane += !normal.isZero() && std::abs(away) < kOnPlane;
+    const bool alike = std::abs(normal.dot(R * source.normals[i])) >= options.alike;
+    on_plane += !normal.isZero() && alike && std::abs(away) < options.on_plane;
   }
   const auto share = [](std::size_t part, std::size_t of) {
     return of > 0 ? double(part) / double(of) : 0;

@@ -16,9 +16,16 @@ struct PlaceFit {
   double overlap = 0;        ///< share of those with a counterpart in the target
   double on_plane = 0;       ///< of those, share on their counterpart's plane
 };
+/// What counts as a counterpart, and as being on its plane.
+struct PlaceFitOptions {
+  float pair_distance = 1;  ///< m
+  float on_plane = 0.1f;    ///< m
+  float alike = 0;          ///< least cosine of the two normals
+};
 /// @param target, source  with normals, z up; the index is of the target's points
 PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_index,
-                   const RegistrationCloud& source, const RigidMotion& T_target_source);
+                   const RegistrationCloud& source, const RigidMotion& T_target_source,
+                   const PlaceFitOptions& options = {});
 
 /// Registers a cloud to another one that may show the same place, from a poor guess; nothing unless
 /// all directions are known and what stands on the ground there fits as well as neighbouring scans

@@ -1,0 +1,233 @@
+// fovea localize: where a drive's scans were taken, in a map made before.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/commands.h"
+#include "app/drive_arguments.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "app/reports.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/evaluation/truth_poses.h"
+#include "fovea/geometry/pose_file.h"
+#include "fovea/localization/localize_drive.h"
+#include "fovea/localization/pose_table.h"
+
+namespace fovea::app {
+namespace {
+
+struct LocalizeArguments {
+  DriveArguments drive;
+  std::string map, output, guess, only, truth, report;
+  int threads = 0;
+  bool force = false, quiet = false;
+};
+
+constexpr const char* kNavigation = "navigation";
+constexpr const char* kFirst = "first";
+
+/// The poses of a file as a guess: one is that of the first scan, more are those of the frames.
+LocalizationGuess guess_of_file(const std::string& file, const FrameSource& drive) {
+  LocalizationGuess guess;
+  if (const auto all = read_poses(file); all.size() == 1) {
+    guess.first = all.front();
+    return guess;
+  }
+  const DriveInfo& info = drive.info();
+  std::vector<StampedPose> stamped;
+  int index = info.begin;
+  for (const RigidMotion& T_local_lidar : read_poses(file, info.begin, info.end)) {
+    if (const auto stamp = drive.stamp(index++)) stamped.push_back({*stamp, T_local_lidar});
+  }
+  if (stamped.empty()) {
+    throw InputError("none of the frames that the poses are of has a time stamp", file,
+                     "restore the drive's stamps");
+  }
+  guess.trajectory = Trajectory(std::move(stamped));
+  return guess;
+}
+
+LocalizationGuess find_guess(LocalizeArguments& arguments, const FrameSource& drive,
+                             const MapMeta& map) {
+  const bool choose = arguments.guess.empty();
+  LocalizationGuess guess;
+  if (choose || arguments.guess == kNavigation) {
+    guess.trajectory = navigation_in_map(drive.info(), map);
+    if (!guess.trajectory && !choose) {
+      throw InputError(
+          "there is no navigation to guess by: it takes a drive with GPS/INS and a "
+          "georeferenced map",
+          arguments.drive.drive, "leave --guess out or give a file of poses");
+    }
+    arguments.guess = guess.trajectory ? kNavigation : kFirst;
+    return guess;
+  }
+  return arguments.guess == kFirst ? guess : guess_of_file(arguments.guess, drive);
+}
+
+/// Errors of a simulated drive's poses beside the map's own, as text and JSON.
+struct TruthErrors {
+  double position_rms = 0, position_max = 0, rotation_rms = 0, rotation_max = 0;  // m, degrees
+  double normalized = 0;  ///< mean of the squared errors over the covariances' own, a direction
+};
+
+TruthErrors truth_errors(const LocalizeArguments& arguments, const FrameSource& drive,
+                         const MapReader& map, const LocalizedDrive& localized) {
+  DriveOptions scans;
+  scans.use_images = false;
+  const DriveTruth map_truth(open_drive(arguments.truth, scans)->info().path);
+  const DriveTruth truth(drive.info().path);
+  const std::vector<PosePair> map_pairs = pose_pairs(map.frames(), map_truth);
+  TruthErrors errors;
+  std::size_t count = 0;
+  for (const Localization& frame : localized.frames) {
+    if (frame.state != LocalizationState::kLocalized) continue;
+    if (frame.index < 0 || frame.index >= truth.frames()) continue;
+    const PosePair pair{frame.index, truth.T_local_lidar()[std::size_t(frame.index)],
+                        frame.T_local_lidar};
+    const Twist error = log_se3(error_beside(map_pairs, pair));
+    const double position = error.tail<3>().norm();
+    const double rotation = error.head<3>().norm() * 180 / std::numbers::pi;
+    errors.position_rms += position * position;
+    errors.rotation_rms += rotation * rotation;
+    errors.position_max = std::max(errors.position_max, position);
+    errors.rotation_max = std::max(errors.rotation_max, rotation);
+    errors.normalized += error.dot(frame.covariance.ldlt().solve(error)) / 6;
+    ++count;
+  }
+  if (count == 0) return errors;
+  errors.position_rms = std::sqrt(errors.position_rms / double(count));
+  errors.rotation_rms = std::sqrt(errors.rotation_rms / double(count));
+  errors.normalized /= double(count);
+  return errors;
+}
+
+nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::string& guess) {
+  nlohmann::ordered_json latency = nlohmann::ordered_json::object();
+  for (const auto& [stage, times] : localized.latency_ms) {
+    latency[stage] = {{"p50", times.p50}, {"p95", times.p95}, {"max", times.max}};
+  }
+  double health = 0;
+  for (const Localization& frame : localized.frames) {
+    if (frame.state == LocalizationState::kLocalized) health += frame.health;
+  }
+  const int localized_frames = localized.count(LocalizationState::kLocalized);
+  return {{"guess", guess},
+          {"frames", localized.frames.size()},
+          {"localized", localized_frames},
+          {"lost", localized.count(LocalizationState::kLost)},
+          {"outside", localized.count(LocalizationState::kOutside)},
+          {"skipped", localized.count(LocalizationState::kSkipped)},
+          {"found", localized.found()},
+          {"health_mean", localized_frames > 0 ? health / localized_frames : 0},
+          {"fps", localized.frames_per_second},
+          {"peak_rss_mb", localized.peak_rss_mb},
+          {"latency_ms", latency}};
+}
+
+void print_summary(const LocalizeArguments& arguments, const LocalizedDrive& localized) {
+  for (const std::string& note : localized.notes) fmt::print("note: {}\n", note);
+  fmt::print("{}: {} of {} frames localised (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
+             arguments.output, localized.count(LocalizationState::kLocalized),
+             localized.frames.size(), arguments.guess, localized.frames_per_second,
+             localized.peak_rss_mb);
+  for (const auto& [state, meaning] :
+       {std::pair(LocalizationState::kLost, "lost: the scan fits nowhere that was tried"),
+        {LocalizationState::kOutside, "outside: the map has nothing there"}}) {
+    const int count = localized.count(state);
+    if (count > 0) fmt::print("{} frame{} {}\n", count, count == 1 ? "" : "s", meaning);
+  }
+}
+
+/// A pose file without any pose is none.
+void require_poses(const LocalizedDrive& localized, const LocalizeArguments& arguments) {
+  if (localized.count(LocalizationState::kLocalized) > 0) return;
+  const bool outside = localized.count(LocalizationState::kOutside) > 0;
+  throw InputError(
+      fmt::format("no scan could be localised: {}",
+                  outside ? "the drive lies outside the map" : "the scans fit nowhere in the map"),
+      fmt::format("{} in {}", arguments.drive.drive, arguments.map),
+      "give a map of the place, or a better --guess");
+}
+
+void run(LocalizeArguments arguments) {
+  const InterruptGuard interrupt;
+  const ThreadLimit threads(arguments.threads);
+  OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
+  std::optional<OutputFile> report;
+  if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
+  const MapReader map(arguments.map);
+  DriveOptions wanted = arguments.drive.options();
+  wanted.use_images = false;
+  const auto drive = open_drive(arguments.drive.drive, wanted);
+  LocalizationJob job;
+  job.guess = find_guess(arguments, *drive, map.meta());
+  job.only = parse_hold_out(arguments.only);
+  job.stop = interrupt.token();
+  const LocalizedDrive localized = [&] {
+    ProgressBar bar(arguments.quiet);
+    return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
+  }();
+  require_poses(localized, arguments);
+  const bool table = std::filesystem::path(arguments.output).extension() == ".csv";
+  (table ? write_pose_table : write_pose_lines)(localized.frames, output.stream());
+  nlohmann::ordered_json figures = to_json(localized, arguments.guess);
+  if (!arguments.quiet) print_summary(arguments, localized);
+  if (!arguments.truth.empty()) {
+    const TruthErrors errors = truth_errors(arguments, *drive, map, localized);
+    figures["truth"] = {{"position_rms_m", errors.position_rms},
+                        {"position_max_m", errors.position_max},
+                        {"rotation_rms_deg", errors.rotation_rms},
+                        {"rotation_max_deg", errors.rotation_max},
+                        {"normalized_error", errors.normalized}};
+    if (!arguments.quiet) {
+      fmt::print(
+          "against the truth: {:.4f} m RMS (at most {:.4f}), {:.4f} degrees RMS (at most "
+          "{:.4f}); squared errors are {:.2f} times what their covariances say\n",
+          errors.position_rms, errors.position_max, errors.rotation_rms, errors.rotation_max,
+          errors.normalized);
+    }
+  }
+  output.commit();
+  if (report) write_json(*report, {{"localize", figures}});
+}
+
+}  // namespace
+
+void add_localize_command(CLI::App& app) {
+  auto arguments = std::make_shared<LocalizeArguments>();
+  CLI::App* command =
+      app.add_subcommand("localize", "Find where a drive's scans were taken in a map made before");
+  command->add_option("DRIVE", arguments->drive.drive, "Drive folder; its images are not needed")
+      ->required();
+  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Poses to write: KITTI's lines, or a table with covariances (.csv)")
+      ->required()
+      ->type_name("POSES.txt|.csv");
+  command->add_option("--guess", arguments->guess,
+                      "navigation, first (no guess: the map's first places are tried first), or a "
+                      "file with the first scan's pose or all frames' (default: navigation where "
+                      "there is one)");
+  command->add_option("--frames", arguments->drive.frames, "Half-open range A:B");
+  command->add_option("--only", arguments->only, "Only these frames, as --hold-out of map");
+  command
+      ->add_option("--truth", arguments->truth,
+                   "Of simulated drives: the drive that the map was made of; errors are told")
+      ->type_name("MAP_DRIVE");
+  command->add_option("--report", arguments->report, "Write figures as JSON")->type_name("FILE");
+  command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--force", arguments->force, "Overwrite the output");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,109 @@
+#include "fovea/localization/localize_drive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/base/process_memory.h"
+#include "fovea/base/producer.h"
+#include "fovea/base/wall_clock.h"
+#include "fovea/map/map_meta.h"
+
+namespace fovea {
+namespace {
+
+struct LoadedFrame {
+  int index = 0;
+  FrameResult result;
+  double milliseconds = 0;
+};
+
+std::vector<int> wanted_frames(const DriveInfo& drive, const HoldOut& only) {
+  std::vector<int> wanted;
+  for (int index = drive.begin; index < drive.end; ++index) {
+    if (only.none() || only.contains(index)) wanted.push_back(index);
+  }
+  return wanted;
+}
+
+}  // namespace
+
+int LocalizedDrive::count(LocalizationState state) const {
+  return static_cast<int>(std::count_if(frames.begin(), frames.end(),
+                                        [&](const Localization& f) { return f.state == state; }));
+}
+
+int LocalizedDrive::found() const {
+  return static_cast<int>(
+      std::count_if(frames.begin(), frames.end(), [](const Localization& f) { return f.found; }));
+}
+
+LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
+                              const LocalizationJob& job,
+                              const std::function<void(int, int)>& progress) {
+  const std::vector<int> wanted = wanted_frames(drive.info(), job.only);
+  Localizer localizer(map, drive.info(), job.guess, job.options);
+  std::size_t next = 0;
+  Producer<LoadedFrame> loader(
+      available_threads() > 1 ? 1 : 0, [&](const std::stop_token&) -> std::optional<LoadedFrame> {
+        if (next == wanted.size()) return std::nullopt;
+        const auto start = WallClock::now();
+        const int index = wanted[next++];
+        FrameResult result = drive.load(index);
+        return LoadedFrame{index, std::move(result), milliseconds_since(start)};
+      });
+  LocalizedDrive localized;
+  std::map<std::string, std::vector<float>> times;
+  std::optional<SkippedFrame> skipped;
+  const auto start = WallClock::now();
+  while (!job.stop.stop_requested()) {
+    const std::optional<LoadedFrame> loaded = loader.next(job.stop);
+    if (!loaded) break;
+    if (const auto* frame = std::get_if<Frame>(&loaded->result)) {
+      const auto began = WallClock::now();
+      localized.frames.push_back(localizer.localize(*frame));
+      const double took = milliseconds_since(began);
+      times["decode"].push_back(float(loaded->milliseconds));
+      times["localize"].push_back(float(took));
+      times["frame"].push_back(float(loaded->milliseconds + took));
+    } else {
+      if (!skipped) skipped = std::get<SkippedFrame>(loaded->result);
+      Localization& none = localized.frames.emplace_back();
+      none.index = loaded->index;
+      none.stamp = drive.stamp(loaded->index);
+    }
+    progress(int(localized.frames.size()), int(wanted.size()));
+  }
+  const std::size_t scans = times["frame"].size();
+  if (scans == 0 && !job.stop.stop_requested()) {
+    throw InputError(skipped ? fmt::format("no frame has a scan (the first: {})", skipped->detail)
+                             : "no frame was asked for",
+                     drive.info().path.string(), "choose other frames");
+  }
+  if (skipped) {
+    localized.notes.push_back(fmt::format("{} frames without a scan (the first: {})",
+                                          localized.count(LocalizationState::kSkipped),
+                                          skipped->detail));
+  }
+  localized.frames_per_second = 1000 * double(scans) / milliseconds_since(start);
+  localized.peak_rss_mb = double(peak_resident_memory()) / (1 << 20);
+  for (auto& [stage, milliseconds] : times) {
+    if (!milliseconds.empty()) localized.latency_ms[stage] = latency_of(std::move(milliseconds));
+  }
+  return localized;
+}
+
+std::optional<Trajectory> navigation_in_map(const DriveInfo& drive, const MapMeta& map) {
+  const std::optional<GeodeticPoint> origin = map_origin(map);
+  if (!drive.navigation || !drive.origin || !origin) return std::nullopt;
+  const RigidMotion T_map_drive = LocalTangentPlane(*origin).T_local_enu(*drive.origin);
+  std::vector<StampedPose> poses = drive.navigation->poses();
+  for (StampedPose& pose : poses) pose.T_local_body = T_map_drive * pose.T_local_body;
+  return Trajectory(std::move(poses));
+}
+
+}  // namespace fovea

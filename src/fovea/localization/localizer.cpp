@@ -1,0 +1,258 @@
+#include "fovea/localization/localizer.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "fovea/base/angle.h"
+#include "fovea/base/errors.h"
+#include "fovea/geometry/voxel_grid.h"
+#include "fovea/mapping/fusion/place_match.h"
+#include "fovea/mapping/registration/optimizer.h"
+#include "fovea/sensor/motion_compensation.h"
+
+namespace fovea {
+namespace {
+
+/// Height above and below what the map has in a column, within which a scan's points count, m; and
+/// from a poor guess.
+constexpr double kHeight = 0.5, kFarHeight = 2;
+/// Fewer points where the map has something are no evidence.
+constexpr std::size_t kMinPoints = 300, kMinStanding = 50;
+/// A scan is where the prediction has it if this share of what stands fits, and the pose did not
+/// run away. Others' cars and what has changed since take their share. Found anew, it must fit
+/// better.
+constexpr PlaceFitOptions kOnSurface{.pair_distance = 0.3f, .on_plane = 0.06f, .alike = 0.8f};
+constexpr double kMinHealth = 0.35, kMinHealthFound = 0.5;
+constexpr double kMaxCorrection = 1.5, kMaxTurn = 5 * kDegree;  // m, rad
+/// What stands: the vertical part of its normal is smaller; and how far it is looked for, m.
+constexpr float kFlat = 0.7f, kSeenRange = 30;
+/// After this long without a pose the prediction is searched around, s.
+constexpr double kPredicts = 0.5;
+/// Streets repeat themselves every few metres: a place is tried from several along the way, and the
+/// one that fits best counts, m. From each registration finds what is within about kFarPairs.
+constexpr std::array kAlong{0.0, -1.5, 1.5, -3.0, 3.0, -4.5, 4.5};
+constexpr double kFarPairs = 2;
+/// Places tried a scan, besides the prediction.
+constexpr int kTries = 1;
+/// Pairs of a scan err alike (normals, the map's own bends, calibration): so many count as one.
+/// With it covariances are as large as errors are on simulated drives (docs/localization.md).
+constexpr double kPairsAlike = 150;
+/// What prediction alone loses a scan along a direction that the scene leaves open, standard
+/// deviation, m (of turns: at kRotationArm).
+constexpr double kOpen = 0.2;
+
+/// Of what stands in the map near the sensor and in the scan's view, the share that the scan sees
+/// through.
+double seen_through(const RegistrationCloud& target, const RangeImage& image,
+                    const RigidMotion& T_target_lidar) {
+  const Eigen::Isometry3f T_lidar_target = T_target_lidar.inverse().cast<float>();
+  std::size_t free = 0, surface = 0;
+  for (std::size_t i = 0; i < target.points.size(); ++i) {
+    if (target.normals[i].isZero() || std::abs(target.normals[i].z()) > kFlat) continue;
+    const Eigen::Vector3f p_lidar = T_lidar_target * target.points[i];
+    if (p_lidar.norm() > kSeenRange) continue;
+    const Sight sight = image.sight(p_lidar);
+    free += sight == Sight::kFree;
+    surface += sight == Sight::kSurface;
+  }
+  return free > 0 ? double(free) / double(free + surface) : 0;
+}
+
+/// @param open  standard deviation along the directions that the scene leaves open, as kOpen
+Eigen::Matrix<double, 6, 6> covariance_of(const RegistrationResult& registration, double open) {
+  Twist unit = Twist::Ones();  // turns beside shifts, as degeneracy is judged
+  unit.head<3>().setConstant(1 / kRotationArm);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(
+      unit.asDiagonal() * registration.information * unit.asDiagonal());
+  Twist variances = kPairsAlike * solver.eigenvalues().cwiseInverse();
+  for (int i = 0; i < registration.degenerate_directions; ++i) variances[i] = open * open;
+  return unit.asDiagonal() * solver.eigenvectors() * variances.asDiagonal() *
+         solver.eigenvectors().transpose() * unit.asDiagonal();
+}
+
+}  // namespace
+
+const char* to_string(LocalizationState state) {
+  switch (state) {
+    case LocalizationState::kLocalized:
+      return "localized";
+    case LocalizationState::kLost:
+      return "lost";
+    case LocalizationState::kOutside:
+      return "outside";
+    case LocalizationState::kSkipped:
+      return "skipped";
+  }
+  return "unknown";
+}
+
+Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
+                     const LocalizerOptions& options)
+    : drive_(drive),
+      options_(options),
+      state_(map.hold_state()),
+      guess_(std::move(guess)),
+      motion_model_(guess_.trajectory ? &*guess_.trajectory : nullptr),
+      prior_(map, options.registration),
+      candidates_(map.frames()) {
+  if (map.size() == 0 || candidates_.empty()) {
+    throw InputError("the map is empty", "the map's table 'tiles'", "map a drive first");
+  }
+}
+
+Localization Localizer::localize(const Frame& frame) {
+  Localization result;
+  result.index = frame.index;
+  result.stamp = frame.stamp;
+  const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
+  MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
+  const bool placed = last_ || guess_.trajectory || guess_.first;
+  if (!last_ && !guess_.trajectory && guess_.first)
+    motion.guesses.front() = {*guess_.first, {}, false};
+
+  Attempt best;
+  tracking_ = tracking_ && seconds(frame.stamp - last_->time) < kPredicts;
+  if (tracking_ && motion.guesses.front().velocity) best = track(frame, motion);
+  const bool tracked = best.fits;
+  if (!tracked) {
+    const Attempt found = search(frame, motion, placed);
+    if (found.fits || found.health > best.health) best = found;
+  }
+  result.health = best.health;
+  if (best.fits) {
+    result.found = !tracking_;
+    accept(best, result);
+  } else {
+    tracking_ = false;
+    result.state = placed && !best.covered ? LocalizationState::kOutside : LocalizationState::kLost;
+  }
+  return result;
+}
+
+Localizer::Scan Localizer::prepare(const Frame& frame, const std::optional<Twist>& velocity) const {
+  PointCloud scan_lidar = frame.scan;
+  const bool moves = options_.compensate_motion && !drive_.sweep_compensated;
+  if (velocity && moves) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
+  std::vector<Eigen::Vector3f> near;
+  std::copy_if(scan_lidar.position.begin(), scan_lidar.position.end(), std::back_inserter(near),
+               [](const Eigen::Vector3f& p) { return p.norm() < float(kLocalizationRange); });
+  return {voxel_thinned(std::move(near), MapSurfaces::kVoxel), RangeImage(scan_lidar.position)};
+}
+
+Localizer::Attempt Localizer::follow(const Scan& scan, const RigidMotion& guess) {
+  const PriorMap::Target& target = prior_.around(guess.translation());
+  const RigidMotion T_local_target(Eigen::Translation3d{target.center_local});
+  const RigidMotion guess_T_target_lidar = T_local_target.inverse() * guess;
+  Attempt attempt;
+  std::vector<Eigen::Vector3f> covered =
+      target.plan.covered(scan.points, guess_T_target_lidar, kHeight);
+  attempt.covered = covered.size() >= kMinPoints;
+  if (!attempt.covered) return attempt;
+  const RegistrationCloud source =
+      prepare_cloud(std::move(covered), options_.registration, MapSurfaces::kVoxel);
+  RegistrationResult& result = attempt.registration;
+  result = register_clouds(target.cloud, target.index, source, guess_T_target_lidar,
+                           options_.registration);
+  const PlaceFit fit =
+      place_fit(target.cloud, target.index, source, result.T_target_source, kOnSurface);
+  attempt.health = fit.overlap * fit.on_plane *
+                   (1 - seen_through(target.cloud, scan.image, result.T_target_source));
+  result.T_target_source = T_local_target * result.T_target_source;
+  const RigidMotion correction = guess.inverse() * result.T_target_source;
+  attempt.fits = result.converged && fit.standing >= kMinStanding && attempt.health >= kMinHealth &&
+                 correction.translation().norm() < kMaxCorrection &&
+                 rotation_angle(correction.linear()) < kMaxTurn;
+  return attempt;
+}
+
+Localizer::Attempt Localizer::look_around(const Scan& scan, const RigidMotion& guess) {
+  Attempt best;
+  for (const double along : kAlong) {
+    const RigidMotion shifted = guess * Eigen::Translation3d(along, 0, 0);
+    const RigidMotion coarse = register_coarsely(scan, shifted);
+    Attempt attempt = follow(scan, coarse);
+    attempt.fits = attempt.fits && attempt.registration.degenerate_directions == 0 &&
+                   attempt.health >= kMinHealthFound;
+    const bool covered = best.covered || attempt.covered;
+    if (std::pair(attempt.fits, attempt.health) > std::pair(best.fits, best.health)) best = attempt;
+    best.covered = covered;
+  }
+  return best;
+}
+
+RigidMotion Localizer::register_coarsely(const Scan& scan, const RigidMotion& guess) {
+  const PriorMap::Target& target = prior_.around(guess.translation());
+  const RigidMotion T_local_target(Eigen::Translation3d{target.center_local});
+  const RigidMotion guess_T_target_lidar = T_local_target.inverse() * guess;
+  std::vector<Eigen::Vector3f> covered =
+      target.plan.covered(scan.points, guess_T_target_lidar, kFarHeight);
+  if (covered.size() < kMinPoints) return guess;
+  const RegistrationCloud source =
+      prepare_cloud(std::move(covered), options_.registration, MapSurfaces::kVoxel);
+  RegistrationOptions far = options_.registration;
+  far.max_distance = kFarPairs;
+  return T_local_target *
+         register_clouds(target.cloud, target.index, source, guess_T_target_lidar, far)
+             .T_target_source;
+}
+
+Localizer::Attempt Localizer::track(const Frame& frame, const MotionPrediction& motion) {
+  Attempt best;
+  for (const MotionGuess& guess : motion.guesses) {
+    Attempt attempt = follow(prepare(frame, guess.velocity), guess.T_odom_lidar);
+    if (attempt.fits > best.fits || attempt.health > best.health) best = std::move(attempt);
+  }
+  return best;
+}
+
+Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction& motion,
+                                     bool placed) {
+  const std::optional<Twist> velocity = motion.guesses.front().velocity;
+  const Scan scan = prepare(frame, velocity);
+  Attempt best;
+  const auto take = [&](const RigidMotion& guess) {
+    Attempt attempt = look_around(scan, guess);
+    best.covered = best.covered || attempt.covered;
+    attempt.covered = best.covered;
+    if (attempt.fits || attempt.health > best.health) best = std::move(attempt);
+    return best.fits;
+  };
+  if (placed) {
+    for (const MotionGuess& guess : motion.guesses) {
+      if (take(guess.T_odom_lidar)) break;
+    }
+  }
+  const bool covered = best.covered;
+  const Eigen::Vector3d near = placed ? motion.guesses.front().T_odom_lidar.translation()
+                                      : candidates_.first().translation();
+  for (int i = 0; i < kTries && !best.fits; ++i) take(candidates_.next(near));
+  best.covered = covered;
+  if (best.fits && !velocity && last_) return compensated(frame, best);
+  return best;
+}
+
+Localizer::Attempt Localizer::compensated(const Frame& frame, const Attempt& found) {
+  const RigidMotion motion = last_->T_local_body.inverse() * found.registration.T_target_source;
+  const Twist velocity = log_se3(motion) / seconds(frame.stamp - last_->time);
+  Attempt attempt = follow(prepare(frame, velocity), found.registration.T_target_source);
+  return attempt.fits ? attempt : found;
+}
+
+void Localizer::accept(const Attempt& attempt, Localization& result) {
+  const RegistrationResult& registration = attempt.registration;
+  result.state = LocalizationState::kLocalized;
+  result.T_local_lidar = registration.T_target_source;
+  result.degenerate_directions = registration.degenerate_directions;
+  open_frames_ = registration.degenerate_directions > 0 ? open_frames_ + 1 : 0;
+  result.covariance = covariance_of(registration, kOpen * open_frames_);
+  motion_model_.update(*result.stamp, result.T_local_lidar);
+  last_ = StampedPose{*result.stamp, result.T_local_lidar};
+  tracking_ = true;
+  candidates_.restart();
+}
+
+}  // namespace fovea

@@ -1,0 +1,104 @@
+// Where a scan was taken, in a map made before (docs/localization.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "fovea/localization/place_candidates.h"
+#include "fovea/localization/prior_map.h"
+#include "fovea/map/map_store.h"
+#include "fovea/mapping/moving/range_image.h"
+#include "fovea/pipeline/motion_model.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+enum class LocalizationState {
+  kLocalized,
+  kLost,     ///< the scan fits nowhere that was tried
+  kOutside,  ///< the map has next to nothing where the scan should have been taken
+  kSkipped   ///< there was no scan
+};
+const char* to_string(LocalizationState state);
+
+/// Of one scan. Poses are T_local_lidar at the scan's stamp, `local` the map's.
+struct Localization {
+  int index = 0;
+  std::optional<TimeNs> stamp;
+  LocalizationState state = LocalizationState::kSkipped;
+  RigidMotion T_local_lidar = RigidMotion::Identity();  ///< where kLocalized
+  /// Of a twist of the LiDAR in its own frame, rotation first (rad^2, m^2), where kLocalized.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Of what the scan has standing where the map has something, the share that lies on a surface of
+  /// the map, times the share of the map's that the scan does not see through: 0 to 1. Where not
+  /// localised, of the best that was tried.
+  double health = 0;
+  bool found = false;  ///< not from the pose before: the first of all, or after it was lost
+  int degenerate_directions = 0;  ///< of six, that the scene leaves open: predicted, not measured
+};
+
+/// What is known of where the vehicle is before any scan is looked at.
+struct LocalizationGuess {
+  /// T_local_lidar in the map's frame over time, good to a few metres (navigation), and better from
+  /// one scan to the next; or nothing.
+  std::optional<Trajectory> trajectory;
+  /// Where the first scan may have been taken, m and some 30 degrees off at most. Without either,
+  /// all places of the map are tried, the first ones first.
+  std::optional<RigidMotion> first;
+};
+
+struct LocalizerOptions {
+  bool compensate_motion = true;
+  RegistrationOptions registration{.max_distance = 0.5, .robust_width = 0.1};
+};
+
+/// Registers one scan after the other to the map. A scan is registered from where navigation or
+/// constant velocity predict it; one that fits badly there is looked for around the prediction, and
+/// then along the map's drives, a few places a scan, the nearest first. The map is read as far as
+/// the vehicle comes.
+class Localizer {
+ public:
+  /// InputError if the map has no points or is damaged.
+  /// @param map, drive  must outlive this; the map may be being written: its present state counts
+  Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
+            const LocalizerOptions& options = {});
+
+  /// The next scan of the drive. InputError if the map is damaged where it is looked at.
+  Localization localize(const Frame& frame);
+
+ private:
+  /// A scan registered somewhere.
+  struct Attempt {
+    RegistrationResult registration;  // T_target_source: T_local_lidar
+    double health = 0;
+    bool covered = false;  // the map has something there
+    bool fits = false;
+  };
+  /// A scan without the sweep's motion, LiDAR frame.
+  struct Scan {
+    std::vector<Eigen::Vector3f> points;  // near ones, thinned
+    RangeImage image;                     // of all
+  };
+  Scan prepare(const Frame& frame, const std::optional<Twist>& velocity) const;
+  Attempt follow(const Scan& scan, const RigidMotion& guess_T_local_lidar);
+  Attempt look_around(const Scan& scan, const RigidMotion& guess_T_local_lidar);
+  RigidMotion register_coarsely(const Scan& scan, const RigidMotion& guess);
+  Attempt track(const Frame& frame, const MotionPrediction& motion);
+  Attempt search(const Frame& frame, const MotionPrediction& motion, bool placed);
+  Attempt compensated(const Frame& frame, const Attempt& found);
+  void accept(const Attempt& attempt, Localization& result);
+
+  const DriveInfo& drive_;
+  LocalizerOptions options_;
+  std::shared_ptr<const void> state_;  // of the map
+  LocalizationGuess guess_;
+  MotionModel motion_model_;
+  PriorMap prior_;
+  PlaceCandidates candidates_;
+  std::optional<StampedPose> last_;  // localised
+  bool tracking_ = false;
+  int open_frames_ = 0;  // in a row whose scene left a direction open
+};
+
+}  // namespace fovea

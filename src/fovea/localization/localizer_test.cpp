@@ -1,0 +1,279 @@
+// Scans of one drive in the map of another, through a scene whose every surface is known.
+#include "fovea/localization/localizer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "../../../tests/synthetic_drive.h"
+#include "../../../tests/temporary_folder.h"
+#include "fovea/base/angle.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/base/random.h"
+#include "fovea/localization/localize_drive.h"
+#include "fovea/pipeline/map_drive.h"
+
+namespace fovea {
+namespace {
+
+using testing::HasSubstr;
+using enum LocalizationState;
+
+/// Drives through the town on its own way, with a LiDAR whose ranges have noise.
+class Visit : public SyntheticDrive {
+ public:
+  double noise = 0.01;  // m
+  Visit(Scene scene_, double start, double step, int frames)
+      : SyntheticDrive(std::move(scene_), frames, step) {
+    std::vector<StampedPose> navigation;
+    for (int i = 0; i < frames; ++i) {
+      RigidMotion& T = T_local_lidar[std::size_t(i)];
+      T = RigidMotion(Eigen::Translation3d(start, 0.4, 0)) * T;
+      navigation.push_back({stamp_of(i), RigidMotion(Eigen::Translation3d(1.2, -0.8, 0.3)) * T});
+    }
+    editable_info().navigation = Trajectory(navigation);  // off, as GPS is
+  }
+  FrameResult load(int index) const override {
+    FrameResult result = SyntheticDrive::load(index);
+    Random random(static_cast<std::uint64_t>(index));
+    for (Eigen::Vector3f& p : std::get<Frame>(result).scan.position) {
+      p *= 1 + float(noise * random.normal()) / p.norm();
+    }
+    return result;
+  }
+};
+
+class Localize : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    mapped(town_scene(), "map.fovea");
+  }
+  static std::filesystem::path mapped(Scene scene, const std::string& name) {
+    const SyntheticDrive drive(std::move(scene), 14, 1.0);
+    MapJob job;
+    job.output = *folder_ / name;
+    job.pose_source = PoseSource::kNavigation;
+    job.options.surface.spacing = 0.06;
+    map_drive(drive, job, {});
+    return job.output;
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  LocalizedDrive localize(const FrameSource& drive, LocalizationGuess guess = {},
+                          const std::string& only = "") const {
+    LocalizationJob job;
+    job.guess = std::move(guess);
+    job.only = HoldOut::parse(only);
+    return localize_drive(drive, map_, job, [](int, int) {});
+  }
+  static LocalizationGuess navigation_of(const SyntheticDrive& drive) {
+    LocalizationGuess guess;
+    guess.trajectory = drive.info().navigation;
+    return guess;
+  }
+  /// Bounds that hold wherever the map is: 3 cm and 0.1 degrees.
+  static void expect_true(const Localization& found, const SyntheticDrive& drive) {
+    ASSERT_EQ(found.state, kLocalized) << found.index;
+    const RigidMotion error =
+        drive.T_local_lidar[std::size_t(found.index)].inverse() * found.T_local_lidar;
+    EXPECT_LT(error.translation().norm(), 0.03) << found.index;
+    EXPECT_LT(rotation_angle(error.linear()), 0.1 * kDegree) << found.index;
+    EXPECT_GT(found.health, 0.6) << found.index;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(found.covariance);
+    EXPECT_GT(solver.eigenvalues().minCoeff(), 0) << found.index;
+    EXPECT_LT(std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace()), 0.05) << found.index;
+  }
+
+  static TemporaryFolder* folder_;
+  const MapReader map_{*folder_ / "map.fovea"};
+};
+TemporaryFolder* Localize::folder_ = nullptr;
+
+TEST_F(Localize, EveryScanOfAnotherDriveIsFoundByItsNavigation) {
+  const Visit visit(town_scene(), 1.5, 0.9, 12);
+  const LocalizedDrive localized = localize(visit, navigation_of(visit));
+  ASSERT_EQ(localized.frames.size(), 12u);
+  for (const Localization& frame : localized.frames) expect_true(frame, visit);
+  EXPECT_EQ(localized.found(), 1);
+  EXPECT_TRUE(localized.frames.front().found);
+}
+
+TEST_F(Localize, WithoutAnyGuessTheMapsFirstPlacesAreTriedFirst) {
+  const Visit visit(town_scene(), 0.5, 0.9, 8);
+  for (const Localization& frame : localize(visit).frames) expect_true(frame, visit);
+}
+
+TEST_F(Localize, AFirstGuessNeedsNotBeGood) {
+  const Visit visit(town_scene(), 5, 0.9, 6);
+  LocalizationGuess guess;
+  guess.first = visit.T_local_lidar.front() * Eigen::Translation3d(-2.5, 0.7, 0.2) *
+                Eigen::AngleAxisd(8 * kDegree, Eigen::Vector3d::UnitZ());
+  for (const Localization& frame : localize(visit, guess).frames) expect_true(frame, visit);
+}
+
+TEST_F(Localize, IsFoundAgainAfterAGap) {
+  const Visit visit(town_scene(), 0.5, 0.8, 14);
+  const LocalizedDrive localized = localize(visit, {}, "0-3,11-13");
+  ASSERT_EQ(localized.frames.size(), 7u);
+  for (const Localization& frame : localized.frames) expect_true(frame, visit);
+  EXPECT_EQ(localized.found(), 2);
+  EXPECT_TRUE(localized.frames[4].found);
+}
+
+TEST_F(Localize, OutsideTheMapThereIsNoPose) {
+  // Leaves the map and comes back, with navigation.
+  Visit visit(town_scene(), 2, 0.9, 12);
+  std::vector<StampedPose> navigation = visit.info().navigation->poses();
+  for (std::size_t i = 4; i < 8; ++i) {
+    const RigidMotion away(Eigen::Translation3d(0, 300, 0));
+    visit.T_local_lidar[i] = away * visit.T_local_lidar[i];
+    navigation[i].T_local_body = away * navigation[i].T_local_body;
+  }
+  visit.editable_info().navigation = Trajectory(navigation);
+  const LocalizedDrive localized = localize(visit, navigation_of(visit));
+  for (const Localization& frame : localized.frames) {
+    if (frame.index >= 4 && frame.index < 8) {
+      EXPECT_EQ(frame.state, kOutside) << frame.index;
+    } else {
+      expect_true(frame, visit);
+    }
+  }
+}
+
+TEST_F(Localize, AnotherPlaceIsNotTakenForThisOne) {
+  Scene elsewhere;
+  elsewhere.boxes = {{{-80, -30, -3}, {80, 30, -1.73}}};
+  for (double x = -40; x < 60; x += 7) {
+    elsewhere.boxes.push_back({{x, 9 + 2 * std::sin(x), -1.73}, {x + 3, 14, 4}});
+    elsewhere.boxes.push_back({{x + 2, -13, -1.73}, {x + 4.5, -8 + 2 * std::cos(x), 5}});
+  }
+  const Visit visit(elsewhere, 2, 0.9, 6);
+  for (const auto& guess : {LocalizationGuess(), navigation_of(visit)}) {
+    for (const Localization& frame : localize(visit, guess).frames) {
+      EXPECT_NE(frame.state, kLocalized) << frame.index;
+      EXPECT_LT(frame.health, 0.5) << frame.index;
+    }
+  }
+}
+
+TEST_F(Localize, ScansThatSayLittleGiveNoPose) {
+  class Blind : public Visit {
+   public:
+    using Visit::Visit;
+    std::size_t points = 0;
+    FrameResult load(int index) const override {
+      FrameResult result = Visit::load(index);
+      PointCloud& scan = std::get<Frame>(result).scan;
+      std::vector<std::uint32_t> kept;
+      for (std::uint32_t i = 0; i < points; ++i) kept.push_back(i * 97 % 20'000);
+      std::sort(kept.begin(), kept.end());
+      scan.keep(kept);
+      return result;
+    }
+  };
+  Blind visit(town_scene(), 2, 0.9, 3);
+  for (const std::size_t points : {0, 1, 200}) {
+    visit.points = points;
+    for (const Localization& frame : localize(visit, navigation_of(visit)).frames) {
+      EXPECT_NE(frame.state, kLocalized) << points;
+    }
+  }
+}
+
+TEST_F(Localize, WhatTheSceneLeavesOpenTheCovarianceSays) {
+  // From frame 3 on nothing but two walls is seen, which tell not how far along them one is.
+  class Blinkered : public Visit {
+   public:
+    using Visit::Visit;
+    FrameResult load(int index) const override {
+      FrameResult result = Visit::load(index);
+      PointCloud& scan = std::get<Frame>(result).scan;
+      std::vector<std::uint32_t> kept;
+      for (std::uint32_t i = 0; i < scan.size(); ++i) {
+        if (index < 3 || std::abs(scan.position[i].x()) < 2.5f) kept.push_back(i);
+      }
+      scan.keep(kept);
+      return result;
+    }
+  };
+  Scene street{
+      {{{-50, -6, -3}, {80, 6, -1.73}}, {{-50, 6, -3}, {80, 9, 8}}, {{-50, -9, -3}, {80, -6, 8}}}};
+  for (const double x : {1.0, 3.0, 22.0, 24.0})
+    street.boxes.push_back({{x, 4.5, -1.73}, {x + 0.4, 6, 3}});
+  const Blinkered visit(street, 8, 0.9, 6);
+  const MapReader map(mapped(street, "street.fovea"));
+  LocalizationJob job;
+  job.guess = navigation_of(visit);
+  const LocalizedDrive localized = localize_drive(visit, map, job, [](int, int) {});
+  const auto along = [&](int i) {
+    return std::sqrt(localized.frames[std::size_t(i)].covariance(3, 3));
+  };
+  for (int i = 0; i < 3; ++i) expect_true(localized.frames[std::size_t(i)], visit);
+  for (int i = 3; i < 6; ++i) {
+    const Localization& frame = localized.frames[std::size_t(i)];
+    ASSERT_EQ(frame.state, kLocalized) << i;
+    EXPECT_GE(frame.degenerate_directions, 1) << i;
+    EXPECT_GT(along(i), 0.15) << i;
+    EXPECT_LT(std::sqrt(frame.covariance(4, 4)), 0.05) << i;
+    EXPECT_GT(along(i), i > 3 ? along(i - 1) : along(2)) << i;
+    const RigidMotion error = visit.T_local_lidar[std::size_t(i)].inverse() * frame.T_local_lidar;
+    EXPECT_LT(std::abs(error.translation().x()), 3 * along(i)) << i;
+    EXPECT_LT(std::abs(error.translation().y()), 0.03) << i;
+  }
+}
+
+TEST_F(Localize, IsTheSameAtAnyNumberOfThreads) {
+  const Visit visit(town_scene(), 1.5, 0.9, 4);
+  std::vector<Localization> once;
+  for (const int threads : {1, 2, 4}) {
+    const ThreadLimit limit(threads);
+    const auto frames = localize(visit, navigation_of(visit)).frames;
+    if (once.empty()) once = frames;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      EXPECT_EQ(frames[i].T_local_lidar.matrix(), once[i].T_local_lidar.matrix());
+      EXPECT_EQ(frames[i].covariance, once[i].covariance);
+      EXPECT_EQ(frames[i].health, once[i].health);
+    }
+  }
+}
+
+TEST_F(Localize, AnEmptyMapIsRefused) {
+  const auto file = *folder_ / "empty.fovea";
+  {
+    const auto writer = MapWriter::create(file, true);
+    writer->put_meta("map.tile_size", "4");
+    writer->commit();
+  }
+  const MapReader empty(file);
+  const Visit visit(town_scene(), 0, 1, 1);
+  try {
+    const Localizer localizer(empty, visit.info(), {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the map is empty"));
+  }
+}
+
+TEST_F(Localize, FramesWithoutAScanAreToldOf) {
+  class Gappy : public Visit {
+   public:
+    using Visit::Visit;
+    FrameResult load(int index) const override {
+      if (index != 1) return Visit::load(index);
+      return SkippedFrame{index, SkipReason::kMissingScan, "no scan 1 in the drive"};
+    }
+  };
+  const Gappy visit(town_scene(), 2, 0.9, 4);
+  const LocalizedDrive localized = localize(visit, navigation_of(visit));
+  ASSERT_EQ(localized.frames.size(), 4u);
+  EXPECT_EQ(localized.frames[1].state, kSkipped);
+  EXPECT_EQ(localized.count(kLocalized), 3);
+  ASSERT_EQ(localized.notes.size(), 1u);
+  EXPECT_THAT(localized.notes.front(), HasSubstr("no scan 1"));
+}
+
+}  // namespace
+}  // namespace fovea
