@@ -30,13 +30,15 @@ std::vector<int> parse_cameras(const std::string& text) {
   return cameras;
 }
 
-HoldOut parse_hold_out(const std::string& spec) {
+HoldOut parse_frame_set(const std::string& spec, const std::string& option) {
   try {
     return HoldOut::parse(spec);
   } catch (const ConfigError& error) {
-    throw CLI::ValidationError("--hold-out", error.problem() + ", " + error.remedy());
+    throw CLI::ValidationError(option, error.problem() + ", " + error.remedy());
   }
 }
+
+HoldOut parse_hold_out(const std::string& spec) { return parse_frame_set(spec, "--hold-out"); }
 
 DriveOptions DriveArguments::options() const {
   DriveOptions options;

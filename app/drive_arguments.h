@@ -24,7 +24,8 @@ struct DriveArguments {
 /// "2,3" -> {2, 3}; CLI::ValidationError otherwise.
 std::vector<int> parse_cameras(const std::string& text);
 
-/// HoldOut::parse, whose error on a command line is wrong usage: CLI::ValidationError.
+/// HoldOut::parse, whose error on a command line is wrong usage of `option`: CLI::ValidationError.
+HoldOut parse_frame_set(const std::string& spec, const std::string& option);
 HoldOut parse_hold_out(const std::string& spec);
 
 }  // namespace fovea::app

@@ -168,7 +168,7 @@ void run(LocalizeArguments arguments) {
   const auto drive = open_drive(arguments.drive.drive, wanted);
   LocalizationJob job;
   job.guess = find_guess(arguments, *drive, map.meta());
-  job.only = parse_hold_out(arguments.only);
+  job.only = parse_frame_set(arguments.only, "--only");
   job.stop = interrupt.token();
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);

@@ -275,6 +275,18 @@ TEST_F(KittiRaw, BadRecordsDoNotMatterWithoutNavigation) {
   EXPECT_THAT(drive->info().notes, testing::IsEmpty());
   EXPECT_TRUE(std::holds_alternative<Frame>(drive->load(5)));
 }
+TEST_F(KittiRaw, ScansAloneNeedNoImages) {
+  for (int k = 0; k < 4; ++k) test::fs::remove_all(image(k, 5).parent_path());
+  EXPECT_THROW(open(), InputError);
+  options_.use_images = false;
+  const auto drive = open();
+  EXPECT_TRUE(drive->info().calibration.cameras.empty());
+  EXPECT_TRUE(drive->info().navigation && drive->info().origin);
+  const FrameResult loaded = drive->load(5);
+  ASSERT_TRUE(std::holds_alternative<Frame>(loaded));
+  EXPECT_GT(std::get<Frame>(loaded).scan.size(), 0u);
+  EXPECT_TRUE(std::get<Frame>(loaded).images.empty());
+}
 TEST_F(KittiRaw, FramesFarFromEveryRecordHaveNoNavigation) {
   edit(stamps(), test::stamp(12), "2011-09-26 13:05:00.0");
   write_scan(scan(12), {{1, 1, 1, 1}});
