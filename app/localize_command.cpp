@@ -148,7 +148,8 @@ void print_summary(const LocalizeArguments& arguments, const LocalizedDrive& loc
 /// A pose file without any pose is none.
 void require_poses(const LocalizedDrive& localized, const LocalizeArguments& arguments) {
   if (localized.count(LocalizationState::kLocalized) > 0) return;
-  const bool outside = localized.count(LocalizationState::kOutside) > 0;
+  const bool outside =
+      localized.count(LocalizationState::kOutside) > localized.count(LocalizationState::kLost);
   throw InputError(
       fmt::format("no scan could be localised: {}",
                   outside ? "the drive lies outside the map" : "the scans fit nowhere in the map"),
