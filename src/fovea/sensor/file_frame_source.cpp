@@ -28,7 +28,7 @@ class FileFrameSource : public FrameSource {
     frame.index = index;
     frame.stamp = *stamp(index);
     try {
-      KittiScan scan = read_kitti_scan(files_.scans.at(index));
+      LidarScan scan = read_kitti_scan(files_.scans.at(index));
       frame.scan = std::move(scan.points);
       frame.dropped_points = scan.dropped;
     } catch (const InputError& error) {
