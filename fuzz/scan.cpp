@@ -7,7 +7,7 @@ using namespace fovea;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static FileInMemory file;
   read_or_refuse([&] {
-    const KittiScan scan = read_kitti_scan(file.hold(as_text(data, size)));
+    const LidarScan scan = read_kitti_scan(file.hold(as_text(data, size)));
     scan.points.check();
     require(scan.points.size() + scan.dropped == size / 16, "every point is kept or counted");
     for (const Eigen::Vector3f& p : scan.points.position) {

@@ -27,6 +27,7 @@ PointCloud scan_in_view(const FrameSource& drive) {
     if (std::holds_alternative<SkippedFrame>(loaded)) continue;
     PointCloud scan = std::get<Frame>(loaded).scan;
     scan.intensity.clear();
+    scan.time.clear();
     const PointCloud points_cam = transform_cloud(std::move(scan), camera.T_cam_lidar);
     std::vector<std::uint32_t> visible;
     for (std::uint32_t i = 0; i < points_cam.size(); ++i) {

@@ -22,6 +22,7 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> position;
 
   std::vector<float> intensity;            ///< LiDAR reflectance, 0-1
+  std::vector<float> time;                 ///< s from the scan's stamp; none once compensated
   std::vector<Eigen::Vector3f> normal;     ///< unit, towards the sensor; zero where unknown
   std::vector<float> range;                ///< m, from the sensor that measured or saw the point
   std::vector<float> incidence;            ///< rad, between view ray and normal; NaN if unknown
@@ -54,6 +55,7 @@ struct PointCloud {
 template <class Cloud, class F>
 void for_each_optional_column(Cloud& cloud, F&& f) {
   f("intensity", cloud.intensity);
+  f("time", cloud.time);
   f("normal", cloud.normal);
   f("range", cloud.range);
   f("incidence", cloud.incidence);
@@ -71,6 +73,7 @@ void for_each_optional_column(Cloud& cloud, F&& f) {
 template <class CloudA, class CloudB, class F>
 void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("intensity", a.intensity, b.intensity);
+  f("time", a.time, b.time);
   f("normal", a.normal, b.normal);
   f("range", a.range, b.range);
   f("incidence", a.incidence, b.incidence);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -24,7 +25,9 @@ class Reader : public SettingVisitor {
   void operator()(std::string_view key, bool& value) override { visit(key, value); }
   void operator()(std::string_view key, int& value) override { visit(key, value); }
   void operator()(std::string_view key, double& value) override { visit(key, value); }
+  void operator()(std::string_view key, std::string& value) override { visit(key, value); }
   void operator()(std::string_view key, std::vector<int>& value) override { visit(key, value); }
+  void operator()(std::string_view key, std::vector<double>& value) override { visit(key, value); }
   void operator()(std::string_view key, Degrees value) override { visit(key, value); }
   void operator()(std::string_view key, DegreeRows value) override { visit(key, value); }
   bool is_given(std::string_view key) override { return find(key) != nullptr; }
@@ -32,10 +35,16 @@ class Reader : public SettingVisitor {
   /// ConfigError for the first key of the document that is not known.
   void reject_unknown_keys(std::string_view help) const { reject_unknown(table_, "", help); }
 
-  /// "FILE:LINE, KEY" for a key of the document, or the key alone.
+  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else the key
+  /// alone.
   std::string where(std::string_view key) const {
-    const toml::node* node = table_.at_path(key).node();
-    return node != nullptr ? place(*node, key) : std::string(key);
+    std::string_view path = key;
+    while (true) {
+      if (const toml::node* node = table_.at_path(path).node()) return place(*node, key);
+      const std::size_t dot = path.rfind('.');
+      if (dot == std::string_view::npos) return std::string(key);
+      path = path.substr(0, dot);
+    }
   }
 
  protected:
@@ -90,6 +99,24 @@ class Reader : public SettingVisitor {
   void read(const toml::node& node, std::string_view key, double& value) const {
     if (!node.is_number()) wrong_type(node, key, "a number");
     value = *node.value<double>();
+  }
+  void read(const toml::node& node, std::string_view key, std::string& value) const {
+    const auto read_value = node.value_exact<std::string>();
+    if (!read_value) wrong_type(node, key, "a text in quotes");
+    value = *read_value;
+  }
+  void read(const toml::node& node, std::string_view key, std::vector<double>& value) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) wrong_type(node, key, "an array of numbers");
+    std::vector<double> result;
+    for (const toml::node& entry : *array) {
+      if (const toml::array* row = entry.as_array()) {
+        for (const toml::node& number : *row) read(number, key, result.emplace_back());
+      } else {
+        read(entry, key, result.emplace_back());
+      }
+    }
+    value = std::move(result);
   }
   void read(const toml::node& node, std::string_view key, std::vector<int>& value) const {
     const toml::array* array = node.as_array();
@@ -150,8 +177,19 @@ class Writer : public SettingVisitor {
     print(key, fmt::format("{}", value));
   }
   void operator()(std::string_view key, double& value) override { print(key, text_of(value)); }
+  void operator()(std::string_view key, std::string& value) override {
+    std::ostringstream quoted;
+    quoted << toml::value<std::string>(value);
+    print(key, quoted.str());
+  }
   void operator()(std::string_view key, std::vector<int>& value) override {
     print(key, fmt::format("[{}]", fmt::join(value, ", ")));
+  }
+  void operator()(std::string_view key, std::vector<double>& value) override {
+    std::vector<std::string> numbers;
+    numbers.reserve(value.size());
+    for (const double number : value) numbers.push_back(text_of(number));
+    print(key, fmt::format("[{}]", fmt::join(numbers, ", ")));
   }
   void operator()(std::string_view key, Degrees value) override {
     print(key, degrees_text(value.radians));
@@ -250,6 +288,35 @@ SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,
     table = parse(fmt::format("{} = \"{}\"", key, value), name);  // a bare word is a string
   }
   return SettingsDocument(std::make_unique<Content>(Content{std::move(table), name}));
+}
+
+std::vector<std::string> SettingsDocument::tables(std::string_view key) const {
+  std::vector<std::string> names;
+  const toml::node* node = content_->table.at_path(key).node();
+  if (node == nullptr) return names;
+  const auto place = [&](const toml::node& where) {
+    return fmt::format("{}:{}, key '{}'", content_->name, where.source().begin.line, key);
+  };
+  const toml::table* tables = node->as_table();
+  if (tables == nullptr) {
+    throw ConfigError("this is no table", place(*node), fmt::format("write [{}.NAME]", key));
+  }
+  for (const auto& [name, inner] : *tables) {
+    if (!inner.is_table()) {
+      throw ConfigError(fmt::format("'{}' is no table", name.str()), place(inner),
+                        fmt::format("write [{}.NAME]", key));
+    }
+    const auto plain = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '-';
+    };
+    names.emplace_back(name.str());
+    if (names.back().empty() || !std::all_of(names.back().begin(), names.back().end(), plain)) {
+      throw ConfigError("a name has other characters than letters, digits, '_' and '-'",
+                        place(inner), "rename it");
+    }
+  }
+  return names;
 }
 
 void SettingsDocument::apply(const VisitSettings& visit, const std::function<void()>& validate,

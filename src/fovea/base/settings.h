@@ -43,7 +43,10 @@ class SettingVisitor {
   virtual void operator()(std::string_view key, bool& value) = 0;
   virtual void operator()(std::string_view key, int& value) = 0;
   virtual void operator()(std::string_view key, double& value) = 0;
+  virtual void operator()(std::string_view key, std::string& value) = 0;
   virtual void operator()(std::string_view key, std::vector<int>& value) = 0;
+  /// Also read from rows, an array of arrays, one behind the other.
+  virtual void operator()(std::string_view key, std::vector<double>& value) = 0;
   virtual void operator()(std::string_view key, Degrees value) = 0;
   virtual void operator()(std::string_view key, DegreeRows value) = 0;
 
@@ -97,6 +100,11 @@ class SettingsDocument {
 
   ~SettingsDocument();
   SettingsDocument(SettingsDocument&&) noexcept;
+
+  /// Names of the tables below `key` ("camera" of [camera.left] and [camera.right]), sorted: where
+  /// a list of keys depends on them. ConfigError if something below the key is no table, or has a
+  /// name of other characters than letters, digits, '_' and '-'.
+  std::vector<std::string> tables(std::string_view key) const;
 
   /// Assigns what the document says to the options that `visit` lists, then validates them.
   /// ConfigError naming file, line and key for an unknown key, a wrong type or what `validate`

@@ -28,6 +28,8 @@ struct Options {
   std::vector<std::array<double, 4>> rows;
   Shade shade = Shade::kLight;
   std::optional<double> extra;
+  std::string text = "as is";
+  std::vector<double> lengths = {1};
 };
 
 void visit_options(SettingVisitor& visit, Options& o) {
@@ -39,6 +41,8 @@ void visit_options(SettingVisitor& visit, Options& o) {
   visit("b.rows", DegreeRows{o.rows, "[p, q, r, s]"});
   visit("b.shade", o.shade);
   visit("b.extra", o.extra);
+  visit("c.text", o.text);
+  visit("c.lengths", o.lengths);
 }
 
 void read(std::string_view text, Options& options) {
@@ -67,7 +71,7 @@ std::string error_of(std::string_view text) {
 TEST(Settings, ArePrintedByTable) {
   EXPECT_EQ(text_of({}),
             "[a]\non = true\ncount = 3\nlength = 2.0\n\n[b]\nangle = 70.0\nnumbers = [2, 3]\n"
-            "rows = []\nshade = \"light\"\n");
+            "rows = []\nshade = \"light\"\n\n[c]\ntext = 'as is'\nlengths = [1.0]\n");
 }
 
 TEST(Settings, AnglesTooSmallForTheirDigitsAreZero) {
@@ -114,7 +118,52 @@ TEST(Settings, ErrorsNameFileLineAndKey) {
   EXPECT_THAT(error_of("[b]\nrows = [[1, 2]]"), HasSubstr("an array of [p, q, r, s] in degrees"));
   EXPECT_THAT(error_of("[b]\nshade = 'grey'"), HasSubstr("give one of 'dark', 'light'"));
   EXPECT_THAT(error_of("[b]\nextra = 'much'"), HasSubstr("give a number"));
+  EXPECT_THAT(error_of("[c]\ntext = 7"), HasSubstr("give a text in quotes"));
+  EXPECT_THAT(error_of("[c]\nlengths = [1, 'x']"), HasSubstr("give a number"));
   EXPECT_THAT(error_of("[b"), HasSubstr("x.toml:1"));
+}
+
+TEST(Settings, NumbersInRowsAndTextsComeBackFromWhatIsWritten) {
+  Options options;
+  read("[c]\ntext = 'a \"b\" \\c'\nlengths = [[1, 2.5], [3]]", options);
+  EXPECT_EQ(options.text, "a \"b\" \\c");
+  EXPECT_THAT(options.lengths, ElementsAre(1, 2.5, 3));
+  Options back;
+  read(settings_text([&](SettingVisitor& visit) { visit_options(visit, options); }), back);
+  EXPECT_EQ(back.text, options.text);
+  EXPECT_EQ(back.lengths, options.lengths);
+}
+
+TEST(Settings, TheTablesBelowAKeyAreListed) {
+  const auto tables = [](std::string_view text) {
+    return SettingsDocument::from_text(text, "x.toml").tables("t");
+  };
+  EXPECT_THAT(tables("[t.two]\na = 1\n[t.1-a_]\n[u.b]"), ElementsAre("1-a_", "two"));
+  EXPECT_TRUE(tables("[u.b]").empty());
+  const auto error = [&](std::string_view text) -> std::string {
+    try {
+      tables(text);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "none";
+  };
+  EXPECT_THAT(error("t = 3"), HasSubstr("x.toml:1, key 't'"));
+  EXPECT_THAT(error("[t]\na = 3"), HasSubstr("'a' is no table"));
+  EXPECT_THAT(error("[[t]]\na = 3"), HasSubstr("is no table"));
+  EXPECT_THAT(error("[t.'a.b']"), HasSubstr("rename it"));
+}
+
+TEST(Settings, WhatIsRejectedForWantOfAKeyNamesTheTable) {
+  const auto document = SettingsDocument::from_text("\n[a]\non = true", "x.toml");
+  Options options;
+  try {
+    document.apply([&](SettingVisitor& visit) { visit_options(visit, options); },
+                   [] { throw ConfigError("a key is missing", "a.count", "add it"); }, "");
+    FAIL() << "nothing was rejected";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("x.toml:2, key 'a.count'"));
+  }
 }
 
 }  // namespace

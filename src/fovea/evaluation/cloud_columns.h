@@ -6,8 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <optional>
 #include <string>
 
 #include "fovea/base/point_cloud.h"
@@ -38,23 +36,6 @@ enum CloudColumn : std::size_t {
 };
 using CloudRow = std::array<double, kCloudColumns>;  ///< metres of the file's frame; colours 0-255
 
-/// Types of binary numbers in a file.
-enum class Scalar {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat,
-  kDouble
-};
-std::size_t size_of(Scalar type);
-/// The number at `bytes`, little endian.
-double decode(Scalar type, const char* bytes);
-
 /// Gathers the points of a file, checking each.
 class CloudBuilder {
  public:
@@ -77,28 +58,6 @@ class CloudBuilder {
   std::string name_;
   std::array<bool, kCloudColumns> has_{};
   CloudFile cloud_;
-};
-
-/// Lines of a file that may be anything: none is longer than 64 KiB.
-class LineReader {
- public:
-  /// InputError if the file cannot be read.
-  explicit LineReader(const std::filesystem::path& file);
-
-  /// The next line without its end (LF or CRLF); empty at the end of the file. InputError for a
-  /// line that is too long.
-  std::optional<std::string> next();
-  int line_number() const { return line_number_; }  ///< of the last line, from 1
-  std::ifstream& stream() { return stream_; }       ///< after the last line
-  /// Bytes after the last line.
-  std::uintmax_t rest();
-
- private:
-  std::string name_;
-  std::ifstream stream_;
-  std::uintmax_t size_ = 0;
-  int line_number_ = 0;
-  std::string buffer_;
 };
 
 }  // namespace fovea

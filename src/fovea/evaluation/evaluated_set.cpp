@@ -32,6 +32,7 @@ PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& pla
   PointCloud compensated;
   compensated.position = scan_lidar.position;
   if (placed.velocity && !drive.sweep_compensated) {
+    compensated.time = scan_lidar.time;
     compensate_sweep(compensated, *placed.velocity, drive.sweep_period);
   }
   return compensated;

@@ -1,6 +1,7 @@
 #include "fovea/evaluation/las_reader.h"
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/cloud_rows.h"
 
 namespace fovea {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "../../../tests/peak_memory.h"
 #include "fovea/evaluation/cloud_test_files.h"
-#include "fovea/evaluation/lzf.h"
+#include "fovea/sensor/lzf.h"
 
 namespace fovea {
 namespace {

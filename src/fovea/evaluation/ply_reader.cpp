@@ -2,198 +2,63 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <sstream>
-#include <string>
 
 #include "fovea/base/errors.h"
-#include "fovea/sensor/read_file.h"
+#include "fovea/sensor/ply_rows.h"
 
 namespace fovea {
 namespace {
 
-constexpr int kMaxHeaderLines = 1000;
-
-std::optional<Scalar> parse_scalar(std::string_view name) {
-  if (name == "char" || name == "int8") return Scalar::kInt8;
-  if (name == "uchar" || name == "uint8") return Scalar::kUint8;
-  if (name == "short" || name == "int16") return Scalar::kInt16;
-  if (name == "ushort" || name == "uint16") return Scalar::kUint16;
-  if (name == "int" || name == "int32") return Scalar::kInt32;
-  if (name == "uint" || name == "uint32") return Scalar::kUint32;
-  if (name == "float" || name == "float32") return Scalar::kFloat;
-  if (name == "double" || name == "float64") return Scalar::kDouble;
-  return std::nullopt;
-}
-
-struct Property {
-  std::string name;
-  Scalar type;
-  std::size_t offset;  // in a binary vertex
-};
-
 /// By column.
-constexpr std::array<const char*, kCloudColumns> kColumnNames = {
+constexpr std::array<const char*, kCloudColumns> kNames = {
     "x", "y", "z", "red", "green", "blue", "camera", "frame", "interpolated"};
 
-struct Header {
-  bool ascii = false;
-  std::size_t vertices = 0;
-  std::vector<Property> properties;
-  std::size_t vertex_bytes = 0;
-  std::array<std::optional<std::size_t>, kCloudColumns> columns;  // into properties
-
-  bool has(CloudColumn column) const { return columns[column].has_value(); }
-};
-
-class PlyFile {
+class ColoredVertices : public CloudRows {
  public:
-  PlyFile(const std::filesystem::path& file, const Eigen::Vector3d& origin)
-      : name_(file.string()), lines_(file), cloud_(file, origin) {
-    read_header();
-    resolve_columns();
-    const std::uintmax_t rest = lines_.rest();
-    // A vertex takes at least two characters a property as text. Checked before anything is
-    // allocated: the count of a damaged header can be anything.
-    const std::size_t least = header_.ascii ? 2 * header_.properties.size() : header_.vertex_bytes;
-    // The last line of a text may lack its line end.
-    if (header_.vertices > (rest + (header_.ascii ? 1 : 0)) / least) {
-      throw InputError(
-          "the file is too short for its " + std::to_string(header_.vertices) + " vertices", name_,
-          "write it anew");
-    }
-  }
+  ColoredVertices(const std::filesystem::path& file, const Eigen::Vector3d& origin)
+      : name_(file.string()), cloud_(file, origin) {}
 
-  CloudFile read() {
-    std::array<bool, kCloudColumns> columns{};
-    for (std::size_t column = 0; column < kCloudColumns; ++column) {
-      columns[column] = header_.columns[column].has_value();
-    }
-    cloud_.expect(header_.vertices, columns);
-    header_.ascii ? read_ascii() : read_binary();
-    return cloud_.take();
-  }
+  std::span<const char* const> columns() const override { return kNames; }
+  const char* description() const override { return "x y z and red green blue"; }
 
- private:
-  [[noreturn]] void reject(const std::string& what) const {
-    throw InputError(what, name_ + ":" + std::to_string(std::max(1, lines_.line_number())),
-                     "give a PLY file with x y z and red green blue");
-  }
-
-  std::string next_line() {
-    std::optional<std::string> line = lines_.next();
-    if (!line) reject("the PLY file ends early");
-    return *std::move(line);
-  }
-
-  void read_header() {
-    if (lines_.next() != "ply") reject("this is no PLY file");
-    bool format_seen = false, vertices_seen = false, in_vertices = false;
-    while (lines_.line_number() < kMaxHeaderLines) {
-      std::istringstream words(next_line());
-      std::string keyword, name;
-      words >> keyword;
-      if (keyword == "end_header") {
-        if (!format_seen || !vertices_seen) reject("the header lacks format or vertices");
-        return;
-      }
-      if (keyword == "format") {
-        words >> name;
-        if (name != "ascii" && name != "binary_little_endian") {
-          reject("the PLY format \"" + name + "\" is not read");
-        }
-        header_.ascii = name == "ascii";
-        format_seen = true;
-      } else if (keyword == "element") {
-        words >> name;
-        in_vertices = name == "vertex" && !vertices_seen;
-        if (!in_vertices && !vertices_seen) reject("the first element is not \"vertex\"");
-        if (in_vertices && !(words >> header_.vertices)) reject("the vertices have no count");
-        vertices_seen = true;
-      } else if (keyword == "property" && in_vertices) {
-        add_property(words);
-      }
-    }
-    reject("the header has no end");
-  }
-
-  void add_property(std::istringstream& words) {
-    std::string type, name;
-    words >> type >> name;
-    const std::optional<Scalar> scalar = parse_scalar(type);
-    if (!scalar || name.empty()) reject("a vertex property of type \"" + type + "\" is not read");
-    header_.properties.push_back({name, *scalar, header_.vertex_bytes});
-    header_.vertex_bytes += size_of(*scalar);
-  }
-
-  void resolve_columns() {
-    const auto& properties = header_.properties;
-    for (std::size_t column = 0; column < kCloudColumns; ++column) {
-      const auto found = std::find_if(properties.begin(), properties.end(), [&](const Property& p) {
-        return p.name == kColumnNames[column];
-      });
-      if (found == properties.end()) {
-        if (column <= kZ) reject(std::string("the vertices have no ") + kColumnNames[column]);
-        continue;
-      }
-      const bool real = found->type == Scalar::kFloat || found->type == Scalar::kDouble;
-      if (column <= kZ && !real) reject("x, y, z must be float or double");
-      if (column >= kRed && column <= kBlue && found->type != Scalar::kUint8) {
+  void begin(std::size_t points, std::span<const std::optional<Scalar>> types) override {
+    std::array<bool, kCloudColumns> has{};
+    std::transform(types.begin(), types.end(), has.begin(),
+                   [](const auto& type) { return !!type; });
+    for (const CloudColumn channel : {kRed, kGreen, kBlue}) {
+      if (has[channel] && types[channel] != Scalar::kUint8) {
         reject("red, green, blue must be uchar");
       }
-      header_.columns[column] = static_cast<std::size_t>(found - properties.begin());
     }
-    if (header_.has(kRed) != header_.has(kGreen) || header_.has(kRed) != header_.has(kBlue)) {
+    if (has[kRed] != has[kGreen] || has[kRed] != has[kBlue]) {
       reject("red, green and blue are not all there");
     }
+    cloud_.expect(points, has);
   }
 
-  void read_binary() {
-    constexpr std::size_t kBlock = 1 << 14;
-    // No larger than the file needs: a header may give a vertex thousands of properties.
-    std::vector<char> buffer(std::min(kBlock, header_.vertices) * header_.vertex_bytes);
-    for (std::size_t begin = 0; begin < header_.vertices; begin += kBlock) {
-      const std::size_t count = std::min(kBlock, header_.vertices - begin);
-      const auto bytes = static_cast<std::streamsize>(count * header_.vertex_bytes);
-      if (!lines_.stream().read(buffer.data(), bytes))
-        reject("the PLY file cannot be read to its end");
-      for (std::size_t i = 0; i < count; ++i) {
-        const char* row = buffer.data() + i * header_.vertex_bytes;
-        CloudRow vertex{};
-        for (std::size_t column = 0; column < kCloudColumns; ++column) {
-          if (!header_.columns[column]) continue;
-          const Property& property = header_.properties[*header_.columns[column]];
-          vertex[column] = decode(property.type, row + property.offset);
-        }
-        cloud_.add(vertex, begin + i);
-      }
-    }
+  void add(std::span<const double> row, std::size_t number) override {
+    CloudRow values;
+    std::copy(row.begin(), row.end(), values.begin());
+    cloud_.add(values, number);
   }
 
-  void read_ascii() {
-    for (std::size_t i = 0; i < header_.vertices; ++i) {
-      const std::optional<std::vector<double>> numbers = parse_numbers(next_line());
-      if (!numbers || numbers->size() != header_.properties.size()) {
-        reject("a vertex is not " + std::to_string(header_.properties.size()) + " numbers");
-      }
-      CloudRow vertex{};
-      for (std::size_t column = 0; column < kCloudColumns; ++column) {
-        if (header_.columns[column]) vertex[column] = (*numbers)[*header_.columns[column]];
-      }
-      cloud_.add(vertex, i);
-    }
+  CloudFile take() { return cloud_.take(); }
+
+ private:
+  [[noreturn]] void reject(const char* what) const {
+    throw InputError(what, name_, std::string("give a PLY file with ") + description());
   }
 
   std::string name_;
-  LineReader lines_;
-  Header header_;
   CloudBuilder cloud_;
 };
 
 }  // namespace
 
 CloudFile read_ply(const std::filesystem::path& file, const Eigen::Vector3d& origin) {
-  return PlyFile(file, origin).read();
+  ColoredVertices vertices(file, origin);
+  read_ply_rows(file, vertices);
+  return vertices.take();
 }
 
 }  // namespace fovea

@@ -121,6 +121,7 @@ TEST_F(ScoredMapTest, RejectsMalformedClouds) {
   expect_rejected("ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int a\n", "list");
   expect_rejected("ply\nformat ascii 1.0\nelement vertex 0\nend_header\n", "no x");
   std::string header = kAsciiHeader;
+  const std::string kTwoVertices = "1 2 3 4 5 6\n1 2 3 4 5 6\n";
   expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1.25 2 3 4 5\n", "bad.ply:13");
   expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1 2 3 4 5 256\n", "0-255");
   expect_rejected(kAsciiHeader + "1 2 3 4 5 6\n1 nan 3 4 5 6\n", "point 1");
@@ -132,10 +133,10 @@ TEST_F(ScoredMapTest, RejectsMalformedClouds) {
   expect_rejected(header, "float or double");
   header = kAsciiHeader;
   header.replace(header.find("uchar red"), 9, "float red");
-  expect_rejected(header, "uchar");
+  expect_rejected(header + kTwoVertices, "uchar");
   header = kAsciiHeader;
   header.replace(header.find("uchar blue"), 10, "uchar hue");
-  expect_rejected(header, "not all there");
+  expect_rejected(header + kTwoVertices, "not all there");
   expect_rejected(
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
       "property float y\nproperty float z\nend_header\n12345678901",

@@ -71,6 +71,7 @@ PointCloud Tracker::compensated(const PointCloud& scan,
                                 const std::optional<Twist>& velocity) const {
   PointCloud scan_lidar = scan;
   if (velocity) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
+  scan_lidar.time.clear();  // of no use to any stage
   return scan_lidar;
 }
 

@@ -68,6 +68,7 @@ std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOpti
     for (const int camera : {2, 3, 0, 1}) {
       if (has(camera)) return {camera};
     }
+    return {present.front()};
   }
   for (std::size_t i = 0; i < options.cameras.size(); ++i) {
     const int camera = options.cameras[i];
@@ -124,6 +125,11 @@ void find_stamps(const std::filesystem::path& file,
                     "skipped",
                     file.string(), stamps.out_of_order.size(), first_lines(stamps.out_of_order)));
   }
+  find_sweep_period(file, stamps, info);
+}
+
+void find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
+                       DriveInfo& info) {
   const double period = median_period(stamps).value_or(info.sweep_period);
   if (period >= kMinPeriod && period <= kMaxPeriod) {
     info.sweep_period = period;

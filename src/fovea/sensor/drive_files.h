@@ -1,4 +1,4 @@
-// A drive whose frames lie in numbered files; what KITTI's two forms have in common.
+// A drive whose frames lie in numbered files; what its forms have in common.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/image_rectifier.h"
 #include "fovea/sensor/kitti_calibration.h"
+#include "fovea/sensor/lidar_scan.h"
 #include "fovea/sensor/read_file.h"
 #include "fovea/sensor/time_stamps.h"
 
@@ -18,6 +20,10 @@ struct DriveFiles {
   NumberedFiles scans;
   std::vector<NumberedFiles> images;  ///< one a camera of info.calibration, in its order
   TimeStamps stamps;                  ///< unused where !info.has_time_stamps
+  bool stamps_name_scans = false;     ///< their file has numbers of scans; else a line a scan
+  ScanFormat scan_format;
+  /// One a camera, empty where its images are rectified already; or none at all.
+  std::vector<std::optional<ImageRectifier>> rectifiers;
 };
 
 /// Scan time of a frame; empty if the drive has stamps and this one is missing, malformed or out of
@@ -33,7 +39,8 @@ std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& f
 std::pair<int, int> frame_range(const NumberedFiles& scans, const DriveOptions& options,
                                 const std::filesystem::path& drive);
 
-/// The cameras to use: those asked for, or camera 2, or else 3, 0, 1, whichever is there first.
+/// The cameras to use: those asked for, or camera 2, or else 3, 0, 1, whichever is there first, or
+/// else the first.
 /// ConfigError for one that is not there or is asked for twice; InputError if the drive has none.
 /// @param present  cameras that have both a calibration and a folder of images
 std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOptions& options,
@@ -52,6 +59,10 @@ void find_images(const KittiCalibration& calibration, const DriveOptions& option
 void find_stamps(const std::filesystem::path& file,
                  TimeStamps (*read)(const std::filesystem::path&), DriveInfo& info,
                  DriveFiles& files);
+
+/// Takes the sweep's period from the stamps into `info`, with a note if it can be none.
+void find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
+                       DriveInfo& info);
 
 std::unique_ptr<FrameSource> make_frame_source(DriveInfo info, DriveFiles files);
 

@@ -6,7 +6,6 @@
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/drive_files.h"
 #include "fovea/sensor/image_decode.h"
-#include "fovea/sensor/kitti_scan.h"
 
 namespace fovea {
 namespace {
@@ -28,8 +27,9 @@ class FileFrameSource : public FrameSource {
     frame.index = index;
     frame.stamp = *stamp(index);
     try {
-      KittiScan scan = read_kitti_scan(files_.scans.at(index));
+      LidarScan scan = read_lidar_scan(files_.scans.at(index), files_.scan_format, frame.stamp);
       frame.scan = std::move(scan.points);
+      if (info_.sweep_compensated) frame.scan.time.clear();
       frame.dropped_points = scan.dropped;
     } catch (const InputError& error) {
       return SkippedFrame{index, SkipReason::kDamagedScan, error.what()};
@@ -54,16 +54,18 @@ class FileFrameSource : public FrameSource {
   }
 
   std::string why_no_stamp(int index) const {
+    const std::string place = files_.stamps_name_scans ? fmt::format("of scan {}", index)
+                                                       : fmt::format("in line {}", index + 1);
     const auto listed = [&](const std::vector<int>& lines) {
       return std::binary_search(lines.begin(), lines.end(), index);
     };
     if (listed(files_.stamps.out_of_order)) {
-      return fmt::format("time stamp of line {} is out of order", index + 1);
+      return fmt::format("the time stamp {} is out of order", place);
     }
     if (listed(files_.stamps.malformed)) {
-      return fmt::format("time stamp of line {} is malformed", index + 1);
+      return fmt::format("the time stamp {} is malformed", place);
     }
-    return fmt::format("no time stamp in line {}", index + 1);
+    return fmt::format("no time stamp {}", place);
   }
 
   /// Decodes the images of all cameras at once; those that cannot be used stay empty.
@@ -92,16 +94,23 @@ class FileFrameSource : public FrameSource {
     };
     try {
       Image read = read_image(file->second);
-      if (read.width != camera.width || read.height != camera.height) {
+      const ImageRectifier* rectifier = rectifier_of(k);
+      const int width = rectifier ? rectifier->width() : camera.width,
+                height = rectifier ? rectifier->height() : camera.height;
+      if (read.width != width || read.height != height) {
         return damaged(fmt::format("the image has {} x {} pixels, its camera {} x {}, {}",
-                                   read.width, read.height, camera.width, camera.height,
-                                   file->second.string()));
+                                   read.width, read.height, width, height, file->second.string()));
       }
-      image = std::move(read);
+      image = rectifier ? rectifier->rectify(read) : std::move(read);
       return std::nullopt;
     } catch (const InputError& error) {
       return damaged(error.what());
     }
+  }
+
+  /// Null where the images of the k-th camera are rectified already.
+  const ImageRectifier* rectifier_of(std::size_t k) const {
+    return k < files_.rectifiers.size() && files_.rectifiers[k] ? &*files_.rectifiers[k] : nullptr;
   }
 
   static SkippedFrame without_images(const Frame& frame) {

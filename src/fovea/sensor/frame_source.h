@@ -36,7 +36,7 @@ struct MissingImage {
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
   int index = 0;                   ///< the number in the file's name
-  TimeNs stamp = 0;                ///< scan time; images count as taken then (docs/method.md 1)
+  TimeNs stamp = 0;                ///< scan time; see Camera::image_delay for the images
   PointCloud scan;                 ///< lidar frame, as measured, with intensity
   std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
   /// One a camera of the calibration, in its order; empty where the camera has none that can be
@@ -69,13 +69,14 @@ struct DriveOptions {
 /// What is known of a drive before any frame is read.
 struct DriveInfo {
   std::filesystem::path path;
-  std::string kind;  ///< "kitti-raw" or "kitti-odometry"
+  std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
   Calibration calibration;
   int begin = 0, end = 0;          ///< frame indices, half-open; some may turn out to be skipped
   double sweep_period = 0.1;       ///< s
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
-  /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR; absent
+  /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR (or, with
+  /// poses.csv, in the axes of its world); absent
   /// where the drive has no (usable) navigation.
   std::optional<Trajectory> navigation;
   /// Standard deviation of a coordinate (m) of each pose of `navigation` as the unit states it: 0
@@ -99,10 +100,11 @@ class FrameSource {
   virtual std::optional<TimeNs> stamp(int index) const = 0;
 };
 
-/// Opens a KITTI raw or odometry drive, recognised from its contents, or the one raw drive in the
-/// folders DATE/DATE_drive_NNNN_sync below `path`, as `fovea simulate` writes it. InputError if the
-/// folder is missing, is neither, or holds several drives, or its calibration cannot be used;
-/// ConfigError for a camera it has not.
+/// Opens a folder with a drive.toml (docs/drives.md) or a KITTI raw or odometry drive, recognised
+/// from its contents, or the one raw drive in the folders DATE/DATE_drive_NNNN_sync below `path`,
+/// as `fovea simulate` writes it. InputError if the folder is missing, is none of these, or holds
+/// several drives, or its calibration cannot be used; ConfigError for a camera it has not and for
+/// what drive.toml says wrongly.
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                         const DriveOptions& options);
 

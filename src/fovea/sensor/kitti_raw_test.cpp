@@ -380,7 +380,7 @@ TEST_F(KittiRaw, FoldersThatAreNoDrive) {
   EXPECT_THAT(message(stamps()), HasSubstr("no folder"));
   test::fs::create_directory(folder_.path() / "empty");
   EXPECT_THAT(message(folder_.path() / "empty"), HasSubstr("is empty"));
-  EXPECT_THAT(message(folder_.path()), HasSubstr("neither velodyne_points/"));
+  EXPECT_THAT(message(folder_.path()), HasSubstr("neither drive.toml"));
   EXPECT_THAT(message(folder_.path()), HasSubstr("DATE_drive_NNNN_sync"));
   test::fs::remove_all(drive_ / "velodyne_points/data");
   EXPECT_THAT(message(drive_), HasSubstr("the drive has no scan"));

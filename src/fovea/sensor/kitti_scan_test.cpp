@@ -21,7 +21,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 TEST(KittiScan, ReadsPointsInOrder) {
   const TemporaryFolder folder;
   write_scan(folder.path() / "a.bin", {{1, 2, 3, 0.5f}, {-4, 5, -6, 0.99f}});
-  const KittiScan scan = read_kitti_scan(folder.path() / "a.bin");
+  const LidarScan scan = read_kitti_scan(folder.path() / "a.bin");
   ASSERT_EQ(scan.points.size(), 2u);
   EXPECT_EQ(scan.points.position[1], Eigen::Vector3f(-4, 5, -6));
   EXPECT_EQ(scan.points.intensity, (std::vector<float>{0.5f, 0.99f}));
@@ -38,7 +38,7 @@ TEST(KittiScan, DropsAndCountsWhatNoLidarMeasures) {
                                        {0, 1000.5f, 0, 0},
                                        {0, 0, -1e30f, 0},
                                        {7, 8, 9, 0.1f}});
-  const KittiScan scan = read_kitti_scan(folder.path() / "a.bin");
+  const LidarScan scan = read_kitti_scan(folder.path() / "a.bin");
   EXPECT_EQ(scan.dropped, 6u);
   ASSERT_EQ(scan.points.size(), 1u);
   EXPECT_EQ(scan.points.position[0], Eigen::Vector3f(7, 8, 9));

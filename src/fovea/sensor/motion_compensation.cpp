@@ -57,12 +57,15 @@ void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double peri
   constexpr std::size_t kGrain = 8192;
   const ConstantTwist motion(velocity);
   const double time_per_radian = -period / (2 * std::numbers::pi);  // clockwise
+  const bool timed = !scan_lidar.time.empty();
   parallel_for(scan_lidar.size(), kGrain, [&](std::size_t i) {
     Eigen::Vector3f& p = scan_lidar.position[i];
-    const double dt = time_per_radian * std::atan2(p.y(), p.x());
+    const double dt =
+        timed ? double(scan_lidar.time[i]) : time_per_radian * std::atan2(p.y(), p.x());
     Eigen::Vector3f* normal = scan_lidar.normal.empty() ? nullptr : &scan_lidar.normal[i];
     p = motion.move(p.cast<double>(), dt, normal).cast<float>();
   });
+  scan_lidar.time.clear();
 }
 
 }  // namespace fovea

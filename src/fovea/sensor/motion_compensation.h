@@ -8,11 +8,12 @@ namespace fovea {
 
 /// Moves every point of a sweep to where it was in the LiDAR frame at the scan's stamp.
 ///
-/// The sweep turns clockwise seen from above and faces forward at the stamp, its middle: a point at
-/// azimuth a = atan2(y, x) was measured at stamp - a / (2 pi) * period.
-/// @param scan_lidar  points as measured
+/// Where the scan has the points' times, these are used up: the column is gone afterwards. Where it
+/// has none, the sweep turns clockwise seen from above and faces forward at the stamp, its middle:
+/// a point at azimuth a = atan2(y, x) was measured at stamp - a / (2 pi) * period.
+/// @param scan_lidar  points as measured, origin 0; std::invalid_argument for another
 /// @param velocity    twist per second of the LiDAR in its own frame (rotation, translation)
-/// @param period      s, duration of the sweep
+/// @param period      s, duration of the sweep; unused where points have times
 void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double period);
 
 }  // namespace fovea

@@ -56,6 +56,28 @@ TEST(MotionCompensation, EqualsTheExponentialOfTheTwist) {
   }
 }
 
+TEST(MotionCompensation, TimesOfThePointsCountWhereThereAreAny) {
+  const Twist velocity = twist({0.4, -0.2, 1.1, 12, 1, 2});
+  Random random(6);
+  PointCloud scan;
+  for (int i = 0; i < 200; ++i) {
+    scan.position.push_back(
+        Eigen::Vector3d(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-2, 5))
+            .cast<float>());
+    scan.time.push_back(static_cast<float>(random.uniform(0, 0.1)));
+  }
+  const PointCloud measured = scan;
+  compensate_sweep(scan, velocity, kPeriod);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Eigen::Vector3d expected =
+        exp_se3(double(measured.time[i]) * velocity) * measured.position[i].cast<double>();
+    EXPECT_LT((scan.position[i].cast<double>() - expected).norm(), 2e-5);
+  }
+  // They are of the points as measured: nobody may compensate twice by them.
+  EXPECT_TRUE(scan.time.empty());
+  EXPECT_NO_THROW(scan.check());
+}
+
 /// Points of a wall, n * x = d in the frame of the stamp, as a turning and driving LiDAR sees them.
 PointCloud scan_wall(const Eigen::Vector3d& n, double d, const Twist& velocity) {
   PointCloud scan;

@@ -6,42 +6,48 @@
 namespace fovea {
 namespace {
 
-Trajectory lidar_trajectory(const LocalTangentPlane& local, const std::vector<StampedOxts>& records,
-                            const RigidMotion& T_imu_lidar) {
-  std::vector<StampedPose> poses;
-  poses.reserve(records.size());
-  for (const StampedOxts& stamped : records) {
-    RigidMotion T_enu_imu = RigidMotion::Identity();
-    T_enu_imu.linear() = stamped.record.R_enu_imu();
-    const RigidMotion T_local_imu = local.T_local_enu(stamped.record.position) * T_enu_imu;
-    poses.push_back({stamped.time, T_local_imu * T_imu_lidar});
+Trajectory lidar_trajectory(const LocalTangentPlane& local, const std::vector<GeodeticPose>& poses,
+                            const RigidMotion& T_body_lidar) {
+  std::vector<StampedPose> lidar;
+  lidar.reserve(poses.size());
+  for (const GeodeticPose& pose : poses) {
+    RigidMotion T_enu_body = RigidMotion::Identity();
+    T_enu_body.linear() = pose.R_enu_body;
+    const RigidMotion T_local_body = local.T_local_enu(pose.position) * T_enu_body;
+    lidar.push_back({pose.time, T_local_body * T_body_lidar});
   }
-  return Trajectory(std::move(poses));
-}
-
-std::vector<double> accuracies(const std::vector<StampedOxts>& records) {
-  std::vector<double> result;
-  for (const auto& [time, record] : records) {
-    result.push_back(record.satellites == 0 ? std::numeric_limits<double>::infinity()
-                                            : record.position_accuracy);
-  }
-  return result;
+  return Trajectory(std::move(lidar));
 }
 
 }  // namespace
 
-Navigation make_navigation(const std::vector<StampedOxts>& records, const RigidMotion& T_imu_lidar,
-                           TimeNs origin_time) {
-  if (records.empty()) throw std::invalid_argument("navigation needs at least one record");
+Navigation navigation_of(const std::vector<GeodeticPose>& poses, const RigidMotion& T_body_lidar,
+                         TimeNs origin_time) {
+  if (poses.empty()) throw std::invalid_argument("navigation needs at least one pose");
   // The origin is a pose of the very trajectory that is wanted: first in the frame of the first
-  // record, then again in the origin's own.
-  const LocalTangentPlane first(records.front().record.position);
-  const Trajectory provisional = lidar_trajectory(first, records, T_imu_lidar);
+  // pose, then again in the origin's own.
+  const LocalTangentPlane first(poses.front().position);
+  const Trajectory provisional = lidar_trajectory(first, poses, T_body_lidar);
   const RigidMotion T_first_lidar =
       provisional.at(origin_time).value_or(provisional.poses().front().T_local_body);
   const GeodeticPoint origin = first.to_geodetic(T_first_lidar.translation());
-  return {lidar_trajectory(LocalTangentPlane(origin), records, T_imu_lidar), origin,
-          accuracies(records)};
+  std::vector<double> accuracy;
+  accuracy.reserve(poses.size());
+  for (const GeodeticPose& pose : poses) accuracy.push_back(pose.accuracy);
+  return {lidar_trajectory(LocalTangentPlane(origin), poses, T_body_lidar), origin,
+          std::move(accuracy)};
+}
+
+Navigation make_navigation(const std::vector<StampedOxts>& records, const RigidMotion& T_imu_lidar,
+                           TimeNs origin_time) {
+  std::vector<GeodeticPose> poses;
+  poses.reserve(records.size());
+  for (const auto& [time, record] : records) {
+    poses.push_back({time, record.position, record.R_enu_imu(),
+                     record.satellites == 0 ? std::numeric_limits<double>::infinity()
+                                            : record.position_accuracy});
+  }
+  return navigation_of(poses, T_imu_lidar, origin_time);
 }
 
 }  // namespace fovea

@@ -5,6 +5,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/generic_drive.h"
 #include "fovea/sensor/kitti_drives.h"
 
 namespace fovea {
@@ -43,10 +44,11 @@ std::string list_drives(const std::vector<fs::path>& drives, const fs::path& roo
 
 std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOptions& options) {
   constexpr const char* kRemedy =
-      "give a KITTI raw drive (.../DATE/DATE_drive_NNNN_sync) or odometry sequence "
-      "(.../sequences/NN)";
+      "give a folder with a drive.toml (docs/drives.md), a KITTI raw drive "
+      "(.../DATE/DATE_drive_NNNN_sync) or an odometry sequence (.../sequences/NN)";
   if (!fs::exists(path)) throw InputError("the drive does not exist", path.string(), kRemedy);
   if (!fs::is_directory(path)) throw InputError("the drive is no folder", path.string(), kRemedy);
+  if (fs::exists(path / "drive.toml")) return open_generic_drive(path, options);
   if (fs::is_directory(path / "velodyne_points")) return open_kitti_raw(path, options);
   if (fs::is_directory(path / "velodyne")) return open_kitti_odometry(path, options);
   if (fs::is_empty(path)) throw InputError("the drive's folder is empty", path.string(), kRemedy);
@@ -57,7 +59,7 @@ std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOp
                          " drives: " + list_drives(drives, path),
                      path.string(), "name one of them");
   }
-  throw InputError("the folder has neither velodyne_points/ (KITTI raw) nor velodyne/ (odometry)",
+  throw InputError("the folder has neither drive.toml nor velodyne_points/ or velodyne/ (KITTI)",
                    path.string(), kRemedy);
 }
 

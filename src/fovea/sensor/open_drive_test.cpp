@@ -46,7 +46,7 @@ TEST(OpenDrive, AFolderWithoutADriveIsRefused) {
   const TemporaryFolder root;
   test::write_text(root / "2026_01_01/2026_01_01_drive_0001_sync/image_02/a.txt", "");
   EXPECT_THAT(error_of<InputError>([&] { open_drive(root.path(), {}); }),
-              HasSubstr("neither velodyne_points/"));
+              HasSubstr("neither drive.toml"));
 }
 
 }  // namespace

@@ -58,8 +58,26 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
 }
 
-/// Takes out the fewest times that leave an increasing sequence, the later of equal choices, so
-/// that one wild stamp costs one frame and not all that follow it.
+template <class Parse>
+TimeStamps read_stamps(const std::filesystem::path& file, Parse&& parse) {
+  TimeStamps stamps;
+  for (const std::string& line : read_lines(file)) {
+    const std::string_view text = trim(line);
+    stamps.times.push_back(text.empty() ? std::nullopt : parse(text));
+    if (!text.empty() && !stamps.times.back()) {
+      stamps.malformed.push_back(static_cast<int>(stamps.times.size()) - 1);
+    }
+  }
+  remove_out_of_order(stamps);
+  return stamps;
+}
+
+}  // namespace
+
+bool TimeStamps::any() const {
+  return std::any_of(times.begin(), times.end(), [](const auto& time) { return bool(time); });
+}
+
 void remove_out_of_order(TimeStamps& stamps) {
   // tails[n]: largest start of an increasing run of n + 1 stamps in what was seen from the back.
   std::vector<TimeNs> tails;
@@ -87,26 +105,6 @@ void remove_out_of_order(TimeStamps& stamps) {
       stamps.out_of_order.push_back(static_cast<int>(i));
     }
   }
-}
-
-template <class Parse>
-TimeStamps read_stamps(const std::filesystem::path& file, Parse&& parse) {
-  TimeStamps stamps;
-  for (const std::string& line : read_lines(file)) {
-    const std::string_view text = trim(line);
-    stamps.times.push_back(text.empty() ? std::nullopt : parse(text));
-    if (!text.empty() && !stamps.times.back()) {
-      stamps.malformed.push_back(static_cast<int>(stamps.times.size()) - 1);
-    }
-  }
-  remove_out_of_order(stamps);
-  return stamps;
-}
-
-}  // namespace
-
-bool TimeStamps::any() const {
-  return std::any_of(times.begin(), times.end(), [](const auto& time) { return bool(time); });
 }
 
 std::optional<TimeNs> parse_date_time(std::string_view text) {

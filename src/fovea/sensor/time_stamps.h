@@ -20,6 +20,10 @@ struct TimeStamps {
   bool any() const;
 };
 
+/// Takes out the fewest times that leave an increasing sequence, the later of equal choices, so
+/// that one wild stamp costs one frame and not all that follow it; they are listed as out of order.
+void remove_out_of_order(TimeStamps& stamps);
+
 /// "2011-09-26 13:08:24.967930880" as nanoseconds since the Unix epoch, exactly; digits beyond
 /// nanoseconds are cut off. Empty if malformed.
 std::optional<TimeNs> parse_date_time(std::string_view text);

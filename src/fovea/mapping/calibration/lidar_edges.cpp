@@ -21,11 +21,12 @@ constexpr float kMinJump = 0.5f, kRelativeJump = 0.1f, kRelativeJumpAbove = 0.2f
 struct Beam {
   Eigen::Vector3f direction;
   float range = 0;
+  float time = 0;
 };
 
-Beam beam_of(const Eigen::Vector3f& p) {
+Beam beam_of(const Eigen::Vector3f& p, float time) {
   const float range = p.norm();
-  return {p / std::max(range, 1e-6f), range};
+  return {p / std::max(range, 1e-6f), range, time};
 }
 
 void add_if_edge(const Beam& a, const Beam& b, float max_step, float relative_jump, float max_range,
@@ -36,6 +37,8 @@ void add_if_edge(const Beam& a, const Beam& b, float max_step, float relative_ju
   if ((near.direction - far.direction).norm() > max_step) return;
   edges.inside.position.emplace_back(near.direction * near.range);
   edges.outside.position.emplace_back(far.direction * near.range);
+  edges.inside.time.push_back(near.time);
+  edges.outside.time.push_back(far.time);
   edges.between_rings.push_back(between_rings ? 1 : 0);
 }
 
@@ -47,13 +50,14 @@ std::vector<Beam> beams_in_view(const PointCloud& scan_lidar, const Camera& came
   const float right = static_cast<float>(camera.width / camera.fx),
               down = static_cast<float>(camera.height / camera.fy);
   std::vector<Beam> beams;
-  for (const Eigen::Vector3f& p : scan_lidar.position) {
+  for (std::size_t i = 0; i < scan_lidar.size(); ++i) {
+    const Eigen::Vector3f& p = scan_lidar.position[i];
     const Eigen::Vector3f p_cam = R * p + t;
     if (p_cam.z() < 1 || std::abs(p_cam.x()) > right * p_cam.z() ||
         std::abs(p_cam.y()) > down * p_cam.z()) {
       continue;
     }
-    beams.push_back(beam_of(p));
+    beams.push_back(beam_of(p, scan_lidar.time.empty() ? 0 : scan_lidar.time[i]));
   }
   return beams;
 }
@@ -92,6 +96,10 @@ LidarEdges find_lidar_edges(const PointCloud& scan_lidar, const Camera& camera, 
   const std::vector<Beam> beams = beams_in_view(scan_lidar, camera);
   add_edges_along_rings(beams, static_cast<float>(max_range), edges);
   add_edges_between_rings(beams, static_cast<float>(max_range), edges);
+  if (scan_lidar.time.empty()) {
+    edges.inside.time.clear();
+    edges.outside.time.clear();
+  }
   return edges;
 }
 

@@ -13,7 +13,7 @@ namespace fovea {
 /// between the two; the middle is where it is expected to (the near beam alone would lie inside by
 /// half the spacing of beams, on either side of the thing).
 struct LidarEdges {
-  PointCloud inside, outside;
+  PointCloud inside, outside;  ///< with the times of their beams where the scan has them
   std::vector<std::uint8_t> between_rings;  ///< 1: the beams are of neighbouring rings, 0: of one
   std::size_t size() const { return inside.size(); }
 };

@@ -72,6 +72,22 @@ TEST(LidarEdges, LieOnEitherSideOfWhereTheThingEnds) {
   EXPECT_NEAR(top, bottom, 3);
 }
 
+TEST(LidarEdges, KeepTheTimesOfTheirBeams) {
+  PointCloud scan = board_before_a_wall();
+  EXPECT_TRUE(find_lidar_edges(scan, forward_camera(), 40).inside.time.empty());
+  // The azimuth tells which beam it was.
+  for (const Eigen::Vector3f& p : scan.position) scan.time.push_back(std::atan2(p.y(), p.x()));
+  const LidarEdges edges = find_lidar_edges(scan, forward_camera(), 40);
+  ASSERT_GT(edges.size(), 0u);
+  for (const PointCloud* beams : {&edges.inside, &edges.outside}) {
+    ASSERT_EQ(beams->time.size(), edges.size());
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const Eigen::Vector3f& p = beams->position[i];
+      EXPECT_NEAR(beams->time[i], std::atan2(p.y(), p.x()), 1e-5);
+    }
+  }
+}
+
 TEST(LidarEdges, NoneBeyondTheReachOrBehindTheCamera) {
   PointCloud scan = board_before_a_wall();
   EXPECT_EQ(find_lidar_edges(scan, forward_camera(), 9).size(), 0u);

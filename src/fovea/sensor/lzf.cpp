@@ -1,4 +1,4 @@
-#include "fovea/evaluation/lzf.h"
+#include "fovea/sensor/lzf.h"
 
 namespace fovea {
 

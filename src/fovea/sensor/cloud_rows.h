@@ -1,0 +1,75 @@
+// What the readers of point clouds in PCD and PLY have in common: the rows they hand on, the types
+// of a file's numbers, and its lines.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace fovea {
+
+/// Types of binary numbers in a file.
+enum class Scalar {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat,
+  kDouble
+};
+std::size_t size_of(Scalar type);
+bool is_real(Scalar type);
+/// The number at `bytes`, little endian.
+double decode(Scalar type, const char* bytes);
+
+/// Who wants the points of a file: which columns, and what becomes of each point.
+class CloudRows {
+ public:
+  virtual ~CloudRows() = default;
+
+  /// Names of the columns wanted, the same at every call. The first three are "x", "y", "z", which
+  /// a file must have, of a real type.
+  virtual std::span<const char* const> columns() const = 0;
+  /// What a right file has ("x y z and rgb"), for errors.
+  virtual const char* description() const = 0;
+
+  /// Called once, before any point. InputError if the file's columns are not as they should be.
+  /// @param points  as many at most; the file is long enough for them
+  /// @param types   of the columns, in their order; empty where the file has none of that name
+  virtual void begin(std::size_t points, std::span<const std::optional<Scalar>> types) = 0;
+  /// Called for each point, those with NaN included.
+  /// @param row     its values in the columns' order, 0 where the file has none
+  /// @param number  of the point in the file, from 0
+  virtual void add(std::span<const double> row, std::size_t number) = 0;
+};
+
+/// Lines of a file that may be anything: none is longer than 64 KiB.
+class LineReader {
+ public:
+  /// InputError if the file cannot be read.
+  explicit LineReader(const std::filesystem::path& file);
+
+  /// The next line without its end (LF or CRLF); empty at the end of the file. InputError for a
+  /// line that is too long.
+  std::optional<std::string> next();
+  int line_number() const { return line_number_; }  ///< of the last line, from 1
+  std::ifstream& stream() { return stream_; }       ///< after the last line
+  /// Bytes after the last line.
+  std::uintmax_t rest();
+
+ private:
+  std::string name_;
+  std::ifstream stream_;
+  std::uintmax_t size_ = 0;
+  int line_number_ = 0;
+  std::string buffer_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,327 @@
+#include "fovea/sensor/drive_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/settings.h"
+#include "fovea/sensor/image_decode.h"
+
+namespace fovea {
+
+enum class TimeUnit { kAuto, kSecond, kMillisecond, kMicrosecond, kNanosecond };
+
+constexpr auto names_of(TimeUnit) {
+  return std::array{EnumName<TimeUnit>{TimeUnit::kAuto, "auto"},
+                    EnumName<TimeUnit>{TimeUnit::kSecond, "s"},
+                    EnumName<TimeUnit>{TimeUnit::kMillisecond, "ms"},
+                    EnumName<TimeUnit>{TimeUnit::kMicrosecond, "us"},
+                    EnumName<TimeUnit>{TimeUnit::kNanosecond, "ns"}};
+}
+
+constexpr auto names_of(TimeReference) {
+  return std::array{EnumName<TimeReference>{TimeReference::kStamp, "stamp"},
+                    EnumName<TimeReference>{TimeReference::kAbsolute, "absolute"}};
+}
+
+inline auto names_of(LensModel) {
+  const auto entry = [](LensModel model) { return EnumName<LensModel>{model, to_string(model)}; };
+  return std::array{entry(LensModel::kNone), entry(LensModel::kPlumbBob),
+                    entry(LensModel::kRationalPolynomial), entry(LensModel::kEquidistant)};
+}
+
+namespace {
+
+constexpr int kVersion = 1;
+constexpr int kMaxCamera = 9;                // config_keys.h knows slices of as many
+constexpr double kRotationTolerance = 1e-3;  // files are rounded
+constexpr double kMaxLever = 1000;           // m between sensors; no vehicle is as long
+constexpr double kMaxFocal = 1e5, kMaxCoefficient = 1e6;
+
+[[noreturn]] void reject(std::string_view what, const std::string& key, std::string_view remedy) {
+  throw ConfigError(what, key, remedy);
+}
+
+void check(const std::string& key, double value, double low, double high) {
+  if (value >= low && value <= high) return;  // NaN is outside of everything
+  reject(fmt::format("{:.6g} is out of range", value), key,
+         fmt::format("give {:g} to {:g}", low, high));
+}
+
+/// A rigid motion as a matrix or as translation and quaternion.
+struct MotionText {
+  std::string key;
+  std::optional<std::vector<double>> matrix{}, translation{}, rotation{};
+
+  void visit(SettingVisitor& visit) {
+    // A table under the key is the other form.
+    visit(key + ".translation", translation);
+    visit(key + ".rotation", rotation);
+    if (!translation && !rotation) visit(key, matrix);
+  }
+  bool given() const { return matrix || translation || rotation; }
+
+  RigidMotion motion() const {
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d t = Eigen::Vector3d::Zero();
+    if (matrix) {
+      read_matrix(R, t);
+    } else {
+      if (translation) t = numbers_of<3>(*translation, ".translation");
+      if (rotation) R = read_quaternion(numbers_of<4>(*rotation, ".rotation"));
+    }
+    if (!is_rotation(R, kRotationTolerance)) {
+      reject("the matrix is not a rotation", key, "give a rotation beside the translation");
+    }
+    if (!(t.norm() <= kMaxLever)) {
+      reject("the translation is over 1 km", key, "give it in metres");
+    }
+    RigidMotion T = RigidMotion::Identity();
+    T.linear() = nearest_rotation(R);
+    T.translation() = t;
+    return T;
+  }
+
+ private:
+  template <int N>
+  Eigen::Matrix<double, N, 1> numbers_of(const std::vector<double>& numbers,
+                                         const char* part) const {
+    if (numbers.size() == N) return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers.data());
+    reject(fmt::format("there are {} numbers, not {}", numbers.size(), N), key + part,
+           "give x y z, or a quaternion x y z w");
+  }
+  void read_matrix(Eigen::Matrix3d& R, Eigen::Vector3d& t) const {
+    const std::vector<double>& m = *matrix;
+    if (m.size() != 12 && m.size() != 16) {
+      reject(fmt::format("there are {} numbers, not 12 or 16", m.size()), key,
+             "give a matrix of 3 x 4 or 4 x 4, row by row");
+    }
+    if (m.size() == 16 && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1)) {
+      reject("the matrix's last row is not 0 0 0 1", key, "give a rigid motion");
+    }
+    for (int row = 0; row < 3; ++row) {
+      const double* first = m.data() + 4 * row;
+      R.row(row) << first[0], first[1], first[2];
+      t[row] = first[3];
+    }
+  }
+  Eigen::Matrix3d read_quaternion(const Eigen::Vector4d& q) const {
+    if (!(std::abs(q.norm() - 1) < 0.01)) {
+      reject("the quaternion is not of length 1", key + ".rotation", "give x y z w");
+    }
+    return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+  }
+};
+
+/// A motion that may be given as T_a_b or T_b_a.
+struct EitherMotion {
+  MotionText forward, backward;
+  EitherMotion(const std::string& table, const std::string& a, const std::string& b)
+      : forward{.key = table + ".T_" + a + "_" + b}, backward{.key = table + ".T_" + b + "_" + a} {}
+
+  void visit(SettingVisitor& visitor) {
+    forward.visit(visitor);
+    backward.visit(visitor);
+  }
+  /// T_a_b; empty if neither is given.
+  std::optional<RigidMotion> motion() const {
+    if (forward.given() && backward.given()) {
+      reject("the motion is given both ways", backward.key, "remove it, or " + forward.key);
+    }
+    if (forward.given()) return forward.motion();
+    if (backward.given()) return backward.motion().inverse();
+    return std::nullopt;
+  }
+};
+
+/// One camera's keys.
+class CameraKeys {
+ public:
+  explicit CameraKeys(const std::string& name)
+      : table_("camera." + name), T_cam_lidar_(table_, "cam", "lidar") {
+    camera_.name = name;
+    folder_ = "images/" + name;
+  }
+
+  void visit(SettingVisitor& visit) {
+    visit(key("index"), index_);
+    visit(key("folder"), folder_);
+    visit(key("width"), width_);
+    visit(key("height"), height_);
+    visit(key("K"), K_);
+    visit(key("distortion_model"), model_);
+    visit(key("D"), D_);
+    visit(key("field_of_view"), Degrees{camera_.max_field_of_view});
+    visit(key("delay"), camera_.delay);
+    T_cam_lidar_.visit(visit);
+  }
+
+  /// ConfigError whose place is the key.
+  CameraDescription camera() {
+    camera_.index = required(index_, "index", "give a number of 0 to 9");
+    check(key("index"), camera_.index, 0, kMaxCamera);
+    camera_.folder = folder_;
+    camera_.optics.width = required(width_, "width", "give the images' width in pixels");
+    camera_.optics.height = required(height_, "height", "give the images' height in pixels");
+    check(key("width"), camera_.optics.width, 8, kMaxImageSide);
+    check(key("height"), camera_.optics.height, 8, kMaxImageSide);
+    read_intrinsics();
+    read_distortion();
+    constexpr double kNarrowest = 10 * kDegree, kWidest = 170 * kDegree;
+    if (!(camera_.max_field_of_view >= kNarrowest && camera_.max_field_of_view <= kWidest)) {
+      reject("the field of view is out of range", key("field_of_view"), "give 10 to 170 degrees");
+    }
+    check(key("delay"), camera_.delay, -1, 1);
+    const auto T = T_cam_lidar_.motion();
+    if (!T) reject("a key is missing", T_cam_lidar_.forward.key, "say where the camera sits");
+    camera_.T_cam_lidar = *T;
+    return camera_;
+  }
+
+ private:
+  std::string key(std::string_view name) const { return fmt::format("{}.{}", table_, name); }
+
+  template <class T>
+  const T& required(const std::optional<T>& value, std::string_view name,
+                    std::string_view remedy) const {
+    if (!value) reject("a key is missing", key(name), remedy);
+    return *value;
+  }
+
+  void read_intrinsics() {
+    const std::vector<double>& K = required(K_, "K", "give fx 0 cx, 0 fy cy, 0 0 1");
+    if (K.size() != 9) {
+      reject(fmt::format("there are {} numbers, not 9", K.size()), key("K"),
+             "give fx 0 cx, 0 fy cy, 0 0 1");
+    }
+    LensCamera& c = camera_.optics;
+    c.fx = K[0], c.cx = K[2], c.fy = K[4], c.cy = K[5];
+    const bool pinhole = c.fx >= 1 && c.fx <= kMaxFocal && c.fy >= 1 && c.fy <= kMaxFocal &&
+                         std::abs(c.cx) <= kMaxFocal && std::abs(c.cy) <= kMaxFocal && K[1] == 0 &&
+                         K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
+    if (!pinhole) reject("this is no camera's matrix", key("K"), "give fx 0 cx, 0 fy cy, 0 0 1");
+  }
+
+  void read_distortion() {
+    const std::size_t count = coefficient_count(model_);
+    const bool without_k3 = model_ == LensModel::kPlumbBob && D_.size() == 4;
+    // Other programs fill up with zeros.
+    const bool rest_is_zero =
+        D_.size() <= count || std::all_of(D_.begin() + static_cast<std::ptrdiff_t>(count), D_.end(),
+                                          [](double d) { return d == 0; });
+    if (!rest_is_zero || (D_.size() < count && !without_k3)) {
+      reject(fmt::format("there are {} coefficients, not {}", D_.size(), count), key("D"),
+             "give those of the distortion_model");
+    }
+    std::array<double, 8> coefficients{};
+    for (std::size_t i = 0; i < std::min(count, D_.size()); ++i) {
+      if (!(std::abs(D_[i]) <= kMaxCoefficient)) {
+        reject("a coefficient is out of range", key("D"), "give those of the distortion_model");
+      }
+      coefficients[i] = D_[i];
+    }
+    camera_.optics.lens = Lens(model_, coefficients);
+  }
+
+  std::string table_;
+  CameraDescription camera_;
+  std::optional<int> index_, width_, height_;
+  std::string folder_;
+  std::optional<std::vector<double>> K_;
+  LensModel model_ = LensModel::kNone;
+  std::vector<double> D_;
+  EitherMotion T_cam_lidar_;
+};
+
+/// All keys of a drive.
+class DriveKeys {
+ public:
+  explicit DriveKeys(const std::vector<std::string>& camera_names)
+      : cameras_(camera_names.begin(), camera_names.end()) {}
+
+  void visit(SettingVisitor& visit) {
+    visit("version", version_);
+    visit("lidar.folder", scans_);
+    visit("lidar.compensated", drive_.sweep_compensated);
+    visit("lidar.intensity_max", drive_.scan_format.intensity_max);
+    visit("lidar.time_unit", time_unit_);
+    visit("lidar.time_reference", drive_.scan_format.time_reference);
+    visit("images.tolerance", drive_.image_tolerance);
+    T_body_lidar_.visit(visit);
+    T_body_imu_.visit(visit);
+    visit("body.antenna", antenna_);
+    for (CameraKeys& camera : cameras_) camera.visit(visit);
+  }
+
+  /// ConfigError whose place is the key.
+  void finish() {
+    if (!version_) reject("a key is missing", "version", "write version = 1 above all tables");
+    if (*version_ != kVersion) {
+      reject(fmt::format("the drive has version {}, this program reads {}", *version_, kVersion),
+             "version", "use a newer Fovea");
+    }
+    drive_.scans = scans_;
+    check("lidar.intensity_max", drive_.scan_format.intensity_max, 1e-6, 1e9);
+    constexpr std::array<double, 5> kUnits = {0, 1, 1e-3, 1e-6, 1e-9};
+    if (time_unit_ != TimeUnit::kAuto) {
+      drive_.scan_format.time_unit = kUnits.at(static_cast<std::size_t>(time_unit_));
+    }
+    check("images.tolerance", drive_.image_tolerance, 0, 1);
+    drive_.T_body_lidar = T_body_lidar_.motion().value_or(drive_.T_body_lidar);
+    drive_.T_body_imu = T_body_imu_.motion().value_or(drive_.T_body_imu);
+    const Eigen::Map<const Eigen::Vector3d> antenna(antenna_.data());
+    if (antenna_.size() != 3 || !(antenna.norm() <= kMaxLever)) {
+      reject("this is no place on the vehicle", "body.antenna", "give x, y, z in metres");
+    }
+    drive_.antenna_body = antenna;
+    read_cameras();
+  }
+
+  DriveDescription take() { return std::move(drive_); }
+
+ private:
+  void read_cameras() {
+    if (cameras_.empty()) reject("there is no camera", "camera", "describe one as [camera.NAME]");
+    for (CameraKeys& keys : cameras_) {
+      CameraDescription camera = keys.camera();
+      for (const CameraDescription& other : drive_.cameras) {
+        if (other.index != camera.index) continue;
+        reject(fmt::format("cameras {} and {} have the same index", other.name, camera.name),
+               "camera." + camera.name + ".index", "number them differently");
+      }
+      drive_.cameras.push_back(std::move(camera));
+    }
+    std::sort(drive_.cameras.begin(), drive_.cameras.end(),
+              [](const auto& a, const auto& b) { return a.index < b.index; });
+  }
+
+  DriveDescription drive_;
+  std::optional<int> version_;
+  std::string scans_ = "lidar";
+  TimeUnit time_unit_ = TimeUnit::kAuto;
+  EitherMotion T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
+  std::vector<double> antenna_{0, 0, 0};
+  std::vector<CameraKeys> cameras_;
+};
+
+DriveDescription read(const SettingsDocument& document) {
+  DriveKeys keys(document.tables("camera"));
+  document.apply([&](SettingVisitor& visit) { keys.visit(visit); }, [&] { keys.finish(); },
+                 "see docs/drives.md for the keys");
+  return keys.take();
+}
+
+}  // namespace
+
+DriveDescription read_drive_description(const std::filesystem::path& file) {
+  return read(SettingsDocument::from_file(file));
+}
+
+DriveDescription parse_drive_description(std::string_view text, std::string_view name) {
+  return read(SettingsDocument::from_text(text, name));
+}
+
+}  // namespace fovea

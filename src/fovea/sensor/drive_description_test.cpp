@@ -1,0 +1,181 @@
+#include "fovea/sensor/drive_description.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "../../../tests/kitti_test_drive.h"
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+using test::error_of;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kCamera = R"(
+[camera.left]
+index = 3
+width = 640
+height = 480
+K = [400, 0, 320, 0, 410, 240, 0, 0, 1]
+)";
+const std::string kPlace = "T_cam_lidar = [0, -1, 0, 0.5, 0, 0, -1, 0.25, 1, 0, 0, -0.125]\n";
+const std::string kSmallest = "version = 1" + kCamera + kPlace;
+
+DriveDescription parse(const std::string& text) { return parse_drive_description(text, "d.toml"); }
+std::string error(const std::string& text) {
+  return error_of<ConfigError>([&] { parse(text); });
+}
+
+TEST(DriveDescription, TheSmallest) {
+  const DriveDescription drive = parse(kSmallest);
+  EXPECT_EQ(drive.scans, "lidar");
+  EXPECT_FALSE(drive.sweep_compensated);
+  EXPECT_TRUE(drive.T_body_lidar.isApprox(RigidMotion::Identity()));
+  ASSERT_EQ(drive.cameras.size(), 1u);
+  const CameraDescription& camera = drive.cameras[0];
+  EXPECT_EQ(camera.name, "left");
+  EXPECT_EQ(camera.folder, "images/left");
+  EXPECT_EQ(camera.index, 3);
+  EXPECT_EQ(camera.optics.width, 640);
+  EXPECT_EQ(camera.optics.fy, 410);
+  EXPECT_EQ(camera.optics.cx, 320);
+  EXPECT_EQ(camera.optics.lens.model(), LensModel::kNone);
+  EXPECT_LT(
+      (camera.T_cam_lidar * Eigen::Vector3d(1, 2, 3) - Eigen::Vector3d(-1.5, -2.75, 0.875)).norm(),
+      1e-12);
+}
+
+TEST(DriveDescription, EveryKey) {
+  const DriveDescription drive = parse(R"(
+version = 1
+[lidar]
+folder = "scans"
+compensated = true
+intensity_max = 255
+time_unit = "us"
+time_reference = "absolute"
+[images]
+tolerance = 0.02
+[body]
+T_lidar_body = [[1, 0, 0, -1], [0, 1, 0, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]]
+T_body_imu = {translation = [0, 0, 1], rotation = [0, 0, 1, 0]}
+antenna = [0.5, 0, 1]
+[camera.b]
+index = 1
+folder = "b"
+width = 64
+height = 48
+K = [[40, 0, 32], [0, 41, 24], [0, 0, 1]]
+distortion_model = "equidistant"
+D = [0.1, 0.2, 0.3, 0.4]
+field_of_view = 120
+delay = -0.01
+T_lidar_cam = {rotation = [0, 0, 0, 1], translation = [1, 2, 3]}
+[camera.0]
+index = 0
+width = 64
+height = 48
+K = [40, 0, 32, 0, 41, 24, 0, 0, 1]
+distortion_model = "rational_polynomial"
+D = [1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0]
+T_cam_lidar = {translation = [0, 0, 0.1]}
+)");
+  EXPECT_EQ(drive.scans, "scans");
+  EXPECT_TRUE(drive.sweep_compensated);
+  EXPECT_EQ(drive.scan_format.intensity_max, 255);
+  EXPECT_EQ(drive.scan_format.time_unit, 1e-6);
+  EXPECT_EQ(drive.scan_format.time_reference, TimeReference::kAbsolute);
+  EXPECT_EQ(drive.image_tolerance, 0.02);
+  EXPECT_LT((drive.T_body_lidar.translation() - Eigen::Vector3d(1, 0, -0.5)).norm(), 1e-12);
+  EXPECT_EQ(drive.antenna_body, Eigen::Vector3d(0.5, 0, 1));
+  // Half a turn about z.
+  EXPECT_LT((drive.T_body_imu * Eigen::Vector3d(1, 2, 3) - Eigen::Vector3d(-1, -2, 4)).norm(),
+            1e-12);
+  ASSERT_EQ(drive.cameras.size(), 2u);
+  EXPECT_EQ(drive.cameras[0].name, "0");  // by index
+  EXPECT_EQ(drive.cameras[0].optics.lens.model(), LensModel::kRationalPolynomial);
+  EXPECT_EQ(drive.cameras[0].optics.lens.coefficients()[7], 8);
+  const CameraDescription& b = drive.cameras[1];
+  EXPECT_EQ(b.folder, "b");
+  EXPECT_EQ(b.optics.fy, 41);
+  EXPECT_EQ(b.optics.lens.model(), LensModel::kEquidistant);
+  EXPECT_EQ(b.optics.lens.coefficients()[3], 0.4);
+  EXPECT_NEAR(b.max_field_of_view, 2 * std::numbers::pi / 3, 1e-12);
+  EXPECT_EQ(b.delay, -0.01);
+  EXPECT_LT((b.T_cam_lidar.translation() + Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+}
+
+TEST(DriveDescription, ErrorsNameFileLineAndKey) {
+  EXPECT_THAT(error(kSmallest + "colour = 1\n"),
+              AllOf(HasSubstr("unknown key"), HasSubstr("d.toml:8, key 'camera.left.colour'")));
+  EXPECT_THAT(error(kSmallest + "[lidar]\nfolder = 3\n"),
+              AllOf(HasSubstr("wrong type"), HasSubstr("d.toml:9, key 'lidar.folder'")));
+  EXPECT_THAT(error("version = 1" + kCamera),
+              AllOf(HasSubstr("a key is missing"), HasSubstr("d.toml:2"),
+                    HasSubstr("camera.left.T_cam_lidar")));
+  EXPECT_THAT(error(kCamera + kPlace), HasSubstr("version"));
+  EXPECT_THAT(error("version = 2" + kCamera + kPlace), HasSubstr("has version 2"));
+  EXPECT_THAT(error("version = 1"), HasSubstr("there is no camera"));
+  EXPECT_THAT(error("version = 1\n[[camera]]\n"), HasSubstr("write [camera.NAME]"));
+  EXPECT_THAT(error("version = \n"), HasSubstr("d.toml:1"));
+}
+
+/// The smallest drive with one line of it replaced.
+std::string with(const std::string& line, const std::string& by) {
+  std::string text = kSmallest;
+  return text.replace(text.find(line), line.size(), by);
+}
+
+TEST(DriveDescription, WhatIsNoCalibrationIsRefused) {
+  EXPECT_THAT(error(with("index = 3", "index = 10")), HasSubstr("give 0 to 9"));
+  EXPECT_THAT(error(with("index = 3", "")), HasSubstr("camera.left.index"));
+  EXPECT_THAT(error(with("width = 640", "width = 100000000")), HasSubstr("camera.left.width"));
+  EXPECT_THAT(error(with("width = 640", "width = 640.5")), HasSubstr("whole number"));
+  EXPECT_THAT(error(with("[400, 0,", "[400, 1,")), HasSubstr("no camera's matrix"));
+  EXPECT_THAT(error(with("[400, 0,", "[nan, 0,")), HasSubstr("no camera's matrix"));
+  EXPECT_THAT(error(with("[400, 0,", "[1e300, 0,")), HasSubstr("no camera's matrix"));
+  EXPECT_THAT(error(with("[400, 0,", "[400,")), HasSubstr("8 numbers, not 9"));
+  EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -2, 0, 0.5")), HasSubstr("not a rotation"));
+  EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, nan, 0.5")), HasSubstr("not a rotation"));
+  EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, 0, 5e3")), HasSubstr("over 1 km"));
+  EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, 0")), HasSubstr("11 numbers, not 12 or 16"));
+  EXPECT_THAT(error(kSmallest + "T_lidar_cam = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]\n"),
+              HasSubstr("both ways"));
+  EXPECT_THAT(error(kSmallest + "[body]\nT_body_imu = {rotation = [0, 0, 0, 2]}\n"),
+              HasSubstr("not of length 1"));
+  EXPECT_THAT(error(kSmallest + "[body]\nantenna = [1, 2]\n"), HasSubstr("body.antenna"));
+  EXPECT_THAT(error(kSmallest + "[images]\ntolerance = -1\n"), HasSubstr("give 0 to 1"));
+  EXPECT_THAT(error(kSmallest + "[lidar]\nintensity_max = 0\n"), HasSubstr("intensity_max"));
+  EXPECT_THAT(error(kSmallest + "[lidar]\ntime_unit = \"h\"\n"), HasSubstr("'auto', 's', 'ms'"));
+  std::string twice = kSmallest + kCamera + kPlace;
+  twice.replace(twice.rfind("[camera.left]"), 13, "[camera.right]");
+  EXPECT_THAT(error(twice), HasSubstr("the same index"));
+}
+
+TEST(DriveDescription, DistortionIsChecked) {
+  const auto distorted = [](const std::string& lines) { return kSmallest + lines; };
+  EXPECT_THAT(error(distorted("distortion_model = \"thin_prism\"\n")),
+              AllOf(HasSubstr("thin_prism"), HasSubstr("'plumb_bob', 'rational_polynomial'")));
+  EXPECT_THAT(error(distorted("distortion_model = \"plumb_bob\"\nD = [1, 2, 3]\n")),
+              HasSubstr("3 coefficients, not 5"));
+  EXPECT_THAT(error(distorted("distortion_model = \"equidistant\"\n")),
+              HasSubstr("0 coefficients, not 4"));
+  EXPECT_THAT(error(distorted("D = [0.1]\n")), HasSubstr("1 coefficients, not 0"));
+  EXPECT_THAT(error(distorted("distortion_model = \"plumb_bob\"\nD = [inf, 0, 0, 0]\n")),
+              HasSubstr("out of range"));
+  EXPECT_THAT(error(distorted("field_of_view = 175\n")), HasSubstr("10 to 170 degrees"));
+  EXPECT_NO_THROW(parse(distorted("D = [0, 0, 0, 0, 0]\n")));  // as ROS has rectified cameras
+  EXPECT_NO_THROW(parse(distorted("distortion_model = \"plumb_bob\"\nD = [0.1, 0, 0, 0]\n")));
+}
+
+TEST(DriveDescription, AFileThatCannotBeReadIsAnInputError) {
+  EXPECT_THAT(error_of<InputError>([] { read_drive_description("/nonexistent/drive.toml"); }),
+              HasSubstr("/nonexistent/drive.toml"));
+}
+
+}  // namespace
+}  // namespace fovea

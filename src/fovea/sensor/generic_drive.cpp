@@ -1,0 +1,215 @@
+#include "fovea/sensor/generic_drive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fovea/base/errors.h"
+#include "fovea/geometry/rectified_camera.h"
+#include "fovea/sensor/csv_rows.h"
+#include "fovea/sensor/drive_description.h"
+#include "fovea/sensor/drive_files.h"
+#include "fovea/sensor/generic_navigation.h"
+#include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/nearest_images.h"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxNumber = 1'000'000;     // of scans and images: a day at 10 Hz
+constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
+
+/// Stamps of numbered files. Lines without a usable number are noted.
+NumberedTimes read_stamps(const fs::path& file, std::vector<std::string>& notes) {
+  constexpr std::array<CsvColumn, 1> kColumns = {{{"index"}}};
+  const CsvRows rows = read_csv(file, kColumns);
+  std::vector<int> unusable = rows.malformed;
+  NumberedTimes times;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double index = rows.at(row, 0);
+    const bool number = index >= 0 && index < kMaxNumber && index == std::floor(index);
+    if (!number || !times.emplace(static_cast<int>(index), rows.times[row]).second) {
+      unusable.push_back(rows.lines[row]);
+    }
+  }
+  if (!unusable.empty()) {
+    notes.push_back(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
+                                file.string(),
+                                *std::min_element(unusable.begin(), unusable.end())));
+  }
+  return times;
+}
+
+class GenericDrive {
+ public:
+  GenericDrive(const fs::path& path, const DriveOptions& options)
+      : options_(options), description_(read_drive_description(path / "drive.toml")) {
+    info_.path = path;
+    info_.kind = "generic";
+    info_.sweep_compensated = description_.sweep_compensated;
+  }
+
+  std::unique_ptr<FrameSource> open() {
+    find_scans();
+    find_scan_stamps();
+    if (options_.use_images) find_cameras();
+    if (options_.use_navigation) find_navigation();
+    return make_frame_source(std::move(info_), std::move(files_));
+  }
+
+ private:
+  void find_scans() {
+    const fs::path folder = info_.path / description_.scans;
+    files_.scans = list_numbered_files(folder, {".bin", ".pcd", ".ply"});
+    files_.scan_format = description_.scan_format;
+    if (files_.scans.empty()) {
+      throw InputError("the drive has no scan", folder.string(),
+                       "put scans there as NUMBER.pcd, .ply or .bin (docs/drives.md)");
+    }
+    if (files_.scans.rbegin()->first >= kMaxNumber) {
+      throw InputError(fmt::format("a scan's number is over {}", kMaxNumber - 1),
+                       files_.scans.rbegin()->second.string(), "number the scans from 0 on");
+    }
+    std::tie(info_.begin, info_.end) = frame_range(files_.scans, options_, info_.path);
+  }
+
+  void find_scan_stamps() {
+    const fs::path file = info_.path / description_.scans / "stamps.csv";
+    files_.stamps_name_scans = true;
+    if (fs::exists(file)) {
+      files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
+      for (const auto& [scan, time] : read_stamps(file, info_.notes)) {
+        if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
+      }
+      remove_out_of_order(files_.stamps);
+    }
+    info_.has_time_stamps = files_.stamps.any();
+    if (!info_.has_time_stamps) {
+      info_.notes.push_back(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
+                                        fs::exists(file) ? "has no usable line" : "is missing"));
+      return;
+    }
+    if (const std::size_t count = files_.stamps.out_of_order.size(); count > 0) {
+      info_.notes.push_back(
+          fmt::format("{} stamps of {} are out of order (the first of scan {}): "
+                      "these scans are skipped",
+                      count, file.string(), files_.stamps.out_of_order.front()));
+    }
+    find_sweep_period(file, files_.stamps, info_);
+  }
+
+  /// The images of those cameras that have any, by camera number.
+  std::map<int, NumberedFiles> list_images() {
+    std::map<int, NumberedFiles> images;
+    for (const CameraDescription& camera : description_.cameras) {
+      const fs::path folder = info_.path / camera.folder;
+      NumberedFiles files = list_numbered_files(folder, {".png", ".jpg", ".jpeg"});
+      if (files.empty()) {
+        info_.notes.push_back(fmt::format("camera {} ({}) has no image in {}: it is left out",
+                                          camera.index, camera.name, folder.string()));
+      } else {
+        images.emplace(camera.index, std::move(files));
+      }
+    }
+    return images;
+  }
+
+  void find_cameras() {
+    std::map<int, NumberedFiles> images = list_images();
+    std::vector<int> present;
+    for (const auto& [index, files] : images) present.push_back(index);
+    for (const int index : choose_cameras(present, options_, info_.path)) {
+      const CameraDescription& camera =
+          *std::find_if(description_.cameras.begin(), description_.cameras.end(),
+                        [&](const CameraDescription& c) { return c.index == index; });
+      add_camera(camera, images.at(index));
+    }
+  }
+
+  void add_camera(const CameraDescription& described, const NumberedFiles& images) {
+    const auto pinhole =
+        rectified_camera(described.optics, described.max_field_of_view, kMaxImageSide);
+    const bool distorted = described.optics.lens.model() != LensModel::kNone;
+    files_.rectifiers.push_back(
+        distorted && pinhole ? ImageRectifier::make(described.optics, *pinhole) : std::nullopt);
+    if (!pinhole || (distorted && !files_.rectifiers.back())) {
+      throw ConfigError(
+          fmt::format("the lens of camera {} leaves no image, or one too large", described.name),
+          (info_.path / "drive.toml").string(), "check K and D, or lower its field_of_view");
+    }
+    Camera camera = *pinhole;
+    camera.index = described.index;
+    camera.T_cam_lidar = described.T_cam_lidar;
+    camera.image_delay = described.delay;
+    files_.images.push_back(images_of_scans(described, images, camera));
+    info_.calibration.cameras.push_back(camera);
+  }
+
+  /// The images by the numbers of the scans they belong to; sets the camera's delay.
+  NumberedFiles images_of_scans(const CameraDescription& described, const NumberedFiles& images,
+                                Camera& camera) {
+    const fs::path file = info_.path / described.folder / "stamps.csv";
+    if (!fs::exists(file)) return images;
+    if (!info_.has_time_stamps) {
+      info_.notes.push_back(file.string() + " is not used: the scans have no stamps");
+      return images;
+    }
+    NumberedTimes times = read_stamps(file, info_.notes);
+    std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
+    NumberedTimes scans;
+    for (const auto& [scan, path] : files_.scans) {
+      if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
+    }
+    const ImageMatches matches = match_nearest(scans, times, description_.image_tolerance);
+    camera.image_delay += matches.median_delay;
+    note_matches(described, matches, scans.size());
+    NumberedFiles result;
+    for (const auto& [scan, image] : matches.image_of_scan) result[scan] = images.at(image);
+    return result;
+  }
+
+  void note_matches(const CameraDescription& camera, const ImageMatches& matches,
+                    std::size_t scans) {
+    if (matches.image_of_scan.size() < scans) {
+      info_.notes.push_back(fmt::format(
+          "camera {} ({}) has no image within {:g} s of {} of {} scans", camera.index, camera.name,
+          description_.image_tolerance, scans - matches.image_of_scan.size(), scans));
+    }
+    if (matches.max_delay - matches.min_delay > kNotableSpread) {
+      info_.notes.push_back(fmt::format(
+          "camera {} ({}) takes images {:.1f} to {:.1f} ms after the scans; all count as {:.1f} ms",
+          camera.index, camera.name, 1e3 * matches.min_delay, 1e3 * matches.max_delay,
+          1e3 * matches.median_delay));
+    }
+  }
+
+  void find_navigation() {
+    const std::optional<int> first = first_usable_frame(info_, files_);
+    const TimeNs origin_time =
+        frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
+    GenericNavigation navigation = read_generic_navigation(info_.path, description_, origin_time);
+    info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
+    if (!navigation.T_local_lidar) return;
+    info_.calibration.T_imu_lidar = description_.T_body_lidar;
+    info_.navigation = std::move(navigation.T_local_lidar);
+    info_.navigation_accuracy = std::move(navigation.accuracy);
+    info_.origin = navigation.origin;
+  }
+
+  DriveOptions options_;
+  DriveDescription description_;
+  DriveInfo info_;
+  DriveFiles files_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_generic_drive(const fs::path& path, const DriveOptions& options) {
+  return GenericDrive(path, options).open();
+}
+
+}  // namespace fovea

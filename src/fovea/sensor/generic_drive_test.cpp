@@ -1,0 +1,327 @@
+// Drives with a drive.toml, written by hand.
+#include "fovea/sensor/generic_drive.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "../../../tests/kitti_test_drive.h"
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+using test::error_of;
+using test::pattern;
+using test::write_png;
+using test::write_scan;
+using test::write_text;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kFrames = 6;
+constexpr TimeNs kStart = 1'700'000'000'000'000'000, kStep = kNsPerSecond / 10;
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::string stamps(int count, TimeNs shift = 0) {
+  std::string text = "index,time_ns\n";
+  for (int i = 0; i < count; ++i) text += fmt::format("{},{}\n", i, kStart + i * kStep + shift);
+  return text;
+}
+
+/// Six scans, two cameras (1: "left", 4: "right"), poses of a drive along x at 10 m/s.
+class GenericDrive : public testing::Test {
+ protected:
+  GenericDrive() {
+    std::string toml = "version = 1\n[body]\nT_body_lidar = {translation = [0, 0, 2]}\n";
+    for (const auto& [name, index] : {std::pair("left", 1), std::pair("right", 4)}) {
+      toml += fmt::format(
+          "[camera.{}]\nindex = {}\nwidth = 24\nheight = 10\nK = [20, 0, 12, 0, 20, 5, 0, 0, 1]\n"
+          "T_cam_lidar = [0, -1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0]\n",
+          name, index);
+      for (int i = 0; i < kFrames; ++i) write_png(image(name, i), pattern(24, 10, 3));
+    }
+    write_text(toml_, toml);
+    std::string poses = "time_ns,x,y,z,qx,qy,qz,qw\n";
+    for (int i = 0; i < kFrames; ++i) {
+      write_scan(scan(i), {{float(i) + 1, 2, 3, 0.5f}, {4, 5, 6, 1}});
+      poses += fmt::format("{},{},200,30,0,0,0,1\n", kStart + i * kStep, 100 + i);
+    }
+    write_text(scan_stamps_, stamps(kFrames));
+    write_text(folder_ / "poses.csv", poses);
+  }
+
+  std::filesystem::path scan(int i) const { return folder_ / fmt::format("lidar/{:06d}.bin", i); }
+  std::filesystem::path image(const std::string& camera, int i) const {
+    return folder_ / fmt::format("images/{}/{}.png", camera, i);
+  }
+  std::unique_ptr<FrameSource> open() const { return open_drive(folder_.path(), options_); }
+  std::vector<std::string> notes() const { return open()->info().notes; }
+  void expect_skipped(int index, SkipReason reason, const std::string& detail) const {
+    const FrameResult result = open()->load(index);
+    ASSERT_TRUE(std::holds_alternative<SkippedFrame>(result));
+    EXPECT_EQ(std::get<SkippedFrame>(result).reason, reason);
+    EXPECT_THAT(std::get<SkippedFrame>(result).detail, HasSubstr(detail));
+  }
+  template <class E>
+  std::string error() const {
+    return error_of<E>([&] { open(); });
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path toml_ = folder_ / "drive.toml", scan_stamps_ = folder_ / "lidar/stamps.csv";
+  DriveOptions options_;
+};
+
+TEST_F(GenericDrive, OpensAndLoads) {
+  options_.cameras = {4, 1};
+  const auto drive = open();
+  const DriveInfo& info = drive->info();
+  EXPECT_EQ(info.kind, "generic");
+  EXPECT_EQ(info.begin, 0);
+  EXPECT_EQ(info.end, kFrames);
+  EXPECT_NEAR(info.sweep_period, 0.1, 1e-9);
+  EXPECT_THAT(info.notes, IsEmpty());
+  ASSERT_EQ(info.calibration.cameras.size(), 2u);
+  EXPECT_EQ(info.calibration.cameras[0].index, 4);
+  EXPECT_EQ(info.calibration.cameras[0].image_delay, 0);
+  const Frame frame = std::get<Frame>(drive->load(2));
+  EXPECT_EQ(frame.stamp, kStart + 2 * kStep);
+  EXPECT_EQ(frame.scan.position[0], Eigen::Vector3f(3, 2, 3));
+  EXPECT_EQ(frame.images[1].data, pattern(24, 10, 3).data);
+}
+
+TEST_F(GenericDrive, PosesOfTheBodyBecomePosesOfTheLidarFromItsFirstPlaceOn) {
+  const auto drive = open();
+  const DriveInfo& info = drive->info();
+  ASSERT_TRUE(info.navigation);
+  EXPECT_FALSE(info.origin);
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_LT(
+        (info.navigation->at(*drive->stamp(i))->translation() - Eigen::Vector3d(i, 0, 0)).norm(),
+        1e-9);
+  }
+  EXPECT_EQ(info.calibration.T_imu_lidar->translation().z(), 2);
+  options_.use_navigation = false;
+  EXPECT_FALSE(open()->info().navigation);
+}
+
+TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
+  EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 1);
+  test::fs::remove_all(folder_ / "images/left");
+  const auto drive = open();
+  EXPECT_EQ(drive->info().calibration.cameras.at(0).index, 4);
+  EXPECT_THAT(drive->info().notes, ElementsAre(HasSubstr("camera 1 (left) has no image")));
+  options_.cameras = {1};
+  EXPECT_THAT(error<ConfigError>(), AllOf(HasSubstr("no camera 1"), HasSubstr("choose from 4")));
+  test::fs::remove_all(folder_ / "images");
+  EXPECT_THAT(error<InputError>(), HasSubstr("no camera"));
+}
+
+TEST_F(GenericDrive, WithoutStampsScansCountAsTenHertz) {
+  test::fs::remove(scan_stamps_);
+  EXPECT_THAT(notes(), Contains(HasSubstr("is missing: scans are counted as 10 Hz")));
+  EXPECT_EQ(open()->stamp(3), 3 * kStep);
+}
+
+TEST_F(GenericDrive, ScansWithoutAStampAreSkipped) {
+  test::edit(scan_stamps_, "\n3,", "\nx,");
+  EXPECT_THAT(notes(), ElementsAre(AllOf(HasSubstr("1 lines of"), HasSubstr("the first: 5"))));
+  expect_skipped(3, SkipReason::kMissingStamp, "no time stamp of scan 3");
+  EXPECT_TRUE(std::holds_alternative<Frame>(open()->load(4)));
+}
+
+TEST_F(GenericDrive, StampsOutOfOrderAndMadNumbersCostTheirScansOnly) {
+  write_text(scan_stamps_, stamps(2) + fmt::format("2,{}\n", kStart - kStep) + "1e30,5\n-1,5\n" +
+                               fmt::format("1,7\n3,{0}\n999999,{0}\n", kStart + 3 * kStep));
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("3 lines of"), HasSubstr("out of order")));
+  expect_skipped(2, SkipReason::kMissingStamp, "the time stamp of scan 2 is out of order");
+  EXPECT_EQ(open()->stamp(1), kStart + kStep);
+  EXPECT_EQ(open()->stamp(3), kStart + 3 * kStep);
+}
+
+TEST_F(GenericDrive, ImagesWithStampsBelongToTheScanNearestInTime) {
+  // The camera began two images earlier, and is 4 ms late.
+  write_text(folder_ / "images/left/stamps.csv", stamps(kFrames, -2 * kStep + 4'000'000));
+  for (int i = 0; i < kFrames; ++i) write_png(image("left", i), pattern(24, 10, i == 3 ? 1 : 3));
+  const auto drive = open();
+  EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.004, 1e-9);
+  EXPECT_THAT(drive->info().notes,
+              ElementsAre(HasSubstr("camera 1 (left) has no image within 0.05 s of 2 of 6 scans")));
+  EXPECT_EQ(std::get<Frame>(drive->load(1)).images[0].channels, 1);  // image 3
+  EXPECT_EQ(std::get<SkippedFrame>(drive->load(4)).reason, SkipReason::kMissingImage);
+}
+
+TEST_F(GenericDrive, ASpreadOfDelaysIsTold) {
+  std::string text = "index,time_ns\n";
+  for (int i = 0; i < kFrames; ++i) {
+    text += fmt::format("{},{}\n", i, kStart + i * kStep + i * 2'000'000);
+  }
+  write_text(folder_ / "images/left/stamps.csv", text);
+  test::edit(toml_, "[camera.left]\n", "[camera.left]\ndelay = 0.001\n");
+  const auto drive = open();
+  EXPECT_THAT(
+      drive->info().notes,
+      ElementsAre(HasSubstr("takes images 0.0 to 10.0 ms after the scans; all count as 6.0")));
+  EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.007, 1e-9);
+}
+
+TEST_F(GenericDrive, DistortedImagesComeOutAsAPinholeCameras) {
+  test::edit(toml_, "[camera.left]\n",
+             "[camera.left]\ndistortion_model = \"plumb_bob\"\nD = [-0.2, 0, 0, 0, 0]\n");
+  const auto drive = open();
+  const Camera& camera = drive->info().calibration.cameras[0];
+  EXPECT_GE(camera.width, 24);
+  const Frame frame = std::get<Frame>(drive->load(0));
+  EXPECT_EQ(frame.images[0].width, camera.width);
+  EXPECT_EQ(frame.images[0].height, camera.height);
+  write_png(image("left", 0), pattern(camera.width, camera.height, 3));
+  expect_skipped(0, SkipReason::kDamagedImage, "its camera 24 x 10");
+  test::edit(toml_, "D = [-0.2, 0, 0, 0, 0]", "D = [-90, 0, 80, 50, 0]");
+  EXPECT_THAT(error<ConfigError>(), HasSubstr("the lens of camera left"));
+}
+
+TEST_F(GenericDrive, TimesOfPointsAreKeptUnlessTheSweepIsCompensated) {
+  test::fs::remove(scan(1));
+  write_text(folder_ / "lidar/1.pcd",
+             "FIELDS x y z t\nSIZE 4 4 4 4\nTYPE F F F U\nWIDTH 1\nHEIGHT 1\nDATA ascii\n"
+             "1 2 3 50000000\n");
+  EXPECT_THAT(std::get<Frame>(open()->load(1)).scan.time, ElementsAre(0.05f));
+  EXPECT_THAT(std::get<Frame>(open()->load(2)).scan.time, IsEmpty());
+  write_text(toml_, test::read_text(toml_) + "[lidar]\ncompensated = true\n");
+  EXPECT_TRUE(open()->info().sweep_compensated);
+  EXPECT_THAT(std::get<Frame>(open()->load(1)).scan.time, IsEmpty());
+}
+
+TEST_F(GenericDrive, WhatCannotBeReadIsSkippedOrAnError) {
+  write_text(scan(1), "");
+  expect_skipped(1, SkipReason::kDamagedScan, "000001.bin");
+  write_text(image("left", 2), "no image");
+  expect_skipped(2, SkipReason::kDamagedImage, "2.png");
+  test::fs::remove(scan(3));
+  expect_skipped(3, SkipReason::kMissingScan, "no scan 3");
+  write_scan(folder_ / "lidar/1000000.bin", {{1, 2, 3, 4}});
+  EXPECT_THAT(error<InputError>(), HasSubstr("over 999999"));
+  test::fs::remove_all(folder_ / "lidar");
+  EXPECT_THAT(error<InputError>(), HasSubstr("the drive has no scan"));
+  write_text(toml_, "version = 3");
+  EXPECT_THAT(error<ConfigError>(), HasSubstr("drive.toml"));
+}
+
+class GenericNavigation : public GenericDrive {
+ protected:
+  GenericNavigation() { test::fs::remove(folder_ / "poses.csv"); }
+
+  /// A way from the origin at 49 degrees north that heads 30 degrees north of east, 1.2 m a step.
+  static GeodeticPoint place(int i) {
+    const LocalTangentPlane local({49, 8.4, 100});
+    const double way = 1.2 * i;
+    return local.to_geodetic({way * std::cos(30 * kDegree), way * std::sin(30 * kDegree), 0});
+  }
+  static std::string gnss(const std::string& further = "",
+                          const std::function<std::string(int)>& cells = {}) {
+    std::string text = "time_ns,latitude,longitude,altitude" + further + "\n";
+    for (int i = 0; i < kFrames; ++i) {
+      const GeodeticPoint p = place(i);
+      text += fmt::format("{},{},{},{}{}\n", kStart + i * kStep, p.latitude, p.longitude,
+                          p.altitude, cells ? cells(i) : "");
+    }
+    return text;
+  }
+  /// Heading of the LiDAR at a frame.
+  static double heading(const FrameSource& drive, int i) {
+    const RigidMotion T = *drive.info().navigation->at(*drive.stamp(i));
+    return std::atan2(T.linear()(1, 0), T.linear()(0, 0)) / kDegree;
+  }
+};
+
+TEST_F(GenericNavigation, WithoutAnyThereIsANote) {
+  EXPECT_FALSE(open()->info().navigation);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("neither poses.csv nor gnss.csv")));
+}
+
+TEST_F(GenericNavigation, PositionsWithoutAttitudeHeadAlongTheirWay) {
+  write_text(folder_ / "gnss.csv", gnss());
+  const auto drive = open();
+  EXPECT_THAT(drive->info().notes, ElementsAre(HasSubstr("headings are those of the way")));
+  ASSERT_TRUE(drive->info().navigation);
+  for (int i = 0; i < kFrames; ++i) EXPECT_NEAR(heading(*drive, i), 30, 1e-3);
+  EXPECT_NEAR(drive->info().origin->latitude, 49, 1e-9);
+  EXPECT_NEAR(drive->info().origin->altitude, 102, 1e-6);  // the LiDAR sits 2 m above the body
+  EXPECT_THAT(drive->info().navigation_accuracy, testing::Each(0.0));
+}
+
+TEST_F(GenericNavigation, AttitudesAreAnglesOrQuaternions) {
+  write_text(folder_ / "gnss.csv", gnss(",roll,pitch,yaw,accuracy", [](int i) {
+               return fmt::format(",0,0,{},{}", 50 * kDegree, i == 2 ? "inf" : "0.25");
+             }));
+  const auto angles = open();
+  EXPECT_THAT(angles->info().notes, IsEmpty());
+  EXPECT_NEAR(heading(*angles, 3), 50, 1e-3);
+  EXPECT_EQ(angles->info().navigation_accuracy[1], 0.25);
+  EXPECT_TRUE(std::isinf(angles->info().navigation_accuracy[2]));
+  write_text(folder_ / "gnss.csv", gnss(",qx,qy,qz,qw", [](int) {
+               return fmt::format(",0,0,{},{}", std::sin(35 * kDegree), std::cos(35 * kDegree));
+             }));
+  EXPECT_NEAR(heading(*open(), 3), 70, 1e-3);
+}
+
+TEST_F(GenericNavigation, OrientationsOfAnImuServePositionsThatHaveNone) {
+  write_text(folder_ / "gnss.csv", gnss());
+  // From 10 to 20 degrees, at other times than the positions; the IMU looks to the left.
+  std::string imu = "time_ns,qx,qy,qz,qw,wx\n";
+  for (const auto& [ms, degrees] :
+       {std::pair(-10, 10.0), std::pair(90, 12.0), std::pair(190, 14.0), std::pair(290, 16.0),
+        std::pair(390, 18.0), std::pair(490, 20.0)}) {
+    const double half = (degrees + 90) * kDegree / 2;
+    imu += fmt::format("{},0,0,{},{},0\n", kStart + ms * 1'000'000, std::sin(half), std::cos(half));
+  }
+  write_text(folder_ / "imu.csv", imu);
+  test::edit(toml_, "[body]\n",
+             fmt::format("[body]\nT_body_imu = {{rotation = [0, 0, {0}, {0}]}}\n", std::sqrt(0.5)));
+  const auto drive = open();
+  EXPECT_THAT(drive->info().notes, IsEmpty());
+  EXPECT_NEAR(heading(*drive, 0), 10.2, 2e-3);
+  EXPECT_NEAR(heading(*drive, 3), 16.2, 2e-3);
+}
+
+TEST_F(GenericNavigation, TheAntennasPlaceIsTakenIntoAccount) {
+  write_text(folder_ / "gnss.csv",
+             gnss(",roll,pitch,yaw", [](int) { return fmt::format(",0,0,{}", 90 * kDegree); }));
+  const GeodeticPoint without = *open()->info().origin;
+  test::edit(toml_, "[body]\n", "[body]\nantenna = [1, 0, 0.5]\n");
+  const GeodeticPoint with = *open()->info().origin;
+  // The body looks north: its origin lies a metre south of the antenna.
+  EXPECT_NEAR((with.latitude - without.latitude) * 111'205, -1, 2e-3);
+  EXPECT_NEAR(with.altitude - without.altitude, -0.5, 1e-6);
+  EXPECT_NEAR(with.longitude, without.longitude, 1e-9);
+}
+
+TEST_F(GenericNavigation, BadLinesAreNotedAndNotUsed) {
+  std::string text = gnss();
+  text += fmt::format("{},91,8.4,100\n{},nan,8.4,100\n{},49,8.4,1e300\nnonsense\n5,49,8.4,100\n",
+                      kStart + 6 * kStep, kStart + 7 * kStep, kStart + 8 * kStep);
+  write_text(folder_ / "gnss.csv", text);
+  EXPECT_THAT(notes(),
+              testing::UnorderedElementsAre(HasSubstr("headings are those"),
+                                            HasSubstr("4 lines of"), HasSubstr("1 lines of")));
+}
+
+TEST_F(GenericNavigation, TablesThatAreNoneAreErrors) {
+  write_text(folder_ / "gnss.csv", "time_ns,lat\n");
+  EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("no column latitude"), HasSubstr("gnss.csv:1")));
+  write_text(folder_ / "gnss.csv", "time_ns,latitude,longitude,altitude\n");
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("no position that can be used")));
+  write_text(folder_ / "poses.csv",
+             "time_ns,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,0\n6,1e300,0,0,0,0,0,1\n");
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("2 lines of"), HasSubstr("no pose that can be used")));
+}
+
+}  // namespace
+}  // namespace fovea

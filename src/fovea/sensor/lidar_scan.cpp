@@ -1,0 +1,112 @@
+#include "fovea/sensor/lidar_scan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "fovea/base/errors.h"
+#include "fovea/sensor/kitti_scan.h"
+#include "fovea/sensor/pcd_rows.h"
+#include "fovea/sensor/ply_rows.h"
+
+namespace fovea {
+namespace {
+
+constexpr float kMaxCoordinate = 1000;  // m; no LiDAR reaches it
+constexpr double kMaxOffset = 1;        // s; no sweep lasts as long
+
+enum Column : std::size_t { kX, kY, kZ, kIntensity, kFirstTime };
+constexpr std::array<const char*, 8> kNames = {"x", "y",    "z",         "intensity",
+                                               "t", "time", "timestamp", "offset_time"};
+
+class ScanRows : public CloudRows {
+ public:
+  ScanRows(const ScanFormat& format, TimeNs stamp) : format_(format), stamp_(stamp) {}
+
+  std::span<const char* const> columns() const override { return kNames; }
+  const char* description() const override { return "x y z, intensity and time"; }
+
+  void begin(std::size_t points, std::span<const std::optional<Scalar>> types) override {
+    for (std::size_t column = types.size(); column-- > kFirstTime;) {
+      if (types[column]) time_ = column;
+    }
+    if (time_) unit_ = format_.time_unit.value_or(is_real(*types[*time_]) ? 1 : 1e-9);
+    scan_.emplace(points, time_.has_value());
+  }
+
+  void add(std::span<const double> row, std::size_t) override {
+    const Eigen::Vector3d position(row[kX], row[kY], row[kZ]);
+    scan_->add(position.cast<float>(), static_cast<float>(row[kIntensity] / format_.intensity_max),
+               time_ ? seconds_from_stamp(row[*time_]) : 0);
+  }
+
+  LidarScan take(const std::filesystem::path& file) { return scan_->take(file); }
+
+ private:
+  double seconds_from_stamp(double time) const {
+    if (format_.time_reference == TimeReference::kStamp) return time * unit_;
+    // Nanoseconds since 1970 take 61 bits: of numbers as large, doubles have but every 256th.
+    return (time - static_cast<double>(stamp_) * 1e-9 / unit_) * unit_;
+  }
+
+  ScanFormat format_;
+  TimeNs stamp_;
+  std::optional<std::size_t> time_;  // column
+  double unit_ = 1;                  // s
+  std::optional<ScanBuilder> scan_;
+};
+
+}  // namespace
+
+ScanBuilder::ScanBuilder(std::size_t points, bool timed) : timed_(timed) {
+  scan_.points.position.reserve(points);
+  scan_.points.intensity.reserve(points);
+  if (timed_) scan_.points.time.reserve(points);
+}
+
+void ScanBuilder::add(const Eigen::Vector3f& position, float intensity, double time) {
+  // Written so that NaN fails, too.
+  const bool usable = std::abs(position.x()) <= kMaxCoordinate &&
+                      std::abs(position.y()) <= kMaxCoordinate &&
+                      std::abs(position.z()) <= kMaxCoordinate && std::isfinite(intensity) &&
+                      std::abs(time) <= kMaxOffset &&
+                      !position.isZero(0);  // what drivers write where nothing came back
+  if (!usable) {
+    ++scan_.dropped;
+    return;
+  }
+  scan_.points.position.push_back(position);
+  scan_.points.intensity.push_back(intensity);
+  if (timed_) scan_.points.time.push_back(static_cast<float>(time));
+}
+
+LidarScan ScanBuilder::take(const std::filesystem::path& file) {
+  if (!scan_.points.empty()) return std::move(scan_);
+  throw InputError("the scan has no usable point (" + std::to_string(scan_.dropped) +
+                       " are not finite, beyond 1 km or over 1 s off the stamp)",
+                   file.string(), "restore the file from the drive's archive");
+}
+
+LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,
+                          TimeNs stamp) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".bin") {
+    LidarScan scan = read_kitti_scan(file);
+    const auto scale = static_cast<float>(format.intensity_max);
+    for (float& intensity : scan.points.intensity) intensity /= scale;
+    return scan;
+  }
+  ScanRows rows(format, stamp);
+  if (ending == ".pcd") {
+    read_pcd_rows(file, rows);
+  } else if (ending == ".ply") {
+    read_ply_rows(file, rows);
+  } else {
+    throw InputError("a scan of this ending is not read", file.string(), "give .bin, .pcd or .ply");
+  }
+  return rows.take(file);
+}
+
+}  // namespace fovea
