@@ -1,4 +1,4 @@
-// fovea render: a picture of a map.
+// fovea render: a picture of a map, or a whole drive through it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/viewpoint.h"
+#include "app/render_drive.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
@@ -16,14 +17,15 @@
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
 #include "fovea/pipeline/stored_calibration.h"
-#include "fovea/simulation/png_encode.h"
+#include "fovea/recording/png_encode.h"
 
 namespace fovea::app {
 namespace {
 
 struct RenderArguments {
+  RenderDriveArguments path;  // with --poses
   std::string map, drive, output, view = "behind";
-  int camera = 2;
+  std::string camera = "2";
   int frame = -1, width = 1280, height = 720;
   bool force = false;
 };
@@ -56,7 +58,7 @@ SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_
 /// The map as one of the drive's cameras sees it, above the photograph that it took.
 Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
                         const FrameRecord& frame) {
-  const DriveArguments drive_arguments{arguments.drive, "", std::to_string(arguments.camera)};
+  const DriveArguments drive_arguments{arguments.drive, "", arguments.camera};
   auto drive = drive_arguments.open();
   if (has_stored_calibration(map.meta)) {
     drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
@@ -90,6 +92,19 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map, const Fr
       .image;
 }
 
+/// What would otherwise be ignored without a word.
+void check_options(const CLI::App& command) {
+  const bool drive = command.count("--poses") > 0;
+  for (const char* option : {"--view", "--frame", "--width", "--height", "--force", "DRIVE"}) {
+    if (drive && command.count(option) > 0) {
+      throw CLI::ValidationError(option, "is for a single picture, without --poses");
+    }
+  }
+  for (const char* option : {"--cameras", "--lidar", "--rate", "--reach", "--threads", "--quiet"}) {
+    if (!drive && command.count(option) > 0) throw CLI::ValidationError(option, "needs --poses");
+  }
+}
+
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
   ScoredMapOptions loading;
@@ -112,10 +127,14 @@ void add_render_command(CLI::App& app) {
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
   command->add_option("DRIVE", arguments->drive,
                       "Draw what a camera of this drive sees, above its photograph");
-  command->add_option("-o,--output", arguments->output, "Picture to write")
+  command->add_option("-o,--output", arguments->output, "Picture to write, or with --poses a drive")
       ->required()
-      ->type_name("OUT.png");
-  command->add_option("--camera", arguments->camera, "Camera of DRIVE")->capture_default_str();
+      ->type_name("OUT.png|DIR");
+  command
+      ->add_option("--camera", arguments->camera,
+                   "Camera of DRIVE; with --poses W,H,fx,fy,cx,cy, or a drive or calibration "
+                   "folder whose cameras it has")
+      ->capture_default_str();
   command->add_option("--view", arguments->view, "Without DRIVE: driver, behind or above")
       ->capture_default_str()
       ->check(CLI::IsMember({"driver", "behind", "above"}));
@@ -128,7 +147,30 @@ void add_render_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(16, 8192));
   command->add_flag("--force", arguments->force, "Overwrite OUT");
-  command->callback([arguments] { run(*arguments); });
+  RenderDriveArguments& path = arguments->path;
+  command->add_option("--poses", path.poses,
+                      "Render a drive: images, depth and scans at each pose T_local_lidar of this "
+                      "file (docs/rendering.md)");
+  command->add_option("--cameras", path.cameras, "Which of the cameras there (default: as map)");
+  command->add_option("--lidar", path.lidar, "hdl64: scans, too")->check(CLI::IsMember({"hdl64"}));
+  command->add_option("--rate", path.rate, "Frames a second")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1000.0));
+  command->add_option("--reach", path.reach, "How far is seen, m")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--threads", path.threads, "At most this many threads (default: all)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--quiet", path.quiet, "Say nothing but errors");
+  command->callback([arguments, command] {
+    check_options(*command);
+    RenderDriveArguments& drive = arguments->path;
+    if (drive.poses.empty()) return run(*arguments);
+    drive.map = arguments->map;
+    drive.output = arguments->output;
+    if (command->count("--camera") > 0) drive.camera = arguments->camera;
+    render_drive_command(drive);
+  });
 }
 
 }  // namespace fovea::app

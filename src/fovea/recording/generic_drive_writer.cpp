@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 #include "fovea/recording/png_encode.h"
 
@@ -37,6 +39,18 @@ std::string pcd_text(const PointCloud& scan) {
     for (const float coordinate : scan.position[i]) put(coordinate);
     put(scan.intensity.empty() ? 0 : scan.intensity[i]);
     if (timed) put(scan.time[i]);
+  }
+  return bytes;
+}
+
+std::string kitti_text(const PointCloud& scan) {
+  if (!scan.time.empty()) throw std::invalid_argument("a KITTI scan has no place for times");
+  std::string bytes;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Eigen::Vector3f& p = scan.position[i];
+    const std::array<float, 4> point{p.x(), p.y(), p.z(),
+                                     scan.intensity.empty() ? 0 : scan.intensity[i]};
+    bytes.append(reinterpret_cast<const char*>(point.data()), sizeof point);
   }
   return bytes;
 }
@@ -131,8 +145,11 @@ GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root)
               {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "truth",
                "tracklet_labels.xml"}) {}
 
-void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar) {
-  folder_.write(std::filesystem::path("lidar") / file_name(number, ".pcd"), pcd_text(scan_lidar));
+void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
+                                    ScanFile format) {
+  const bool pcd = format == ScanFile::kPcd;
+  folder_.write(std::filesystem::path("lidar") / file_name(number, pcd ? ".pcd" : ".bin"),
+                pcd ? pcd_text(scan_lidar) : kitti_text(scan_lidar));
   const std::lock_guard lock(mutex_);
   scan_stamps_[number] = stamp;
 }

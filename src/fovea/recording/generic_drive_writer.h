@@ -49,6 +49,11 @@ struct RecordedInertia {
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< m/s^2, gravity included
 };
 
+enum class ScanFile {
+  kPcd,      ///< x y z intensity, and time where the scan has the points' times
+  kKittiBin  ///< x y z intensity; std::invalid_argument for a scan with times
+};
+
 /// All of a drive but its scans and images.
 struct RecordedDrive {
   std::vector<RecordedCamera> cameras;
@@ -70,8 +75,8 @@ class GenericDriveWriter {
   /// it.
   explicit GenericDriveWriter(const std::filesystem::path& root);
 
-  /// As PCD: x y z intensity, and time where the scan has the points' times.
-  void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar);
+  void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
+                  ScanFile format = ScanFile::kPcd);
   /// As PNG.
   void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
   /// An image that is encoded already.

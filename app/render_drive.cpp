@@ -1,0 +1,133 @@
+#include "app/render_drive.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "app/drive_arguments.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
+#include "fovea/geometry/pose_file.h"
+#include "fovea/rendering/render_drive.h"
+#include "fovea/sensor/kitti_calibration.h"
+
+namespace fovea::app {
+namespace {
+
+constexpr const char* kCameraForm =
+    "give W,H,fx,fy,cx,cy (pixels), or a drive or KITTI calibration folder";
+
+/// "a,b,c" as numbers; nothing if it is something else.
+std::optional<std::vector<double>> numbers_of(const std::string& text) {
+  std::vector<double> numbers;
+  const char* begin = text.data();
+  const char* const end = begin + text.size();
+  while (true) {
+    double number = 0;
+    const auto [after, error] = std::from_chars(begin, end, number);
+    if (error != std::errc()) return std::nullopt;
+    numbers.push_back(number);
+    if (after == end) return numbers;
+    if (*after != ',') return std::nullopt;
+    begin = after + 1;
+  }
+}
+
+/// A camera at the LiDAR that looks where it does: x right, y down, z forward.
+RenderedCamera camera_of(const std::vector<double>& numbers) {
+  constexpr double kMaxSide = 16384;
+  const auto whole = [](double side) { return side >= 1 && side <= kMaxSide && side == int(side); };
+  if (numbers.size() != 6 || !whole(numbers[0]) || !whole(numbers[1]) || !(numbers[2] > 0) ||
+      !(numbers[3] > 0)) {
+    throw CLI::ValidationError("--camera", kCameraForm);
+  }
+  Camera camera;
+  camera.width = int(numbers[0]), camera.height = int(numbers[1]);
+  camera.fx = numbers[2], camera.fy = numbers[3];
+  camera.cx = numbers[4], camera.cy = numbers[5];
+  camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return {"camera", camera};
+}
+
+std::vector<Camera> calibrated_cameras(const std::string& path, const std::vector<int>& wanted) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(fs::path(path) / "calib_cam_to_cam.txt")) {
+    DriveOptions options;
+    options.cameras = wanted;
+    return open_drive(path, options)->info().calibration.cameras;
+  }
+  std::vector<Camera> cameras;
+  for (const auto& [index, camera] : read_kitti_raw_calibration(path).cameras) {
+    if (wanted.empty() || std::count(wanted.begin(), wanted.end(), index) > 0) {
+      cameras.push_back(camera);
+    }
+  }
+  if (cameras.size() < std::max<std::size_t>(1, wanted.size())) {
+    throw ConfigError("the calibration lacks a camera", path,
+                      "give --cameras with numbers that it has");
+  }
+  return cameras;
+}
+
+std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) {
+  if (arguments.camera.empty()) return {};
+  if (const auto numbers = numbers_of(arguments.camera)) return {camera_of(*numbers)};
+  std::vector<int> wanted;
+  if (!arguments.cameras.empty()) wanted = parse_cameras(arguments.cameras);
+  std::vector<RenderedCamera> cameras;
+  for (Camera camera : calibrated_cameras(arguments.camera, wanted)) {
+    if (camera.width <= 0 || camera.height <= 0) {
+      throw InputError(fmt::format("the size of camera {} is not known", camera.index),
+                       arguments.camera, "give W,H,fx,fy,cx,cy instead");
+    }
+    camera.image_delay = 0;  // a rendered image is of its frame's own moment
+    cameras.push_back({fmt::format("camera_{}", camera.index), camera});
+  }
+  return cameras;
+}
+
+}  // namespace
+
+void render_drive_command(const RenderDriveArguments& arguments) {
+  const InterruptGuard interrupt;
+  const ThreadLimit threads(arguments.threads);
+  RenderJob job;
+  job.output = arguments.output;
+  job.cameras = find_cameras(arguments);
+  if (!arguments.lidar.empty()) job.lidar = hdl64();
+  if (job.cameras.empty() && !job.lidar) {
+    throw CLI::ValidationError("--poses", "needs --camera, --lidar, or both");
+  }
+  job.T_local_lidar = read_poses(arguments.poses);
+  job.period = from_seconds(1 / arguments.rate);
+  job.reach = arguments.reach;
+  job.stop = interrupt.token();
+  const MapReader map(arguments.map);
+  const auto figures = [&] {
+    ProgressBar bar(arguments.quiet);
+    return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });
+  }();
+  if (!figures)
+    throw Error("the rendering was interrupted", arguments.output, "give the same command again");
+  if (arguments.quiet) return;
+  fmt::print("{}: {} frames", arguments.output, figures->frames);
+  if (!job.cameras.empty()) {
+    fmt::print(", {} images each, {:.0f} % of their pixels show something", job.cameras.size(),
+               100 * figures->covered);
+  }
+  if (job.lidar) fmt::print(", {:.0f} points a scan", figures->points);
+  fmt::print("\n");
+  if (figures->blank > 0)
+    fmt::print("{} images are black: the map has nothing there\n", figures->blank);
+  if (figures->empty > 0)
+    fmt::print("{} scans have no point and were not written\n", figures->empty);
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,22 @@
+// fovea render --poses: a drive that nobody has driven.
+#pragma once
+
+#include <string>
+
+namespace fovea::app {
+
+struct RenderDriveArguments {
+  std::string map, output;
+  std::string poses;    ///< file of T_local_lidar
+  std::string camera;   ///< empty: none; six numbers, or where a calibration is
+  std::string cameras;  ///< of that calibration: numbers, or empty: all
+  std::string lidar;    ///< empty: none; its name
+  double rate = 10;     ///< frames a second
+  double reach = 80;    ///< m
+  int threads = 0;
+  bool quiet = false;
+};
+
+void render_drive_command(const RenderDriveArguments& arguments);
+
+}  // namespace fovea::app
