@@ -1,6 +1,7 @@
 #include "fovea/exporting/mesh/seen_points.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "fovea/exporting/mesh/mesh_lattice.h"
 #include "fovea/geometry/voxel_table.h"
@@ -47,8 +48,9 @@ SeenPoint seen_point(const Eigen::Vector3f& position, const Eigen::Vector3f& tow
   point.position = {position.x(), position.y(), position.z()};
   // Whoever was at the point itself, or all around it, has seen it from above.
   const float length = towards.norm();
-  const Eigen::Vector3f unit =
-      length > 0 ? Eigen::Vector3f(towards / length) : Eigen::Vector3f::UnitZ();
+  const Eigen::Vector3f unit = length > 0 && std::isfinite(length)
+                                   ? Eigen::Vector3f(towards / length)
+                                   : Eigen::Vector3f::UnitZ();
   for (std::size_t i = 0; i < 3; ++i) {
     point.towards[i] = static_cast<std::int8_t>(std::lround(127 * unit[Eigen::Index(i)]));
   }
