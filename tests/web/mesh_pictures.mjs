@@ -36,6 +36,6 @@ async function take(name, ...options) {
 }
 
 await take('mesh_points', '--format', '3dtiles');
-await take('mesh', '--format', 'mesh', ...(process.env.VOXEL ? ['--voxel', process.env.VOXEL] : []));
+await take('mesh', '--format', 'mesh');
 await browser.close();
 rmSync(folder, { recursive: true });
