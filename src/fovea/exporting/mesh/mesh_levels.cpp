@@ -99,7 +99,7 @@ BlockMesh mesh_block(const PointBlocks& points, const BlockKey& key) {
 void for_each_block_mesh(const PointBlocks& points,
                          const std::function<void(const BlockKey&, BlockMesh&)>& f) {
   const std::vector<BlockKey> keys = points.keys();
-  const auto at_a_time = static_cast<std::size_t>(2 * available_threads());
+  const std::size_t at_a_time = 2 * static_cast<std::size_t>(available_threads());
   for (std::size_t begin = 0; begin < keys.size(); begin += at_a_time) {
     std::vector<BlockMesh> meshes(std::min(at_a_time, keys.size() - begin));
     parallel_for(meshes.size(), 1,
