@@ -12,6 +12,8 @@
 #include "app/commands.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
+#include "fovea/exporting/mesh/mesh_file_writer.h"
+#include "fovea/exporting/mesh/mesh_tileset_writer.h"
 #include "fovea/exporting/pcd_writer.h"
 #include "fovea/exporting/ply_writer.h"
 #include "fovea/exporting/pose_writer.h"
@@ -25,17 +27,18 @@ struct ExportArguments {
   std::string map, output, format, where, crs = "local";
   PointChoice points;
   double utc_offset = seconds(LasOptions().utc_offset) / 3600;
+  double voxel = MeshOptions().voxel;
   bool double_positions = false, viewer = false, force = false, quiet = false;
 };
 
-constexpr const char* kFormats = "ply, pcd, las, 3dtiles or kitti-poses";
+constexpr const char* kFormats = "ply, pcd, las, 3dtiles, mesh, glb or kitti-poses";
 
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
 std::string format_of(const ExportArguments& arguments) {
   if (!arguments.format.empty()) return arguments.format;
   const std::string ending = std::filesystem::path(arguments.output).extension().string();
-  for (const char* format : {"ply", "pcd", "las"}) {
+  for (const char* format : {"ply", "pcd", "las", "glb"}) {
     if (ending == std::string(".") + format) return format;
   }
   throw CLI::ValidationError("--format",
@@ -43,18 +46,23 @@ std::string format_of(const ExportArguments& arguments) {
 }
 
 /// What would otherwise be ignored without a word.
-void check_options(const CLI::App& command, const std::string& format) {
+void check_options(const CLI::App& command, const ExportArguments& arguments,
+                   const std::string& format) {
   const auto only_for = [&](const char* option, const std::vector<std::string>& formats) {
     const bool applies = std::find(formats.begin(), formats.end(), format) != formats.end();
     if (applies || command.count(option) == 0) return;
     throw CLI::ValidationError(option, fmt::format("is for {}", fmt::join(formats, ", ")));
   };
+  if (format == "mesh" && std::filesystem::path(arguments.output).extension() == ".glb") {
+    throw CLI::ValidationError("--format", "mesh is a folder; leave it out for one .glb file");
+  }
   only_for("--crs", {"ply", "pcd", "las"});  // a tileset's root places it on earth by itself
   only_for("--double", {"ply", "pcd"});
   only_for("--utc-offset", {"las"});
-  only_for("--viewer", {"3dtiles"});
-  only_for("--uncolored", {"ply", "pcd", "las", "3dtiles"});
-  only_for("--where", {"ply", "pcd", "las", "3dtiles"});
+  only_for("--voxel", {"mesh", "glb"});
+  only_for("--viewer", {"3dtiles", "mesh"});
+  only_for("--uncolored", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
+  only_for("--where", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
 }
 
 void print_figures(const ExportArguments& arguments, const ExportFigures& figures) {
@@ -78,9 +86,41 @@ void print_times(const LasFigures& figures) {
   }
 }
 
+void print_mesh(const MeshFigures& figures) {
+  fmt::print("{} triangles of {} cells with points\n", figures.triangles, figures.cells);
+  if (figures.lonely_cells > 0) {
+    fmt::print("{} cells have too few others around them for a surface\n", figures.lonely_cells);
+  }
+  if (figures.uncolored_vertices > 0) {
+    fmt::print("{} vertices are grey: no coloured point is near\n", figures.uncolored_vertices);
+  }
+  if (figures.without_frame > 0) {
+    fmt::print("left out: {} points of frames that the map does not have\n", figures.without_frame);
+  }
+}
+
+/// A surface, as levels of detail in a folder or as one file.
+void write_mesh(const MapReader& map, const ExportArguments& arguments, bool levels) {
+  const MeshOptions options{arguments.points, arguments.voxel, arguments.force};
+  if (!levels) {
+    const MeshFigures figures = write_mesh_file(map, arguments.output, options);
+    if (arguments.quiet) return;
+    print_figures(arguments, figures);
+    print_mesh(figures);
+    return;
+  }
+  std::map<std::string, std::string> beside;
+  if (arguments.viewer) beside = viewer_files(map, viewer_page(), /*mesh=*/true);
+  const MeshTilesetFigures figures = write_mesh_tileset(map, arguments.output, options, beside);
+  if (arguments.quiet) return;
+  print_figures(arguments, figures);
+  print_mesh(figures);
+  fmt::print("{} tiles\n", figures.tiles);
+}
+
 void run(ExportArguments& arguments, const CLI::App& command) {
   const std::string format = format_of(arguments);
-  check_options(command, format);
+  check_options(command, arguments, format);
   const MapReader map(arguments.map);
   if (format == "kitti-poses") {
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
@@ -103,13 +143,14 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     TilesetOptions options{.points = arguments.points, .force = arguments.force};
     if (arguments.viewer) {
       options.with_sources = true;
-      options.beside = viewer_files(map, viewer_page());
+      options.beside = viewer_files(map, viewer_page(), /*mesh=*/false);
     }
     const TilesetFigures figures = write_tileset(map, arguments.output, options);
     report(figures);
     if (!arguments.quiet) fmt::print("{} tiles\n", figures.tiles);
     return;
   }
+  if (format == "mesh" || format == "glb") return write_mesh(map, arguments, format == "mesh");
   const auto write = format == "pcd" ? write_pcd : write_ply;
   report(write(map, arguments.output,
                {arguments.points, arguments.double_positions, arguments.force}));
@@ -122,13 +163,14 @@ void add_export_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("export", "Write a map in a form that other programs read");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
-  command->add_option("OUT", arguments->output, "File to write, or folder of 3dtiles")->required();
+  command->add_option("OUT", arguments->output, "File to write, or folder of 3dtiles and mesh")
+      ->required();
   command
       ->add_option("--format", arguments->format,
-                   "ply, pcd, las or 3dtiles (points; the last a folder), or kitti-poses "
-                   "(T_local_lidar a line); default: by OUT's "
-                   "ending")
-      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "kitti-poses"}));
+                   "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
+                   "3dtiles, a folder), glb (triangles, a file), or kitti-poses (T_local_lidar a "
+                   "line); default: by OUT's ending")
+      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "kitti-poses"}));
   command
       ->add_option("--crs", arguments->crs,
                    "Coordinates: local (the map's), utm (the origin's zone on WGS 84, ellipsoidal "
@@ -142,8 +184,13 @@ void add_export_command(CLI::App& app) {
           "LAS: hours that the drive's clock is ahead of UTC, for GPS times; KITTI's names "
           "no zone; default: 2, Karlsruhe's summer time")
       ->check(CLI::Range(-24.0, 24.0));
+  command
+      ->add_option("--voxel", arguments->voxel,
+                   "mesh, glb: about the edge of the finest triangles (m), at least twice the "
+                   "points' spacing; default: 0.05")
+      ->check(CLI::Range(0.01, 10.0));
   command->add_flag("--viewer", arguments->viewer,
-                    "3dtiles: with the page of 'fovea view', for any web server to show");
+                    "3dtiles, mesh: with the page of 'fovea view', for any web server to show");
   command->add_flag("--uncolored", arguments->points.include_uncolored,
                     "Also points that no camera coloured, in grey with camera -1");
   command->add_option(

@@ -145,6 +145,12 @@ TEST_F(Program, ExportsScoreTheSameInEveryFormat) {
   ASSERT_EQ(tiles.exit_code, 0) << tiles.err;
   EXPECT_THAT(tiles.out, HasSubstr(" tiles\n"));
   EXPECT_TRUE(std::filesystem::exists(own_ / "tiles/tileset.json"));
+  const ProgramRun mesh = exported(own_ / "mesh", "--format mesh --voxel 0.2");
+  ASSERT_EQ(mesh.exit_code, 0) << mesh.err;
+  EXPECT_THAT(mesh.out, HasSubstr(" triangles "));
+  EXPECT_TRUE(std::filesystem::exists(own_ / "mesh/tileset.json"));
+  ASSERT_EQ(exported(own_ / "scenery.glb", "--voxel 0.2").exit_code, 0);
+  EXPECT_THAT(read_text(own_ / "scenery.glb"), testing::StartsWith("glTF"));
   // A folder of other things is not replaced.
   const ProgramRun other = exported(own_.path(), "--format 3dtiles --force");
   EXPECT_EQ(other.exit_code, 1);
@@ -282,6 +288,10 @@ TEST_F(Program, WrongUsageIsExitCode2) {
                                 "export a b",
                                 "export a b.ply --crs wgs84",
                                 "export a b --format 3dtiles --crs utm",
+                                "export a b --format mesh --crs utm",
+                                "export a b.glb --format mesh",
+                                "export a b.glb --voxel 0",
+                                "export a b.ply --voxel 0.1",
                                 "export a b.las --double",
                                 "export a b.las --utc-offset soon",
                                 "map x -o y --nonsense"}) {
@@ -518,7 +528,8 @@ TEST_F(Program, BadMaps) {
 
 TEST_F(Program, UpsampleAndRegister) {
   const auto scan = [&](int i) {
-    return "'" + (drive_ / "velodyne_points/data" / (kitti_stem(i) + ".bin")).string() + "' ";
+    const auto file = drive_ / "velodyne_points/data" / (kitti_stem(i) + ".bin");
+    return fmt::format("'{}' ", file.string());
   };
   const auto ply = own_ / "dense.ply";
   const ProgramRun dense = run_fovea("upsample " + scan(0) + "'" + drive_.parent_path().string() +

@@ -55,5 +55,14 @@ TEST_F(ViewProgram, AFolderWithThePage) {
   EXPECT_NE(run_fovea(command + " --force").exit_code, 0);
 }
 
+TEST_F(ViewProgram, AFolderWithAMesh) {
+  const std::filesystem::path site = folder_ / "mesh";
+  ASSERT_EQ(
+      run_fovea("export " + map() + " " + site.string() + " --format mesh --viewer").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(site / "index.html"));
+  EXPECT_TRUE(std::filesystem::exists(site / "tileset.json"));
+  EXPECT_THAT(read_text(site / "map.json"), HasSubstr(R"("mesh":true)"));
+}
+
 }  // namespace
 }  // namespace fovea

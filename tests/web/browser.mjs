@@ -52,7 +52,7 @@ export class MapPage {
     });
     const map = new MapPage(await context.newPage());
     await map.page.goto(url);
-    if (wait) await map.comesTo('points are drawn', (state) => state.pointsDrawn > 0);
+    if (wait) await map.comesTo('the map is drawn', (state) => state.pointsDrawn + state.trianglesDrawn > 0);
     return map;
   }
 
@@ -86,7 +86,7 @@ export class MapPage {
     let before = '';
     for (let i = 0; i < 400; ++i) {
       const state = await this.state();
-      const now = JSON.stringify([state.pointsDrawn, state.camera.pose, state.mode, state.frame]);
+      const now = JSON.stringify([state.pointsDrawn, state.trianglesDrawn, state.camera.pose, state.mode, state.frame]);
       if (state.tilesLoading === 0 && now === before) return state;
       before = now;
       await sleep(250);

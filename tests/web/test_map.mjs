@@ -25,8 +25,13 @@ export class TestMap {
 
   /// Path of the export.
   export(name, ...options) {
+    return this.exportOf('map.fovea', name, ...options);
+  }
+
+  /// The same of another of the maps.
+  exportOf(map, name, ...options) {
     const output = join(this.folder, name);
-    const command = ['export', join(this.folder, 'map.fovea'), output, '--force', '--quiet'];
+    const command = ['export', join(this.folder, map), output, '--force', '--quiet'];
     execFileSync(programNamedBy('FOVEA_PROGRAM'), [...command, ...options]);
     return output;
   }

@@ -9,6 +9,7 @@ import { after, before, test } from 'node:test';
 import {
   countDifferent, countPixels, launchBrowser, MapPage, placeOf, serve,
 } from './browser.mjs';
+import { serveFolder } from './folder_server.mjs';
 import { programNamedBy, TestMap } from './test_map.mjs';
 
 const program = programNamedBy('FOVEA_PROGRAM');
@@ -192,30 +193,44 @@ test('a telephone', () => withPage(server.url, async (map) => {
 }, { width: 390, height: 844 }));
 
 test('a folder that any web server shows', async () => {
-  const { createServer } = await import('node:http');
-  const { readFile } = await import('node:fs/promises');
   const output = join(folder, 'site');
   execFileSync(program, ['export', join(folder, 'map.fovea'), output, '--format', '3dtiles', '--viewer',
     '--quiet']);
-  const types = { html: 'text/html', js: 'text/javascript', css: 'text/css', json: 'application/json' };
-  const web = createServer(async (request, response) => {
-    const path = new URL(request.url, 'http://localhost').pathname.replace(/^\/maps\/street\/$/,
-      '/maps/street/index.html');
-    try {
-      const bytes = await readFile(join(output, path.replace(/^\/maps\/street\//, '')));
-      response.setHeader('Content-Type', types[path.split('.').pop()] ?? 'application/octet-stream');
-      response.end(bytes);
-    } catch {
-      response.statusCode = 404;
-      response.end();
-    }
-  });
-  await new Promise((resolve) => { web.listen(0, '127.0.0.1', resolve); });
-  await withPage(`http://127.0.0.1:${web.address().port}/maps/street/`, async (map) => {
+  const web = await serveFolder(output);
+  await withPage(web.url, async (map) => {
     const state = await map.settles();
     assert.ok(state.pointsDrawn > 10_000);
     await map.mode('Range').click();
     await map.comesTo('another mode', (now) => now.mode === 'range');
   });
-  web.close();
+  web.stop();
+});
+
+test('a mesh', async () => {
+  const output = join(folder, 'mesh');
+  execFileSync(program, ['export', join(folder, 'map.fovea'), output, '--format', 'mesh', '--viewer',
+    '--voxel', '0.1', '--quiet']);
+  const web = await serveFolder(output);
+  await withPage(web.url, async (map) => {
+    const state = await map.settles();
+    assert.equal(state.pointsDrawn, 0);
+    assert.ok(state.trianglesDrawn > 5000, `${state.trianglesDrawn} triangles`);
+    const picture = await map.picture();
+    const background = (r, g, b) => r > 205 && g > 205 && b > 205;
+    const drawn = picture.width * picture.height - countPixels(picture, background);
+    assert.ok(drawn > 20_000, `${drawn} pixels are not background`);
+    // Fewer vertices are allowed, fewer are drawn.
+    await map.page.getByRole('slider', { name: 'Vertices to draw at most' }).fill('5');
+    const coarse = await map.settles();
+    assert.ok(coarse.trianglesDrawn <= 3 * coarse.budget, `${coarse.trianglesDrawn} of ${coarse.budget}`);
+    // Two clicks on the road measure between any two places on it, 1.7 m below the first scan.
+    await map.button('Measure (M)').click();
+    for (const x of [12, 16]) {
+      const place = placeOf(coarse, [x, 0, -1.7]);
+      await map.page.mouse.click(place.x, place.y);
+    }
+    const { measured } = await map.comesTo('a length', (now) => now.measured.length === 1);
+    assert.ok(Math.abs(measured[0] - 4) < 0.3, `${measured[0]} m`);
+  });
+  web.stop();
 });

@@ -96,6 +96,7 @@ export function kindTable(): Uint8Array<ArrayBuffer> {
 
 /** Modes that this map has data for. */
 export function modesOf(map: MapInfo): ColorMode[] {
+  if (map.mesh) return ['photograph'];
   return colorModes.filter((mode) => {
     if (mode === 'zone') return map.foveal !== null;
     if (mode === 'error') return map.images && map.cameras.length > 0;

@@ -13,7 +13,7 @@ Object3D.DEFAULT_UP.set(0, 0, 1);
 export const near = 0.1;
 export const far = 4000;
 
-/** The picture: points, lit, and lines over them. */
+/** The picture: points or triangles, lit, and lines over them. */
 export class MapScene {
   readonly renderer: WebGLRenderer;
   readonly camera = new PerspectiveCamera(60, 1, near, far);
@@ -23,6 +23,7 @@ export class MapScene {
   readonly eyeDome = new EyeDome();
   /** What the last picture had. */
   pointsDrawn = 0;
+  trianglesDrawn = 0;
   width = 1;
   height = 1;
   ratio = 1;
@@ -70,6 +71,7 @@ export class MapScene {
     renderer.clear();
     renderer.render(this.points, camera);
     this.pointsDrawn = renderer.info.render.points;
+    this.trianglesDrawn = renderer.info.render.triangles;
     renderer.setRenderTarget(null);
     renderer.clear();
     this.eyeDome.draw(renderer, camera);

@@ -60,7 +60,7 @@ export class Panel {
         { uncoloredInPhotograph: shown } : { uncoloredElsewhere: shown });
     });
     return el('section', {}, el('h2', {}, 'Colours'), group, this.hint, this.legend,
-      row('Points no camera saw', this.uncolored));
+      ...this.ofPoints(() => [row('Points no camera saw', this.uncolored)]));
   }
 
   private points(): HTMLElement {
@@ -70,21 +70,27 @@ export class Panel {
     this.budgetSlider.addEventListener('input', () => {
       this.settings.set({ fixedBudget: Math.round(10 ** Number(this.budgetSlider.value)) });
     });
-    this.budgetSlider.setAttribute('aria-label', 'Points to draw at most');
-    return el('section', {}, el('h2', {}, 'Points'),
+    const what = this.map.mesh ? 'Vertices' : 'Points';
+    this.budgetSlider.setAttribute('aria-label', `${what} to draw at most`);
+    return el('section', {}, el('h2', {}, what),
       row('As many as go well', this.automatic, this.budgetText),
       this.budgetSlider,
-      this.slider('Splat size', 'splatSize', 0.4, 3),
+      ...this.ofPoints(() => [this.slider('Splat size', 'splatSize', 0.4, 3)]),
       row('Eye-dome lighting', this.toggle('eyeDome')),
       this.slider('Strength', 'eyeDomeStrength', 0.1, 1.5),
-      row('Sharp seams between splats', this.toggle('paraboloids')));
+      ...this.ofPoints(() => [row('Sharp seams between splats', this.toggle('paraboloids'))]));
   }
 
   private extras(): HTMLElement {
     return el('section', {}, el('h2', {}, 'Also show'),
       row('Trajectory and vehicle', this.toggle('trajectory')),
       row('Foveal region of the frame', this.toggle('foveal')),
-      row('Rays to its points', this.toggle('rays')));
+      ...this.ofPoints(() => [row('Rays to its points', this.toggle('rays'))]));
+  }
+
+  /** What there is to set of points alone. */
+  private ofPoints(rows: () => HTMLElement[]): HTMLElement[] {
+    return this.map.mesh ? [] : rows();
   }
 
   private slider(label: string, key: 'splatSize' | 'eyeDomeStrength', min: number,

@@ -1,6 +1,8 @@
 // One vertex shader for all that is made of points: the picture, ids under the cursor, depth alone.
 // Colours are worked out in sRGB values, as they stand in the images and on the screen.
 
+import { srgbOfLight } from './srgb_shader';
+
 export const pointVertexShader = /* glsl */`
 in vec4 color;
 in float _frame;
@@ -42,10 +44,9 @@ flat out uint pointId;
 #endif
 
 #ifdef PICTURE
+${srgbOfLight}
 vec3 photograph() {
-  if (!linear) return color.rgb;
-  return mix(12.92 * color.rgb, 1.055 * pow(color.rgb, vec3(1.0 / 2.4)) - 0.055,
-             step(0.0031308, color.rgb));
+  return linear ? srgbOfLight(color.rgb) : color.rgb;
 }
 
 vec3 onRamp(float value) {

@@ -21,8 +21,10 @@ export class PointTools {
   private picked: PickedPoint | null = null;
   private active = false;
 
+  /** `surfaceAt`: the place in space at a pixel of the window. */
   constructor(scene: MapScene, private readonly map: MapInfo, trajectory: Trajectory,
-              lookFrom: PointCardEvents['lookFrom']) {
+              lookFrom: PointCardEvents['lookFrom'],
+              private readonly surfaceAt: (x: number, y: number) => Vector3 | null) {
     this.picking = new Picking(scene);
     this.card = new PointCard(map, trajectory, { lookFrom, close: () => this.drop() });
     this.labels = el('div', { class: 'labels' }, this.measure.labels, this.ring);
@@ -39,14 +41,15 @@ export class PointTools {
 
   /** The point at a place of the window. */
   at(x: number, y: number): PickedState | null {
-    const point = this.picking.at(x, y);
+    const point = this.map.mesh ? null : this.picking.at(x, y);
     return point && this.stateOf(point);
   }
 
   click(x: number, y: number): void {
-    const point = this.picking.at(x, y);
+    const point = this.map.mesh ? null : this.picking.at(x, y);
     if (this.active) {
-      if (point) this.measure.add(point.position);
+      const place = this.map.mesh ? this.surfaceAt(x, y) : point?.position;
+      if (place) this.measure.add(place);
     } else if (point) {
       this.picked = point;
       this.card.show(point);

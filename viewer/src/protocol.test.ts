@@ -18,6 +18,7 @@ describe('map.json', () => {
   test('is taken as it stands', () => {
     const parsed = parseMapInfo(map);
     expect(parsed.coloredPoints).toBe(9);
+    expect(parsed.mesh).toBe(false);
     expect(parsed.cameras[0]!.T_cam_lidar).toEqual(pose);
     expect(parsed.foveal).toEqual({ near: 3, far: 18 });
   });

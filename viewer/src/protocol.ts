@@ -21,6 +21,8 @@ export interface MapInfo {
   readonly points: number;
   readonly coloredPoints: number;
   readonly live: boolean;
+  /** Its tiles have triangles instead of points. */
+  readonly mesh: boolean;
   readonly tileset: string | null;
   readonly frames: string;
   /** Tells how far the server has read the map; null: there is no such thing. */
@@ -118,6 +120,7 @@ export function parseMapInfo(value: unknown): MapInfo {
     points: number(map, 'points'),
     coloredPoints: number(map, 'colored_points'),
     live: map.live === true,
+    mesh: map.mesh === true,
     tileset: typeof map.tileset === 'string' ? map.tileset : null,
     frames: String(map.frames ?? 'frames.json'),
     status: typeof map.status === 'string' ? map.status : null,

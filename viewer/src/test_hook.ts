@@ -15,6 +15,8 @@ export interface PickedState {
 
 export interface PageState {
   readonly pointsDrawn: number;
+  readonly trianglesDrawn: number;
+  /** Points, or vertices of triangles. */
   readonly pointsLoaded: number;
   readonly budget: number;
   /** Frames per second while pictures follow one another; 0 before any did. */

@@ -1,8 +1,9 @@
 import {
-  Box3, Group, Points, Vector2, Vector3, type Camera, type Object3D, type PerspectiveCamera,
+  Box3, Group, Mesh, Points, Vector2, Vector3, type Camera, type Object3D, type PerspectiveCamera,
 } from 'three';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 
+import { MeshObject, meshMaterial } from './mesh_object';
 import type { PointMaterials } from './point_material';
 import { PointObject } from './point_object';
 import { estimatedSpacing } from './spacing';
@@ -72,11 +73,12 @@ function nodeOf(tile: JsonTile, nodes: Map<JsonTile, TileNode>): TileNode {
 /** What happens to the tiles, for those who must act on it. */
 export interface TileEvents {
   changed(): void;
+  /** Not called for triangles. */
   firstTile(points: PointObject): void;
   failed(count: number, error: Error): void;
 }
 
-/** The finished map: 3D Tiles, as many as the budget of points allows. */
+/** The finished map: 3D Tiles, as many as the budget allows of points or of triangles' vertices. */
 export class TileLayer {
   readonly group = new Group();
   readonly cameras = new Set<number>();
@@ -88,6 +90,7 @@ export class TileLayer {
   private seenFirst = false;
   private rootFailed = false;
   private readonly size = new Vector2(1, 1);
+  private readonly meshMaterial = meshMaterial();
 
   constructor(url: string, private readonly materials: PointMaterials,
               private readonly events: TileEvents) {
@@ -160,6 +163,7 @@ export class TileLayer {
     this.tiles.forEachLoadedModel((scene) => {
       scene.traverse((object) => {
         if (object instanceof PointObject) points += object.pointCount;
+        else if (object instanceof MeshObject) points += object.vertexCount;
       });
     });
     return points;
@@ -212,26 +216,36 @@ export class TileLayer {
   }
 
   private adopt(scene: Object3D, tile: JsonTile): void {
-    const found: Points[] = [];
-    scene.traverse((object) => { if (object instanceof Points) found.push(object); });
+    const found: (Points | Mesh)[] = [];
+    scene.traverse((object) => {
+      if (object instanceof Points || object instanceof Mesh) found.push(object);
+    });
     let points = 0;
     for (const object of found) {
-      const own = this.pointsOf(object, tile);
+      const own = object instanceof Points ? this.pointsOf(object, tile) :
+        new MeshObject(object.geometry, this.meshMaterial);
       own.position.copy(object.position);
       own.quaternion.copy(object.quaternion);
       own.scale.copy(object.scale);
       object.parent!.add(own);
       object.removeFromParent();
-      points += own.pointCount;
-      this.noteCameras(own);
-      if (!this.seenFirst) {
-        this.seenFirst = true;
-        own.parent!.updateWorldMatrix(true, true);
-        this.events.firstTile(own);
+      if (own instanceof PointObject) {
+        points += own.pointCount;
+        this.notePoints(own);
+      } else {
+        points += own.vertexCount;
       }
+      this.seenFirst = true;
     }
     const node = this.nodes.get(tile);
     if (node) node.points = points;
+  }
+
+  private notePoints(points: PointObject): void {
+    this.noteCameras(points);
+    if (this.seenFirst) return;
+    points.parent!.updateWorldMatrix(true, true);
+    this.events.firstTile(points);
   }
 
   private pointsOf(from: Points, tile: JsonTile): PointObject {

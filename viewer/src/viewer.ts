@@ -114,7 +114,8 @@ export class Viewer {
         { text: `There is no image ${path}. Look at another frame.` }, 6),
     });
     this.tools = new PointTools(this.scene, map, this.trajectory,
-      (frame, camera) => this.lookFrom(frame, camera));
+      (frame, camera) => this.lookFrom(frame, camera),
+      (x, y) => this.probe.at(this.scene.renderer, this.scene.camera, x, y));
     this.line = new TrajectoryLine(this.trajectory);
     this.foveal = new FovealOverlay(map);
     this.comparison = new ImageComparison(this.scene, () => this.loop.invalidate(),
@@ -158,6 +159,7 @@ export class Viewer {
     const live = this.live?.session ?? null;
     return {
       pointsDrawn: this.scene.pointsDrawn,
+      trianglesDrawn: this.scene.trianglesDrawn,
       pointsLoaded: (this.tiles?.pointsLoaded ?? 0) + (live?.layer.points ?? 0),
       budget: this.budget.points,
       fps: this.budget.fps,
@@ -733,7 +735,9 @@ export class Viewer {
   }
 
   private showStatus(): void {
-    const parts = [`${short(this.scene.pointsDrawn)} points drawn`];
+    const { pointsDrawn, trianglesDrawn } = this.scene;
+    const parts = [this.map.mesh ? `${short(trianglesDrawn)} triangles drawn` :
+      `${short(pointsDrawn)} points drawn`];
     if (this.budget.fps > 0) parts.push(`${Math.round(this.budget.fps)} fps`);
     const loading = this.tiles?.loading ?? 0;
     if (loading > 0) parts.push(`${loading} tiles on their way`);

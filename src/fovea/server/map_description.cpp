@@ -70,6 +70,7 @@ std::string to_json(const MapDescription& map) {
                {"points", map.points},
                {"colored_points", map.colored_points},
                {"live", map.live},
+               {"mesh", map.mesh},
                {"tileset", nullptr},
                {"frames", "frames.json"},
                {"status", nullptr},

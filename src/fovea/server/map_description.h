@@ -21,6 +21,7 @@ struct MapDescription {
   std::string name;
   std::size_t points = 0, colored_points = 0;
   bool live = false;
+  bool mesh = false;    ///< whether its tiles have triangles instead of points
   std::string tileset;  ///< its address; empty: none yet
   bool status = false;  ///< whether status.json tells how far it has been read
   bool images = false;

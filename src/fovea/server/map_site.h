@@ -30,8 +30,9 @@ WebResponse page_response(std::span<const PageFile> page, const std::string& pat
 
 /// What makes a folder with a tileset one that any web server shows: the page, map.json and
 /// frames.json, by their places in it. InputError if the map's meta data are damaged.
+/// @param mesh  whether the tileset has triangles instead of points
 std::map<std::string, std::string> viewer_files(const MapReader& map,
-                                                std::span<const PageFile> page);
+                                                std::span<const PageFile> page, bool mesh);
 
 /// A drive's images as JPEG, by the frames' numbers in the map.
 class DriveImages {

@@ -4,49 +4,29 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
-#include "fovea/base/version.h"
 #include "fovea/exporting/byte_packer.h"
+#include "fovea/exporting/gltf.h"
 #include "fovea/exporting/point_source.h"
 
 namespace fovea {
 namespace {
 
 constexpr double kMaxStep = 65535;
-constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2;                // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;  // "JSON", "BIN"
 
-// glTF's numbers for the types of components.
-constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kFloat = 5126;
-
-/// An attribute and what a point has of it in a buffer view of its own.
+/// An attribute and what a point has of it.
 struct Attribute {
   const char* name;
-  int component_type;
-  bool normalized;
-  const char* type;
-  std::size_t stride;  // glTF wants multiples of 4
+  GltfColumn column;
 };
 constexpr std::array kPointAttributes{
-    Attribute{"POSITION", kUnsignedShort, false, "VEC3", 8},
-    Attribute{"COLOR_0", kUnsignedShort, true, "VEC4", 8},
-    Attribute{"_FRAME", kFloat, false, "SCALAR", 4},
-    Attribute{"_SIGHT", kUnsignedShort, false, "VEC2", 4},
-    Attribute{"_SOURCE", kUnsignedByte, false, "VEC4", 4},
+    Attribute{"POSITION", {GltfType::kUnsignedShort, false, "VEC3", 8}},
+    Attribute{"COLOR_0", {GltfType::kUnsignedShort, true, "VEC4", 8}},
+    Attribute{"_FRAME", {GltfType::kFloat, false, "SCALAR", 4}},
+    Attribute{"_SIGHT", {GltfType::kUnsignedShort, false, "VEC2", 4}},
+    Attribute{"_SOURCE", {GltfType::kUnsignedByte, false, "VEC4", 4}},
 };
 constexpr std::size_t kPlainAttributes = 2;
-
-/// IEC 61966-2-1, to 16 bits.
-std::array<std::uint16_t, 256> linear_of_srgb() {
-  std::array<std::uint16_t, 256> linear{};
-  for (std::size_t i = 0; i < linear.size(); ++i) {
-    const double s = static_cast<double>(i) / 255;
-    const double light = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-    linear[i] = static_cast<std::uint16_t>(std::lround(65535 * light));
-  }
-  return linear;
-}
 
 /// The points' bounding cube, and places in it.
 struct Quantiser {
@@ -61,43 +41,28 @@ struct Quantiser {
   double step;
 };
 
-std::string header() {
-  return fmt::format(R"({{"asset":{{"version":"2.0","generator":"fovea {}"}},)", version());
-}
-
+/// @param buffer  gets the attributes
 std::string json(const Quantiser& quantiser, std::size_t points,
-                 std::span<const Attribute> attributes) {
-  const double s = quantiser.step;
-  const Eigen::Vector3d low = quantiser.box.min();
+                 std::span<const Attribute> attributes, GltfBuffer& buffer) {
   const Eigen::Array3i high = quantiser.quantised(quantiser.box.max());
-  std::string names, accessors, views;
-  std::size_t offset = 0;
-  for (std::size_t i = 0; i < attributes.size(); ++i) {
-    const Attribute& a = attributes[i];
-    const char* comma = i == 0 ? "" : ",";
-    names += fmt::format(R"({}"{}":{})", comma, a.name, i);
-    accessors += fmt::format(
-        R"({}{{"bufferView":{},"componentType":{},"normalized":{},"count":{},"type":"{}")", comma,
-        i, a.component_type, a.normalized, points, a.type);
-    if (i == 0) {
-      accessors += fmt::format(R"(,"min":[0,0,0],"max":[{},{},{}])", high.x(), high.y(), high.z());
-    }
-    accessors += '}';
-    views += fmt::format(
-        R"({}{{"buffer":0,"byteOffset":{},"byteLength":{},"byteStride":{},"target":34962}})", comma,
-        offset, a.stride * points, a.stride);
-    offset += a.stride * points;
+  std::string names;
+  for (const Attribute& a : attributes) {
+    const bool first = names.empty();
+    const std::size_t number = buffer.add(
+        a.column, points,
+        first ? fmt::format(R"(,"min":[0,0,0],"max":[{},{},{}])", high.x(), high.y(), high.z())
+              : "");
+    names += fmt::format(R"({}"{}":{})", first ? "" : ",", a.name, number);
   }
-  return header() +
+  return gltf_begin() +
          fmt::format(
              R"("extensionsUsed":["KHR_mesh_quantization","KHR_materials_unlit"],)"
              R"("extensionsRequired":["KHR_mesh_quantization"],)"
              R"("scene":0,"scenes":[{{"nodes":[0]}}],)"
-             R"("nodes":[{{"mesh":0,"matrix":[{},0,0,0,0,0,{},0,0,{},0,0,{},{},{},1]}}],)"
+             R"("nodes":[{{"mesh":0,"matrix":{}}}],)"
              R"("meshes":[{{"primitives":[{{"mode":0,"attributes":{{{}}},"material":0}}]}}],)"
-             R"("materials":[{{"extensions":{{"KHR_materials_unlit":{{}}}}}}],)"
-             R"("accessors":[{}],"bufferViews":[{}],"buffers":[{{"byteLength":{}}}]}})",
-             s, -s, s, low.x(), low.z(), -low.y(), names, accessors, views, offset);
+             R"("materials":[{{"extensions":{{"KHR_materials_unlit":{{}}}}}}],{}}})",
+             gltf_matrix(quantiser.step, quantiser.box.min()), names, buffer.json());
 }
 
 void put_sources(std::span<const ExportPoint> points, BytePacker& packer) {
@@ -114,39 +79,19 @@ void put_sources(std::span<const ExportPoint> points, BytePacker& packer) {
   }
 }
 
-std::string file(std::string text, std::size_t binary) {
-  text.append((4 - text.size() % 4) % 4, ' ');
-  const std::size_t chunk = binary == 0 ? 0 : 8 + binary;
-  std::string bytes;
-  bytes.reserve(20 + text.size() + chunk);
-  BytePacker packer(bytes);
-  packer.put(kMagic);
-  packer.put(kVersion);
-  packer.put(static_cast<std::uint32_t>(20 + text.size() + chunk));
-  packer.put(static_cast<std::uint32_t>(text.size()));
-  packer.put(kJsonChunk);
-  packer.put_text(text, text.size());
-  if (binary > 0) {
-    packer.put(static_cast<std::uint32_t>(binary));
-    packer.put(kBinChunk);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 Glb make_glb(std::span<const ExportPoint> points, bool with_sources) {
-  if (points.empty()) return {file(header() + R"("scene":0,"scenes":[{}]})", 0), 0};
-  static const std::array<std::uint16_t, 256> kLinear = linear_of_srgb();
+  if (points.empty()) return {empty_glb(), 0};
   const Quantiser quantiser(points);
   const std::span<const Attribute> attributes =
       std::span(kPointAttributes).first(with_sources ? kPointAttributes.size() : kPlainAttributes);
-  std::size_t stride = 0;
-  for (const Attribute& attribute : attributes) stride += attribute.stride;
 
   Glb glb;
   glb.step = quantiser.step;
-  glb.bytes = file(json(quantiser, points.size(), attributes), stride * points.size());
+  GltfBuffer buffer;
+  const std::string text = json(quantiser, points.size(), attributes, buffer);
+  glb.bytes = glb_head(text, buffer.bytes());
   BytePacker packer(glb.bytes);
   for (const ExportPoint& point : points) {
     for (const int coordinate : quantiser.quantised(point.position)) {
@@ -156,7 +101,8 @@ Glb make_glb(std::span<const ExportPoint> points, bool with_sources) {
   }
   for (const ExportPoint& point : points) {
     const Rgb color = point.color;
-    for (const std::uint8_t channel : {color.r, color.g, color.b}) packer.put(kLinear[channel]);
+    for (const std::uint8_t channel : {color.r, color.g, color.b})
+      packer.put(linear_light(channel));
     packer.put(std::uint16_t{65535});
   }
   if (with_sources) put_sources(points, packer);

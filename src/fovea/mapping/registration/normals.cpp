@@ -1,12 +1,12 @@
 #include "fovea/mapping/registration/normals.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 
 #include "fovea/base/lanes.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/kd_tree.h"
+#include "fovea/geometry/plane_moments.h"
 #include "fovea/geometry/voxel_members.h"
 
 namespace fovea {
@@ -14,67 +14,11 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// A neighbourhood is a line, and has no plane, if its second variance is below this share of its
-/// first.
-constexpr float kLineRatio = 1e-4f;
-/// Power iterations: to the 2^4th power.
-constexpr int kSquarings = 4;
-
-/// Sums over points around one of them, which is near: squares of coordinates near 100 m would
-/// cancel.
-struct Moments {
-  float count = 0;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Vector3f squares = Eigen::Vector3f::Zero();   // xx, yy, zz
-  Eigen::Vector3f products = Eigen::Vector3f::Zero();  // yz, xz, xy
-
-  void add(const Eigen::Vector3f& p) {
-    count += 1;
-    sum += p;
-    squares += p.cwiseProduct(p);
-    products += Eigen::Vector3f(p.y() * p.z(), p.x() * p.z(), p.x() * p.y());
-  }
-};
-
-/// A symmetric matrix's adjugate: its inverse but for a factor, and there where it is singular.
-Eigen::Matrix3f adjugate(const Eigen::Matrix3f& m) {
-  Eigen::Matrix3f a;
-  a.col(0) = m.col(1).cross(m.col(2));
-  a.col(1) = m.col(2).cross(m.col(0));
-  a.col(2) = m.col(0).cross(m.col(1));
-  return a;
-}
-
 /// Direction of least variance, towards the origin; zero where there is no plane.
 /// @param center  of the moments
-Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3f& center) {
+Eigen::Vector3f plane_normal(const PlaneMoments& moments, const Eigen::Vector3f& center) {
   if (moments.count < 3) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f mean = moments.sum / moments.count;
-  const Eigen::Vector3f beside =
-      moments.products / moments.count -
-      Eigen::Vector3f(mean.y() * mean.z(), mean.x() * mean.z(), mean.x() * mean.y());
-  Eigen::Matrix3f covariance;
-  covariance.diagonal() = moments.squares / moments.count - mean.cwiseProduct(mean);
-  covariance(1, 2) = covariance(2, 1) = beside[0];
-  covariance(0, 2) = covariance(2, 0) = beside[1];
-  covariance(0, 1) = covariance(1, 0) = beside[2];
-  const float spread = covariance.trace();
-  if (!(spread > 0)) return Eigen::Vector3f::Zero();
-  covariance /= spread;
-
-  // The adjugate has the same eigenvectors, and that of the least variance has the largest
-  // eigenvalue, the product of the two others. Squaring makes it prevail (power iteration).
-  Eigen::Matrix3f power = adjugate(covariance);
-  const float area = power.trace();
-  if (!(area > kLineRatio)) return Eigen::Vector3f::Zero();
-  power /= area;
-  for (int i = 0; i < kSquarings; ++i) {
-    power = (power * power).eval();
-    power /= power.trace();
-  }
-  Eigen::Index widest = 0;
-  power.diagonal().maxCoeff(&widest);
-  const Eigen::Vector3f normal = power.col(widest).normalized();
+  const Eigen::Vector3f normal = direction_of_least_variance(moments.covariance());
   return normal.dot(center) > 0 ? Eigen::Vector3f(-normal) : normal;
 }
 
@@ -111,7 +55,7 @@ class Surroundings {
   }
 
   /// Of those within a radius.
-  Moments moments(const Eigen::Vector3f& center, float radius) const {
+  PlaneMoments moments(const Eigen::Vector3f& center, float radius) const {
     Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
     const Lanes radius2 = all_lanes(radius * radius), one = all_lanes(1);
     const std::size_t blocks = (size_ + kLanes - 1) / kLanes;
@@ -173,7 +117,7 @@ void look_around(std::span<const Eigen::Vector3f> points, float radius, float en
         if (done[i] != 0) continue;
         if (surroundings.size() == 0) gather(cell, surroundings);
         if (static_cast<float>(surroundings.size()) < enough) break;
-        const Moments moments = surroundings.moments(points[i], radius);
+        const PlaneMoments moments = surroundings.moments(points[i], radius);
         if (moments.count < enough) continue;
         normals[i] = plane_normal(moments, points[i]);
         done[i] = 1;
@@ -201,7 +145,7 @@ std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> po
     std::vector<Neighbor> found;
     for (std::size_t i = begin; i < end; ++i) {
       tree.nearest_k(points[i], static_cast<std::size_t>(neighbors), found);
-      Moments moments;
+      PlaneMoments moments;
       for (const Neighbor& neighbor : found) moments.add(points[neighbor.index] - points[i]);
       normals[i] = plane_normal(moments, points[i]);
     }
