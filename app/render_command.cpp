@@ -16,7 +16,7 @@
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
 #include "fovea/pipeline/stored_calibration.h"
-#include "fovea/simulation/png_encode.h"
+#include "fovea/recording/png_encode.h"
 
 namespace fovea::app {
 namespace {

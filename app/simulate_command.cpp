@@ -1,4 +1,4 @@
-// fovea simulate: a drive with its truth, in KITTI's raw format.
+// fovea simulate: a drive with its truth, in KITTI's raw format or as a folder with a drive.toml.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,7 +19,7 @@ namespace fovea::app {
 namespace {
 
 struct SimulateArguments {
-  std::string output, scene = "street", noise = "default", config;
+  std::string output, scene = "street", noise = "default", format = "kitti", config;
   std::vector<std::string> settings;
   int seed = 1, frames = 100, threads = 0;
   bool quiet = false;
@@ -29,6 +29,7 @@ SimulationOptions resolve_options(const SimulateArguments& arguments) {
   SimulationOptions options = simulation_options(parse_scene(arguments.scene), arguments.noise);
   options.seed = arguments.seed;
   options.frames = arguments.frames;
+  options.format = arguments.format == "generic" ? DriveFormat::kGeneric : DriveFormat::kKitti;
   if (!arguments.config.empty()) apply_config_file(arguments.config, options);
   for (const std::string& setting : arguments.settings) apply_setting(setting, options);
   return options;
@@ -59,8 +60,8 @@ void run(const SimulateArguments& arguments) {
 
 void add_simulate_command(CLI::App& app) {
   auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand(
-      "simulate", "Write a simulated KITTI raw drive together with what is true about it");
+  CLI::App* command =
+      app.add_subcommand("simulate", "Write a simulated drive together with what is true about it");
   command->add_option("-o,--output", arguments->output, "Folder to make")
       ->required()
       ->type_name("DIR");
@@ -80,6 +81,11 @@ void add_simulate_command(CLI::App& app) {
                    fmt::format("Of all sensors: {}", fmt::join(noise_names(), ", ")))
       ->capture_default_str()
       ->check(CLI::IsMember(noise_names()));
+  command
+      ->add_option("--format", arguments->format,
+                   "kitti: KITTI raw; generic: a folder with a drive.toml (docs/drives.md)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"kitti", "generic"}));
   command->add_option("--config", arguments->config, "Keys that differ (docs/simulator.md)")
       ->type_name("FILE.toml");
   command->add_option("--set", arguments->settings, "One key, may be repeated")

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-declare -A floor=([base]=0 [geometry]=1 [sensor]=2 [mapping]=2 [map]=2 [world]=2 [pipeline]=3 [evaluation]=3
+declare -A floor=([base]=0 [geometry]=1 [sensor]=2 [mapping]=2 [map]=2 [world]=2 [recording]=2 [pipeline]=3 [evaluation]=3
   [simulation]=3 [exporting]=3 [merging]=4 [server]=4)
 failed=0
 while IFS=: read -r file line include; do
@@ -18,7 +18,7 @@ while IFS=: read -r file line include; do
   elif [[ $from != "$to" && ${floor[$to]} -ge ${floor[$from]} ]]; then
     echo "$file:$line: $from/ (floor ${floor[$from]}) must not include $to/ (floor ${floor[$to]})" >&2
     failed=1
-  elif [[ $from == simulation && $file != *_test.cpp && ! $to =~ ^(simulation|world|geometry|base)$ ]]; then
+  elif [[ $from == simulation && $file != *_test.cpp && ! $to =~ ^(simulation|recording|world|geometry|base)$ ]]; then
     # What the product is judged by shares nothing with it but mathematics; its tests may read back.
     echo "$file:$line: simulation/ must not include $to/" >&2
     failed=1

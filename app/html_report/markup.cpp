@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "fovea/exporting/jpeg_encode.h"
-#include "fovea/simulation/png_encode.h"
+#include "fovea/recording/png_encode.h"
 
 namespace fovea::app {
 namespace {

@@ -42,15 +42,20 @@ bool same_plane(const RayHit& a, const RayHit& b) {
          std::abs(a.normal.dot(a.position - b.position)) < 1e-6;
 }
 
-Vector3d direction(const Camera& camera, const RigidMotion& T_world_cam, double u, double v) {
-  const Vector3d ray((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1);
-  return (T_world_cam.linear() * ray).normalized();
+Vector3d direction(const LensCamera& camera, const RigidMotion& T_world_cam, double u, double v) {
+  // The options are checked for lenses that reach all of the image.
+  return (T_world_cam.linear() * camera.ray({u, v}).value()).normalized();
 }
 
 }  // namespace
 
-CameraModel::CameraModel(const RayCaster& caster, const Shader& shader, const Camera& camera)
+CameraModel::CameraModel(const RayCaster& caster, const Shader& shader, const LensCamera& camera)
     : caster_(caster), shader_(shader), camera_(camera) {}
+
+CameraModel::CameraModel(const RayCaster& caster, const Shader& shader, const Camera& camera)
+    : CameraModel(caster, shader,
+                  LensCamera{camera.width, camera.height, camera.fx, camera.fy, camera.cx,
+                             camera.cy, Lens()}) {}
 
 /// What the samples of a pixel's square add up to.
 class CameraModel::PixelSum {
@@ -151,9 +156,9 @@ double CameraModel::depth_at(double u, double v, const RigidMotion& T_world_cam,
 
 double CameraModel::depth_of_plane(const RayHit& on_plane, double u, double v,
                                    const RigidMotion& T_world_cam) const {
-  const Vector3d ray((u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1);
+  const Vector3d ray = camera_.ray({u, v}).value();
   const Vector3d normal = T_world_cam.linear().transpose() * on_plane.normal;
-  return normal.dot(T_world_cam.inverse() * on_plane.position) / normal.dot(ray);
+  return ray.z() * normal.dot(T_world_cam.inverse() * on_plane.position) / normal.dot(ray);
 }
 
 Rendering CameraModel::render(const RigidMotion& T_world_cam,

@@ -6,6 +6,7 @@
 
 #include "fovea/base/image.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/geometry/lens.h"
 #include "fovea/simulation/shading.h"
 
 namespace fovea {
@@ -19,7 +20,9 @@ struct Rendering {
 
 class CameraModel {
  public:
-  /// Keeps references.
+  /// Keeps references. Every ray through the image, half a pixel round it included, must be there.
+  CameraModel(const RayCaster& caster, const Shader& shader, const LensCamera& camera);
+  /// A camera without distortion.
   CameraModel(const RayCaster& caster, const Shader& shader, const Camera& camera);
 
   Rendering render(const RigidMotion& T_world_cam, const RayCaster::Moment& moment) const;
@@ -51,7 +54,7 @@ class CameraModel {
 
   const RayCaster& caster_;
   const Shader& shader_;
-  Camera camera_;
+  LensCamera camera_;
 };
 
 /// How light becomes numbers in one image.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "fovea/base/random.h"
@@ -46,8 +47,9 @@ std::string join(std::initializer_list<Eigen::Vector3d> vectors) {
   return text;
 }
 
-std::string record_text(const LocalTangentPlane& local, const RigidMotion& T_local_imu,
-                        const Derivatives& derivatives, const NavigationError& error) {
+NavigationRecord record_of(TimeNs time, const LocalTangentPlane& local,
+                           const RigidMotion& T_local_imu, const Derivatives& derivatives,
+                           const NavigationError& error) {
   // Everything is said in the east-north-up frame of the place that the unit believes to be at.
   const GeodeticPoint place = local.to_geodetic(T_local_imu.translation() + error.position);
   const Eigen::Matrix3d R_enu_local = local.T_local_enu(place).linear().transpose();
@@ -56,6 +58,14 @@ std::string record_text(const LocalTangentPlane& local, const RigidMotion& T_loc
   const double pitch = -std::asin(R_enu_imu(2, 0)) + error.angles.y();
   const double heading = std::atan2(R_enu_imu(1, 0), R_enu_imu(0, 0));
   const double yaw = heading + error.angles.z();
+  NavigationRecord record{
+      .time = time,
+      .place = place,
+      .roll = wrap(roll),
+      .pitch = wrap(pitch),
+      .yaw = wrap(yaw),
+      .accuracy = error.outage ? std::numeric_limits<double>::infinity() : error.accuracy,
+      .text = {}};
 
   // Level: forward along the heading, left, up.
   const Eigen::Matrix3d R_level_enu =
@@ -68,13 +78,14 @@ std::string record_text(const LocalTangentPlane& local, const RigidMotion& T_loc
 
   constexpr int kLocked = 4, kDifferential = 4, kNone = 0, kSatellites = 8;
   const int mode = error.outage ? kNone : kDifferential;
-  return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.15g} {:.15g}",
-                     place.latitude, place.longitude, place.altitude, wrap(roll), wrap(pitch),
-                     wrap(yaw), velocity_enu.y(), velocity_enu.x()) +
-         join({velocity_level, R_enu_imu.transpose() * force_enu, R_level_enu * force_enu,
-               derivatives.rate_body, R_level_enu * rate_enu}) +
-         fmt::format(" {:.15g} {:.15g} {} {} {} {} {}\n", error.accuracy, kVelocityAccuracy,
-                     kLocked, error.outage ? 0 : kSatellites, mode, mode, kNone);
+  record.text = fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.15g} {:.15g}",
+                            place.latitude, place.longitude, place.altitude, record.roll,
+                            record.pitch, record.yaw, velocity_enu.y(), velocity_enu.x()) +
+                join({velocity_level, R_enu_imu.transpose() * force_enu, R_level_enu * force_enu,
+                      derivatives.rate_body, R_level_enu * rate_enu}) +
+                fmt::format(" {:.15g} {:.15g} {} {} {} {} {}\n", error.accuracy, kVelocityAccuracy,
+                            kLocked, error.outage ? 0 : kSatellites, mode, mode, kNone);
+  return record;
 }
 
 }  // namespace
@@ -102,16 +113,16 @@ std::string navigation_format_text() {
 std::vector<NavigationRecord> simulate_navigation(const VehicleMotion& motion, const Rig& rig,
                                                   const RigidMotion& T_world_local,
                                                   const SimulationOptions& options) {
-  std::vector<NavigationRecord> records;
+  std::vector<TimeNs> stamps;
   std::vector<double> times;
   for (int frame = 0; frame < options.frames; ++frame) {
     constexpr std::uint64_t kKind = 0x64656c6179;
     Random random = Random::of_item(static_cast<std::uint64_t>(options.seed), kKind,
                                     static_cast<std::uint64_t>(frame));
     const double delay = random.uniform(options.navigation.min_delay, options.navigation.max_delay);
-    records.push_back({stamp_of(frame, options) + from_seconds(delay), {}});
+    stamps.push_back(stamp_of(frame, options) + from_seconds(delay));
     // The nanosecond that is written is when the record was taken.
-    times.push_back(seconds(records.back().time - stamp_of(0, options)));
+    times.push_back(seconds(stamps.back() - stamp_of(0, options)));
   }
   const auto errors = navigation_errors(times, options.navigation, options.seed);
   const LocalTangentPlane local(options.navigation.origin);
@@ -120,11 +131,12 @@ std::vector<NavigationRecord> simulate_navigation(const VehicleMotion& motion, c
   const auto T_local_imu = [&](double time) -> RigidMotion {
     return T_local_world * motion.T_world_vehicle(time) * T_vehicle_imu;
   };
-  for (std::size_t i = 0; i < records.size(); ++i) {
+  std::vector<NavigationRecord> records;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
     const RigidMotion now = T_local_imu(times[i]);
     const Derivatives derivatives =
         differentiate(T_local_imu(times[i] - kHalfStep), now, T_local_imu(times[i] + kHalfStep));
-    records[i].text = record_text(local, now, derivatives, errors[i]);
+    records.push_back(record_of(stamps[i], local, now, derivatives, errors[i]));
   }
   return records;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/base/time.h"
+#include "fovea/geometry/geodesy.h"
 #include "fovea/simulation/rig.h"
 #include "fovea/simulation/simulation_options.h"
 #include "fovea/simulation/vehicle_motion.h"
@@ -12,8 +13,12 @@
 namespace fovea {
 
 struct NavigationRecord {
-  TimeNs time = 0;   ///< on the drive's clock, on which all stamps lie
-  std::string text;  ///< the 30 fields of oxts/data/NNNNNNNNNN.txt, one line
+  TimeNs time = 0;  ///< on the drive's clock, on which all stamps lie
+  GeodeticPoint place;
+  /// rad, from the imu (forward, left, up) to east-north-up: Rz(yaw) * Ry(pitch) * Rx(roll).
+  double roll = 0, pitch = 0, yaw = 0;
+  double accuracy = 0;  ///< m, of a coordinate; infinite without satellites
+  std::string text;     ///< the 30 fields of oxts/data/NNNNNNNNNN.txt, one line
 };
 
 /// What the fields mean (oxts/dataformat.txt).

@@ -1,6 +1,10 @@
 #include "fovea/simulation/rig.h"
 
+#include <string>
+
 #include "fovea/base/angle.h"
+#include "fovea/base/errors.h"
+#include "fovea/geometry/rectified_camera.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
@@ -21,13 +25,36 @@ RigidMotion motion(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
   return T;
 }
 
-/// Rectified cameras look the same way from places that differ mostly sideways.
+/// KITTI's rectified cameras look the same way from places that differ mostly sideways.
 Eigen::Vector3d camera_translation(const SimulatedCamera& camera) {
-  if (camera.number == 0) return {-camera.right, 0, 0};
-  return {-camera.right, 0.001 * (camera.number - 2.5), 0.003};
+  if (camera.number == 0) return {-camera.right, 0, -camera.forward};
+  return {-camera.right, 0.001 * (camera.number - 2.5), 0.003 - camera.forward};
 }
 
+Lens make_lens(SimulatedLens lens) {
+  switch (lens) {
+    case SimulatedLens::kNone:
+      break;
+    case SimulatedLens::kPlumbBob:
+      return {LensModel::kPlumbBob, {-0.28, 0.07, 0.0005, -0.0004, -0.005}};
+    case SimulatedLens::kRational:
+      return {LensModel::kRationalPolynomial, {0.2, 0.05, 0.0005, -0.0004, 0.001, 0.5, 0.1, 0.005}};
+    case SimulatedLens::kFisheye:
+      return {LensModel::kEquidistant, {-0.012, 0.004, -0.002, 0.0003}};
+  }
+  return {};
+}
+
+/// As the readers of a drive do by default (docs/drives.md).
+constexpr double kMaxFieldOfView = 100 * kDegree;
+constexpr int kMaxSide = 8192;
+
 }  // namespace
+
+LensCamera lens_camera(const SimulatedCamera& camera, const CameraOptions& options) {
+  return {options.width, options.height, options.focal,         options.focal,
+          options.cx,    options.cy,     make_lens(camera.lens)};
+}
 
 Rig make_rig(const SimulationOptions& options) {
   Rig rig;
@@ -44,16 +71,25 @@ Rig make_rig(const SimulationOptions& options) {
       exp_se3((Twist() << options.camera.rotation_error, 0, 0, 0).finished()).linear();
   for (const SimulatedCamera& simulated : options.camera.cameras) {
     const Eigen::Vector3d t = camera_translation(simulated);
-    Camera camera;
+    const LensCamera optics = lens_camera(simulated, options.camera);
+    const auto rectified = rectified_camera(optics, kMaxFieldOfView, kMaxSide);
+    if (!rectified) {
+      throw ConfigError("the lens leaves no image, or one too large",
+                        "camera.lens_" + std::to_string(simulated.number),
+                        "give another camera.focal or size");
+    }
+    Camera camera = *rectified;
     camera.index = simulated.number;
-    camera.width = options.camera.width;
-    camera.height = options.camera.height;
-    camera.fx = camera.fy = options.camera.focal;
-    camera.cx = options.camera.cx;
-    camera.cy = options.camera.cy;
-    camera.T_cam_lidar = Eigen::Translation3d(t) *
-                         motion(R_error * rig.R_rect, Eigen::Vector3d::Zero()) * rig.T_cam0_lidar;
+    // The camera's y axis points down.
+    const Eigen::AngleAxisd R_turned_straight(simulated.yaw, Eigen::Vector3d::UnitY());
+    const auto T_cam_lidar = [&](const Eigen::Matrix3d& R) -> RigidMotion {
+      return R_turned_straight * Eigen::Translation3d(t) * motion(R, Eigen::Vector3d::Zero()) *
+             rig.T_cam0_lidar;
+    };
+    camera.T_cam_lidar = T_cam_lidar(R_error * rig.R_rect);
+    rig.T_cam_lidar_calibrated.push_back(T_cam_lidar(rig.R_rect));
     rig.cameras.push_back(camera);
+    rig.optics.push_back(optics);
     rig.t.push_back(t);
   }
   return rig;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/geometry/camera.h"
+#include "fovea/geometry/lens.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/simulation/simulation_options.h"
 
@@ -21,10 +22,17 @@ struct Rig {
   /// Rectified, with T_cam_lidar, as a reader must find them, but for the rotation error that the
   /// options plant; in the options' order.
   std::vector<Camera> cameras;
+  std::vector<LensCamera> optics;  ///< of the same cameras: what takes their images
+  /// Of the same cameras as a calibration has it, without the planted error.
+  std::vector<RigidMotion> T_cam_lidar_calibrated;
   /// P_rect's fourth column is K * t, of each camera: the origin of rectified camera 0 as the
   /// camera sees it (m).
   std::vector<Eigen::Vector3d> t;
 };
+/// What takes the images of a camera.
+LensCamera lens_camera(const SimulatedCamera& camera, const CameraOptions& options);
+
+/// ConfigError if a lens leaves nothing of its rectified image.
 Rig make_rig(const SimulationOptions& options);
 
 }  // namespace fovea

@@ -44,7 +44,7 @@ class Simulation {
  public:
   Simulation(const SimulationOptions& options, const std::filesystem::path& root)
       : options_(options),
-        writer_(root),
+        writer_(make_drive_writer(options, root)),
         scenery_(make_scenery(options)),
         motion_(scenery_->path(), scenery_->lane_offset(), options.vehicle, options.seed),
         rig_(make_rig(options)),
@@ -73,12 +73,13 @@ class Simulation {
   }
 
   std::filesystem::path finish() {
-    write_drive_texts(rig_, simulate_navigation(motion_, rig_, T_world_local_, options_), options_,
-                      writer_);
-    writer_.write_text("tracklet_labels.xml", tracklets_text(labels_.tracks()));
+    writer_->write_texts(rig_, simulate_navigation(motion_, rig_, T_world_local_, options_),
+                         options_);
+    writer_->write_file("tracklet_labels.xml", tracklets_text(labels_.tracks()));
     write_truth_texts();
-    write_world(export_world(*scenery_, chunks_, T_world_local_.inverse()), writer_.truth_folder());
-    return writer_.finish();
+    write_world(export_world(*scenery_, chunks_, T_world_local_.inverse()),
+                writer_->truth_folder());
+    return writer_->finish();
   }
 
  private:
@@ -95,8 +96,12 @@ class Simulation {
     const Camera& camera = rig_.cameras[k];
     const double time = stamp + options_.camera.trigger_delay;
     const RigidMotion T_world_cam = T_world_lidar(time) * camera.T_cam_lidar.inverse();
-    const CameraModel model(caster_, shader_, camera);
-    Rendering rendering = model.render(T_world_cam, caster_.moment(time, motion_.way(time)));
+    const RayCaster::Moment moment = caster_.moment(time, motion_.way(time));
+    Rendering taken = CameraModel(caster_, shader_, rig_.optics[k]).render(T_world_cam, moment);
+    // The truth is that of the rectified camera.
+    const bool distorted = rig_.optics[k].lens.model() != LensModel::kNone;
+    Rendering rectified =
+        distorted ? CameraModel(caster_, shader_, camera).render(T_world_cam, moment) : taken;
     const double exposure = exposure_at(options_.camera, camera.index, time, options_.seed);
     camera_poses_[k] += pose_line(T_world_local_.inverse() * T_world_cam);
     exposures_[k] += fmt::format("{:.9g}\n", exposure);
@@ -110,35 +115,35 @@ class Simulation {
         Random::of_item(static_cast<std::uint64_t>(options_.seed),
                         static_cast<std::uint64_t>(camera.index), static_cast<std::uint64_t>(frame))
             .next();
-    return {develop(rendering, real), develop(rendering, perfect), std::move(rendering.depth)};
+    return {develop(taken, real), develop(rectified, perfect), std::move(rectified.depth)};
   }
 
   /// Compressing the images costs as much as drawing them: all files of a frame at once.
   void write(int frame, const SimulatedScan& scan, const std::vector<Picture>& pictures) {
     parallel_for(2 + 3 * pictures.size(), 1, [&](std::size_t task) {
-      if (task == 0) return writer_.write_scan(frame, scan.points);
-      if (task == 1) return writer_.write_truth(frame, scan.truth);
+      if (task == 0) return writer_->write_scan(frame, scan);
+      if (task == 1) return writer_->write_truth(frame, scan.truth);
       const std::size_t k = (task - 2) / 3;
       const Camera& camera = rig_.cameras[k];
       switch ((task - 2) % 3) {
         case 0:
-          return writer_.write_image(camera.index, frame, pictures[k].image);
+          return writer_->write_image(camera.index, frame, pictures[k].image);
         case 1:
-          return writer_.write_perfect_image(camera.index, frame, pictures[k].perfect);
+          return writer_->write_perfect_image(camera.index, frame, pictures[k].perfect);
         default:
-          return writer_.write_depth(camera.index, frame, camera.width, camera.height,
-                                     pictures[k].depth);
+          return writer_->write_depth(camera.index, frame, camera.width, camera.height,
+                                      pictures[k].depth);
       }
     });
   }
 
   void write_truth_texts() {
-    writer_.write_text("truth/poses.txt", lidar_poses_);
+    writer_->write_file("truth/poses.txt", lidar_poses_);
     nlohmann::json cameras = nlohmann::json::array();
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
       const std::string folder = fmt::format("truth/image_{:02d}/", rig_.cameras[k].index);
-      writer_.write_text(folder + "poses.txt", camera_poses_[k]);
-      writer_.write_text(folder + "exposure.txt", exposures_[k]);
+      writer_->write_file(folder + "poses.txt", camera_poses_[k]);
+      writer_->write_file(folder + "exposure.txt", exposures_[k]);
       cameras.push_back(rig_.cameras[k].index);
     }
     const GeodeticPoint& origin = options_.navigation.origin;
@@ -153,11 +158,11 @@ class Simulation {
                                  {"longitude", origin.longitude},
                                  {"altitude", origin.altitude}}},
                                {"config", to_toml(options_)}};
-    writer_.write_text("truth/truth.json", truth.dump(2) + "\n");
+    writer_->write_file("truth/truth.json", truth.dump(2) + "\n");
   }
 
   SimulationOptions options_;
-  DriveWriter writer_;
+  std::unique_ptr<DriveWriter> writer_;
   std::unique_ptr<Scenery> scenery_;
   VehicleMotion motion_;
   Rig rig_;

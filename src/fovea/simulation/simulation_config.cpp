@@ -11,6 +11,19 @@
 #include "fovea/base/settings.h"
 
 namespace fovea {
+
+constexpr auto names_of(CameraRig) {
+  return std::array{EnumName<CameraRig>{CameraRig::kKitti, "kitti"},
+                    EnumName<CameraRig>{CameraRig::kSurround, "surround"}};
+}
+
+constexpr auto names_of(SimulatedLens) {
+  return std::array{EnumName<SimulatedLens>{SimulatedLens::kNone, "none"},
+                    EnumName<SimulatedLens>{SimulatedLens::kPlumbBob, "plumb_bob"},
+                    EnumName<SimulatedLens>{SimulatedLens::kRational, "rational_polynomial"},
+                    EnumName<SimulatedLens>{SimulatedLens::kFisheye, "equidistant"}};
+}
+
 namespace {
 
 constexpr int kMaxCameras = 10;
@@ -18,49 +31,65 @@ constexpr int kMaxCameras = 10;
 /// The list of cameras as keys: their numbers, and place and kind of each by its number.
 class CameraKeys {
  public:
-  explicit CameraKeys(const CameraOptions& options) {
-    for (const SimulatedCamera& camera : options.cameras) {
-      numbers_.push_back(camera.number);
-      if (camera.number < 0 || camera.number >= kMaxCameras) continue;  // validate() will say so
-      right_[std::size_t(camera.number)] = camera.right;
-      grey_[std::size_t(camera.number)] = camera.grey;
-    }
-  }
+  explicit CameraKeys(const CameraOptions& options) : rig_(options.rig) { load(options.cameras); }
 
   void visit(SettingVisitor& visit) {
+    const CameraRig before = rig_;
+    visit("camera.rig", rig_);
+    if (rig_ != before) load(rig_cameras(rig_));
     visit("camera.numbers", numbers_);
-    for (std::size_t k = 0; k < kMaxCameras; ++k)
-      visit(fmt::format("camera.right_{}", k), right_[k]);
-    for (std::size_t k = 0; k < kMaxCameras; ++k) visit(fmt::format("camera.grey_{}", k), grey_[k]);
+    visit_each(visit, "right", [](SimulatedCamera& c) -> double& { return c.right; });
+    visit_each(visit, "forward", [](SimulatedCamera& c) -> double& { return c.forward; });
+    visit_each(visit, "yaw", [](SimulatedCamera& c) { return Degrees{c.yaw}; });
+    visit_each(visit, "grey", [](SimulatedCamera& c) -> bool& { return c.grey; });
+    visit_each(visit, "lens", [](SimulatedCamera& c) -> SimulatedLens& { return c.lens; });
   }
 
-  /// ConfigError for a place or kind that was just given of a camera that is not simulated.
+  /// The cameras named by their numbers. ConfigError for a key of another one.
   void store(CameraOptions& options) const {
-    const CameraKeys before(options);
-    for (std::size_t k = 0; k < kMaxCameras; ++k) {
-      if (std::find(numbers_.begin(), numbers_.end(), int(k)) != numbers_.end()) continue;
-      if (right_[k] != before.right_[k]) reject(fmt::format("camera.right_{}", k));
-      if (grey_[k] != before.grey_[k]) reject(fmt::format("camera.grey_{}", k));
+    if (!key_of_none_.empty()) {
+      throw ConfigError("this camera is not simulated", key_of_none_,
+                        "name it in camera.numbers, too");
     }
+    options.rig = rig_;
     options.cameras.clear();
     for (const int number : numbers_) {
-      SimulatedCamera camera = kitti_camera(number);
-      if (number >= 0 && number < kMaxCameras) {
-        camera.right = right_[std::size_t(number)].value_or(camera.right);
-        camera.grey = grey_[std::size_t(number)].value_or(camera.grey);
-      }
-      options.cameras.push_back(camera);
+      // validate() will say that there is no such number.
+      options.cameras.push_back(is_place(number) ? cameras_[std::size_t(number)]
+                                                 : kitti_camera(number));
     }
   }
 
  private:
-  [[noreturn]] static void reject(const std::string& key) {
-    throw ConfigError("this camera is not simulated", key, "name it in camera.numbers, too");
+  static bool is_place(int number) { return number >= 0 && number < kMaxCameras; }
+
+  void load(const std::vector<SimulatedCamera>& cameras) {
+    numbers_.clear();
+    for (int k = 0; k < kMaxCameras; ++k) cameras_[std::size_t(k)] = kitti_camera(k);
+    for (const SimulatedCamera& camera : cameras) {
+      numbers_.push_back(camera.number);
+      if (is_place(camera.number)) cameras_[std::size_t(camera.number)] = camera;
+    }
   }
 
+  /// One key of each camera that is simulated.
+  template <class Member>
+  void visit_each(SettingVisitor& visit, std::string_view name, Member&& member) {
+    for (int k = 0; k < kMaxCameras; ++k) {
+      const std::string key = fmt::format("camera.{}_{}", name, k);
+      if (std::find(numbers_.begin(), numbers_.end(), k) == numbers_.end()) {
+        if (visit.is_given(key)) key_of_none_ = key;
+        continue;
+      }
+      auto&& value = member(cameras_[std::size_t(k)]);
+      visit(key, value);
+    }
+  }
+
+  CameraRig rig_;
   std::vector<int> numbers_;
-  std::array<std::optional<double>, kMaxCameras> right_;
-  std::array<std::optional<bool>, kMaxCameras> grey_;
+  std::array<SimulatedCamera, kMaxCameras> cameras_;  // by number
+  std::string key_of_none_;
 };
 
 /// Calls `visit(key, reference)` for every key but those of `cameras`' list.
@@ -91,6 +120,7 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("lidar.range_resolution", o.lidar.range_resolution);
   visit("lidar.dropouts", o.lidar.dropouts);
   visit("lidar.height", o.lidar.height);
+  visit("lidar.point_times", o.lidar.point_times);
 
   cameras.visit(visit);
   visit("camera.width", o.camera.width);

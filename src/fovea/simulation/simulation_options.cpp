@@ -5,10 +5,12 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/simulation/rig.h"
 
 namespace fovea {
 namespace {
@@ -76,6 +78,8 @@ void check(const CameraOptions& camera) {
   for (const SimulatedCamera& one : camera.cameras) {
     check("camera.numbers", one.number, 0, 9);
     check(fmt::format("camera.right_{}", one.number), one.right, -10, 10, "m");
+    check(fmt::format("camera.forward_{}", one.number), one.forward, -10, 10, "m");
+    check_degrees(fmt::format("camera.yaw_{}", one.number), one.yaw, -360, 360);
     if (!numbers.insert(one.number).second) {
       reject(fmt::format("camera {} is named twice", one.number), "camera.numbers",
              "name each camera once");
@@ -94,6 +98,33 @@ void check(const CameraOptions& camera) {
   check_degrees("camera.rotation_error_y", camera.rotation_error.y(), -5, 5);
   check_degrees("camera.rotation_error_z", camera.rotation_error.z(), -5, 5);
   check("camera.trigger_delay", camera.trigger_delay, -0.05, 0.05, "s");
+}
+
+/// KITTI's format has rectified cameras only, which look the same way.
+void check_format(const CameraOptions& camera) {
+  for (const SimulatedCamera& one : camera.cameras) {
+    if (one.yaw == 0 && one.forward == 0 && one.lens == SimulatedLens::kNone) continue;
+    reject(
+        fmt::format("camera {} is turned, moved forward or distorts, which KITTI's format cannot "
+                    "say",
+                    one.number),
+        "camera.rig", "use --format generic");
+  }
+}
+
+/// A pixel that no ray reaches would have no colour.
+void check_lenses(const CameraOptions& camera) {
+  for (const SimulatedCamera& one : camera.cameras) {
+    const LensCamera optics = lens_camera(one, camera);
+    for (const double u : {-0.5, optics.width - 0.5}) {
+      for (const double v : {-0.5, optics.height - 0.5}) {
+        if (optics.ray({u, v})) continue;
+        reject(fmt::format("the lens of camera {} does not reach the corners of its image",
+                           one.number),
+               fmt::format("camera.lens_{}", one.number), "give a longer camera.focal");
+      }
+    }
+  }
 }
 
 void check(const NavigationOptions& navigation, double period) {
@@ -187,7 +218,28 @@ void SimulationOptions::validate() const {
   check("street.curvature", curvature, -0.05, 0.05, "per m");
   check(lidar);
   check(camera);
+  if (format == DriveFormat::kKitti) check_format(camera);
+  check_lenses(camera);
   check(navigation, lidar.period);
+}
+
+std::vector<SimulatedCamera> rig_cameras(CameraRig rig) {
+  if (rig == CameraRig::kKitti) return {kitti_camera(2), kitti_camera(3)};
+  constexpr int kCount = 5;
+  constexpr double kRadius = 0.35;       // m, round the LiDAR
+  constexpr double kLidarBehind = 0.27;  // m, behind camera 0
+  std::vector<SimulatedCamera> cameras;
+  for (int k = 0; k < kCount; ++k) {
+    SimulatedCamera camera;
+    camera.number = k;
+    camera.yaw = std::remainder(2 * std::numbers::pi * k / kCount, 2 * std::numbers::pi);
+    camera.right = -kRadius * std::sin(camera.yaw);
+    camera.forward = kRadius * std::cos(camera.yaw) - kLidarBehind;
+    cameras.push_back(camera);
+  }
+  cameras[1].lens = SimulatedLens::kFisheye;
+  cameras[4].lens = SimulatedLens::kPlumbBob;
+  return cameras;
 }
 
 SimulatedCamera kitti_camera(int number) {

@@ -49,21 +49,41 @@ struct LidarOptions {
   double min_range = 0.9, max_range = 120;  ///< m
   double range_noise = 0.015;               ///< m, standard deviation
   double range_resolution = 0.002;          ///< m; 0: exact
-  double dropouts = 1;   ///< factor on the chance that a weak return is lost; 0: none is
-  double height = 1.73;  ///< m above the road
+  double dropouts = 1;      ///< factor on the chance that a weak return is lost; 0: none is
+  double height = 1.73;     ///< m above the road
+  bool point_times = true;  ///< scans say when each point was measured, where their format can
+};
+
+/// Lenses that can be simulated; coefficients in rig.cpp.
+enum class SimulatedLens {
+  kNone,      ///< pinhole
+  kPlumbBob,  ///< barrel distortion as of an everyday wide-angle lens
+  kRational,  ///< the same with OpenCV's rational polynomial
+  kFisheye,   ///< equidistant
 };
 
 struct SimulatedCamera {
   int number = 2;    ///< KITTI's: 0, 1 grey; 2, 3 colour
   double right = 0;  ///< m, from camera 0 along the rectified x axis
   bool grey = false;
+  double forward = 0;  ///< m, from camera 0 along the rectified z axis
+  double yaw = 0;      ///< rad, counter-clockwise seen from above
+  SimulatedLens lens = SimulatedLens::kNone;
 };
 
 /// The place of KITTI's camera of that number (0 to 3), or one beside camera 0.
 SimulatedCamera kitti_camera(int number);
 
+/// Whole sets of cameras.
+enum class CameraRig {
+  kKitti,     ///< cameras 2 and 3
+  kSurround,  ///< five all round, 0 looking ahead, counter-clockwise; 1 has a fisheye, 4 distorts
+};
+std::vector<SimulatedCamera> rig_cameras(CameraRig rig);
+
 struct CameraOptions {
-  std::vector<SimulatedCamera> cameras = {{2, -0.060, false}, {3, 0.473, false}};
+  CameraRig rig = CameraRig::kKitti;  ///< where `cameras` come from, unless they were changed
+  std::vector<SimulatedCamera> cameras = rig_cameras(CameraRig::kKitti);
   int width = 1242, height = 375;
   double focal = 721.5;              ///< pixels
   double cx = 609.6, cy = 172.9;     ///< pixel centres at integers
@@ -90,12 +110,18 @@ struct NavigationOptions {
   bool outages = false;  ///< satellites are lost for a while: the walk grows tenfold
 };
 
+enum class DriveFormat {
+  kKitti,    ///< KITTI's raw format
+  kGeneric,  ///< docs/drives.md
+};
+
 struct SimulationOptions {
   static constexpr int kMaxFrames = 100'000;
 
   Scene scene = Scene::kStreet;
   int seed = 1;
   int frames = 100;
+  DriveFormat format = DriveFormat::kKitti;
   LightOptions light;
   VehicleOptions vehicle;
   double bends = 7 * kDegree;  ///< rad, how far the street's heading swings

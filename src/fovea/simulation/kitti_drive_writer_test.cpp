@@ -1,4 +1,4 @@
-#include "fovea/simulation/drive_writer.h"
+#include "fovea/simulation/kitti_drive_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,11 +65,11 @@ fs::path write_drive(const fs::path& root, const SimulationOptions& options) {
   const Rig rig = make_rig(options);
   RigidMotion T_world_local = RigidMotion::Identity();
   T_world_local.translation() = (motion.T_world_vehicle(0) * rig.T_vehicle_lidar).translation();
-  DriveWriter writer(root);
-  write_drive_texts(rig, simulate_navigation(motion, rig, T_world_local, options), options, writer);
+  KittiDriveWriter writer(root);
+  writer.write_texts(rig, simulate_navigation(motion, rig, T_world_local, options), options);
   parallel_for(std::size_t(options.frames), 1, [&](std::size_t i) {
     const int frame = int(i);
-    writer.write_scan(frame, {{1, 2, 3, 0.5f}, {4, 5, 6, 0.25f}, {float(frame), 0, 0, 1}});
+    writer.write_scan(frame, {{{1, 2, 3, 0.5f}, {4, 5, 6, 0.25f}, {float(frame), 0, 0, 1}}, {}});
     for (const SimulatedCamera& camera : options.camera.cameras) {
       writer.write_image(
           camera.number, frame,
@@ -79,7 +79,7 @@ fs::path write_drive(const fs::path& root, const SimulationOptions& options) {
   return writer.finish();
 }
 
-TEST(DriveWriter, TheProductsReaderOpensTheDrive) {
+TEST(KittiDriveWriter, TheProductsReaderOpensTheDrive) {
   const TemporaryFolder folder;
   SimulationOptions options;
   options.frames = 12;
@@ -108,9 +108,9 @@ TEST(DriveWriter, TheProductsReaderOpensTheDrive) {
   EXPECT_EQ(frame.images[2].data, test_image(90, 40, 3).data);
 }
 
-TEST(DriveWriter, TruthRecordsAreAsDocumented) {
+TEST(KittiDriveWriter, TruthRecordsAreAsDocumented) {
   const TemporaryFolder folder;
-  DriveWriter writer(folder / "d");
+  KittiDriveWriter writer(folder / "d");
   TruthPoint point;
   point.hit_lidar = {1.5f, -2, 3};
   point.time = -0.04f;
@@ -131,9 +131,9 @@ TEST(DriveWriter, TruthRecordsAreAsDocumented) {
   EXPECT_EQ(bytes.substr(28 + 20), std::string("\x0a\x14\x1e\x3f\x01\0\0\0", 8));
 }
 
-TEST(DriveWriter, DepthIsIn256thsOfAMetre) {
+TEST(KittiDriveWriter, DepthIsIn256thsOfAMetre) {
   const TemporaryFolder folder;
-  DriveWriter writer(folder / "d");
+  KittiDriveWriter writer(folder / "d");
   writer.write_depth(2, 0, 3, 2, {0, 1, 2.5f, 1e-4f, 100, 1e6f});
   EXPECT_THROW(writer.write_depth(2, 0, 3, 3, {0, 1}), std::invalid_argument);
   const fs::path file = writer.finish() / "truth/image_02/depth/0000000000.png";
@@ -158,55 +158,56 @@ TEST(DriveWriter, DepthIsIn256thsOfAMetre) {
   fclose(stream);
 }
 
-TEST(DriveWriter, RefusesWhatIsInTheWay) {
+TEST(KittiDriveWriter, RefusesWhatIsInTheWay) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "there");
-  EXPECT_THAT(output_error([&] { DriveWriter writer(folder / "there"); }),
+  EXPECT_THAT(output_error([&] { KittiDriveWriter writer(folder / "there"); }),
               AllOf(HasSubstr("exists already"), HasSubstr("there"), HasSubstr("another name")));
-  EXPECT_THAT(output_error([&] { DriveWriter writer(folder / "none/d"); }),
+  EXPECT_THAT(output_error([&] { KittiDriveWriter writer(folder / "none/d"); }),
               AllOf(HasSubstr("does not exist"), HasSubstr("none")));
-  EXPECT_THAT(output_error([&] { DriveWriter writer(""); }), HasSubstr("not a folder's name"));
+  EXPECT_THAT(output_error([&] { KittiDriveWriter writer(""); }), HasSubstr("not a folder's name"));
   // A folder of a user, whatever its name, is not ours to remove.
   fs::create_directory(folder / "d.partial");
   std::ofstream(folder / "d.partial/precious") << "x";
-  EXPECT_THAT(output_error([&] { DriveWriter writer(folder / "d"); }), HasSubstr("in the way"));
+  EXPECT_THAT(output_error([&] { KittiDriveWriter writer(folder / "d"); }),
+              HasSubstr("in the way"));
   EXPECT_TRUE(fs::exists(folder / "d.partial/precious"));
 }
 
-TEST(DriveWriter, TakesATrailingSlash) {
+TEST(KittiDriveWriter, TakesATrailingSlash) {
   const TemporaryFolder folder;
-  DriveWriter writer(folder / "d/");
+  KittiDriveWriter writer(folder / "d/");
   writer.finish();
   EXPECT_THAT(folder.names(), ElementsAre("d"));
 }
 
-TEST(DriveWriter, LeavesNothingUnfinished) {
+TEST(KittiDriveWriter, LeavesNothingUnfinished) {
   const TemporaryFolder folder;
   {
-    DriveWriter writer(folder / "d");
-    writer.write_scan(0, {{1, 2, 3, 4}});
+    KittiDriveWriter writer(folder / "d");
+    writer.write_scan(0, {{{1, 2, 3, 4}}, {}});
     EXPECT_THAT(folder.names(), ElementsAre("d.partial"));
-    EXPECT_THAT(output_error([&] { DriveWriter second(folder / "d"); }),
+    EXPECT_THAT(output_error([&] { KittiDriveWriter second(folder / "d"); }),
                 HasSubstr("another program"));
   }
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(DriveWriter, ReplacesWhatAKilledProgramLeft) {
+TEST(KittiDriveWriter, ReplacesWhatAKilledProgramLeft) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "d.partial/2026_01_01");
   std::ofstream(folder / "d.partial/.fovea-simulate").flush();
-  DriveWriter writer(folder / "d");
+  KittiDriveWriter writer(folder / "d");
   writer.write_scan(0, {});
   const fs::path drive = writer.finish();
   EXPECT_EQ(fs::file_size(drive / "velodyne_points/data/0000000000.bin"), 0u);
   EXPECT_THAT(folder.names(), ElementsAre("d"));
 }
 
-TEST(DriveWriter, KeepsWhatAppearedMeanwhile) {
+TEST(KittiDriveWriter, KeepsWhatAppearedMeanwhile) {
   const TemporaryFolder folder;
   {
-    DriveWriter writer(folder / "d");
+    KittiDriveWriter writer(folder / "d");
     std::ofstream(folder / "d") << "mine";
     EXPECT_THAT(output_error([&] { writer.finish(); }), HasSubstr("exists already"));
   }
@@ -214,20 +215,20 @@ TEST(DriveWriter, KeepsWhatAppearedMeanwhile) {
   EXPECT_THAT(folder.names(), ElementsAre("d"));
 }
 
-TEST(DriveWriter, AFullDiskIsSaidAndLeavesNothing) {
+TEST(KittiDriveWriter, AFullDiskIsSaidAndLeavesNothing) {
   const TemporaryFolder folder;
   const FileSizeLimit limit(1000);
   EXPECT_THAT(output_error([&] {
-                DriveWriter writer(folder / "d");
-                writer.write_scan(0, std::vector<std::array<float, 4>>(62));
-                writer.write_scan(1, std::vector<std::array<float, 4>>(63));
+                KittiDriveWriter writer(folder / "d");
+                writer.write_scan(0, {std::vector<std::array<float, 4>>(62), {}});
+                writer.write_scan(1, {std::vector<std::array<float, 4>>(63), {}});
               }),
               AllOf(HasSubstr("the disk is full"), HasSubstr("0000000001.bin"),
                     HasSubstr("free some space")));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(DriveWriter, FreeSpaceIsCheckedByNeed) {
+TEST(KittiDriveWriter, FreeSpaceIsCheckedByNeed) {
   const TemporaryFolder folder;
   EXPECT_NO_THROW(check_free_space(folder / "d", 1000));
   EXPECT_THAT(output_error([&] { check_free_space(folder / "d", std::uintmax_t{1} << 60); }),
@@ -236,10 +237,10 @@ TEST(DriveWriter, FreeSpaceIsCheckedByNeed) {
               Not(HasSubstr("no OutputError")));
 }
 
-TEST(DriveWriter, KittisImagesArePackedFast) {
+TEST(KittiDriveWriter, KittisImagesArePackedFast) {
   const TemporaryFolder folder;
   const Image image = test_image(1242, 375, 3);
-  DriveWriter writer(folder / "d");
+  KittiDriveWriter writer(folder / "d");
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 5; ++i) writer.write_image(2, i, image);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;

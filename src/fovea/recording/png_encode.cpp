@@ -1,4 +1,4 @@
-#include "fovea/simulation/png_encode.h"
+#include "fovea/recording/png_encode.h"
 
 #include <png.h>
 

@@ -1,0 +1,98 @@
+// Writes a drive as a folder with a drive.toml (docs/drives.md), whatever it was recorded with.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fovea/base/image.h"
+#include "fovea/base/output_folder.h"
+#include "fovea/base/point_cloud.h"
+#include "fovea/base/time.h"
+#include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/lens.h"
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+struct RecordedCamera {
+  std::string name;  ///< letters, digits, '_' and '-'
+  int index = 0;     ///< 0 to 9
+  LensCamera optics;
+  RigidMotion T_cam_lidar = RigidMotion::Identity();
+};
+
+/// A line of poses.csv.
+struct RecordedPose {
+  TimeNs time = 0;
+  RigidMotion T_world_body = RigidMotion::Identity();
+};
+
+/// A line of gnss.csv.
+struct RecordedPosition {
+  TimeNs time = 0;
+  GeodeticPoint antenna;
+  double accuracy = 0;  ///< standard deviation of a coordinate (m); 0: not known, infinite: no fix
+  std::optional<Eigen::Vector3d> roll_pitch_yaw;  ///< rad, as in oxts.h
+};
+
+/// A line of imu.csv.
+struct RecordedInertia {
+  TimeNs time = 0;
+  std::optional<Eigen::Quaterniond> R_enu_imu;
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< m/s^2, gravity included
+};
+
+/// All of a drive but its scans and images.
+struct RecordedDrive {
+  std::vector<RecordedCamera> cameras;
+  bool sweep_compensated = false;
+  RigidMotion T_body_lidar = RigidMotion::Identity();
+  RigidMotion T_body_imu = RigidMotion::Identity();
+  Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();
+  std::vector<RecordedPose> poses;          ///< where there are any, positions are not looked at
+  std::vector<RecordedPosition> positions;  ///< all with an attitude, or none
+  std::vector<RecordedInertia> inertia;     ///< all with an orientation, or none
+};
+
+/// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was
+/// not finished is removed. Every function throws OutputError where the disk is full or refuses.
+/// Scans and images may be written at once, from several threads.
+class GenericDriveWriter {
+ public:
+  /// OutputError where anything exists at ROOT, its parent does not, or another program is writing
+  /// it.
+  explicit GenericDriveWriter(const std::filesystem::path& root);
+
+  /// As PCD: x y z intensity, and time where the scan has the points' times.
+  void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar);
+  /// As PNG.
+  void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
+  /// An image that is encoded already.
+  /// @param extension  ".png" or ".jpg"
+  void write_encoded_image(const std::string& camera, int number, TimeNs stamp,
+                           std::string_view bytes, const std::string& extension);
+  /// A file beside the recording: of truth/ (docs/simulator.md), or tracklet_labels.xml.
+  void write_file(const std::filesystem::path& name, std::string_view bytes) const;
+  /// Folder of the truth, for what writes its files itself.
+  std::filesystem::path truth_folder() const { return folder_.partial() / "truth"; }
+
+  /// Writes drive.toml and the tables, makes everything durable and gives ROOT its name.
+  void finish(const RecordedDrive& drive);
+
+ private:
+  using Stamps = std::map<int, TimeNs>;
+
+  OutputFolder folder_;
+  std::mutex mutex_;  // of the stamps
+  Stamps scan_stamps_;
+  std::map<std::string, Stamps> image_stamps_;  // by camera
+};
+
+}  // namespace fovea

@@ -1,0 +1,31 @@
+// Writes a simulated drive as a folder with a drive.toml (docs/drives.md).
+#pragma once
+
+#include "fovea/recording/generic_drive_writer.h"
+#include "fovea/simulation/drive_writer.h"
+
+namespace fovea {
+
+/// Cameras are called camera_K. Everything is written below ROOT.partial, as GenericDriveWriter
+/// does.
+class GenericSimulationWriter : public DriveWriter {
+ public:
+  /// OutputError as GenericDriveWriter.
+  GenericSimulationWriter(const SimulationOptions& options, const std::filesystem::path& root);
+
+  void write_scan(int frame, const SimulatedScan& scan) override;
+  void write_image(int camera, int frame, const Image& image) override;
+  void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
+                   const SimulationOptions& options) override;
+  std::filesystem::path truth_folder() const override { return writer_.truth_folder(); }
+  void write_file(const std::filesystem::path& name, std::string_view bytes) override;
+  std::filesystem::path finish() override;
+
+ private:
+  SimulationOptions options_;
+  std::filesystem::path root_;
+  GenericDriveWriter writer_;
+  RecordedDrive drive_;
+};
+
+}  // namespace fovea
