@@ -318,9 +318,10 @@ TEST_F(GenericNavigation, TablesThatAreNoneAreErrors) {
   EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("no column latitude"), HasSubstr("gnss.csv:1")));
   write_text(folder_ / "gnss.csv", "time_ns,latitude,longitude,altitude\n");
   EXPECT_THAT(notes(), ElementsAre(HasSubstr("no position that can be used")));
-  write_text(folder_ / "poses.csv",
-             "time_ns,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,0\n6,1e300,0,0,0,0,0,1\n");
-  EXPECT_THAT(notes(), ElementsAre(HasSubstr("2 lines of"), HasSubstr("no pose that can be used")));
+  write_text(
+      folder_ / "poses.csv",
+      "time_ns,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,0\n6,1e300,0,0,0,0,0,1\n7,1,nan,0,0,0,0,1\n");
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("3 lines of"), HasSubstr("no pose that can be used")));
 }
 
 }  // namespace
