@@ -100,6 +100,26 @@ class GenericDrive {
                       count, file.string(), files_.stamps.out_of_order.front()));
     }
     find_sweep_period(file, files_.stamps, info_);
+    find_sweep_middle();
+  }
+
+  /// Where the sweeps lie round their stamps, by the points' times of the first scan that can be
+  /// read; where it has none, stamps are taken as the sweeps' middles.
+  void find_sweep_middle() {
+    for (const auto& [scan, file] : files_.scans) {
+      const auto stamp = frame_stamp(info_, files_.stamps, scan);
+      if (!stamp) continue;
+      try {
+        const std::vector<float> time =
+            read_lidar_scan(file, description_.scan_format, *stamp).points.time;
+        if (time.empty() || info_.sweep_compensated) return;
+        const auto [first, last] = std::minmax_element(time.begin(), time.end());
+        sweep_middle_ = 0.5 * (double(*first) + double(*last));
+        return;
+      } catch (const InputError&) {
+        continue;  // load() reports it when its turn comes
+      }
+    }
   }
 
   /// The images of those cameras that have any, by camera number.
@@ -164,7 +184,8 @@ class GenericDrive {
     for (const auto& [scan, path] : files_.scans) {
       if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
     }
-    const ImageMatches matches = match_nearest(scans, times, description_.image_tolerance);
+    const ImageMatches matches =
+        match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size());
     NumberedFiles result;
@@ -204,6 +225,7 @@ class GenericDrive {
   DriveDescription description_;
   DriveInfo info_;
   DriveFiles files_;
+  double sweep_middle_ = 0;  // s after a scan's stamp
 };
 
 }  // namespace

@@ -153,9 +153,23 @@ TEST_F(GenericDrive, ImagesWithStampsBelongToTheScanNearestInTime) {
   const auto drive = open();
   EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.004, 1e-9);
   EXPECT_THAT(drive->info().notes,
-              ElementsAre(HasSubstr("camera 1 (left) has no image within 0.05 s of 2 of 6 scans")));
+              ElementsAre(HasSubstr("camera 1 (left) has no image within 0.06 s of 2 of 6 scans")));
   EXPECT_EQ(std::get<Frame>(drive->load(1)).images[0].channels, 1);  // image 3
   EXPECT_EQ(std::get<SkippedFrame>(drive->load(4)).reason, SkipReason::kMissingImage);
+}
+
+TEST_F(GenericDrive, ImagesBelongToTheSweepThatTheyLieIn) {
+  // Scans that are stamped at their beginning; images half-way through.
+  for (int i = 0; i < kFrames; ++i) {
+    test::fs::remove(scan(i));
+    write_text(folder_ / fmt::format("lidar/{}.pcd", i),
+               "FIELDS x y z t\nSIZE 4 4 4 4\nTYPE F F F U\nWIDTH 2\nHEIGHT 1\nDATA ascii\n"
+               "1 2 3 0\n4 5 6 99000000\n");
+  }
+  write_text(folder_ / "images/left/stamps.csv", stamps(kFrames, 50'000'000));
+  const auto drive = open();
+  EXPECT_THAT(drive->info().notes, IsEmpty());
+  EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.05, 1e-9);
 }
 
 TEST_F(GenericDrive, ASpreadOfDelaysIsTold) {
