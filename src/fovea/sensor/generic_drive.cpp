@@ -150,7 +150,31 @@ class GenericDrive {
     }
   }
 
+  /// ConfigError if the first images that can be read all have another size than drive.toml says:
+  /// it is that which is wrong, and a table for rectification may be of any size by it.
+  void check_image_size(const CameraDescription& described, const NumberedFiles& images) const {
+    constexpr int kLookedAt = 10;
+    int looked_at = 0;
+    std::string found = "cannot be read";
+    for (const auto& [number, file] : images) {
+      if (looked_at++ == kLookedAt) break;
+      try {
+        const Image image = read_image(file);
+        if (image.width == described.optics.width && image.height == described.optics.height)
+          return;
+        found = fmt::format("have {} x {} pixels, not {} x {}", image.width, image.height,
+                            described.optics.width, described.optics.height);
+      } catch (const InputError&) {
+        continue;  // load() reports it when its turn comes
+      }
+    }
+    throw ConfigError(fmt::format("the images of camera {} {}", described.name, found),
+                      images.begin()->second.parent_path().string(),
+                      "give their width and height in drive.toml, or restore them");
+  }
+
   void add_camera(const CameraDescription& described, const NumberedFiles& images) {
+    check_image_size(described, images);
     const auto pinhole =
         rectified_camera(described.optics, described.max_field_of_view, kMaxImageSide);
     const bool distorted = described.optics.lens.model() != LensModel::kNone;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "../../../tests/kitti_test_drive.h"
+#include "../../../tests/peak_memory.h"
 #include "fovea/base/errors.h"
 
 namespace fovea {
@@ -195,7 +196,7 @@ TEST_F(GenericDrive, DistortedImagesComeOutAsAPinholeCameras) {
   const Frame frame = std::get<Frame>(drive->load(0));
   EXPECT_EQ(frame.images[0].width, camera.width);
   EXPECT_EQ(frame.images[0].height, camera.height);
-  write_png(image("left", 0), pattern(camera.width, camera.height, 3));
+  write_png(image("left", 0), pattern(camera.width, camera.height + 1, 3));
   expect_skipped(0, SkipReason::kDamagedImage, "its camera 24 x 10");
   test::edit(toml_, "D = [-0.2, 0, 0, 0, 0]", "D = [-90, 0, 80, 50, 0]");
   EXPECT_THAT(error<ConfigError>(), HasSubstr("the lens of camera left"));
@@ -226,6 +227,20 @@ TEST_F(GenericDrive, WhatCannotBeReadIsSkippedOrAnError) {
   EXPECT_THAT(error<InputError>(), HasSubstr("the drive has no scan"));
   write_text(toml_, "version = 3");
   EXPECT_THAT(error<ConfigError>(), HasSubstr("drive.toml"));
+}
+
+TEST_F(GenericDrive, ImagesThatAreAllOfAnotherSizeThanTheCalibrationAreAnError) {
+  test::edit(
+      toml_, "[camera.left]\nindex = 1\nwidth = 24\nheight = 10\n",
+      "[camera.left]\nindex = 1\nwidth = 8192\nheight = 8192\ndistortion_model = \"plumb_bob\"\n"
+      "D = [0.1, 0, 0, 0, 0]\n");
+  EXPECT_LT(rise_of_peak_memory([&] {
+              EXPECT_THAT(error<ConfigError>(),
+                          HasSubstr("camera left have 24 x 10 pixels, not 8192 x 8192"));
+            }),
+            kMemoryOfASmallFile);
+  for (int i = 0; i < kFrames; ++i) write_text(image("left", i), "no image");
+  EXPECT_THAT(error<ConfigError>(), HasSubstr("camera left cannot be read"));
 }
 
 class GenericNavigation : public GenericDrive {
