@@ -141,6 +141,7 @@ class GenericDrive {
   void find_cameras() {
     std::map<int, NumberedFiles> images = list_images();
     std::vector<int> present;
+    present.reserve(images.size());
     for (const auto& [index, files] : images) present.push_back(index);
     for (const int index : choose_cameras(present, options_, info_.path)) {
       const CameraDescription& camera =
