@@ -239,11 +239,27 @@ class GenericDrive {
         frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
     GenericNavigation navigation = read_generic_navigation(info_.path, description_, origin_time);
     info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
-    if (!navigation.T_local_lidar) return;
+    if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
     info_.calibration.T_imu_lidar = description_.T_body_lidar;
     info_.navigation = std::move(navigation.T_local_lidar);
     info_.navigation_accuracy = std::move(navigation.accuracy);
     info_.origin = navigation.origin;
+  }
+
+  /// Notes the scans of the range that have no pose; false if none has one.
+  bool covers_scans(const Trajectory& T_local_lidar) {
+    std::size_t stamped = 0, without = 0;
+    for (const auto& [scan, file] : files_.scans) {
+      const auto stamp = frame_stamp(info_, files_.stamps, scan);
+      if (scan < info_.begin || scan >= info_.end || !stamp) continue;
+      ++stamped;
+      if (!T_local_lidar.at(*stamp)) ++without;
+    }
+    if (without == 0) return true;
+    info_.notes.push_back(
+        fmt::format("poses or positions reach {} of {} scans{}", stamped - without, stamped,
+                    without == stamped ? ", are their times of one clock? No navigation" : ""));
+    return without < stamped;
   }
 
   DriveOptions options_;

@@ -21,7 +21,6 @@ using test::write_png;
 using test::write_scan;
 using test::write_text;
 using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -113,6 +112,15 @@ TEST_F(GenericDrive, PosesOfTheBodyBecomePosesOfTheLidarFromItsFirstPlaceOn) {
   EXPECT_FALSE(open()->info().navigation);
 }
 
+TEST_F(GenericDrive, PosesThatDoNotReachTheScansAreTold) {
+  write_text(scan_stamps_, stamps(kFrames, -3 * kStep));
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("poses or positions reach 5 of 6 scans")));
+  EXPECT_TRUE(open()->info().navigation);
+  write_text(scan_stamps_, stamps(kFrames, 3600 * kNsPerSecond));
+  EXPECT_THAT(notes(), ElementsAre(AllOf(HasSubstr("reach 0 of 6"), HasSubstr("one clock"))));
+  EXPECT_FALSE(open()->info().navigation);
+}
+
 TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
   EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 1);
   test::fs::remove_all(folder_ / "images/left");
@@ -127,7 +135,8 @@ TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
 
 TEST_F(GenericDrive, WithoutStampsScansCountAsTenHertz) {
   test::fs::remove(scan_stamps_);
-  EXPECT_THAT(notes(), Contains(HasSubstr("is missing: scans are counted as 10 Hz")));
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("is missing: scans are counted as 10 Hz"),
+                                   HasSubstr("reach 0 of 6 scans")));
   EXPECT_EQ(open()->stamp(3), 3 * kStep);
 }
 
