@@ -72,9 +72,9 @@ class GenericDriveWriter {
 
   /// As PCD: x y z intensity, and time where the scan has the points' times.
   void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar);
-  /// As PNG.
+  /// As PNG. std::invalid_argument for a name that RecordedCamera does not allow.
   void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
-  /// An image that is encoded already.
+  /// An image that is encoded already; as above.
   /// @param extension  ".png" or ".jpg"
   void write_encoded_image(const std::string& camera, int number, TimeNs stamp,
                            std::string_view bytes, const std::string& extension);
