@@ -153,7 +153,8 @@ void add_map_command(CLI::App& app) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
   command
-      ->add_option("DRIVE", arguments->drive.drive, "KITTI raw drive or odometry sequence folder")
+      ->add_option("DRIVE", arguments->drive.drive,
+                   "KITTI raw drive, odometry sequence or folder with a drive.toml")
       ->required();
   command->add_option("-o,--output", arguments->output, "Map file to write")
       ->required()

@@ -57,13 +57,13 @@ class Coverage {
   /// Share of the places from first to last that are not covered.
   template <class Covered>
   static double uncovered(int first, int last, int samples, Covered&& is_covered) {
-    const int count = std::min(samples, last - first + 1);
+    const int steps = std::clamp(last - first, 1, samples);
     int missing = 0;
-    for (int i = 0; i < count; ++i) {
-      if (!is_covered(first + static_cast<int>(std::int64_t{last - first} * i / (count - 1))))
-        ++missing;
+    for (int i = 0; i <= steps; ++i) {
+      const auto along = static_cast<int>(std::int64_t{last - first} * i / steps);
+      if (!is_covered(first + along)) ++missing;
     }
-    return double(missing) / count;
+    return double(missing) / (steps + 1);
   }
 
   const LensCamera& camera_;

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "fovea/recording/png_encode.h"
@@ -134,7 +132,13 @@ std::string inertia_text(const std::vector<RecordedInertia>& inertia) {
   return text;
 }
 
+/// Also what keeps a camera's images below the drive's folder.
 std::filesystem::path image_folder(const std::string& camera) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  if (camera.empty() || camera.find_first_not_of(kPlain) != std::string::npos) {
+    throw std::invalid_argument("a camera's name is of letters, digits, '_' and '-'");
+  }
   return std::filesystem::path("images") / camera;
 }
 

@@ -75,11 +75,12 @@ class GenericDriveWriter {
   /// it.
   explicit GenericDriveWriter(const std::filesystem::path& root);
 
+  /// std::invalid_argument for a scan with times that is to be KITTI's.
   void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
                   ScanFile format = ScanFile::kPcd);
-  /// As PNG.
+  /// As PNG. std::invalid_argument for a name that RecordedCamera does not allow.
   void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
-  /// An image that is encoded already.
+  /// An image that is encoded already; as above.
   /// @param extension  ".png" or ".jpg"
   void write_encoded_image(const std::string& camera, int number, TimeNs stamp,
                            std::string_view bytes, const std::string& extension);

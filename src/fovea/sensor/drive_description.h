@@ -28,7 +28,7 @@ struct DriveDescription {
   std::filesystem::path scans;  ///< folder, below the drive's
   ScanFormat scan_format;
   bool sweep_compensated = false;
-  double image_tolerance = 0.05;  ///< s, between the stamps of an image and of its scan
+  double image_tolerance = 0.06;  ///< s, between an image and its sweep's middle
   /// Body: what poses.csv and the attitudes of gnss.csv are of.
   RigidMotion T_body_lidar = RigidMotion::Identity();
   RigidMotion T_body_imu = RigidMotion::Identity();        ///< of imu.csv's orientations

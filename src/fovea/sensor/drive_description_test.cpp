@@ -7,6 +7,7 @@
 
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
+#include "fovea/geometry/rectified_camera.h"
 
 namespace fovea {
 namespace {
@@ -170,6 +171,25 @@ TEST(DriveDescription, DistortionIsChecked) {
   EXPECT_THAT(error(distorted("field_of_view = 175\n")), HasSubstr("10 to 170 degrees"));
   EXPECT_NO_THROW(parse(distorted("D = [0, 0, 0, 0, 0]\n")));  // as ROS has rectified cameras
   EXPECT_NO_THROW(parse(distorted("distortion_model = \"plumb_bob\"\nD = [0.1, 0, 0, 0]\n")));
+}
+
+TEST(DriveDescription, TheDocumentationsExampleIsOne) {
+  const std::string document = test::read_text(FOVEA_SOURCE_DIR "/docs/drives.md");
+  const std::size_t begin = document.find("```toml\n") + 8, end = document.find("```", begin);
+  ASSERT_NE(end, std::string::npos);
+  const DriveDescription drive = parse(document.substr(begin, end - begin));
+  ASSERT_EQ(drive.cameras.size(), 2u);
+  // The left camera looks to the left, its x axis forward.
+  const RigidMotion T_lidar_cam = drive.cameras[1].T_cam_lidar.inverse();
+  EXPECT_LT((T_lidar_cam.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(),
+            1e-6);
+  EXPECT_LT((T_lidar_cam.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitX()).norm(),
+            1e-6);
+  for (const CameraDescription& camera : drive.cameras) {
+    const auto rectified = rectified_camera(camera.optics, camera.max_field_of_view, 8192);
+    ASSERT_TRUE(rectified);
+    EXPECT_GT(rectified->width, 1000);
+  }
 }
 
 TEST(DriveDescription, AFileThatCannotBeReadIsAnInputError) {

@@ -100,6 +100,26 @@ class GenericDrive {
                       count, file.string(), files_.stamps.out_of_order.front()));
     }
     find_sweep_period(file, files_.stamps, info_);
+    find_sweep_middle();
+  }
+
+  /// Where the sweeps lie round their stamps, by the points' times of the first scan that can be
+  /// read; where it has none, stamps are taken as the sweeps' middles.
+  void find_sweep_middle() {
+    for (const auto& [scan, file] : files_.scans) {
+      const auto stamp = frame_stamp(info_, files_.stamps, scan);
+      if (!stamp) continue;
+      try {
+        const std::vector<float> time =
+            read_lidar_scan(file, description_.scan_format, *stamp).points.time;
+        if (time.empty() || info_.sweep_compensated) return;
+        const auto [first, last] = std::minmax_element(time.begin(), time.end());
+        sweep_middle_ = 0.5 * (double(*first) + double(*last));
+        return;
+      } catch (const InputError&) {
+        continue;  // load() reports it when its turn comes
+      }
+    }
   }
 
   /// The images of those cameras that have any, by camera number.
@@ -121,6 +141,7 @@ class GenericDrive {
   void find_cameras() {
     std::map<int, NumberedFiles> images = list_images();
     std::vector<int> present;
+    present.reserve(images.size());
     for (const auto& [index, files] : images) present.push_back(index);
     for (const int index : choose_cameras(present, options_, info_.path)) {
       const CameraDescription& camera =
@@ -130,7 +151,31 @@ class GenericDrive {
     }
   }
 
+  /// ConfigError if the first images that can be read all have another size than drive.toml says:
+  /// it is that which is wrong, and a table for rectification may be of any size by it.
+  void check_image_size(const CameraDescription& described, const NumberedFiles& images) const {
+    constexpr int kLookedAt = 10;
+    int looked_at = 0;
+    std::string found = "cannot be read";
+    for (const auto& [number, file] : images) {
+      if (looked_at++ == kLookedAt) break;
+      try {
+        const Image image = read_image(file);
+        if (image.width == described.optics.width && image.height == described.optics.height)
+          return;
+        found = fmt::format("have {} x {} pixels, not {} x {}", image.width, image.height,
+                            described.optics.width, described.optics.height);
+      } catch (const InputError&) {
+        continue;  // load() reports it when its turn comes
+      }
+    }
+    throw ConfigError(fmt::format("the images of camera {} {}", described.name, found),
+                      images.begin()->second.parent_path().string(),
+                      "give their width and height in drive.toml, or restore them");
+  }
+
   void add_camera(const CameraDescription& described, const NumberedFiles& images) {
+    check_image_size(described, images);
     const auto pinhole =
         rectified_camera(described.optics, described.max_field_of_view, kMaxImageSide);
     const bool distorted = described.optics.lens.model() != LensModel::kNone;
@@ -164,7 +209,8 @@ class GenericDrive {
     for (const auto& [scan, path] : files_.scans) {
       if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
     }
-    const ImageMatches matches = match_nearest(scans, times, description_.image_tolerance);
+    const ImageMatches matches =
+        match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size());
     NumberedFiles result;
@@ -193,17 +239,34 @@ class GenericDrive {
         frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
     GenericNavigation navigation = read_generic_navigation(info_.path, description_, origin_time);
     info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
-    if (!navigation.T_local_lidar) return;
+    if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
     info_.calibration.T_imu_lidar = description_.T_body_lidar;
     info_.navigation = std::move(navigation.T_local_lidar);
     info_.navigation_accuracy = std::move(navigation.accuracy);
     info_.origin = navigation.origin;
   }
 
+  /// Notes the scans of the range that have no pose; false if none has one.
+  bool covers_scans(const Trajectory& T_local_lidar) {
+    std::size_t stamped = 0, without = 0;
+    for (const auto& [scan, file] : files_.scans) {
+      const auto stamp = frame_stamp(info_, files_.stamps, scan);
+      if (scan < info_.begin || scan >= info_.end || !stamp) continue;
+      ++stamped;
+      if (!T_local_lidar.at(*stamp)) ++without;
+    }
+    if (without == 0) return true;
+    info_.notes.push_back(
+        fmt::format("poses or positions reach {} of {} scans{}", stamped - without, stamped,
+                    without == stamped ? ", are their times of one clock? No navigation" : ""));
+    return without < stamped;
+  }
+
   DriveOptions options_;
   DriveDescription description_;
   DriveInfo info_;
   DriveFiles files_;
+  double sweep_middle_ = 0;  // s after a scan's stamp
 };
 
 }  // namespace

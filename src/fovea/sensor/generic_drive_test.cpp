@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "../../../tests/kitti_test_drive.h"
+#include "../../../tests/peak_memory.h"
 #include "fovea/base/errors.h"
 
 namespace fovea {
@@ -20,7 +21,6 @@ using test::write_png;
 using test::write_scan;
 using test::write_text;
 using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -112,6 +112,15 @@ TEST_F(GenericDrive, PosesOfTheBodyBecomePosesOfTheLidarFromItsFirstPlaceOn) {
   EXPECT_FALSE(open()->info().navigation);
 }
 
+TEST_F(GenericDrive, PosesThatDoNotReachTheScansAreTold) {
+  write_text(scan_stamps_, stamps(kFrames, -3 * kStep));
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("poses or positions reach 5 of 6 scans")));
+  EXPECT_TRUE(open()->info().navigation);
+  write_text(scan_stamps_, stamps(kFrames, 3600 * kNsPerSecond));
+  EXPECT_THAT(notes(), ElementsAre(AllOf(HasSubstr("reach 0 of 6"), HasSubstr("one clock"))));
+  EXPECT_FALSE(open()->info().navigation);
+}
+
 TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
   EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 1);
   test::fs::remove_all(folder_ / "images/left");
@@ -126,7 +135,8 @@ TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
 
 TEST_F(GenericDrive, WithoutStampsScansCountAsTenHertz) {
   test::fs::remove(scan_stamps_);
-  EXPECT_THAT(notes(), Contains(HasSubstr("is missing: scans are counted as 10 Hz")));
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("is missing: scans are counted as 10 Hz"),
+                                   HasSubstr("reach 0 of 6 scans")));
   EXPECT_EQ(open()->stamp(3), 3 * kStep);
 }
 
@@ -153,9 +163,23 @@ TEST_F(GenericDrive, ImagesWithStampsBelongToTheScanNearestInTime) {
   const auto drive = open();
   EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.004, 1e-9);
   EXPECT_THAT(drive->info().notes,
-              ElementsAre(HasSubstr("camera 1 (left) has no image within 0.05 s of 2 of 6 scans")));
+              ElementsAre(HasSubstr("camera 1 (left) has no image within 0.06 s of 2 of 6 scans")));
   EXPECT_EQ(std::get<Frame>(drive->load(1)).images[0].channels, 1);  // image 3
   EXPECT_EQ(std::get<SkippedFrame>(drive->load(4)).reason, SkipReason::kMissingImage);
+}
+
+TEST_F(GenericDrive, ImagesBelongToTheSweepThatTheyLieIn) {
+  // Scans that are stamped at their beginning; images half-way through.
+  for (int i = 0; i < kFrames; ++i) {
+    test::fs::remove(scan(i));
+    write_text(folder_ / fmt::format("lidar/{}.pcd", i),
+               "FIELDS x y z t\nSIZE 4 4 4 4\nTYPE F F F U\nWIDTH 2\nHEIGHT 1\nDATA ascii\n"
+               "1 2 3 0\n4 5 6 99000000\n");
+  }
+  write_text(folder_ / "images/left/stamps.csv", stamps(kFrames, 50'000'000));
+  const auto drive = open();
+  EXPECT_THAT(drive->info().notes, IsEmpty());
+  EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.05, 1e-9);
 }
 
 TEST_F(GenericDrive, ASpreadOfDelaysIsTold) {
@@ -181,7 +205,7 @@ TEST_F(GenericDrive, DistortedImagesComeOutAsAPinholeCameras) {
   const Frame frame = std::get<Frame>(drive->load(0));
   EXPECT_EQ(frame.images[0].width, camera.width);
   EXPECT_EQ(frame.images[0].height, camera.height);
-  write_png(image("left", 0), pattern(camera.width, camera.height, 3));
+  write_png(image("left", 0), pattern(camera.width, camera.height + 1, 3));
   expect_skipped(0, SkipReason::kDamagedImage, "its camera 24 x 10");
   test::edit(toml_, "D = [-0.2, 0, 0, 0, 0]", "D = [-90, 0, 80, 50, 0]");
   EXPECT_THAT(error<ConfigError>(), HasSubstr("the lens of camera left"));
@@ -212,6 +236,20 @@ TEST_F(GenericDrive, WhatCannotBeReadIsSkippedOrAnError) {
   EXPECT_THAT(error<InputError>(), HasSubstr("the drive has no scan"));
   write_text(toml_, "version = 3");
   EXPECT_THAT(error<ConfigError>(), HasSubstr("drive.toml"));
+}
+
+TEST_F(GenericDrive, ImagesThatAreAllOfAnotherSizeThanTheCalibrationAreAnError) {
+  test::edit(
+      toml_, "[camera.left]\nindex = 1\nwidth = 24\nheight = 10\n",
+      "[camera.left]\nindex = 1\nwidth = 8192\nheight = 8192\ndistortion_model = \"plumb_bob\"\n"
+      "D = [0.1, 0, 0, 0, 0]\n");
+  EXPECT_LT(rise_of_peak_memory([&] {
+              EXPECT_THAT(error<ConfigError>(),
+                          HasSubstr("camera left have 24 x 10 pixels, not 8192 x 8192"));
+            }),
+            kMemoryOfASmallFile);
+  for (int i = 0; i < kFrames; ++i) write_text(image("left", i), "no image");
+  EXPECT_THAT(error<ConfigError>(), HasSubstr("camera left cannot be read"));
 }
 
 class GenericNavigation : public GenericDrive {
@@ -318,9 +356,10 @@ TEST_F(GenericNavigation, TablesThatAreNoneAreErrors) {
   EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("no column latitude"), HasSubstr("gnss.csv:1")));
   write_text(folder_ / "gnss.csv", "time_ns,latitude,longitude,altitude\n");
   EXPECT_THAT(notes(), ElementsAre(HasSubstr("no position that can be used")));
-  write_text(folder_ / "poses.csv",
-             "time_ns,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,0\n6,1e300,0,0,0,0,0,1\n");
-  EXPECT_THAT(notes(), ElementsAre(HasSubstr("2 lines of"), HasSubstr("no pose that can be used")));
+  write_text(
+      folder_ / "poses.csv",
+      "time_ns,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,0\n6,1e300,0,0,0,0,0,1\n7,1,nan,0,0,0,0,1\n");
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("3 lines of"), HasSubstr("no pose that can be used")));
 }
 
 }  // namespace

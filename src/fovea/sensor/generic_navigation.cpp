@@ -73,7 +73,8 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const Eigen::Vector3d position(rows.at(row, kX), rows.at(row, kY), rows.at(row, kZ));
     const auto q = quaternion_of(rows, row, kQx);
-    if (!q || !(position.cwiseAbs().maxCoeff() <= kMaxWorldCoordinate)) {
+    // The largest of numbers and a NaN may be a number.
+    if (!q || !position.allFinite() || position.cwiseAbs().maxCoeff() > kMaxWorldCoordinate) {
       left_out.add(rows.lines[row]);
       continue;
     }

@@ -20,33 +20,55 @@ const StampedImage& nearest(const std::vector<StampedImage>& images, TimeNs time
   return time - (after - 1)->time <= after->time - time ? *(after - 1) : *after;
 }
 
+/// @param delay  of the images, that they are looked for after a scan's stamp
+std::map<int, int> match(const NumberedTimes& scans, const std::vector<StampedImage>& images,
+                         double tolerance, TimeNs delay) {
+  struct Taken {
+    int scan;
+    TimeNs away;
+  };
+  std::map<int, Taken> by_image;
+  for (const auto& [scan, time] : scans) {
+    const StampedImage& image = nearest(images, time + delay);
+    const TimeNs away = std::abs(image.time - time - delay);
+    if (seconds(away) > tolerance) continue;
+    const auto [taken, is_new] = by_image.emplace(image.number, Taken{scan, away});
+    if (!is_new && away < taken->second.away) taken->second = {scan, away};
+  }
+  std::map<int, int> image_of_scan;
+  for (const auto& [image, taken] : by_image) image_of_scan.emplace(taken.scan, image);
+  return image_of_scan;
+}
+
+/// How much later than their scans the images are, ascending.
+std::vector<TimeNs> delays_of(const std::map<int, int>& image_of_scan, const NumberedTimes& scans,
+                              const NumberedTimes& images) {
+  std::vector<TimeNs> delays;
+  delays.reserve(image_of_scan.size());
+  for (const auto& [scan, image] : image_of_scan) {
+    delays.push_back(images.at(image) - scans.at(scan));
+  }
+  std::sort(delays.begin(), delays.end());
+  return delays;
+}
+
 }  // namespace
 
 ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& images,
-                           double tolerance) {
+                           double sweep_middle, double tolerance) {
   ImageMatches matches;
   std::vector<StampedImage> in_time;
   for (const auto& [number, time] : images) in_time.push_back({time, number});
   std::sort(in_time.begin(), in_time.end());
   if (in_time.empty()) return matches;
-  std::map<int, int> scan_of_image;
-  for (const auto& [scan, time] : scans) {
-    const StampedImage& image = nearest(in_time, time);
-    const TimeNs away = std::abs(image.time - time);
-    if (seconds(away) > tolerance) continue;
-    const auto [taken, is_new] = scan_of_image.emplace(image.number, scan);
-    if (!is_new && away < std::abs(image.time - scans.at(taken->second))) taken->second = scan;
-  }
-  std::vector<double> delays;
-  for (const auto& [image, scan] : scan_of_image) {
-    matches.image_of_scan.emplace(scan, image);
-    delays.push_back(seconds(images.at(image) - scans.at(scan)));
-  }
-  if (delays.empty()) return matches;
-  std::sort(delays.begin(), delays.end());
-  matches.median_delay = delays[delays.size() / 2];
-  matches.min_delay = delays.front();
-  matches.max_delay = delays.back();
+  const std::vector<TimeNs> first =
+      delays_of(match(scans, in_time, tolerance, from_seconds(sweep_middle)), scans, images);
+  if (first.empty()) return matches;
+  matches.image_of_scan = match(scans, in_time, tolerance, first[first.size() / 2]);
+  const std::vector<TimeNs> delays = delays_of(matches.image_of_scan, scans, images);
+  matches.median_delay = seconds(delays[delays.size() / 2]);
+  matches.min_delay = seconds(delays.front());
+  matches.max_delay = seconds(delays.back());
   return matches;
 }
 

@@ -17,10 +17,14 @@ struct ImageMatches {
   double min_delay = 0, max_delay = 0;
 };
 
-/// Gives each scan the image nearest to it in time, where that is at most `tolerance` away; an
-/// image that is nearest to two scans goes to the nearer one (the earlier of equals).
-/// @param tolerance  s
+/// Gives each scan the image nearest in time to its sweep's middle, where that is at most
+/// `tolerance` away; an image that is nearest to two scans goes to the nearer one (the earlier of
+/// equals). Then once more round the median delay of these images, so that a camera that triggers
+/// half-way between two sweeps does not belong now to the one before it and now to the one after
+/// it.
+/// @param sweep_middle  s after a scan's stamp
+/// @param tolerance     s
 ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& images,
-                           double tolerance);
+                           double sweep_middle, double tolerance);
 
 }  // namespace fovea

@@ -166,6 +166,29 @@ TEST(SimulationConfig, AnglesAreInDegreesAndErrorsNameFileLineAndKey) {
   EXPECT_THROW(apply_config_file("/nonexistent.toml", options), InputError);
 }
 
+TEST(SimulationConfig, ARigIsAWholeSetOfCamerasAndEachCanBeChanged) {
+  SimulationOptions options;
+  options.format = DriveFormat::kGeneric;
+  apply_setting("camera.rig=surround", options);
+  ASSERT_EQ(options.camera.cameras.size(), 5u);
+  EXPECT_EQ(options.camera.cameras[1].lens, SimulatedLens::kFisheye);
+  EXPECT_NEAR(options.camera.cameras[4].yaw, -72 * kDegree, 1e-12);
+  apply_setting("camera.lens_1=plumb_bob", options);
+  apply_config_text("[camera]\nnumbers = [1, 3]\nyaw_3 = 10", "text", options);
+  ASSERT_EQ(options.camera.cameras.size(), 2u);
+  EXPECT_EQ(options.camera.cameras[0].lens, SimulatedLens::kPlumbBob);
+  EXPECT_NEAR(options.camera.cameras[0].yaw, 72 * kDegree, 1e-12);
+  EXPECT_NEAR(options.camera.cameras[1].yaw, 10 * kDegree, 1e-12);
+  SimulationOptions back;
+  back.format = DriveFormat::kGeneric;
+  apply_config_text(to_toml(options), "text", back);
+  EXPECT_EQ(to_toml(back), to_toml(options));
+  EXPECT_THAT(config_error([&] { apply_setting("camera.yaw_0=3", options); }),
+              HasSubstr("not simulated"));
+  EXPECT_THAT(config_error([&] { apply_setting("camera.rig=ring", options); }),
+              HasSubstr("'kitti', 'surround'"));
+}
+
 TEST(SimulationConfig, TheDocumentationListsEveryKeyWithItsDefault) {
   std::ostringstream document;
   document << std::ifstream(FOVEA_SOURCE_DIR "/docs/simulator.md").rdbuf();

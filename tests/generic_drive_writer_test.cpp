@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/frame_source.h"
+#include "tests/temporary_folder.h"
 
 namespace fovea {
 namespace {
@@ -147,6 +147,7 @@ TEST(GenericDriveWriter, LeavesNothingUnfinishedAndReplacesNothing) {
     GenericDriveWriter writer(folder / "d");
     writer.write_scan(0, 1, some_scan(0, true));
     EXPECT_THROW(GenericDriveWriter(folder / "d"), OutputError);
+    EXPECT_THROW(writer.write_image("../out", 0, 1, Image(8, 8, 1)), std::invalid_argument);
   }
   EXPECT_THAT(folder.names(), IsEmpty());
   std::filesystem::create_directory(folder / "d");

@@ -1,0 +1,39 @@
+// drive.toml: the calibration of any drive, and the pinhole cameras in its lenses.
+#include "fovea/geometry/rectified_camera.h"
+#include "fovea/sensor/drive_description.h"
+#include "fuzz_input.h"
+
+using namespace fovea;
+
+namespace {
+
+constexpr int kMaxSide = 1024;  // of the images that are rectified here: the rest takes too long
+
+void check(const CameraDescription& camera) {
+  require(camera.index >= 0 && camera.index <= 9, "cameras have numbers that maps can hold");
+  require(is_rotation(camera.T_cam_lidar.linear(), 1e-9), "cameras are turned by rotations");
+  require(camera.T_cam_lidar.translation().norm() <= 1001, "cameras are on the vehicle");
+  if (camera.optics.width > kMaxSide || camera.optics.height > kMaxSide) return;
+  const auto pinhole = rectified_camera(camera.optics, camera.max_field_of_view, kMaxSide);
+  if (!pinhole) return;
+  require(pinhole->width <= kMaxSide && pinhole->height <= kMaxSide, "images are not too large");
+  require(pinhole->width > 0 && pinhole->height > 0, "images are not empty");
+  for (const int u : {0, pinhole->width / 2, pinhole->width - 1}) {
+    const Eigen::Vector3d ray((u - pinhole->cx) / pinhole->fx, -pinhole->cy / pinhole->fy, 1);
+    if (camera.optics.lens.model() == LensModel::kNone) break;
+    const auto pixel = camera.optics.project(ray);
+    require(pixel && camera.optics.in_view(*pixel), "the border of a rectified image is seen");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  read_or_refuse<ConfigError>([&] {
+    const DriveDescription drive = parse_drive_description(as_text(data, size), "drive.toml");
+    require(!drive.cameras.empty() && drive.cameras.size() <= 10, "there are cameras");
+    require(drive.antenna_body.allFinite(), "the antenna is somewhere");
+    for (const CameraDescription& camera : drive.cameras) check(camera);
+  });
+  return 0;
+}

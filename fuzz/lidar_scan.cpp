@@ -1,0 +1,29 @@
+// Scans in PCD and PLY: the first byte says which, and how the times count.
+#include "fovea/sensor/lidar_scan.h"
+
+#include <fstream>
+
+#include "fuzz_input.h"
+#include "scratch_folder.h"
+
+using namespace fovea;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const ScratchFolder folder;
+  if (size == 0) return 0;
+  const std::filesystem::path file = folder / ((data[0] & 1) != 0 ? "a.ply" : "a.pcd");
+  std::ofstream(file, std::ios::binary) << as_text(data + 1, size - 1);
+  ScanFormat format;
+  if ((data[0] & 2) != 0) format.time_reference = TimeReference::kAbsolute;
+  read_or_refuse([&] {
+    const LidarScan scan = read_lidar_scan(file, format, 1'700'000'000'000'000'000);
+    scan.points.check();
+    require(!scan.points.empty(), "a scan has points");
+    for (const Eigen::Vector3f& p : scan.points.position) {
+      require(p.cwiseAbs().maxCoeff() <= 1000, "points lie within reach");
+    }
+    for (const float time : scan.points.time)
+      require(std::abs(time) <= 1, "times are near the stamp");
+  });
+  return 0;
+}
