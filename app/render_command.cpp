@@ -95,7 +95,7 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map, const Fr
 /// What would otherwise be ignored without a word.
 void check_options(const CLI::App& command) {
   const bool drive = command.count("--poses") > 0;
-  for (const char* option : {"--view", "--frame", "--width", "--height", "--force", "DRIVE"}) {
+  for (const char* option : {"--view", "--frame", "--width", "--height", "--force"}) {
     if (drive && command.count(option) > 0) {
       throw CLI::ValidationError(option, "is for a single picture, without --poses");
     }
@@ -132,8 +132,8 @@ void add_render_command(CLI::App& app) {
       ->type_name("OUT.png|DIR");
   command
       ->add_option("--camera", arguments->camera,
-                   "Camera of DRIVE; with --poses W,H,fx,fy,cx,cy, or a drive or calibration "
-                   "folder whose cameras it has")
+                   "Camera of DRIVE; with --poses calib (all of DRIVE's), W,H,fx,fy,cx,cy, or a "
+                   "drive or calibration folder")
       ->capture_default_str();
   command->add_option("--view", arguments->view, "Without DRIVE: driver, behind or above")
       ->capture_default_str()
@@ -169,6 +169,8 @@ void add_render_command(CLI::App& app) {
     drive.map = arguments->map;
     drive.output = arguments->output;
     if (command->count("--camera") > 0) drive.camera = arguments->camera;
+    drive.drive = arguments->drive;
+    drive.drive = arguments->drive;
     render_drive_command(drive);
   });
 }

@@ -77,15 +77,21 @@ std::vector<Camera> calibrated_cameras(const std::string& path, const std::vecto
 }
 
 std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) {
-  if (arguments.camera.empty()) return {};
-  if (const auto numbers = numbers_of(arguments.camera)) return {camera_of(*numbers)};
+  const bool of_drive = arguments.camera.empty() || arguments.camera == "calib";
+  if (of_drive && arguments.drive.empty()) {
+    if (arguments.camera.empty()) return {};
+    throw CLI::ValidationError("--camera",
+                               "calib is that of DRIVE, which is named after MAP.fovea");
+  }
+  const std::string& calibration = of_drive ? arguments.drive : arguments.camera;
+  if (const auto numbers = numbers_of(calibration)) return {camera_of(*numbers)};
   std::vector<int> wanted;
   if (!arguments.cameras.empty()) wanted = parse_cameras(arguments.cameras);
   std::vector<RenderedCamera> cameras;
-  for (Camera camera : calibrated_cameras(arguments.camera, wanted)) {
+  for (Camera camera : calibrated_cameras(calibration, wanted)) {
     if (camera.width <= 0 || camera.height <= 0) {
-      throw InputError(fmt::format("the size of camera {} is not known", camera.index),
-                       arguments.camera, "give W,H,fx,fy,cx,cy instead");
+      throw InputError(fmt::format("the size of camera {} is not known", camera.index), calibration,
+                       "give W,H,fx,fy,cx,cy instead");
     }
     camera.image_delay = 0;  // a rendered image is of its frame's own moment
     cameras.push_back({fmt::format("camera_{}", camera.index), camera});

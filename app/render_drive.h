@@ -8,7 +8,8 @@ namespace fovea::app {
 struct RenderDriveArguments {
   std::string map, output;
   std::string poses;    ///< file of T_local_lidar
-  std::string camera;   ///< empty: none; six numbers, or where a calibration is
+  std::string drive;    ///< whose cameras "calib" are, or empty
+  std::string camera;   ///< empty: none, or the drive's; "calib", six numbers, or a calibration
   std::string cameras;  ///< of that calibration: numbers, or empty: all
   std::string lidar;    ///< empty: none; its name
   double rate = 10;     ///< frames a second

@@ -58,6 +58,9 @@ TEST_F(RenderProgram, ACameraIsSixNumbersOrACalibration) {
   succeed(render + "--camera 320,100,200,200,159.5,40 -o " + path("six"));
   EXPECT_TRUE(fs::exists(path("six/images/camera/000000.png")));
   EXPECT_FALSE(fs::exists(path("six/lidar/000000.bin")));
+  succeed(fmt::format("render '{}' '{}' --poses '{}' --camera calib --cameras 2 -o '{}'",
+                      path("m.fovea"), drive.string(), path("pose.txt"), path("calib")));
+  EXPECT_TRUE(fs::exists(path("calib/images/camera_2/000000.png")));
   succeed(render + "--camera '" + drive.parent_path().string() + "' --cameras 0,3 -o " +
           path("two"));
   EXPECT_TRUE(fs::exists(path("two/images/camera_3/000000.png")));
@@ -69,6 +72,7 @@ TEST_F(RenderProgram, ACameraIsSixNumbersOrACalibration) {
     return run.err;
   };
   EXPECT_THAT(error(""), HasSubstr("--camera, --lidar, or both"));
+  EXPECT_THAT(error("--camera calib"), HasSubstr("named after MAP.fovea"));
   EXPECT_THAT(error("--camera 320,100,200"), HasSubstr("W,H,fx,fy,cx,cy"));
   EXPECT_THAT(error("--camera 320,100,-5,5,1,1"), HasSubstr("W,H,fx,fy,cx,cy"));
   EXPECT_THAT(error("--camera nowhere"), HasSubstr("nowhere"));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 #include <utility>
 
 #include "fovea/base/angle.h"
@@ -105,6 +106,10 @@ Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationG
 }
 
 Localization Localizer::localize(const Frame& frame) {
+  if (latest_ && frame.stamp <= *latest_) {
+    throw std::invalid_argument("scans are localised in the order of time");
+  }
+  latest_ = frame.stamp;
   Localization result;
   result.index = frame.index;
   result.stamp = frame.stamp;
@@ -120,7 +125,7 @@ Localization Localizer::localize(const Frame& frame) {
   const bool tracked = best.fits;
   if (!tracked) {
     const Attempt found = search(frame, motion, placed);
-    if (found.fits || found.health > best.health) best = found;
+    if (found.better_than(best)) best = found;
   }
   result.health = best.health;
   if (best.fits) {
@@ -178,7 +183,7 @@ Localizer::Attempt Localizer::look_around(const Scan& scan, const RigidMotion& g
     attempt.fits = attempt.fits && attempt.registration.degenerate_directions == 0 &&
                    attempt.health >= kMinHealthFound;
     const bool covered = best.covered || attempt.covered;
-    if (std::pair(attempt.fits, attempt.health) > std::pair(best.fits, best.health)) best = attempt;
+    if (attempt.better_than(best)) best = std::move(attempt);
     best.covered = covered;
   }
   return best;
@@ -204,7 +209,7 @@ Localizer::Attempt Localizer::track(const Frame& frame, const MotionPrediction& 
   Attempt best;
   for (const MotionGuess& guess : motion.guesses) {
     Attempt attempt = follow(prepare(frame, guess.velocity), guess.T_odom_lidar);
-    if (attempt.fits > best.fits || attempt.health > best.health) best = std::move(attempt);
+    if (attempt.better_than(best)) best = std::move(attempt);
   }
   return best;
 }
@@ -218,7 +223,7 @@ Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction&
     Attempt attempt = look_around(scan, guess);
     best.covered = best.covered || attempt.covered;
     attempt.covered = best.covered;
-    if (attempt.fits || attempt.health > best.health) best = std::move(attempt);
+    if (attempt.better_than(best)) best = std::move(attempt);
     return best.fits;
   };
   if (placed) {

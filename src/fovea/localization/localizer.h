@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fovea/localization/place_candidates.h"
@@ -63,8 +65,11 @@ class Localizer {
   /// @param map, drive  must outlive this; the map may be being written: its present state counts
   Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
             const LocalizerOptions& options = {});
+  Localizer(const Localizer&) = delete;
+  Localizer& operator=(const Localizer&) = delete;
 
-  /// The next scan of the drive. InputError if the map is damaged where it is looked at.
+  /// The next scan of the drive. InputError if the map is damaged where it is looked at,
+  /// std::invalid_argument if the scan is not later than the one before.
   Localization localize(const Frame& frame);
 
  private:
@@ -74,6 +79,10 @@ class Localizer {
     double health = 0;
     bool covered = false;  // the map has something there
     bool fits = false;
+
+    bool better_than(const Attempt& other) const {
+      return std::pair(fits, health) > std::pair(other.fits, other.health);
+    }
   };
   /// A scan without the sweep's motion, LiDAR frame.
   struct Scan {
@@ -97,6 +106,7 @@ class Localizer {
   PriorMap prior_;
   PlaceCandidates candidates_;
   std::optional<StampedPose> last_;  // localised
+  std::optional<TimeNs> latest_;     // scan, localised or not
   bool tracking_ = false;
   int open_frames_ = 0;  // in a row whose scene left a direction open
 };

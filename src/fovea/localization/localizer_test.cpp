@@ -257,6 +257,15 @@ TEST_F(Localize, AnEmptyMapIsRefused) {
   }
 }
 
+TEST_F(Localize, ScansComeInTheOrderOfTime) {
+  const Visit visit(town_scene(), 2, 0.9, 2);
+  Localizer localizer(map_, visit.info(), navigation_of(visit));
+  const Frame frame = std::get<Frame>(visit.load(1));
+  EXPECT_EQ(localizer.localize(frame).state, kLocalized);
+  EXPECT_THROW(localizer.localize(frame), std::invalid_argument);
+  EXPECT_THROW(localizer.localize(std::get<Frame>(visit.load(0))), std::invalid_argument);
+}
+
 TEST_F(Localize, FramesWithoutAScanAreToldOf) {
   class Gappy : public Visit {
    public:
