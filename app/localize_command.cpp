@@ -18,6 +18,7 @@
 #include "fovea/geometry/pose_file.h"
 #include "fovea/localization/localize_drive.h"
 #include "fovea/localization/pose_table.h"
+#include "fovea/map/map_meta.h"
 
 namespace fovea::app {
 namespace {
@@ -35,19 +36,20 @@ constexpr const char* kFirst = "first";
 /// The poses of a file as a guess: one is that of the first scan, more are those of the frames.
 LocalizationGuess guess_of_file(const std::string& file, const FrameSource& drive) {
   LocalizationGuess guess;
-  if (const auto all = read_poses(file); all.size() == 1) {
+  if (const auto all = read_poses_with_gaps(file); all.size() == 1 && all.front()) {
     guess.first = all.front();
     return guess;
   }
   const DriveInfo& info = drive.info();
   std::vector<StampedPose> stamped;
   int index = info.begin;
-  for (const RigidMotion& T_local_lidar : read_poses(file, info.begin, info.end)) {
-    if (const auto stamp = drive.stamp(index++)) stamped.push_back({*stamp, T_local_lidar});
+  for (const auto& T_local_lidar : read_poses_with_gaps(file, info.begin, info.end)) {
+    const auto stamp = drive.stamp(index++);
+    if (stamp && T_local_lidar) stamped.push_back({*stamp, *T_local_lidar});
   }
   if (stamped.empty()) {
-    throw InputError("none of the frames that the poses are of has a time stamp", file,
-                     "restore the drive's stamps");
+    throw InputError("no frame has both a pose there and a time stamp", file,
+                     "give poses of frames that have stamps");
   }
   guess.trajectory = Trajectory(std::move(stamped));
   return guess;
@@ -77,21 +79,33 @@ struct TruthErrors {
   double normalized = 0;  ///< mean of the squared errors over the covariances' own, a direction
 };
 
-TruthErrors truth_errors(const LocalizeArguments& arguments, const FrameSource& drive,
-                         const MapReader& map, const LocalizedDrive& localized) {
+/// What a simulated drive is compared with.
+struct Truth {
+  std::vector<PosePair> map;
+  DriveTruth drive;
+};
+
+Truth open_truth(const LocalizeArguments& arguments, const FrameSource& drive,
+                 const MapReader& map) {
+  if (!merged_drives(map.meta()).empty()) {
+    throw InputError("the map is of several drives", arguments.map,
+                     "compare with the truth in a map of one drive");
+  }
   DriveOptions scans;
   scans.use_images = false;
   const DriveTruth map_truth(open_drive(arguments.truth, scans)->info().path);
-  const DriveTruth truth(drive.info().path);
-  const std::vector<PosePair> map_pairs = pose_pairs(map.frames(), map_truth);
+  return {pose_pairs(map.frames(), map_truth), DriveTruth(drive.info().path)};
+}
+
+TruthErrors truth_errors(const Truth& truth, const LocalizedDrive& localized) {
   TruthErrors errors;
   std::size_t count = 0;
   for (const Localization& frame : localized.frames) {
     if (frame.state != LocalizationState::kLocalized) continue;
-    if (frame.index < 0 || frame.index >= truth.frames()) continue;
-    const PosePair pair{frame.index, truth.T_local_lidar()[std::size_t(frame.index)],
+    if (frame.index < 0 || frame.index >= truth.drive.frames()) continue;
+    const PosePair pair{frame.index, truth.drive.T_local_lidar()[std::size_t(frame.index)],
                         frame.T_local_lidar};
-    const Twist error = log_se3(error_beside(map_pairs, pair));
+    const Twist error = log_se3(error_beside(truth.map, pair));
     const double position = error.tail<3>().norm();
     const double rotation = error.head<3>().norm() * 180 / std::numbers::pi;
     errors.position_rms += position * position;
@@ -101,7 +115,10 @@ TruthErrors truth_errors(const LocalizeArguments& arguments, const FrameSource& 
     errors.normalized += error.dot(frame.covariance.ldlt().solve(error)) / 6;
     ++count;
   }
-  if (count == 0) return errors;
+  if (count == 0) {
+    throw InputError("the truth knows none of the localised frames", truth.drive.folder().string(),
+                     "check that it belongs to the drive");
+  }
   errors.position_rms = std::sqrt(errors.position_rms / double(count));
   errors.rotation_rms = std::sqrt(errors.rotation_rms / double(count));
   errors.normalized /= double(count);
@@ -171,17 +188,26 @@ void run(LocalizeArguments arguments) {
   job.guess = find_guess(arguments, *drive, map.meta());
   job.only = parse_frame_set(arguments.only, "--only");
   job.stop = interrupt.token();
+  std::optional<Truth> truth;
+  if (!arguments.truth.empty()) truth = open_truth(arguments, *drive, map);
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);
     return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
+  if (job.stop.stop_requested()) {
+    throw Error("the localisation was interrupted", arguments.output,
+                "give the same command again");
+  }
   require_poses(localized, arguments);
-  const bool table = std::filesystem::path(arguments.output).extension() == ".csv";
-  (table ? write_pose_table : write_pose_lines)(localized.frames, output.stream());
+  if (std::filesystem::path(arguments.output).extension() == ".csv") {
+    write_pose_table(localized.frames, output.stream());
+  } else {
+    write_pose_lines(localized.frames, drive->info().begin, drive->info().end, output.stream());
+  }
   nlohmann::ordered_json figures = to_json(localized, arguments.guess);
   if (!arguments.quiet) print_summary(arguments, localized);
-  if (!arguments.truth.empty()) {
-    const TruthErrors errors = truth_errors(arguments, *drive, map, localized);
+  if (truth) {
+    const TruthErrors errors = truth_errors(*truth, localized);
     figures["truth"] = {{"position_rms_m", errors.position_rms},
                         {"position_max_m", errors.position_max},
                         {"rotation_rms_deg", errors.rotation_rms},

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -92,10 +93,23 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map, const Fr
       .image;
 }
 
+/// CLI::Range lets NaN pass.
+CLI::Validator finite_in(double low, double high) {
+  return CLI::Range(low, high) & CLI::Validator(
+                                     [](const std::string& text) {
+                                       double value = 0;
+                                       const bool number = CLI::detail::lexical_cast(text, value);
+                                       return number && std::isfinite(value)
+                                                  ? std::string()
+                                                  : std::string("not a finite number");
+                                     },
+                                     "");
+}
+
 /// What would otherwise be ignored without a word.
 void check_options(const CLI::App& command) {
   const bool drive = command.count("--poses") > 0;
-  for (const char* option : {"--view", "--frame", "--width", "--height", "--force"}) {
+  for (const char* option : {"--view", "--frame", "--width", "--height"}) {
     if (drive && command.count(option) > 0) {
       throw CLI::ValidationError(option, "is for a single picture, without --poses");
     }
@@ -151,14 +165,16 @@ void add_render_command(CLI::App& app) {
   command->add_option("--poses", path.poses,
                       "Render a drive: images, depth and scans at each pose T_local_lidar of this "
                       "file (docs/rendering.md)");
-  command->add_option("--cameras", path.cameras, "Which of the cameras there (default: as map)");
+  command->add_option(
+      "--cameras", path.cameras,
+      "Which of the cameras there (default: those that map takes; all of a calibration folder)");
   command->add_option("--lidar", path.lidar, "hdl64: scans, too")->check(CLI::IsMember({"hdl64"}));
   command->add_option("--rate", path.rate, "Frames a second")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(finite_in(0.1, 1000));
   command->add_option("--reach", path.reach, "How far is seen, m")
       ->capture_default_str()
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(finite_in(1, 1000));
   command->add_option("--threads", path.threads, "At most this many threads (default: all)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--quiet", path.quiet, "Say nothing but errors");
@@ -170,7 +186,9 @@ void add_render_command(CLI::App& app) {
     drive.output = arguments->output;
     if (command->count("--camera") > 0) drive.camera = arguments->camera;
     drive.drive = arguments->drive;
+    drive.force = arguments->force;
     drive.drive = arguments->drive;
+    drive.force = arguments->force;
     render_drive_command(drive);
   });
 }

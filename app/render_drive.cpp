@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/rendering/render_drive.h"
+#include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/kitti_calibration.h"
 
 namespace fovea::app {
@@ -42,10 +44,13 @@ std::optional<std::vector<double>> numbers_of(const std::string& text) {
 
 /// A camera at the LiDAR that looks where it does: x right, y down, z forward.
 RenderedCamera camera_of(const std::vector<double>& numbers) {
-  constexpr double kMaxSide = 16384;
-  const auto whole = [](double side) { return side >= 1 && side <= kMaxSide && side == int(side); };
-  if (numbers.size() != 6 || !whole(numbers[0]) || !whole(numbers[1]) || !(numbers[2] > 0) ||
-      !(numbers[3] > 0)) {
+  const auto whole = [](double side) {
+    return side >= 1 && side <= kMaxImageSide && side == std::floor(side);
+  };
+  const bool finite = std::all_of(numbers.begin(), numbers.end(),
+                                  [](double number) { return std::isfinite(number); });
+  if (numbers.size() != 6 || !finite || !whole(numbers[0]) || !whole(numbers[1]) ||
+      !(numbers[2] > 0) || !(numbers[3] > 0)) {
     throw CLI::ValidationError("--camera", kCameraForm);
   }
   Camera camera;
@@ -77,6 +82,12 @@ std::vector<Camera> calibrated_cameras(const std::string& path, const std::vecto
 }
 
 std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) {
+  const auto numbers = numbers_of(arguments.camera);
+  const bool unused = numbers || (arguments.camera.empty() && arguments.drive.empty());
+  if (unused && !arguments.cameras.empty()) {
+    throw CLI::ValidationError("--cameras", "needs a DRIVE, or --camera with a calibration");
+  }
+  if (numbers) return {camera_of(*numbers)};
   const bool of_drive = arguments.camera.empty() || arguments.camera == "calib";
   if (of_drive && arguments.drive.empty()) {
     if (arguments.camera.empty()) return {};
@@ -84,7 +95,6 @@ std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) 
                                "calib is that of DRIVE, which is named after MAP.fovea");
   }
   const std::string& calibration = of_drive ? arguments.drive : arguments.camera;
-  if (const auto numbers = numbers_of(calibration)) return {camera_of(*numbers)};
   std::vector<int> wanted;
   if (!arguments.cameras.empty()) wanted = parse_cameras(arguments.cameras);
   std::vector<RenderedCamera> cameras;
@@ -106,6 +116,7 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   const ThreadLimit threads(arguments.threads);
   RenderJob job;
   job.output = arguments.output;
+  job.force = arguments.force;
   job.cameras = find_cameras(arguments);
   if (!arguments.lidar.empty()) job.lidar = hdl64();
   if (job.cameras.empty() && !job.lidar) {
@@ -130,6 +141,9 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   }
   if (job.lidar) fmt::print(", {:.0f} points a scan", figures->points);
   fmt::print("\n");
+  if (job.cameras.empty() || !job.lidar || figures->empty == figures->frames) {
+    fmt::print("note: it takes both images and scans to be a drive that fovea map reads\n");
+  }
   if (figures->blank > 0)
     fmt::print("{} images are black: the map has nothing there\n", figures->blank);
   if (figures->empty > 0)

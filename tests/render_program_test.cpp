@@ -75,6 +75,11 @@ TEST_F(RenderProgram, ACameraIsSixNumbersOrACalibration) {
   EXPECT_THAT(error("--camera calib"), HasSubstr("named after MAP.fovea"));
   EXPECT_THAT(error("--camera 320,100,200"), HasSubstr("W,H,fx,fy,cx,cy"));
   EXPECT_THAT(error("--camera 320,100,-5,5,1,1"), HasSubstr("W,H,fx,fy,cx,cy"));
+  EXPECT_THAT(error("--camera 320,100,nan,200,1,1"), HasSubstr("W,H,fx,fy,cx,cy"));
+  EXPECT_THAT(error("--camera 10000,100,9,9,1,1"), HasSubstr("W,H,fx,fy,cx,cy"));
+  EXPECT_THAT(error("--lidar hdl64 --rate nan"), HasSubstr("--rate"));
+  EXPECT_THAT(error("--lidar hdl64 --reach nan"), HasSubstr("--reach"));
+  EXPECT_THAT(error("--lidar hdl64 --cameras 2"), HasSubstr("--cameras"));
   EXPECT_THAT(error("--camera nowhere"), HasSubstr("nowhere"));
   EXPECT_THAT(error("--camera '" + drive.parent_path().string() + "' --cameras 7"),
               HasSubstr("lacks a camera"));

@@ -25,6 +25,9 @@ RigidMotion parse_pose(const std::string& line, const std::string& where) {
     } catch (const std::exception&) {
       used = 0;
     }
+    if (line == pose_gap()) {
+      throw InputError("this pose is not known (nan)", where, "give poses without gaps");
+    }
     if (used != word.size() || !std::isfinite(value)) {
       throw InputError(fmt::format("'{}' is not a number", word), where, kRemedy);
     }
@@ -45,26 +48,10 @@ RigidMotion parse_pose(const std::string& line, const std::string& where) {
   return pose;
 }
 
-}  // namespace
-
-std::vector<RigidMotion> read_poses(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError("the poses cannot be read", file.string(), "check the path");
-  }
-  std::vector<RigidMotion> poses;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    poses.push_back(parse_pose(line, fmt::format("{}:{}", file.string(), number)));
-  }
-  if (poses.empty()) throw InputError("there are no poses", file.string(), kRemedy);
-  return poses;
-}
-
-std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end) {
-  std::vector<RigidMotion> poses = read_poses(file);
+/// Of frames [begin, end), see read_poses.
+template <class Pose>
+std::vector<Pose> of_frames(const std::vector<Pose>& poses, int begin, int end,
+                            const std::filesystem::path& file) {
   const auto count = static_cast<int>(poses.size());
   if (count == end - begin || (begin == 0 && count < end)) return poses;
   if (count < end) {
@@ -74,6 +61,54 @@ std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin
   }
   return {poses.begin() + begin, poses.begin() + end};
 }
+
+/// Calls f(line, where) for each line that is not blank; InputError if there is none.
+template <class F>
+void for_each_line(const std::filesystem::path& file, F&& f) {
+  std::ifstream stream(file);
+  if (!stream || std::filesystem::is_directory(file)) {
+    throw InputError("the poses cannot be read", file.string(), "check the path");
+  }
+  int number = 0;
+  bool any = false;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    any = true;
+    f(line, fmt::format("{}:{}", file.string(), number));
+  }
+  if (!any) throw InputError("there are no poses", file.string(), kRemedy);
+}
+
+}  // namespace
+
+std::vector<RigidMotion> read_poses(const std::filesystem::path& file) {
+  std::vector<RigidMotion> poses;
+  for_each_line(file, [&](const std::string& line, const std::string& where) {
+    poses.push_back(parse_pose(line, where));
+  });
+  return poses;
+}
+
+std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end) {
+  return of_frames(read_poses(file), begin, end, file);
+}
+
+std::vector<std::optional<RigidMotion>> read_poses_with_gaps(const std::filesystem::path& file) {
+  std::vector<std::optional<RigidMotion>> poses;
+  for_each_line(file, [&](const std::string& line, const std::string& where) {
+    const bool gap = line.substr(0, line.find_last_not_of(" \t\r") + 1) == pose_gap();
+    poses.push_back(gap ? std::nullopt : std::optional(parse_pose(line, where)));
+  });
+  return poses;
+}
+
+std::vector<std::optional<RigidMotion>> read_poses_with_gaps(const std::filesystem::path& file,
+                                                             int begin, int end) {
+  return of_frames(read_poses_with_gaps(file), begin, end, file);
+}
+
+std::string pose_gap() { return "nan nan nan nan nan nan nan nan nan nan nan nan"; }
 
 std::string format_pose(const RigidMotion& pose) {
   std::string text;

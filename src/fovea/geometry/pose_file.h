@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,15 @@ std::vector<RigidMotion> read_poses(const std::filesystem::path& file);
 /// for every frame from 0 on. With fewer lines those of the first frames, if the range begins at
 /// frame 0; InputError if it does not: nobody knows whose they are.
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file, int begin, int end);
+
+/// The same of a file in which lines of twelve times "nan" stand for poses that nobody knows, as
+/// `fovea localize` writes them.
+std::vector<std::optional<RigidMotion>> read_poses_with_gaps(const std::filesystem::path& file);
+std::vector<std::optional<RigidMotion>> read_poses_with_gaps(const std::filesystem::path& file,
+                                                             int begin, int end);
+
+/// Twelve times "nan".
+std::string pose_gap();
 
 /// "r00 r01 r02 tx r10 ... tz", the shortest text that reads back to the same doubles.
 std::string format_pose(const RigidMotion& pose);

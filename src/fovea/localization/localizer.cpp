@@ -91,6 +91,14 @@ const char* to_string(LocalizationState state) {
   return "unknown";
 }
 
+void LocalizerOptions::validate() const {
+  registration.validate();
+  if (registration.method == RegistrationMethod::kPointToPoint) {
+    throw ConfigError("scans are localised by surfaces", "registration.method",
+                      "give gicp or plane");
+  }
+}
+
 Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
                      const LocalizerOptions& options)
     : drive_(drive),
@@ -100,8 +108,13 @@ Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationG
       motion_model_(guess_.trajectory ? &*guess_.trajectory : nullptr),
       prior_(map, options.registration),
       candidates_(map.frames()) {
-  if (map.size() == 0 || candidates_.empty()) {
+  options_.validate();
+  if (map.size() == 0) {
     throw InputError("the map is empty", "the map's table 'tiles'", "map a drive first");
+  }
+  if (candidates_.empty()) {
+    throw InputError("the map has no frame that was mapped", "the map's table 'frames'",
+                     kRestoreMap);
   }
 }
 
@@ -115,9 +128,9 @@ Localization Localizer::localize(const Frame& frame) {
   result.stamp = frame.stamp;
   const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
   MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
-  const bool placed = last_ || guess_.trajectory || guess_.first;
-  if (!last_ && !guess_.trajectory && guess_.first)
-    motion.guesses.front() = {*guess_.first, {}, false};
+  const bool begins = !last_ && !guess_.trajectory && guess_.first;
+  if (begins) motion.guesses.front() = {*guess_.first, {}, false};
+  const bool placed = last_ || motion.T_local_lidar_navigation || begins;
 
   Attempt best;
   tracking_ = tracking_ && seconds(frame.stamp - last_->time) < kPredicts;
@@ -129,7 +142,7 @@ Localization Localizer::localize(const Frame& frame) {
   }
   result.health = best.health;
   if (best.fits) {
-    result.found = !tracking_;
+    result.found = !tracking_ || best.elsewhere;
     accept(best, result);
   } else {
     tracking_ = false;
@@ -216,35 +229,43 @@ Localizer::Attempt Localizer::track(const Frame& frame, const MotionPrediction& 
 
 Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction& motion,
                                      bool placed) {
-  const std::optional<Twist> velocity = motion.guesses.front().velocity;
-  const Scan scan = prepare(frame, velocity);
   Attempt best;
-  const auto take = [&](const RigidMotion& guess) {
+  const auto take = [&](const Scan& scan, const RigidMotion& guess, bool elsewhere) {
     Attempt attempt = look_around(scan, guess);
+    attempt.elsewhere = elsewhere;
     best.covered = best.covered || attempt.covered;
     attempt.covered = best.covered;
     if (attempt.better_than(best)) best = std::move(attempt);
     return best.fits;
   };
+  const MotionGuess& first = motion.guesses.front();
   if (placed) {
     for (const MotionGuess& guess : motion.guesses) {
-      if (take(guess.T_odom_lidar)) break;
+      const Scan scan = prepare(frame, guess.velocity);
+      if (!take(scan, guess.T_odom_lidar, false)) continue;
+      return guess.velocity ? best : compensated(frame, best);
     }
   }
   const bool covered = best.covered;
-  const Eigen::Vector3d near = placed ? motion.guesses.front().T_odom_lidar.translation()
-                                      : candidates_.first().translation();
-  for (int i = 0; i < kTries && !best.fits; ++i) take(candidates_.next(near));
+  // What it moved like before it was lost says nothing here; navigation does.
+  const auto by_navigation =
+      std::find_if(motion.guesses.begin(), motion.guesses.end(),
+                   [](const MotionGuess& guess) { return guess.by_navigation; });
+  const Scan scan = prepare(
+      frame, by_navigation == motion.guesses.end() ? std::nullopt : by_navigation->velocity);
+  const Eigen::Vector3d near =
+      placed ? first.T_odom_lidar.translation() : candidates_.first().translation();
+  for (int i = 0; i < kTries && !best.fits; ++i) take(scan, candidates_.next(near), true);
   best.covered = covered;
-  if (best.fits && !velocity && last_) return compensated(frame, best);
   return best;
 }
 
 Localizer::Attempt Localizer::compensated(const Frame& frame, const Attempt& found) {
+  if (!tracking_) return found;  // it has moved in whatever ways since
   const RigidMotion motion = last_->T_local_body.inverse() * found.registration.T_target_source;
   const Twist velocity = log_se3(motion) / seconds(frame.stamp - last_->time);
   Attempt attempt = follow(prepare(frame, velocity), found.registration.T_target_source);
-  return attempt.fits ? attempt : found;
+  return attempt.better_than(found) ? attempt : found;
 }
 
 void Localizer::accept(const Attempt& attempt, Localization& result) {
@@ -254,6 +275,7 @@ void Localizer::accept(const Attempt& attempt, Localization& result) {
   result.degenerate_directions = registration.degenerate_directions;
   open_frames_ = registration.degenerate_directions > 0 ? open_frames_ + 1 : 0;
   result.covariance = covariance_of(registration, kOpen * open_frames_);
+  if (result.found) motion_model_ = MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr);
   motion_model_.update(*result.stamp, result.T_local_lidar);
   last_ = StampedPose{*result.stamp, result.T_local_lidar};
   tracking_ = true;

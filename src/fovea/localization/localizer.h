@@ -36,7 +36,8 @@ struct Localization {
   /// the map, times the share of the map's that the scan does not see through: 0 to 1. Where not
   /// localised, of the best that was tried.
   double health = 0;
-  bool found = false;  ///< not from the pose before: the first of all, or after it was lost
+  /// Not from the pose before: the first of all, after it was lost, or elsewhere than predicted.
+  bool found = false;
   int degenerate_directions = 0;  ///< of six, that the scene leaves open: predicted, not measured
 };
 
@@ -45,14 +46,16 @@ struct LocalizationGuess {
   /// T_local_lidar in the map's frame over time, good to a few metres (navigation), and better from
   /// one scan to the next; or nothing.
   std::optional<Trajectory> trajectory;
-  /// Where the first scan may have been taken, m and some 30 degrees off at most. Without either,
-  /// all places of the map are tried, the first ones first.
+  /// Where the first scan may have been taken, some 4 m and 10 degrees off at most. Without
+  /// either, all places of the map are tried, the first ones first.
   std::optional<RigidMotion> first;
 };
 
 struct LocalizerOptions {
   bool compensate_motion = true;
+  /// With normals, not point to point.
   RegistrationOptions registration{.max_distance = 0.5, .robust_width = 0.1};
+  void validate() const;  ///< ConfigError that names the field
 };
 
 /// Registers one scan after the other to the map. A scan is registered from where navigation or
@@ -61,7 +64,8 @@ struct LocalizerOptions {
 /// the vehicle comes.
 class Localizer {
  public:
-  /// InputError if the map has no points or is damaged.
+  /// InputError if the map has no points, no frame that was mapped, or is damaged; ConfigError as
+  /// LocalizerOptions::validate.
   /// @param map, drive  must outlive this; the map may be being written: its present state counts
   Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
             const LocalizerOptions& options = {});
@@ -79,6 +83,7 @@ class Localizer {
     double health = 0;
     bool covered = false;  // the map has something there
     bool fits = false;
+    bool elsewhere = false;  // than where it was predicted
 
     bool better_than(const Attempt& other) const {
       return std::pair(fits, health) > std::pair(other.fits, other.health);

@@ -123,6 +123,20 @@ TEST_F(Localize, IsFoundAgainAfterAGap) {
   EXPECT_TRUE(localized.frames[4].found);
 }
 
+TEST_F(Localize, AJumpIsFoundAndSaysNothingOfTheMotionAfterIt) {
+  // The scans' sweeps would be smeared over metres by the speed of such a jump.
+  Visit visit(town_scene(), 0.5, 0.6, 10);
+  visit.editable_info().sweep_compensated = false;
+  visit.editable_info().sweep_period = 0.001;  // these have none
+  for (std::size_t i = 4; i < 10; ++i) {
+    visit.T_local_lidar[i] = RigidMotion(Eigen::Translation3d(6, 0, 0)) * visit.T_local_lidar[i];
+  }
+  const LocalizedDrive localized = localize(visit);
+  for (std::size_t i = 0; i < 4; ++i) expect_true(localized.frames[i], visit);
+  // It may take a few scans until the place is tried.
+  for (std::size_t i = 7; i < 10; ++i) expect_true(localized.frames[i], visit);
+}
+
 TEST_F(Localize, OutsideTheMapThereIsNoPose) {
   // Leaves the map and comes back, with navigation.
   Visit visit(town_scene(), 2, 0.9, 12);

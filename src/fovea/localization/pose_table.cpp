@@ -27,12 +27,14 @@ std::string pose_columns(const Localization& frame) {
 
 }  // namespace
 
-void write_pose_lines(const std::vector<Localization>& frames, std::ostream& out) {
-  for (const Localization& frame : frames) {
-    const bool localized = frame.state == LocalizationState::kLocalized;
-    out << (localized ? format_pose(frame.T_local_lidar)
-                      : std::string("nan nan nan nan nan nan nan nan nan nan nan nan"))
-        << '\n';
+void write_pose_lines(const std::vector<Localization>& frames, int begin, int end,
+                      std::ostream& out) {
+  auto next = frames.begin();
+  for (int index = begin; index < end; ++index) {
+    const bool asked = next != frames.end() && next->index == index;
+    const bool localized = asked && next->state == LocalizationState::kLocalized;
+    out << (localized ? format_pose(next->T_local_lidar) : pose_gap()) << '\n';
+    if (asked) ++next;
   }
 }
 

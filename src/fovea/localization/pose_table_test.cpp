@@ -34,8 +34,9 @@ std::vector<std::string> lines(const std::string& text) {
 
 TEST(PoseLines, AreKittisWithNanWhereThereIsNoPose) {
   std::ostringstream out;
-  write_pose_lines(two_frames(), out);
+  write_pose_lines(two_frames(), 6, 9, out);
   EXPECT_EQ(out.str(),
+            "nan nan nan nan nan nan nan nan nan nan nan nan\n"
             "1 0 0 1.5 0 1 0 -2 0 0 1 0.25\n"
             "nan nan nan nan nan nan nan nan nan nan nan nan\n");
 }

@@ -144,10 +144,10 @@ std::filesystem::path image_folder(const std::string& camera) {
 
 }  // namespace
 
-GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root)
-    : folder_(root, /*force=*/false,
+GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root, bool force)
+    : folder_(root, force,
               {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "truth",
-               "tracklet_labels.xml"}) {}
+               "depth", "tracklet_labels.xml"}) {}
 
 void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
                                     ScanFile format) {

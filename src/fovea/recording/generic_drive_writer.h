@@ -71,9 +71,9 @@ struct RecordedDrive {
 /// Scans and images may be written at once, from several threads.
 class GenericDriveWriter {
  public:
-  /// OutputError where anything exists at ROOT, its parent does not, or another program is writing
-  /// it.
-  explicit GenericDriveWriter(const std::filesystem::path& root);
+  /// OutputError where anything exists at ROOT (with `force`: anything but such a drive), its
+  /// parent does not, or another program is writing it.
+  explicit GenericDriveWriter(const std::filesystem::path& root, bool force = false);
 
   /// std::invalid_argument for a scan with times that is to be KITTI's.
   void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
@@ -84,7 +84,7 @@ class GenericDriveWriter {
   /// @param extension  ".png" or ".jpg"
   void write_encoded_image(const std::string& camera, int number, TimeNs stamp,
                            std::string_view bytes, const std::string& extension);
-  /// A file beside the recording: of truth/ (docs/simulator.md), or tracklet_labels.xml.
+  /// A file beside the recording: of truth/ (docs/simulator.md) or depth/, or tracklet_labels.xml.
   void write_file(const std::filesystem::path& name, std::string_view bytes) const;
   /// Folder of the truth, for what writes its files itself.
   std::filesystem::path truth_folder() const { return folder_.partial() / "truth"; }

@@ -44,7 +44,12 @@ std::vector<std::uint8_t> depth_png(const SplatView& view) {
 class DriveRenderer {
  public:
   DriveRenderer(const MapReader& map, const RenderJob& job)
-      : job_(job), window_(map, job.reach), writer_(job.output) {}
+      : job_(job), window_(map, job.reach), writer_(job.output, job.force) {
+    if (job.lidar) {
+      lidar_ = *job.lidar;
+      lidar_.max_range = std::min(lidar_.max_range, job.reach);
+    }
+  }
 
   void render(int frame) {
     const RigidMotion& T_local_lidar = job_.T_local_lidar[std::size_t(frame)];
@@ -103,7 +108,7 @@ class DriveRenderer {
   }
 
   void scan(const MapSurfels& surfels, const RigidMotion& T_local_lidar, int frame) {
-    const PointCloud scan_lidar = cast_lidar(surfels, T_local_lidar, *job_.lidar);
+    const PointCloud scan_lidar = cast_lidar(surfels, T_local_lidar, lidar_);
     figures_.points += double(scan_lidar.size());
     if (scan_lidar.empty()) {
       ++figures_.empty;
@@ -113,6 +118,7 @@ class DriveRenderer {
   }
 
   const RenderJob& job_;
+  LidarPattern lidar_;  // cut at the reach
   MapWindow window_;
   GenericDriveWriter writer_;
   ColouredSurfels coloured_;

@@ -22,6 +22,7 @@ struct RenderedCamera {
 
 struct RenderJob {
   std::filesystem::path output;
+  bool force = false;                      ///< replace a drive that is there
   std::vector<RigidMotion> T_local_lidar;  ///< of the frames, in the map's frame
   TimeNs period = kNsPerSecond / 10;       ///< from frame to frame
   std::vector<RenderedCamera> cameras;

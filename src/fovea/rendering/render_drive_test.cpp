@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/sensor/image_decode.h"
 
@@ -134,10 +137,53 @@ TEST_F(RenderDrive, StoppedIsAsIfNothingHadBeen) {
   EXPECT_FALSE(fs::exists(stopped.output));
 }
 
-TEST_F(RenderDrive, ReplacesNothing) {
-  const RenderJob wanted = job();
-  fs::create_directory(wanted.output);
+TEST_F(RenderDrive, ReplacesAnotherDriveIfAskedAndNothingElse) {
+  RenderJob wanted = job();
+  wanted.T_local_lidar.resize(1);
+  render(wanted);
   EXPECT_THROW(render(wanted), OutputError);
+  wanted.force = true;
+  EXPECT_EQ(render(wanted).frames, 1u);
+  std::ofstream(wanted.output / "my_thesis.tex") << "years of work";
+  EXPECT_THROW(render(wanted), OutputError);
+}
+
+TEST_F(RenderDrive, WhatAKilledProgramLeftIsNotInTheWay) {
+  const RenderJob wanted = job();
+  const fs::path left = wanted.output.string() + ".partial";
+  fs::create_directories(left / "depth/left");
+  fs::create_directories(left / "images/left");
+  EXPECT_EQ(render(wanted).frames, 3u);
+}
+
+TEST_F(RenderDrive, IsTheSameAtAnyNumberOfThreads) {
+  const auto bytes = [&](int threads) {
+    const ThreadLimit limit(threads);
+    RenderJob wanted = job();
+    wanted.output = own_ / std::to_string(threads);
+    wanted.T_local_lidar.resize(2);
+    render(wanted);
+    std::string all;
+    for (const char* file :
+         {"images/left/000001.png", "depth/left/000001.png", "lidar/000001.bin"}) {
+      std::ifstream stream(wanted.output / file, std::ios::binary);
+      all.append(std::istreambuf_iterator<char>(stream), {});
+    }
+    return all;
+  };
+  const std::string once = bytes(1);
+  EXPECT_GT(once.size(), 50'000u);
+  EXPECT_TRUE(bytes(2) == once);
+  EXPECT_TRUE(bytes(4) == once);
+}
+
+TEST_F(RenderDrive, NothingIsSeenBeyondItsReach) {
+  RenderJob near = job();
+  near.reach = 9;
+  near.T_local_lidar.resize(1);
+  render(near);
+  const Frame frame = std::get<Frame>(open_drive(near.output, {})->load(0));
+  for (const Eigen::Vector3f& p : frame.scan.position) EXPECT_LT(p.norm(), 9.1f);
 }
 
 TEST_F(RenderDrive, TheWindowFollows) {
