@@ -6,6 +6,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/path_name.h"
+#include "fovea/evaluation/evaluate_truth.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/json_object.h"
@@ -15,32 +16,40 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
-std::string report_of(const std::filesystem::path& map_file, const std::filesystem::path& folder,
-                      const ProtocolOptions& options) {
-  const ScoredMap map =
-      load_scored_map(map_file, {.poses = std::nullopt, .drive = name_of(folder)});
-  DriveOptions wanted;
-  wanted.cameras = options.cameras.empty() ? map.cameras : options.cameras;
-  std::unique_ptr<FrameSource> drive = open_drive(folder, wanted);
-  const bool corrected = has_stored_calibration(map.meta);
-  if (corrected) drive = with_stored_calibration(std::move(drive), map.meta, map_file);
-  EvaluationReport report = evaluate(map, *drive, options, [](std::size_t, std::size_t) {
+constexpr const char* kTruth = "truth";
+
+std::string held_to_truth(const ScoredMap& map, const FrameSource& drive) {
+  return to_json(evaluate_truth(map, drive, {}));
+}
+
+std::string held_to_photographs(const ScoredMap& map, const FrameSource& drive,
+                                const ProtocolOptions& options, const std::string& calibration) {
+  EvaluationReport report = evaluate(map, drive, options, [](std::size_t, std::size_t) {
     const py::gil_scoped_acquire running;
     raise_signals();
   });
-  if (corrected) report.calibration = map_file.string();
+  report.calibration = calibration;
   return to_json(report);
 }
 
-py::object evaluate_map(const std::filesystem::path& map, const std::filesystem::path& drive,
+py::object evaluate_map(const std::filesystem::path& file, const std::filesystem::path& folder,
                         const std::string& protocol, const std::vector<int>& cameras,
                         const std::string& hold_out, int threads) {
-  const ProtocolOptions options{parse_protocol(protocol), cameras, HoldOut::parse(hold_out)};
+  ProtocolOptions options{.cameras = cameras, .hold_out = HoldOut::parse(hold_out)};
+  if (protocol != kTruth) options.protocol = parse_protocol(protocol);
   std::string report;
   {
     const py::gil_scoped_release others_run;
     const ThreadLimit limit(threads);
-    report = report_of(map, drive, options);
+    const ScoredMap map = load_scored_map(file, {.poses = std::nullopt, .drive = name_of(folder)});
+    DriveOptions wanted;
+    wanted.cameras = cameras.empty() ? map.cameras : cameras;
+    std::unique_ptr<FrameSource> drive = open_drive(folder, wanted);
+    const bool corrected = has_stored_calibration(map.meta);
+    if (corrected) drive = with_stored_calibration(std::move(drive), map.meta, file);
+    report = protocol == kTruth
+                 ? held_to_truth(map, *drive)
+                 : held_to_photographs(map, *drive, options, corrected ? file.string() : "drive");
   }
   return json_object(report);
 }
@@ -53,8 +62,8 @@ void bind_evaluate(py::module_& module) {
              py::arg("cameras") = std::vector<int>(), py::arg("hold_out") = "",
              py::arg("threads") = 0,
              "Scores a map against its drive: a dict with the keys of `fovea evaluate --json` "
-             "(docs/report.md). protocol: 'held-out', 'cross-camera', 'in-sample' or "
-             "'in-sample-nav'.");
+             "(docs/report.md). protocol: 'held-out', 'cross-camera', 'in-sample', 'in-sample-nav' "
+             "or, of simulated drives, 'truth'.");
 }
 
 }  // namespace fovea::python

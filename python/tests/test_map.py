@@ -1,5 +1,7 @@
 """fovea.Map: what a file holds, as arrays."""
+import concurrent.futures
 import gc
+import pathlib
 import resource
 import unittest
 
@@ -113,13 +115,22 @@ class MapTest(unittest.TestCase):
         size = self.map.tile(tile_id).position.nbytes
 
         def read(times):
+            """Bytes that the process has in memory after so many readings."""
             for _ in range(times):
                 self.map.tile(tile_id).position.sum()
-            return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+            pages = int(pathlib.Path("/proc/self/statm").read_text().split()[1])
+            return pages * resource.getpagesize()
 
         before = read(20)
         times = 200 + 2**26 // size  # what 64 MB of them would be, were they kept
         self.assertLess(read(times) - before, 2**25)
+
+    def test_threads_take_turns(self):
+        expected = {id: tile.position.sum() for id, tile in self.map}
+        ids = 4 * list(expected)
+        with concurrent.futures.ThreadPoolExecutor(4) as threads:
+            sums = threads.map(lambda id: self.map.tile(id).position.sum(), ids)
+            self.assertEqual(list(sums), [expected[id] for id in ids])
 
     def test_errors_say_what_where_and_what_to_do(self):
         with self.assertRaises(fovea.InputError) as caught:

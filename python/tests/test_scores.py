@@ -11,7 +11,7 @@ import sample
 class EvaluateTest(unittest.TestCase):
     def test_gives_what_the_program_writes(self):
         report = sample.folder() / "report.json"
-        for protocol in ["held-out", "in-sample"]:
+        for protocol in ["held-out", "in-sample", "truth"]:
             sample.run("evaluate", sample.map_file(), sample.drive(), "--protocol", protocol,
                        "--json", report)
             self.assertEqual(fovea.evaluate(fovea.Map(sample.map_file()), sample.drive(), protocol),
