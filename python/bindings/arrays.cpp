@@ -10,7 +10,7 @@ py::array shared_array(const py::dtype& type, std::vector<py::ssize_t> shape, co
   using Owner = std::shared_ptr<const void>;
   auto held = std::make_unique<Owner>(std::move(owner));
   const py::capsule base(held.get(), [](void* kept) { delete static_cast<Owner*>(kept); });
-  held.release();
+  static_cast<void>(held.release());  // the capsule has it now
   py::array array(type, std::move(shape), data, base);
   array.attr("setflags")(py::arg("write") = false);
   return array;

@@ -28,7 +28,7 @@ void set_error(const char* name, const Error& error) {
 void bind_errors(py::module_&) {
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
-      std::rethrow_exception(thrown);
+      std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
       set_error("InputError", error);
     } catch (const ConfigError& error) {

@@ -42,11 +42,6 @@ class TileIterator {
       tiles_ = reader.tile_sizes();
     });
   }
-  TileIterator(const TileIterator&) = delete;
-  TileIterator& operator=(const TileIterator&) = delete;
-  ~TileIterator() {
-    map_->read([this](const MapReader&) { state_.reset(); });
-  }
 
   std::pair<TileTuple, Points> next() {
     if (next_ == tiles_.size()) throw py::stop_iteration();
@@ -57,7 +52,7 @@ class TileIterator {
 
  private:
   std::shared_ptr<const Map> map_;
-  std::shared_ptr<const void> state_;
+  std::shared_ptr<const void> state_;  // goes before the map
   std::vector<std::pair<TileId, std::size_t>> tiles_;
   std::size_t next_ = 0;
 };
@@ -119,8 +114,7 @@ void bind_map(py::module_& module) {
           },
           py::arg("id"),
           "The points of a tile, in the frame of its submap. InputError if it is not there.")
-      .def("__iter__",
-           [](std::shared_ptr<Map> map) { return std::make_unique<TileIterator>(std::move(map)); })
+      .def("__iter__", [](std::shared_ptr<Map> map) { return TileIterator(std::move(map)); })
       .def("points", &points_of, py::arg("where") = "",
            "All points in the frame `local`, or those that pass, as in \"views >= 2 and range < "
            "10\" (docs/exports.md). ConfigError that says what is not understood.")
