@@ -20,6 +20,7 @@
 #include "fovea/geometry/pose_file.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
+#include "fovea/pipeline/summary_json.h"
 #include "fovea/server/live_show.h"
 
 namespace fovea::app {

@@ -1,4 +1,4 @@
-// Figures as JSON (the contract of --report).
+// Figures for people and for programs (the contract of --report).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,12 +6,9 @@
 #include <vector>
 
 #include "fovea/base/output_file.h"
-#include "fovea/pipeline/map_drive.h"
+#include "fovea/pipeline/map_summary.h"
 
 namespace fovea::app {
-
-/// The "map" object of a report.
-nlohmann::ordered_json to_json(const MapSummary& summary);
 
 /// What to tell of the cameras' calibration, a line each; a warning where edges lie over a pixel
 /// off.

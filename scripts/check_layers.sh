@@ -24,8 +24,12 @@ while IFS=: read -r file line include; do
     failed=1
   fi
 done < <(grep -rnE '^ *# *include +"fovea/' src/fovea)
-if grep -rnE '^ *# *include +"app/' src/fovea; then
-  echo "src/fovea must not include app/" >&2
+if grep -rnE '^ *# *include +"(app|python)/' src/fovea; then
+  echo "src/fovea must include neither app/ nor python/" >&2
+  failed=1
+fi
+if grep -rnE '^ *# *include +"app/' python || grep -rnE '^ *# *include +"python/' app; then
+  echo "app/ and python/ must not include each other" >&2
   failed=1
 fi
 exit $failed

@@ -16,6 +16,7 @@
 #include "fovea/evaluation/scan_matching.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
+#include "fovea/pipeline/summary_json.h"
 
 namespace fovea::app {
 namespace {

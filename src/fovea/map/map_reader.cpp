@@ -115,6 +115,15 @@ class Snapshot {
   sqlite::Database& database_;
 };
 
+PointCloud passing(const PointCloud& tile, const PointFilter& where) {
+  if (where.empty()) return tile;
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = 0; i < tile.size(); ++i) {
+    if (where.matches(tile, i)) indices.push_back(i);
+  }
+  return tile.select(indices);
+}
+
 std::optional<int> submap_number(std::int64_t value) {
   if (value < -1 || !std::in_range<int>(value)) return std::nullopt;
   return static_cast<int>(value);
@@ -337,7 +346,7 @@ void MapReader::for_each_tile(
   });
 }
 
-PointCloud MapReader::all_points_local() const {
+PointCloud MapReader::all_points_local(const PointFilter& where) const {
   const Snapshot snapshot(*database_->sqlite);
   const std::vector<RigidMotion> T_local_submap = submaps();
   PointCloud points_local;
@@ -347,7 +356,7 @@ PointCloud MapReader::all_points_local() const {
     if (!joins) {
       fail_at({submap, key}, "only some tiles have intensities", database_->sqlite->where());
     }
-    PointCloud tile_local = tile;
+    PointCloud tile_local = passing(tile, where);
     tile_local.origin.setZero();
     for (Eigen::Vector3f& p : tile_local.position) {
       p = (T_local_submap[submap] * (tile.origin + p.cast<double>())).cast<float>();

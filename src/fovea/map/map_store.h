@@ -12,6 +12,7 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/map/frame_record.h"
+#include "fovea/map/point_filter.h"
 #include "fovea/map/tile_map.h"
 
 namespace fovea {
@@ -88,8 +89,8 @@ class MapReader {
   /// Calls f(submap, key, tile) in the order of submap and key; positions as in Submap::tiles.
   void for_each_tile(
       const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const;
-  /// All points in the local frame, origin at 0.
-  PointCloud all_points_local() const;
+  /// All points that pass, in the local frame, origin at 0.
+  PointCloud all_points_local(const PointFilter& where = {}) const;
   /// Hash of everything but timings, rows in key order: 32 hexadecimal digits (XXH3, 128 bits).
   std::string digest() const;
 

@@ -119,6 +119,21 @@ TEST(MapStore, AllPointsLieInTheLocalFrame) {
   }
 }
 
+TEST(MapStore, GivesThePointsThatPass) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const MapReader reader(folder / "a.fovea");
+  const PointCloud all_local = reader.all_points_local();
+  const PointCloud near_local = reader.all_points_local(PointFilter::parse("range < 9"));
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < all_local.size(); ++i) {
+    if (all_local.range[i] < 9) expected.push_back(i);
+  }
+  ASSERT_FALSE(expected.empty());
+  near_local.check();
+  EXPECT_EQ(near_local.position, all_local.select(expected).position);
+}
+
 TEST(MapStore, PuttingAgainReplaces) {
   const TemporaryFolder folder;
   {

@@ -1,0 +1,93 @@
+// fovea.Mapper: a map in memory, frame by frame.
+#include "fovea/pipeline/mapper.h"
+
+#include <pybind11/stl.h>
+
+#include <mutex>
+#include <stdexcept>
+
+#include "python/bindings/arrays.h"
+#include "python/bindings/bindings.h"
+#include "python/bindings/drive.h"
+#include "python/bindings/points.h"
+#include "python/bindings/settings.h"
+
+namespace fovea::python {
+namespace py = pybind11;
+namespace {
+
+/// A mapper with its drive, that Python's threads take turns with.
+class DriveMapper {
+ public:
+  DriveMapper(Drive drive, const std::string& preset, const py::dict& settings)
+      : drive_(std::move(drive)),
+        mapper_(drive_.source->info(), mapper_options(preset, settings), PoseSource::kRefine) {}
+
+  FrameRecord process(const DriveFrame& frame, bool held_out) {
+    frame.require_of(drive_);
+    const py::gil_scoped_release others_run;
+    const std::lock_guard one_at_a_time(mutex_);
+    if (last_ && frame.frame->index <= *last_) {
+      throw std::invalid_argument("frames are mapped in the drive's order, each once");
+    }
+    last_ = frame.frame->index;
+    return mapper_.process(*frame.frame, held_out);
+  }
+
+  template <class Look>
+  auto look(Look&& look) const {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard one_at_a_time(mutex_);
+    return look(mapper_.map());
+  }
+
+ private:
+  Drive drive_;
+  Mapper mapper_;
+  std::optional<int> last_;
+  mutable std::mutex mutex_;
+};
+
+std::vector<RigidMotion> submaps_of(const TileMap& map) {
+  std::vector<RigidMotion> T_local_submap;
+  for (const Submap& submap : map.submaps()) T_local_submap.push_back(submap.T_local_submap);
+  return T_local_submap;
+}
+
+std::map<TileTuple, Points> tiles_of(const TileMap& map) {
+  std::map<TileTuple, Points> tiles;
+  for (std::size_t number = 0; number < map.submaps().size(); ++number) {
+    for (const auto& [key, tile] : map.submaps()[number].tiles) {
+      tiles.emplace(tuple_of({number, key}), Points(tile.points));
+    }
+  }
+  return tiles;
+}
+
+}  // namespace
+
+void bind_mapper(py::module_& module) {
+  py::class_<DriveMapper>(module, "Mapper",
+                          "Maps a drive frame by frame, all in memory; map_drive() makes files.")
+      .def(py::init<Drive, const std::string&, const py::dict&>(), py::arg("drive"), py::kw_only(),
+           py::arg("preset") = "default", py::arg("settings") = py::dict())
+      .def("process", &DriveMapper::process, py::arg("frame"), py::kw_only(),
+           py::arg("held_out") = false,
+           "Maps the drive's next frame and returns its record. A held-out one gets a pose, and "
+           "adds nothing. ValueError for a frame of another drive or one that is not later.")
+      .def_property_readonly(
+          "size",
+          [](const DriveMapper& self) {
+            return self.look([](const auto& map) { return map.size(); });
+          },
+          "Number of points so far.")
+      .def_property_readonly(
+          "submaps", [](const DriveMapper& self) { return motion_arrays(self.look(&submaps_of)); },
+          "T_local_submap as of the last frame, N x 4 x 4.")
+      .def(
+          "tiles", [](const DriveMapper& self) { return self.look(&tiles_of); },
+          "The points so far by (submap, x, y, z), in the frames of their submaps: not copied, and "
+          "not changed by later frames.");
+}
+
+}  // namespace fovea::python

@@ -1,0 +1,17 @@
+// fovea._fovea: the compiled part of `import fovea`.
+#include "fovea/base/version.h"
+#include "python/bindings/bindings.h"
+
+PYBIND11_MODULE(_fovea, module) {
+  using namespace fovea::python;
+  module.attr("__version__") = fovea::version();
+  bind_errors(module);
+  bind_frame_record(module);
+  bind_points(module);
+  bind_map(module);
+  bind_drive(module);
+  bind_map_drive(module);
+  bind_mapper(module);
+  bind_evaluate(module);
+  bind_localizer(module);
+}

@@ -1,0 +1,35 @@
+// A map's points in Python.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include "fovea/base/point_cloud.h"
+#include "fovea/map/tile_map.h"
+
+namespace fovea::python {
+
+/// Arrays over its columns share it.
+struct Points {
+  explicit Points(PointCloud points)
+      : cloud(std::make_shared<const PointCloud>(std::move(points))) {}
+  /// Of a tile in memory, without a copy: who changes the tile later leaves this one alone.
+  explicit Points(const CopyOnWrite<PointCloud>& tile) {
+    const auto held = std::make_shared<const CopyOnWrite<PointCloud>>(tile);
+    cloud = std::shared_ptr<const PointCloud>(held, &**held);
+  }
+  std::shared_ptr<const PointCloud> cloud;
+};
+
+/// A TileId as a tuple: submap, x, y, z.
+using TileTuple = std::tuple<std::size_t, std::int32_t, std::int32_t, std::int32_t>;
+
+inline TileTuple tuple_of(const TileId& id) { return {id.submap, id.key.x, id.key.y, id.key.z}; }
+inline TileId id_of(const TileTuple& tuple) {
+  const auto [submap, x, y, z] = tuple;
+  return {submap, {x, y, z}};
+}
+
+}  // namespace fovea::python

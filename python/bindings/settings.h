@@ -1,0 +1,15 @@
+// Keyword arguments as the mapper's options.
+#pragma once
+
+#include <pybind11/pytypes.h>
+
+#include <string>
+
+#include "fovea/pipeline/mapper_options.h"
+
+namespace fovea::python {
+
+/// A preset with keys set, as by `fovea map --set`. ConfigError as there.
+MapperOptions mapper_options(const std::string& preset, const pybind11::dict& settings);
+
+}  // namespace fovea::python

@@ -1,0 +1,41 @@
+"""Fovea: drives (LiDAR, cameras, GPS/INS) into coloured 3D point maps.
+
+Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nanoseconds;
+docs/python.md has examples.
+"""
+from ._fovea import (
+    Camera,
+    Drive,
+    Frame,
+    FrameRecord,
+    Localization,
+    Localizer,
+    Map,
+    Mapper,
+    Points,
+    Progress,
+    __version__,
+    evaluate,
+    map_drive,
+)
+from .errors import ConfigError, Error, InputError, OutputError
+
+__all__ = [
+    "Camera",
+    "ConfigError",
+    "Drive",
+    "Error",
+    "Frame",
+    "FrameRecord",
+    "InputError",
+    "Localization",
+    "Localizer",
+    "Map",
+    "Mapper",
+    "OutputError",
+    "Points",
+    "Progress",
+    "__version__",
+    "evaluate",
+    "map_drive",
+]

@@ -1,0 +1,271 @@
+"""Fovea: drives (LiDAR, cameras, GPS/INS) into coloured 3D point maps.
+
+Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nanoseconds.
+"""
+import os
+import pathlib
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import ConfigError as ConfigError
+from .errors import Error as Error
+from .errors import InputError as InputError
+from .errors import OutputError as OutputError
+
+__all__ = [
+    "Camera",
+    "ConfigError",
+    "Drive",
+    "Error",
+    "Frame",
+    "FrameRecord",
+    "InputError",
+    "Localization",
+    "Localizer",
+    "Map",
+    "Mapper",
+    "OutputError",
+    "Points",
+    "Progress",
+    "__version__",
+    "evaluate",
+    "map_drive",
+]
+
+__version__: str
+
+_Path = Union[str, "os.PathLike[str]"]
+_Floats = npt.NDArray[np.float32]
+_Doubles = npt.NDArray[np.float64]
+_Bytes = npt.NDArray[np.uint8]
+_TileId = Tuple[int, int, int, int]  # submap, x, y, z
+_FrameRange = Tuple[Optional[int], Optional[int]]
+
+class Points:
+    """N points of a map as columns: read-only arrays without copies, which live on after this
+    object and the map."""
+
+    @property
+    def position(self) -> _Floats: ...
+    @property
+    def origin(self) -> _Doubles: ...
+    @property
+    def color(self) -> _Bytes: ...
+    @property
+    def camera(self) -> npt.NDArray[np.int8]: ...
+    @property
+    def frame(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def range(self) -> _Floats: ...
+    @property
+    def incidence(self) -> _Floats: ...
+    @property
+    def interpolated(self) -> _Bytes: ...
+    @property
+    def views(self) -> _Bytes: ...
+    @property
+    def spread(self) -> _Bytes: ...
+    @property
+    def weight(self) -> npt.NDArray[np.uint16]: ...
+    @property
+    def reason(self) -> _Bytes: ...
+    @property
+    def intensity(self) -> Optional[_Floats]: ...
+    def __len__(self) -> int: ...
+
+class FrameRecord:
+    """What a map keeps of a frame of its drive."""
+
+    @property
+    def index(self) -> int: ...
+    @property
+    def stamp(self) -> Optional[int]: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def note(self) -> str: ...
+    @property
+    def T_local_lidar(self) -> _Doubles: ...
+    @property
+    def T_local_lidar_navigation(self) -> Optional[_Doubles]: ...
+    @property
+    def T_odom_lidar(self) -> _Doubles: ...
+    @property
+    def submap(self) -> int: ...
+    @property
+    def velocity(self) -> Optional[_Doubles]: ...
+    @property
+    def figures(self) -> Dict[str, float]: ...
+    @property
+    def milliseconds(self) -> Dict[str, float]: ...
+
+class Map:
+    """A map file, read as it is asked for."""
+
+    def __init__(self, path: _Path) -> None: ...
+    def __fspath__(self) -> str: ...
+    @property
+    def path(self) -> pathlib.Path: ...
+    @property
+    def meta(self) -> Dict[str, str]: ...
+    @property
+    def frames(self) -> List[FrameRecord]: ...
+    @property
+    def submaps(self) -> _Doubles: ...
+    @property
+    def size(self) -> int: ...
+    def tiles(self) -> Dict[_TileId, int]: ...
+    def tile(self, id: _TileId) -> Points: ...
+    def __iter__(self) -> Iterator[Tuple[_TileId, Points]]: ...
+    def points(self, where: str = "") -> Points: ...
+    def digest(self) -> str: ...
+
+class Camera:
+    """A pinhole camera; pixel centres at integers."""
+
+    @property
+    def index(self) -> int: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def image_delay(self) -> float: ...
+    @property
+    def K(self) -> _Doubles: ...
+    @property
+    def T_cam_lidar(self) -> _Doubles: ...
+
+class Frame:
+    """A LiDAR sweep with its images. Arrays are read-only and not copied."""
+
+    @property
+    def index(self) -> int: ...
+    @property
+    def stamp(self) -> int: ...
+    @property
+    def points(self) -> _Floats: ...
+    @property
+    def intensity(self) -> Optional[_Floats]: ...
+    @property
+    def time(self) -> Optional[_Floats]: ...
+    @property
+    def dropped_points(self) -> int: ...
+    @property
+    def images(self) -> List[Optional[_Bytes]]: ...
+    @property
+    def missing_images(self) -> List[str]: ...
+
+class Drive:
+    """A drive. Iteration gives the frames that can be used and warns of each that cannot."""
+
+    def __init__(
+        self,
+        path: _Path,
+        *,
+        cameras: Sequence[int] = ...,
+        frames: _FrameRange = ...,
+        use_navigation: bool = True,
+        use_images: bool = True,
+    ) -> None: ...
+    def __fspath__(self) -> str: ...
+    @property
+    def path(self) -> pathlib.Path: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def cameras(self) -> List[Camera]: ...
+    @property
+    def frames(self) -> range: ...
+    @property
+    def notes(self) -> List[str]: ...
+    def load(self, index: int) -> Frame: ...
+    def __iter__(self) -> Iterator[Frame]: ...
+
+class Progress:
+    """How far a run of map_drive() is, after a frame."""
+
+    @property
+    def done(self) -> int: ...
+    @property
+    def total(self) -> int: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def frame(self) -> FrameRecord: ...
+
+class Mapper:
+    """Maps a drive frame by frame, all in memory; map_drive() makes files."""
+
+    def __init__(
+        self, drive: Drive, *, preset: str = "default", settings: Dict[str, Any] = ...
+    ) -> None: ...
+    def process(self, frame: Frame, *, held_out: bool = False) -> FrameRecord: ...
+    @property
+    def size(self) -> int: ...
+    @property
+    def submaps(self) -> _Doubles: ...
+    def tiles(self) -> Dict[_TileId, Points]: ...
+
+class Localization:
+    """Where one scan was taken."""
+
+    @property
+    def index(self) -> int: ...
+    @property
+    def stamp(self) -> Optional[int]: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def T_local_lidar(self) -> Optional[_Doubles]: ...
+    @property
+    def covariance(self) -> Optional[_Doubles]: ...
+    @property
+    def health(self) -> float: ...
+    @property
+    def found(self) -> bool: ...
+    @property
+    def degenerate_directions(self) -> int: ...
+
+class Localizer:
+    """Registers the scans of a drive to a map, one after the other."""
+
+    def __init__(
+        self,
+        map: _Path,
+        drive: Drive,
+        *,
+        use_navigation: bool = True,
+        T_local_lidar: Optional[npt.ArrayLike] = None,
+    ) -> None: ...
+    def localize(self, frame: Frame) -> Localization: ...
+
+def map_drive(
+    drive: _Path,
+    output: _Path,
+    *,
+    preset: str = "default",
+    settings: Dict[str, Any] = ...,
+    hold_out: str = "",
+    frames: _FrameRange = ...,
+    cameras: Sequence[int] = ...,
+    threads: int = 0,
+    calibrate: bool = False,
+    resume: bool = False,
+    force: bool = False,
+    callback: Optional[Callable[[Progress], object]] = None,
+) -> Dict[str, Any]:
+    """Maps a drive into a map file, as `fovea map` does, and returns its report."""
+
+def evaluate(
+    map: _Path,
+    drive: _Path,
+    protocol: str = "held-out",
+    *,
+    cameras: Sequence[int] = ...,
+    hold_out: str = "",
+    threads: int = 0,
+) -> Dict[str, Any]:
+    """Scores a map against its drive: the keys of `fovea evaluate --json`."""

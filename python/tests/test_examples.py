@@ -1,0 +1,58 @@
+"""The examples of docs/python.md run, and they and the stubs are typed."""
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import fovea
+
+import sample
+
+ROOT = pathlib.Path(__file__).parents[2]
+EXAMPLES = ROOT / "python" / "examples"
+PACKAGES = pathlib.Path(fovea.__file__).parents[1]
+
+
+def run_python(*arguments):
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGES), "MYPYPATH": str(PACKAGES)}
+    return subprocess.run([sys.executable, *map(str, arguments)], env=environment, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+class ExamplesTest(unittest.TestCase):
+    def expect(self, run, *texts):
+        self.assertEqual(run.returncode, 0, run.stdout)
+        for text in texts:
+            self.assertIn(text, run.stdout)
+
+    def test_the_page_shows_them(self):
+        page = (ROOT / "docs" / "python.md").read_text()
+        for example in EXAMPLES.glob("*.py"):
+            code = example.read_text().split('"""\n', 1)[1].strip()
+            self.assertIn(code, page, example)
+
+    def test_read_map(self):
+        self.expect(run_python(EXAMPLES / "read_map.py", sample.map_file()), "points from",
+                    "mean colour")
+
+    def test_map_and_evaluate(self):
+        self.expect(run_python(EXAMPLES / "map_and_evaluate.py", sample.drive(),
+                               sample.folder() / "example.fovea"), "held-out", "TE")
+
+    def test_localize(self):
+        self.expect(run_python(EXAMPLES / "localize.py", sample.drive(), sample.map_file()),
+                    "health", "is skipped")
+
+    def test_types(self):
+        cache = sample.folder() / "mypy"
+        self.expect(run_python("-m", "mypy", "--strict", "--cache-dir", cache,
+                               *sorted(EXAMPLES.glob("*.py"))))
+        config = sample.folder() / "mypy.ini"
+        config.write_text(f"[mypy]\ncache_dir = {cache}\n")
+        self.expect(run_python("-m", "mypy.stubtest", "fovea", "--mypy-config-file", config,
+                               "--allowlist", pathlib.Path(__file__).with_name("stubtest.txt")))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,77 @@
+"""fovea.map_drive: the mapper with a callback."""
+import signal
+import unittest
+
+import fovea
+
+import sample
+
+
+class MapDriveTest(unittest.TestCase):
+    def map(self, name, **keywords):
+        return fovea.map_drive(sample.drive(), sample.folder() / name,
+                               **{"settings": sample.SETTINGS, "hold_out": sample.HOLD_OUT,
+                                  "force": True, **keywords})
+
+    def test_makes_the_map_that_the_program_makes(self):
+        calls = []
+        summary = self.map("python.fovea", callback=calls.append)
+        self.assertEqual([call.done for call in calls], list(range(1, sample.FRAMES + 1)))
+        self.assertEqual([call.frame.index for call in calls], list(range(sample.FRAMES)))
+        self.assertEqual({call.total for call in calls}, {sample.FRAMES})
+        made = fovea.Map(sample.folder() / "python.fovea")
+        self.assertEqual(calls[-1].points, made.size)
+        self.assertEqual(summary["points"], made.size)
+        self.assertEqual(summary["frames_held_out"], 1)
+        self.assertEqual(sum(summary["frames_skipped"].values()), 1)
+        self.assertFalse(summary["interrupted"])
+        self.assertEqual(made.digest(), fovea.Map(sample.map_file()).digest())
+
+    def test_what_the_callback_raises_stops_the_run_and_keeps_what_was_mapped(self):
+        calls = []
+
+        def stop(progress):
+            calls.append(progress.done)
+            if progress.done == 2:
+                raise LookupError("enough")
+
+        with self.assertRaisesRegex(LookupError, "enough"):
+            self.map("stopped.fovea", callback=stop)
+        self.assertEqual(calls, [1, 2])
+        stopped = fovea.Map(sample.folder() / "stopped.fovea")
+        self.assertEqual(stopped.meta["complete"], "0")
+        self.assertGreaterEqual(len(stopped.frames), 2)
+        self.assertLess(len(stopped.frames), sample.FRAMES)
+        del stopped
+        self.map("stopped.fovea", resume=True, force=False)
+        self.assertEqual(fovea.Map(sample.folder() / "stopped.fovea").digest(),
+                         fovea.Map(sample.map_file()).digest())
+
+    def test_ctrl_c_is_a_keyboard_interrupt(self):
+        with self.assertRaises(KeyboardInterrupt):
+            self.map("interrupted.fovea", callback=lambda _: signal.raise_signal(signal.SIGINT))
+        self.assertGreater(fovea.Map(sample.folder() / "interrupted.fovea").size, 0)
+
+    def test_a_range_of_frames(self):
+        summary = self.map("range.fovea", frames=(1, 3), hold_out="", cameras=[3], threads=1,
+                           settings={"surface.spacing": 0.2, "texture.views": "first"})
+        self.assertEqual(summary["frames"], 2)
+        made = fovea.Map(sample.folder() / "range.fovea")
+        self.assertEqual(made.meta["cameras"], "3")
+        self.assertIn("spacing = 0.2", made.meta["config"])
+        self.assertIn('views = "first"', made.meta["config"])
+
+    def test_errors(self):
+        with self.assertRaises(fovea.ConfigError):
+            self.map("wrong.fovea", settings={"surface.spaces": 0.2})
+        with self.assertRaises(fovea.ConfigError):
+            self.map("wrong.fovea", preset="perfect")
+        with self.assertRaises(fovea.InputError):
+            fovea.map_drive(sample.folder() / "none", sample.folder() / "wrong.fovea")
+        with self.assertRaises(fovea.OutputError):
+            fovea.map_drive(sample.drive(), sample.map_file())
+        self.assertFalse((sample.folder() / "wrong.fovea").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

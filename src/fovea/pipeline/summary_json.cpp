@@ -1,0 +1,73 @@
+#include "fovea/pipeline/summary_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "fovea/base/angle.h"
+
+namespace fovea {
+namespace {
+
+nlohmann::ordered_json to_json(const std::vector<CameraCalibration>& cameras, bool applied) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [number, e] : cameras) {
+    nlohmann::ordered_json camera{{"camera", number},
+                                  {"applied", applied && e.rotation_observable},
+                                  {"frames", e.frames},
+                                  {"edges", e.edges},
+                                  {"rotation_deg", nullptr},
+                                  {"rotation_sigma_deg", nullptr},
+                                  {"time_offset_ms", nullptr},
+                                  {"time_offset_sigma_ms", nullptr},
+                                  {"pixels", nullptr},
+                                  {"pixels_sigma", nullptr},
+                                  {"off_by_a_pixel", e.off_by_a_pixel()}};
+    if (e.rotation_observable) {
+      const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;
+      camera["rotation_deg"] = {r.x(), r.y(), r.z()};
+      camera["rotation_sigma_deg"] = {s.x(), s.y(), s.z()};
+      camera["pixels"] = e.pixels;
+      camera["pixels_sigma"] = e.pixels_sigma;
+    }
+    if (e.delay_observable) {
+      camera["time_offset_ms"] = 1e3 * e.delay;
+      camera["time_offset_sigma_ms"] = 1e3 * e.delay_sigma;
+    }
+    list.push_back(camera);
+  }
+  return list;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const MapSummary& summary) {
+  nlohmann::ordered_json latency;
+  for (const char* stage : {"decode", "upsample", "register", "fovea", "filter", "texture", "store",
+                            "calibration", "wait", "frame"}) {
+    // A stage that never ran (say, the filter of a baseline) took no time.
+    const auto found = summary.latency_ms.find(stage);
+    const StageLatency l = found != summary.latency_ms.end() ? found->second : StageLatency{};
+    latency[stage] = {{"p50", l.p50}, {"p95", l.p95}, {"max", l.max}};
+  }
+  auto images_missing = nlohmann::ordered_json::object();  // by camera
+  for (const auto& [camera, count] : summary.images_missing) {
+    images_missing[std::to_string(camera)] = count;
+  }
+  const bool at_rate = summary.rate > 0;
+  return {{"frames", summary.frames_mapped},
+          {"frames_held_out", summary.frames_held_out},
+          {"frames_skipped", summary.frames_skipped},
+          {"images_missing", images_missing},
+          {"registrations_failed", summary.registrations_failed},
+          {"loops_closed", summary.loops_closed},
+          {"points", summary.points},
+          {"fps", summary.frames_per_second},
+          {"rate_hz", at_rate ? nlohmann::ordered_json(summary.rate) : nullptr},
+          {"late_frames", at_rate ? nlohmann::ordered_json(summary.late_frames) : nullptr},
+          {"peak_rss_mb", summary.peak_rss_mb},
+          {"interrupted", summary.interrupted},
+          {"latency_ms", latency},
+          {"calibration", to_json(summary.calibration, summary.calibrated)},
+          {"notes", summary.notes}};
+}
+
+}  // namespace fovea
