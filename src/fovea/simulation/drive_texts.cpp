@@ -21,7 +21,7 @@ std::string line(const std::string& key, const Matrix& matrix) {
 }
 
 std::string motion_text(const RigidMotion& T) {
-  return kCalibrationTime + line("R", T.linear()) + line("T", T.translation());
+  return fmt::format("{}{}{}", kCalibrationTime, line("R", T.linear()), line("T", T.translation()));
 }
 
 /// A camera's lines. Its image needs no rectification but R_rect: no distortion, and K is P_rect's.
@@ -82,7 +82,7 @@ CalibrationTexts calibration_texts(const Rig& rig, const SimulationOptions& opti
     cameras.try_emplace(all.cameras[i].index, camera_text(all.cameras[i], all.t[i], all.R_rect));
   }
   CalibrationTexts texts;
-  texts.cam_to_cam = std::string(kCalibrationTime) + "corner_dist: 9.950000e-02\n";
+  texts.cam_to_cam = fmt::format("{}corner_dist: 9.950000e-02\n", kCalibrationTime);
   for (const auto& [number, text] : cameras) texts.cam_to_cam += text;
   texts.velo_to_cam = motion_text(rig.T_cam0_lidar);
   texts.imu_to_velo = motion_text(rig.T_imu_lidar.inverse());
