@@ -19,6 +19,7 @@
 #include "fovea/localization/localize_drive.h"
 #include "fovea/localization/pose_table.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/pipeline/summary_json.h"
 
 namespace fovea::app {
 namespace {
@@ -128,7 +129,7 @@ TruthErrors truth_errors(const Truth& truth, const LocalizedDrive& localized) {
 nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::string& guess) {
   nlohmann::ordered_json latency = nlohmann::ordered_json::object();
   for (const auto& [stage, times] : localized.latency_ms) {
-    latency[stage] = {{"p50", times.p50}, {"p95", times.p95}, {"max", times.max}};
+    latency[stage] = fovea::to_json(times);
   }
   double health = 0;
   for (const Localization& frame : localized.frames) {

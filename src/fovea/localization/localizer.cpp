@@ -29,8 +29,8 @@ constexpr std::size_t kMinPoints = 300, kMinStanding = 50;
 constexpr PlaceFitOptions kOnSurface{.pair_distance = 0.3f, .on_plane = 0.06f, .alike = 0.8f};
 constexpr double kMinHealth = 0.35, kMinHealthFound = 0.5;
 constexpr double kMaxCorrection = 1.5, kMaxTurn = 5 * kDegree;  // m, rad
-/// What stands: the vertical part of its normal is smaller; and how far it is looked for, m.
-constexpr float kFlat = 0.7f, kSeenRange = 30;
+/// How far what stands in the map is looked for in a scan, m.
+constexpr float kSeenRange = 30;
 /// After this long without a pose the prediction is searched around, s.
 constexpr double kPredicts = 0.5;
 /// Streets repeat themselves every few metres: a place is tried from several along the way, and the
@@ -53,7 +53,7 @@ double seen_through(const RegistrationCloud& target, const RangeImage& image,
   const Eigen::Isometry3f T_lidar_target = T_target_lidar.inverse().cast<float>();
   std::size_t free = 0, surface = 0;
   for (std::size_t i = 0; i < target.points.size(); ++i) {
-    if (target.normals[i].isZero() || std::abs(target.normals[i].z()) > kFlat) continue;
+    if (!stands(target.normals[i])) continue;
     const Eigen::Vector3f p_lidar = T_lidar_target * target.points[i];
     if (p_lidar.norm() > kSeenRange) continue;
     const Sight sight = image.sight(p_lidar);
@@ -105,7 +105,7 @@ Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationG
       options_(options),
       state_(map.hold_state()),
       guess_(std::move(guess)),
-      motion_model_(guess_.trajectory ? &*guess_.trajectory : nullptr),
+      motion_model_(new_motion_model()),
       prior_(map, options.registration),
       candidates_(map.frames()) {
   options_.validate();
@@ -116,6 +116,10 @@ Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationG
     throw InputError("the map has no frame that was mapped", "the map's table 'frames'",
                      kRestoreMap);
   }
+}
+
+MotionModel Localizer::new_motion_model() const {
+  return MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr);
 }
 
 Localization Localizer::localize(const Frame& frame) {
@@ -161,17 +165,21 @@ Localizer::Scan Localizer::prepare(const Frame& frame, const std::optional<Twist
   return {voxel_thinned(std::move(near), MapSurfaces::kVoxel), RangeImage(scan_lidar.position)};
 }
 
+RegistrationCloud Localizer::covered(const Scan& scan, const PriorMap::Target& target,
+                                     const RigidMotion& T_target_lidar, double height) const {
+  std::vector<Eigen::Vector3f> points = target.plan.covered(scan.points, T_target_lidar, height);
+  if (points.size() < kMinPoints) return {};
+  return prepare_cloud(std::move(points), options_.registration, MapSurfaces::kVoxel);
+}
+
 Localizer::Attempt Localizer::follow(const Scan& scan, const RigidMotion& guess) {
   const PriorMap::Target& target = prior_.around(guess.translation());
   const RigidMotion T_local_target(Eigen::Translation3d{target.center_local});
   const RigidMotion guess_T_target_lidar = T_local_target.inverse() * guess;
   Attempt attempt;
-  std::vector<Eigen::Vector3f> covered =
-      target.plan.covered(scan.points, guess_T_target_lidar, kHeight);
-  attempt.covered = covered.size() >= kMinPoints;
+  const RegistrationCloud source = covered(scan, target, guess_T_target_lidar, kHeight);
+  attempt.covered = !source.points.empty();
   if (!attempt.covered) return attempt;
-  const RegistrationCloud source =
-      prepare_cloud(std::move(covered), options_.registration, MapSurfaces::kVoxel);
   RegistrationResult& result = attempt.registration;
   result = register_clouds(target.cloud, target.index, source, guess_T_target_lidar,
                            options_.registration);
@@ -206,11 +214,8 @@ RigidMotion Localizer::register_coarsely(const Scan& scan, const RigidMotion& gu
   const PriorMap::Target& target = prior_.around(guess.translation());
   const RigidMotion T_local_target(Eigen::Translation3d{target.center_local});
   const RigidMotion guess_T_target_lidar = T_local_target.inverse() * guess;
-  std::vector<Eigen::Vector3f> covered =
-      target.plan.covered(scan.points, guess_T_target_lidar, kFarHeight);
-  if (covered.size() < kMinPoints) return guess;
-  const RegistrationCloud source =
-      prepare_cloud(std::move(covered), options_.registration, MapSurfaces::kVoxel);
+  const RegistrationCloud source = covered(scan, target, guess_T_target_lidar, kFarHeight);
+  if (source.points.empty()) return guess;
   RegistrationOptions far = options_.registration;
   far.max_distance = kFarPairs;
   return T_local_target *
@@ -275,7 +280,7 @@ void Localizer::accept(const Attempt& attempt, Localization& result) {
   result.degenerate_directions = registration.degenerate_directions;
   open_frames_ = registration.degenerate_directions > 0 ? open_frames_ + 1 : 0;
   result.covariance = covariance_of(registration, kOpen * open_frames_);
-  if (result.found) motion_model_ = MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr);
+  if (result.found) motion_model_ = new_motion_model();
   motion_model_.update(*result.stamp, result.T_local_lidar);
   last_ = StampedPose{*result.stamp, result.T_local_lidar};
   tracking_ = true;

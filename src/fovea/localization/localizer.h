@@ -95,6 +95,10 @@ class Localizer {
     RangeImage image;                     // of all
   };
   Scan prepare(const Frame& frame, const std::optional<Twist>& velocity) const;
+  /// The points of a scan where the map has something; none if these are too few to tell anything.
+  RegistrationCloud covered(const Scan& scan, const PriorMap::Target& target,
+                            const RigidMotion& T_target_lidar, double height) const;
+  MotionModel new_motion_model() const;
   Attempt follow(const Scan& scan, const RigidMotion& guess_T_local_lidar);
   Attempt look_around(const Scan& scan, const RigidMotion& guess_T_local_lidar);
   RigidMotion register_coarsely(const Scan& scan, const RigidMotion& guess);

@@ -39,6 +39,10 @@ nlohmann::ordered_json to_json(const std::vector<CameraCalibration>& cameras, bo
 
 }  // namespace
 
+nlohmann::ordered_json to_json(const StageLatency& latency) {
+  return {{"p50", latency.p50}, {"p95", latency.p95}, {"max", latency.max}};
+}
+
 nlohmann::ordered_json to_json(const MapSummary& summary) {
   nlohmann::ordered_json latency;
   for (const char* stage : {"decode", "upsample", "register", "fovea", "filter", "texture", "store",
@@ -46,7 +50,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
     // A stage that never ran (say, the filter of a baseline) took no time.
     const auto found = summary.latency_ms.find(stage);
     const StageLatency l = found != summary.latency_ms.end() ? found->second : StageLatency{};
-    latency[stage] = {{"p50", l.p50}, {"p95", l.p95}, {"max", l.max}};
+    latency[stage] = to_json(l);
   }
   auto images_missing = nlohmann::ordered_json::object();  // by camera
   for (const auto& [camera, count] : summary.images_missing) {

@@ -7,6 +7,9 @@
 
 namespace fovea {
 
+/// A stage's "p50", "p95" and "max", ms.
+nlohmann::ordered_json to_json(const StageLatency& latency);
+
 /// The "map" object of a report.
 nlohmann::ordered_json to_json(const MapSummary& summary);
 

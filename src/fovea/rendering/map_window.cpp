@@ -5,6 +5,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/coloured_points.h"
+#include "fovea/evaluation/metrics.h"
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/map/map_meta.h"
@@ -45,10 +46,6 @@ std::vector<float> spacing_of(const MapSurfels& surfels) {
     if (surfels.colored[i] != 0) spacing[i] = among_colored[k++];
   }
   return spacing;
-}
-
-float luminance(const Rgb& color) {
-  return (0.299f * float(color.r) + 0.587f * float(color.g) + 0.114f * float(color.b)) / 255;
 }
 
 template <class T>
@@ -111,7 +108,7 @@ MapSurfels MapWindow::read(const TileId& id) const {
   surfels.color = tile.color;
   for (std::size_t i = 0; i < tile.size(); ++i) {
     surfels.colored.push_back(tile.camera[i] == kNoCamera ? 0 : 1);
-    surfels.intensity.push_back(tile.intensity.empty() ? luminance(tile.color[i])
+    surfels.intensity.push_back(tile.intensity.empty() ? luma(to_float(tile.color[i])) / 255
                                                        : tile.intensity[i]);
   }
   return surfels;

@@ -9,7 +9,6 @@ namespace {
 /// Of the points that stand on something, at least this share must lie on its plane, and so many
 /// must have a counterpart at all.
 constexpr double kMinFit = 0.7, kMinOverlap = 0.6;
-constexpr float kFlat = 0.7f;  // vertical part of the normal of ground
 
 }  // namespace
 
@@ -20,7 +19,7 @@ PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_ind
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   std::size_t standing = 0, paired = 0, on_plane = 0;
   for (std::size_t i = 0; i < source.points.size(); ++i) {
-    if (source.normals[i].isZero() || std::abs(source.normals[i].z()) > kFlat) continue;
+    if (!stands(source.normals[i])) continue;
     ++standing;
     const Eigen::Vector3f p = R * source.points[i] + t;
     const Neighbor nearest = target_index.nearest(p, options.pair_distance);

@@ -1,6 +1,7 @@
 // Whether two clouds show one place, and how they lie to each other.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "fovea/mapping/registration/registration.h"
@@ -9,6 +10,13 @@ namespace fovea {
 
 /// How far off a guess may be, m.
 inline constexpr double kPlaceReach = 5;
+
+/// Whether a point is of something that stands, by its normal: the ground says nothing of a place.
+/// @param normal  z up; zero where it is not known
+inline bool stands(const Eigen::Vector3f& normal) {
+  constexpr float kFlat = 0.7f;  // vertical part of the normal of ground
+  return !normal.isZero() && std::abs(normal.z()) <= kFlat;
+}
 
 /// How well what stands on the ground fits: ground fits anywhere.
 struct PlaceFit {
