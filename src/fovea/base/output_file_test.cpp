@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <sstream>
 
+#include "../../../tests/file_content.h"
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
@@ -16,12 +16,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// Message of the OutputError that `f` throws.
 template <class F>

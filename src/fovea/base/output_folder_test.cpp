@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <sstream>
 
+#include "../../../tests/file_content.h"
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
@@ -17,12 +17,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 const std::vector<std::string> kContents = {"index", "parts"};
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 TEST(OutputFolder, AppearsWholeAtCommit) {
   const TemporaryFolder folder;

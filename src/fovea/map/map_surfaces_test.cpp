@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/map/tile_place.h"
@@ -16,22 +17,13 @@ using testing::IsEmpty;
 
 /// A tile with points every 5 cm along its middle line in x, every sixth of them measured.
 PointCloud line_tile(const TileKey& key) {
-  PointCloud tile;
+  std::vector<Eigen::Vector3f> positions;
+  for (int i = -39; i < 40; ++i) positions.emplace_back(2 + 0.05f * float(i), 2.0f, 2.0f);
+  PointCloud tile = one_point_each(positions);
   tile.origin = middle_of(key, 4) - Eigen::Vector3d::Constant(2);  // a tile's corner
-  for (int i = -39; i < 40; ++i) {
-    tile.position.emplace_back(2 + 0.05f * float(i), 2.0f, 2.0f);
-    tile.interpolated.push_back(i % 6 == 0 ? 0 : 1);
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    tile.interpolated[i] = (int(i) - 39) % 6 == 0 ? 0 : 1;
   }
-  const std::size_t n = tile.size();
-  tile.color.resize(n);
-  tile.camera.assign(n, kNoCamera);
-  tile.frame.assign(n, 0);
-  tile.range.assign(n, 5);
-  tile.incidence.assign(n, 0);
-  tile.views.assign(n, 0);
-  tile.spread.assign(n, 0);
-  tile.weight.assign(n, 0);
-  tile.reason.assign(n, 0);
   return tile;
 }
 

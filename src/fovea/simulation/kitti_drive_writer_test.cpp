@@ -7,8 +7,8 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
+#include "../../../tests/file_content.h"
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
@@ -25,12 +25,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// Message of the OutputError that `f` throws.
 template <class F>

@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
-#include <sstream>
 
+#include "../../../tests/file_content.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -31,18 +30,6 @@ SimulationOptions tiny(Scene scene = Scene::kTraffic, std::string_view noise = "
   options.camera.cx = 31.5;
   options.camera.cy = 11.5;
   return options;
-}
-
-/// Content of every file below a folder, by its name.
-std::map<std::string, std::string> contents(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file()) continue;
-    std::ostringstream text;
-    text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-    files[entry.path().lexically_relative(folder)] = text.str();
-  }
-  return files;
 }
 
 /// Names of files that differ or that only one drive has.

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <sstream>
 
+#include "../../../tests/file_content.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
@@ -40,12 +40,6 @@ World small_world() {
   world.materials = {plain, sign};
   world.surfaces = {{7, "house"}, {70'000, "parked car"}};
   return world;
-}
-
-std::string content(const fs::path& file) {
-  std::stringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 void overwrite(const fs::path& file, const std::string& text) {

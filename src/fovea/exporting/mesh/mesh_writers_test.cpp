@@ -3,8 +3,8 @@
 
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
+#include "../../../../tests/file_content.h"
 #include "../../../../tests/file_size_limit.h"
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
@@ -18,23 +18,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-/// Every file of a folder, by its place in it.
-std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) {
-      files[std::filesystem::relative(entry.path(), folder).string()] = content(entry.path());
-    }
-  }
-  return files;
-}
 
 void write_map(const std::filesystem::path& path, const PointCloud& points) {
   TileMap map(4.0);

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
+#include "../../../../tests/file_content.h"
 #include "../../../../tests/file_size_limit.h"
 #include "../../../../tests/sample_map.h"
 #include "../../../../tests/temporary_folder.h"
@@ -19,12 +19,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 template <class T>
 T at(const std::string& bytes, std::size_t offset) {
