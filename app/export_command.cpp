@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/finite_range.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
@@ -183,12 +184,12 @@ void add_export_command(CLI::App& app) {
           "--utc-offset", arguments->utc_offset,
           "LAS: hours that the drive's clock is ahead of UTC, for GPS times; KITTI's names "
           "no zone; default: 2, Karlsruhe's summer time")
-      ->check(CLI::Range(-24.0, 24.0));
+      ->check(finite_range(-24.0, 24.0));
   command
       ->add_option("--voxel", arguments->voxel,
                    "mesh, glb: about the edge of the finest triangles (m), at least twice the "
                    "points' spacing; default: 0.05")
-      ->check(CLI::Range(0.01, 10.0));
+      ->check(finite_range(0.01, 10.0));
   command->add_flag("--viewer", arguments->viewer,
                     "3dtiles, mesh: with the page of 'fovea view', for any web server to show");
   command->add_flag("--uncolored", arguments->points.include_uncolored,

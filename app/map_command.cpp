@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/finite_range.h"
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -192,7 +193,7 @@ void add_map_command(CLI::App& app) {
       ->add_option("--rate", arguments->rate,
                    "Play the drive as a live sensor would, and count late frames; none is dropped")
       ->type_name("HZ")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(finite_range(1e-3, 1e6));
   command
       ->add_option("--memory", arguments->memory,
                    "Memory to keep to (default: 1GiB): the map's parts out of reach are in the "

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/finite_range.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/registration/registration.h"
@@ -59,7 +60,7 @@ void add_register_command(CLI::App& app) {
                       "File whose first line is a guess of T_target_source");
   command->add_option("--voxel", arguments->voxel, "Edge of the sampling voxels in m, 0 for none")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(finite_range(0.0, 10.0));
   command->callback([arguments] { run(*arguments); });
 }
 

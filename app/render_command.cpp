@@ -3,12 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <string>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/finite_range.h"
 #include "app/html_report/viewpoint.h"
 #include "app/render_drive.h"
 #include "fovea/base/angle.h"
@@ -93,19 +93,6 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map, const Fr
       .image;
 }
 
-/// CLI::Range lets NaN pass.
-CLI::Validator finite_in(double low, double high) {
-  return CLI::Range(low, high) & CLI::Validator(
-                                     [](const std::string& text) {
-                                       double value = 0;
-                                       const bool number = CLI::detail::lexical_cast(text, value);
-                                       return number && std::isfinite(value)
-                                                  ? std::string()
-                                                  : std::string("not a finite number");
-                                     },
-                                     "");
-}
-
 /// What would otherwise be ignored without a word.
 void check_options(const CLI::App& command) {
   const bool drive = command.count("--poses") > 0;
@@ -171,10 +158,10 @@ void add_render_command(CLI::App& app) {
   command->add_option("--lidar", path.lidar, "hdl64: scans, too")->check(CLI::IsMember({"hdl64"}));
   command->add_option("--rate", path.rate, "Frames a second")
       ->capture_default_str()
-      ->check(finite_in(0.1, 1000));
+      ->check(finite_range(0.1, 1000));
   command->add_option("--reach", path.reach, "How far is seen, m")
       ->capture_default_str()
-      ->check(finite_in(1, 1000));
+      ->check(finite_range(1, 1000));
   command->add_option("--threads", path.threads, "At most this many threads (default: all)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--quiet", path.quiet, "Say nothing but errors");
