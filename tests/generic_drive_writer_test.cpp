@@ -29,7 +29,7 @@ RecordedDrive some_drive() {
   plain.name = "plain";
   plain.index = 7;
   plain.optics = {30, 20, 25.125, 25.25, 14.5, 9.75, Lens()};
-  plain.T_cam_lidar = some_motion();
+  plain.T_lidar_cam = some_motion();
   fish.name = "fish-eye_1";
   fish.index = 0;
   fish.optics = {30,
@@ -40,7 +40,7 @@ RecordedDrive some_drive() {
                  9.75,
                  Lens(LensModel::kEquidistant, {-0.012, 0.004, -0.002, 0.0003})};
   drive.cameras = {plain, fish};
-  drive.T_body_lidar.translation() = Eigen::Vector3d(0.1, 1.0 / 3, 1.5);
+  drive.T_body_lidar.translation = Eigen::Vector3d(0.1, 1.0 / 3, 1.5);
   for (int i = 0; i < kFrames; ++i) {
     RecordedPosition position;
     position.time = kStart + i * kStep;
@@ -88,9 +88,9 @@ TEST(GenericDriveWriter, TheReaderFindsWhatWasWritten) {
   const Camera& plain = info.calibration.cameras[0];
   EXPECT_EQ(plain.fx, 25.125);
   EXPECT_EQ(plain.cy, 9.75);
-  EXPECT_TRUE(plain.T_cam_lidar.isApprox(drive.cameras[0].T_cam_lidar, 1e-15));
+  EXPECT_TRUE(plain.T_cam_lidar.isApprox(some_motion().inverse(), 1e-15));
   EXPECT_NEAR(plain.image_delay, 0.002, 1e-12);
-  EXPECT_EQ(info.calibration.T_imu_lidar->translation(), drive.T_body_lidar.translation());
+  EXPECT_EQ(info.calibration.T_imu_lidar->translation(), drive.T_body_lidar.translation);
   EXPECT_EQ(info.navigation->poses().size(), std::size_t(kFrames));
   EXPECT_EQ(info.navigation->poses()[1].time, kStart + kStep);
   EXPECT_THAT(info.navigation_accuracy, testing::Each(0.25));
@@ -136,8 +136,9 @@ TEST(GenericDriveWriter, PosesAndOrientationsComeBack) {
   EXPECT_FALSE(by_poses->info().origin);
   const auto& poses = by_poses->info().navigation->poses();
   const RigidMotion step = poses[0].T_local_body.inverse() * poses[1].T_local_body;
-  const RigidMotion expected = (drive.poses[0].T_world_body * drive.T_body_lidar).inverse() *
-                               drive.poses[1].T_world_body * drive.T_body_lidar;
+  const RigidMotion expected = ((drive.poses[0].T_world_body * drive.T_body_lidar).inverse() *
+                                drive.poses[1].T_world_body * drive.T_body_lidar)
+                                   .matrix();
   EXPECT_TRUE(step.isApprox(expected, 1e-12));
 }
 

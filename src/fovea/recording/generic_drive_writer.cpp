@@ -59,13 +59,11 @@ std::string stamps_text(const std::map<int, TimeNs>& stamps) {
   return text;
 }
 
-/// Three rows of four numbers.
-std::string motion_text(const RigidMotion& T) {
-  std::vector<std::string> rows;
-  for (int r = 0; r < 3; ++r) {
-    rows.push_back(fmt::format("[{}, {}, {}, {}]", T(r, 0), T(r, 1), T(r, 2), T.matrix()(r, 3)));
-  }
-  return fmt::format("[{}]", fmt::join(rows, ",\n  "));
+std::string motion_text(const QuaternionMotion& T) {
+  const Eigen::Vector3d& t = T.translation;
+  const Eigen::Quaterniond& q = T.rotation;
+  return fmt::format("{{translation = [{}, {}, {}], rotation = [{}, {}, {}, {}]}}", t.x(), t.y(),
+                     t.z(), q.x(), q.y(), q.z(), q.w());
 }
 
 std::string camera_text(const RecordedCamera& camera) {
@@ -77,16 +75,16 @@ std::string camera_text(const RecordedCamera& camera) {
   const std::size_t count = coefficient_count(c.lens.model());
   text += fmt::format("distortion_model = \"{}\"\nD = [{}]\n", to_string(c.lens.model()),
                       fmt::join(k.begin(), k.begin() + std::ptrdiff_t(count), ", "));
-  return text + fmt::format("T_cam_lidar = {}\n", motion_text(camera.T_cam_lidar));
+  return text + fmt::format("T_lidar_cam = {}\n", motion_text(camera.T_lidar_cam));
 }
 
 std::string drive_text(const RecordedDrive& drive) {
   const Eigen::Vector3d& antenna = drive.antenna_body;
   std::string text = fmt::format(
-      "version = 1\n\n[lidar]\ncompensated = {}\n\n[body]\nT_body_lidar = {}\nT_body_imu = {}\n"
-      "antenna = [{}, {}, {}]\n",
-      drive.sweep_compensated, motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu),
-      antenna.x(), antenna.y(), antenna.z());
+      "version = 1\n\n[lidar]\ncompensated = {}\nintensity_max = {}\n\n[body]\nT_body_lidar = {}\n"
+      "T_body_imu = {}\nantenna = [{}, {}, {}]\n",
+      drive.sweep_compensated, drive.intensity_max, motion_text(drive.T_body_lidar),
+      motion_text(drive.T_body_imu), antenna.x(), antenna.y(), antenna.z());
   for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
   return text;
 }
@@ -94,8 +92,8 @@ std::string drive_text(const RecordedDrive& drive) {
 std::string poses_text(const std::vector<RecordedPose>& poses) {
   std::string text = "time_ns,x,y,z,qx,qy,qz,qw\n";
   for (const RecordedPose& pose : poses) {
-    const Eigen::Vector3d t = pose.T_world_body.translation();
-    const Eigen::Quaterniond q(pose.T_world_body.linear());
+    const Eigen::Vector3d& t = pose.T_world_body.translation;
+    const Eigen::Quaterniond& q = pose.T_world_body.rotation;
     text += fmt::format("{},{},{},{},{},{},{},{}\n", pose.time, t.x(), t.y(), t.z(), q.x(), q.y(),
                         q.z(), q.w());
   }

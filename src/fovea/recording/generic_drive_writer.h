@@ -16,7 +16,7 @@
 #include "fovea/base/time.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/lens.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/quaternion_motion.h"
 
 namespace fovea {
 
@@ -24,13 +24,13 @@ struct RecordedCamera {
   std::string name;  ///< letters, digits, '_' and '-'
   int index = 0;     ///< 0 to 9
   LensCamera optics;
-  RigidMotion T_cam_lidar = RigidMotion::Identity();
+  QuaternionMotion T_lidar_cam;
 };
 
 /// A line of poses.csv.
 struct RecordedPose {
   TimeNs time = 0;
-  RigidMotion T_world_body = RigidMotion::Identity();
+  QuaternionMotion T_world_body;
 };
 
 /// A line of gnss.csv.
@@ -54,12 +54,13 @@ enum class ScanFile {
   kKittiBin  ///< x y z intensity; std::invalid_argument for a scan with times
 };
 
-/// All of a drive but its scans and images.
+/// All of a drive but its scans and images. Its numbers are written as they are: reading them gives
+/// each to the last digit.
 struct RecordedDrive {
   std::vector<RecordedCamera> cameras;
   bool sweep_compensated = false;
-  RigidMotion T_body_lidar = RigidMotion::Identity();
-  RigidMotion T_body_imu = RigidMotion::Identity();
+  double intensity_max = 1;  ///< the intensity in the scans that stands for a reflectance of 1
+  QuaternionMotion T_body_lidar, T_body_imu;
   Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();
   std::vector<RecordedPose> poses;          ///< where there are any, positions are not looked at
   std::vector<RecordedPosition> positions;  ///< all with an attitude, or none

@@ -74,7 +74,7 @@ class DriveRenderer {
       recorded.optics.width = c.width, recorded.optics.height = c.height;
       recorded.optics.fx = c.fx, recorded.optics.fy = c.fy;
       recorded.optics.cx = c.cx, recorded.optics.cy = c.cy;
-      recorded.T_cam_lidar = c.T_cam_lidar;
+      recorded.T_lidar_cam = c.T_cam_lidar.inverse();
       drive.cameras.push_back(std::move(recorded));
     }
     for (std::size_t i = 0; i < job_.T_local_lidar.size(); ++i) {

@@ -39,7 +39,7 @@ void GenericSimulationWriter::write_texts(const Rig& rig,
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
     const int number = rig.cameras[k].index;
     drive_.cameras.push_back(
-        {camera_name(number), number, rig.optics[k], rig.T_cam_lidar_calibrated[k]});
+        {camera_name(number), number, rig.optics[k], rig.T_cam_lidar_calibrated[k].inverse()});
   }
   for (const NavigationRecord& record : records) {
     drive_.positions.push_back({record.time, record.place, record.accuracy,
