@@ -24,7 +24,8 @@ constexpr auto names_of(TimeUnit) {
 
 constexpr auto names_of(TimeReference) {
   return std::array{EnumName<TimeReference>{TimeReference::kStamp, "stamp"},
-                    EnumName<TimeReference>{TimeReference::kAbsolute, "absolute"}};
+                    EnumName<TimeReference>{TimeReference::kAbsolute, "absolute"},
+                    EnumName<TimeReference>{TimeReference::kNone, "none"}};
 }
 
 inline auto names_of(LensModel) {

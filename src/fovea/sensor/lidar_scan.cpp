@@ -17,45 +17,11 @@ constexpr float kMaxCoordinate = 1000;  // m; no LiDAR reaches it
 constexpr double kMaxOffset = 1;        // s; no sweep lasts as long
 
 enum Column : std::size_t { kX, kY, kZ, kIntensity, kFirstTime };
-constexpr std::array<const char*, 8> kNames = {"x", "y",    "z",         "intensity",
-                                               "t", "time", "timestamp", "offset_time"};
-
-class ScanRows : public CloudRows {
- public:
-  ScanRows(const ScanFormat& format, TimeNs stamp) : format_(format), stamp_(stamp) {}
-
-  std::span<const char* const> columns() const override { return kNames; }
-  const char* description() const override { return "x y z, intensity and time"; }
-
-  void begin(std::size_t points, std::span<const std::optional<Scalar>> types) override {
-    for (std::size_t column = types.size(); column-- > kFirstTime;) {
-      if (types[column]) time_ = column;
-    }
-    if (time_) unit_ = format_.time_unit.value_or(is_real(*types[*time_]) ? 1 : 1e-9);
-    scan_.emplace(points, time_.has_value());
-  }
-
-  void add(std::span<const double> row, std::size_t) override {
-    const Eigen::Vector3d position(row[kX], row[kY], row[kZ]);
-    scan_->add(position.cast<float>(), static_cast<float>(row[kIntensity] / format_.intensity_max),
-               time_ ? seconds_from_stamp(row[*time_]) : 0);
-  }
-
-  LidarScan take(const std::filesystem::path& file) { return scan_->take(file); }
-
- private:
-  double seconds_from_stamp(double time) const {
-    if (format_.time_reference == TimeReference::kStamp) return time * unit_;
-    // Nanoseconds since 1970 take 61 bits: of numbers as large, doubles have but every 256th.
-    return (time - static_cast<double>(stamp_) * 1e-9 / unit_) * unit_;
-  }
-
-  ScanFormat format_;
-  TimeNs stamp_;
-  std::optional<std::size_t> time_;  // column
-  double unit_ = 1;                  // s
-  std::optional<ScanBuilder> scan_;
-};
+constexpr auto kColumns = [] {
+  std::array<const char*, kFirstTime + kPointTimeNames.size()> names = {"x", "y", "z", "intensity"};
+  std::copy(kPointTimeNames.begin(), kPointTimeNames.end(), names.begin() + kFirstTime);
+  return names;
+}();
 
 }  // namespace
 
@@ -86,6 +52,30 @@ LidarScan ScanBuilder::take(const std::filesystem::path& file) {
   throw InputError("the scan has no usable point (" + std::to_string(scan_.dropped) +
                        " are not finite, beyond 1 km or over 1 s off the stamp)",
                    file.string(), "restore the file from the drive's archive");
+}
+
+std::span<const char* const> ScanRows::columns() const { return kColumns; }
+
+void ScanRows::begin(std::size_t points, std::span<const std::optional<Scalar>> types) {
+  if (format_.time_reference != TimeReference::kNone) {
+    for (std::size_t column = types.size(); column-- > kFirstTime;) {
+      if (types[column]) time_ = column;
+    }
+  }
+  if (time_) unit_ = format_.time_unit.value_or(is_real(*types[*time_]) ? 1 : 1e-9);
+  scan_.emplace(points, time_.has_value());
+}
+
+void ScanRows::add(std::span<const double> row, std::size_t) {
+  const Eigen::Vector3d position(row[kX], row[kY], row[kZ]);
+  scan_->add(position.cast<float>(), static_cast<float>(row[kIntensity] / format_.intensity_max),
+             time_ ? seconds_from_stamp(row[*time_]) : 0);
+}
+
+double ScanRows::seconds_from_stamp(double time) const {
+  if (format_.time_reference == TimeReference::kStamp) return time * unit_;
+  // Nanoseconds since 1970 take 61 bits: of numbers as large, doubles have but every 256th.
+  return (time - static_cast<double>(stamp_) * 1e-9 / unit_) * unit_;
 }
 
 LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,

@@ -1,6 +1,7 @@
 // One LiDAR scan of any file format.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -40,6 +41,7 @@ class ScanBuilder {
 enum class TimeReference {
   kStamp,     ///< the scan's stamp
   kAbsolute,  ///< the epoch of the stamps
+  kNone,      ///< nothing: points have no times, whatever their columns are called
 };
 
 /// What a scan's file does not say about its numbers.
@@ -50,9 +52,36 @@ struct ScanFormat {
   std::optional<double> time_unit;
 };
 
+/// Columns of points' times; the first that is there counts.
+inline constexpr std::array<const char*, 4> kPointTimeNames = {"t", "time", "timestamp",
+                                                               "offset_time"};
+
+/// Makes a scan of rows: x y z, perhaps intensity, perhaps one of kPointTimeNames.
+class ScanRows : public CloudRows {
+ public:
+  /// @param stamp  of the scan
+  ScanRows(const ScanFormat& format, TimeNs stamp) : format_(format), stamp_(stamp) {}
+
+  std::span<const char* const> columns() const override;
+  const char* description() const override { return "x y z, intensity and time"; }
+  void begin(std::size_t points, std::span<const std::optional<Scalar>> types) override;
+  void add(std::span<const double> row, std::size_t number) override;
+
+  /// As ScanBuilder::take.
+  LidarScan take(const std::filesystem::path& file) { return scan_->take(file); }
+
+ private:
+  double seconds_from_stamp(double time) const;
+
+  ScanFormat format_;
+  TimeNs stamp_;
+  std::optional<std::size_t> time_;  // column
+  double unit_ = 1;                  // s
+  std::optional<ScanBuilder> scan_;
+};
+
 /// Reads a scan: .bin as read_kitti_scan, .pcd (ascii, binary, binary_compressed) or .ply (ascii,
-/// binary little endian) with the fields x y z, perhaps intensity, and perhaps one of t, time,
-/// timestamp, offset_time, the first of which counts; other fields are passed over. InputError if
+/// binary little endian) with the fields that ScanRows knows; others are passed over. InputError if
 /// the file is damaged, of another ending, or has no usable point.
 /// @param stamp  of the scan
 LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,
