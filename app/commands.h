@@ -9,6 +9,7 @@ namespace fovea::app {
 void add_map_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
+void add_convert_command(CLI::App& app);
 void add_crop_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_localize_command(CLI::App& app);

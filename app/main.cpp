@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   fovea::app::add_map_command(app);
   fovea::app::add_info_command(app);
   fovea::app::add_evaluate_command(app);
+  fovea::app::add_convert_command(app);
   fovea::app::add_crop_command(app);
   fovea::app::add_export_command(app);
   fovea::app::add_localize_command(app);

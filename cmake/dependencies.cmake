@@ -12,6 +12,7 @@ find_package(SQLite3 REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Boost 1.74 REQUIRED)
+find_package(yaml-cpp REQUIRED)
 find_package(Threads REQUIRED)
 
 if(NOT TARGET nanoflann::nanoflann)
@@ -33,4 +34,5 @@ fovea_import(GeographicLib::GeographicLib GeographicLib/LocalCartesian.hpp Geogr
 fovea_import(zstd::zstd zstd.h zstd)
 fovea_import(libdeflate::libdeflate libdeflate.h deflate)
 fovea_import(embree::embree embree3/rtcore.h embree3)
+fovea_import(lz4::lz4 lz4frame.h lz4)
 fovea_import(xxhash::xxhash xxhash.h xxhash)

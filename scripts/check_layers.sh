@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-declare -A floor=([base]=0 [geometry]=1 [sensor]=2 [mapping]=2 [map]=2 [world]=2 [recording]=2 [pipeline]=3 [evaluation]=3
+declare -A floor=([base]=0 [geometry]=1 [sensor]=2 [mapping]=2 [map]=2 [world]=2 [recording]=2 [pipeline]=3 [evaluation]=3 [rosbag]=3
   [simulation]=3 [exporting]=3 [merging]=4 [localization]=4 [rendering]=4 [server]=4)
 failed=0
 while IFS=: read -r file line include; do

@@ -46,8 +46,8 @@ bool is_reading(Access access) {
 }  // namespace
 
 Database::Database(const std::filesystem::path& path, Access access,
-                   const std::filesystem::path& shown_path)
-    : access_(access), shown_path_(shown_path) {
+                   const std::filesystem::path& shown_path, const FileWords& words)
+    : access_(access), shown_path_(shown_path), words_(words) {
   // Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
   const std::filesystem::path absolute = std::filesystem::absolute(path);
   const std::string name =
@@ -57,7 +57,7 @@ Database::Database(const std::filesystem::path& path, Access access,
     if (code != SQLITE_OK) fail(code);
     sqlite3_extended_result_codes(handle_, 1);
     sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
-    // A map may come from anybody: nothing in its schema gets to run code.
+    // A file may come from anybody: nothing in its schema gets to run code.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     // Nor to be a query without end under a table's name.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -96,13 +96,13 @@ void Database::fail(int code) const {
   const std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
   if (is_reading(access_)) {
     if (primary == SQLITE_NOTADB) {
-      throw InputError("not a Fovea map", where(), "give a file that 'fovea map' wrote");
+      throw InputError(words_.not_one, where(), words_.what_to_give);
     }
     if (primary == SQLITE_CORRUPT) {
-      throw InputError(fmt::format("the map is damaged ({})", message), where(),
-                       "restore it from a copy or map the drive again");
+      throw InputError(fmt::format("the {} is damaged ({})", words_.noun, message), where(),
+                       words_.if_damaged);
     }
-    throw InputError(fmt::format("the map cannot be read ({})", message), where(),
+    throw InputError(fmt::format("the {} cannot be read ({})", words_.noun, message), where(),
                      "check the file, its permissions and that no program is replacing it");
   }
   if (primary == SQLITE_FULL) throw_output_error(shown_path_, ENOSPC);

@@ -1,4 +1,4 @@
-// SQLite with the library's errors. Private to map/: no public header includes it.
+// SQLite with the library's errors. Private: no public header includes it.
 #pragma once
 
 #include <cstddef>
@@ -20,13 +20,21 @@ enum class Access {
   kCreate,         ///< a file that need not exist; failures are OutputError
 };
 
+/// What errors call a file that is read.
+struct FileWords {
+  const char* noun = "map";
+  const char* not_one = "not a Fovea map";
+  const char* what_to_give = "give a file that 'fovea map' wrote";
+  const char* if_damaged = "restore it from a copy or map the drive again";
+};
+
 enum class Outcome { kDone, kBusy, kFailed };
 
 /// A connection. Errors name `shown_path`, the file the user knows of.
 class Database {
  public:
   Database(const std::filesystem::path& path, Access access,
-           const std::filesystem::path& shown_path);
+           const std::filesystem::path& shown_path, const FileWords& words = {});
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
@@ -50,6 +58,7 @@ class Database {
  private:
   Access access_;
   std::filesystem::path shown_path_;
+  FileWords words_;
   sqlite3* handle_ = nullptr;
 };
 

@@ -1,0 +1,113 @@
+// fovea convert: recordings of ROS 2 as a folder with a drive.toml.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/progress_bar.h"
+#include "fovea/base/errors.h"
+#include "fovea/rosbag/convert_bags.h"
+
+namespace fovea::app {
+namespace {
+
+struct ConvertArguments {
+  std::vector<std::string> bags, cameras;
+  std::string output;
+  ConvertOptions options;
+  bool force = false, quiet = false;
+};
+
+/// NAME=TOPIC of each.
+std::vector<ConvertOptions::CameraTopic> parse_cameras(const std::vector<std::string>& texts) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  std::vector<ConvertOptions::CameraTopic> cameras;
+  std::set<std::string> names;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    if (equals == std::string::npos || name.empty() ||
+        name.find_first_not_of(kPlain) != std::string::npos || !names.insert(name).second) {
+      throw ConfigError("this names no camera, or one twice", "--camera " + text,
+                        "give NAME=TOPIC, the name of letters, digits, '_' and '-'");
+    }
+    cameras.push_back({name, text.substr(equals + 1)});
+  }
+  return cameras;
+}
+
+void run(const ConvertArguments& arguments) {
+  const InterruptGuard interrupt;
+  ConvertOptions options = arguments.options;
+  options.cameras = parse_cameras(arguments.cameras);
+  const std::vector<std::filesystem::path> bags(arguments.bags.begin(), arguments.bags.end());
+  const ConvertFigures figures = [&] {
+    ProgressBar bar(arguments.quiet, "messages");
+    return convert_bags(bags, arguments.output, arguments.force, options, [&](int done, int total) {
+      bar.draw(done, total);
+      return !interrupt.token().stop_requested();
+    });
+  }();
+  if (figures.stopped) {
+    throw Error("the conversion was interrupted", arguments.output,
+                "start it again: nothing of it was kept");
+  }
+  if (arguments.quiet) return;
+  for (const std::string& note : figures.notes) fmt::print("{}\n", note);
+  fmt::print("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
+             figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app) {
+  auto arguments = std::make_shared<ConvertArguments>();
+  ConvertOptions& options = arguments->options;
+  CLI::App* command = app.add_subcommand(
+      "convert", "Turn recordings of ROS 2 (MCAP, bags) into a drive, without ROS");
+  command->add_option("BAG", arguments->bags, "Files (.mcap, .db3) or bags' folders of one drive")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "Folder to make (docs/drives.md)")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--lidar", options.lidar, "The scans (default: the only PointCloud2)")
+      ->type_name("TOPIC");
+  command
+      ->add_option("--camera", arguments->cameras,
+                   "A camera's images, may be repeated (default: all with calibration and place)")
+      ->type_name("NAME=TOPIC")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--poses", options.poses,
+                   "Where they come from: auto takes the first of the others that there is")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, NavigationSource>{{"auto", NavigationSource::kAuto},
+                                                  {"gnss", NavigationSource::kGnss},
+                                                  {"odometry", NavigationSource::kOdometry},
+                                                  {"tf", NavigationSource::kTf},
+                                                  {"none", NavigationSource::kNone}}))
+      ->type_name("auto|gnss|odometry|tf|none");
+  command->add_option("--fix", options.fix, "NavSatFix, where there are several")
+      ->type_name("TOPIC");
+  command->add_option("--imu", options.imu, "Imu, where there are several")->type_name("TOPIC");
+  command->add_option("--odometry", options.odometry, "Odometry, where there are several")
+      ->type_name("TOPIC");
+  command->add_option("--body", options.body, "Frame of the vehicle (default: base_link)")
+      ->type_name("FRAME");
+  command->add_option("--world", options.world, "Frame that --poses tf are in (default: outermost)")
+      ->type_name("FRAME");
+  command->add_flag("--compensated", options.sweep_compensated,
+                    "The scans' motion was undone when they were recorded");
+  command->add_flag("--force", arguments->force, "Replace DIR");
+  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,59 @@
+// Messages of ROS 2, and the scans, images and cameras in them: the first byte says of which type.
+#include "fovea/rosbag/ros_messages.h"
+
+#include <array>
+
+#include "fovea/rosbag/camera_topics.h"
+#include "fovea/rosbag/pixels.h"
+#include "fovea/rosbag/point_cloud_rows.h"
+#include "fuzz_input.h"
+
+using namespace fovea;
+
+namespace {
+
+void read_scan(CdrReader& message) {
+  const ros::PointCloud2 cloud = ros::read_point_cloud(message);
+  ScanRows rows(time_format_of(cloud, "t"), cloud.header.stamp);
+  read_cloud_rows(cloud, "t", rows);
+  const LidarScan scan = rows.take("t");
+  scan.points.check();
+  require(!scan.points.empty(), "a scan has points");
+}
+
+void read_pixels(CdrReader& message) {
+  const Image image = image_of(ros::read_image(message), "t");
+  require(image.width > 0 && image.height > 0, "an image has pixels");
+}
+
+void read_optics(CdrReader& message) {
+  const ros::CameraInfo info = ros::read_camera_info(message);
+  for (const bool rectified : {false, true}) {
+    read_or_refuse([&] {
+      const LensCamera optics = optics_of(info, rectified, "t");
+      require(optics.fx >= 1 && optics.width >= 8, "a camera takes pictures");
+    });
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using Reader = void (*)(CdrReader&);
+  constexpr std::array<Reader, 8> kReaders = {
+      read_scan,
+      read_pixels,
+      read_optics,
+      [](CdrReader& message) { ros::read_compressed_image(message); },
+      [](CdrReader& message) { ros::read_nav_sat_fix(message); },
+      [](CdrReader& message) { ros::read_imu(message); },
+      [](CdrReader& message) { ros::read_odometry(message); },
+      [](CdrReader& message) { ros::read_transforms(message); },
+  };
+  if (size == 0) return 0;
+  read_or_refuse([&] {
+    CdrReader message(as_text(data + 1, size - 1), "t");
+    kReaders[data[0] % kReaders.size()](message);
+  });
+  return 0;
+}

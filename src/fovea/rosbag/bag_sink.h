@@ -1,0 +1,30 @@
+// What the readers of recordings have in common: topics, and who wants their messages.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace fovea {
+
+/// The only encoding of messages that is read: what ROS 2 writes.
+inline constexpr std::string_view kCdrEncoding = "cdr";
+
+struct BagTopic {
+  std::string name;      ///< "/lidar/points"
+  std::string type;      ///< "sensor_msgs/msg/PointCloud2"; empty where the recording does not say
+  std::string encoding;  ///< of its messages: "cdr", or what is not read
+};
+
+class BagSink {
+ public:
+  virtual ~BagSink() = default;
+
+  /// Called for each topic of a file before its messages; whether these are wanted.
+  virtual bool wants(const BagTopic& topic) = 0;
+  /// Called for each message that is wanted, in the file's order.
+  /// @param message  valid during the call
+  /// @return whether to go on reading
+  virtual bool add(const BagTopic& topic, std::string_view message) = 0;
+};
+
+}  // namespace fovea

@@ -1,0 +1,211 @@
+#include "fovea/rosbag/camera_topics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "fovea/base/errors.h"
+#include "fovea/rosbag/pixels.h"
+#include "fovea/sensor/image_decode.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kMaxCameras = 10;
+
+/// What a topic's name says: "/front/image_rect_color/compressed".
+struct ImagePath {
+  std::string parent;  // "/front"
+  std::string kind;    // "image_rect_color"
+  bool compressed = false;
+
+  std::string info_topic() const { return parent + "/camera_info"; }
+  bool rectified() const { return kind.find("rect") != std::string::npos; }
+};
+
+ImagePath path_of(std::string topic) {
+  ImagePath path;
+  constexpr std::string_view kCompressed = "/compressed";
+  if (topic.ends_with(kCompressed)) {
+    topic.resize(topic.size() - kCompressed.size());
+    path.compressed = true;
+  }
+  const std::size_t slash = topic.rfind('/');
+  path.parent = slash == std::string::npos ? "" : topic.substr(0, slash);
+  path.kind = slash == std::string::npos ? topic : topic.substr(slash + 1);
+  return path;
+}
+
+/// "/sensors/front" is sensors_front.
+std::string camera_name(const std::string& parent) {
+  std::string name;
+  for (const char c : parent) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_';
+    if (!name.empty() || plain) name += plain ? c : '_';
+  }
+  return name.empty() ? "camera" : name;
+}
+
+LensModel lens_model(const std::string& name, const std::string& topic) {
+  if (name.empty() || name == "none") return LensModel::kNone;
+  if (name == "fisheye") return LensModel::kEquidistant;
+  for (const LensModel model :
+       {LensModel::kPlumbBob, LensModel::kRationalPolynomial, LensModel::kEquidistant}) {
+    if (to_string(model) == name) return model;
+  }
+  throw InputError(fmt::format("the distortion model '{:.40}' is not read", name), topic,
+                   "see docs/drives.md for those that are");
+}
+
+Lens lens_of(const ros::CameraInfo& info, const std::string& topic) {
+  LensModel model = lens_model(info.distortion_model, topic);
+  std::array<double, 8> coefficients{};
+  bool usable = true, all_zero = true;
+  const std::size_t count = coefficient_count(model);
+  for (std::size_t i = 0; i < info.d.size(); ++i) {
+    usable &= std::isfinite(info.d[i]) && (i < count || info.d[i] == 0);
+    all_zero &= info.d[i] == 0;
+    if (i < count) coefficients[i] = info.d[i];
+  }
+  const std::size_t least = model == LensModel::kPlumbBob ? count - 1 : count;  // k3 may be missing
+  usable &= info.d.size() >= least || all_zero;
+  if (!usable) {
+    throw InputError(fmt::format("the {} coefficients of distortion are not those of '{}'",
+                                 info.d.size(), to_string(model)),
+                     topic, "calibrate the camera with one of the models of docs/drives.md");
+  }
+  // Without distortion these two are pinholes, whose images need no rectification.
+  if (all_zero && model != LensModel::kEquidistant) model = LensModel::kNone;
+  return Lens(model, coefficients);
+}
+
+PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
+                          const std::string& name, const std::string& lidar_frame) {
+  const ImagePath path = path_of(topic);
+  const auto info = survey.camera_infos.find(path.info_topic());
+  if (info == survey.camera_infos.end()) {
+    throw InputError(
+        fmt::format("the images have no calibration: there is no CameraInfo {}", path.info_topic()),
+        topic, "record it, too");
+  }
+  const SensorTopic& images = survey.images.at(topic);
+  const std::string& frame =
+      info->second.header.frame.empty() ? images.frame : info->second.header.frame;
+  PlannedCamera planned;
+  planned.topic = topic;
+  planned.camera.name = name;
+  planned.camera.optics = optics_of(info->second, path.rectified(), path.info_topic());
+  const auto T_lidar_cam = survey.transforms.fixed(lidar_frame, frame);
+  if (!T_lidar_cam) {
+    throw InputError(fmt::format("tf does not say where frame '{}' is in '{}'", frame, lidar_frame),
+                     topic, "record /tf_static, too");
+  }
+  if (const auto moving = survey.transforms.moving(lidar_frame, frame)) {
+    throw InputError(
+        fmt::format("frame '{}' moves between '{}' and '{}'", *moving, lidar_frame, frame), topic,
+        "a camera must sit still on the vehicle");
+  }
+  planned.camera.T_lidar_cam = *T_lidar_cam;
+  if (path.rectified()) {
+    const Eigen::Matrix3d R_rect_cam =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info->second.r.data());
+    if (is_rotation(R_rect_cam, 1e-6) && !R_rect_cam.isIdentity(0)) {
+      const Eigen::Quaterniond R_cam_rect(Eigen::Matrix3d(R_rect_cam.transpose()));
+      planned.camera.T_lidar_cam =
+          planned.camera.T_lidar_cam * QuaternionMotion(Eigen::Vector3d::Zero(), R_cam_rect);
+    }
+  }
+  return planned;
+}
+
+/// The topics that may be cameras, the best of each name.
+std::vector<ConvertOptions::CameraTopic> likely_cameras(const BagSurvey& survey) {
+  std::map<std::string, std::string> best;  // topic by name
+  const auto rank = [&](const std::string& topic) {
+    const ImagePath path = path_of(topic);
+    return std::tuple(path.rectified(), path.compressed, topic);
+  };
+  for (const auto& [topic, images] : survey.images) {
+    const ImagePath path = path_of(topic);
+    const bool colour_or_grey = images.encoding.empty()
+                                    ? path.kind.find("epth") == std::string::npos
+                                    : is_known_encoding(images.encoding);
+    if (images.stamps.empty() || !colour_or_grey) continue;
+    const auto [entry, fresh] = best.try_emplace(camera_name(path.parent), topic);
+    if (!fresh && rank(topic) < rank(entry->second)) entry->second = topic;
+  }
+  std::vector<ConvertOptions::CameraTopic> cameras;
+  for (const auto& [name, topic] : best) cameras.push_back({name, topic});
+  return cameras;
+}
+
+}  // namespace
+
+LensCamera optics_of(const ros::CameraInfo& info, bool rectified, const std::string& topic) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(what, topic, "calibrate the camera at the resolution of its images");
+  };
+  const bool whole = info.roi_x == 0 && info.roi_y == 0 &&
+                     (info.roi_width == 0 || info.roi_width == info.width) &&
+                     (info.roi_height == 0 || info.roi_height == info.height);
+  if (info.binning_x > 1 || info.binning_y > 1 || !whole) {
+    refuse("images with binning or of a region of interest are not read");
+  }
+  if (info.width < 8 || info.height < 8 || info.width > kMaxImageSide ||
+      info.height > kMaxImageSide) {
+    refuse(fmt::format("images of {} x {} pixels are not read", info.width, info.height));
+  }
+  LensCamera optics;
+  optics.width = int(info.width), optics.height = int(info.height);
+  if (rectified) {
+    if (info.p[3] != 0 || info.p[7] != 0) refuse("the second camera of a stereo pair is not read");
+    optics.fx = info.p[0], optics.cx = info.p[2], optics.fy = info.p[5], optics.cy = info.p[6];
+  } else {
+    optics.fx = info.k[0], optics.cx = info.k[2], optics.fy = info.k[4], optics.cy = info.k[5];
+    optics.lens = lens_of(info, topic);
+  }
+  constexpr double kMaxFocal = 1e5;
+  const bool calibrated = optics.fx >= 1 && optics.fy >= 1 && optics.fx <= kMaxFocal &&
+                          optics.fy <= kMaxFocal && std::abs(optics.cx) <= kMaxFocal &&
+                          std::abs(optics.cy) <= kMaxFocal;
+  if (!calibrated) refuse("the camera is not calibrated (its focal length is no number of pixels)");
+  return optics;
+}
+
+std::vector<PlannedCamera> plan_cameras(const BagSurvey& survey, const ConvertOptions& options,
+                                        const std::string& lidar_frame,
+                                        std::vector<std::string>& notes) {
+  const bool named = !options.cameras.empty();
+  std::vector<PlannedCamera> cameras;
+  std::optional<InputError> first_problem;
+  for (const auto& [name, topic] : named ? options.cameras : likely_cameras(survey)) {
+    const auto images = survey.images.find(topic);
+    if (images == survey.images.end() || images->second.stamps.empty()) {
+      throw InputError("there are no images of this topic", topic, "see 'ros2 bag info'");
+    }
+    try {
+      cameras.push_back(plan_camera(survey, topic, name, lidar_frame));
+    } catch (const InputError& error) {
+      if (named) throw;
+      if (!first_problem) first_problem = error;
+      notes.push_back(fmt::format("{} is left out: {}", topic, error.problem()));
+    }
+  }
+  if (cameras.empty()) {
+    if (first_problem) throw *first_problem;
+    throw InputError("the recording has no images", "sensor_msgs/msg/Image, CompressedImage",
+                     "record a camera, too");
+  }
+  if (cameras.size() > kMaxCameras) {
+    throw InputError(fmt::format("there are {} cameras, and a drive has at most {}", cameras.size(),
+                                 kMaxCameras),
+                     cameras.front().topic + " and others", "choose by --camera NAME=TOPIC");
+  }
+  for (std::size_t k = 0; k < cameras.size(); ++k) cameras[k].camera.index = int(k);
+  return cameras;
+}
+
+}  // namespace fovea

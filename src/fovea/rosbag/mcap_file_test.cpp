@@ -1,0 +1,153 @@
+#include "fovea/rosbag/mcap_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <bit>
+#include <fstream>
+#include <vector>
+
+#include "../../../tests/temporary_folder.h"
+#include "fovea/base/errors.h"
+#include "fovea/rosbag/bag.h"
+
+namespace fovea {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+template <class T>
+std::string number(T value) {
+  const auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  return {bytes.data(), bytes.size()};
+}
+std::string text(const std::string& text) { return number(std::uint32_t(text.size())) + text; }
+std::string record(int opcode, const std::string& content) {
+  return number(std::uint8_t(opcode)) + number(std::uint64_t(content.size())) + content;
+}
+std::string channel(int id, const std::string& topic, const std::string& encoding = "cdr") {
+  return record(3, number(std::uint16_t(id)) + text("pkg/msg/Type") + text("ros2msg") + text("")) +
+         record(4, number(std::uint16_t(id)) + number(std::uint16_t(id)) + text(topic) +
+                       text(encoding) + text(""));
+}
+std::string message(int channel_id, const std::string& bytes) {
+  return record(5, number(std::uint16_t(channel_id)) + std::string(20, '\0') + bytes);
+}
+std::string chunk(const std::string& records, const std::string& compression,
+                  const std::string& stored, std::uint32_t crc = 0) {
+  return record(6, std::string(16, '\0') + number(std::uint64_t(records.size())) + number(crc) +
+                       text(compression) + number(std::uint64_t(stored.size())) + stored);
+}
+std::string file_of(const std::string& records) {
+  const std::string magic("\x89MCAP0\r\n", 8);
+  return magic + record(1, text("ros2") + text("test")) + records + record(15, std::string(4, 0)) +
+         record(2, std::string(20, '\0')) + magic;
+}
+
+std::string zstd(const std::string& bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
+  return packed;
+}
+std::string lz4(const std::string& bytes) {
+  std::string packed(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
+  packed.resize(
+      LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr));
+  return packed;
+}
+
+/// Notes "TOPIC:MESSAGE" of all topics but /other.
+class Listener : public BagSink {
+ public:
+  bool wants(const BagTopic& topic) override {
+    types.push_back(topic.type);
+    return topic.name != "/other";
+  }
+  bool add(const BagTopic& topic, std::string_view bytes) override {
+    heard.push_back(topic.name + ":" + std::string(bytes));
+    return heard.size() < most;
+  }
+  std::vector<std::string> heard, types;
+  std::size_t most = 1000;
+};
+
+class McapFile : public testing::Test {
+ protected:
+  std::vector<std::string> read(const std::string& bytes, std::size_t most = 1000) {
+    std::ofstream(folder_ / "bag.mcap", std::ios::binary) << bytes;
+    Listener listener;
+    listener.most = most;
+    read_bag_file(folder_ / "bag.mcap", listener);
+    return listener.heard;
+  }
+  std::string error_of(const std::string& bytes) {
+    try {
+      read(bytes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::string kRecords = channel(1, "/a") + message(1, "one") + channel(2, "/other") +
+                             message(2, "no") + message(1, "two");
+
+TEST_F(McapFile, ReadsMessagesInChunksOfEveryCompressionAndOutside) {
+  const auto all = ElementsAre("/a:one", "/a:two", "/a:three");
+  const std::string more = message(1, "three");
+  EXPECT_THAT(read(file_of(kRecords + more)), all);
+  EXPECT_THAT(read(file_of(chunk(kRecords, "", kRecords) + more)), all);
+  EXPECT_THAT(read(file_of(chunk(kRecords, "zstd", zstd(kRecords)) + chunk(more, "", more))), all);
+  EXPECT_THAT(read(file_of(chunk(kRecords, "lz4", lz4(kRecords)) + more)), all);
+  EXPECT_THAT(read(file_of(kRecords + more), 2), ElementsAre("/a:one", "/a:two"));
+}
+
+TEST_F(McapFile, MessagesThatWereCompressedOneByOneAreRead) {
+  EXPECT_THAT(read(file_of(channel(1, "/a") + message(1, zstd("one")))), ElementsAre("/a:one"));
+}
+
+TEST_F(McapFile, OtherRecordsAndEncodingsArePassedOver) {
+  const std::string records = record(9, "attachment") + record(200, "of the future") +
+                              channel(3, "/json", "json") + message(3, "{}") + kRecords;
+  EXPECT_THAT(read(file_of(records)), ElementsAre("/a:one", "/a:two"));
+}
+
+TEST_F(McapFile, SaysWhatIsWrong) {
+  EXPECT_THAT(error_of(file_of(chunk(kRecords, "br", kRecords))), HasSubstr("by 'br'"));
+  EXPECT_THAT(error_of(file_of(chunk(kRecords, "", kRecords, 7))), HasSubstr("checksum"));
+  EXPECT_THAT(error_of(file_of(chunk(kRecords + "x", "zstd", zstd(kRecords)))),
+              HasSubstr("checksum"));
+  EXPECT_THAT(error_of(file_of(chunk("", "zstd", zstd(kRecords)))), HasSubstr("zstd"));
+  EXPECT_THAT(error_of(file_of(chunk(kRecords, "lz4", lz4(kRecords).substr(0, 20)))),
+              HasSubstr("LZ4"));
+  EXPECT_THAT(error_of(file_of(message(9, "x"))), HasSubstr("not announced"));
+  EXPECT_THAT(error_of("#ROSBAG V2.0\n"), HasSubstr("ROS 1"));
+  EXPECT_THAT(error_of("a text"), HasSubstr("no recording"));
+  EXPECT_THAT(error_of(""), HasSubstr("no recording"));
+}
+
+TEST_F(McapFile, AnyFileCutShortIsRefused) {
+  const std::string whole = file_of(chunk(kRecords, "zstd", zstd(kRecords)) + kRecords);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_NE(error_of(whole.substr(0, size)), "") << size;
+  }
+  EXPECT_EQ(error_of(whole), "");
+}
+
+TEST_F(McapFile, SizesThatCannotBeAreNotBelieved) {
+  std::string huge = file_of(kRecords);
+  huge.replace(8 + 1, 8, number(~std::uint64_t{0}));
+  EXPECT_THAT(error_of(huge), HasSubstr("cut short"));
+  const std::string claims = record(6, std::string(16, '\0') + number(~std::uint64_t{0}) +
+                                           number(0u) + text("zstd") + number(std::uint64_t{0}));
+  EXPECT_THAT(error_of(file_of(claims)), HasSubstr("smaller chunks"));
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,199 @@
+#include "fovea/rosbag/navigation_topics.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fovea/base/errors.h"
+
+namespace fovea {
+namespace {
+
+/// The one topic of a kind: that of the option, or the only one there is. Empty if there is none.
+template <class Messages>
+std::string only_topic(const std::map<std::string, Messages>& topics, const std::string& wanted,
+                       const char* kind, const char* option) {
+  if (!wanted.empty()) {
+    if (topics.contains(wanted)) return wanted;
+    throw InputError(fmt::format("there is no {} of this topic", kind), wanted,
+                     "see 'ros2 bag info'");
+  }
+  if (topics.size() > 1) {
+    std::vector<std::string> names;
+    for (const auto& [name, unused] : topics) names.push_back(name);
+    throw InputError(fmt::format("there are {} topics of {}", topics.size(), kind),
+                     fmt::format("{}", fmt::join(names, ", ")),
+                     fmt::format("choose by {} TOPIC", option));
+  }
+  return topics.empty() ? std::string() : topics.begin()->first;
+}
+
+class NavigationPlanner {
+ public:
+  NavigationPlanner(const BagSurvey& survey, const ConvertOptions& options,
+                    const std::string& lidar_frame, RecordedDrive& drive,
+                    std::vector<std::string>& notes)
+      : survey_(survey),
+        options_(options),
+        lidar_frame_(lidar_frame),
+        drive_(drive),
+        notes_(notes) {}
+
+  void plan() {
+    switch (options_.poses) {
+      case NavigationSource::kAuto:
+        if (!take_positions() && !take_odometry() && !take_transforms()) take_nothing();
+        return;
+      case NavigationSource::kGnss:
+        return require(take_positions(), "positions (sensor_msgs/msg/NavSatFix)");
+      case NavigationSource::kOdometry:
+        return require(take_odometry(), "poses (nav_msgs/msg/Odometry)");
+      case NavigationSource::kTf:
+        return require(take_transforms(), "frame of tf above the body that it moves in");
+      case NavigationSource::kNone:
+        return take_nothing();
+    }
+  }
+
+ private:
+  void require(bool found, const char* what) const {
+    if (!found) {
+      throw InputError(fmt::format("the recording has no {}", what), "--poses",
+                       "choose another source, or none");
+    }
+  }
+
+  std::string usual_body() const {
+    if (!options_.body.empty()) return options_.body;
+    std::string usual = "base_link";  // REP 105
+    if (!survey_.transforms.fixed(usual, lidar_frame_)) usual = lidar_frame_;
+    return usual;
+  }
+
+  void take_nothing() {
+    drive_.T_body_lidar = T_body(usual_body(), lidar_frame_, "the LiDAR");
+    notes_.emplace_back("no poses: the motion will be that of the scans alone");
+  }
+
+  /// T_body_frame. InputError if tf does not tell.
+  QuaternionMotion T_body(const std::string& body, const std::string& frame,
+                          const char* what) const {
+    const auto T = survey_.transforms.fixed(body, frame);
+    if (!T) {
+      throw InputError(fmt::format("tf does not say where {} ('{}') is on '{}'", what, frame, body),
+                       "/tf_static", "record it, too, or name another frame by --body");
+    }
+    if (const auto moving = survey_.transforms.moving(body, frame)) {
+      throw InputError(fmt::format("frame '{}' moves between '{}' and '{}'", *moving, body, frame),
+                       "/tf", "name the frame of the vehicle by --body");
+    }
+    return *T;
+  }
+
+  bool take_positions() {
+    const std::string topic = only_topic(survey_.fixes, options_.fix, "NavSatFix", "--fix");
+    if (topic.empty()) return false;
+    std::size_t without = 0;
+    for (const ros::NavSatFix& fix : survey_.fixes.at(topic)) {
+      const bool somewhere = std::isfinite(fix.latitude) && std::isfinite(fix.longitude) &&
+                             std::isfinite(fix.altitude) && fix.fix;
+      if (!somewhere) {
+        ++without;
+        continue;
+      }
+      drive_.positions.push_back({fix.header.stamp,
+                                  {fix.latitude, fix.longitude, fix.altitude},
+                                  accuracy_of(fix),
+                                  std::nullopt});
+    }
+    if (drive_.positions.empty()) return false;
+    notes_.push_back(fmt::format("positions: {} of {}, {} without a fix left out",
+                                 drive_.positions.size(), topic, without));
+    take_inertia();
+    const std::string body = usual_body();
+    drive_.T_body_lidar = T_body(body, lidar_frame_, "the LiDAR");
+    const std::string& antenna = survey_.fixes.at(topic).front().header.frame;
+    if (const auto T = survey_.transforms.fixed(body, antenna)) {
+      drive_.antenna_body = T->translation;
+    } else {
+      notes_.push_back(fmt::format(
+          "tf does not say where the antenna ('{}') is on '{}': taken to be there", antenna, body));
+    }
+    return true;
+  }
+
+  /// Of a coordinate on the ground (m).
+  static double accuracy_of(const ros::NavSatFix& fix) {
+    const double variance = (fix.covariance[0] + fix.covariance[4]) / 2;
+    return fix.covariance_known && variance >= 0 ? std::sqrt(variance) : 0;
+  }
+
+  void take_inertia() {
+    const std::string topic = only_topic(survey_.imus, options_.imu, "Imu", "--imu");
+    if (topic.empty()) return;
+    const std::vector<ros::Imu>& imus = survey_.imus.at(topic);
+    const std::string& frame = imus.front().header.frame;
+    const auto T = survey_.transforms.fixed(usual_body(), frame);
+    if (!T) {
+      notes_.push_back(fmt::format("{} is not used: tf does not say where '{}' is on '{}'", topic,
+                                   frame, usual_body()));
+      return;
+    }
+    drive_.T_body_imu = *T;
+    for (const ros::Imu& imu : imus) {
+      if (!imu.orientation) continue;
+      drive_.inertia.push_back(
+          {imu.header.stamp, imu.orientation, imu.angular_velocity, imu.acceleration});
+    }
+    notes_.push_back(fmt::format("orientations: {} of {}, {} of them known", imus.size(), topic,
+                                 drive_.inertia.size()));
+  }
+
+  bool take_odometry() {
+    const std::string topic =
+        only_topic(survey_.odometries, options_.odometry, "Odometry", "--odometry");
+    if (topic.empty()) return false;
+    const std::vector<ros::Odometry>& odometries = survey_.odometries.at(topic);
+    for (const ros::Odometry& odometry : odometries) {
+      drive_.poses.push_back({odometry.header.stamp, odometry.T_header_child});
+    }
+    const std::string& child = odometries.front().child_frame;
+    drive_.T_body_lidar = T_body(child.empty() ? usual_body() : child, lidar_frame_, "the LiDAR");
+    notes_.push_back(fmt::format("poses: {} of {}", drive_.poses.size(), topic));
+    return true;
+  }
+
+  bool take_transforms() {
+    const std::string body = usual_body();
+    const auto world =
+        options_.world.empty() ? survey_.transforms.world_of(body) : std::optional(options_.world);
+    if (!world) return false;
+    for (const auto& [time, T_world_body] : survey_.transforms.course(*world, body)) {
+      drive_.poses.push_back({time, T_world_body});
+    }
+    if (drive_.poses.empty()) return false;
+    drive_.T_body_lidar = T_body(body, lidar_frame_, "the LiDAR");
+    notes_.push_back(
+        fmt::format("poses: {} of '{}' in '{}', by tf", drive_.poses.size(), body, *world));
+    return true;
+  }
+
+  const BagSurvey& survey_;
+  const ConvertOptions& options_;
+  const std::string& lidar_frame_;
+  RecordedDrive& drive_;
+  std::vector<std::string>& notes_;
+};
+
+}  // namespace
+
+void plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+                     const std::string& lidar_frame, RecordedDrive& drive,
+                     std::vector<std::string>& notes) {
+  NavigationPlanner(survey, options, lidar_frame, drive, notes).plan();
+}
+
+}  // namespace fovea

@@ -1,0 +1,22 @@
+// Poses and positions of a recording.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/recording/generic_drive_writer.h"
+#include "fovea/rosbag/convert_options.h"
+#include "fovea/rosbag/survey.h"
+
+namespace fovea {
+
+/// Fills in what the drive knows of its motion: poses, or positions and inertia; and where LiDAR,
+/// IMU and antenna sit on the body, whose frame is that of the poses, `base_link`, or the LiDAR's.
+/// InputError for what the options name and the recording does not have, and for several topics
+/// that might be meant.
+/// @param notes  what was chosen, and what is left out
+void plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+                     const std::string& lidar_frame, RecordedDrive& drive,
+                     std::vector<std::string>& notes);
+
+}  // namespace fovea

@@ -1,0 +1,20 @@
+// The pixels of an Image message.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "fovea/base/image.h"
+#include "fovea/rosbag/ros_messages.h"
+
+namespace fovea {
+
+/// Whether images of this encoding (sensor_msgs/image_encodings.hpp) are read: mono, RGB, BGR with
+/// or without alpha, Bayer patterns and YUV 4:2:2, of eight bits.
+bool is_known_encoding(std::string_view encoding);
+
+/// The image as grey or RGB; Bayer patterns are interpolated bilinearly. InputError that names
+/// `where` for another encoding, sides over 8192 and fewer data than the image takes.
+Image image_of(const ros::ImageMessage& message, const std::string& where);
+
+}  // namespace fovea

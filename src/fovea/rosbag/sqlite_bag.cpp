@@ -1,0 +1,62 @@
+#include "fovea/rosbag/sqlite_bag.h"
+
+#include <map>
+
+#include "fovea/base/errors.h"
+#include "fovea/map/sqlite_database.h"
+
+namespace fovea {
+namespace {
+
+constexpr sqlite::FileWords kBagWords = {"recording", "not a recording of ROS 2",
+                                         "give a .db3 file that 'ros2 bag record' wrote",
+                                         "restore it from a copy"};
+
+/// Without a log beside it nothing changes the file, and SQLite needs make no files of its own.
+sqlite::Access access_of(const std::filesystem::path& file) {
+  std::filesystem::path log = file;
+  log += "-wal";
+  std::error_code error;
+  return std::filesystem::exists(log, error) ? sqlite::Access::kRead
+                                             : sqlite::Access::kReadImmutable;
+}
+
+void check_tables(sqlite::Database& database) {
+  constexpr const char* kTables =
+      "SELECT COUNT(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')";
+  if (database.integer(kTables) == 2) return;
+  throw InputError("the database has no topics and messages", database.where(),
+                   kBagWords.what_to_give);
+}
+
+}  // namespace
+
+bool is_sqlite(std::string_view beginning) {
+  return beginning.starts_with(std::string_view("SQLite format 3\0", 16));
+}
+
+void read_sqlite_bag(const std::filesystem::path& file, const std::filesystem::path& shown,
+                     BagSink& sink) {
+  sqlite::Database database(file, access_of(file), shown, kBagWords);
+  check_tables(database);
+  std::map<std::int64_t, BagTopic> wanted;
+  sqlite::Statement topics(database,
+                           "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  while (topics.step()) {
+    BagTopic topic{std::string(topics.text(1)), std::string(topics.text(2)),
+                   std::string(topics.text(3))};
+    if (!sink.wants(topic) || topic.encoding != kCdrEncoding) continue;
+    wanted.emplace(topics.integer(0), std::move(topic));
+  }
+  // By their ids: in the file's own order, without sorting what may be a hundred gigabytes.
+  sqlite::Statement messages(database, "SELECT topic_id, data FROM messages ORDER BY id");
+  while (messages.step()) {
+    const auto topic = wanted.find(messages.integer(0));
+    if (topic == wanted.end()) continue;
+    const std::span<const std::byte> data = messages.blob(1);
+    const std::string_view message(reinterpret_cast<const char*>(data.data()), data.size());
+    if (!sink.add(topic->second, message)) return;
+  }
+}
+
+}  // namespace fovea
