@@ -217,6 +217,19 @@ class Recorder : public BagSink {
   bool stopped_ = false;
 };
 
+/// Calls what knows of topics only: its errors say which recording they are in.
+template <class Step>
+auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
+  try {
+    return step();
+  } catch (const InputError& error) {
+    throw InputError(error.problem(),
+                     fmt::format("{} in {}{}", error.where(), bags.front().string(),
+                                 bags.size() > 1 ? " and others" : ""),
+                     error.remedy());
+  }
+}
+
 }  // namespace
 
 ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
@@ -230,7 +243,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   }
   GenericDriveWriter writer(output, force);
   const BagSurvey survey = survey_bags(files);
-  ConversionPlan plan = plan_conversion(survey, options);
+  ConversionPlan plan = naming(bags, [&] { return plan_conversion(survey, options); });
   Recorder recorder(survey, plan, writer, progress);
   for (const std::filesystem::path& file : files) {
     if (!recorder.stopped()) read_bag_file(file, recorder);
@@ -240,7 +253,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
     figures.stopped = true;
     return figures;
   }
-  figures = recorder.finish(plan.drive);
+  figures = naming(bags, [&] { return recorder.finish(plan.drive); });
   figures.notes.insert(figures.notes.begin(), plan.notes.begin(), plan.notes.end());
   for (const auto& [topic, unusable] : survey.unusable) {
     figures.notes.push_back(fmt::format("{} messages of {} cannot be used (the first: {})",
