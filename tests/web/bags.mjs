@@ -3,7 +3,7 @@
 import { readFileSync } from 'node:fs';
 
 import { numberOf, readScan } from './drive_folder.mjs';
-import { cameraInfo, encode, fix, header, imu, odometry, pointCloud, rawImage, transform } from './ros_messages.mjs';
+import * as ros from './ros_messages.mjs';
 
 const identity = { translation: [0, 0, 0], rotation: [0, 0, 0, 1] };
 
@@ -18,7 +18,8 @@ class Recording {
   /// @param delay  ms from the stamp until the message has come
   add(topic, type, time, delay, message) {
     const jitter = BigInt((this.messages.length * 7919) % 1000) * 1000n;
-    this.messages.push({ topic, type, time: time + BigInt(delay) * 1_000_000n + jitter, data: encode(type, message) });
+    const recorded = time + BigInt(delay) * 1_000_000n + jitter;
+    this.messages.push({ topic, type, time: recorded, data: ros.encode(type, message) });
   }
 
   inOrder() {
@@ -28,23 +29,24 @@ class Recording {
 
 function addScans(recording, drive, lidars) {
   for (const { time, path } of drive.scans) {
-    const cloud = pointCloud(time, lidarFrame, readScan(path));
+    const cloud = ros.pointCloud(time, lidarFrame, readScan(path));
     for (const topic of lidars) recording.add(topic, 'sensor_msgs/msg/PointCloud2', time, 60, cloud);
   }
 }
 
 function addImages(recording, camera, encoding, withInfo) {
   const frame = opticalFrame(camera), topic = `/${camera.name}/image_raw`;
+  const infoTopic = `/${camera.name}/camera_info`;
   for (const { time, path } of camera.images) {
     const file = readFileSync(path);
     if (encoding === 'compressed') {
-      const message = { header: header(time, frame), format: 'rgb8; png compressed bgr8', data: file };
+      const message = { header: ros.header(time, frame), format: 'rgb8; png compressed bgr8', data: file };
       recording.add(`${topic}/compressed`, 'sensor_msgs/msg/CompressedImage', time, 25, message);
     } else {
-      recording.add(topic, 'sensor_msgs/msg/Image', time, 25, rawImage(time, frame, file, encoding));
+      recording.add(topic, 'sensor_msgs/msg/Image', time, 25, ros.rawImage(time, frame, file, encoding));
     }
     if (withInfo) {
-      recording.add(`/${camera.name}/camera_info`, 'sensor_msgs/msg/CameraInfo', time, 24, cameraInfo(time, frame, camera));
+      recording.add(infoTopic, 'sensor_msgs/msg/CameraInfo', time, 24, ros.cameraInfo(time, frame, camera));
     }
   }
 }
@@ -52,12 +54,14 @@ function addImages(recording, camera, encoding, withInfo) {
 /// They are recorded late, when the first scans and images are there already.
 function addStaticTransforms(recording, drive, withCameras) {
   const { T_body_lidar, T_body_imu, antenna } = drive.body, { time } = drive.scans[0];
-  const add = (...transforms) => recording.add('/tf_static', 'tf2_msgs/msg/TFMessage', time, 110, { transforms });
-  add(transform(time, 'base_link', lidarFrame, T_body_lidar ?? identity),
-    transform(time, 'base_link', 'imu', T_body_imu ?? identity),
-    transform(time, 'base_link', 'gnss', { ...identity, translation: antenna ?? [0, 0, 0] }));
+  const type = 'tf2_msgs/msg/TFMessage';
+  const add = (...transforms) => recording.add('/tf_static', type, time, 110, { transforms });
+  add(ros.transform(time, 'base_link', lidarFrame, T_body_lidar ?? identity),
+    ros.transform(time, 'base_link', 'imu', T_body_imu ?? identity),
+    ros.transform(time, 'base_link', 'gnss', { ...identity, translation: antenna ?? [0, 0, 0] }));
   if (!withCameras) return;
-  add(...drive.cameras.map((camera) => transform(time, lidarFrame, opticalFrame(camera), camera.T_lidar_cam)));
+  add(...drive.cameras.map((camera) =>
+    ros.transform(time, lidarFrame, opticalFrame(camera), camera.T_lidar_cam)));
 }
 
 function addPoses(recording, drive, as) {
@@ -65,22 +69,25 @@ function addPoses(recording, drive, as) {
     const T_world_body = {
       translation: numbersOf(row, ['x', 'y', 'z']), rotation: numbersOf(row, ['qx', 'qy', 'qz', 'qw']) };
     if (as === 'odometry') {
-      recording.add('/odom', 'nav_msgs/msg/Odometry', row.time, 3, odometry(row.time, 'map', 'base_link', T_world_body));
+      const message = ros.odometry(row.time, 'map', 'base_link', T_world_body);
+      recording.add('/odom', 'nav_msgs/msg/Odometry', row.time, 3, message);
     } else {
-      const transforms = [transform(row.time, 'map', 'base_link', T_world_body)];
+      const transforms = [ros.transform(row.time, 'map', 'base_link', T_world_body)];
       recording.add('/tf', 'tf2_msgs/msg/TFMessage', row.time, 3, { transforms });
     }
   }
 }
 
+const inertiaColumns = [['qx', 'qy', 'qz', 'qw'], ['wx', 'wy', 'wz'], ['ax', 'ay', 'az']];
+
 function addNavigation(recording, drive) {
   for (const row of drive.positions) {
     const values = numbersOf(row, ['latitude', 'longitude', 'altitude', 'accuracy']);
-    recording.add('/gnss/fix', 'sensor_msgs/msg/NavSatFix', row.time, 45, fix(row.time, 'gnss', ...values));
+    recording.add('/gnss/fix', 'sensor_msgs/msg/NavSatFix', row.time, 45, ros.fix(row.time, 'gnss', ...values));
   }
   for (const row of drive.inertia) {
-    const values = [['qx', 'qy', 'qz', 'qw'], ['wx', 'wy', 'wz'], ['ax', 'ay', 'az']].map((names) => numbersOf(row, names));
-    recording.add('/imu/data', 'sensor_msgs/msg/Imu', row.time, 1, imu(row.time, 'imu', ...values));
+    const values = inertiaColumns.map((names) => numbersOf(row, names));
+    recording.add('/imu/data', 'sensor_msgs/msg/Imu', row.time, 1, ros.imu(row.time, 'imu', ...values));
   }
 }
 
@@ -103,7 +110,7 @@ export function topicsOf(messages) {
   const types = new Map(messages.map(({ topic, type }) => [topic, type]));
   const forever = '\n    sec: 9223372036\n    nsec: 854775807\n';
   return [...types].map(([name, type]) => ({ name, type,
-    qos: `- history: 3\n  depth: 0\n  reliability: 1\n  durability: ${name === '/tf_static' ? 1 : 2}\n  deadline:${forever}`
-      + `  lifespan:${forever}  liveliness: 1\n  liveliness_lease_duration:${forever}`
-      + '  avoid_ros_namespace_conventions: false' }));
+    qos: '- history: 3\n  depth: 0\n  reliability: 1\n'
+      + `  durability: ${name === '/tf_static' ? 1 : 2}\n  deadline:${forever}  lifespan:${forever}`
+      + `  liveliness: 1\n  liveliness_lease_duration:${forever}  avoid_ros_namespace_conventions: false` }));
 }

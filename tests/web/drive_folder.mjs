@@ -22,7 +22,8 @@ export function numberOf(text) {
 /// The numbered files of a folder with their stamps, in order.
 function stampedFiles(folder) {
   const files = new Map(readdirSync(folder).map((name) => [Number.parseInt(name, 10), join(folder, name)]));
-  return readTable(join(folder, 'stamps.csv')).map(({ index, time }) => ({ time, path: files.get(Number(index)) }));
+  return readTable(join(folder, 'stamps.csv'))
+    .map(({ index, time }) => ({ time, path: files.get(Number(index)) }));
 }
 
 export function readDrive(folder) {

@@ -48,7 +48,8 @@ export async function writeMcap(path, messages, { compression = 'zstd', chunks =
       metadata: new Map([['offered_qos_profiles', qos]]) }));
   }
   for (const [sequence, { topic, time, data }] of messages.entries()) {
-    await writer.addMessage({ channelId: channels.get(topic), sequence, logTime: time, publishTime: time, data });
+    const channelId = channels.get(topic);
+    await writer.addMessage({ channelId, sequence, logTime: time, publishTime: time, data });
   }
   await writer.addMetadata({ name: 'rosbag2', metadata: new Map([['ros_distro', 'humble']]) });
   await writer.end();

@@ -24,14 +24,16 @@ export function encode(type, message) {
 }
 
 export function header(time, frame) {
-  return { stamp: { sec: Number(time / 1_000_000_000n), nanosec: Number(time % 1_000_000_000n) }, frame_id: frame };
+  const second = 1_000_000_000n;
+  return { stamp: { sec: Number(time / second), nanosec: Number(time % second) }, frame_id: frame };
 }
 
 /// A PointCloud2 as Velodyne's driver lays it out: ring as a uint16 amid the floats, time not aligned.
 export function pointCloud(time, frame, scan) {
   const kFloat = 7, kShort = 4, hasTime = scan.names.includes('time');
-  const fields = [['x', 0, kFloat], ['y', 4, kFloat], ['z', 8, kFloat], ['intensity', 12, kFloat], ['ring', 16, kShort],
-    ...(hasTime ? [['time', 18, kFloat]] : [])].map(([name, offset, datatype]) => ({ name, offset, datatype, count: 1 }));
+  const layout = [['x', 0, kFloat], ['y', 4, kFloat], ['z', 8, kFloat], ['intensity', 12, kFloat],
+    ['ring', 16, kShort], ...(hasTime ? [['time', 18, kFloat]] : [])];
+  const fields = layout.map(([name, offset, datatype]) => ({ name, offset, datatype, count: 1 }));
   const step = hasTime ? 22 : 18, from = 4 * scan.names.length, timeAt = 4 * scan.names.indexOf('time');
   const data = Buffer.alloc(step * scan.count);
   for (let i = 0; i < scan.count; ++i) {
@@ -39,11 +41,11 @@ export function pointCloud(time, frame, scan) {
     data.writeUInt16LE(i % 64, i * step + 16);
     if (hasTime) scan.data.copy(data, i * step + 18, i * from + timeAt, i * from + timeAt + 4);
   }
-  return { header: header(time, frame), height: 1, width: scan.count, fields, is_bigendian: false, point_step: step,
-    row_step: data.length, data, is_dense: true };
+  return { header: header(time, frame), height: 1, width: scan.count, fields, is_bigendian: false,
+    point_step: step, row_step: data.length, data, is_dense: true };
 }
 
-/// A PNG file as sensor_msgs/msg/Image: rgb8 or bgr8, grey files as mono8; rows end in bytes that are no pixels.
+/// A PNG file as an Image: rgb8 or bgr8, grey files as mono8. Rows end in bytes that are no pixels.
 export function rawImage(time, frame, file, encoding) {
   const { width, height, data: rgba, color } = PNG.sync.read(file);
   const channels = color ? { rgb8: [0, 1, 2], bgr8: [2, 1, 0] }[encoding] : [0];
@@ -56,7 +58,8 @@ export function rawImage(time, frame, file, encoding) {
       });
     }
   }
-  return { header: header(time, frame), height, width, encoding: color ? encoding : 'mono8', is_bigendian: 0, step, data };
+  return { header: header(time, frame), height, width, encoding: color ? encoding : 'mono8', is_bigendian: 0,
+    step, data };
 }
 
 /// Of a camera of drive.toml. A pinhole is what ROS calls one: "plumb_bob" with zeros.
@@ -83,7 +86,8 @@ export function odometry(time, frame, child, { translation, rotation }) {
 
 /// @param accuracy  m, of a coordinate; infinite: there is no fix, 0: not known
 export function fix(time, frame, latitude, longitude, altitude, accuracy) {
-  const kDiagonal = 2, kNoFix = -1, known = accuracy > 0 && accuracy < Infinity, variance = known ? accuracy * accuracy : 0;
+  const kDiagonal = 2, kNoFix = -1, known = accuracy > 0 && accuracy < Infinity;
+  const variance = known ? accuracy * accuracy : 0;
   return { header: header(time, frame), status: { status: accuracy === Infinity ? kNoFix : 0, service: 1 },
     latitude, longitude, altitude, position_covariance: [variance, 0, 0, 0, variance, 0, 0, 0, variance],
     position_covariance_type: known ? kDiagonal : 0 };

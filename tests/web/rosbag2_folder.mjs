@@ -46,18 +46,20 @@ function extent(messages, indent) {
     `message_count: ${messages.length}`].map((line) => `${indent}${line}\n`).join('');
 }
 
-/// As with Humble, a file of FILE compression stands with its ending in the first list and without it in the second.
+/// As Humble has it, a compressed file stands with its ending in the first list and without it in the second.
 function metadata(topics, parts, compression) {
   const all = parts.flatMap(({ messages }) => messages);
-  const topicText = ({ name, type, qos }) => `    - topic_metadata:\n        name: ${name}\n        type: ${type}\n`
+  const topicText = ({ name, type, qos }) =>
+    `    - topic_metadata:\n        name: ${name}\n        type: ${type}\n`
     + `        serialization_format: cdr\n        offered_qos_profiles: ${JSON.stringify(qos)}\n`
     + `      message_count: ${all.filter(({ topic }) => topic === name).length}\n`;
+  const fileText = ({ file, messages }) =>
+    `    - path: ${file.replace('.zstd', '')}\n${extent(messages, '      ')}`;
   return `rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: sqlite3\n${extent(all, '  ')}`
     + `  topics_with_message_count:\n${topics.map(topicText).join('')}`
     + `  compression_format: ${compression ? 'zstd' : '""'}\n  compression_mode: ${compression || '""'}\n`
     + `  relative_file_paths:\n${parts.map(({ file }) => `    - ${file}\n`).join('')}`
-    + `  files:\n${parts.map(({ file, messages }) => `    - path: ${file.replace('.zstd', '')}\n${extent(messages, '      ')}`)
-      .join('')}`;
+    + `  files:\n${parts.map(fileText).join('')}`;
 }
 
 /// @param files  how many the messages are split into
