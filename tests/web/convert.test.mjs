@@ -46,6 +46,13 @@ test('MCAP, lz4, poses of tf', async () => {
   checkConverted(bag, 'poses', 'lz4', '--poses', 'tf');
 });
 
+test('MCAP in two files', async () => {
+  const half = plain.length >> 1, bags = ['first.mcap', 'second.mcap'].map((name) => drives.path(name));
+  await writeMcap(bags[0], plain.slice(0, half));
+  await writeMcap(bags[1], plain.slice(half));
+  checkConverted(bags[0], 'poses', 'halves', bags[1]);
+});
+
 test('a bag folder, GNSS and IMU', () => {
   const bag = drives.path('bag');
   writeRosbag2(bag, record(drives.drive('gnss'), { poses: 'gnss' }));
@@ -94,6 +101,19 @@ test('two LiDARs: one has to be named', async () => {
   checkConverted(bag, 'poses', 'one_of_two', '--lidar', '/lidar/points');
 });
 
+test('a camera by another name, no poses', async () => {
+  const bag = drives.path('named.mcap');
+  await writeMcap(bag, plain);
+  const camera = 'front=/camera_0/image_raw/compressed';
+  const { status, stderr } = drives.convert(bag, 'named', '--camera', camera, '--poses', 'none');
+  assert.equal(status, 0, stderr);
+  const { cameras, poses, positions, inertia } = drives.drive('named');
+  assert.deepEqual(cameras.map(({ name, images }) => [name, images.length]), [['front', 4]]);
+  assert.deepEqual([poses, positions, inertia], [[], [], []]);
+  drives.refuses(bag, ['/nowhere'], '--camera', 'front=/nowhere');
+  drives.refuses(bag, ['/nowhere'], '--lidar', '/nowhere');
+});
+
 test('an existing folder is replaced with --force alone', async () => {
   const bag = drives.path('again.mcap');
   await writeMcap(bag, plain);
@@ -117,7 +137,7 @@ const refusal = async (name, recorded, words, options) => {
 test('no CameraInfo', () => refusal('no_info', { cameraInfos: false }, ['camera_info']));
 test('no tf to the camera', () => refusal('no_tf', { cameraTransforms: false }, ['camera_0_optical_frame']));
 test('no LiDAR', () => refusal('no_lidar', { lidars: [] }, ['no_lidar.mcap', 'PointCloud2']));
-test('unknown compression', () => refusal('br', {}, ['br.mcap', '"br"'], { compression: 'br' }));
+test('unknown compression', () => refusal('br', {}, ['br.mcap', "'br'"], { compression: 'br' }));
 test('ROS 1 messages', () => refusal('ros1', {}, ['ros1.mcap'], { profile: 'ros1', messageEncoding: 'ros1',
   schema: () => ({ encoding: 'ros1msg', data: 'Header header' }) }));
 test('protobuf', () => refusal('protobuf', {}, ['protobuf.mcap'], { profile: '', messageEncoding: 'protobuf',
