@@ -1,0 +1,209 @@
+// ROS 2 recordings, written by writers of other people: `fovea convert` gives the drive that was recorded.
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+
+import { record } from './bags.mjs';
+import { ConvertDrives } from './convert_drives.mjs';
+import { opcodes, recordsOf, writeMcap } from './mcap_bag.mjs';
+import { writeRosbag2 } from './rosbag2_folder.mjs';
+
+let drives, plain;
+before(() => {
+  drives = new ConvertDrives();
+  drives.simulate('simulated', 'camera.numbers=[0]', 'lidar.columns=900');
+  drives.derive('simulated', 'poses', 'poses');
+  drives.derive('simulated', 'gnss', 'gnss');
+  plain = record(drives.drive('poses'));
+});
+after(() => drives.remove());
+
+const digests = new Map();
+
+/// The converted drive has the stamps of the one that was recorded, and its map is the same to the last bit.
+function checkConverted(recording, original, name, ...options) {
+  const { status, stderr } = drives.convert(recording, name, ...options);
+  assert.equal(status, 0, stderr);
+  const stamps = ({ scans, cameras }) => [scans, ...cameras.map(({ images }) => images)].map((files) =>
+    files.map(({ time }) => time));
+  assert.deepEqual(stamps(drives.drive(name)), stamps(drives.drive(original)));
+  if (!digests.has(original)) digests.set(original, drives.digest(original));
+  assert.equal(drives.digest(name), digests.get(original));
+}
+
+for (const [name, compression, chunks] of [['zstd', 'zstd', true], ['uncompressed', 'none', true],
+  ['without_chunks', 'none', false]]) {
+  test(`MCAP, ${name}, poses of Odometry`, async () => {
+    const bag = drives.path(`${name}.mcap`);
+    await writeMcap(bag, plain, { compression, chunks });
+    checkConverted(bag, 'poses', name);
+  });
+}
+
+test('MCAP, lz4, poses of tf', async () => {
+  const bag = drives.path('lz4.mcap');
+  await writeMcap(bag, record(drives.drive('poses'), { poses: 'tf' }), { compression: 'lz4' });
+  checkConverted(bag, 'poses', 'lz4', '--poses', 'tf');
+});
+
+test('MCAP in two files', async () => {
+  const half = plain.length >> 1, bags = ['first.mcap', 'second.mcap'].map((name) => drives.path(name));
+  await writeMcap(bags[0], plain.slice(0, half));
+  await writeMcap(bags[1], plain.slice(half));
+  checkConverted(bags[0], 'poses', 'halves', bags[1]);
+});
+
+test('a bag folder, GNSS and IMU', () => {
+  const bag = drives.path('bag');
+  writeRosbag2(bag, record(drives.drive('gnss'), { poses: 'gnss' }));
+  checkConverted(bag, 'gnss', 'folder');
+});
+
+test('its database alone', () => {
+  const bag = drives.path('alone');
+  writeRosbag2(bag, plain);
+  copyFileSync(`${bag}/alone_0.db3`, drives.path('copy.db3'));
+  checkConverted(drives.path('copy.db3'), 'poses', 'database');
+});
+
+test('a bag folder in two files, each message compressed', () => {
+  const bag = drives.path('split');
+  writeRosbag2(bag, plain, { files: 2, compression: 'MESSAGE' });
+  checkConverted(bag, 'poses', 'messages');
+});
+
+test('a bag folder whose files are compressed', () => {
+  const bag = drives.path('whole');
+  writeRosbag2(bag, plain, { files: 2, compression: 'FILE' });
+  checkConverted(bag, 'poses', 'files');
+});
+
+for (const images of ['rgb8', 'bgr8']) {
+  test(`raw images, ${images}, their rows padded`, async () => {
+    const bag = drives.path(`${images}.mcap`);
+    await writeMcap(bag, record(drives.drive('poses'), { images }));
+    checkConverted(bag, 'poses', images);
+  });
+}
+
+test('five cameras all round, grey ones and lenses among them', async () => {
+  drives.simulate('round', 'camera.rig=surround', 'camera.grey_2=true', 'lidar.columns=600');
+  drives.derive('round', 'surround', 'poses');
+  const bag = drives.path('surround.mcap');
+  await writeMcap(bag, record(drives.drive('surround'), { images: 'rgb8' }));
+  checkConverted(bag, 'surround', 'all_round');
+});
+
+test('two LiDARs: one has to be named', async () => {
+  const bag = drives.path('two.mcap');
+  await writeMcap(bag, record(drives.drive('poses'), { lidars: ['/lidar/points', '/lidar/rear/points'] }));
+  drives.refuses(bag, ['/lidar/points', '/lidar/rear/points', '--lidar']);
+  checkConverted(bag, 'poses', 'one_of_two', '--lidar', '/lidar/points');
+});
+
+test('a camera by another name, no poses', async () => {
+  const bag = drives.path('named.mcap');
+  await writeMcap(bag, plain);
+  const camera = 'front=/camera_0/image_raw/compressed';
+  const { status, stderr } = drives.convert(bag, 'named', '--camera', camera, '--poses', 'none');
+  assert.equal(status, 0, stderr);
+  const { cameras, poses, positions, inertia } = drives.drive('named');
+  assert.deepEqual(cameras.map(({ name, images }) => [name, images.length]), [['front', 4]]);
+  assert.deepEqual([poses, positions, inertia], [[], [], []]);
+  drives.refuses(bag, ['/nowhere'], '--camera', 'front=/nowhere');
+  drives.refuses(bag, ['/nowhere'], '--lidar', '/nowhere');
+});
+
+test('an existing folder is replaced with --force alone', async () => {
+  const bag = drives.path('again.mcap');
+  await writeMcap(bag, plain);
+  assert.equal(drives.convert(bag, 'twice').status, 0);
+  const before = readFileSync(drives.path('twice/drive/drive.toml'));
+  const { status, stderr } = drives.convert(bag, 'twice');
+  assert.equal(status, 1);
+  assert.match(stderr, /^fovea: error: .*--force.*\n$/);
+  assert.deepEqual(readFileSync(drives.path('twice/drive/drive.toml')), before);
+  assert.equal(drives.convert(bag, 'twice', '--force').status, 0);
+});
+
+// What is no such recording.
+
+const refusal = async (name, recorded, words, options) => {
+  const bag = drives.path(`${name}.mcap`);
+  await writeMcap(bag, record(drives.drive('poses'), recorded), options);
+  drives.refuses(bag, words);
+};
+
+test('no CameraInfo', () => refusal('no_info', { cameraInfos: false }, ['camera_info']));
+test('no tf to the camera', () => refusal('no_tf', { cameraTransforms: false }, ['camera_0_optical_frame']));
+test('no LiDAR', () => refusal('no_lidar', { lidars: [] }, ['PointCloud2']));
+test('unknown compression', () => refusal('br', {}, ['br.mcap', "'br'"], { compression: 'br' }));
+test('ROS 1 messages', () => refusal('ros1', {}, ["'ros1'", 'ROS 2'], { profile: 'ros1', messageEncoding: 'ros1',
+  schema: () => ({ encoding: 'ros1msg', data: 'Header header' }) }));
+test('protobuf', () => refusal('protobuf', {}, ["'protobuf'", 'ROS 2'], { profile: '', messageEncoding: 'protobuf',
+  schema: () => ({ encoding: 'protobuf', data: 'descriptor' }) }));
+
+test('MCAP cut short', async () => {
+  await writeMcap(drives.path('cut.mcap'), plain);
+  const bytes = readFileSync(drives.path('cut.mcap')), records = recordsOf(bytes);
+  const first = (opcode) => records.find((r) => r.opcode === opcode);
+  const middle = ({ begin, end }) => (begin + end) >> 1;
+  const places = { nothing: 0, magic: 5, header: middle(first(opcodes.header)),
+    length: first(opcodes.chunk).begin + 4, chunk: middle(first(opcodes.chunk)),
+    chunks: records.filter((r) => r.opcode === opcodes.chunk)[2].begin, footer: first(opcodes.footer).begin,
+    end: bytes.length - 3 };
+  for (const [place, length] of Object.entries(places)) {
+    const bag = drives.path(`cut_${place}.mcap`);
+    writeFileSync(bag, bytes.subarray(0, length));
+    drives.refuses(bag, [`cut_${place}.mcap`]);
+  }
+});
+
+test('a chunk whose checksum is another', async () => {
+  const bag = drives.path('changed.mcap');
+  await writeMcap(bag, plain, { compression: 'none' });
+  const bytes = readFileSync(bag), { end } = recordsOf(bytes).find((r) => r.opcode === opcodes.chunk);
+  bytes[end - 1000] ^= 1;  // of a scan's points
+  writeFileSync(bag, bytes);
+  drives.refuses(bag, ['changed.mcap', 'checksum']);
+});
+
+test('a database cut short', () => {
+  const bag = drives.path('cut_bag');
+  writeRosbag2(bag, plain);
+  const bytes = readFileSync(`${bag}/cut_bag_0.db3`);
+  for (const length of [0, 50, 5000, bytes.length >> 1, bytes.length - 5000]) {
+    writeFileSync(`${bag}/cut_bag_0.db3`, bytes.subarray(0, length));
+    drives.refuses(bag, ['cut_bag_0.db3']);
+  }
+});
+
+test('a compressed file, and messages, cut short', () => {
+  const bag = drives.path('cut_file');
+  writeRosbag2(bag, plain, { compression: 'FILE' });
+  const file = `${bag}/cut_file_0.db3.zstd`, bytes = readFileSync(file);
+  writeFileSync(file, bytes.subarray(0, bytes.length >> 1));
+  drives.refuses(bag, ['cut_file_0.db3.zstd']);
+  const half = ({ data }) => data.subarray(0, data.length >> 1);
+  const cut = plain.map((message) => ({ ...message, data: half(message) }));
+  writeRosbag2(drives.path('cut_messages'), cut);
+  drives.refuses(drives.path('cut_messages'), ['/lidar/points']);
+});
+
+test('a bag folder without its file, or without its list', () => {
+  const bag = drives.path('empty_bag');
+  mkdirSync(bag);
+  drives.refuses(bag, ['empty_bag']);
+  writeRosbag2(drives.path('listed'), plain);
+  copyFileSync(drives.path('listed/metadata.yaml'), `${bag}/metadata.yaml`);
+  drives.refuses(bag, ['listed_0.db3']);
+});
+
+test('other files', () => {
+  for (const [name, text, ...words] of [['text.mcap', 'This is a text.\n'], ['text.db3', 'This is a text.\n'],
+    ['old.bag', '#ROSBAG V2.0\nE\0\0\0', 'ROS 1'], ['old.mcap', '#ROSBAG V2.0\nE\0\0\0', 'ROS 1']]) {
+    writeFileSync(drives.path(name), text);
+    drives.refuses(drives.path(name), [name, ...words]);
+  }
+  drives.refuses(drives.path('nowhere.mcap'), ['nowhere.mcap']);
+});

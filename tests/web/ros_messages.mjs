@@ -1,0 +1,99 @@
+// Messages of ROS 2 (Humble) as CDR, by encoders and definitions of other people.
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { dirname, join } from 'node:path';
+
+import rosmsg from '@foxglove/rosmsg';
+import { MessageWriter } from '@foxglove/rosmsg2-serialization';
+import { PNG } from 'pngjs';
+
+const folder = join(dirname(createRequire(import.meta.url).resolve('@foxglove/rosmsg-msgs-common')),
+  '../msgdefs/ros2humble');
+const time = `${'='.repeat(80)}\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n`;
+
+/// What a bag says about "sensor_msgs/msg/Imu": its text, and those of the types in it.
+export function schemaOf(type) {
+  return readFileSync(join(folder, `${type}.msg`), 'utf8') + time;
+}
+
+const writers = new Map();
+
+export function encode(type, message) {
+  if (!writers.has(type)) writers.set(type, new MessageWriter(rosmsg.parse(schemaOf(type), { ros2: true })));
+  return writers.get(type).writeMessage(message);
+}
+
+export function header(time, frame) {
+  const second = 1_000_000_000n;
+  return { stamp: { sec: Number(time / second), nanosec: Number(time % second) }, frame_id: frame };
+}
+
+/// A PointCloud2 as Velodyne's driver lays it out: ring as a uint16 amid the floats, time not aligned.
+export function pointCloud(time, frame, scan) {
+  const kFloat = 7, kShort = 4, hasTime = scan.names.includes('time');
+  const layout = [['x', 0, kFloat], ['y', 4, kFloat], ['z', 8, kFloat], ['intensity', 12, kFloat],
+    ['ring', 16, kShort], ...(hasTime ? [['time', 18, kFloat]] : [])];
+  const fields = layout.map(([name, offset, datatype]) => ({ name, offset, datatype, count: 1 }));
+  const step = hasTime ? 22 : 18, from = 4 * scan.names.length, timeAt = 4 * scan.names.indexOf('time');
+  const data = Buffer.alloc(step * scan.count);
+  for (let i = 0; i < scan.count; ++i) {
+    scan.data.copy(data, i * step, i * from, i * from + 16);
+    data.writeUInt16LE(i % 64, i * step + 16);
+    if (hasTime) scan.data.copy(data, i * step + 18, i * from + timeAt, i * from + timeAt + 4);
+  }
+  return { header: header(time, frame), height: 1, width: scan.count, fields, is_bigendian: false,
+    point_step: step, row_step: data.length, data, is_dense: true };
+}
+
+/// A PNG file as an Image: rgb8 or bgr8, grey files as mono8. Rows end in bytes that are no pixels.
+export function rawImage(time, frame, file, encoding) {
+  const { width, height, data: rgba, color } = PNG.sync.read(file);
+  const channels = color ? { rgb8: [0, 1, 2], bgr8: [2, 1, 0] }[encoding] : [0];
+  const step = width * channels.length + 13;
+  const data = Buffer.alloc(step * height, 0xa5);
+  for (let row = 0; row < height; ++row) {
+    for (let x = 0; x < width; ++x) {
+      channels.forEach((channel, c) => {
+        data[row * step + x * channels.length + c] = rgba[4 * (row * width + x) + channel];
+      });
+    }
+  }
+  return { header: header(time, frame), height, width, encoding: color ? encoding : 'mono8', is_bigendian: 0,
+    step, data };
+}
+
+/// Of a camera of drive.toml. A pinhole is what ROS calls one: "plumb_bob" with zeros.
+export function cameraInfo(time, frame, { width, height, K, D, distortion_model: model }) {
+  const pinhole = model === 'none';
+  const p = [0, 1, 2].flatMap((row) => [...K.slice(3 * row, 3 * row + 3), 0]);
+  return { header: header(time, frame), height, width, distortion_model: pinhole ? 'plumb_bob' : model,
+    d: pinhole ? [0, 0, 0, 0, 0] : D, k: K, r: [1, 0, 0, 0, 1, 0, 0, 0, 1], p };
+}
+
+const xyz = ([x, y, z]) => ({ x, y, z });
+const xyzw = ([x, y, z, w]) => ({ x, y, z, w });
+
+/// @param motion  `T_parent_child` as drive.toml has it: {translation, rotation}
+export function transform(time, parent, child, { translation, rotation }) {
+  return { header: header(time, parent), child_frame_id: child,
+    transform: { translation: xyz(translation), rotation: xyzw(rotation) } };
+}
+
+export function odometry(time, frame, child, { translation, rotation }) {
+  return { header: header(time, frame), child_frame_id: child,
+    pose: { pose: { position: xyz(translation), orientation: xyzw(rotation) } } };
+}
+
+/// @param accuracy  m, of a coordinate; infinite: there is no fix, 0: not known
+export function fix(time, frame, latitude, longitude, altitude, accuracy) {
+  const kDiagonal = 2, kNoFix = -1, known = accuracy > 0 && accuracy < Infinity;
+  const variance = known ? accuracy * accuracy : 0;
+  return { header: header(time, frame), status: { status: accuracy === Infinity ? kNoFix : 0, service: 1 },
+    latitude, longitude, altitude, position_covariance: [variance, 0, 0, 0, variance, 0, 0, 0, variance],
+    position_covariance_type: known ? kDiagonal : 0 };
+}
+
+export function imu(time, frame, rotation, angularVelocity, acceleration) {
+  return { header: header(time, frame), orientation: xyzw(rotation), angular_velocity: xyz(angularVelocity),
+    linear_acceleration: xyz(acceleration) };
+}
