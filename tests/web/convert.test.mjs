@@ -131,13 +131,13 @@ test('an existing folder is replaced with --force alone', async () => {
 const refusal = async (name, recorded, words, options) => {
   const bag = drives.path(`${name}.mcap`);
   await writeMcap(bag, record(drives.drive('poses'), recorded), options);
-  drives.refuses(bag, words);
+  drives.refuses(bag, [`${name}.mcap`, ...words]);
 };
 
 test('no CameraInfo', () => refusal('no_info', { cameraInfos: false }, ['camera_info']));
 test('no tf to the camera', () => refusal('no_tf', { cameraTransforms: false }, ['camera_0_optical_frame']));
 test('no LiDAR', () => refusal('no_lidar', { lidars: [] }, ['PointCloud2']));
-test('unknown compression', () => refusal('br', {}, ['br.mcap', "'br'"], { compression: 'br' }));
+test('unknown compression', () => refusal('br', {}, ["'br'"], { compression: 'br' }));
 test('ROS 1 messages', () => refusal('ros1', {}, ["'ros1'", 'ROS 2'], { profile: 'ros1', messageEncoding: 'ros1',
   schema: () => ({ encoding: 'ros1msg', data: 'Header header' }) }));
 test('protobuf', () => refusal('protobuf', {}, ["'protobuf'", 'ROS 2'], { profile: '', messageEncoding: 'protobuf',

@@ -44,7 +44,7 @@ std::string lidar_topic(const BagSurvey& survey, const std::string& wanted) {
     const auto topic = survey.topics.find(name);
     if (topic == survey.topics.end() || topic->second.type != ros::kPointCloud) continue;
     throw InputError(fmt::format("no point cloud can be used ({})", unusable.first_problem), name,
-                     "see docs/drives.md for what is read");
+                     "restore it from a copy, or see docs/drives.md for what is read");
   }
   for (const auto& [name, topic] : survey.topics) {
     if (topic.encoding == kCdrEncoding) continue;
@@ -200,7 +200,8 @@ class Recorder : public BagSink {
     const UnusableMessages& unusable = sensor.unusable;
     if (sensor.written == 0) {
       throw InputError(fmt::format("none of the messages can be used ({})", unusable.first_problem),
-                       sensor.topic, "see docs/drives.md for what is read");
+                       sensor.topic,
+                       "restore it from a copy, or see docs/drives.md for what is read");
     }
     if (unusable.count > 0) {
       figures.notes.push_back(fmt::format("{} messages of {} cannot be used (the first: {})",
