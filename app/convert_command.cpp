@@ -29,18 +29,27 @@ std::vector<ConvertOptions::CameraTopic> parse_cameras(const std::vector<std::st
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   std::vector<ConvertOptions::CameraTopic> cameras;
-  std::set<std::string> names;
+  std::set<std::string> names, topics;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
     if (equals == std::string::npos || name.empty() ||
-        name.find_first_not_of(kPlain) != std::string::npos || !names.insert(name).second) {
-      throw ConfigError("this names no camera, or one twice", "--camera " + text,
+        name.find_first_not_of(kPlain) != std::string::npos || !names.insert(name).second ||
+        !topics.insert(text.substr(equals + 1)).second) {
+      throw ConfigError("this names no camera, or one or its topic twice", "--camera " + text,
                         "give NAME=TOPIC, the name of letters, digits, '_' and '-'");
     }
     cameras.push_back({name, text.substr(equals + 1)});
   }
   return cameras;
+}
+
+/// What a recording calls its topics must not steer a terminal.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  }
+  return text;
 }
 
 void run(const ConvertArguments& arguments) {
@@ -51,7 +60,7 @@ void run(const ConvertArguments& arguments) {
   const ConvertFigures figures = [&] {
     ProgressBar bar(arguments.quiet, "messages");
     return convert_bags(bags, arguments.output, arguments.force, options, [&](int done, int total) {
-      bar.draw(done, total);
+      if (total > 0) bar.draw(done, total);
       return !interrupt.token().stop_requested();
     });
   }();
@@ -60,7 +69,7 @@ void run(const ConvertArguments& arguments) {
                 "start it again: nothing of it was kept");
   }
   if (arguments.quiet) return;
-  for (const std::string& note : figures.notes) fmt::print("{}\n", note);
+  for (const std::string& note : figures.notes) fmt::print("{}\n", printable(note));
   fmt::print("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
              figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
 }
@@ -96,7 +105,8 @@ void add_convert_command(CLI::App& app) {
       ->type_name("auto|gnss|odometry|tf|none");
   command->add_option("--fix", options.fix, "NavSatFix, where there are several")
       ->type_name("TOPIC");
-  command->add_option("--imu", options.imu, "Imu, where there are several")->type_name("TOPIC");
+  command->add_option("--imu", options.imu, "Imu, where there are several, or none")
+      ->type_name("TOPIC");
   command->add_option("--odometry", options.odometry, "Odometry, where there are several")
       ->type_name("TOPIC");
   command->add_option("--body", options.body, "Frame of the vehicle (default: base_link)")

@@ -17,7 +17,10 @@ constexpr int kWrongUsage = 2;
 /// One line on standard error, whatever a library wrote. Must not throw: it is the last resort.
 void print_error(const char* message, const char* where_and_remedy = "") noexcept {
   std::fputs("fovea: error: ", stderr);
-  for (const char* c = message; *c != '\0'; ++c) std::fputc(*c == '\n' ? ' ' : *c, stderr);
+  for (const char* c = message; *c != '\0'; ++c) {
+    const bool controls = static_cast<unsigned char>(*c) < ' ' || *c == 0x7f;
+    std::fputc(controls ? ' ' : *c, stderr);
+  }
   std::fputs(where_and_remedy, stderr);
   std::fputc('\n', stderr);
 }

@@ -1,9 +1,12 @@
-// Recordings of ROS 2: MCAP, SQLite, and either compressed as a whole.
+// Recordings of ROS 2, MCAP and SQLite, plain or compressed as a whole: what a pass over them
+// finds, and what is made of it.
 #include "fovea/rosbag/bag.h"
 
 #include <fstream>
-#include <set>
 
+#include "fovea/rosbag/camera_topics.h"
+#include "fovea/rosbag/navigation_topics.h"
+#include "fovea/rosbag/survey.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 
@@ -11,24 +14,12 @@ using namespace fovea;
 
 namespace {
 
-class Listener : public BagSink {
- public:
-  bool wants(const BagTopic& topic) override {
-    const bool wanted = topic.name.size() % 2 == 0;
-    if (wanted) wanted_.insert(topic.name);
-    return wanted;
+void check(const SensorTopic& topic) {
+  require(!topic.stamps.empty(), "a sensor has messages");
+  for (std::size_t i = 1; i < topic.stamps.size(); ++i) {
+    require(topic.stamps[i - 1] < topic.stamps[i], "stamps ascend");
   }
-  bool add(const BagTopic& topic, std::string_view message) override {
-    require(wanted_.contains(topic.name), "only messages that are wanted come");
-    require(topic.encoding == kCdrEncoding, "only messages of ROS 2 come");
-    bytes_ += message.size();
-    return bytes_ < 1'000'000;
-  }
-
- private:
-  std::set<std::string> wanted_;
-  std::size_t bytes_ = 0;
-};
+}
 
 }  // namespace
 
@@ -36,9 +27,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const ScratchFolder folder;
   const std::filesystem::path file = folder / "a.bag";
   std::ofstream(file, std::ios::binary) << as_text(data, size);
+  BagSurvey survey;
+  if (!read_or_refuse([&] { survey = survey_bags({file}, folder.path(), [] { return true; }); })) {
+    return 0;
+  }
+  std::string lidar_frame = "lidar";
+  for (const auto& [name, cloud] : survey.clouds) check(cloud), lidar_frame = cloud.frame;
+  for (const auto& [name, images] : survey.images) check(images);
+  std::vector<std::string> notes;
   read_or_refuse([&] {
-    Listener listener;
-    read_bag_file(file, listener);
+    const auto cameras = plan_cameras(survey, {}, lidar_frame, notes);
+    require(!cameras.empty() && cameras.size() <= 10, "there are cameras");
   });
+  for (const NavigationSource source :
+       {NavigationSource::kAuto, NavigationSource::kOdometry, NavigationSource::kTf}) {
+    ConvertOptions options;
+    options.poses = source;
+    RecordedDrive drive;
+    read_or_refuse([&] { plan_navigation(survey, options, lidar_frame, drive, notes); });
+  }
   return 0;
 }

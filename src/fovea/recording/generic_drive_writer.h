@@ -87,7 +87,9 @@ class GenericDriveWriter {
                            std::string_view bytes, const std::string& extension);
   /// A file beside the recording: of truth/ (docs/simulator.md) or depth/, or tracklet_labels.xml.
   void write_file(const std::filesystem::path& name, std::string_view bytes) const;
-  /// Folder of the truth, for what writes its files itself.
+  /// Where the drive grows, for what writes files itself, of it or for a while.
+  const std::filesystem::path& folder() const { return folder_.partial(); }
+  /// Folder of the truth.
   std::filesystem::path truth_folder() const { return folder_.partial() / "truth"; }
 
   /// Writes drive.toml and the tables, makes everything durable and gives ROOT its name.

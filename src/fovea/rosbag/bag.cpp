@@ -28,7 +28,8 @@ std::string beginning_of(const fs::path& file) {
 
 std::vector<fs::path> listed_files(const fs::path& folder) {
   const fs::path file = folder / "metadata.yaml";
-  if (!fs::exists(file)) {
+  std::error_code unknown;
+  if (!fs::exists(file, unknown)) {
     throw InputError("the folder has no metadata.yaml", folder.string(),
                      "give a bag that 'ros2 bag record' wrote, or its .mcap or .db3 files");
   }
@@ -58,17 +59,22 @@ std::vector<fs::path> listed_files(const fs::path& folder) {
 /// Decompresses messages that were compressed one by one.
 class Unpacker : public BagSink {
  public:
-  Unpacker(BagSink& sink, const fs::path& file) : sink_(sink), file_(file.string()) {}
+  explicit Unpacker(BagSink& sink) : sink_(sink) {}
 
   bool wants(const BagTopic& topic) override { return sink_.wants(topic); }
   bool add(const BagTopic& topic, std::string_view message) override {
     if (!is_zstd(message)) return sink_.add(topic, message);
-    return sink_.add(topic, decompress_zstd(message, kMaxBagBlock, file_ + ", " + topic.name));
+    std::string unpacked;
+    try {
+      unpacked = decompress_zstd(message, kMaxBagBlock, topic.name);
+    } catch (const InputError&) {
+      return sink_.add(topic, message);  // as it is: no message of ROS 2 to whom it reads
+    }
+    return sink_.add(topic, unpacked);
   }
 
  private:
   BagSink& sink_;
-  std::string file_;
 };
 
 /// @param shown  the file that the user knows of
@@ -96,10 +102,10 @@ std::vector<fs::path> bag_files(const fs::path& path) {
   throw InputError("there is no such recording", path.string(), "check the path");
 }
 
-void read_bag_file(const fs::path& file, BagSink& sink) {
-  Unpacker unpacker(sink, file);
+void read_bag_file(const fs::path& file, const fs::path& scratch, BagSink& sink) {
+  Unpacker unpacker(sink);
   if (is_zstd(beginning_of(file))) {
-    const DecompressedFile plain(file);
+    const DecompressedFile plain(file, scratch);
     read_plain(plain.path(), file, unpacker);
   } else {
     read_plain(file, file, unpacker);

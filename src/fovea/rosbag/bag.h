@@ -15,6 +15,8 @@ std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path);
 
 /// Reads such a file, compressed by zstd as a whole (`.db3.zstd`), message by message or not at
 /// all. InputError as read_mcap and read_sqlite_bag.
-void read_bag_file(const std::filesystem::path& file, BagSink& sink);
+/// @param scratch  folder for what a whole file is decompressed to
+void read_bag_file(const std::filesystem::path& file, const std::filesystem::path& scratch,
+                   BagSink& sink);
 
 }  // namespace fovea

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
-#include <set>
+#include <tuple>
 
 #include "fovea/base/errors.h"
 #include "fovea/rosbag/pixels.h"
@@ -22,7 +23,8 @@ struct ImagePath {
   bool compressed = false;
 
   std::string info_topic() const { return parent + "/camera_info"; }
-  bool rectified() const { return kind.find("rect") != std::string::npos; }
+  /// "image_rect", "image_rect_color", "rectified", but not "image_unrectified".
+  bool rectified() const { return ("_" + kind).find("_rect") != std::string::npos; }
 };
 
 ImagePath path_of(std::string topic) {
@@ -82,6 +84,37 @@ Lens lens_of(const ros::CameraInfo& info, const std::string& topic) {
   return Lens(model, coefficients);
 }
 
+/// T_lidar_cam, of the first of the frames that tf knows.
+QuaternionMotion place_of(const BagSurvey& survey, const std::string& lidar_frame,
+                          const std::array<std::string, 2>& frames, const std::string& topic) {
+  for (const std::string& frame : frames) {
+    const auto T = survey.transforms.fixed(lidar_frame, frame);
+    // No camera looks along the LiDAR's z: such a frame was never thought of.
+    if (!T || frame == lidar_frame) continue;
+    if (const auto moving = survey.transforms.moving(lidar_frame, frame)) {
+      throw InputError(
+          fmt::format("frame '{}' moves between '{}' and '{}'", *moving, lidar_frame, frame), topic,
+          "a camera must sit still on the vehicle");
+    }
+    return *T;
+  }
+  throw InputError(fmt::format("tf does not say where frame '{}' is in '{}'",
+                               frames[0].empty() ? frames[1] : frames[0], lidar_frame),
+                   topic, "record /tf_static, too");
+}
+
+/// T_rect_cam, a rotation.
+QuaternionMotion rectification(const ros::CameraInfo& info, const std::string& topic) {
+  const Eigen::Matrix3d R =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.r.data());
+  if (R.isZero(0) || R.isIdentity(0)) return {};
+  constexpr double kTolerance = 1e-3;  // files are rounded
+  if (!is_rotation(R, kTolerance)) {
+    throw InputError("R is no rotation", topic, "calibrate the camera anew");
+  }
+  return {Eigen::Vector3d::Zero(), Eigen::Quaterniond(nearest_rotation(R))};
+}
+
 PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
                           const std::string& name, const std::string& lidar_frame) {
   const ImagePath path = path_of(topic);
@@ -92,53 +125,76 @@ PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
         topic, "record it, too");
   }
   const SensorTopic& images = survey.images.at(topic);
-  const std::string& frame =
-      info->second.header.frame.empty() ? images.frame : info->second.header.frame;
+  if (!images.unread.empty()) {
+    throw InputError(images.unread, topic, "see docs/drives.md for those that are");
+  }
   PlannedCamera planned;
   planned.topic = topic;
   planned.camera.name = name;
   planned.camera.optics = optics_of(info->second, path.rectified(), path.info_topic());
-  const auto T_lidar_cam = survey.transforms.fixed(lidar_frame, frame);
-  if (!T_lidar_cam) {
-    throw InputError(fmt::format("tf does not say where frame '{}' is in '{}'", frame, lidar_frame),
-                     topic, "record /tf_static, too");
-  }
-  if (const auto moving = survey.transforms.moving(lidar_frame, frame)) {
+  if (images.width != 0 &&
+      (images.width != info->second.width || images.height != info->second.height)) {
     throw InputError(
-        fmt::format("frame '{}' moves between '{}' and '{}'", *moving, lidar_frame, frame), topic,
-        "a camera must sit still on the vehicle");
+        fmt::format("images have {} x {} pixels, their CameraInfo {} x {}", images.width,
+                    images.height, info->second.width, info->second.height),
+        topic, "calibrate the camera at the resolution of its images");
   }
-  planned.camera.T_lidar_cam = *T_lidar_cam;
+  planned.camera.T_lidar_cam =
+      place_of(survey, lidar_frame, {info->second.header.frame, images.frame}, topic);
   if (path.rectified()) {
-    const Eigen::Matrix3d R_rect_cam =
-        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info->second.r.data());
-    if (is_rotation(R_rect_cam, 1e-6) && !R_rect_cam.isIdentity(0)) {
-      const Eigen::Quaterniond R_cam_rect(Eigen::Matrix3d(R_rect_cam.transpose()));
-      planned.camera.T_lidar_cam =
-          planned.camera.T_lidar_cam * QuaternionMotion(Eigen::Vector3d::Zero(), R_cam_rect);
-    }
+    planned.camera.T_lidar_cam =
+        planned.camera.T_lidar_cam * rectification(info->second, path.info_topic()).inverse();
   }
   return planned;
 }
 
-/// The topics that may be cameras, the best of each name.
-std::vector<ConvertOptions::CameraTopic> likely_cameras(const BagSurvey& survey) {
-  std::map<std::string, std::string> best;  // topic by name
-  const auto rank = [&](const std::string& topic) {
+/// The topics that may be cameras, by name, the best first.
+std::map<std::string, std::vector<std::string>> likely_cameras(const BagSurvey& survey) {
+  std::map<std::string, std::vector<std::string>> cameras;
+  for (const auto& [topic, images] : survey.images) {
+    if (topic.find("epth") != std::string::npos) continue;  // depth, which looks like grey
+    cameras[camera_name(path_of(topic).parent)].push_back(topic);
+  }
+  const auto rank = [](const std::string& topic) {
     const ImagePath path = path_of(topic);
     return std::tuple(path.rectified(), path.compressed, topic);
   };
-  for (const auto& [topic, images] : survey.images) {
-    const ImagePath path = path_of(topic);
-    const bool colour_or_grey = images.encoding.empty()
-                                    ? path.kind.find("epth") == std::string::npos
-                                    : is_known_encoding(images.encoding);
-    if (images.stamps.empty() || !colour_or_grey) continue;
-    const auto [entry, fresh] = best.try_emplace(camera_name(path.parent), topic);
-    if (!fresh && rank(topic) < rank(entry->second)) entry->second = topic;
+  for (auto& [name, topics] : cameras) {
+    std::sort(topics.begin(), topics.end(),
+              [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
   }
-  std::vector<ConvertOptions::CameraTopic> cameras;
-  for (const auto& [name, topic] : best) cameras.push_back({name, topic});
+  return cameras;
+}
+
+std::vector<PlannedCamera> plan_named(const BagSurvey& survey, const ConvertOptions& options,
+                                      const std::string& lidar_frame) {
+  std::vector<PlannedCamera> cameras;
+  for (const auto& [name, topic] : options.cameras) {
+    if (!survey.images.contains(topic)) {
+      throw InputError("there are no images of this topic that can be read", topic,
+                       "see 'ros2 bag info'");
+    }
+    cameras.push_back(plan_camera(survey, topic, name, lidar_frame));
+  }
+  return cameras;
+}
+
+std::vector<PlannedCamera> plan_all(const BagSurvey& survey, const std::string& lidar_frame,
+                                    std::vector<std::string>& notes) {
+  std::vector<PlannedCamera> cameras;
+  std::optional<InputError> first_problem;
+  for (const auto& [name, topics] : likely_cameras(survey)) {
+    for (const std::string& topic : topics) {
+      try {
+        cameras.push_back(plan_camera(survey, topic, name, lidar_frame));
+        break;
+      } catch (const InputError& error) {
+        if (!first_problem) first_problem = error;
+        notes.push_back(fmt::format("{} is left out: {}", topic, error.problem()));
+      }
+    }
+  }
+  if (cameras.empty() && first_problem) throw *first_problem;
   return cameras;
 }
 
@@ -178,24 +234,10 @@ LensCamera optics_of(const ros::CameraInfo& info, bool rectified, const std::str
 std::vector<PlannedCamera> plan_cameras(const BagSurvey& survey, const ConvertOptions& options,
                                         const std::string& lidar_frame,
                                         std::vector<std::string>& notes) {
-  const bool named = !options.cameras.empty();
-  std::vector<PlannedCamera> cameras;
-  std::optional<InputError> first_problem;
-  for (const auto& [name, topic] : named ? options.cameras : likely_cameras(survey)) {
-    const auto images = survey.images.find(topic);
-    if (images == survey.images.end() || images->second.stamps.empty()) {
-      throw InputError("there are no images of this topic", topic, "see 'ros2 bag info'");
-    }
-    try {
-      cameras.push_back(plan_camera(survey, topic, name, lidar_frame));
-    } catch (const InputError& error) {
-      if (named) throw;
-      if (!first_problem) first_problem = error;
-      notes.push_back(fmt::format("{} is left out: {}", topic, error.problem()));
-    }
-  }
+  std::vector<PlannedCamera> cameras = options.cameras.empty()
+                                           ? plan_all(survey, lidar_frame, notes)
+                                           : plan_named(survey, options, lidar_frame);
   if (cameras.empty()) {
-    if (first_problem) throw *first_problem;
     throw InputError("the recording has no images", "sensor_msgs/msg/Image, CompressedImage",
                      "record a camera, too");
   }

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../../../tests/cdr_writer.h"
 #include "fovea/base/errors.h"
-#include "fovea/rosbag/cdr_writer.h"
 #include "fovea/rosbag/ros_messages.h"
 
 namespace fovea {
@@ -54,7 +54,8 @@ TEST(CdrReader, RefusesWhatEndsEarlyOrIsNoPlainCdr) {
         << size;
   }
   EXPECT_THROW(CdrReader(std::string("\0\3\0\0abcd", 8), "m"), InputError);  // parameter list
-  CdrReader huge(CdrWriter().number(std::uint32_t{0xffffffff}).message(), "m");
+  const std::string endless = CdrWriter().number(std::uint32_t{0xffffffff}).message();
+  CdrReader huge(endless, "m");
   EXPECT_THROW(huge.count(8), InputError);
 }
 

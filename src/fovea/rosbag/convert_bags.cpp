@@ -17,7 +17,7 @@
 namespace fovea {
 namespace {
 
-constexpr std::size_t kMaxNumber = 999'999;  // that files of a drive have
+constexpr std::size_t kMaxNumber = 1'000'000;  // of files: they have six digits
 
 struct ConversionPlan {
   std::string lidar;  // topic
@@ -26,20 +26,7 @@ struct ConversionPlan {
   std::vector<std::string> notes;
 };
 
-std::string lidar_topic(const BagSurvey& survey, const std::string& wanted) {
-  std::vector<std::string> topics;
-  for (const auto& [name, cloud] : survey.clouds) {
-    if (!cloud.stamps.empty()) topics.push_back(name);
-  }
-  if (!wanted.empty()) {
-    if (std::find(topics.begin(), topics.end(), wanted) != topics.end()) return wanted;
-    throw InputError("there are no point clouds of this topic", wanted, "see 'ros2 bag info'");
-  }
-  if (topics.size() == 1) return topics.front();
-  if (topics.size() > 1) {
-    throw InputError(fmt::format("there are {} topics of point clouds", topics.size()),
-                     fmt::format("{}", fmt::join(topics, ", ")), "choose by --lidar TOPIC");
-  }
+[[noreturn]] void throw_no_clouds(const BagSurvey& survey) {
   for (const auto& [name, unusable] : survey.unusable) {
     const auto topic = survey.topics.find(name);
     if (topic == survey.topics.end() || topic->second.type != ros::kPointCloud) continue;
@@ -53,6 +40,48 @@ std::string lidar_topic(const BagSurvey& survey, const std::string& wanted) {
   }
   throw InputError("the recording has no point clouds", std::string(ros::kPointCloud),
                    "record the LiDAR's topic, not its packets");
+}
+
+std::string lidar_topic(const BagSurvey& survey, const std::string& wanted) {
+  if (survey.clouds.empty()) throw_no_clouds(survey);
+  if (!wanted.empty()) {
+    if (survey.clouds.contains(wanted)) return wanted;
+    throw InputError("there are no point clouds of this topic that can be read", wanted,
+                     "see 'ros2 bag info'");
+  }
+  if (survey.clouds.size() == 1) return survey.clouds.begin()->first;
+  std::vector<std::string> topics;
+  for (const auto& [name, cloud] : survey.clouds) topics.push_back(name);
+  throw InputError(fmt::format("there are {} topics of point clouds", topics.size()),
+                   fmt::format("{}", fmt::join(topics, ", ")), "choose by --lidar TOPIC");
+}
+
+/// InputError if the two have no time in common: they were stamped by different clocks.
+void check_clocks(const std::string& lidar, const std::vector<TimeNs>& scans,
+                  const std::string& other, TimeNs first, TimeNs last) {
+  if (first <= scans.back() + kNsPerSecond && last >= scans.front() - kNsPerSecond) return;
+  throw InputError(fmt::format("stamps have no time in common with those of {}", lidar), other,
+                   "have all sensors use one clock");
+}
+
+void check_times(const BagSurvey& survey, const ConversionPlan& plan) {
+  const std::vector<TimeNs>& scans = survey.clouds.at(plan.lidar).stamps;
+  const auto check = [&](const std::string& other, TimeNs first, TimeNs last) {
+    check_clocks(plan.lidar, scans, other, first, last);
+  };
+  for (const PlannedCamera& camera : plan.cameras) {
+    const std::vector<TimeNs>& stamps = survey.images.at(camera.topic).stamps;
+    check(camera.topic, stamps.front(), stamps.back());
+    if (stamps.size() > kMaxNumber) {
+      throw InputError(fmt::format("there are {} images", stamps.size()), camera.topic,
+                       "split the recording: a drive has a million at most");
+    }
+  }
+  const RecordedDrive& drive = plan.drive;
+  if (!drive.poses.empty()) check("the poses", drive.poses.front().time, drive.poses.back().time);
+  if (!drive.positions.empty()) {
+    check("the positions", drive.positions.front().time, drive.positions.back().time);
+  }
 }
 
 ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options) {
@@ -71,6 +100,7 @@ ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& op
     plan.drive.cameras.push_back(planned.camera);
   }
   plan_navigation(survey, options, lidar.frame, plan.drive, plan.notes);
+  check_times(survey, plan);
   return plan;
 }
 
@@ -103,17 +133,12 @@ class Recorder : public BagSink {
       if (topic.type == ros::kPointCloud) {
         write_scan(ros::read_point_cloud(message));
       } else if (topic.type == ros::kImage) {
-        const ros::ImageMessage image = ros::read_image(message);
-        if (const auto number = sensor.take(image.header.stamp)) {
-          writer_.write_image(sensor.name, *number, image.header.stamp,
-                              image_of(image, topic.name));
-          ++sensor.written;
-        }
+        write_plain(ros::read_image(message), sensor);
       } else {
         write_compressed(ros::read_compressed_image(message), sensor);
       }
-    } catch (const InputError& error) {
-      sensor.unusable.add(error.problem());
+    } catch (const InputError&) {
+      // The survey has counted it.
     }
     done_ = std::min(done_ + 1, total_);
     stopped_ = !progress_(int(done_), int(total_));
@@ -137,7 +162,8 @@ class Recorder : public BagSink {
           "{} points are left out: not finite, at the origin, beyond 1 km or 1 s off the stamp",
           dropped_));
     }
-    drive.intensity_max = intensity_ <= 1 ? 1 : intensity_ <= 255 ? 255 : 65535;
+    // One in a thousand may be a mistake.
+    drive.intensity_max = above_255_ * 1000 > points_ ? 65535 : above_1_ * 1000 > points_ ? 255 : 1;
     return figures;
   }
 
@@ -146,21 +172,25 @@ class Recorder : public BagSink {
   struct Numbered {
     Numbered(const std::string& topic_name, const SensorTopic& sensor)
         : topic(topic_name),
+          frame(sensor.frame),
           stamps(sensor.stamps),
           taken(stamps.size()),
           format(sensor.scan_format) {}
 
     std::size_t size() const { return stamps.size(); }
-    /// Empty for a stamp that was there before, or has come since.
-    std::optional<int> take(TimeNs stamp) {
-      const auto found = std::lower_bound(stamps.begin(), stamps.end(), stamp);
+    /// Empty for what the survey has found unusable.
+    std::optional<int> take(const ros::Header& header) {
+      const auto found = std::lower_bound(stamps.begin(), stamps.end(), header.stamp);
       const auto number = std::size_t(found - stamps.begin());
-      if (found == stamps.end() || *found != stamp || taken[number]) return std::nullopt;
+      if (found == stamps.end() || *found != header.stamp || header.frame != frame ||
+          taken[number]) {
+        return std::nullopt;
+      }
       taken[number] = true;
       return int(number);
     }
 
-    std::string topic, name;
+    std::string topic, name, frame;
     std::vector<TimeNs> stamps;
     std::vector<bool> taken;
     ScanFormat format;
@@ -168,32 +198,50 @@ class Recorder : public BagSink {
     UnusableMessages unusable;
   };
 
+  /// Calls `write(number)` for a message that has not been there yet.
+  template <class Write>
+  static void use(Numbered& sensor, const ros::Header& header, Write&& write) {
+    const auto number = sensor.take(header);
+    if (!number) return;
+    try {
+      write(*number);
+      ++sensor.written;
+    } catch (const InputError& error) {
+      sensor.unusable.add(error.problem());
+    }
+  }
+
   void write_scan(const ros::PointCloud2& cloud) {
     const TimeNs stamp = cloud.header.stamp;
-    const auto number = lidar_.take(stamp);
-    if (!number) return;
-    ScanRows rows(lidar_.format, stamp);
-    read_cloud_rows(cloud, lidar_.topic, rows);
-    const LidarScan scan = rows.take(lidar_.topic);
-    dropped_ += scan.dropped;
-    for (const float intensity : scan.points.intensity) {
-      intensity_ = std::max(intensity_, intensity);
-    }
-    writer_.write_scan(*number, stamp, scan.points);
-    ++lidar_.written;
+    use(lidar_, cloud.header, [&](int number) {
+      ScanRows rows(lidar_.format, stamp);
+      read_cloud_rows(cloud, lidar_.topic, rows);
+      const LidarScan scan = rows.take(lidar_.topic);
+      dropped_ += scan.dropped;
+      points_ += scan.points.size();
+      for (const float intensity : scan.points.intensity) {
+        above_1_ += intensity > 1, above_255_ += intensity > 255;
+      }
+      writer_.write_scan(number, stamp, scan.points);
+    });
+  }
+
+  void write_plain(const ros::ImageMessage& image, Numbered& camera) {
+    use(camera, image.header, [&](int number) {
+      writer_.write_image(camera.name, number, image.header.stamp, image_of(image, camera.topic));
+    });
   }
 
   void write_compressed(const ros::CompressedImage& image, Numbered& camera) {
-    const bool png = image.data.starts_with("\x89PNG\r\n\x1a\n");
-    if (!png && !image.data.starts_with("\xff\xd8\xff")) {
-      throw InputError(fmt::format("images of format '{:.40}' are not read", image.format),
-                       camera.topic, "record PNG or JPEG");
-    }
-    const TimeNs stamp = image.header.stamp;
-    const auto number = camera.take(stamp);
-    if (!number) return;
-    writer_.write_encoded_image(camera.name, *number, stamp, image.data, png ? ".png" : ".jpg");
-    ++camera.written;
+    use(camera, image.header, [&](int number) {
+      const bool png = is_png(image.data);
+      if (!png && !is_jpeg(image.data)) {
+        throw InputError(fmt::format("images of format '{:.40}' are not read", image.format),
+                         camera.topic, "record PNG or JPEG");
+      }
+      writer_.write_encoded_image(camera.name, number, image.header.stamp, image.data,
+                                  png ? ".png" : ".jpg");
+    });
   }
 
   static void account_for(const Numbered& sensor, ConvertFigures& figures) {
@@ -213,8 +261,8 @@ class Recorder : public BagSink {
   std::map<std::string, Numbered> cameras_;  // by topic
   GenericDriveWriter& writer_;
   const std::function<bool(int, int)>& progress_;
-  std::size_t done_ = 0, total_ = 0, dropped_ = 0;
-  float intensity_ = 0;
+  std::size_t done_ = 0, total_ = 0;
+  std::size_t points_ = 0, above_1_ = 0, above_255_ = 0, dropped_ = 0;
   bool stopped_ = false;
 };
 
@@ -242,14 +290,21 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
     const auto parts = bag_files(bag);
     files.insert(files.end(), parts.begin(), parts.end());
   }
+  ConvertFigures figures;
   GenericDriveWriter writer(output, force);
-  const BagSurvey survey = survey_bags(files);
+  const std::filesystem::path scratch = writer.folder();
+  bool stopped = false;
+  const BagSurvey survey =
+      survey_bags(files, scratch, [&] { return !(stopped = !progress(0, 0)); });
+  if (stopped) {
+    figures.stopped = true;
+    return figures;
+  }
   ConversionPlan plan = naming(bags, [&] { return plan_conversion(survey, options); });
   Recorder recorder(survey, plan, writer, progress);
   for (const std::filesystem::path& file : files) {
-    if (!recorder.stopped()) read_bag_file(file, recorder);
+    if (!recorder.stopped()) read_bag_file(file, scratch, recorder);
   }
-  ConvertFigures figures;
   if (recorder.stopped()) {
     figures.stopped = true;
     return figures;

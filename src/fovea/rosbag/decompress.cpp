@@ -27,7 +27,7 @@ constexpr std::size_t kBlock = std::size_t{1} << 18;
 
 void check_size(std::size_t size, std::size_t max_size, std::string_view format,
                 const std::string& where) {
-  if (size > max_size) throw_damaged(format, "there are more than the header says", where);
+  if (size > max_size) throw_damaged(format, "they are too many", where);
 }
 
 using ZstdStream = std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)>;
@@ -44,8 +44,8 @@ std::size_t feed_zstd(ZSTD_DStream* stream, std::string_view bytes, std::vector<
                       const std::string& where, Take&& take) {
   ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
   std::size_t left = 1;
-  bool full = false;
-  while (in.pos < in.size || full) {
+  bool full = false;  // more may come out without more going in
+  while (in.pos < in.size || (full && left != 0)) {
     ZSTD_outBuffer out{block.data(), block.size(), 0};
     left = ZSTD_decompressStream(stream, &out, &in);
     if (ZSTD_isError(left) != 0) throw_damaged("zstd", ZSTD_getErrorName(left), where);
@@ -94,10 +94,11 @@ std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const s
   return result;
 }
 
-DecompressedFile::DecompressedFile(const std::filesystem::path& file) {
+DecompressedFile::DecompressedFile(const std::filesystem::path& file,
+                                   const std::filesystem::path& folder) {
   std::ifstream source(file, std::ios::binary);
   if (!source) throw InputError("the file cannot be read", file.string(), "check the path");
-  std::string name = (std::filesystem::temp_directory_path() / "fovea_bag_XXXXXX").string();
+  std::string name = (folder / "decompressed_XXXXXX").string();
   const int fd = mkstemp(name.data());
   if (fd < 0) throw_output_error(name, errno);
   path_ = name;

@@ -19,12 +19,11 @@ bool is_zstd(std::string_view bytes);
 std::string decompress_zstd(std::string_view bytes, std::size_t max_size, const std::string& where);
 std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const std::string& where);
 
-/// What a file compressed by zstd holds, as a file of its own, which is removed with the object.
+/// What a file compressed by zstd holds, as a file in `folder`, which is removed with the object.
 class DecompressedFile {
  public:
-  /// InputError for a file that is damaged or cut short, OutputError where the system's folder for
-  /// temporary files is full.
-  explicit DecompressedFile(const std::filesystem::path& file);
+  /// InputError for a file that is damaged or cut short, OutputError where the disk is full.
+  DecompressedFile(const std::filesystem::path& file, const std::filesystem::path& folder);
   ~DecompressedFile();
   DecompressedFile(const DecompressedFile&) = delete;
   DecompressedFile& operator=(const DecompressedFile&) = delete;

@@ -78,6 +78,11 @@ class McapReader {
   /// The next bytes of the file, valid until the next call.
   std::string_view take(std::uint64_t size) {
     if (size > size_ - at_) throw_cut_short();
+    if (size > kMaxBagBlock) {
+      throw InputError(fmt::format("a record has {} bytes", size),
+                       fmt::format("{}, byte {}", name_, at_),
+                       "restore the recording from a copy, or write it with smaller chunks");
+    }
     buffer_.resize(size);
     stream_.read(buffer_.data(), std::streamsize(size));
     if (std::uint64_t(stream_.gcount()) != size) throw_cut_short();
@@ -138,7 +143,7 @@ class McapReader {
     const bool whole = records.size() == size &&
                        (crc == 0 || libdeflate_crc32(0, records.data(), records.size()) == crc);
     if (!whole) {
-      throw InputError("a chunk is damaged (its checksum differs)", where,
+      throw InputError("a chunk is damaged (its size or checksum differs)", where,
                        "restore the recording from a copy");
     }
     Fields fields(records, where);

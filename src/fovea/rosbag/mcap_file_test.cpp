@@ -5,47 +5,21 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
-#include <bit>
 #include <fstream>
 #include <vector>
 
+#include "../../../tests/mcap_writer.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/rosbag/bag.h"
+#include "fovea/rosbag/decompress.h"
 
 namespace fovea {
 namespace {
 
+using namespace mcap;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-template <class T>
-std::string number(T value) {
-  const auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  return {bytes.data(), bytes.size()};
-}
-std::string text(const std::string& text) { return number(std::uint32_t(text.size())) + text; }
-std::string record(int opcode, const std::string& content) {
-  return number(std::uint8_t(opcode)) + number(std::uint64_t(content.size())) + content;
-}
-std::string channel(int id, const std::string& topic, const std::string& encoding = "cdr") {
-  return record(3, number(std::uint16_t(id)) + text("pkg/msg/Type") + text("ros2msg") + text("")) +
-         record(4, number(std::uint16_t(id)) + number(std::uint16_t(id)) + text(topic) +
-                       text(encoding) + text(""));
-}
-std::string message(int channel_id, const std::string& bytes) {
-  return record(5, number(std::uint16_t(channel_id)) + std::string(20, '\0') + bytes);
-}
-std::string chunk(const std::string& records, const std::string& compression,
-                  const std::string& stored, std::uint32_t crc = 0) {
-  return record(6, std::string(16, '\0') + number(std::uint64_t(records.size())) + number(crc) +
-                       text(compression) + number(std::uint64_t(stored.size())) + stored);
-}
-std::string file_of(const std::string& records) {
-  const std::string magic("\x89MCAP0\r\n", 8);
-  return magic + record(1, text("ros2") + text("test")) + records + record(15, std::string(4, 0)) +
-         record(2, std::string(20, '\0')) + magic;
-}
 
 std::string zstd(const std::string& bytes) {
   std::string packed(ZSTD_compressBound(bytes.size()), '\0');
@@ -80,7 +54,7 @@ class McapFile : public testing::Test {
     std::ofstream(folder_ / "bag.mcap", std::ios::binary) << bytes;
     Listener listener;
     listener.most = most;
-    read_bag_file(folder_ / "bag.mcap", listener);
+    read_bag_file(folder_ / "bag.mcap", folder_ / "", listener);
     return listener.heard;
   }
   std::string error_of(const std::string& bytes) {
@@ -110,6 +84,32 @@ TEST_F(McapFile, ReadsMessagesInChunksOfEveryCompressionAndOutside) {
 
 TEST_F(McapFile, MessagesThatWereCompressedOneByOneAreRead) {
   EXPECT_THAT(read(file_of(channel(1, "/a") + message(1, zstd("one")))), ElementsAre("/a:one"));
+}
+
+TEST_F(McapFile, SizesAtTheBlocksOfDecompressionAreRead) {
+  constexpr std::size_t kBlock = std::size_t{1} << 18;
+  for (const std::size_t size : {std::size_t{0}, kBlock - 1, kBlock, kBlock + 1, 2 * kBlock}) {
+    const std::string bytes(size, 'x');
+    EXPECT_EQ(decompress_zstd(zstd(bytes), size, "t"), bytes) << size;
+    EXPECT_EQ(decompress_lz4(lz4(bytes), size, "t"), bytes) << size;
+    if (size > 0) {
+      EXPECT_THROW(decompress_zstd(zstd(bytes), size - 1, "t"), InputError);
+    }
+    std::ofstream(folder_ / "a.zst", std::ios::binary) << zstd(bytes);
+    const DecompressedFile plain(folder_ / "a.zst", folder_ / "");
+    EXPECT_EQ(std::filesystem::file_size(plain.path()), size);
+  }
+}
+
+TEST_F(McapFile, AWholeFileThatIsCompressedIsRead) {
+  EXPECT_THAT(read(zstd(file_of(kRecords))), ElementsAre("/a:one", "/a:two"));
+  EXPECT_THAT(folder_.names(), ElementsAre("bag.mcap"));
+}
+
+TEST_F(McapFile, ADamagedMessageIsHandedOnAsItIs) {
+  const std::string damaged = zstd("one").substr(0, 8);
+  EXPECT_THAT(read(file_of(channel(1, "/a") + message(1, damaged) + message(1, "two"))),
+              ElementsAre("/a:" + damaged, "/a:two"));
 }
 
 TEST_F(McapFile, OtherRecordsAndEncodingsArePassedOver) {

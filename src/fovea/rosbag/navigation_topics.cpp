@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "fovea/base/errors.h"
 
@@ -43,7 +43,11 @@ class NavigationPlanner {
         notes_(notes) {}
 
   void plan() {
-    switch (options_.poses) {
+    for (const std::string& frame : survey_.transforms.ambiguous()) {
+      notes_.push_back(
+          fmt::format("tf has frame '{}' in several parents: the most frequent counts", frame));
+    }
+    switch (source()) {
       case NavigationSource::kAuto:
         if (!take_positions() && !take_odometry() && !take_transforms()) take_nothing();
         return;
@@ -59,6 +63,24 @@ class NavigationPlanner {
   }
 
  private:
+  /// What the options name says where poses come from.
+  NavigationSource source() const {
+    NavigationSource source = options_.poses;
+    const auto imply = [&](const std::string& name, NavigationSource implied, const char* option) {
+      if (name.empty()) return;
+      if (source != NavigationSource::kAuto && source != implied) {
+        throw ConfigError("poses are to come from elsewhere", fmt::format("{} {}", option, name),
+                          "leave it out, or choose its source by --poses");
+      }
+      source = implied;
+    };
+    imply(options_.fix, NavigationSource::kGnss, "--fix");
+    imply(options_.imu, NavigationSource::kGnss, "--imu");
+    imply(options_.odometry, NavigationSource::kOdometry, "--odometry");
+    imply(options_.world, NavigationSource::kTf, "--world");
+    return source;
+  }
+
   void require(bool found, const char* what) const {
     if (!found) {
       throw InputError(fmt::format("the recording has no {}", what), "--poses",
@@ -76,6 +98,12 @@ class NavigationPlanner {
   void take_nothing() {
     drive_.T_body_lidar = T_body(usual_body(), lidar_frame_, "the LiDAR");
     notes_.emplace_back("no poses: the motion will be that of the scans alone");
+  }
+
+  /// T_a_b; empty if tf does not tell, or they move.
+  std::optional<QuaternionMotion> still(const std::string& a, const std::string& b) const {
+    if (survey_.transforms.moving(a, b)) return std::nullopt;
+    return survey_.transforms.fixed(a, b);
   }
 
   /// T_body_frame. InputError if tf does not tell.
@@ -116,7 +144,7 @@ class NavigationPlanner {
     const std::string body = usual_body();
     drive_.T_body_lidar = T_body(body, lidar_frame_, "the LiDAR");
     const std::string& antenna = survey_.fixes.at(topic).front().header.frame;
-    if (const auto T = survey_.transforms.fixed(body, antenna)) {
+    if (const auto T = still(body, antenna)) {
       drive_.antenna_body = T->translation;
     } else {
       notes_.push_back(fmt::format(
@@ -132,24 +160,29 @@ class NavigationPlanner {
   }
 
   void take_inertia() {
+    if (options_.imu == "none") return;
     const std::string topic = only_topic(survey_.imus, options_.imu, "Imu", "--imu");
     if (topic.empty()) return;
     const std::vector<ros::Imu>& imus = survey_.imus.at(topic);
     const std::string& frame = imus.front().header.frame;
-    const auto T = survey_.transforms.fixed(usual_body(), frame);
+    const auto T = still(usual_body(), frame);
     if (!T) {
       notes_.push_back(fmt::format("{} is not used: tf does not say where '{}' is on '{}'", topic,
                                    frame, usual_body()));
       return;
     }
     drive_.T_body_imu = *T;
+    // What an IMU that knows none leaves in its messages, though it should say so in another way.
+    bool ever_turned = false;
     for (const ros::Imu& imu : imus) {
       if (!imu.orientation) continue;
+      ever_turned |= !imu.orientation->vec().isZero(0);
       drive_.inertia.push_back(
           {imu.header.stamp, imu.orientation, imu.angular_velocity, imu.acceleration});
     }
-    notes_.push_back(fmt::format("orientations: {} of {}, {} of them known", imus.size(), topic,
-                                 drive_.inertia.size()));
+    if (!ever_turned) drive_.inertia.clear();
+    notes_.push_back(fmt::format("orientations: {} of {} messages of {} have one",
+                                 drive_.inertia.size(), imus.size(), topic));
   }
 
   bool take_odometry() {
@@ -161,7 +194,8 @@ class NavigationPlanner {
       drive_.poses.push_back({odometry.header.stamp, odometry.T_header_child});
     }
     const std::string& child = odometries.front().child_frame;
-    drive_.T_body_lidar = T_body(child.empty() ? usual_body() : child, lidar_frame_, "the LiDAR");
+    const bool from_child = options_.body.empty() && !child.empty();
+    drive_.T_body_lidar = T_body(from_child ? child : usual_body(), lidar_frame_, "the LiDAR");
     notes_.push_back(fmt::format("poses: {} of {}", drive_.poses.size(), topic));
     return true;
   }

@@ -17,4 +17,8 @@ bool is_known_encoding(std::string_view encoding);
 /// `where` for another encoding, sides over 8192 and fewer data than the image takes.
 Image image_of(const ros::ImageMessage& message, const std::string& where);
 
+/// What the bytes of a file begin with.
+inline bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
+inline bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
+
 }  // namespace fovea

@@ -30,16 +30,16 @@ ros::CameraInfo some_info(const std::string& frame) {
   return info;
 }
 
-void add_images(BagSurvey& survey, const std::string& topic, const std::string& encoding) {
+void add_images(BagSurvey& survey, const std::string& topic, const std::string& unread = "") {
   SensorTopic& images = survey.images[topic];
   images.frame = "front";
   images.stamps = {1, 2, 3};
-  images.encoding = encoding;
+  images.unread = unread;
 }
 
 BagSurvey one_camera() {
   BagSurvey survey;
-  add_images(survey, "/cams/front/image_raw/compressed", "");
+  add_images(survey, "/cams/front/image_raw/compressed");
   survey.camera_infos["/cams/front/camera_info"] = some_info("front");
   survey.transforms.add("base_link", "lidar", 0, at(1), true);
   survey.transforms.add("lidar", "front", 0, at(0.25), true);
@@ -54,8 +54,8 @@ std::vector<std::string> topics_of(const std::vector<PlannedCamera>& cameras) {
 
 TEST(PlanCameras, TakesWhatHasCalibrationAndPlace) {
   BagSurvey survey = one_camera();
-  add_images(survey, "/cams/rear/image_raw", "bgr8");
-  add_images(survey, "/cams/depth/image_raw", "16UC1");
+  add_images(survey, "/cams/rear/image_raw");
+  add_images(survey, "/cams/depth/image_raw/compressed");
   std::vector<std::string> notes;
   const auto cameras = plan_cameras(survey, {}, "lidar", notes);
   ASSERT_EQ(cameras.size(), 1u);
@@ -70,12 +70,15 @@ TEST(PlanCameras, TakesWhatHasCalibrationAndPlace) {
 TEST(PlanCameras, PrefersRawAndPlainImages) {
   BagSurvey survey = one_camera();
   std::vector<std::string> notes;
-  add_images(survey, "/cams/front/image_rect_color", "bgr8");
+  add_images(survey, "/cams/front/image_rect_color");
   EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
               ElementsAre("/cams/front/image_raw/compressed"));
-  add_images(survey, "/cams/front/image_raw", "bgr8");
+  add_images(survey, "/cams/front/image_raw");
   EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
               ElementsAre("/cams/front/image_raw"));
+  survey.images.at("/cams/front/image_raw").unread = "of another encoding";
+  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+              ElementsAre("/cams/front/image_raw/compressed"));
   ConvertOptions options;
   options.cameras = {{"a", "/cams/front/image_rect_color"}};
   const auto rectified = plan_cameras(survey, options, "lidar", notes);
@@ -86,7 +89,7 @@ TEST(PlanCameras, PrefersRawAndPlainImages) {
 
 TEST(PlanCameras, ARectifiedCameraIsTurnedAsItsRectificationSays) {
   BagSurvey survey = one_camera();
-  add_images(survey, "/cams/front/image_rect", "bgr8");
+  add_images(survey, "/cams/front/image_rect");
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R =
       Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
   std::copy(R.data(), R.data() + 9, survey.camera_infos["/cams/front/camera_info"].r.begin());
@@ -117,6 +120,16 @@ TEST(PlanCameras, SaysWhichCalibrationIsMissing) {
   EXPECT_THAT(error_of([](BagSurvey& s) { s.camera_infos.clear(); }), HasSubstr("CameraInfo"));
   EXPECT_THAT(error_of([](BagSurvey& s) { s.transforms = {}; }), HasSubstr("/tf_static"));
   EXPECT_THAT(error_of([](BagSurvey& s) { s.images.clear(); }), HasSubstr("no images"));
+  EXPECT_THAT(error_of([](BagSurvey& s) { s.images.begin()->second.unread = "odd"; }),
+              HasSubstr("odd"));
+  EXPECT_THAT(error_of([](BagSurvey& s) {
+                s.images.begin()->second.width = 320, s.images.begin()->second.height = 240;
+              }),
+              HasSubstr("320 x 240"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) {
+                info_of(s).header.frame = s.images.begin()->second.frame = "lidar";
+              }),
+              HasSubstr("'lidar'"));
   EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).k = {}; }), HasSubstr("not calibrated"));
   EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).distortion_model = "ftheta"; }),
               HasSubstr("'ftheta'"));
@@ -131,6 +144,14 @@ TEST(PlanCameras, SaysWhichCalibrationIsMissing) {
                 s.transforms.add("lidar", "front", 2, at(1), false);
               }),
               HasSubstr("moves"));
+}
+
+TEST(PlanCameras, AFrameThatTfDoesNotKnowGivesWayToThatOfTheImages) {
+  BagSurvey survey = one_camera();
+  survey.camera_infos["/cams/front/camera_info"].header.frame = "unknown";
+  std::vector<std::string> notes;
+  const auto cameras = plan_cameras(survey, {}, "lidar", notes);
+  EXPECT_EQ(cameras.at(0).camera.T_lidar_cam.translation.x(), 0.25);
 }
 
 TEST(OpticsOf, WithoutDistortionALensIsAPinhole) {
@@ -167,11 +188,11 @@ class PlanNavigation : public testing::Test {
       survey_.fixes[topic].push_back(fix);
     }
   }
-  void add_imu(const std::string& frame) {
+  void add_imu(const std::string& frame, const Eigen::Quaterniond& orientation = {0.8, 0, 0, 0.6}) {
     ros::Imu imu;
     imu.header.frame = frame;
     survey_.imus["/imu"].push_back(imu);
-    imu.orientation = Eigen::Quaterniond::Identity();
+    imu.orientation = orientation;
     survey_.imus["/imu"].push_back(imu);
   }
   void add_odometry(const std::string& topic, const std::string& child) {
@@ -220,6 +241,37 @@ TEST_F(PlanNavigation, PositionsComeFirstWithTheirAccuracyAndOrientations) {
   EXPECT_EQ(drive.T_body_imu.translation.x(), 0.5);
 }
 
+TEST_F(PlanNavigation, AnImuThatNeverTurnsKnowsNoOrientation) {
+  add_fixes("/fix");
+  add_imu("imu", Eigen::Quaterniond::Identity());
+  EXPECT_THAT(plan().inertia, IsEmpty());
+  survey_.imus.clear();
+  add_imu("imu");
+  options_.imu = "none";
+  EXPECT_THAT(plan().inertia, IsEmpty());
+  EXPECT_EQ(plan().positions.size(), 2u);
+}
+
+TEST_F(PlanNavigation, AnAntennaThatMovesIsNone) {
+  add_fixes("/fix");
+  add_course();
+  for (ros::NavSatFix& fix : survey_.fixes["/fix"]) fix.header.frame = "odom";
+  EXPECT_TRUE(plan().antenna_body.isZero(0));
+  EXPECT_THAT(notes_, Contains(HasSubstr("'odom'")));
+}
+
+TEST_F(PlanNavigation, WhatIsNamedIsWherePosesComeFrom) {
+  add_fixes("/fix");
+  add_odometry("/odom", "nobody");
+  options_.odometry = "/odom";
+  EXPECT_THAT(error(), HasSubstr("--body"));
+  options_.body = "imu";
+  EXPECT_EQ(plan().poses.size(), 1u);
+  EXPECT_EQ(plan().T_body_lidar.translation.x(), 0.5);
+  options_.poses = NavigationSource::kGnss;
+  EXPECT_THROW(plan(), ConfigError);
+}
+
 TEST_F(PlanNavigation, WhatTfDoesNotJoinIsTold) {
   add_fixes("/fix");
   add_imu("elsewhere");
@@ -250,6 +302,7 @@ TEST_F(PlanNavigation, AsksWhereSeveralMightBeMeant) {
   EXPECT_THAT(error(), HasSubstr("--odometry"));
   options_.odometry = "/visual";
   EXPECT_EQ(error(), "");
+  options_.odometry = "";
   add_fixes("/a");
   add_fixes("/b");
   EXPECT_THAT(error(), HasSubstr("--fix"));
@@ -267,6 +320,7 @@ TEST_F(PlanNavigation, RefusesWhatTheRecordingDoesNotHave) {
   EXPECT_THAT(error(), HasSubstr("no frame"));
   options_.world = "odom";
   EXPECT_EQ(error(), "");
+  options_.world = "";
   options_.poses = NavigationSource::kOdometry;
   add_odometry("/odom", "nobody");
   EXPECT_THAT(error(), HasSubstr("'nobody'"));

@@ -1,5 +1,6 @@
 #include "fovea/rosbag/point_cloud_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -30,12 +31,14 @@ class Cloud {
  public:
   Cloud(const PointCloud2& cloud, const std::string& where) : cloud_(cloud), where_(where) {
     if (cloud.big_endian) refuse("its numbers are big endian");
+    if (cloud.width == 0 || cloud.height == 0) refuse("it has no points");
+    if (cloud.point_step == 0) refuse("its points have no bytes");
     const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
+    row_step_ = std::max<std::uint64_t>(row, cloud.row_step);  // which some drivers leave at 0
+    // Divided, for the product may be beyond 64 bits.
     const bool fits =
-        cloud.height == 0 ||
-        (row <= cloud.row_step &&
-         std::uint64_t{cloud.row_step} * (cloud.height - 1) + row <= cloud.data.size());
-    if (!fits || cloud.point_step == 0) refuse("it has fewer bytes than its points take");
+        row <= cloud.data.size() && cloud.height - 1 <= (cloud.data.size() - row) / row_step_;
+    if (!fits) refuse("it has fewer bytes than its points take");
   }
 
   std::optional<Column> find(std::string_view name) const {
@@ -52,7 +55,7 @@ class Cloud {
 
   std::size_t size() const { return std::size_t{cloud_.width} * cloud_.height; }
   const char* point(std::size_t number) const {
-    return cloud_.data.data() + number / cloud_.width * cloud_.row_step +
+    return cloud_.data.data() + number / cloud_.width * row_step_ +
            number % cloud_.width * cloud_.point_step;
   }
   static double value(const char* point, const Column& column) {
@@ -67,6 +70,7 @@ class Cloud {
  private:
   const PointCloud2& cloud_;
   const std::string& where_;
+  std::uint64_t row_step_ = 0;  // bytes
 };
 
 std::optional<Column> find_column(const Cloud& cloud, std::string_view name) {
@@ -109,10 +113,13 @@ ScanFormat time_format_of(const PointCloud2& message, const std::string& where) 
   }
   format.time_reference = TimeReference::kNone;
   if (!column) return format;
+  const std::optional<Column> x_column = cloud.find("x");
   double first = std::numeric_limits<double>::infinity(), last = -first;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double time = Cloud::value(cloud.point(i), *column);
-    if (!std::isfinite(time)) continue;
+    // Where nothing came back, times may be anything.
+    const double x = x_column ? Cloud::value(cloud.point(i), *x_column) : 1;
+    if (!std::isfinite(time) || !std::isfinite(x) || x == 0) continue;
     first = std::min(first, time), last = std::max(last, time);
   }
   const double stamp = seconds(message.header.stamp);

@@ -1,8 +1,6 @@
 // The points of a PointCloud2 message.
 #pragma once
 
-#include <optional>
-
 #include "fovea/rosbag/ros_messages.h"
 #include "fovea/sensor/lidar_scan.h"
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
+
 #include "fovea/base/errors.h"
 
 namespace fovea {
@@ -96,6 +99,23 @@ TEST(PointCloudRows, TimesThatMakeNoSenseAreNone) {
   EXPECT_TRUE(scan_of(elsewhere.message).points.time.empty());
 }
 
+TEST(PointCloudRows, PointsThatAreNoneDoNotCountForTheTimes) {
+  TestCloud<double> cloud(kFloat64, "timestamp", 8,
+                          [](int i) { return i == 3 ? 0.0 : seconds(kStamp) + 0.0125 * i; });
+  const float nowhere = std::nanf("");
+  std::memcpy(cloud.data.data() + 3 * cloud.message.point_step + 2, &nowhere, sizeof nowhere);
+  cloud.message.data = cloud.data;
+  const LidarScan scan = scan_of(cloud.message);
+  ASSERT_EQ(scan.points.time.size(), 7u);
+  EXPECT_NEAR(scan.points.time[6], 0.0875, 1e-6);
+}
+
+TEST(PointCloudRows, ARowStepThatWasNeverSetIsThatOfFullRows) {
+  TestCloud<float> cloud(kFloat32, "time", 8, [](int i) { return 0.01f * float(i); });
+  cloud.message.row_step = 0;
+  EXPECT_EQ(scan_of(cloud.message).points.position[5], Eigen::Vector3f(6, 0, 1));
+}
+
 TEST(PointCloudRows, RefusesCloudsThatDoNotFitTheirData) {
   const TestCloud<float> cloud(kFloat32, "time", 8, [](int i) { return 0.01f * float(i); });
   const auto refused = [&](const std::function<void(ros::PointCloud2&)>& change) {
@@ -107,7 +127,8 @@ TEST(PointCloudRows, RefusesCloudsThatDoNotFitTheirData) {
   refused([](auto& c) { c.data.remove_suffix(1); });
   refused([](auto& c) { c.width = 0xffffffff; });
   refused([](auto& c) { c.height = 0xffffffff, c.row_step = 0xffffffff; });
-  refused([](auto& c) { c.height = 0; });  // no points
+  refused([](auto& c) { c.height = 0; });
+  refused([](auto& c) { c.width = 0; });
   refused([](auto& c) { c.point_step = 0; });
   refused([](auto& c) { c.fields[2].offset = c.point_step - 3; });
   refused([](auto& c) { c.fields[2].offset = 0xffffffff; });

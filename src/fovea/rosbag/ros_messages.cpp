@@ -1,5 +1,9 @@
 #include "fovea/rosbag/ros_messages.h"
 
+#include <cmath>
+
+#include "fovea/base/errors.h"
+
 namespace fovea::ros {
 namespace {
 
@@ -18,9 +22,21 @@ Eigen::Quaterniond read_quaternion(CdrReader& message) {
   return {q[3], q[0], q[1], q[2]};
 }
 
+bool is_rotation_of_length_1(const Eigen::Quaterniond& q) {
+  return std::abs(q.norm() - 1) < 0.01;  // NaN is not
+}
+
 QuaternionMotion read_motion(CdrReader& message) {
-  const Eigen::Vector3d translation = read_vector(message);
-  return {translation, read_quaternion(message)};
+  QuaternionMotion T;
+  T.translation = read_vector(message);
+  T.rotation = read_quaternion(message);
+  if (!T.translation.allFinite() || !is_rotation_of_length_1(T.rotation)) {
+    throw InputError("a motion has no finite place, or a quaternion that is not of length 1",
+                     message.where(), "mend the node that publishes it");
+  }
+  constexpr double kRounding = 1e-9;  // numbers that are right stay as they are
+  if (std::abs(T.rotation.norm() - 1) > kRounding) T.rotation.normalize();
+  return T;
 }
 
 }  // namespace
@@ -112,7 +128,7 @@ Imu read_imu(CdrReader& message) {
   imu.header = read_header(message);
   const Eigen::Quaterniond orientation = read_quaternion(message);
   const bool known = message.doubles<9>()[0] != -1;  // what the interface sets where there is none
-  if (known && std::abs(orientation.norm() - 1) < 0.01) imu.orientation = orientation;
+  if (known && is_rotation_of_length_1(orientation)) imu.orientation = orientation;
   imu.angular_velocity = read_vector(message);
   message.doubles<9>();
   imu.acceleration = read_vector(message);

@@ -98,6 +98,7 @@ struct Odometry {
   std::string child_frame;
   QuaternionMotion T_header_child;
 };
+/// InputError, too, for a pose that is none.
 Odometry read_odometry(CdrReader& message);
 
 struct Transform {
@@ -105,6 +106,7 @@ struct Transform {
   std::string child_frame;
   QuaternionMotion T_header_child;
 };
+/// InputError, too, for a motion that is none.
 std::vector<Transform> read_transforms(CdrReader& message);
 
 }  // namespace fovea::ros

@@ -1,16 +1,44 @@
 #include "fovea/rosbag/survey.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "fovea/base/errors.h"
 #include "fovea/rosbag/bag.h"
+#include "fovea/rosbag/pixels.h"
 #include "fovea/rosbag/point_cloud_rows.h"
 
 namespace fovea {
 namespace {
 
+/// Why a compressed image is not read; empty if it is. The format tells, in words of
+/// compressed_image_transport, what was compressed and to what: "bayer_rggb8; png compressed ".
+std::string why_unread(const ros::CompressedImage& image) {
+  const std::string_view format = image.format;
+  if (!is_png(image.data) && !is_jpeg(image.data)) {
+    return fmt::format("compressed images of format '{:.40}' are not read", format);
+  }
+  const std::size_t end = format.find(';');
+  if (end == std::string_view::npos) return "";
+  const std::string_view source = format.substr(0, end);
+  if (!is_known_encoding(source)) {
+    return fmt::format("images of encoding '{:.40}' are not read", source);
+  }
+  constexpr std::string_view kCompressed = "compressed ";
+  const std::size_t at = format.find(kCompressed, end);
+  const std::string_view stored =
+      at == std::string_view::npos ? "" : format.substr(at + kCompressed.size());
+  if (source.starts_with("bayer") && (stored.empty() || stored.starts_with("bayer"))) {
+    return "compressed images of one colour a pixel (Bayer) are not read";
+  }
+  return "";
+}
+
 class Surveyor : public BagSink {
  public:
+  explicit Surveyor(const std::function<bool()>& go_on) : go_on_(go_on) {}
+
   bool wants(const BagTopic& topic) override {
     survey_.topics.insert_or_assign(topic.name, topic);
     return readers().contains(topic.type);
@@ -23,14 +51,17 @@ class Surveyor : public BagSink {
     } catch (const InputError& error) {
       survey_.unusable[topic.name].add(error.problem());
     }
-    return true;
+    stopped_ = !go_on_();
+    return !stopped_;
   }
+  bool stopped() const { return stopped_; }
 
   BagSurvey finish() {
     sort(survey_.fixes);
     sort(survey_.imus);
     sort(survey_.odometries);
     for (auto* topics : {&survey_.clouds, &survey_.images}) {
+      std::erase_if(*topics, [](const auto& topic) { return topic.second.stamps.empty(); });
       for (auto& [name, topic] : *topics) keep_each_once(name, topic.stamps);
     }
     return std::move(survey_);
@@ -53,43 +84,61 @@ class Surveyor : public BagSink {
   }
 
   /// @return whether the message is the topic's first
-  bool add_stamp(const std::string& name, const ros::Header& header, SensorTopic& topic) {
-    if (header.stamp <= 0) {
-      survey_.unusable[name].add("a message has no stamp");
-      return false;
+  static bool add_stamp(const ros::Header& header, SensorTopic& topic) {
+    check_stamp(header);
+    const bool first = topic.stamps.empty();
+    if (first) topic.frame = header.frame;
+    if (header.frame != topic.frame) {
+      throw InputError(fmt::format("its frame is '{}', not '{}'", header.frame, topic.frame), "",
+                       "");
     }
     topic.stamps.push_back(header.stamp);
-    if (topic.stamps.size() > 1) return false;
-    topic.frame = header.frame;
-    return true;
+    return first;
+  }
+  static void check_stamp(const ros::Header& header) {
+    if (header.stamp <= 0) throw InputError("it has no stamp", "", "");
   }
 
   void add_cloud(const std::string& name, CdrReader& message) {
     const ros::PointCloud2 cloud = ros::read_point_cloud(message);
+    const ScanFormat times = time_format_of(cloud, name);
     SensorTopic& topic = survey_.clouds[name];
-    if (add_stamp(name, cloud.header, topic)) topic.scan_format = time_format_of(cloud, name);
+    const bool first = add_stamp(cloud.header, topic);
+    if (first || topic.scan_format.time_reference == TimeReference::kNone)
+      topic.scan_format = times;
   }
   void add_image(const std::string& name, CdrReader& message) {
     const ros::ImageMessage image = ros::read_image(message);
     SensorTopic& topic = survey_.images[name];
-    if (add_stamp(name, image.header, topic)) topic.encoding = image.encoding;
-  }
-  void add_compressed(const std::string& name, CdrReader& message) {
-    add_stamp(name, ros::read_header(message), survey_.images[name]);
-  }
-  void add_camera_info(const std::string& name, CdrReader& message) {
-    if (!survey_.camera_infos.contains(name)) {
-      survey_.camera_infos.emplace(name, ros::read_camera_info(message));
+    if (!add_stamp(image.header, topic)) return;
+    topic.width = image.width, topic.height = image.height;
+    if (!is_known_encoding(image.encoding)) {
+      topic.unread = fmt::format("images of encoding '{:.40}' are not read", image.encoding);
     }
   }
+  void add_compressed(const std::string& name, CdrReader& message) {
+    const ros::CompressedImage image = ros::read_compressed_image(message);
+    SensorTopic& topic = survey_.images[name];
+    if (add_stamp(image.header, topic)) topic.unread = why_unread(image);
+  }
+  void add_camera_info(const std::string& name, CdrReader& message) {
+    ros::CameraInfo info = ros::read_camera_info(message);
+    const auto [known, fresh] = survey_.camera_infos.try_emplace(name, info);
+    if (!fresh && known->second.k[0] == 0) known->second = std::move(info);
+  }
   void add_fix(const std::string& name, CdrReader& message) {
-    survey_.fixes[name].push_back(ros::read_nav_sat_fix(message));
+    keep(ros::read_nav_sat_fix(message), survey_.fixes[name]);
   }
   void add_imu(const std::string& name, CdrReader& message) {
-    survey_.imus[name].push_back(ros::read_imu(message));
+    keep(ros::read_imu(message), survey_.imus[name]);
   }
   void add_odometry(const std::string& name, CdrReader& message) {
-    survey_.odometries[name].push_back(ros::read_odometry(message));
+    keep(ros::read_odometry(message), survey_.odometries[name]);
+  }
+  template <class Message>
+  static void keep(Message message, std::vector<Message>& messages) {
+    check_stamp(message.header);
+    messages.push_back(std::move(message));
   }
   void add_transforms(const std::string& name, CdrReader& message) {
     const bool fixed = name.ends_with("tf_static");
@@ -99,8 +148,10 @@ class Surveyor : public BagSink {
     }
   }
 
+  /// In order of stamps, without the topics of which nothing could be read.
   template <class Message>
   static void sort(std::map<std::string, std::vector<Message>>& topics) {
+    std::erase_if(topics, [](const auto& topic) { return topic.second.empty(); });
     for (auto& [name, messages] : topics) {
       std::stable_sort(messages.begin(), messages.end(), [](const Message& a, const Message& b) {
         return a.header.stamp < b.header.stamp;
@@ -117,14 +168,19 @@ class Surveyor : public BagSink {
     stamps.erase(end, stamps.end());
   }
 
+  const std::function<bool()>& go_on_;
   BagSurvey survey_;
+  bool stopped_ = false;
 };
 
 }  // namespace
 
-BagSurvey survey_bags(const std::vector<std::filesystem::path>& files) {
-  Surveyor surveyor;
-  for (const std::filesystem::path& file : files) read_bag_file(file, surveyor);
+BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
+                      const std::filesystem::path& scratch, const std::function<bool()>& go_on) {
+  Surveyor surveyor(go_on);
+  for (const std::filesystem::path& file : files) {
+    if (!surveyor.stopped()) read_bag_file(file, scratch, surveyor);
+  }
   return surveyor.finish();
 }
 

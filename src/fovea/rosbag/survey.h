@@ -1,7 +1,9 @@
 // What one pass over recordings finds: everything but the scans and images themselves.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,17 +27,18 @@ struct UnusableMessages {
 
 /// A topic of scans or images.
 struct SensorTopic {
-  std::string frame;           ///< of its first message
+  std::string frame;           ///< of its first message; those of other frames are unusable
   std::vector<TimeNs> stamps;  ///< ascending, each once
-  std::string encoding;        ///< of its first image, if it has plain ones
-  ScanFormat scan_format;      ///< of its first scan
+  ScanFormat scan_format;      ///< how points' times are read, by the first scan that has any
+  std::string unread;          ///< why images like the first are not read; empty if they are
+  std::uint32_t width = 0, height = 0;  ///< of the first image; 0 of compressed ones
 };
 
 /// By topics' names. In order of stamps, as far as the messages have any.
 struct BagSurvey {
   std::map<std::string, BagTopic> topics;  ///< all
   std::map<std::string, SensorTopic> clouds, images;
-  std::map<std::string, ros::CameraInfo> camera_infos;  ///< the first of each
+  std::map<std::string, ros::CameraInfo> camera_infos;  ///< the first of each that has a K
   std::map<std::string, std::vector<ros::NavSatFix>> fixes;
   std::map<std::string, std::vector<ros::Imu>> imus;
   std::map<std::string, std::vector<ros::Odometry>> odometries;
@@ -43,9 +46,12 @@ struct BagSurvey {
   std::map<std::string, UnusableMessages> unusable;
 };
 
-/// Reads recordings that belong together. A message that cannot be read, or a scan or image without
-/// a stamp or with that of another, is counted as unusable. InputError as read_bag_file.
-/// @param files  as bag_files() gives them
-BagSurvey survey_bags(const std::vector<std::filesystem::path>& files);
+/// Reads recordings that belong together. A message that cannot be read or has no stamp, and a scan
+/// or image with the stamp of another, is counted as unusable. InputError as read_bag_file.
+/// @param files    as bag_files() gives them
+/// @param scratch  as for read_bag_file
+/// @param go_on    asked at each message; false ends it, and what was found is not all
+BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
+                      const std::filesystem::path& scratch, const std::function<bool()>& go_on);
 
 }  // namespace fovea

@@ -24,22 +24,27 @@ QuaternionMotion TransformTree::Link::at(TimeNs time) const {
 
 void TransformTree::add(const std::string& parent, const std::string& child, TimeNs time,
                         const QuaternionMotion& T_parent_child, bool fixed) {
-  Link& link = links_[child];
-  if (link.parent != parent || link.fixed != fixed) link = {parent, {}, fixed};
-  link.T_parent_child.insert_or_assign(fixed ? 0 : time, T_parent_child);
+  links_[child][parent].T_parent_child.insert_or_assign(fixed ? 0 : time, T_parent_child);
 }
 
-bool TransformTree::contains(const std::string& frame) const {
-  return links_.contains(frame) || std::any_of(links_.begin(), links_.end(), [&](const auto& link) {
-           return link.second.parent == frame;
-         });
+const TransformTree::Links::value_type& TransformTree::best(const Links& links) {
+  return *std::max_element(links.begin(), links.end(), [](const auto& a, const auto& b) {
+    return a.second.T_parent_child.size() < b.second.T_parent_child.size();
+  });
+}
+
+std::vector<std::string> TransformTree::ambiguous() const {
+  std::vector<std::string> names;
+  for (const auto& [name, links] : links_) {
+    if (links.size() > 1) names.push_back(name);
+  }
+  return names;
 }
 
 std::vector<std::string> TransformTree::ancestors(const std::string& frame) const {
   std::vector<std::string> frames{frame};
-  for (auto link = links_.find(frame); link != links_.end();
-       link = links_.find(link->second.parent)) {
-    const std::string& parent = link->second.parent;
+  for (auto at = links_.find(frame); at != links_.end(); at = links_.find(frames.back())) {
+    const std::string& parent = best(at->second).first;
     if (std::find(frames.begin(), frames.end(), parent) != frames.end()) break;  // a ring
     frames.push_back(parent);
   }
@@ -65,9 +70,9 @@ std::optional<QuaternionMotion> TransformTree::fixed(const std::string& a,
   // By the links' own numbers where one of them is all there is: none is multiplied by identity.
   std::optional<QuaternionMotion> T;
   const auto append = [&](const QuaternionMotion& next) { T = T ? *T * next : next; };
-  for (const std::string& frame : found->from_a) append(links_.at(frame).any().inverse());
+  for (const std::string& frame : found->from_a) append(link(frame).any().inverse());
   for (auto frame = found->from_b.rbegin(); frame != found->from_b.rend(); ++frame) {
-    append(links_.at(*frame).any());
+    append(link(*frame).any());
   }
   return T.value_or(QuaternionMotion());
 }
@@ -77,7 +82,7 @@ std::optional<std::string> TransformTree::moving(const std::string& a, const std
   if (!found) return std::nullopt;
   for (const auto& frames : {found->from_a, found->from_b}) {
     for (const std::string& frame : frames) {
-      if (links_.at(frame).moves()) return frame;
+      if (link(frame).moves()) return frame;
     }
   }
   return std::nullopt;
@@ -87,7 +92,7 @@ std::optional<std::string> TransformTree::world_of(const std::string& frame) con
   const std::vector<std::string> frames = ancestors(frame);
   for (std::size_t i = frames.size() - 1; i > 0; --i) {
     // What only fixed links join to the rest is as good a world as its child, and further away.
-    if (links_.at(frames[i - 1]).moves()) return frames[i];
+    if (link(frames[i - 1]).moves()) return frames[i];
   }
   return std::nullopt;
 }
@@ -98,15 +103,14 @@ std::vector<TransformTree::TimedMotion> TransformTree::course(const std::string&
   const auto world = std::find(frames.begin(), frames.end(), a);
   if (world == frames.end()) return {};
   frames.erase(world, frames.end());
-  const auto nearest = std::find_if(frames.begin(), frames.end(), [&](const std::string& frame) {
-    return links_.at(frame).moves();
-  });
+  const auto nearest = std::find_if(frames.begin(), frames.end(),
+                                    [&](const std::string& frame) { return link(frame).moves(); });
   std::vector<TimedMotion> motions;
   if (nearest == frames.end()) return motions;
-  for (const auto& [time, unused] : links_.at(*nearest).T_parent_child) {
-    QuaternionMotion T = links_.at(frames.front()).at(time);
+  for (const auto& [time, unused] : link(*nearest).T_parent_child) {
+    QuaternionMotion T = link(frames.front()).at(time);
     for (auto frame = frames.begin() + 1; frame != frames.end(); ++frame) {
-      T = links_.at(*frame).at(time) * T;
+      T = link(*frame).at(time) * T;
     }
     motions.push_back({time, T});
   }

@@ -13,12 +13,14 @@ namespace fovea {
 
 class TransformTree {
  public:
-  /// Takes note of where a frame was in its parent; the last parent told of counts.
+  /// Takes note of where a frame was in its parent. Of several parents the one told of most often
+  /// counts.
   /// @param fixed  whether it is there always (/tf_static)
   void add(const std::string& parent, const std::string& child, TimeNs time,
            const QuaternionMotion& T_parent_child, bool fixed);
 
-  bool contains(const std::string& frame) const;
+  /// Frames of several parents.
+  std::vector<std::string> ambiguous() const;
 
   /// T_a_b of frames that are fixed to each other; of others at any one time that is known. Empty
   /// if the tree does not join them.
@@ -42,9 +44,7 @@ class TransformTree {
 
  private:
   struct Link {
-    std::string parent;
-    std::map<TimeNs, QuaternionMotion> T_parent_child;  // a fixed one: at time 0 alone
-    bool fixed = false;
+    std::map<TimeNs, QuaternionMotion> T_parent_child;  // what is fixed: at time 0
 
     bool moves() const;
     const QuaternionMotion& any() const { return T_parent_child.begin()->second; }
@@ -59,7 +59,13 @@ class TransformTree {
   };
   std::optional<Way> way(const std::string& a, const std::string& b) const;
 
-  std::map<std::string, Link> links_;  // by child
+  using Links = std::map<std::string, Link>;  // by parent
+
+  static const Links::value_type& best(const Links& links);
+  /// The link of a frame that has a parent.
+  const Link& link(const std::string& frame) const { return best(links_.at(frame)).second; }
+
+  std::map<std::string, Links> links_;  // by child
 };
 
 }  // namespace fovea

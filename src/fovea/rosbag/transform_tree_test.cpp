@@ -34,8 +34,6 @@ TEST(TransformTree, ChainsWhatIsFixedAndKeepsANumberThatStandsAlone) {
       tree.fixed("camera", "mast")->matrix().isApprox(some_motion(3).matrix().inverse(), 1e-12));
   EXPECT_FALSE(tree.fixed("lidar", "nowhere"));
   EXPECT_FALSE(tree.fixed("nowhere", "lidar"));
-  EXPECT_TRUE(tree.contains("base_link"));
-  EXPECT_FALSE(tree.contains("nowhere"));
 }
 
 TEST(TransformTree, TellsWhatMoves) {
@@ -78,6 +76,18 @@ TEST(TransformTree, AWorldThatIsCorrectedNowAndThenIsInterpolated) {
                                  some_motion(double(i)).matrix() * some_motion(1).matrix();
     EXPECT_TRUE(course[i].T_a_b.matrix().isApprox(expected, 1e-12)) << i;
   }
+}
+
+TEST(TransformTree, OfSeveralParentsTheMostFrequentCounts) {
+  TransformTree tree = vehicle();
+  EXPECT_TRUE(tree.ambiguous().empty());
+  for (int i = 0; i < 5; ++i) {
+    tree.add("odom", "base_link", 10 * i, some_motion(i), false);
+    if (i % 2 == 0) tree.add("wheels", "base_link", 10 * i, some_motion(-i), false);
+  }
+  EXPECT_EQ(tree.ambiguous(), std::vector<std::string>{"base_link"});
+  EXPECT_EQ(tree.course("odom", "base_link").size(), 5u);
+  EXPECT_EQ(tree.world_of("base_link"), "odom");
 }
 
 TEST(TransformTree, ARingOfFramesEnds) {

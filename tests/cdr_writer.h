@@ -1,7 +1,8 @@
-// Writes CDR messages, for tests.
+// Writes CDR messages.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <string>
