@@ -194,7 +194,7 @@ std::vector<PlannedCamera> plan_all(const BagSurvey& survey, const std::string& 
       }
     }
   }
-  if (cameras.empty() && first_problem) throw *first_problem;
+  if (cameras.empty() && first_problem) throw InputError(*first_problem);
   return cameras;
 }
 

@@ -23,6 +23,7 @@ std::string only_topic(const std::map<std::string, Messages>& topics, const std:
   }
   if (topics.size() > 1) {
     std::vector<std::string> names;
+    names.reserve(topics.size());
     for (const auto& [name, unused] : topics) names.push_back(name);
     throw InputError(fmt::format("there are {} topics of {}", topics.size(), kind),
                      fmt::format("{}", fmt::join(names, ", ")),
