@@ -11,7 +11,7 @@ namespace fovea {
 void read_cloud_rows(const ros::PointCloud2& message, const std::string& where, CloudRows& rows);
 
 /// How the points' times are to be read. Drivers agree neither on the unit nor on what they count
-/// from; what the times of a scan are near and how far apart they are tells both: a sweep takes 10
+/// from; what the times of a scan are near and how far apart they are tells both: a sweep takes 5
 /// ms to 1 s. TimeReference::kNone if the cloud has no times, or none that make sense.
 ScanFormat time_format_of(const ros::PointCloud2& message, const std::string& where);
 
