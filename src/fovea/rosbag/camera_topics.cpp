@@ -25,6 +25,11 @@ struct ImagePath {
   std::string info_topic() const { return parent + "/camera_info"; }
   /// "image_rect", "image_rect_color", "rectified", but not "image_unrectified".
   bool rectified() const { return ("_" + kind).find("_rect") != std::string::npos; }
+  /// Compressed depth may call itself PNG and nothing else: "/camera/depth/image_raw/compressed".
+  bool may_be_depth() const {
+    const std::string last = parent.substr(parent.rfind('/') + 1) + kind;
+    return compressed && last.find("epth") != std::string::npos;
+  }
 };
 
 ImagePath path_of(std::string topic) {
@@ -152,8 +157,8 @@ PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
 std::map<std::string, std::vector<std::string>> likely_cameras(const BagSurvey& survey) {
   std::map<std::string, std::vector<std::string>> cameras;
   for (const auto& [topic, images] : survey.images) {
-    if (topic.find("epth") != std::string::npos) continue;  // depth, which looks like grey
-    cameras[camera_name(path_of(topic).parent)].push_back(topic);
+    const ImagePath path = path_of(topic);
+    if (!path.may_be_depth()) cameras[camera_name(path.parent)].push_back(topic);
   }
   const auto rank = [](const std::string& topic) {
     const ImagePath path = path_of(topic);

@@ -1,0 +1,98 @@
+#include "fovea/rosbag/conversion_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "fovea/base/errors.h"
+#include "fovea/rosbag/navigation_topics.h"
+
+namespace fovea {
+namespace {
+
+[[noreturn]] void throw_no_clouds(const BagSurvey& survey) {
+  for (const auto& [name, unusable] : survey.unusable) {
+    const auto topic = survey.topics.find(name);
+    if (topic == survey.topics.end() || topic->second.type != ros::kPointCloud) continue;
+    throw InputError(fmt::format("no point cloud can be used ({})", unusable.first_problem), name,
+                     "restore it from a copy, or see docs/drives.md for what is read");
+  }
+  for (const auto& [name, topic] : survey.topics) {
+    if (topic.encoding == kCdrEncoding) continue;
+    throw InputError(fmt::format("messages are of encoding '{:.40}'", topic.encoding), name,
+                     "give a recording of ROS 2 (encoding 'cdr')");
+  }
+  throw InputError("the recording has no point clouds", std::string(ros::kPointCloud),
+                   "record the LiDAR's topic, not its packets");
+}
+
+std::string lidar_topic(const BagSurvey& survey, const std::string& wanted) {
+  if (survey.clouds.empty()) throw_no_clouds(survey);
+  if (!wanted.empty()) {
+    if (survey.clouds.contains(wanted)) return wanted;
+    throw InputError("there are no point clouds of this topic that can be read", wanted,
+                     "see 'ros2 bag info'");
+  }
+  if (survey.clouds.size() == 1) return survey.clouds.begin()->first;
+  std::vector<std::string> topics;
+  for (const auto& [name, cloud] : survey.clouds) topics.push_back(name);
+  throw InputError(fmt::format("there are {} topics of point clouds", topics.size()),
+                   fmt::format("{}", fmt::join(topics, ", ")), "choose by --lidar TOPIC");
+}
+
+/// InputError if the two have no time in common: they were stamped by different clocks.
+void check_clocks(const std::string& lidar, const std::vector<TimeNs>& scans,
+                  const std::string& other, TimeNs first, TimeNs last) {
+  if (first <= scans.back() + kNsPerSecond && last >= scans.front() - kNsPerSecond) return;
+  throw InputError(fmt::format("stamps have no time in common with those of {}", lidar), other,
+                   "have all sensors use one clock");
+}
+
+/// InputError if there are more than a drive's files have numbers.
+void check_count(const SensorTopic& sensor, const std::string& topic) {
+  constexpr std::size_t kMostFiles = 1'000'000;  // of six digits
+  if (sensor.stamps.size() <= kMostFiles) return;
+  throw InputError(fmt::format("there are {} messages", sensor.stamps.size()), topic,
+                   "split the recording: a drive has a million at most");
+}
+
+void check_sensors(const BagSurvey& survey, const ConversionPlan& plan) {
+  check_count(survey.clouds.at(plan.lidar), plan.lidar);
+  const std::vector<TimeNs>& scans = survey.clouds.at(plan.lidar).stamps;
+  const auto check = [&](const std::string& other, TimeNs first, TimeNs last) {
+    check_clocks(plan.lidar, scans, other, first, last);
+  };
+  for (const PlannedCamera& camera : plan.cameras) {
+    const std::vector<TimeNs>& stamps = survey.images.at(camera.topic).stamps;
+    check(camera.topic, stamps.front(), stamps.back());
+    check_count(survey.images.at(camera.topic), camera.topic);
+  }
+  const RecordedDrive& drive = plan.drive;
+  if (!drive.poses.empty()) check("the poses", drive.poses.front().time, drive.poses.back().time);
+  if (!drive.positions.empty()) {
+    check("the positions", drive.positions.front().time, drive.positions.back().time);
+  }
+}
+
+}  // namespace
+
+ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options) {
+  ConversionPlan plan;
+  plan.lidar = lidar_topic(survey, options.lidar);
+  const SensorTopic& lidar = survey.clouds.at(plan.lidar);
+  plan.drive.sweep_compensated = options.sweep_compensated;
+  plan.notes.push_back(
+      fmt::format("scans: {} of {}, {}", lidar.stamps.size(), plan.lidar,
+                  lidar.scan_format.time_unit ? "points have times" : "points have no times"));
+  plan.cameras = plan_cameras(survey, options, lidar.frame, plan.notes);
+  for (const PlannedCamera& planned : plan.cameras) {
+    plan.notes.push_back(fmt::format("camera {}: '{}', {} images of {}", planned.camera.index,
+                                     planned.camera.name,
+                                     survey.images.at(planned.topic).stamps.size(), planned.topic));
+    plan.drive.cameras.push_back(planned.camera);
+  }
+  plan_navigation(survey, options, lidar.frame, plan.drive, plan.notes);
+  check_sensors(survey, plan);
+  return plan;
+}
+
+}  // namespace fovea

@@ -1,0 +1,26 @@
+// What of a recording becomes what of a drive.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/recording/generic_drive_writer.h"
+#include "fovea/rosbag/camera_topics.h"
+#include "fovea/rosbag/convert_options.h"
+#include "fovea/rosbag/survey.h"
+
+namespace fovea {
+
+struct ConversionPlan {
+  std::string lidar;  ///< topic of the scans
+  std::vector<PlannedCamera> cameras;
+  RecordedDrive drive;
+  std::vector<std::string> notes;  ///< what was chosen, what is left out and why
+};
+
+/// InputError for a recording that is no drive: without scans or cameras, without their calibration
+/// or place, of sensors that different clocks have stamped, or of what may be meant in several
+/// ways.
+ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options);
+
+}  // namespace fovea

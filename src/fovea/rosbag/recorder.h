@@ -1,0 +1,66 @@
+// The second pass over recordings: their scans and images become files.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fovea/recording/generic_drive_writer.h"
+#include "fovea/rosbag/conversion_plan.h"
+#include "fovea/rosbag/convert_bags.h"
+
+namespace fovea {
+
+/// Writes scans and images as they come, numbered by their stamps.
+class Recorder : public BagSink {
+ public:
+  /// @param progress  called with messages done and in all; false ends it
+  Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
+           const std::function<bool(int, int)>& progress);
+
+  bool wants(const BagTopic& topic) override;
+  bool add(const BagTopic& topic, std::string_view bytes) override;
+
+  bool stopped() const { return stopped_; }
+
+  /// Accounts for all, and tells the drive the scale of the scans' intensities. InputError if
+  /// nothing could be used of a sensor.
+  void finish(RecordedDrive& drive, ConvertFigures& figures) const;
+
+ private:
+  /// A sensor's messages.
+  struct Numbered {
+    Numbered(const std::string& topic_name, const SensorTopic& sensor);
+
+    /// Number of a message; empty for what the survey has found unusable.
+    std::optional<int> take(const ros::Header& header);
+
+    std::string topic, name, frame;
+    std::vector<TimeNs> stamps;
+    std::vector<bool> taken;
+    ScanFormat format;
+    std::size_t written = 0;
+    UnusableMessages unusable;
+  };
+
+  template <class Write>
+  static void use(Numbered& sensor, const ros::Header& header, Write&& write);
+  void write_scan(const ros::PointCloud2& cloud);
+  void write_plain(const ros::ImageMessage& image, Numbered& camera);
+  void write_compressed(const ros::CompressedImage& image, Numbered& camera);
+  static void account_for(const Numbered& sensor, ConvertFigures& figures);
+
+  Numbered lidar_;
+  std::map<std::string, Numbered> cameras_;  // by topic
+  GenericDriveWriter& writer_;
+  const std::function<bool(int, int)>& progress_;
+  std::size_t done_ = 0, total_ = 0;
+  std::size_t points_ = 0, above_1_ = 0, above_255_ = 0, dropped_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace fovea
