@@ -48,6 +48,16 @@ async function withPage(url, use, options) {
   }
 }
 
+/// A page of a folder that Fovea wrote; a server left open would keep the tests from ending.
+async function withFolder(output, use) {
+  const web = await serveFolder(output);
+  try {
+    await withPage(web.url, use);
+  } finally {
+    web.stop();
+  }
+}
+
 test('points are drawn', () => withPage(server.url, async (map) => {
   const picture = await map.picture();
   const background = (r, g, b) => r > 205 && g > 205 && b > 205;
@@ -196,22 +206,19 @@ test('a folder that any web server shows', async () => {
   const output = join(folder, 'site');
   execFileSync(program, ['export', join(folder, 'map.fovea'), output, '--format', '3dtiles', '--viewer',
     '--quiet']);
-  const web = await serveFolder(output);
-  await withPage(web.url, async (map) => {
+  await withFolder(output, async (map) => {
     const state = await map.settles();
-    assert.ok(state.pointsDrawn > 10_000);
+    assert.ok(state.pointsDrawn > 10_000, `${state.pointsDrawn} points`);
     await map.mode('Range').click();
     await map.comesTo('another mode', (now) => now.mode === 'range');
   });
-  web.stop();
 });
 
 test('a mesh', async () => {
   const output = join(folder, 'mesh');
   execFileSync(program, ['export', join(folder, 'map.fovea'), output, '--format', 'mesh', '--viewer',
     '--voxel', '0.1', '--quiet']);
-  const web = await serveFolder(output);
-  await withPage(web.url, async (map) => {
+  await withFolder(output, async (map) => {
     const state = await map.settles();
     assert.equal(state.pointsDrawn, 0);
     assert.ok(state.trianglesDrawn > 5000, `${state.trianglesDrawn} triangles`);
@@ -232,5 +239,4 @@ test('a mesh', async () => {
     const { measured } = await map.comesTo('a length', (now) => now.measured.length === 1);
     assert.ok(Math.abs(measured[0] - 4) < 0.3, `${measured[0]} m`);
   });
-  web.stop();
 });

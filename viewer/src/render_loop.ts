@@ -13,6 +13,11 @@ export class RenderLoop {
     if (this.requested === 0) this.requested = requestAnimationFrame((now) => this.frame(now));
   }
 
+  /** Whether no frame is to come. */
+  get idle(): boolean {
+    return this.requested <= 0;
+  }
+
   stop(): void {
     cancelAnimationFrame(this.requested);
     this.requested = -1;

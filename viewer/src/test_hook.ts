@@ -24,6 +24,8 @@ export interface PageState {
   readonly mode: string;
   readonly frame: number | null;
   readonly tilesLoading: number;
+  /** Whether the picture stays as it is until somebody does something. */
+  readonly atRest: boolean;
   readonly live: {
     readonly connected: boolean;
     readonly frames: number;

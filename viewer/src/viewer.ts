@@ -166,6 +166,7 @@ export class Viewer {
       mode: this.settings.get().mode,
       frame: this.frame?.index ?? null,
       tilesLoading: this.tiles?.loading ?? 0,
+      atRest: this.loop.idle && this.restTimer === 0 && (this.tiles?.loading ?? 0) === 0,
       live: live && {
         connected: live.connected, frames: live.frames, lastLatencyMs: live.lastLatencyMs,
         reconnects: live.reconnects, warnings: live.warnings,
@@ -665,14 +666,20 @@ export class Viewer {
 
   /** The user moves something: now the picture must be quick. */
   private wake(): void {
-    clearTimeout(this.restTimer);
+    this.cancelRest();
     this.budget.wake();
     this.loop.invalidate();
   }
 
-  private restSoon(): void {
+  private cancelRest(): void {
     clearTimeout(this.restTimer);
+    this.restTimer = 0;
+  }
+
+  private restSoon(): void {
+    this.cancelRest();
     this.restTimer = window.setTimeout(() => {
+      this.restTimer = 0;
       this.budget.rest();
       this.loop.invalidate();
     }, restAfter);
