@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -19,10 +20,16 @@ namespace {
 
 struct ConvertArguments {
   std::vector<std::string> bags, cameras;
-  std::string output;
+  std::string output, poses = "auto";
   ConvertOptions options;
   bool force = false, quiet = false;
 };
+
+const std::map<std::string, NavigationSource> kSources = {{"auto", NavigationSource::kAuto},
+                                                          {"gnss", NavigationSource::kGnss},
+                                                          {"odometry", NavigationSource::kOdometry},
+                                                          {"tf", NavigationSource::kTf},
+                                                          {"none", NavigationSource::kNone}};
 
 /// NAME=TOPIC of each.
 std::vector<ConvertOptions::CameraTopic> parse_cameras(const std::vector<std::string>& texts) {
@@ -56,6 +63,7 @@ void run(const ConvertArguments& arguments) {
   const InterruptGuard interrupt;
   ConvertOptions options = arguments.options;
   options.cameras = parse_cameras(arguments.cameras);
+  options.poses = kSources.at(arguments.poses);
   const std::vector<std::filesystem::path> bags(arguments.bags.begin(), arguments.bags.end());
   const ConvertFigures figures = [&] {
     ProgressBar bar(arguments.quiet, "messages");
@@ -94,15 +102,10 @@ void add_convert_command(CLI::App& app) {
       ->type_name("NAME=TOPIC")
       ->allow_extra_args(false);
   command
-      ->add_option("--poses", options.poses,
+      ->add_option("--poses", arguments->poses,
                    "Where they come from: auto takes the first of the others that there is")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, NavigationSource>{{"auto", NavigationSource::kAuto},
-                                                  {"gnss", NavigationSource::kGnss},
-                                                  {"odometry", NavigationSource::kOdometry},
-                                                  {"tf", NavigationSource::kTf},
-                                                  {"none", NavigationSource::kNone}}))
-      ->type_name("auto|gnss|odometry|tf|none");
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "gnss", "odometry", "tf", "none"}));
   command->add_option("--fix", options.fix, "NavSatFix, where there are several")
       ->type_name("TOPIC");
   command->add_option("--imu", options.imu, "Imu, where there are several, or none")
