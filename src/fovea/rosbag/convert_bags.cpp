@@ -58,8 +58,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   figures.notes = plan.notes;
   naming(bags, [&] { recorder.finish(plan.drive, figures); });
   for (const auto& [topic, unusable] : survey.unusable) {
-    figures.notes.push_back(fmt::format("{} messages of {} cannot be used (the first: {})",
-                                        unusable.count, topic, unusable.first_problem));
+    figures.notes.push_back(unusable.note(topic));
   }
   writer.finish(plan.drive);
   return figures;

@@ -97,7 +97,7 @@ class NavigationPlanner {
   }
 
   void take_nothing() {
-    drive_.T_body_lidar = T_body(usual_body(), lidar_frame_, "the LiDAR");
+    drive_.T_body_lidar = T_body_lidar(usual_body());
     notes_.emplace_back("no poses: the motion will be that of the scans alone");
   }
 
@@ -107,17 +107,18 @@ class NavigationPlanner {
     return survey_.transforms.fixed(a, b);
   }
 
-  /// T_body_frame. InputError if tf does not tell.
-  QuaternionMotion T_body(const std::string& body, const std::string& frame,
-                          const char* what) const {
-    const auto T = survey_.transforms.fixed(body, frame);
+  /// InputError if tf does not tell, or they move.
+  QuaternionMotion T_body_lidar(const std::string& body) const {
+    const auto T = survey_.transforms.fixed(body, lidar_frame_);
     if (!T) {
-      throw InputError(fmt::format("tf does not say where {} ('{}') is on '{}'", what, frame, body),
-                       "/tf_static", "record it, too, or name another frame by --body");
+      throw InputError(
+          fmt::format("tf does not say where the LiDAR ('{}') is on '{}'", lidar_frame_, body),
+          "/tf_static", "record it, too, or name another frame by --body");
     }
-    if (const auto moving = survey_.transforms.moving(body, frame)) {
-      throw InputError(fmt::format("frame '{}' moves between '{}' and '{}'", *moving, body, frame),
-                       "/tf", "name the frame of the vehicle by --body");
+    if (const auto moving = survey_.transforms.moving(body, lidar_frame_)) {
+      throw InputError(
+          fmt::format("frame '{}' moves between '{}' and '{}'", *moving, body, lidar_frame_), "/tf",
+          "name the frame of the vehicle by --body");
     }
     return *T;
   }
@@ -143,7 +144,7 @@ class NavigationPlanner {
                                  drive_.positions.size(), topic, without));
     take_inertia();
     const std::string body = usual_body();
-    drive_.T_body_lidar = T_body(body, lidar_frame_, "the LiDAR");
+    drive_.T_body_lidar = T_body_lidar(body);
     const std::string& antenna = survey_.fixes.at(topic).front().header.frame;
     if (const auto T = still(body, antenna)) {
       drive_.antenna_body = T->translation;
@@ -196,7 +197,7 @@ class NavigationPlanner {
     }
     const std::string& child = odometries.front().child_frame;
     const bool from_child = options_.body.empty() && !child.empty();
-    drive_.T_body_lidar = T_body(from_child ? child : usual_body(), lidar_frame_, "the LiDAR");
+    drive_.T_body_lidar = T_body_lidar(from_child ? child : usual_body());
     notes_.push_back(fmt::format("poses: {} of {}", drive_.poses.size(), topic));
     return true;
   }
@@ -210,7 +211,7 @@ class NavigationPlanner {
       drive_.poses.push_back({time, T_world_body});
     }
     if (drive_.poses.empty()) return false;
-    drive_.T_body_lidar = T_body(body, lidar_frame_, "the LiDAR");
+    drive_.T_body_lidar = T_body_lidar(body);
     notes_.push_back(
         fmt::format("poses: {} of '{}' in '{}', by tf", drive_.poses.size(), body, *world));
     return true;

@@ -175,6 +175,11 @@ class Surveyor : public BagSink {
 
 }  // namespace
 
+std::string UnusableMessages::note(const std::string& topic) const {
+  return fmt::format("{} messages of {} cannot be used (the first: {})", count, topic,
+                     first_problem);
+}
+
 BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
                       const std::filesystem::path& scratch, const std::function<bool()>& go_on) {
   Surveyor surveyor(go_on);

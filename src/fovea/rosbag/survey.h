@@ -23,6 +23,8 @@ struct UnusableMessages {
   void add(const std::string& problem) {
     if (count++ == 0) first_problem = problem;
   }
+  /// What to tell of them.
+  std::string note(const std::string& topic) const;
 };
 
 /// A topic of scans or images.
