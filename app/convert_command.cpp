@@ -32,7 +32,8 @@ const std::map<std::string, NavigationSource> kSources = {{"auto", NavigationSou
                                                           {"none", NavigationSource::kNone}};
 
 /// NAME=TOPIC of each.
-std::vector<ConvertOptions::CameraTopic> parse_cameras(const std::vector<std::string>& texts) {
+std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
+    const std::vector<std::string>& texts) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   std::vector<ConvertOptions::CameraTopic> cameras;
@@ -62,7 +63,7 @@ std::string printable(std::string text) {
 void run(const ConvertArguments& arguments) {
   const InterruptGuard interrupt;
   ConvertOptions options = arguments.options;
-  options.cameras = parse_cameras(arguments.cameras);
+  options.cameras = parse_camera_topics(arguments.cameras);
   options.poses = kSources.at(arguments.poses);
   const std::vector<std::filesystem::path> bags(arguments.bags.begin(), arguments.bags.end());
   const ConvertFigures figures = [&] {
@@ -105,7 +106,7 @@ void add_convert_command(CLI::App& app) {
       ->add_option("--poses", arguments->poses,
                    "Where they come from: auto takes the first of the others that there is")
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "gnss", "odometry", "tf", "none"}));
+      ->check(CLI::IsMember(kSources));
   command->add_option("--fix", options.fix, "NavSatFix, where there are several")
       ->type_name("TOPIC");
   command->add_option("--imu", options.imu, "Imu, where there are several, or none")

@@ -10,8 +10,7 @@
 #include "fovea/pipeline/map_drive.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::calibrate_program_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -163,5 +162,4 @@ TEST_F(Calibrate, ResumesUnderTheSameCorrection) {
   EXPECT_EQ(digest("cut.fovea"), digest("whole.fovea"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::calibrate_program_test

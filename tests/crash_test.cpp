@@ -15,8 +15,7 @@
 #include "tests/kitti_writer.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::crash_test {
 
 using Clock = std::chrono::steady_clock;
 
@@ -116,5 +115,4 @@ TEST(Crash, AKilledMapperLosesNoCommittedFrame) {
   EXPECT_EQ(MapReader(output).digest(), whole);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::crash_test

@@ -11,8 +11,7 @@
 #include "fovea/simulation/simulate.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::generic_drive_program_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -136,5 +135,4 @@ TEST_F(GenericDriveProgram, BadDrivesAreRefusedInOneLine) {
   expect_refused("d", "", "the drive has no scan");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::generic_drive_program_test

@@ -10,8 +10,7 @@
 #include "fovea/sensor/frame_source.h"
 #include "tests/temporary_folder.h"
 
-namespace fovea {
-namespace {
+namespace fovea::generic_drive_writer_test {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -156,5 +155,4 @@ TEST(GenericDriveWriter, LeavesNothingUnfinishedAndReplacesNothing) {
   EXPECT_THROW(GenericDriveWriter(folder / "none/d"), OutputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::generic_drive_writer_test

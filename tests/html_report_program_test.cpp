@@ -10,8 +10,7 @@
 #include "fovea/sensor/image_decode.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::html_report_program_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -268,5 +267,4 @@ TEST_F(HtmlReport, ABadPlaceCostsNoRunAndLeavesNothing) {
   EXPECT_THAT(own_.names(), IsEmpty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::html_report_program_test

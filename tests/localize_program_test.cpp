@@ -9,8 +9,7 @@
 #include "tests/kitti_sample.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::localize_program_test {
 
 using testing::HasSubstr;
 
@@ -132,5 +131,4 @@ TEST(LocalizeSampleDrive, OddFramesAreFoundInAMapOfTheEvenOnesWithoutNavigation)
   EXPECT_LT(std::sqrt(squared / 25), 0.04);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::localize_program_test

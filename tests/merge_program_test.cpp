@@ -9,8 +9,7 @@
 #include "tests/kitti_sample.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::merge_program_test {
 
 using testing::HasSubstr;
 
@@ -69,5 +68,4 @@ TEST_F(MergeProgram, TwoPartsOfADriveAreOneMapAgain) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::merge_program_test

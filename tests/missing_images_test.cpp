@@ -11,8 +11,7 @@
 #include "tests/kitti_writer.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::missing_images_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -163,5 +162,4 @@ TEST_F(MissingImages, ShortStampFiles) {
   EXPECT_THAT(run.out, HasSubstr("skipped: 2 frames (missing time stamp)"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::missing_images_test

@@ -8,8 +8,7 @@
 #include "tests/kitti_writer.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pictures_program_test {
 
 using testing::HasSubstr;
 
@@ -175,5 +174,4 @@ TEST_F(Pictures, ReproduceRefusesAFolderThatCannotBe) {
   EXPECT_THAT(run.err, HasSubstr("the folder cannot be made"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pictures_program_test

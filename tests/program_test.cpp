@@ -9,8 +9,7 @@
 #include "fovea/map/map_store.h"
 #include "tests/kitti_writer.h"
 
-namespace fovea {
-namespace {
+namespace fovea::program_test {
 
 using testing::HasSubstr;
 
@@ -197,7 +196,7 @@ TEST_F(Program, TheWrittenDriveIsReadBackToTheTruth) {
   const std::size_t header = text.find("end_header\n") + 11;
   const auto count = std::stoul(text.substr(text.find("element vertex ") + 15));
   const std::size_t stride = (text.size() - header) / count;
-  const Scene scene = street_scene();
+  const BoxScene scene = street_scene();
   double worst = 0;
   for (std::size_t i = 0; i < count; ++i) {
     Eigen::Vector3d p;
@@ -553,5 +552,4 @@ TEST_F(Program, UpsampleAndRegister) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::program_test

@@ -9,8 +9,7 @@
 #include "tests/program.h"
 #include "tests/truth_writer.h"
 
-namespace fovea {
-namespace {
+namespace fovea::program_truth_test {
 
 using testing::HasSubstr;
 
@@ -35,7 +34,7 @@ void add_box(const Box& box, TriangleMesh& mesh) {
   mesh.surface.resize(mesh.triangle.size(), 1);
 }
 
-World boxes(const Scene& scene) {
+World boxes(const BoxScene& scene) {
   World world;
   for (const Box& box : scene.boxes) add_box(box, world.mesh_local);
   world.materials.resize(1);
@@ -43,7 +42,7 @@ World boxes(const Scene& scene) {
   return world;
 }
 
-DepthImage true_depth(const Scene& scene, const Camera& camera, const RigidMotion& T_local_cam) {
+DepthImage true_depth(const BoxScene& scene, const Camera& camera, const RigidMotion& T_local_cam) {
   DepthImage depth{camera.width, camera.height, {}};
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
@@ -135,5 +134,4 @@ TEST(ProgramTruth, AMapOfTruePosesLiesOnTheTrueSurfaces) {
   EXPECT_EQ(cloud_scores.at("color_view").at("points"), scores.at("color_view").at("points"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::program_truth_test

@@ -6,8 +6,7 @@
 #include "tests/kitti_writer.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::progress_test {
 
 using app::duration_text;
 using app::progress_bar;
@@ -92,5 +91,4 @@ TEST_F(Progress, QuietIsQuietOnATerminal) {
   EXPECT_THAT(on_terminal("--quiet"), Not(HasSubstr("frames")));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::progress_test

@@ -5,8 +5,7 @@
 #include "tests/program.h"
 #include "tests/sample_map.h"
 
-namespace fovea {
-namespace {
+namespace fovea::read_map_test {
 
 TEST(ReadMap, AScriptInAnotherLanguageReadsEveryColouredPoint) {
   const TemporaryFolder folder;
@@ -41,5 +40,4 @@ TEST(ReadMap, AScriptInAnotherLanguageReadsEveryColouredPoint) {
   EXPECT_FALSE(lines >> rest);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::read_map_test

@@ -8,8 +8,7 @@
 #include "tests/kitti_sample.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::render_program_test {
 
 using testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -91,5 +90,4 @@ TEST_F(RenderProgram, ACameraIsSixNumbersOrACalibration) {
               HasSubstr("needs --poses"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::render_program_test

@@ -9,8 +9,7 @@
 #include "tests/kitti_sample.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::sample_drive_test {
 
 class SampleDrive : public testing::Test {
  protected:
@@ -132,5 +131,4 @@ TEST_F(SampleDrive, BothColourCamerasAndTheGreyOnesNames) {
   EXPECT_THAT(grey.err, testing::HasSubstr("camera"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::sample_drive_test

@@ -5,8 +5,7 @@
 #include "fovea/sensor/frame_source.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::simulate_program_test {
 
 using testing::AllOf;
 using testing::ElementsAre;
@@ -94,5 +93,4 @@ TEST_F(Simulate, AnInterruptEndsCleanlyAndLeavesNothing) {
   EXPECT_THAT(folder_.names(), IsEmpty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::simulate_program_test

@@ -17,8 +17,7 @@
 #include "fovea/world/world_file.h"
 #include "tests/program.h"
 
-namespace fovea {
-namespace {
+namespace fovea::simulated_chain_test {
 
 /// A simulated drive, and its map made by the program from true poses without upsampling.
 struct Chain {
@@ -161,5 +160,4 @@ TEST(SimulatedChain, AnOrdinaryDriveIsOffByItsInterpolationOnly) {
   EXPECT_LT(*std::max_element(distances.begin(), distances.end()), 0.006);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::simulated_chain_test

@@ -17,7 +17,7 @@ struct Box {
   Eigen::Vector3d min, max;
 };
 
-struct Scene {
+struct BoxScene {
   std::vector<Box> boxes;
 
   /// Distance along the unit ray to the nearest surface.
@@ -61,13 +61,13 @@ inline Eigen::Vector3f synthetic_color(const Eigen::Vector3d& p) {
 
 class SyntheticDrive : public FrameSource {
  public:
-  Scene scene;
+  BoxScene scene;
   std::vector<RigidMotion> T_local_lidar;  ///< true pose of each frame
   int beams = 48, columns = 720;
 
   /// Straight ahead (local x) in steps, with a slight weave, one camera, scans without sweep
   /// motion.
-  SyntheticDrive(Scene scene_, int frames, double step) : scene(std::move(scene_)) {
+  SyntheticDrive(BoxScene scene_, int frames, double step) : scene(std::move(scene_)) {
     std::vector<StampedPose> navigation;
     for (int i = 0; i < frames; ++i) {
       RigidMotion T = RigidMotion::Identity();
@@ -143,7 +143,7 @@ class SyntheticDrive : public FrameSource {
 };
 
 /// A street: ground, a house row on either side, and two parked cars.
-inline Scene street_scene() {
+inline BoxScene street_scene() {
   return {{{{-50, -6, -3}, {80, 6, -1.73}},
            {{-50, 6, -3}, {80, 9, 8}},
            {{-50, -9, -3}, {80, -6, 8}},
@@ -154,8 +154,8 @@ inline Scene street_scene() {
 }
 
 /// A street with side walls, so that registration knows where along it the vehicle is.
-inline Scene town_scene() {
-  Scene scene = street_scene();
+inline BoxScene town_scene() {
+  BoxScene scene = street_scene();
   for (const double x : {-28.0, -11.0, 3.0, 22.0, 41.0, 57.0}) {
     scene.boxes.push_back({{x, 4.5, -1.73}, {x + 0.4, 6, 3}});
     scene.boxes.push_back({{x + 5, -6, -1.73}, {x + 5.4, -4.8, 2.5}});

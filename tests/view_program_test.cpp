@@ -10,8 +10,7 @@
 #include "tests/sample_map.h"
 #include "tests/temporary_folder.h"
 
-namespace fovea {
-namespace {
+namespace fovea::view_program_test {
 
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
@@ -64,5 +63,4 @@ TEST_F(ViewProgram, AFolderWithAMesh) {
   EXPECT_THAT(read_text(site / "map.json"), HasSubstr(R"("mesh":true)"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::view_program_test

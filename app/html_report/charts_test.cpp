@@ -8,8 +8,7 @@
 #include <pugixml.hpp>
 #include <stdexcept>
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::charts_test {
 
 using testing::HasSubstr;
 
@@ -140,5 +139,4 @@ TEST(HistogramChart, NothingAndOneBin) {
   EXPECT_EQ(elements(document, "//rect[contains(@class, 'bar')]").size(), 1u);
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::charts_test

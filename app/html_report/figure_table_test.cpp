@@ -8,8 +8,7 @@
 
 #include "fovea/evaluation/report.h"
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::figure_table_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -67,5 +66,4 @@ TEST(FigureTables, ThePlaceDecidesWhereANameMeansTwoThings) {
   EXPECT_EQ(explain_figure("no_such_figure"), "");
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::figure_table_test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::markup_test {
 
 TEST(Escaped, MarkupCannotGetThrough) {
   EXPECT_EQ(escaped("a < b & \"c\" > d"), "a &lt; b &amp; &quot;c&quot; &gt; d");
@@ -65,5 +64,4 @@ TEST(Shrunk, IsTheMeanOfWhatItCovers) {
   EXPECT_EQ(odd.height, 4);
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::markup_test

@@ -4,8 +4,7 @@
 #include "app/html_report/close_ups.h"
 #include "app/html_report/scan_pair.h"
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::paper_pictures_test {
 
 Rgb at(const Image& image, int x, int y) {
   const std::uint8_t* p = image.pixel(x, y);
@@ -80,5 +79,4 @@ TEST(MostExtreme, FindsTheLargestSumOfEitherSign) {
   EXPECT_FALSE(most_extreme(values, kWidth, 51, 6));
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::paper_pictures_test

@@ -8,8 +8,7 @@
 
 #include "fovea/evaluation/truth_report.h"
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::truth_figures_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -66,5 +65,4 @@ TEST(TruthFrameTable, HasARowAFrame) {
   EXPECT_STREQ(rows[1].node().last_child().text().get(), "none");  // points name no frame
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::truth_figures_test

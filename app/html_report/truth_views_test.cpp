@@ -4,8 +4,7 @@
 
 #include "fovea/evaluation/splat.h"
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::truth_views_test {
 
 Camera test_camera() {
   Camera camera;
@@ -63,5 +62,4 @@ TEST(PerfectColorErrors, AreLeftAfterTheGainOfPointsOnSurfaces) {
   EXPECT_NEAR(errors[2], 180 * std::sqrt(3.0), 1e-3);  // a ghost does not set the exposure
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::truth_views_test

@@ -4,8 +4,7 @@
 
 #include "app/html_report/color_classes.h"
 
-namespace fovea::app {
-namespace {
+namespace fovea::app::view_section_test {
 
 EvaluationReport report_of(const std::vector<double>& te) {
   EvaluationReport report;
@@ -68,5 +67,4 @@ TEST(HeatPaths, DotsLieOnTheirPixels) {
             "<path class=\"h5\" d=\"m700 100h0\"/>\n");
 }
 
-}  // namespace
-}  // namespace fovea::app
+}  // namespace fovea::app::view_section_test

@@ -13,8 +13,7 @@
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::base_test {
 
 TEST(Errors, ReadWhatWhereRemedy) {
   const InputError error("matrix has 11 numbers", "calib.txt:3", "restore the file");
@@ -191,5 +190,4 @@ TEST(Random, ItemsAreIndependent) {
   EXPECT_NEAR(product / n, 0, 5 / std::sqrt(n));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::base_test

@@ -6,8 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace fovea {
-namespace {
+namespace fovea::copy_on_write_test {
 
 TEST(CopyOnWrite, IsSharedUntilOneChangesIt) {
   CopyOnWrite<std::vector<int>> a(std::vector<int>{1, 2, 3});
@@ -45,5 +44,4 @@ TEST(CopyOnWrite, ASnapshotIsReadWhileTheOriginalGoesOn) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::copy_on_write_test

@@ -7,8 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::flat_map_test {
 
 /// Keys that are near each other, far apart, and such whose low bits are all alike.
 std::vector<std::uint64_t> some_keys() {
@@ -76,5 +75,4 @@ TEST(FlatMap, ForgetsWhatIsErasedAndNothingElse) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::flat_map_test

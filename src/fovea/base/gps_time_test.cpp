@@ -4,8 +4,7 @@
 
 #include <limits>
 
-namespace fovea {
-namespace {
+namespace fovea::gps_time_test {
 
 // Unix times by `date -u -d ... +%s`.
 TEST(GpsTime, CountsLeapSeconds) {
@@ -32,5 +31,4 @@ TEST(GpsTime, StampsThatAreNoDatesHaveNone) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::gps_time_test

@@ -10,8 +10,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::output_file_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -156,5 +155,4 @@ TEST(OutputFile, ReportsAFullDiskAtCommit) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::output_file_test

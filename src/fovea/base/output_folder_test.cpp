@@ -10,8 +10,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::output_folder_test {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -92,5 +91,4 @@ TEST(OutputFolder, RefusesASecondWriterButTakesUpAStaleOne) {
   EXPECT_TRUE(std::filesystem::exists(folder / "b.partial/thesis.txt"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::output_folder_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::path_name_test {
 
 TEST(PathName, IsTheLastPartHoweverItIsWritten) {
   for (const char* path :
@@ -14,5 +13,4 @@ TEST(PathName, IsTheLastPartHoweverItIsWritten) {
   EXPECT_EQ(name_of("a.fovea"), "a.fovea");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::path_name_test

@@ -5,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-namespace fovea {
-namespace {
+namespace fovea::process_memory_test {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kOwnAllocator = true;  // the sanitizer's, which keeps what is freed
@@ -33,5 +32,4 @@ TEST(ProcessMemory, WhatIsFreedAmongWhatStaysIsGivenBack) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::process_memory_test

@@ -8,8 +8,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::producer_test {
 
 using Stop = std::stop_token;
 
@@ -102,5 +101,4 @@ TEST(Producer, WhatWasMadeBeforeAStopCanStillBeTaken) {
   EXPECT_EQ(all_of(producer), (std::vector<int>{0, 1, 2}));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::producer_test

@@ -4,8 +4,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::quick_angle_test {
 
 TEST(QuickAngle, IsTheLibrarysAngle) {
   Random random(1);
@@ -34,5 +33,4 @@ TEST(QuickAngle, AxesAndDiagonals) {
   EXPECT_EQ(quick_atan2(0, 0), 0);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::quick_angle_test

@@ -4,8 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace fovea {
-namespace {
+namespace fovea::scratch_file_test {
 
 TEST(ScratchFile, WhatWasWrittenIsReadAgainInAnyOrder) {
   ScratchFile file;
@@ -23,5 +22,4 @@ TEST(ScratchFile, WhatWasWrittenIsReadAgainInAnyOrder) {
   EXPECT_EQ(file.read<int>(number), std::vector<int>{7});
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::scratch_file_test

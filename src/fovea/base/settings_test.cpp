@@ -6,8 +6,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::settings_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -166,5 +165,4 @@ TEST(Settings, WhatIsRejectedForWantOfAKeyNamesTheTable) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::settings_test

@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace fovea {
-namespace {
+namespace fovea::worker_test {
 
 TEST(Worker, DoesItsTasksInOrder) {
   for (const bool threaded : {false, true}) {
@@ -63,5 +62,4 @@ TEST(Worker, TasksNotBegunAreDroppedAtTheEnd) {
   EXPECT_EQ(dropped.wait_for(std::chrono::seconds(0)), std::future_status::ready);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::worker_test

@@ -6,8 +6,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::bootstrap_test {
 
 TEST(Bootstrap, SumsOfAFrame) {
   const FrameSums sums = frame_sums({{0.5f, 1.5f}, {10, 20}, {0, 0}});
@@ -44,5 +43,4 @@ TEST(Bootstrap, IsAsWideAsTheNormalInterval) {
   EXPECT_NEAR(found.me.high, sum / 400 + 0.098, 0.015);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::bootstrap_test

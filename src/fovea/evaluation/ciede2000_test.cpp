@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::ciede2000_test {
 
 struct Pair {
   Lab first, second;
@@ -69,5 +68,4 @@ TEST(Ciede2000, LabOfSrgb) {
   EXPECT_NEAR(ciede2000(white, black), 100, 0.01);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::ciede2000_test

@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::color_rules_test {
 
 ColorObservation view(std::uint8_t grey, float distance = 5, bool visible = true, float time = 0) {
   return {{grey, grey, grey}, distance, 1, time, visible};
@@ -84,5 +83,4 @@ TEST(ColorRules, BayesForgetsWithTime) {
 
 TEST(ColorRules, AStateIsSmall) { EXPECT_LE(sizeof(ColorState), 128u); }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::color_rules_test

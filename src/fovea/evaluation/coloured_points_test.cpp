@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::coloured_points_test {
 
 /// A square of edge 2 a, samples `spacing` apart, in a plane of any orientation.
 std::vector<Eigen::Vector3f> plane(float a, float spacing, const Eigen::Vector3f& normal) {
@@ -80,5 +79,4 @@ TEST(SurfaceDensity, DoesNotDependOnHowDenselyThePlaneWasScanned) {
   EXPECT_NEAR(surface_density(map, evaluated), 1250, 60);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::coloured_points_test

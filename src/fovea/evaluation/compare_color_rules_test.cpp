@@ -9,8 +9,7 @@
 #include "fovea/evaluation/test_scene.h"
 #include "fovea/evaluation/training_views.h"
 
-namespace fovea {
-namespace {
+namespace fovea::compare_color_rules_test {
 
 /// A light wall x = 8 behind a dark panel x = 5, 1 m wide and high; frames step sideways, so that
 /// each hides another part of the wall.
@@ -218,5 +217,4 @@ TEST(CompareColorRules, TheTableMarksTheOracle) {
   EXPECT_EQ(to_text(std::vector<ColorRuleScore>{}), "");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::compare_color_rules_test

@@ -6,8 +6,7 @@
 
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::consistency_test {
 
 Image even(int width, int height, std::uint8_t value, int channels = 3) {
   Image image(width, height, channels);
@@ -62,5 +61,4 @@ TEST(CrossView, KnowsTheMapsErrorAndTheFloor) {
   EXPECT_EQ(hidden.result().points, 0u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::consistency_test

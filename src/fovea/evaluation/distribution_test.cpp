@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fovea {
-namespace {
+namespace fovea::distribution_test {
 
 TEST(Distribution, OfAFewValues) {
   const Distribution d = distribution({4, 1, 3, 2});
@@ -41,5 +40,4 @@ TEST(Histogram, BinsAreHalfOpen) {
   EXPECT_TRUE(histogram({}, 4).empty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::distribution_test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace fovea {
-namespace {
+namespace fovea::error_split_test {
 
 Camera small_camera() { return {0, 20, 10, 10, 10, 10, 5, RigidMotion::Identity()}; }
 
@@ -43,5 +42,4 @@ TEST(ErrorSplit, Adds) {
   EXPECT_TRUE(std::isnan(ErrorSplit().mean(0)));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::error_split_test

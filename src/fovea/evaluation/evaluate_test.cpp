@@ -11,8 +11,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::evaluate_test {
 
 /// The evaluated points of the drive's held-out frame 4, coloured truly: the perfect map.
 PointCloud evaluated_points(const WallDrive& drive) {
@@ -308,5 +307,4 @@ TEST(Evaluate, TellsItsProgressAndCanBeStopped) {
                std::runtime_error);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::evaluate_test

@@ -10,8 +10,7 @@
 #include "fovea/evaluation/truth_test_scene.h"
 #include "fovea/geometry/transform_cloud.h"
 
-namespace fovea {
-namespace {
+namespace fovea::evaluate_truth_test {
 
 class EvaluateTruth : public testing::Test {
  protected:
@@ -290,5 +289,4 @@ TEST(EvaluateTruthScene, WhatIsMissingIsNamed) {
               testing::HasSubstr("world.json"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::evaluate_truth_test

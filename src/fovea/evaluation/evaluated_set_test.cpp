@@ -4,8 +4,7 @@
 
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::evaluated_set_test {
 
 class EvaluatedSetTest : public testing::Test {
  protected:
@@ -106,5 +105,4 @@ TEST(CompensatedScan, MovesPointsUnlessTheDriveHasDoneSo) {
   EXPECT_EQ(compensated_scan(scan, placed, drive).position[0], scan.position[0]);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::evaluated_set_test

@@ -4,8 +4,7 @@
 
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::free_space_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -140,5 +139,4 @@ TEST(FreeSpace, AgreesWithTheDefinitionInEveryDirection) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::free_space_test

@@ -6,8 +6,7 @@
 #include "fovea/evaluation/compare_color_rules.h"
 #include "fovea/evaluation/training_views.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_evaluate_test {
 
 /// Scans placed by navigation; frames with index % 8 == 4 add nothing.
 ScoredMap keep_every_point(const FrameSource& drive) {
@@ -114,5 +113,4 @@ TEST(KittiEvaluate, NoRuleIsBelowTheFloor) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_evaluate_test

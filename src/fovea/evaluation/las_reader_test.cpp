@@ -5,8 +5,7 @@
 #include "../../../tests/peak_memory.h"
 #include "fovea/evaluation/cloud_test_files.h"
 
-namespace fovea {
-namespace {
+namespace fovea::las_reader_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -141,5 +140,4 @@ TEST_F(LasReaderTest, DamageIsHarmless) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::las_reader_test

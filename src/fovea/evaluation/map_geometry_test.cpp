@@ -7,8 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_geometry_test {
 
 /// A square of 4 m, however it lies, with normal noise across it (m).
 std::vector<Eigen::Vector3f> plane(double noise) {
@@ -56,5 +55,4 @@ TEST(ScanScores, OfAHandfulOfPoints) {
   EXPECT_TRUE(std::isnan(scan_scores({}, {{0, 0, 0}}, {0.1f}).precision[0]));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_geometry_test

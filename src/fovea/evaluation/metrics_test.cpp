@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace fovea {
-namespace {
+namespace fovea::metrics_test {
 
 using testing::ElementsAre;
 using Colors = std::vector<Eigen::Vector3f>;
@@ -106,5 +105,4 @@ TEST(Summary, OfNothingHasNoFigures) {
   EXPECT_TRUE(std::isnan(figures.coverage_20cm));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::metrics_test

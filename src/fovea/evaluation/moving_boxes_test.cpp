@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::moving_boxes_test {
 
 /// The vehicle drives 1 m a frame along x.
 std::vector<FrameRecord> frames() {
@@ -44,5 +43,4 @@ TEST(MovingBoxes, LabelsMayWaver) {
   EXPECT_EQ(MovingBoxes({car({20, 5, -1.7}, {-0.85, 0, 0})}, skipped).moved(), 0u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::moving_boxes_test

@@ -6,8 +6,7 @@
 #include "fovea/evaluation/cloud_test_files.h"
 #include "fovea/sensor/lzf.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pcd_reader_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -217,5 +216,4 @@ TEST_F(PcdReaderTest, RejectsDamagedCompression) {
   EXPECT_THROW(read_pcd(folder_, {0, 0, 0}), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pcd_reader_test

@@ -6,8 +6,7 @@
 
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::picture_quality_test {
 
 Image wall_photograph() {
   const Camera camera = forward_camera();
@@ -75,5 +74,4 @@ TEST(TextureShift, IsFound) {
   EXPECT_EQ(compare_shifts(drawn(photograph), photograph).best(), Eigen::Vector2i(0, 0));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::picture_quality_test

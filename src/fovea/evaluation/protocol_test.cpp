@@ -6,8 +6,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::protocol_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -136,5 +135,4 @@ TEST_F(ProtocolTest, CrossCameraScoresHeldOutFramesInOtherCameras) {
   EXPECT_THROW(select_cameras(map_, drive_.info(), options), ConfigError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::protocol_test

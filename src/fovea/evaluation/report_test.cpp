@@ -5,8 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fovea {
-namespace {
+namespace fovea::report_test {
 
 using testing::HasSubstr;
 
@@ -123,5 +122,4 @@ TEST(Report, TextHasEveryFigure) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::report_test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace fovea {
-namespace {
+namespace fovea::rule_errors_test {
 
 TEST(RuleErrors, AreThoseOfTheNearestPoints) {
   PointErrors errors;
@@ -33,5 +32,4 @@ TEST(RuleErrors, AreThoseOfTheNearestPoints) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::rule_errors_test

@@ -6,8 +6,7 @@
 
 #include "../../../tests/synthetic_drive.h"
 
-namespace fovea {
-namespace {
+namespace fovea::scan_matching_test {
 
 /// What a map of the drive knows of its frames, every pose off by `error` (m, sideways) times its
 /// index.
@@ -61,5 +60,4 @@ TEST(MatchScans, MeanDistanceOfPairsUnderAMetre) {
   EXPECT_TRUE(std::isnan(match_scans(source, {}, T_target_source).mean));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::scan_matching_test

@@ -10,8 +10,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/evaluation/ply_reader.h"
 
-namespace fovea {
-namespace {
+namespace fovea::scored_map_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -235,5 +234,4 @@ TEST_F(ScoredMapTest, LoadsAFoveaMap) {
   EXPECT_THROW(load_scored_map(file, with_poses), ConfigError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::scored_map_test

@@ -5,8 +5,7 @@
 #include "fovea/evaluation/sharpness.h"
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::splat_test {
 
 SplatView draw(const ColouredPoints& map, const SplatOptions& options = {}) {
   const Camera camera = forward_camera();
@@ -123,5 +122,4 @@ TEST(Sharpness, LeavesOutHolesAndOutlines) {
   EXPECT_THROW(compare_gradients(view, Image(3, 3, 3)), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::splat_test

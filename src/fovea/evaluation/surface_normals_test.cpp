@@ -4,8 +4,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::surface_normals_test {
 
 TEST(SurfaceNormals, ArePerpendicularToAPlane) {
   const Eigen::Vector3f normal = Eigen::Vector3f(1, 2, -0.5f).normalized();
@@ -45,5 +44,4 @@ TEST(SurfaceNormals, AreUnknownWithoutASurface) {
   EXPECT_TRUE(surface_normals({}).empty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::surface_normals_test

@@ -5,8 +5,7 @@
 
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::training_reach_test {
 
 using testing::ElementsAre;
 using testing::Pair;
@@ -51,5 +50,4 @@ TEST(TrainingReach, ACameraWithoutImageSawNothing) {
               ElementsAre(1));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::training_reach_test

@@ -7,8 +7,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/evaluation/truth_test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::truth_poses_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -118,5 +117,4 @@ TEST(TruthPoses, PairsAreTheFramesThatBothKnow) {
   EXPECT_THROW(pose_pairs(records, truth), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::truth_poses_test

@@ -7,8 +7,7 @@
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/test_scene.h"
 
-namespace fovea {
-namespace {
+namespace fovea::warnings_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -116,5 +115,4 @@ TEST(Warnings, PosesThatStrayFromTheCourse) {
   EXPECT_TRUE(std::isnan(pose_stray(map.frames, scored).scored));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::warnings_test

@@ -6,8 +6,7 @@
 
 #include "fovea/sensor/jpeg_decode.h"
 
-namespace fovea {
-namespace {
+namespace fovea::jpeg_encode_test {
 
 Image picture(int width, int height, int channels) {
   Image image(width, height, channels);
@@ -60,5 +59,4 @@ TEST(EncodeJpeg, RefusesNonsense) {
   EXPECT_THROW(encode_jpeg(picture(4, 4, 1), 101), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::jpeg_encode_test

@@ -13,8 +13,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/map/map_meta.h"
 
-namespace fovea {
-namespace {
+namespace fovea::las_writer_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -228,5 +227,4 @@ TEST_F(LasWriter, LeavesNothingWhenTheDiskIsFull) {
   EXPECT_THAT(folder_.names(), ElementsAre("a.fovea"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::las_writer_test

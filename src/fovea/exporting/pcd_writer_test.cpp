@@ -12,8 +12,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pcd_writer_test {
 
 using ::testing::ElementsAre;
 
@@ -121,5 +120,4 @@ TEST_F(PcdWriter, ReplacesOnlyWithForce) {
   EXPECT_GT(std::filesystem::file_size(folder_ / "a.pcd"), 3u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pcd_writer_test

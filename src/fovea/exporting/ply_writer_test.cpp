@@ -13,8 +13,7 @@
 #include "fovea/base/version.h"
 #include "fovea/map/map_meta.h"
 
-namespace fovea {
-namespace {
+namespace fovea::ply_writer_test {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
@@ -227,5 +226,4 @@ TEST_F(PlyWriter, AnEmptyMapGivesAnEmptyCloud) {
   EXPECT_EQ(ply.comments.size(), 1u);  // not georeferenced: no origin
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::ply_writer_test

@@ -7,8 +7,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::point_stream_test {
 
 using ::testing::HasSubstr;
 
@@ -121,5 +120,4 @@ TEST_F(PointStreamTest, RefusesPositionsThatAreNotFinite) {
   EXPECT_THROW(all({}), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::point_stream_test

@@ -10,8 +10,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pose_writer_test {
 
 TEST(PoseWriter, ALineForEveryFrameWithTheSameDoubles) {
   const TemporaryFolder folder;
@@ -56,5 +55,4 @@ TEST(PoseWriter, RefusesGapsEmptyMapsAndExistingFiles) {
   EXPECT_GT(std::filesystem::file_size(folder / "poses.txt"), 3u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pose_writer_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::camera_test {
 
 Camera small_camera() {
   Camera camera{0, 640, 480, 500, 500, 319.5, 239.5, RigidMotion::Identity()};
@@ -56,5 +55,4 @@ TEST(Camera, StandsWhereItWasWhenTheImageWasTaken) {
   EXPECT_GT((camera.at_image(left).T_cam_lidar * Eigen::Vector3d(20, 0, 0)).x(), 1.9);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::camera_test

@@ -7,8 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::cell_brick_test {
 
 using Key = std::array<int, 3>;
 
@@ -88,5 +87,4 @@ TEST(CellSet, EqualsASetOfCells) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::cell_brick_test

@@ -4,8 +4,7 @@
 
 #include <numbers>
 
-namespace fovea {
-namespace {
+namespace fovea::geodesy_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -66,5 +65,4 @@ TEST(Geodesy, GeodeticPointsComeBack) {
   EXPECT_LT((local.T_local_enu(there).translation() - p).norm(), 1e-7);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::geodesy_test

@@ -9,8 +9,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::georeference_test {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -132,5 +131,4 @@ TEST(Georeference, NamesOfCrs) {
   EXPECT_FALSE(crs_of("gps"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::georeference_test

@@ -7,8 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kd_tree_test {
 
 std::vector<Eigen::Vector3f> random_points(std::size_t count, std::uint64_t seed) {
   Random random(seed);
@@ -73,5 +72,4 @@ TEST(KdTree, SmallAndEmptyInputs) {
   EXPECT_EQ(moved.nearest({4, 0, 0}).index, 1u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kd_tree_test

@@ -8,8 +8,7 @@
 
 #include "fovea/geometry/rectified_camera.h"
 
-namespace fovea {
-namespace {
+namespace fovea::lens_test {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -143,5 +142,4 @@ TEST(RectifiedCamera, IsNoWiderThanTheFieldOfViewAskedFor) {
   EXPECT_FALSE(rectified_camera(camera_with(kFisheye), limit, 300));  // longer than 300 pixels
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::lens_test

@@ -9,8 +9,7 @@
 #include "fovea/base/random.h"
 #include "fovea/geometry/point_index.h"
 
-namespace fovea {
-namespace {
+namespace fovea::point_grid_test {
 
 Eigen::Vector3f random_point(Random& random, double half_width) {
   Eigen::Vector3f p;
@@ -103,5 +102,4 @@ TEST(PointIndex, GridAndTreeAgree) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::point_grid_test

@@ -6,8 +6,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::rigid_motion_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -97,5 +96,4 @@ TEST(RigidMotion, NearestRotationTakesRoundingOut) {
   EXPECT_GT(nearest_rotation(Eigen::Vector3d(1, 1, -0.9).asDiagonal()).determinant(), 0);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::rigid_motion_test

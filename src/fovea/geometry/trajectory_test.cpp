@@ -4,8 +4,7 @@
 
 #include <stdexcept>
 
-namespace fovea {
-namespace {
+namespace fovea::trajectory_test {
 
 RigidMotion at_x(double x) { return RigidMotion(Eigen::Translation3d(x, 0, 0)); }
 
@@ -98,5 +97,4 @@ TEST(Trajectory, RejectsTimesThatDoNotIncrease) {
   EXPECT_THROW(Trajectory({{5, at_x(0)}, {4, at_x(1)}}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::trajectory_test

@@ -10,8 +10,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::voxel_grid_test {
 
 using Voxel = std::tuple<int, int, int>;
 Voxel voxel_of(const Eigen::Vector3f& p, float size) {
@@ -58,5 +57,4 @@ TEST(VoxelGrid, EmptyInputAndBadSize) {
   EXPECT_THROW(voxel_sample(points, std::nanf("")), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::voxel_grid_test

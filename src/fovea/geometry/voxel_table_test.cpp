@@ -4,8 +4,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::voxel_table_test {
 
 TEST(VoxelTable, NumbersVoxelsInTheOrderOfAppearance) {
   VoxelTable table(0.5f);
@@ -26,5 +25,4 @@ TEST(VoxelTable, NumbersVoxelsInTheOrderOfAppearance) {
   EXPECT_EQ(table.voxel_of({-0.1f, 0.1f, 0.6f}), VoxelTable::Voxel(-1, 0, 1));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::voxel_table_test

@@ -15,8 +15,7 @@
 #include "fovea/localization/localize_drive.h"
 #include "fovea/pipeline/map_drive.h"
 
-namespace fovea {
-namespace {
+namespace fovea::localizer_test {
 
 using testing::HasSubstr;
 using enum LocalizationState;
@@ -25,7 +24,7 @@ using enum LocalizationState;
 class Visit : public SyntheticDrive {
  public:
   double noise = 0.01;  // m
-  Visit(Scene scene_, double start, double step, int frames)
+  Visit(BoxScene scene_, double start, double step, int frames)
       : SyntheticDrive(std::move(scene_), frames, step) {
     std::vector<StampedPose> navigation;
     for (int i = 0; i < frames; ++i) {
@@ -51,7 +50,7 @@ class Localize : public testing::Test {
     folder_ = new TemporaryFolder;
     mapped(town_scene(), "map.fovea");
   }
-  static std::filesystem::path mapped(Scene scene, const std::string& name) {
+  static std::filesystem::path mapped(BoxScene scene, const std::string& name) {
     const SyntheticDrive drive(std::move(scene), 14, 1.0);
     MapJob job;
     job.output = *folder_ / name;
@@ -158,7 +157,7 @@ TEST_F(Localize, OutsideTheMapThereIsNoPose) {
 }
 
 TEST_F(Localize, AnotherPlaceIsNotTakenForThisOne) {
-  Scene elsewhere;
+  BoxScene elsewhere;
   elsewhere.boxes = {{{-80, -30, -3}, {80, 30, -1.73}}};
   for (double x = -40; x < 60; x += 7) {
     elsewhere.boxes.push_back({{x, 9 + 2 * std::sin(x), -1.73}, {x + 3, 14, 4}});
@@ -213,7 +212,7 @@ TEST_F(Localize, WhatTheSceneLeavesOpenTheCovarianceSays) {
       return result;
     }
   };
-  Scene street{
+  BoxScene street{
       {{{-50, -6, -3}, {80, 6, -1.73}}, {{-50, 6, -3}, {80, 9, 8}}, {{-50, -9, -3}, {80, -6, 8}}}};
   for (const double x : {1.0, 3.0, 22.0, 24.0})
     street.boxes.push_back({{x, 4.5, -1.73}, {x + 0.4, 6, 3}});
@@ -298,5 +297,4 @@ TEST_F(Localize, FramesWithoutAScanAreToldOf) {
   EXPECT_THAT(localized.notes.front(), HasSubstr("no scan 1"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::localizer_test

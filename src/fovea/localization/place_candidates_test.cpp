@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::place_candidates_test {
 
 std::vector<FrameRecord> frames_along_x(int count) {
   std::vector<FrameRecord> frames(static_cast<std::size_t>(count));
@@ -37,5 +36,4 @@ TEST(PlaceCandidates, AMapOfSkippedFramesHasNone) {
   EXPECT_TRUE(PlaceCandidates({}).empty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::place_candidates_test

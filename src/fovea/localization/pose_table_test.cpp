@@ -5,8 +5,7 @@
 
 #include <sstream>
 
-namespace fovea {
-namespace {
+namespace fovea::pose_table_test {
 
 using testing::StartsWith;
 
@@ -59,5 +58,4 @@ TEST(PoseTable, HasTheCovariancesUpperTriangle) {
   EXPECT_EQ(columns(rows[2]), columns(rows[0]));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pose_table_test

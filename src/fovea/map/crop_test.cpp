@@ -7,8 +7,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::crop_test {
 
 TEST(CropRegion, ABoxHoldsItsBorders) {
   const CropRegion box = CropRegion::box("-1,0,2, 3,4,5.5");
@@ -90,5 +89,4 @@ TEST(Crop, AnEmptyPartIsAMap) {
   EXPECT_EQ(MapReader(folder / "b.fovea").size(), 0u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::crop_test

@@ -5,8 +5,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_keeper_test {
 
 constexpr double kNear = 5;  // m
 
@@ -184,5 +183,4 @@ TEST_P(Keeper, ACheckpointBegunIsCommittedHoweverTheRunEnds) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_keeper_test

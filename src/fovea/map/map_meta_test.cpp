@@ -4,8 +4,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_meta_test {
 
 MapMeta georeferenced() {
   return {{"georeferenced", "1"},
@@ -66,5 +65,4 @@ TEST(MapMeta, DamagedDrivesAreRefused) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_meta_test

@@ -17,8 +17,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/map/map_store.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_store_failure_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -552,5 +551,4 @@ TEST(MapReader, NamesTheDamagedFrameOrSubmap) {
   EXPECT_THAT(damage("ALTER TABLE tiles DROP COLUMN range"), HasSubstr("cannot be read"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_store_failure_test

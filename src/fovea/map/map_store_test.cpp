@@ -18,8 +18,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/map/tile_columns.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_store_test {
 
 using ::testing::ElementsAre;
 
@@ -495,5 +494,4 @@ TEST(MapReader, AMissingTileIsNoReasonToLoseTheOthers) {
   for (const auto& [id, points] : tiles) EXPECT_EQ(reader.find_tile(id)->size(), points);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_store_test

@@ -10,8 +10,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/map/tile_place.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_surfaces_test {
 
 using testing::IsEmpty;
 
@@ -80,5 +79,4 @@ TEST_F(Surfaces, OnlyTilesNearbyAreRead) {
   EXPECT_THROW(surfaces.points_near({118, 2, 2}, 5), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_surfaces_test

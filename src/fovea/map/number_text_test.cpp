@@ -7,8 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::number_text_test {
 
 TEST(NumberText, AnyFiniteDoubleReadsBack) {
   Random random(1);
@@ -53,5 +52,4 @@ TEST(NumberText, RefusesOtherJson) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::number_text_test

@@ -6,8 +6,7 @@
 
 #include "../../../tests/sample_map.h"
 
-namespace fovea {
-namespace {
+namespace fovea::occupancy_test {
 
 constexpr double kTile = 1.0, kSpacing = 0.125;  // exact in binary: borders of cells are, too
 constexpr double kAll = 1e4;
@@ -181,5 +180,4 @@ TEST(Occupancy, ForgetsTilesBeyondTheRadiusAndTakesThemInAgain) {
   EXPECT_TRUE(occupancy.taken({20.5, 0.5, 0.5}));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::occupancy_test

@@ -8,8 +8,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::point_filter_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -94,5 +93,4 @@ TEST(PointFilter, SaysWhatItDoesNotUnderstand) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::point_filter_test

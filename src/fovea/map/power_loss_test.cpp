@@ -12,8 +12,7 @@
 #include "fovea/map/map_store.h"
 #include "fovea/map/recording_vfs.h"
 
-namespace fovea {
-namespace {
+namespace fovea::power_loss_test {
 
 constexpr int kCommits = 6;
 
@@ -96,5 +95,4 @@ TEST(PowerLoss, EveryCommitStaysAndTheMapGoesOn) {
   EXPECT_EQ(seen.size(), std::size_t(kCommits));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::power_loss_test

@@ -6,8 +6,7 @@
 #include "../../../tests/sample_map.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::tile_codec_test {
 
 TEST(TileDecoder, AForgedSizeTakesNoMemory) {
   TileEncoder encoder;
@@ -34,5 +33,4 @@ TEST(TileDecoder, LargeTilesOfOneValueComeBack) {
   expect_same_columns(decoder.decode(encoder.encode({}, tile), "map"), tile);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::tile_codec_test

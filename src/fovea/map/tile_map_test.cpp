@@ -11,8 +11,7 @@
 #include "fovea/base/random.h"
 #include "fovea/map/tile_columns.h"
 
-namespace fovea {
-namespace {
+namespace fovea::tile_map_test {
 
 Eigen::Vector3d stored_local(const Submap& submap, const PointCloud& tile, std::size_t i) {
   return submap.T_local_submap * (tile.origin + tile.position[i].cast<double>());
@@ -352,5 +351,4 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   EXPECT_THROW(map.colors({2, id.key}), std::logic_error);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::tile_map_test

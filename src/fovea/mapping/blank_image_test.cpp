@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-namespace fovea {
-namespace {
+namespace fovea::blank_image_test {
 
 Image filled(std::uint8_t value, int channels = 3, int width = 160, int height = 80) {
   Image image(width, height, channels);
@@ -47,5 +46,4 @@ TEST(BlankImage, SmallImagesAreLookedAt) {
   EXPECT_FALSE(is_blank(filled(100, 1, 3, 2)));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::blank_image_test

@@ -8,8 +8,7 @@
 #include "fovea/base/image.h"
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::color_fusion_test {
 
 struct SeenView {
   Eigen::Vector3f color;
@@ -285,5 +284,4 @@ TEST(ViewWeight, FallsWithTheDistance) {
   EXPECT_EQ(last, 1);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::color_fusion_test

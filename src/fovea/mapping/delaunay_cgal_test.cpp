@@ -9,8 +9,7 @@
 
 #include "fovea/mapping/delaunay_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::delaunay_cgal_test {
 
 using namespace delaunay_test;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -74,7 +73,6 @@ TEST(DelaunayAgainstCgal, AsManyTrianglesOfPointsWithTies) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::delaunay_cgal_test
 
 #endif

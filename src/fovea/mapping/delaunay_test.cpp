@@ -8,8 +8,7 @@
 
 #include "fovea/mapping/delaunay_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::delaunay_test {
 
 using namespace delaunay_test;
 
@@ -263,5 +262,4 @@ TEST(DelaunayTriangulation, RejectsWhatItCannotDoExactly) {
   check_delaunay(triangulation, {{0, 0}, {9, 0}, {0, 9}});
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::delaunay_test

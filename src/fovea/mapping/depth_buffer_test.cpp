@@ -4,8 +4,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::depth_buffer_test {
 
 Camera camera_of(int width, int height) {
   return {
@@ -131,5 +130,4 @@ TEST(DepthBuffer, ABlockOfSamplesAndAJoinedBufferAreAsAllOneByOne) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::depth_buffer_test

@@ -6,8 +6,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::foveal_region_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -112,5 +111,4 @@ TEST(FovealOptions, AreChecked) {
   EXPECT_THROW(options.validate(), ConfigError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::foveal_region_test

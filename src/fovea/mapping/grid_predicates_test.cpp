@@ -7,8 +7,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::grid_predicates_test {
 
 GridPoint draw(Random& random, std::int32_t extent) {
   const auto bound = 2 * static_cast<std::uint64_t>(extent) + 1;
@@ -92,5 +91,4 @@ TEST(GridPredicates, FilterAgreesWithIntegersOnNearlyCollinearPoints) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::grid_predicates_test

@@ -9,8 +9,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
-namespace fovea {
-namespace {
+namespace fovea::ground_test {
 
 constexpr double kHeight = 1.73;
 
@@ -119,5 +118,4 @@ TEST(GroundOptions, ValidateNamesTheField) {
   expect_rejected([](GroundOptions& o) { o.ransac_max_tilt = 90; }, "ground.ransac_max_tilt");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::ground_test

@@ -4,8 +4,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::image_pyramid_test {
 
 template <class F>
 Image painted(int width, int height, int channels, F&& value) {
@@ -162,5 +161,4 @@ TEST(ImagePyramid, OddAndTinyImagesWork) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::image_pyramid_test

@@ -8,8 +8,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::insertion_order_test {
 
 std::vector<GridPoint> lattice(std::int32_t side) {
   std::vector<GridPoint> points;
@@ -68,5 +67,4 @@ TEST(InsertionOrder, SpansTheWholeGrid) {
   EXPECT_EQ(insertion_order(corners).size(), 4u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::insertion_order_test

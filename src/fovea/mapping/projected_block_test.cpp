@@ -4,8 +4,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::projected_block_test {
 
 Camera test_camera() { return {0, 640, 200, 350, 360, 310, 94, RigidMotion::Identity()}; }
 
@@ -49,5 +48,4 @@ TEST(ProjectedBlock, WhatIsBehindOrNotANumberIsNotInView) {
   EXPECT_TRUE(block.in_view(points.size() - 1));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::projected_block_test

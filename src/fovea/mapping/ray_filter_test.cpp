@@ -5,8 +5,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::ray_filter_test {
 
 Camera test_camera() { return {0, 200, 100, 100, 100, 99.5, 49.5, RigidMotion::Identity()}; }
 
@@ -233,5 +232,4 @@ TEST(RayFilter, OptionsAreChecked) {
   EXPECT_THROW(options.validate(), ConfigError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::ray_filter_test

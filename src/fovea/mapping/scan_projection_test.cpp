@@ -7,8 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace fovea {
-namespace {
+namespace fovea::scan_projection_test {
 
 constexpr double kWall = 12, kBox = 6, kHalf = 0.8;  // m: x of wall and box front, half its size
 constexpr double kGround = -1.7;
@@ -119,5 +118,4 @@ TEST(ScanProjection, BothSidesOfAStepAreEdges) {
   EXPECT_FALSE(edge(8));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::scan_projection_test

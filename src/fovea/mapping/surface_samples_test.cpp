@@ -15,8 +15,7 @@
 #include "fovea/base/random.h"
 #include "fovea/mapping/camera_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::surface_samples_test {
 
 constexpr double kCell = 0.02;
 
@@ -28,7 +27,7 @@ struct Rings {
 };
 
 // In the camera's frame: x right, y down, z forward; boxes of the scene likewise.
-PointCloud scan(const Scene& scene, const Rings& rings = {}) {
+PointCloud scan(const BoxScene& scene, const Rings& rings = {}) {
   const Eigen::Vector3d lidar(0.01, -0.08, -0.27);
   Random random(1);
   PointCloud points;
@@ -162,7 +161,7 @@ TEST(SurfaceSamples, PlanesOfAnySlantAreSampledAtTheColumnsOfAnyGrid) {
 
 TEST(SurfaceSamples, GroundBetweenDistantRingsIsFilled) {
   constexpr double kHeight = 1.653;
-  const Scene ground{{{{-50, kHeight, -5}, {50, kHeight + 1, 60}}}};
+  const BoxScene ground{{{{-50, kHeight, -5}, {50, kHeight + 1, 60}}}};
   const auto density = [&](const PointCloud& points, double near, double far) {
     std::size_t count = 0;
     for (const Eigen::Vector3f& p : points.position) {
@@ -230,7 +229,7 @@ TEST(SurfaceSamples, NothingIsSampledBetweenABoardAndTheWallBehind) {
   for (const double azimuth_step : {0.17, 0.09, 0.4}) {
     for (double gap = 0.42; gap < 1.1; gap += 0.06) {
       const Box board{{-1.03, -0.12, 6}, {0.91, 0.57, 6.01}};
-      const Scene scene{{board, wall_at(6 + gap)}};
+      const BoxScene scene{{board, wall_at(6 + gap)}};
       const PointCloud measured = scan(scene, {.step = 0.3, .azimuth_step = azimuth_step});
       const PointCloud points = sample_surfaces(measured, test_camera(), {}, plain_grid());
       ASSERT_GT(sample_count(points), 10'000u);
@@ -247,7 +246,7 @@ TEST(SurfaceSamples, NothingIsSampledBetweenABoardAndTheWallBehind) {
 
 // Chords cut corners by less than tau; beyond them samples are on the surfaces.
 TEST(SurfaceSamples, ABoxOnTheGroundKeepsItsShape) {
-  const Scene scene{{{{-50, 1.653, -5}, {50, 3, 60}}, {{-1.31, 0.4, 8.2}, {1.12, 1.653, 12}}}};
+  const BoxScene scene{{{{-50, 1.653, -5}, {50, 3, 60}}, {{-1.31, 0.4, 8.2}, {1.12, 1.653, 12}}}};
   const PointCloud points = sample_surfaces(scan(scene), test_camera(), {}, plain_grid());
   ASSERT_GT(sample_count(points), 50'000u);
   std::size_t off = 0;
@@ -309,7 +308,7 @@ TEST(SurfaceSamples, TakenCellsGetNothing) {
 }
 
 TEST(SurfaceSamples, NoTwoPointsHaveOneCell) {
-  const Scene scene{{{{-50, 1.653, -5}, {50, 3, 60}}, {{-1.31, 0.4, 8.2}, {1.12, 1.653, 12}}}};
+  const BoxScene scene{{{{-50, 1.653, -5}, {50, 3, 60}}, {{-1.31, 0.4, 8.2}, {1.12, 1.653, 12}}}};
   for (std::uint64_t trial = 0; trial < 4; ++trial) {
     Random random(trial + 20);
     const SampleGrid grid = grid_at(random_motion(random));
@@ -459,5 +458,4 @@ TEST(SurfaceOptions, NameTheBadField) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::surface_samples_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::texture_test {
 
 TEST(Texture, ColourIsTheImageAtTheProjection) {
   Camera camera;
@@ -72,5 +71,4 @@ TEST(Texture, GreyImagesGiveThreeEqualChannels) {
   EXPECT_EQ(cloud.color[0], (Rgb{90, 90, 90}));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::texture_test

@@ -7,8 +7,7 @@
 #include "../../../tests/kitti_sample.h"
 #include "fovea/mapping/upsample.h"
 
-namespace fovea {
-namespace {
+namespace fovea::upsample_kitti_test {
 
 // This folder may not use the reader in sensor/: the little that is needed of KITTI's files.
 Eigen::MatrixXd calibration(const std::filesystem::path& file, const std::string& key, int rows,
@@ -86,5 +85,4 @@ TEST(UpsampleKitti, CountsOfARealScan) {
   expect_counts(white_zone, camera, {10421, 19061, 45115, 122849});
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::upsample_kitti_test

@@ -12,8 +12,7 @@
 #include "fovea/mapping/camera_test_support.h"
 #include "fovea/mapping/grid_predicates.h"
 
-namespace fovea {
-namespace {
+namespace fovea::upsample_test {
 
 Eigen::Vector3f at_pixel(const Camera& camera, double u, double v, double depth) {
   return Eigen::Vector3d((u - camera.cx) / camera.fx * depth, (v - camera.cy) / camera.fy * depth,
@@ -295,5 +294,4 @@ TEST(UpsampleOptions, NameTheBadField) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::upsample_test

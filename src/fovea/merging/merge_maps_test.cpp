@@ -12,8 +12,7 @@
 #include "fovea/map/map_meta.h"
 #include "fovea/pipeline/map_drive.h"
 
-namespace fovea {
-namespace {
+namespace fovea::merge_maps_test {
 
 constexpr GeodeticPoint kOrigin{49.0, 8.4, 110};
 constexpr double kMetresPerDegree = 111'200;  // of latitude there; errors count as GPS errors
@@ -294,5 +293,4 @@ TEST_F(Merge, MapsOfOtherTilesAreRefused) {
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.fovea", "b.fovea"}));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::merge_maps_test

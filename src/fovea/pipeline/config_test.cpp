@@ -7,8 +7,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::config_test {
 
 using testing::HasSubstr;
 
@@ -131,5 +130,4 @@ TEST(Variants, EachSetsItsRowOfThePapersTable) {
   EXPECT_THROW(apply_variant("E12", baseline), ConfigError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::config_test

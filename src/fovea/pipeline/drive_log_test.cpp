@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::drive_log_test {
 
 FrameRecord record_of(int index, int submap) {
   FrameRecord record;
@@ -86,5 +85,4 @@ TEST(DriveLog, GoesOnWithAnEarlierRunsFrames) {
   EXPECT_EQ(rows.frames[0].T_local_lidar.translation(), Eigen::Vector3d(4, 0.5, 0));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::drive_log_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::frame_motion_test {
 
 /// Forward at 8 m/s while turning left: a constant twist.
 const Twist kTwist = (Twist() << 0, 0, 0.2, 8, 0, 0).finished();
@@ -78,5 +77,4 @@ TEST(FrameMotion, OfTheLatestMappedFrame) {
   EXPECT_FALSE(mapped_motion(latest, before));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::frame_motion_test

@@ -6,8 +6,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::frame_pipeline_test {
 
 using namespace std::chrono_literals;
 
@@ -150,5 +149,4 @@ TEST(FramePipeline, AStopLosesNoFrameThatWasTracked) {
   EXPECT_EQ(tracked, 2);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::frame_pipeline_test

@@ -6,8 +6,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::fusion_test {
 
 constexpr TimeNs kTenth = kNsPerSecond / 10;
 constexpr int kLap = 300;       // frames
@@ -182,5 +181,4 @@ TEST(Fusion, ToldAgainItGoesOnAlike) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::fusion_test

@@ -9,8 +9,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/mapping/color_fusion.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_colors_test {
 
 constexpr double kSpacing = 0.02;
 
@@ -393,5 +392,4 @@ TEST(Recolour, GivesTheSameAtAnyThreadCount) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_colors_test

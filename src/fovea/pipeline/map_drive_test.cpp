@@ -10,8 +10,7 @@
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/mapper_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_drive_test {
 
 /// A drive with moves of its submaps; one frame may not be readable.
 class BrokenDrive : public SyntheticDrive {
@@ -226,5 +225,4 @@ TEST_F(MapDrive, AFrameIsAsLateAsAllThatItWaitedFor) {
   EXPECT_THAT(latencies, testing::WhenSorted(testing::ElementsAreArray(latencies)));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_drive_test

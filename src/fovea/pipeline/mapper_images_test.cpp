@@ -4,8 +4,7 @@
 
 #include "fovea/pipeline/mapper_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::mapper_images_test {
 
 // A lens that is covered for three frames: no point turns black, and the drive goes on.
 TEST(Mapper, BlankImagesColourNothing) {
@@ -118,5 +117,4 @@ TEST(Mapper, TwoCamerasTakeTurns) {
   EXPECT_LT(color_error / double(mapper.map().size()), 3.0);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::mapper_images_test

@@ -9,8 +9,7 @@
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/mapper_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::mapper_test {
 
 /// Bit for bit, colours and what tells of them included.
 void expect_same_maps(const TileMap& a, const TileMap& b) {
@@ -28,8 +27,8 @@ void expect_same_maps(const TileMap& a, const TileMap& b) {
 }
 
 /// The street, its walls not on borders of the map's cells: there rounding decides between two.
-Scene street_off_borders() {
-  Scene scene = street_scene();
+BoxScene street_off_borders() {
+  BoxScene scene = street_scene();
   const Eigen::Vector3d shift(0.007, 0.006, 0.003);
   for (Box& box : scene.boxes) box.min += shift, box.max += shift;
   return scene;
@@ -401,5 +400,4 @@ TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::mapper_test

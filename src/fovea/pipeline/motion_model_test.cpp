@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::motion_model_test {
 
 constexpr TimeNs kTenth = kNsPerSecond / 10;
 
@@ -104,5 +103,4 @@ TEST(MotionModel, AThousandGuessesInARowStayRigid) {
   EXPECT_TRUE(is_rotation(T.linear(), 1e-12));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::motion_model_test

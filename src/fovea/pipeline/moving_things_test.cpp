@@ -7,8 +7,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::moving_things_test {
 
 /// What a standing LiDAR sees: a wall all around at 20 m, and a box face at x = `thing` (0: none),
 /// 2 m wide.
@@ -164,5 +163,4 @@ TEST(MovingThings, OptionsAreChecked) {
   EXPECT_THROW(options.validate(), ConfigError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::moving_things_test

@@ -5,8 +5,7 @@
 
 #include <limits>
 
-namespace fovea {
-namespace {
+namespace fovea::navigation_check_test {
 
 constexpr TimeNs kTenth = kNsPerSecond / 10;
 constexpr int kFrames = 100;
@@ -104,5 +103,4 @@ TEST(NavigationCheckWithout, SaysNothing) {
   EXPECT_FALSE(check.measurement(0, 0));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::navigation_check_test

@@ -8,8 +8,7 @@
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/mapper_test_support.h"
 
-namespace fovea {
-namespace {
+namespace fovea::recolor_test {
 
 /// A street that is mapped once.
 class Recolor : public testing::Test {
@@ -126,5 +125,4 @@ TEST_F(Recolor, TellsOfImagesThatAreNotToBeHad) {
   EXPECT_EQ(figures.images_left_out, 1);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::recolor_test

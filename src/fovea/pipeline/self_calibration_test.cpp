@@ -4,8 +4,7 @@
 
 #include "fovea/base/angle.h"
 
-namespace fovea {
-namespace {
+namespace fovea::self_calibration_test {
 
 DriveInfo drive_of(int frames) {
   DriveInfo drive;
@@ -54,5 +53,4 @@ TEST(SelfCalibration, CorrectsEachCameraByItsOwnEstimate) {
   EXPECT_EQ(right.cameras[1].image_delay, 0.02);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::self_calibration_test

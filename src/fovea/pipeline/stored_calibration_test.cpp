@@ -4,8 +4,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::stored_calibration_test {
 
 std::unique_ptr<FrameSource> two_cameras() {
   class TwoCameras : public FrameSource {
@@ -64,5 +63,4 @@ TEST(StoredCalibration, SaysWhatIsWrong) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::stored_calibration_test

@@ -15,8 +15,7 @@
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/sensor/image_decode.h"
 
-namespace fovea {
-namespace {
+namespace fovea::render_drive_test {
 
 namespace fs = std::filesystem;
 
@@ -63,7 +62,7 @@ TEST_F(RenderDrive, IsADriveThatIsReadAgainAndShowsTheScene) {
   ASSERT_EQ(drive->info().calibration.cameras.size(), 1u);
   const Camera& camera = drive->info().calibration.cameras.front();
   EXPECT_TRUE(drive->info().sweep_compensated);
-  const Scene scene = street_scene();
+  const BoxScene scene = street_scene();
   for (int i = 0; i < 3; ++i) {
     const RigidMotion& T_local_lidar = wanted.T_local_lidar[std::size_t(i)];
     const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
@@ -201,5 +200,4 @@ TEST_F(RenderDrive, TheWindowFollows) {
   EXPECT_EQ(window.around({0, 900, 0}).size(), 0u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::render_drive_test

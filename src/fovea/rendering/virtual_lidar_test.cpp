@@ -8,8 +8,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/simulation/lidar_model.h"
 
-namespace fovea {
-namespace {
+namespace fovea::virtual_lidar_test {
 
 /// Samples of a rectangle, `spacing` apart.
 void add_rectangle(const Eigen::Vector3f& corner, const Eigen::Vector3f& a,
@@ -109,5 +108,4 @@ TEST(VirtualLidar, IsTheSameAtAnyNumberOfThreads) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::virtual_lidar_test

@@ -6,8 +6,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/rosbag/ros_messages.h"
 
-namespace fovea {
-namespace {
+namespace fovea::cdr_reader_test {
 
 TEST(CdrReader, ReadsNumbersTextsAndSequencesOfEitherByteOrder) {
   for (const bool big_endian : {false, true}) {
@@ -114,5 +113,4 @@ TEST(RosMessages, EachFieldIsWhereItsInterfaceHasIt) {
   EXPECT_FALSE(imu(0.1, 0).orientation);  // as many drivers do
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::cdr_reader_test

@@ -1,10 +1,10 @@
 #include "fovea/rosbag/conversion_plan.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "fovea/base/errors.h"
 #include "fovea/rosbag/navigation_topics.h"
+#include "fovea/rosbag/only_topic.h"
 
 namespace fovea {
 namespace {
@@ -23,20 +23,6 @@ namespace {
   }
   throw InputError("the recording has no point clouds", std::string(ros::kPointCloud),
                    "record the LiDAR's topic, not its packets");
-}
-
-std::string lidar_topic(const BagSurvey& survey, const std::string& wanted) {
-  if (survey.clouds.empty()) throw_no_clouds(survey);
-  if (!wanted.empty()) {
-    if (survey.clouds.contains(wanted)) return wanted;
-    throw InputError("there are no point clouds of this topic that can be read", wanted,
-                     "see 'ros2 bag info'");
-  }
-  if (survey.clouds.size() == 1) return survey.clouds.begin()->first;
-  std::vector<std::string> topics;
-  for (const auto& [name, cloud] : survey.clouds) topics.push_back(name);
-  throw InputError(fmt::format("there are {} topics of point clouds", topics.size()),
-                   fmt::format("{}", fmt::join(topics, ", ")), "choose by --lidar TOPIC");
 }
 
 /// InputError if the two have no time in common: they were stamped by different clocks.
@@ -77,7 +63,8 @@ void check_sensors(const BagSurvey& survey, const ConversionPlan& plan) {
 
 ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options) {
   ConversionPlan plan;
-  plan.lidar = lidar_topic(survey, options.lidar);
+  if (survey.clouds.empty()) throw_no_clouds(survey);
+  plan.lidar = only_topic(survey.clouds, options.lidar, "PointCloud2", "--lidar");
   const SensorTopic& lidar = survey.clouds.at(plan.lidar);
   plan.drive.sweep_compensated = options.sweep_compensated;
   plan.notes.push_back(

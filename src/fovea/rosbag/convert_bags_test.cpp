@@ -13,8 +13,7 @@
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/image_decode.h"
 
-namespace fovea {
-namespace {
+namespace fovea::convert_bags_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -229,5 +228,4 @@ TEST_F(ConvertBags, EndsWhereItIsToldToAndLeavesNothing) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::convert_bags_test

@@ -14,8 +14,7 @@
 #include "fovea/rosbag/bag.h"
 #include "fovea/rosbag/decompress.h"
 
-namespace fovea {
-namespace {
+namespace fovea::mcap_file_test {
 
 using namespace mcap;
 using testing::ElementsAre;
@@ -149,5 +148,4 @@ TEST_F(McapFile, SizesThatCannotBeAreNotBelieved) {
   EXPECT_THAT(error_of(file_of(claims)), HasSubstr("smaller chunks"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::mcap_file_test

@@ -1,36 +1,18 @@
 #include "fovea/rosbag/navigation_topics.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "fovea/base/errors.h"
+#include "fovea/rosbag/only_topic.h"
 
 namespace fovea {
 namespace {
 
-/// The one topic of a kind: that of the option, or the only one there is. Empty if there is none.
-template <class Messages>
-std::string only_topic(const std::map<std::string, Messages>& topics, const std::string& wanted,
-                       const char* kind, const char* option) {
-  if (!wanted.empty()) {
-    if (topics.contains(wanted)) return wanted;
-    throw InputError(fmt::format("there is no {} of this topic", kind), wanted,
-                     "see 'ros2 bag info'");
-  }
-  if (topics.size() > 1) {
-    std::vector<std::string> names;
-    names.reserve(topics.size());
-    for (const auto& [name, unused] : topics) names.push_back(name);
-    throw InputError(fmt::format("there are {} topics of {}", topics.size(), kind),
-                     fmt::format("{}", fmt::join(names, ", ")),
-                     fmt::format("choose by {} TOPIC", option));
-  }
-  return topics.empty() ? std::string() : topics.begin()->first;
-}
+constexpr const char* kNoImu = "none";  // of the option --imu
 
 class NavigationPlanner {
  public:
@@ -76,7 +58,7 @@ class NavigationPlanner {
       source = implied;
     };
     imply(options_.fix, NavigationSource::kGnss, "--fix");
-    imply(options_.imu, NavigationSource::kGnss, "--imu");
+    if (options_.imu != kNoImu) imply(options_.imu, NavigationSource::kGnss, "--imu");
     imply(options_.odometry, NavigationSource::kOdometry, "--odometry");
     imply(options_.world, NavigationSource::kTf, "--world");
     return source;
@@ -162,7 +144,7 @@ class NavigationPlanner {
   }
 
   void take_inertia() {
-    if (options_.imu == "none") return;
+    if (options_.imu == kNoImu) return;
     const std::string topic = only_topic(survey_.imus, options_.imu, "Imu", "--imu");
     if (topic.empty()) return;
     const std::vector<ros::Imu>& imus = survey_.imus.at(topic);

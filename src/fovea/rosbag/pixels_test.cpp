@@ -4,8 +4,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pixels_test {
 
 ros::ImageMessage message_of(std::string_view encoding, std::uint32_t width, std::uint32_t height,
                              std::uint32_t step, const std::string& data) {
@@ -89,5 +88,4 @@ TEST(Pixels, RefusesWhatItDoesNotKnowAndWhatIsTooShort) {
   EXPECT_THROW(image_of(message_of("mono8", 1, 0xffffffff, 0xffffffff, "1"), "t"), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pixels_test

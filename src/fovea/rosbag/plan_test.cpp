@@ -8,8 +8,7 @@
 #include "fovea/rosbag/camera_topics.h"
 #include "fovea/rosbag/navigation_topics.h"
 
-namespace fovea {
-namespace {
+namespace fovea::plan_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -272,6 +271,14 @@ TEST_F(PlanNavigation, WhatIsNamedIsWherePosesComeFrom) {
   EXPECT_THROW(plan(), ConfigError);
 }
 
+TEST_F(PlanNavigation, NoImuIsNoWordOnWherePosesComeFrom) {
+  options_.imu = "none";
+  add_odometry("/odom", "imu");
+  EXPECT_EQ(plan().poses.size(), 1u);
+  options_.poses = NavigationSource::kOdometry;
+  EXPECT_EQ(error(), "");
+}
+
 TEST_F(PlanNavigation, WhatTfDoesNotJoinIsTold) {
   add_fixes("/fix");
   add_imu("elsewhere");
@@ -328,5 +335,4 @@ TEST_F(PlanNavigation, RefusesWhatTheRecordingDoesNotHave) {
   EXPECT_THAT(error(), HasSubstr("/none"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::plan_test

@@ -7,8 +7,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::point_cloud_rows_test {
 
 constexpr TimeNs kStamp = 1'700'000'000 * kNsPerSecond + 250'000'000;
 
@@ -137,5 +136,4 @@ TEST(PointCloudRows, RefusesCloudsThatDoNotFitTheirData) {
   refused([](auto& c) { c.fields.erase(c.fields.begin() + 1); });
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::point_cloud_rows_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::transform_tree_test {
 
 QuaternionMotion some_motion(double seed) {
   return exp_se3((Twist() << 0.3 * seed, -0.2, 0.1, seed, 2, -0.5 * seed).finished());
@@ -100,5 +99,4 @@ TEST(TransformTree, ARingOfFramesEnds) {
   EXPECT_FALSE(tree.world_of("c"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::transform_tree_test

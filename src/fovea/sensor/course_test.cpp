@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace fovea {
-namespace {
+namespace fovea::course_test {
 
 TEST(Course, IsTheDirectionOfTheWay) {
   // Round a circle of 20 m at 8 m/s, ten places a second: the chord before and behind has the
@@ -50,5 +49,4 @@ TEST(Course, IsUnknownIfTheVehicleNeverMoves) {
   EXPECT_FALSE(course_headings({0, 3600 * kNsPerSecond}, {{0, 0, 0}, {1.5, 0, 0}}));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::course_test

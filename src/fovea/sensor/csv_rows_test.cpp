@@ -9,8 +9,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::csv_rows_test {
 
 using test::error_of;
 using testing::ElementsAre;
@@ -75,5 +74,4 @@ TEST_F(CsvRowsTest, TablesWithoutTheirColumnsAreErrors) {
   EXPECT_THAT(error("# nothing\n"), HasSubstr("the table is empty"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::csv_rows_test

@@ -9,8 +9,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/geometry/rectified_camera.h"
 
-namespace fovea {
-namespace {
+namespace fovea::drive_description_test {
 
 using test::error_of;
 using testing::AllOf;
@@ -197,5 +196,4 @@ TEST(DriveDescription, AFileThatCannotBeReadIsAnInputError) {
               HasSubstr("/nonexistent/drive.toml"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::drive_description_test

@@ -7,8 +7,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
 
-namespace fovea {
-namespace {
+namespace fovea::drive_truth_test {
 
 using test::edit;
 using test::error_of;
@@ -141,5 +140,4 @@ TEST_F(DriveTruthFiles, DamagedExposuresScansAndDepthsAreNamed) {
   EXPECT_THAT(error_of<InputError>([&] { truth.depth(3, 1); }), HasSubstr("16 bits"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::drive_truth_test

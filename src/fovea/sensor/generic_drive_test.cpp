@@ -12,8 +12,7 @@
 #include "../../../tests/peak_memory.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::generic_drive_test {
 
 using test::error_of;
 using test::pattern;
@@ -362,5 +361,4 @@ TEST_F(GenericNavigation, TablesThatAreNoneAreErrors) {
   EXPECT_THAT(notes(), ElementsAre(HasSubstr("3 lines of"), HasSubstr("no pose that can be used")));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::generic_drive_test

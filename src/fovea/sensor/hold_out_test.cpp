@@ -4,8 +4,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::hold_out_test {
 
 TEST(HoldOut, EmptyHoldsNothing) {
   EXPECT_TRUE(HoldOut().none());
@@ -46,5 +45,4 @@ TEST(HoldOut, RejectsEverythingElse) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::hold_out_test

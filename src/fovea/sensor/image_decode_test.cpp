@@ -8,8 +8,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::image_decode_test {
 
 using test::error_of;
 using test::pattern;
@@ -202,5 +201,4 @@ TEST_F(ImageDecode, OtherFilesAreNoImages) {
   EXPECT_TRUE(fails_with("truncated"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::image_decode_test

@@ -8,8 +8,7 @@
 
 #include "fovea/geometry/rectified_camera.h"
 
-namespace fovea {
-namespace {
+namespace fovea::image_rectifier_test {
 
 LensCamera barrel() {
   return {320,
@@ -117,5 +116,4 @@ TEST(ImageRectifier, RefusesAPinholeThatSeesMoreAndImagesOfAnotherSize) {
   EXPECT_FALSE(ImageRectifier::make(camera, pinhole));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::image_rectifier_test

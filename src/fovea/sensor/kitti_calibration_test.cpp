@@ -5,8 +5,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_calibration_test {
 
 using test::edit;
 using test::error_of;
@@ -168,5 +167,4 @@ TEST(KittiOdometryCalibration, ReadsProjectionsAndTr) {
       std::string::npos);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_calibration_test

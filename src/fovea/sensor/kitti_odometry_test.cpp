@@ -5,8 +5,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_odometry_test {
 
 using test::error_of;
 using test::fs::path;
@@ -105,5 +104,4 @@ TEST_F(KittiOdometry, BadSequences) {
   EXPECT_THAT(error_of<InputError>([&] { open_drive(sequence_, {}); }), HasSubstr("no scan"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_odometry_test

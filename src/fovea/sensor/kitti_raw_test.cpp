@@ -7,8 +7,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_raw_test {
 
 using test::edit;
 using test::error_of;
@@ -391,5 +390,4 @@ TEST_F(KittiRaw, UnusableCalibrationIsAnError) {
   EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("calib_velo_to_cam.txt"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_raw_test

@@ -10,8 +10,7 @@
 #include "fovea/sensor/motion_compensation.h"
 #include "fovea/sensor/oxts.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_sample_test {
 
 DriveOptions both_colour_cameras() {
   DriveOptions options;
@@ -134,5 +133,4 @@ TEST(KittiSample, CompensationMovesPointsByTheWayDriven) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_sample_test

@@ -7,8 +7,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_scan_test {
 
 using test::error_of;
 using test::TemporaryFolder;
@@ -59,5 +58,4 @@ TEST(KittiScan, DamagedFilesAreErrorsThatNameThem) {
   EXPECT_NE(message().find("a.bin"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_scan_test

@@ -8,8 +8,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::lidar_scan_test {
 
 using test::error_of;
 using test::write_text;
@@ -125,5 +124,4 @@ TEST_F(LidarScanTest, UnusableFilesAreErrorsThatNameThem) {
               HasSubstr("none.pcd"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::lidar_scan_test

@@ -8,8 +8,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::motion_compensation_test {
 
 constexpr double kPeriod = 0.1;
 
@@ -134,5 +133,4 @@ TEST(MotionCompensation, EmptyScanAndForeignOrigin) {
   EXPECT_THROW(compensate_sweep(scan, Twist::Zero(), kPeriod), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::motion_compensation_test

@@ -5,8 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace fovea {
-namespace {
+namespace fovea::navigation_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -69,5 +68,4 @@ TEST(Navigation, NeedsARecord) {
   EXPECT_THROW(make_navigation({}, RigidMotion::Identity(), 0), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::navigation_test

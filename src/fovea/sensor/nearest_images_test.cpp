@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::nearest_images_test {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -62,5 +61,4 @@ TEST(NearestImages, NoneBeyondTheToleranceAndNoneTwice) {
   EXPECT_THAT(match_nearest({}, {{0, 0}}, 0, 0.1).image_of_scan, IsEmpty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::nearest_images_test

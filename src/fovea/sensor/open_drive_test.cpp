@@ -4,8 +4,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/sensor/frame_source.h"
 
-namespace fovea {
-namespace {
+namespace fovea::open_drive_test {
 
 using test::error_of;
 using test::fs::path;
@@ -49,5 +48,4 @@ TEST(OpenDrive, AFolderWithoutADriveIsRefused) {
               HasSubstr("neither drive.toml"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::open_drive_test

@@ -6,8 +6,7 @@
 
 #include "../../../tests/kitti_test_drive.h"
 
-namespace fovea {
-namespace {
+namespace fovea::oxts_test {
 
 // 24 more fields, which are not used but must be there.
 const std::string kRest = " 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 4 7 4 4 0\n";
@@ -71,5 +70,4 @@ TEST(Oxts, AnglesTurnAsTheFormatSays) {
             1e-15);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::oxts_test

@@ -12,8 +12,7 @@
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/png_plain_decode.h"
 
-namespace fovea {
-namespace {
+namespace fovea::png_decode_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -291,5 +290,4 @@ TEST(PngDecode, SizesThatNoFileOfItsLengthHoldsAreRefusedBeforeMemoryIsTaken) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::png_decode_test

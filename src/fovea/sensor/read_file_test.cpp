@@ -5,8 +5,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::read_file_test {
 
 using test::TemporaryFolder;
 using test::write_text;
@@ -55,5 +54,4 @@ TEST(ReadFile, NumberedFilesOnly) {
   EXPECT_TRUE(list_numbered_files(folder.path() / "none", {".png"}).empty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::read_file_test

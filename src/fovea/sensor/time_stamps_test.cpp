@@ -5,8 +5,7 @@
 #include "../../../tests/kitti_test_drive.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::time_stamps_test {
 
 using test::TemporaryFolder;
 using test::write_text;
@@ -88,5 +87,4 @@ TEST(TimeStamps, NothingUsable) {
   EXPECT_THROW(read_date_times(folder.path() / "b.txt"), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::time_stamps_test

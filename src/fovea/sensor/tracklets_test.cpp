@@ -10,8 +10,7 @@
 #include "../../../tests/tracklet_writer.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::tracklets_test {
 
 class TrackletsTest : public testing::Test {
  protected:
@@ -77,5 +76,4 @@ TEST_F(TrackletsTest, AreFoundInTheDriveOrBesideIt) {
   EXPECT_EQ(find_tracklets(drive), drive / "tracklet_labels.xml");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::tracklets_test

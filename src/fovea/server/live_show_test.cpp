@@ -16,8 +16,7 @@
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
-namespace fovea {
-namespace {
+namespace fovea::live_show_test {
 
 using nlohmann::json;
 using ::testing::ElementsAre;
@@ -372,5 +371,4 @@ TEST_F(LiveRun, EndsInTheMiddle) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::live_show_test

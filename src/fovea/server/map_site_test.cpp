@@ -13,8 +13,7 @@
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
-namespace fovea {
-namespace {
+namespace fovea::map_site_test {
 
 using nlohmann::json;
 using ::testing::ElementsAre;
@@ -147,5 +146,4 @@ TEST_F(MapShowTest, EndsWhileItReads) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::map_site_test

@@ -13,8 +13,7 @@
 #include "fovea/server/web_client.h"
 #include "fovea/server/web_request.h"
 
-namespace fovea {
-namespace {
+namespace fovea::web_server_test {
 
 using ::testing::HasSubstr;
 
@@ -383,5 +382,4 @@ TEST_F(FeedServer, AFeedThatFailsClosesItsSocket) {
   EXPECT_TRUE(comes_true([&] { return server_->feeds_open() == 0; }));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::web_server_test

@@ -7,8 +7,7 @@
 #include "fovea/simulation/ray_caster.h"
 #include "fovea/simulation/test_scenery.h"
 
-namespace fovea {
-namespace {
+namespace fovea::building_test {
 
 using Eigen::Vector3d;
 
@@ -117,5 +116,4 @@ TEST(Building, TakesWhatItsPlanSays) {
   EXPECT_NE(triangles(plan).position, triangles(plan, 6).position);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::building_test

@@ -7,8 +7,7 @@
 #include "fovea/sensor/kitti_calibration.h"
 #include "fovea/simulation/drive_texts.h"
 
-namespace fovea {
-namespace {
+namespace fovea::calibration_round_trip_test {
 
 KittiCalibration read_back(const Rig& rig, const SimulationOptions& options) {
   const TemporaryFolder folder;
@@ -66,5 +65,4 @@ TEST(SimulatedCalibration, HasAllOfKittisCameras) {
   EXPECT_TRUE(cameras.contains(0) && cameras.contains(3) && cameras.contains(5));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::calibration_round_trip_test

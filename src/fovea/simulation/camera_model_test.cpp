@@ -11,8 +11,7 @@
 #include "fovea/simulation/test_scenery.h"
 #include "fovea/world/material.h"
 
-namespace fovea {
-namespace {
+namespace fovea::camera_model_test {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -367,5 +366,4 @@ TEST(Exposure, IsConstantWhereItsVariationIsOff) {
   for (double t = 0; t < 20; t += 0.7) EXPECT_EQ(exposure_at(options, int(t) % 4, t, 3), 1.5);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::camera_model_test

@@ -12,8 +12,7 @@
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/simulate.h"
 
-namespace fovea {
-namespace {
+namespace fovea::generic_simulation_writer_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -137,5 +136,4 @@ TEST(GenericSimulation, LensesThatDoNotReachTheCornersAreRefused) {
   EXPECT_THAT(config_error(options), AllOf(HasSubstr("corners"), HasSubstr("camera.lens_")));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::generic_simulation_writer_test

@@ -17,8 +17,7 @@
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/image_decode.h"
 
-namespace fovea {
-namespace {
+namespace fovea::kitti_drive_writer_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -245,5 +244,4 @@ TEST(KittiDriveWriter, KittisImagesArePackedFast) {
   EXPECT_LT(double(fs::file_size(file)), 0.8 * double(image.data.size()));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::kitti_drive_writer_test

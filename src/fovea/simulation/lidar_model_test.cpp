@@ -12,8 +12,7 @@
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_scenery.h"
 
-namespace fovea {
-namespace {
+namespace fovea::lidar_model_test {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -328,5 +327,4 @@ TEST(LidarModel, MovingThingsAreMetWhereTheyAreWhenTheBeamFires) {
   EXPECT_LE(high, 4 + 1e-5);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::lidar_model_test

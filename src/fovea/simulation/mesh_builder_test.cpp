@@ -4,8 +4,7 @@
 
 #include <numbers>
 
-namespace fovea {
-namespace {
+namespace fovea::mesh_builder_test {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -120,5 +119,4 @@ TEST(MeshBuilder, BallComesNearAnEllipsoid) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::mesh_builder_test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace fovea {
-namespace {
+namespace fovea::navigation_errors_test {
 
 constexpr double kPeriod = 0.1;
 
@@ -148,5 +147,4 @@ TEST(NavigationErrors, DoNotDependOnWhatFollows) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::navigation_errors_test

@@ -11,8 +11,7 @@
 #include "fovea/sensor/time_stamps.h"
 #include "fovea/simulation/drive_texts.h"
 
-namespace fovea {
-namespace {
+namespace fovea::navigation_model_test {
 
 /// A drive in a turning street, as its simulator makes it.
 struct Drive {
@@ -197,5 +196,4 @@ TEST(DriveTexts, StampsReadBack) {
   EXPECT_EQ(date_time_text(stamp_of(0, options) - 1), "2026-01-01 11:59:59.999999999");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::navigation_model_test

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace fovea {
-namespace {
+namespace fovea::path_test {
 
 Path arc(double curvature) {
   return Path([=](double s) { return curvature * s; }, [=](double) { return curvature; }, -20.3,
@@ -66,5 +65,4 @@ TEST(Path, KnowsItsRange) {
                std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::path_test

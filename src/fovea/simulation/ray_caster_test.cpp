@@ -9,8 +9,7 @@
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_scenery.h"
 
-namespace fovea {
-namespace {
+namespace fovea::ray_caster_test {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -300,5 +299,4 @@ TEST(RayCaster, ChunksThatComeBackAreTheSame) {
   EXPECT_GT(met, 140);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::ray_caster_test

@@ -12,8 +12,7 @@
 #include "fovea/simulation/vehicle_motion.h"
 #include "fovea/simulation/world_export.h"
 
-namespace fovea {
-namespace {
+namespace fovea::scenery_test {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -311,5 +310,4 @@ TEST(Traffic, NothingRunsIntoTheVehicle) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::scenery_test

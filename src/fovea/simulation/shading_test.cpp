@@ -8,8 +8,7 @@
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_scenery.h"
 
-namespace fovea {
-namespace {
+namespace fovea::shading_test {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -164,5 +163,4 @@ TEST(Shader, MirrorShowsWhatStandsThere) {
             1e-5f);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::shading_test

@@ -13,8 +13,7 @@
 #include "fovea/sensor/frame_source.h"
 #include "fovea/world/world_file.h"
 
-namespace fovea {
-namespace {
+namespace fovea::simulate_test {
 
 namespace fs = std::filesystem;
 using ::testing::IsEmpty;
@@ -235,5 +234,4 @@ TEST_P(SimulatedScene, GivesADrive) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::simulate_test

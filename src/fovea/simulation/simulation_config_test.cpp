@@ -8,8 +8,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::simulation_config_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -195,5 +194,4 @@ TEST(SimulationConfig, TheDocumentationListsEveryKeyWithItsDefault) {
   EXPECT_THAT(document.str(), HasSubstr("```toml\n" + to_toml(SimulationOptions{}) + "```"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::simulation_config_test

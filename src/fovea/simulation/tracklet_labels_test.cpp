@@ -13,8 +13,7 @@
 #include "fovea/simulation/test_scenery.h"
 #include "fovea/world/world_file.h"
 
-namespace fovea {
-namespace {
+namespace fovea::tracklet_labels_test {
 
 using Eigen::Vector3d;
 using ::testing::Contains;
@@ -264,5 +263,4 @@ TEST_P(LabelledDrive, MoversMoveAndTheOthersStand) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::tracklet_labels_test

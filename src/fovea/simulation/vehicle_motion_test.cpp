@@ -6,8 +6,7 @@
 
 #include "fovea/simulation/rig.h"
 
-namespace fovea {
-namespace {
+namespace fovea::vehicle_motion_test {
 
 Path bends(double swing) {
   return Path([=](double s) { return swing * std::sin(s / 18); },
@@ -163,5 +162,4 @@ TEST(Rig, IsArrangedLikeKittis) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::vehicle_motion_test

@@ -9,8 +9,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::lettering_test {
 
 const std::string kAll = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 const Eigen::Vector2f kBoard(0.6f, 0.8f);
@@ -125,5 +124,4 @@ TEST(Lettering, InkFadesIntoItsShare) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::lettering_test

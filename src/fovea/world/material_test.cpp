@@ -8,8 +8,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::material_test {
 
 using Eigen::Vector2f;
 using Eigen::Vector3f;
@@ -201,5 +200,4 @@ TEST(Srgb, IsTheStandards) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::material_test

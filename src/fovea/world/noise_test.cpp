@@ -6,8 +6,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::noise_test {
 
 Eigen::Vector2f random_place(Random& random, double half_width) {
   return {float(random.uniform(-half_width, half_width)),
@@ -147,5 +146,4 @@ TEST(Band, RepeatsExactlyFarFromItsBegin) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::noise_test

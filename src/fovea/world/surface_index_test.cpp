@@ -8,8 +8,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::surface_index_test {
 
 void add_triangle(TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                   const Eigen::Vector3d& c) {
@@ -125,5 +124,4 @@ TEST(SurfaceIndex, RefusesAnEmptyMesh) {
   EXPECT_THROW(SurfaceIndex{TriangleMesh{}}, std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::surface_index_test

@@ -8,8 +8,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::triangle_mesh_test {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -115,5 +114,4 @@ TEST(NearestOnTriangle, KnowsCornersEdgesAndInside) {
   EXPECT_LT((nearest({0.5, 0.25, 7}) - Vector3d(0.5, 0.25, 0)).norm(), 1e-15);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::triangle_mesh_test

@@ -9,8 +9,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 
-namespace fovea {
-namespace {
+namespace fovea::world_file_test {
 
 namespace fs = std::filesystem;
 
@@ -150,5 +149,4 @@ TEST(WorldFile, AMissingFolderIsAnOutputError) {
   EXPECT_THROW(write_world(small_world(), folder / "missing"), OutputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::world_file_test

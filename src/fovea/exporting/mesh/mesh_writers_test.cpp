@@ -13,8 +13,7 @@
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
 
-namespace fovea {
-namespace {
+namespace fovea::mesh_writers_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -183,5 +182,4 @@ TEST_F(MeshWriters, AFullDiskLeavesNoFile) {
   EXPECT_THAT(folder.names(), ElementsAre("map.fovea"));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::mesh_writers_test

@@ -4,8 +4,7 @@
 
 #include "fovea/exporting/mesh/mesh_lattice.h"
 
-namespace fovea {
-namespace {
+namespace fovea::seen_points_test {
 
 constexpr double kCell = 0.05;
 
@@ -60,5 +59,4 @@ TEST(SeenPoints, OnTheFarFaceOfABlockThePointIsInItsLastCell) {
             Eigen::Vector3i(kBlockCells - 1, 0, 0));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::seen_points_test

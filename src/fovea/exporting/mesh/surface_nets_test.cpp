@@ -6,8 +6,7 @@
 #include "fovea/exporting/mesh/mesh_test_support.h"
 #include "fovea/exporting/mesh/skirts.h"
 
-namespace fovea {
-namespace {
+namespace fovea::surface_nets_test {
 
 const Eigen::Vector3d kX = Eigen::Vector3d::UnitX(), kY = Eigen::Vector3d::UnitY(),
                       kZ = Eigen::Vector3d::UnitZ();
@@ -230,5 +229,4 @@ TEST(Skirts, HangWhereTheSurfaceLeavesTheBlock) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::surface_nets_test

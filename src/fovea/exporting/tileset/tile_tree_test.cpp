@@ -13,8 +13,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/exporting/tileset/node_points.h"
 
-namespace fovea {
-namespace {
+namespace fovea::tile_tree_test {
 
 void visit(const TileNode& node, const std::function<void(const TileNode&)>& f) {
   f(node);
@@ -168,5 +167,4 @@ TEST(TileTreeOf, RefusesWhatCannotBe) {
   EXPECT_THROW(make_tile_tree(tiles, 4, poses), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::tile_tree_test

@@ -14,8 +14,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/exporting/tileset/glb.h"
 
-namespace fovea {
-namespace {
+namespace fovea::tileset_writer_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -169,5 +168,4 @@ TEST_F(TilesetWriter, RefusesMapsThatSpanCountries) {
   EXPECT_THROW(write(), InputError);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::tileset_writer_test

@@ -9,8 +9,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::calibration_estimate_test {
 
 struct Drive {
   int frames = 20, edges = 100;  ///< a frame
@@ -233,5 +232,4 @@ TEST(CalibrationEstimate, CorrectsACamera) {
   EXPECT_NEAR(right.image_delay, 0.03, 1e-15);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::calibration_estimate_test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace fovea {
-namespace {
+namespace fovea::edge_profiles_test {
 
 Camera forward_camera() {
   Camera camera;
@@ -153,5 +152,4 @@ TEST(EdgeProfiles, KnowTheirPlace) {
   EXPECT_EQ(first.front().place[0], 55);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::edge_profiles_test

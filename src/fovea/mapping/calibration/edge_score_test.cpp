@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace fovea {
-namespace {
+namespace fovea::edge_score_test {
 
 /// An edge whose image lies at `place` pixels, a pixel wide.
 EdgeProfile profile_at(double place, float half_gap) {
@@ -74,5 +73,4 @@ TEST(EdgeScore, OfSeveralIsTheSum) {
   EXPECT_LT((all.gradient - sum.gradient).norm(), 1e-12);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::edge_score_test

@@ -6,8 +6,7 @@
 
 #include "fovea/base/angle.h"
 
-namespace fovea {
-namespace {
+namespace fovea::lidar_edges_test {
 
 constexpr double kStep = 0.17 * kDegree, kRing = 0.4 * kDegree;
 
@@ -109,5 +108,4 @@ TEST(LidarEdges, TheGroundHasNone) {
   EXPECT_EQ(find_lidar_edges(scan, forward_camera(), 40).size(), 0u);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::lidar_edges_test

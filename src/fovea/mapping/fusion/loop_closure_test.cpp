@@ -6,8 +6,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::loop_closure_test {
 
 /// Walls and poles that stand where the number of the place says, on flat ground, as a LiDAR at
 /// `T_place_lidar` has them.
@@ -83,5 +82,4 @@ TEST_F(LoopCloserTest, LooksNeitherAtWhatWasJustThereNorFarAway) {
   EXPECT_FALSE(closer_.find({}, {{1, again_, 500}}));
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::loop_closure_test

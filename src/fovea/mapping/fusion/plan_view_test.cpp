@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace fovea {
-namespace {
+namespace fovea::plan_view_test {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -32,5 +31,4 @@ TEST(PlanView, OfNothingCoversNothing) {
   EXPECT_THAT(PlanView({}).covered(Points{{0, 0, 0}}, RigidMotion::Identity(), 1), IsEmpty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::plan_view_test

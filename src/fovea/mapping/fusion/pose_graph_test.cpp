@@ -6,8 +6,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pose_graph_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -183,5 +182,4 @@ TEST(PoseGraph, RejectsNodesThatAreNotThere) {
   EXPECT_THROW(graph.add(AbsolutePose{3, {}, {}}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pose_graph_test

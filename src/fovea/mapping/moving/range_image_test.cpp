@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace fovea {
-namespace {
+namespace fovea::range_image_test {
 
 /// A scan of 64 rings in a round room of `radius` m with its floor 1.7 m below the sensor, and
 /// nearer returns where `nearer` has them (m; 0: none).
@@ -69,5 +68,4 @@ TEST(RangeImage, DirectionsWithoutReturnsAreUnknown) {
   EXPECT_EQ(RangeImage(scan).sight({10, 0, -0.5f}), Sight::kUnknown);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::range_image_test

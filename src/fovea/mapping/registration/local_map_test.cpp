@@ -12,8 +12,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
-namespace fovea {
-namespace {
+namespace fovea::local_map_test {
 
 using test::motion;
 
@@ -32,7 +31,7 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
   // 10 m a step: the origin moves, too.
   const auto pose = [](int i) { return motion(0, 0, 0.02 * i, 10.0 * i, -i, 0); };
   const auto scan = [&](int i, const RigidMotion& T) {
-    return fovea::scan(static_cast<std::uint64_t>(i), pose(9).inverse() * T);
+    return local_map_test::scan(static_cast<std::uint64_t>(i), pose(9).inverse() * T);
   };
   for (int i = 0; i < 10; ++i) whole.add(scan(i, pose(i)), pose(i));
   for (int i = 6; i < 10; ++i) resumed.add(scan(i, pose(i)), pose(i));
@@ -136,5 +135,4 @@ TEST(LocalMapOptions, ValidateNamesTheField) {
   expect_rejected([&](LocalMapOptions& o) { o.voxel = nan; }, "local_map.voxel");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::local_map_test

@@ -4,8 +4,7 @@
 
 #include "fovea/mapping/registration/test_scenes.h"
 
-namespace fovea {
-namespace {
+namespace fovea::normals_test {
 
 TEST(Normals, OfPlanesPointToTheSensor) {
   // Walls and floor of a corridor, away from their edges.
@@ -86,5 +85,4 @@ TEST(Normals, UndeterminedAreZero) {
   EXPECT_TRUE(estimate_normals({}, 10).empty());
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::normals_test

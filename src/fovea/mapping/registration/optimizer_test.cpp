@@ -4,8 +4,7 @@
 
 #include "fovea/mapping/registration/test_scenes.h"
 
-namespace fovea {
-namespace {
+namespace fovea::optimizer_test {
 
 const Eigen::Matrix3f kIdentity = Eigen::Matrix3f::Identity();
 
@@ -76,5 +75,4 @@ TEST(Optimizer, NoPairsNoStep) {
             1e-12);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::optimizer_test

@@ -10,8 +10,7 @@
 #include "fovea/mapping/registration/point_to_plane_factor.h"
 #include "fovea/mapping/registration/point_to_point_factor.h"
 
-namespace fovea {
-namespace {
+namespace fovea::pair_equations_test {
 
 Eigen::Vector3d random_vector(Random& random, double size) {
   return Eigen::Vector3d(random.uniform(-size, size), random.uniform(-size, size),
@@ -134,5 +133,4 @@ TEST(PointToPlaneFactor, SlidingInThePlaneCostsNothing) {
   EXPECT_NEAR(equations_at(pair, RigidMotion::Identity(), 0).error, 0.01, 1e-6);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::pair_equations_test

@@ -9,8 +9,7 @@
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
 
-namespace fovea {
-namespace {
+namespace fovea::registration_kitti_test {
 
 /// A raw scan, thinned to one point in 0.25 m: at full density rings pull towards no motion.
 std::vector<Eigen::Vector3f> thinned_scan(const std::filesystem::path& drive, int frame) {
@@ -96,5 +95,4 @@ TEST(RegistrationKitti, LocalMapCarriesTheDrive) {
   EXPECT_LT(iterations, 10u * kFrames);
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::registration_kitti_test

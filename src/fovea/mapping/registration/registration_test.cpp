@@ -10,8 +10,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
-namespace fovea {
-namespace {
+namespace fovea::registration_test {
 
 using test::motion;
 
@@ -266,5 +265,4 @@ TEST(RegistrationOptions, ValidateNamesTheField) {
                   "registration.degenerate_eigenvalue");
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::registration_test

@@ -8,8 +8,7 @@
 
 #include "fovea/base/random.h"
 
-namespace fovea {
-namespace {
+namespace fovea::voxel_queues_test {
 
 using Item = VoxelQueues::Item;
 
@@ -66,5 +65,4 @@ TEST(VoxelQueues, TheOldestOfAVoxelComesFirst) {
   }
 }
 
-}  // namespace
-}  // namespace fovea
+}  // namespace fovea::voxel_queues_test
