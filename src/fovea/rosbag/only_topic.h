@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <map>
-#include <ranges>
 #include <string>
+#include <vector>
 
 #include "fovea/base/errors.h"
 
@@ -23,8 +23,10 @@ std::string only_topic(const std::map<std::string, Messages>& topics, const std:
                      "see 'ros2 bag info'");
   }
   if (topics.size() > 1) {
+    std::vector<std::string> names;
+    for (const auto& [name, messages] : topics) names.push_back(name);
     throw InputError(fmt::format("there are {} topics of {}", topics.size(), kind),
-                     fmt::format("{}", fmt::join(std::views::keys(topics), ", ")),
+                     fmt::format("{}", fmt::join(names, ", ")),
                      fmt::format("choose by {} TOPIC", option));
   }
   return topics.empty() ? std::string() : topics.begin()->first;
