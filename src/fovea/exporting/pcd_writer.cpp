@@ -10,7 +10,7 @@
 namespace fovea {
 namespace {
 
-std::string header(const PointStream& points, const PointFileOptions& options) {
+std::string pcd_header(const PointStream& points, const PointFileOptions& options) {
   std::string text =
       fmt::format("# .PCD v0.7 - Point Cloud Data file format\n# fovea {}\n", version());
   const Georeference& georeference = points.georeference();
@@ -32,7 +32,7 @@ std::string header(const PointStream& points, const PointFileOptions& options) {
 
 ExportFigures write_pcd(const MapReader& map, const std::filesystem::path& path,
                         const PointFileOptions& options) {
-  return write_point_file(map, path, options, header,
+  return write_point_file(map, path, options, pcd_header,
                           [&](const ExportPoint& point, BytePacker& packer) {
                             pack_position(point, options.doubles(), packer);
                             packer.put(point.color.b);

@@ -10,7 +10,7 @@
 namespace fovea {
 namespace {
 
-std::string header(const PointStream& points, const PointFileOptions& options) {
+std::string ply_header(const PointStream& points, const PointFileOptions& options) {
   std::string text =
       fmt::format("ply\nformat binary_little_endian 1.0\ncomment fovea {}\n", version());
   const Georeference& georeference = points.georeference();
@@ -35,7 +35,7 @@ std::string header(const PointStream& points, const PointFileOptions& options) {
 
 ExportFigures write_ply(const MapReader& map, const std::filesystem::path& path,
                         const PointFileOptions& options) {
-  return write_point_file(map, path, options, header,
+  return write_point_file(map, path, options, ply_header,
                           [&](const ExportPoint& point, BytePacker& packer) {
                             pack_position(point, options.doubles(), packer);
                             packer.put(point.color.r);

@@ -3,10 +3,6 @@
 namespace fovea {
 namespace {
 
-/// Cosine between the mean normals of two sides of something thin; between two walls of a corner it
-/// is larger, and these are one surface.
-constexpr float kOpposite = -0.5f;
-
 /// Sums over surfels.
 struct Sums {
   float weight = 0, distance = 0;
@@ -28,8 +24,9 @@ struct CornerSums {
 ImplicitSurface::Sides sides_of(const CornerSums& corner) {
   const auto& [front, back] = corner.side;
   ImplicitSurface::Sides sides;
-  const bool opposite = back.weight > 0 && front.normal.dot(back.normal) <
-                                               kOpposite * front.normal.norm() * back.normal.norm();
+  const bool opposite =
+      back.weight > 0 && front.normal.dot(back.normal) <
+                             ImplicitSurface::kOpposite * front.normal.norm() * back.normal.norm();
   if (opposite) {
     sides.side = {front.side(), back.side()};
     sides.count = 2;

@@ -24,6 +24,9 @@ class ImplicitSurface {
  public:
   /// How far a surfel is felt, in cells.
   static constexpr int kReach = 3;
+  /// Cosine between the mean normals of two sides of something thin; between two walls of a corner
+  /// it is larger, and these are one surface.
+  static constexpr float kOpposite = -0.5f;
 
   explicit ImplicitSurface(const Surfels& surfels);
 

@@ -11,8 +11,6 @@
 namespace fovea {
 namespace {
 
-std::string uri(const std::string& tile) { return "tiles/" + tile + ".glb"; }
-
 /// The octree of blocks: the root is the one block of the coarsest level.
 class BlockTree {
  public:
@@ -63,7 +61,7 @@ void write_empty_tiles(const TileNode& node, const Boxes& boxes, const OutputFol
                        std::size_t& tiles) {
   if (node.box.isEmpty()) return;
   if (!boxes.contains(node.name)) {
-    folder.write(uri(node.name), empty_glb());
+    folder.write(tile_uri(node.name), empty_glb());
     ++tiles;
   }
   for (const TileNode& child : node.children) write_empty_tiles(child, boxes, folder, tiles);
@@ -103,14 +101,14 @@ MeshTilesetFigures write_mesh_tileset(const MapReader& map, const std::filesyste
       MeshGltf gltf(MeshCoding::kQuantised);
       const std::string binary = gltf.add(mesh.patch, blocks.corner(key), voxel);
       const std::string name = tree.name(level, key);
-      folder.write(uri(name), gltf.head() + binary);
+      folder.write(tile_uri(name), gltf.head() + binary);
       boxes[name] = box_of(mesh.patch, blocks.corner(key), voxel);
     });
   }
   figures.tiles = boxes.size();
   const TileNode root = node_of("r", tree.levels() - 1, blocks.points.voxel(), boxes);
   write_empty_tiles(root, boxes, folder, figures.tiles);
-  folder.write("tileset.json", tileset_json(root, points.georeference().origin(), uri));
+  folder.write("tileset.json", tileset_json(root, points.georeference().origin(), tile_uri));
   for (const auto& [name, bytes] : beside) folder.write(name, bytes);
   folder.commit();
   return figures;

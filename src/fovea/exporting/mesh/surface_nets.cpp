@@ -18,7 +18,6 @@ constexpr float kNearest = 1.5f, kColorReach = 2;
 /// Cosine between an edge along which the distance grows and the normal; of edges that lie in the
 /// surface, either sign is chance.
 constexpr float kAgainst = -0.3f;
-constexpr float kOpposite = -0.5f;  // as between the sides of ImplicitSurface
 
 /// Where an edge of the lattice crosses the surface.
 struct Crossing {
@@ -195,8 +194,9 @@ class NetMaker {
       sheets[sheet_of(slot)].add({1, place, crossing.normal});
     }
     auto& [front, back] = sheets;
-    const bool apart = back.count > 0 && front.normal.dot(back.normal) <
-                                             kOpposite * front.normal.norm() * back.normal.norm();
+    const bool apart =
+        back.count > 0 && front.normal.dot(back.normal) <
+                              ImplicitSurface::kOpposite * front.normal.norm() * back.normal.norm();
     if (!apart) front.add(back);
     std::array<std::uint32_t, 2> number{kNone, kNone};
     for (std::size_t i = 0; i < (apart ? 2u : 1u); ++i) {

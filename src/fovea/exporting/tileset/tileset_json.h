@@ -10,6 +10,9 @@
 
 namespace fovea {
 
+/// Where the writers put a tile's content, within the tileset's folder.
+inline std::string tile_uri(const std::string& tile) { return "tiles/" + tile + ".glb"; }
+
 /// tileset.json: tiles replace their parents, a tile's geometric error is the spacing that its
 /// points were thinned to.
 /// @param root    of a leaf without tiles: a tileset without content

@@ -12,8 +12,6 @@
 namespace fovea {
 namespace {
 
-std::string uri(const std::string& tile) { return "tiles/" + tile + ".glb"; }
-
 using Boxes = std::map<std::string, Eigen::AlignedBox3d>;
 
 /// Gives the nodes the boxes that their points have; those without any are gone.
@@ -49,7 +47,7 @@ TilesetFigures write_tileset(const MapReader& map, const std::filesystem::path& 
     if (node.is_leaf()) streamed += of_node.size();
     if (of_node.empty()) return;
     const Glb glb = make_glb(of_node, options.with_sources);
-    folder.write(uri(node.name), glb.bytes);
+    folder.write(tile_uri(node.name), glb.bytes);
     Eigen::AlignedBox3d& box = boxes[node.name];
     for (const ExportPoint& point : of_node) box.extend(point.position);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(glb.step);
@@ -57,7 +55,7 @@ TilesetFigures write_tileset(const MapReader& map, const std::filesystem::path& 
   });
   points.require_all(streamed);
   fit(root, boxes);
-  folder.write("tileset.json", tileset_json(root, points.georeference().origin(), uri));
+  folder.write("tileset.json", tileset_json(root, points.georeference().origin(), tile_uri));
   for (const auto& [name, bytes] : options.beside) folder.write(name, bytes);
   folder.commit();
   return {points.figures(), boxes.size()};
