@@ -15,7 +15,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files are little endian");
 
-constexpr const char* kRemedy = "write the world anew with 'fovea simulate'";
 constexpr std::size_t kVertexBytes = 3 * sizeof(double) + 3 * sizeof(float);
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t) + 2 + sizeof(std::uint32_t);
 constexpr std::size_t kBlock = 1 << 14;  // elements read or written at once
@@ -74,7 +73,7 @@ class MeshFile {
       : name_(file.string()), stream_(file, std::ios::binary) {
     std::error_code error;
     bytes_ = std::filesystem::file_size(file, error);
-    if (!stream_ || error) throw InputError("the mesh cannot be read", name_, kRemedy);
+    if (!stream_ || error) throw InputError("the mesh cannot be read", name_, kWorldRemedy);
   }
 
   TriangleMesh read() {
@@ -96,7 +95,7 @@ class MeshFile {
 
  private:
   [[noreturn]] void reject(const std::string& what) const {
-    throw InputError(what, name_, kRemedy);
+    throw InputError(what, name_, kWorldRemedy);
   }
 
   std::size_t read_count(std::string_view keyword) {

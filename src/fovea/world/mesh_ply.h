@@ -7,6 +7,9 @@
 
 namespace fovea {
 
+/// What errors about a damaged world advise.
+inline constexpr const char* kWorldRemedy = "write the world anew with 'fovea simulate'";
+
 /// Writes a mesh: vertices double x y z, float s t r; faces uchar-counted int vertex_indices,
 /// ushort material, uint surface. OutputError.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);

@@ -18,8 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr const char* kRemedy = "write the world anew with 'fovea simulate'";
-
 Json to_json(const Material& m) {
   return {{"name", m.name},
           {"pattern", to_string(m.pattern)},
@@ -80,7 +78,7 @@ std::uint32_t surface_id(const std::string& key) {
 void read_lists(const fs::path& file, World& world) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream || fs::is_directory(file)) {
-    throw InputError("the world's materials cannot be read", file.string(), kRemedy);
+    throw InputError("the world's materials cannot be read", file.string(), kWorldRemedy);
   }
   try {
     const Json json = Json::parse(stream);
@@ -92,7 +90,7 @@ void read_lists(const fs::path& file, World& world) {
     }
   } catch (const std::exception& error) {  // nlohmann's, parse_pattern's and ours
     throw InputError(fmt::format("the world's materials are damaged ({})", error.what()),
-                     file.string(), kRemedy);
+                     file.string(), kWorldRemedy);
   }
 }
 
@@ -120,7 +118,7 @@ World read_world(const fs::path& folder) {
   if (highest != used.end() && *highest >= world.materials.size()) {
     throw InputError(fmt::format("a triangle names material {}, world.json has {}", *highest,
                                  world.materials.size()),
-                     mesh_file.string(), kRemedy);
+                     mesh_file.string(), kWorldRemedy);
   }
   return world;
 }
