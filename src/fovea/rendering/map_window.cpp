@@ -18,7 +18,7 @@ namespace {
 /// Normals are those of points this far apart: what noise does to closer ones turns them about, m.
 constexpr float kNormalSpacing = 0.08f;
 constexpr int kNormalNeighbors = 12;
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kPointsPerTask = 1024;
 
 /// Of each point that of the nearest of some that are thinned.
 std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& position) {
@@ -27,7 +27,7 @@ std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& posi
       estimate_normals(thinned, kNormalNeighbors, kNormalSpacing);
   const PointIndex index(thinned, kNormalSpacing);
   std::vector<Eigen::Vector3f> result(position.size(), Eigen::Vector3f::Zero());
-  parallel_for(position.size(), kGrain, [&](std::size_t i) {
+  parallel_for(position.size(), kPointsPerTask, [&](std::size_t i) {
     const Neighbor nearest = index.nearest(position[i], 2 * kNormalSpacing);
     if (std::isfinite(nearest.squared_distance)) result[i] = normals[nearest.index];
   });

@@ -13,7 +13,7 @@ namespace fovea {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kDiscsPerTask = 16384;
 /// A beam that meets a disc at less than this (sine) is as good as parallel to it.
 constexpr float kGrazing = 0.03f;
 /// Discs this far behind the first one are of the same surface, m.
@@ -86,9 +86,9 @@ std::vector<Hit> find_hits(const MapSurfels& map, const RigidMotion& T_local_lid
                            const LidarPattern& pattern, const Beams& beams) {
   const Eigen::Isometry3f T_lidar_map =
       (T_local_lidar.inverse() * Eigen::Translation3d(map.origin)).cast<float>();
-  std::vector<std::vector<Hit>> chunks((map.size() + kGrain - 1) / kGrain);
-  parallel_chunks(map.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Hit>& hits = chunks[begin / kGrain];
+  std::vector<std::vector<Hit>> chunks((map.size() + kDiscsPerTask - 1) / kDiscsPerTask);
+  parallel_chunks(map.size(), kDiscsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<Hit>& hits = chunks[begin / kDiscsPerTask];
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f p = T_lidar_map * map.position[i];
       const float range = p.norm(), radius = map.spacing[i];
