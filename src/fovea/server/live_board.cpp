@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kJpegQuality = 75;
+constexpr int kLiveJpegQuality = 75;
 constexpr std::uint32_t kImageKind = 2;
 constexpr std::size_t kTilesMessage = 256 * 1024;  // bytes, about: newer things must not wait long
 constexpr int kNoFrame = -1;
@@ -70,7 +70,7 @@ std::shared_ptr<const std::string> LiveImage::message() {
     packer.put(kImageKind);
     packer.put(static_cast<std::int32_t>(frame_));
     packer.put(static_cast<std::uint32_t>(camera_));
-    const std::vector<std::uint8_t> jpeg = encode_jpeg(halved(image_), kJpegQuality);
+    const std::vector<std::uint8_t> jpeg = encode_jpeg(halved(image_), kLiveJpegQuality);
     bytes.append(jpeg.begin(), jpeg.end());
     message_ = std::make_shared<const std::string>(std::move(bytes));
     image_ = {};

@@ -15,7 +15,7 @@ using Bytes = std::shared_ptr<const std::string>;
 
 constexpr std::string_view kTiles = "tiles/", kTileEnding = ".glb";
 constexpr const char* kJson = "application/json";
-constexpr int kJpegQuality = 90;
+constexpr int kPhotographJpegQuality = 90;
 
 Bytes bytes(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
@@ -89,7 +89,7 @@ WebResponse DriveImages::response(std::string_view path) const {
   const std::vector<Camera>& cameras = info().calibration.cameras;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (cameras[i].index != *camera || of_drive->images[i].empty()) continue;
-    const std::vector<std::uint8_t> jpeg = encode_jpeg(of_drive->images[i], kJpegQuality);
+    const std::vector<std::uint8_t> jpeg = encode_jpeg(of_drive->images[i], kPhotographJpegQuality);
     return {200, "image/jpeg", bytes(std::string(jpeg.begin(), jpeg.end()))};
   }
   return not_found();
