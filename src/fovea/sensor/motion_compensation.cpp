@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fovea/base/parallel.h"
+#include "fovea/base/quick_angle.h"
 
 namespace fovea {
 namespace {
@@ -61,7 +62,7 @@ void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double peri
   parallel_for(scan_lidar.size(), kGrain, [&](std::size_t i) {
     Eigen::Vector3f& p = scan_lidar.position[i];
     const double dt =
-        timed ? double(scan_lidar.time[i]) : time_per_radian * std::atan2(p.y(), p.x());
+        timed ? double(scan_lidar.time[i]) : time_per_radian * double(quick_atan2(p.y(), p.x()));
     Eigen::Vector3f* normal = scan_lidar.normal.empty() ? nullptr : &scan_lidar.normal[i];
     p = motion.move(p.cast<double>(), dt, normal).cast<float>();
   });
