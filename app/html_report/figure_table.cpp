@@ -45,6 +45,9 @@ const std::map<std::string, const char*>& explanations() {
       {"free_space_violations",
        "share of map points that stand over 20 cm in front of every return "
        "around their ray"},
+      {"free_space_violations_enclosed",
+       "those with returns above and below them, too, within a cone wider than the gaps between "
+       "rings"},
       {"free_space_points", "map points that a scored scan could test for that"},
       {"sharpness",
        "image gradient of the drawn map over the photograph's: 1 is as sharp, noise "

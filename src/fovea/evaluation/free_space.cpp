@@ -9,14 +9,16 @@
 namespace fovea {
 namespace {
 
-constexpr std::uint8_t kTestedBit = 1, kViolatingBit = 2;
+constexpr std::uint8_t kTestedBit = 1, kViolatingBit = 2, kEnclosedBit = 4;
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kConeRadians = static_cast<float>(FreeSpaceTest::kCone) * kPi / 180;
+constexpr float radians(double degrees) { return static_cast<float>(degrees) * kPi / 180; }
+constexpr float kConeRadians = radians(FreeSpaceTest::kCone);
+constexpr float kWideConeRadians = radians(FreeSpaceTest::kWideCone);
 
 /// The returns of a scan by direction: cells of azimuth and elevation, each as wide as the cone.
 class ReturnGrid {
  public:
-  enum class Verdict { kUnseen, kBehindReturn, kViolating };
+  enum class Verdict { kUnseen, kBehindReturn, kViolating, kEnclosed };
 
   explicit ReturnGrid(const PointCloud& scan_lidar) : first_(kRows * kColumns + 1, 0) {
     std::vector<std::uint32_t> cell(scan_lidar.size(), kNoCell);
@@ -39,29 +41,15 @@ class ReturnGrid {
     }
   }
 
-  /// Whether a point at `range` along `ray` stands in front of every return near its ray.
+  /// Whether a point at `range` along `ray` stands in front of every return near its ray, and if
+  /// so, whether among returns all round.
   Verdict judge(const Eigen::Vector3f& ray, float range) const {
-    const float chord = 2 * std::sin(kConeRadians / 2);
-    const float elevation = elevation_of(ray), azimuth = azimuth_of(ray);
-    // Towards the poles the cone spans ever more azimuth: asin(sin(cone) / cos(elevation)), and all
-    // of it where the pole is inside.
-    const float spread = std::sin(kConeRadians) / std::cos(elevation);
-    const float half_width = spread < 1 && spread > 0 ? std::asin(spread) : kPi;
-    const int left = column_of(azimuth - half_width);
-    const int columns = std::min(column_of(azimuth + half_width) - left + 1, kColumns);
-    const int low = row_of(elevation - kConeRadians), high = row_of(elevation + kConeRadians);
-    Verdict verdict = Verdict::kUnseen;
-    for (int row = low; row <= high; ++row) {
-      for (int column = left; column < left + columns; ++column) {
-        const int cell = row * kColumns + wrap(column);
-        for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
-          if ((returns_[k].ray - ray).squaredNorm() > chord * chord) continue;
-          if (returns_[k].range <= range + FreeSpaceTest::kInFront) return Verdict::kBehindReturn;
-          verdict = Verdict::kViolating;
-        }
-      }
-    }
-    return verdict;
+    const Surroundings near = look_around(ray, range, kConeRadians);
+    if (near.any_before) return Verdict::kBehindReturn;
+    if (!near.above && !near.below) return Verdict::kUnseen;
+    const Surroundings wide = look_around(ray, range, kWideConeRadians);
+    const bool enclosed = !wide.any_before && wide.above && wide.below;
+    return enclosed ? Verdict::kEnclosed : Verdict::kViolating;
   }
 
  private:
@@ -87,9 +75,61 @@ class ReturnGrid {
     Eigen::Vector3f ray;  // unit
     float range;
   };
+  struct Surroundings {
+    bool any_before = false;            // a return that the point is not far enough in front of
+    bool above = false, below = false;  // returns on these sides of it, if there is none before
+  };
+  Surroundings look_around(const Eigen::Vector3f& ray, float range, float cone) const {
+    const float chord = 2 * std::sin(cone / 2);
+    const float elevation = elevation_of(ray), azimuth = azimuth_of(ray);
+    // Towards the poles the cone spans ever more azimuth: asin(sin(cone) / cos(elevation)), and all
+    // of it where the pole is inside.
+    const float spread = std::sin(cone) / std::cos(elevation);
+    const float half_width = spread < 1 && spread > 0 ? std::asin(spread) : kPi;
+    const int left = column_of(azimuth - half_width);
+    const int columns = std::min(column_of(azimuth + half_width) - left + 1, kColumns);
+    const int low = row_of(elevation - cone), high = row_of(elevation + cone);
+    Surroundings found;
+    for (int row = low; row <= high; ++row) {
+      for (int column = left; column < left + columns; ++column) {
+        const int cell = row * kColumns + wrap(column);
+        for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
+          const Return& near = returns_[k];
+          if ((near.ray - ray).squaredNorm() > chord * chord) continue;
+          found.above |= near.ray.z() >= ray.z();
+          found.below |= near.ray.z() <= ray.z();
+          if (near.range <= range + FreeSpaceTest::kInFront) {
+            found.any_before = true;
+            return found;
+          }
+        }
+      }
+    }
+    return found;
+  }
+
   std::vector<std::uint32_t> first_;  // of each cell in returns_
   std::vector<Return> returns_;
 };
+
+double share_of(std::size_t part, std::size_t all) {
+  if (all == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(part) / static_cast<double>(all);
+}
+
+std::uint8_t bits_of(ReturnGrid::Verdict verdict) {
+  switch (verdict) {
+    case ReturnGrid::Verdict::kUnseen:
+      return 0;
+    case ReturnGrid::Verdict::kBehindReturn:
+      return kTestedBit;
+    case ReturnGrid::Verdict::kViolating:
+      return kTestedBit | kViolatingBit;
+    case ReturnGrid::Verdict::kEnclosed:
+      return kTestedBit | kViolatingBit | kEnclosedBit;
+  }
+  return 0;
+}
 
 bool in_any_view(const Eigen::Vector3f& p_lidar, const std::vector<Camera>& cameras) {
   for (const Camera& camera : cameras) {
@@ -117,13 +157,10 @@ void FreeSpaceTest::add_scan(const PointCloud& scan_lidar, const RigidMotion& T_
       if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
       // Other scans may be setting bits of the same point; bits are only ever set.
       std::atomic_ref<std::uint8_t> state(state_[i]);
-      if ((state.load(std::memory_order_relaxed) & kViolatingBit) != 0) continue;
+      if ((state.load(std::memory_order_relaxed) & kEnclosedBit) != 0) continue;
       if (!in_any_view(p_lidar, cameras)) continue;
       const ReturnGrid::Verdict verdict = returns.judge(p_lidar / range, range);
-      if (verdict == ReturnGrid::Verdict::kUnseen) continue;
-      const bool violating = verdict == ReturnGrid::Verdict::kViolating;
-      state.fetch_or(violating ? kTestedBit | kViolatingBit : kTestedBit,
-                     std::memory_order_relaxed);
+      state.fetch_or(bits_of(verdict), std::memory_order_relaxed);
     }
   }
 }
@@ -133,6 +170,7 @@ FreeSpaceTest::Result FreeSpaceTest::result() const {
   for (const std::uint8_t state : state_) {
     result.tested += (state & kTestedBit) != 0;
     result.violating += (state & kViolatingBit) != 0;
+    result.enclosed += (state & kEnclosedBit) != 0;
   }
   return result;
 }
@@ -143,9 +181,7 @@ std::vector<std::uint8_t> FreeSpaceTest::tested() const {
   return marks;
 }
 
-double FreeSpaceTest::Result::share() const {
-  if (tested == 0) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(violating) / static_cast<double>(tested);
-}
+double FreeSpaceTest::Result::share() const { return share_of(violating, tested); }
+double FreeSpaceTest::Result::enclosed_share() const { return share_of(enclosed, tested); }
 
 }  // namespace fovea

@@ -11,11 +11,14 @@
 namespace fovea {
 
 /// Gathers over scans which map points stand over 20 cm in front of EVERY return within 0.4 degrees
-/// of their ray.
+/// of their ray. Ground between two rings does so, too, where these lie farther apart: the next
+/// ring above ends behind it, the next below is not asked. Hence those points apart which
+/// stand as far in front of every return within 0.7 degrees, with returns above and below them.
 class FreeSpaceTest {
  public:
-  static constexpr double kCone = 0.4;     ///< degrees between a point's ray and a return's
-  static constexpr float kInFront = 0.2f;  ///< m
+  static constexpr double kCone = 0.4;      ///< degrees between a point's ray and a return's
+  static constexpr double kWideCone = 0.7;  ///< degrees; over the spacing of an HDL-64E's rings
+  static constexpr float kInFront = 0.2f;   ///< m
 
   /// @param map  must outlive the test
   explicit FreeSpaceTest(const ColouredPoints& map);
@@ -30,7 +33,10 @@ class FreeSpaceTest {
   struct Result {
     std::size_t tested = 0;     ///< map points that any scan tested
     std::size_t violating = 0;  ///< of these, points that violate in any scan
-    double share() const;       ///< NaN if none was tested
+    std::size_t enclosed =
+        0;                 ///< of these, points that in any scan violate among returns all round
+    double share() const;  ///< of violating points; NaN if none was tested
+    double enclosed_share() const;
   };
   Result result() const;
   /// Marks (1) the map points that any scan tested.

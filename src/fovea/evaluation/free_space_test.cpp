@@ -74,6 +74,37 @@ TEST(FreeSpace, PointsWithoutAReturnNearTheirRayAreNotTested) {
   EXPECT_TRUE(std::isnan(test_points({from_polar(0.1, 0, 8)}, returns).share()));
 }
 
+TEST(FreeSpace, OnlyReturnsAboveAndBelowEncloseAViolation) {
+  const auto enclosed = [](const std::vector<Eigen::Vector3f>& returns) {
+    const FreeSpaceTest::Result result = test_points({from_polar(0, 0, 8)}, returns);
+    EXPECT_EQ(result.violating, 1u);
+    return result.enclosed;
+  };
+  const Eigen::Vector3f above = from_polar(0, 0.3 * kDegree, 10);
+  EXPECT_EQ(enclosed({above, from_polar(0, -0.6 * kDegree, 10)}), 1u);
+  EXPECT_EQ(enclosed({above}), 0u);
+  EXPECT_EQ(enclosed({above, from_polar(0, -0.8 * kDegree, 10)}), 0u);
+  EXPECT_EQ(enclosed({above, from_polar(0, -0.6 * kDegree, 8)}), 0u);  // what it is part of
+}
+
+TEST(FreeSpace, GroundBetweenTwoRingsIsNotEnclosed) {
+  // Rings 0.65 degrees apart, as where an HDL-64E's two blocks of lasers meet.
+  constexpr double kHeight = 1.73;  // m
+  const auto on_ground = [&](double azimuth, double below) {
+    return from_polar(azimuth, -below, kHeight / std::sin(below));
+  };
+  std::vector<Eigen::Vector3f> returns, ground;
+  for (int i = -40; i <= 40; ++i) {
+    const double azimuth = 0.17 * i * kDegree;
+    for (const double below : {7.65, 8.3}) returns.push_back(on_ground(azimuth, below * kDegree));
+    ground.push_back(on_ground(azimuth / 2, 7.88 * kDegree));
+  }
+  const FreeSpaceTest::Result result = test_points(ground, returns);
+  EXPECT_EQ(result.tested, ground.size());
+  EXPECT_GT(result.share(), 0.9);
+  EXPECT_EQ(result.enclosed_share(), 0);
+}
+
 TEST(FreeSpace, BeamsWithoutReturnSayNothing) {
   EXPECT_EQ(test_points({{8, 0, 0}}, {{0, 0, 0}}).tested, 0u);
 }
@@ -84,6 +115,19 @@ TEST(FreeSpace, OnlyPointsInRangeAndInViewAreTested) {
       test_points({{2.9f, 0, 0}, {3.1f, 0, 0}, {14.9f, 0, 0}, {15.1f, 0, 0}, {-8, 0, 0}}, returns);
   EXPECT_EQ(result.tested, 2u);
   EXPECT_EQ(result.violating, 2u);
+}
+
+TEST(FreeSpace, AViolationThatALaterScanEnclosesIsEnclosed) {
+  const ColouredPoints map = map_of({{8, 0, 0}});
+  FreeSpaceTest test(map);
+  PointCloud above, around;
+  above.position = {from_polar(0, 0.2 * kDegree, 20)};
+  around.position = {from_polar(0, 0.2 * kDegree, 20), from_polar(0, -0.2 * kDegree, 20)};
+  for (const auto& [scan, enclosed] : {std::pair(&above, 0u), std::pair(&around, 1u)}) {
+    test.add_scan(*scan, RigidMotion::Identity(), {forward_camera()});
+    EXPECT_EQ(test.result().violating, 1u);
+    EXPECT_EQ(test.result().enclosed, enclosed);
+  }
 }
 
 TEST(FreeSpace, AViolationInAnyScanCountsOnce) {
@@ -119,23 +163,31 @@ TEST(FreeSpace, AgreesWithTheDefinitionInEveryDirection) {
     std::vector<Eigen::Vector3f> points, returns;
     for (int i = 0; i < 1500; ++i) points.push_back(random_point(3.5, 14));
     for (int i = 0; i < 3000; ++i) returns.push_back(random_point(3, 30));
-    std::size_t tested = 0, violating = 0;
+    std::size_t tested = 0, violating = 0, enclosed = 0;
     for (const Eigen::Vector3f& p : points) {
-      bool seen = false, in_front_of_all = true;
+      bool seen = false, in_front_of_all = true, in_front_of_wide = true;
+      bool above = false, below = false;
       for (const Eigen::Vector3f& q : returns) {
         const double angle = std::atan2(p.cast<double>().cross(q.cast<double>()).norm(),
                                         p.cast<double>().dot(q.cast<double>()));
+        const bool in_front = q.norm() > p.norm() + 0.2f;
+        if (angle > 0.7 * kDegree) continue;
+        in_front_of_wide &= in_front;
+        (q.z() / q.norm() > p.z() / p.norm() ? above : below) = true;
         if (angle > 0.4 * kDegree) continue;
         seen = true;
-        in_front_of_all &= q.norm() > p.norm() + 0.2f;
+        in_front_of_all &= in_front;
       }
       tested += seen;
       violating += seen && in_front_of_all;
+      enclosed += seen && in_front_of_wide && above && below;
     }
     const FreeSpaceTest::Result result = test_points(points, returns, camera);
     EXPECT_GT(tested, 500u);
     EXPECT_EQ(result.tested, tested);
     EXPECT_EQ(result.violating, violating);
+    EXPECT_GT(enclosed, 20u);
+    EXPECT_EQ(result.enclosed, enclosed);
   }
 }
 

@@ -155,6 +155,7 @@ std::string to_json(const EvaluationReport& report) {
   put_rules(json["by_rule"], report.by_rule);
   put_moving(json["without_moving"], report.without_moving);
   if (!report.blocks.empty()) put_blocks(json["blocks"], report);
+  json["free_space_violations_enclosed"] = report.free_space.enclosed_share();
   json["free_space_points"] = report.free_space.tested;
   json["sharpness_pixels"] = report.gradients.pixels;
   json["map_points"] = report.map_points;
@@ -222,7 +223,8 @@ std::string to_text(const EvaluationReport& report) {
   row("coverage 5 cm", number(f.coverage_5cm, 3));
   row("coverage 20 cm", number(f.coverage_20cm, 3));
   row("free-space violations", number(report.free_space.share(), 4),
-      fmt::format("of {} map points", report.free_space.tested));
+      fmt::format("of {} map points; among returns all round {:.4f}", report.free_space.tested,
+                  report.free_space.enclosed_share()));
   row("sharpness", number(report.gradients.sharpness(), 3),
       fmt::format("over {} pixels; detail {:.3f}", report.gradients.pixels,
                   report.gradients.detail()));

@@ -14,7 +14,7 @@ EvaluationReport some_report() {
   report.cameras = {2, 3};
   report.figures = summarize({{0.1f, 0.3f}, {10, 30}, {5, 7}});
   report.paper_like = summarize({{0.0f, 0.2f}, {100, 200}, {50, 60}});
-  report.free_space = {8, 2};
+  report.free_space = {8, 2, 1};
   report.gradients = {100, 3, 4};
   report.density_per_m2 = 1234.5;
   report.map_points = 20;
@@ -30,21 +30,23 @@ TEST(Report, HasTheKeysOfTheContract) {
   EXPECT_EQ(json["protocol"], "held-out");
   EXPECT_EQ(json["cameras"], (std::vector<int>{2, 3}));
   EXPECT_EQ(json["points"], 2);
-  for (const auto& [key, value] : std::map<std::string, double>{{"me_mean", 0.2},
-                                                                {"me_std", 0.1},
-                                                                {"te_mean", 20},
-                                                                {"te_std", 10},
-                                                                {"te_median", 20},
-                                                                {"te_within_20", 0.5},
-                                                                {"te_gain_mean", 6},
-                                                                {"te_gain_within_20", 1},
-                                                                {"free_space_violations", 0.25},
-                                                                {"sharpness", 0.75},
-                                                                {"mtme", 5},
-                                                                {"coverage_5cm", 0},
-                                                                {"coverage_20cm", 0.5},
-                                                                {"density_per_m2", 1234.5},
-                                                                {"te_percent", 2000 / 255.0}}) {
+  for (const auto& [key, value] :
+       std::map<std::string, double>{{"me_mean", 0.2},
+                                     {"me_std", 0.1},
+                                     {"te_mean", 20},
+                                     {"te_std", 10},
+                                     {"te_median", 20},
+                                     {"te_within_20", 0.5},
+                                     {"te_gain_mean", 6},
+                                     {"te_gain_within_20", 1},
+                                     {"free_space_violations", 0.25},
+                                     {"free_space_violations_enclosed", 0.125},
+                                     {"sharpness", 0.75},
+                                     {"mtme", 5},
+                                     {"coverage_5cm", 0},
+                                     {"coverage_20cm", 0.5},
+                                     {"density_per_m2", 1234.5},
+                                     {"te_percent", 2000 / 255.0}}) {
     ASSERT_TRUE(json.contains(key)) << key;
     EXPECT_NEAR(json[key].get<double>(), value, 1e-6) << key;
   }
