@@ -103,7 +103,7 @@ std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {
   for (std::uint32_t i = 0; i < n; ++i) {
     if (!(points_cam.incidence[i] > float(max_incidence))) kept.push_back(i);
   }
-  if (kept.size() < n) points_cam.keep(kept);
+  points_cam.keep(kept);
   return n - kept.size();
 }
 
