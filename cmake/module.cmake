@@ -4,8 +4,8 @@ target_link_libraries(fovea_precompiled PRIVATE Eigen3::Eigen fovea_compile_opti
 target_compile_options(fovea_precompiled PRIVATE ${FOVEA_MACHINE_OPTIONS})
 target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
 
-# Most of a test's or a command's compilation is the same headers' templates over again. The modules'
-# own files stay apart: their arithmetic shall not depend on what else is inlined.
+# Most of a test's or a command's compilation is the same headers' templates over again. Files of most
+# modules stay apart: their arithmetic shall not depend on what else is inlined.
 function(fovea_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${FOVEA_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 8)
   if(FOVEA_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -14,13 +14,40 @@ function(fovea_compile_together target)
   endif()
 endfunction()
 
-# fovea_module(NAME [DEPENDS modules...] [PUBLIC libs...] [PRIVATE libs...] [TEST_DEPENDS modules...])
+# Each test is one of ctest's, so that one says by name what failed and they share the processors. A
+# suite that prepares something for all of its tests (SetUpTestSuite) is one as a whole: it would
+# prepare it anew for each. COST: long ones begin first, or the last would run alone. PROPERTIES: what
+# each test has.
+function(fovea_discover_tests target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PROPERTIES" ${ARGN})
+  set(suites)
+  foreach(source IN LISTS ARG_SOURCES)
+    file(STRINGS ${source} prepares REGEX "static void SetUpTestSuite")
+    if(prepares)
+      set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+      file(STRINGS ${source} tests REGEX "^TEST_F\\(")
+      list(TRANSFORM tests REPLACE "^TEST_F\\(([A-Za-z0-9_]+),.*" "\\1")
+      list(APPEND suites ${tests})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES suites)
+  foreach(suite IN LISTS suites)
+    add_test(NAME ${suite} COMMAND ${target} --gtest_filter=${suite}.*)
+    set_tests_properties(${suite} PROPERTIES ${ARG_PROPERTIES} COST 100)
+  endforeach()
+  list(TRANSFORM suites APPEND .*)
+  list(JOIN suites : filter)
+  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 TEST_FILTER "-${filter}" PROPERTIES ${ARG_PROPERTIES})
+endfunction()
+
+# fovea_module(NAME [TOGETHER] [DEPENDS modules...] [PUBLIC libs...] [PRIVATE libs...] [TEST_DEPENDS modules...])
 #
 # Makes the static library fovea_NAME (alias fovea::NAME) of src/fovea/NAME, and, from the
-# *_test.cpp files beside the sources, the test program NAME_tests. TEST_DEPENDS: what only the tests
-# include, such as the reader of what the module writes.
+# *_test.cpp files beside the sources, the test program NAME_tests. TOGETHER: what is computed there
+# makes neither a map nor a figure, so its files may be compiled together. TEST_DEPENDS: what only the
+# tests include, such as the reader of what the module writes.
 function(fovea_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "TOGETHER" "" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
   set(root ${PROJECT_SOURCE_DIR}/src/fovea/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/*.cpp)
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${root}/*_test.cpp)
@@ -37,6 +64,9 @@ function(fovea_module name)
   # Public: Eigen's alignment depends on it, so a user of the library must compile alike.
   target_compile_options(fovea_${name} PUBLIC ${FOVEA_MACHINE_OPTIONS})
   target_compile_features(fovea_${name} PUBLIC cxx_std_20)
+  if(ARG_TOGETHER)
+    fovea_compile_together(fovea_${name})
+  endif()
   target_precompile_headers(fovea_${name} REUSE_FROM fovea_precompiled)
   set_property(GLOBAL APPEND PROPERTY FOVEA_MODULES fovea_${name})
 
@@ -49,6 +79,6 @@ function(fovea_module name)
     target_precompile_headers(${name}_tests REUSE_FROM fovea_precompiled)
     target_compile_definitions(${name}_tests PRIVATE
                                FOVEA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    gtest_discover_tests(${name}_tests DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    fovea_discover_tests(${name}_tests SOURCES ${tests} PROPERTIES TIMEOUT 600)
   endif()
 endfunction()

@@ -279,8 +279,8 @@ TEST(Evaluate, NothingToScoreIsAnError) {
 }
 
 TEST(Evaluate, TheReportDoesNotDependOnTheNumberOfThreads) {
-  const WallDrive drive(20);
-  const ScoredMap map = wall_map(WallScene::map(0.02, 0.3), 20);
+  const WallDrive drive(9);
+  const ScoredMap map = wall_map(WallScene::map(0.05, 0.3), 9);
   ProtocolOptions options;
   options.protocol = Protocol::kInSample;
   std::vector<std::string> reports;

@@ -30,6 +30,7 @@ class MapDrive : public testing::Test {
     job.output = folder_ / "out.fovea";
     job.hold_out = HoldOut::parse("8:2");
     job.options.fusion.submap_duration = 0.25;  // several submaps, which navigation moves
+    job.options.surface.spacing = 0.05;         // a sparse map is soon made
     job.force = true;
     return job;
   }

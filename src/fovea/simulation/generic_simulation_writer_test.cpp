@@ -18,7 +18,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A small drive with five cameras all round, each with a lens of another kind.
+/// A small drive with five cameras all round, each with a lens of another kind, whose calibration
+/// has a fault that its truth has not.
 SimulationOptions around() {
   SimulationOptions options = simulation_options(Scene::kStreet, "none");
   options.format = DriveFormat::kGeneric;
@@ -32,6 +33,7 @@ SimulationOptions around() {
   options.camera.rig = CameraRig::kSurround;
   options.camera.cameras = rig_cameras(CameraRig::kSurround);
   options.camera.cameras[2].lens = SimulatedLens::kRational;
+  options.camera.rotation_error = {0.01, 0.02, -0.01};
   return options;
 }
 
@@ -65,12 +67,24 @@ double mean_difference(const Image& a, const Image& b, int dx, int dy) {
   return sum / count;
 }
 
-TEST(GenericSimulation, TheReaderFindsTheRigAndWhatItRecorded) {
-  const TemporaryFolder folder;
-  SimulationOptions options = around();
-  options.camera.rotation_error = {0.01, 0.02, -0.01};  // a fault that no calibration has
-  EXPECT_EQ(simulate(options, folder / "d"), folder / "d");
-  const auto drive = open_all(folder / "d");
+/// The drive, written once.
+class GenericSimulation : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new TemporaryFolder;
+    EXPECT_EQ(simulate(around(), path()), path());
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+  static std::filesystem::path path() { return *scratch_ / "d"; }
+
+ private:
+  static TemporaryFolder* scratch_;
+};
+TemporaryFolder* GenericSimulation::scratch_ = nullptr;
+
+TEST_F(GenericSimulation, TheReaderFindsTheRigAndWhatItRecorded) {
+  const SimulationOptions options = around();
+  const auto drive = open_all(path());
   EXPECT_THAT(drive->info().notes, IsEmpty());
   const Rig rig = make_rig(options);
   for (std::size_t k = 0; k < 5; ++k) {
@@ -87,18 +101,16 @@ TEST(GenericSimulation, TheReaderFindsTheRigAndWhatItRecorded) {
   }
   const Frame frame = std::get<Frame>(drive->load(1));
   EXPECT_EQ(frame.stamp, stamp_of(1, options));
-  const std::vector<TrueReturn> returns = DriveTruth(folder / "d").returns(1);
+  const std::vector<TrueReturn> returns = DriveTruth(path()).returns(1);
   ASSERT_EQ(frame.scan.size(), returns.size());
   for (std::size_t i = 0; i < returns.size(); ++i) {
     EXPECT_EQ(frame.scan.time[i], returns[i].time);
   }
 }
 
-TEST(GenericSimulation, RectifiedImagesAreWhatAPerfectPinholeCameraSees) {
-  const TemporaryFolder folder;
-  simulate(around(), folder / "d");
-  const auto drive = open_all(folder / "d");
-  const DriveTruth truth(folder / "d");
+TEST_F(GenericSimulation, RectifiedImagesAreWhatAPerfectPinholeCameraSees) {
+  const auto drive = open_all(path());
+  const DriveTruth truth(path());
   const Frame frame = std::get<Frame>(drive->load(1));
   for (int camera = 0; camera < 5; ++camera) {
     const Image &image = frame.images[std::size_t(camera)],
@@ -119,7 +131,7 @@ TEST(GenericSimulation, RectifiedImagesAreWhatAPerfectPinholeCameraSees) {
   }
 }
 
-TEST(GenericSimulation, KittisFormatHasNeitherTurnedCamerasNorLenses) {
+TEST_F(GenericSimulation, KittisFormatHasNeitherTurnedCamerasNorLenses) {
   SimulationOptions options = around();
   options.format = DriveFormat::kKitti;
   EXPECT_THAT(config_error(options), AllOf(HasSubstr("KITTI"), HasSubstr("--format generic")));
@@ -130,7 +142,7 @@ TEST(GenericSimulation, KittisFormatHasNeitherTurnedCamerasNorLenses) {
   EXPECT_NO_THROW(options.validate());
 }
 
-TEST(GenericSimulation, LensesThatDoNotReachTheCornersAreRefused) {
+TEST_F(GenericSimulation, LensesThatDoNotReachTheCornersAreRefused) {
   SimulationOptions options = around();
   options.camera.focal = 30;
   EXPECT_THAT(config_error(options), AllOf(HasSubstr("corners"), HasSubstr("camera.lens_")));

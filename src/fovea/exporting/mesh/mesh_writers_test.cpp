@@ -85,8 +85,8 @@ TEST_F(MeshWriters, TheSameBytesAtAnyNumberOfThreads) {
   std::vector<std::string> single;
   for (const int threads : {1, 2, 4}) {
     const ThreadLimit limit(threads);
-    write_mesh_tileset(map, folder / "mesh", {.voxel = 0.1, .force = true});
-    write_mesh_file(map, folder / "mesh.glb", {.voxel = 0.1, .force = true});
+    write_mesh_tileset(map, folder / "mesh", {.voxel = 0.2, .force = true});
+    write_mesh_file(map, folder / "mesh.glb", {.voxel = 0.2, .force = true});
     tilesets.push_back(contents(folder / "mesh"));
     single.push_back(content(folder / "mesh.glb"));
   }
