@@ -13,6 +13,8 @@
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/printable.h"
+#include "fovea/recording/camera_name.h"
 #include "fovea/rosbag/convert_bags.h"
 
 namespace fovea::app {
@@ -34,15 +36,12 @@ const std::map<std::string, NavigationSource> kSources = {{"auto", NavigationSou
 /// NAME=TOPIC of each.
 std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
     const std::vector<std::string>& texts) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   std::vector<ConvertOptions::CameraTopic> cameras;
   std::set<std::string> names, topics;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    if (equals == std::string::npos || name.empty() ||
-        name.find_first_not_of(kPlain) != std::string::npos || !names.insert(name).second ||
+    if (equals == std::string::npos || !is_camera_name(name) || !names.insert(name).second ||
         !topics.insert(text.substr(equals + 1)).second) {
       throw ConfigError("this names no camera, or one or its topic twice", "--camera " + text,
                         "give NAME=TOPIC, the name of letters, digits, '_' and '-'");
@@ -50,14 +49,6 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
     cameras.push_back({name, text.substr(equals + 1)});
   }
   return cameras;
-}
-
-/// What a recording calls its topics must not steer a terminal.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
-  }
-  return text;
 }
 
 void run(const ConvertArguments& arguments) {

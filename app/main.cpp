@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/printable.h"
 #include "fovea/base/version.h"
 
 namespace {
@@ -18,8 +19,7 @@ constexpr int kWrongUsage = 2;
 void print_error(const char* message, const char* where_and_remedy = "") noexcept {
   std::fputs("fovea: error: ", stderr);
   for (const char* c = message; *c != '\0'; ++c) {
-    const bool controls = static_cast<unsigned char>(*c) < ' ' || *c == 0x7f;
-    std::fputc(controls ? ' ' : *c, stderr);
+    std::fputc(fovea::is_control(*c) ? ' ' : *c, stderr);
   }
   std::fputs(where_and_remedy, stderr);
   std::fputc('\n', stderr);

@@ -34,7 +34,21 @@ std::size_t coefficient_count(LensModel model) {
   return 0;
 }
 
-Lens::Lens(LensModel model, const std::array<double, 8>& coefficients)
+std::optional<LensCoefficients> lens_coefficients(LensModel model, std::span<const double> listed) {
+  constexpr double kMax = 1e6;
+  const std::size_t count = coefficient_count(model);
+  const std::size_t least = model == LensModel::kPlumbBob ? count - 1 : count;
+  if (listed.size() < least) return std::nullopt;
+  LensCoefficients coefficients{};
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    // Written so that NaN fails, too.
+    if (!(std::abs(listed[i]) <= (i < count ? kMax : 0))) return std::nullopt;
+    if (i < count) coefficients[i] = listed[i];
+  }
+  return coefficients;
+}
+
+Lens::Lens(LensModel model, const LensCoefficients& coefficients)
     : model_(model), k_(coefficients) {
   std::fill(k_.begin() + static_cast<std::ptrdiff_t>(coefficient_count(model)), k_.end(), 0.0);
   if (model_ != LensModel::kNone) limit_ = find_limit();
@@ -132,6 +146,12 @@ std::optional<Eigen::Vector3d> Lens::ray(const Eigen::Vector2d& distorted) const
     if (settled) return Eigen::Vector3d(p.x(), p.y(), 1);
   }
   return std::nullopt;
+}
+
+bool LensCamera::has_pinhole() const {
+  constexpr double kMax = 1e5;
+  return fx >= 1 && fx <= kMax && fy >= 1 && fy <= kMax && std::abs(cx) <= kMax &&
+         std::abs(cy) <= kMax;
 }
 
 std::optional<Eigen::Vector2d> LensCamera::project(const Eigen::Vector3d& ray_cam) const {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace fovea {
@@ -22,15 +23,21 @@ std::string_view to_string(LensModel model);
 /// How many coefficients a model has.
 std::size_t coefficient_count(LensModel model);
 
+using LensCoefficients = std::array<double, 8>;
+
+/// Coefficients as files list them: the plumb bob's k3 may be missing, zeros may follow. Empty if
+/// they are not the model's, or one is no lens's: over a million or not a number.
+std::optional<LensCoefficients> lens_coefficients(LensModel model, std::span<const double> listed);
+
 /// A lens of focal length 1.
 class Lens {
  public:
   Lens() = default;
   /// @param coefficients  in the model's order; those it has none of are 0
-  Lens(LensModel model, const std::array<double, 8>& coefficients);
+  Lens(LensModel model, const LensCoefficients& coefficients);
 
   LensModel model() const { return model_; }
-  const std::array<double, 8>& coefficients() const { return k_; }
+  const LensCoefficients& coefficients() const { return k_; }
 
   /// Where a ray meets the image plane; empty if it comes from the side or from behind, beyond
   /// where the model turns back on itself.
@@ -47,7 +54,7 @@ class Lens {
   double find_limit() const;
 
   LensModel model_ = LensModel::kNone;
-  std::array<double, 8> k_{};
+  LensCoefficients k_{};
   double limit_ = 0;  // radius up to which radial() grows; not of kNone
 };
 
@@ -57,6 +64,8 @@ struct LensCamera {
   double fx = 0, fy = 0, cx = 0, cy = 0;
   Lens lens;
 
+  /// Whether focal lengths and principal point are a camera's, in pixels: not so of NaN.
+  bool has_pinhole() const;
   /// Pixel of a ray, in the image or beside it; empty as Lens::distort.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& ray_cam) const;
   /// The ray of a pixel; empty as Lens::ray.

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "fovea/geometry/rectified_camera.h"
 
@@ -84,6 +86,35 @@ TEST(Lens, StopsWhereTheModelTurnsBack) {
   EXPECT_FALSE(lens.distort({1.01, 0, 1}));
   EXPECT_FALSE(lens.ray({0.67, 0}));
   EXPECT_NEAR(lens.ray({0.6, 0})->x() - std::pow(lens.ray({0.6, 0})->x(), 3) / 3, 0.6, 1e-12);
+}
+
+TEST(Lens, CoefficientsAreReadAsFilesListThem) {
+  using Listed = std::vector<double>;
+  const auto of = [](LensModel model, const Listed& listed) {
+    return lens_coefficients(model, listed);
+  };
+  const LensCoefficients k3_missing{1, 2, 3, 4}, whole{1, 2, 3, 4, 5};
+  EXPECT_EQ(of(LensModel::kPlumbBob, {1, 2, 3, 4}), k3_missing);
+  EXPECT_EQ(of(LensModel::kPlumbBob, {1, 2, 3, 4, 5, 0, 0}), whole);
+  EXPECT_EQ(of(LensModel::kNone, {}), LensCoefficients{});
+  EXPECT_EQ(of(LensModel::kEquidistant, {1, 2, 3, 4, 0}), k3_missing);
+  EXPECT_EQ(of(LensModel::kPlumbBob, {1, 2, 3}), std::nullopt);
+  EXPECT_EQ(of(LensModel::kPlumbBob, {1, 2, 3, 4, 5, 6}), std::nullopt);
+  EXPECT_EQ(of(LensModel::kEquidistant, {1, 2, 3}), std::nullopt);
+  EXPECT_EQ(of(LensModel::kEquidistant, {1, 2, 3, std::nan("")}), std::nullopt);
+  EXPECT_EQ(of(LensModel::kEquidistant, {1, 2, 3, 4, std::nan("")}), std::nullopt);
+  EXPECT_EQ(of(LensModel::kEquidistant, {1, 2, 3, 1.1e6}), std::nullopt);
+}
+
+TEST(Lens, APinholeIsANumberOfPixels) {
+  LensCamera camera{640, 480, 500, 500, 320, 240, {}};
+  EXPECT_TRUE(camera.has_pinhole());
+  for (const double focal : {0.0, -500.0, 2e5, std::nan("")}) {
+    camera.fy = focal;
+    EXPECT_FALSE(camera.has_pinhole()) << focal;
+  }
+  camera.fy = 500, camera.cx = std::nan("");
+  EXPECT_FALSE(camera.has_pinhole());
 }
 
 TEST(Lens, SenselessCoefficientsGiveNoRayAndNoCrash) {

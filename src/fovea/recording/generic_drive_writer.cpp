@@ -7,6 +7,7 @@
 #include <bit>
 #include <stdexcept>
 
+#include "fovea/recording/camera_name.h"
 #include "fovea/recording/png_encode.h"
 
 namespace fovea {
@@ -132,9 +133,7 @@ std::string inertia_text(const std::vector<RecordedInertia>& inertia) {
 
 /// Also what keeps a camera's images below the drive's folder.
 std::filesystem::path image_folder(const std::string& camera) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  if (camera.empty() || camera.find_first_not_of(kPlain) != std::string::npos) {
+  if (!is_camera_name(camera)) {
     throw std::invalid_argument("a camera's name is of letters, digits, '_' and '-'");
   }
   return std::filesystem::path("images") / camera;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "fovea/base/errors.h"
+#include "fovea/recording/camera_name.h"
 #include "fovea/rosbag/pixels.h"
 #include "fovea/sensor/image_decode.h"
 
@@ -49,8 +50,7 @@ ImagePath path_of(std::string topic) {
 std::string camera_name(const std::string& parent) {
   std::string name;
   for (const char c : parent) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_';
+    const bool plain = may_name_a_camera(c);
     if (!name.empty() || plain) name += plain ? c : '_';
   }
   return name.empty() ? "camera" : name;
@@ -68,25 +68,19 @@ LensModel lens_model(const std::string& name, const std::string& topic) {
 }
 
 Lens lens_of(const ros::CameraInfo& info, const std::string& topic) {
-  LensModel model = lens_model(info.distortion_model, topic);
-  std::array<double, 8> coefficients{};
-  bool usable = true, all_zero = true;
-  const std::size_t count = coefficient_count(model);
-  for (std::size_t i = 0; i < info.d.size(); ++i) {
-    usable &= std::isfinite(info.d[i]) && (i < count || info.d[i] == 0);
-    all_zero &= info.d[i] == 0;
-    if (i < count) coefficients[i] = info.d[i];
+  const LensModel model = lens_model(info.distortion_model, topic);
+  const bool all_zero = std::all_of(info.d.begin(), info.d.end(), [](double d) { return d == 0; });
+  if (all_zero) {
+    // A pinhole, whose images need no rectification; a fisheye bends without coefficients, too.
+    return Lens(model == LensModel::kEquidistant ? model : LensModel::kNone, {});
   }
-  const std::size_t least = model == LensModel::kPlumbBob ? count - 1 : count;  // k3 may be missing
-  usable &= info.d.size() >= least || all_zero;
-  if (!usable) {
+  const auto coefficients = lens_coefficients(model, info.d);
+  if (!coefficients) {
     throw InputError(fmt::format("the {} coefficients of distortion are not those of '{}'",
                                  info.d.size(), to_string(model)),
                      topic, "calibrate the camera with one of the models of docs/drives.md");
   }
-  // Without distortion these two are pinholes, whose images need no rectification.
-  if (all_zero && model != LensModel::kEquidistant) model = LensModel::kNone;
-  return Lens(model, coefficients);
+  return Lens(model, *coefficients);
 }
 
 /// T_lidar_cam, of the first of the frames that tf knows.
@@ -228,11 +222,9 @@ LensCamera optics_of(const ros::CameraInfo& info, bool rectified, const std::str
     optics.fx = info.k[0], optics.cx = info.k[2], optics.fy = info.k[4], optics.cy = info.k[5];
     optics.lens = lens_of(info, topic);
   }
-  constexpr double kMaxFocal = 1e5;
-  const bool calibrated = optics.fx >= 1 && optics.fy >= 1 && optics.fx <= kMaxFocal &&
-                          optics.fy <= kMaxFocal && std::abs(optics.cx) <= kMaxFocal &&
-                          std::abs(optics.cy) <= kMaxFocal;
-  if (!calibrated) refuse("the camera is not calibrated (its focal length is no number of pixels)");
+  if (!optics.has_pinhole()) {
+    refuse("the camera is not calibrated (its focal length is no number of pixels)");
+  }
   return optics;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/printable.h"
 #include "fovea/rosbag/decompress.h"
 
 namespace fovea {
@@ -189,13 +190,6 @@ class McapReader {
     topic.encoding = record.text();
     const bool wanted = sink_.wants(topic) && topic.encoding == kCdrEncoding;
     channels_.emplace(id, wanted ? std::optional(std::move(topic)) : std::nullopt);
-  }
-
-  static std::string printable(std::string text) {
-    for (char& c : text) {
-      if (c < ' ' || c > '~') c = '?';
-    }
-    return text;
   }
 
   std::string name_;

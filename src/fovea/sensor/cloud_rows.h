@@ -50,6 +50,9 @@ class CloudRows {
   virtual void add(std::span<const double> row, std::size_t number) = 0;
 };
 
+/// A header of more lines is none.
+inline constexpr int kMaxHeaderLines = 1000;
+
 /// Lines of a file that may be anything: none is longer than 64 KiB.
 class LineReader {
  public:

@@ -9,6 +9,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/settings.h"
 #include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/plausible.h"
 
 namespace fovea {
 
@@ -37,10 +38,7 @@ inline auto names_of(LensModel) {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr int kMaxCamera = 9;                // config_keys.h knows slices of as many
-constexpr double kRotationTolerance = 1e-3;  // files are rounded
-constexpr double kMaxLever = 1000;           // m between sensors; no vehicle is as long
-constexpr double kMaxFocal = 1e5, kMaxCoefficient = 1e6;
+constexpr int kMaxCamera = 9;  // config_keys.h knows slices of as many
 
 [[noreturn]] void reject(std::string_view what, const std::string& key, std::string_view remedy) {
   throw ConfigError(what, key, remedy);
@@ -200,31 +198,18 @@ class CameraKeys {
     }
     LensCamera& c = camera_.optics;
     c.fx = K[0], c.cx = K[2], c.fy = K[4], c.cy = K[5];
-    const bool pinhole = c.fx >= 1 && c.fx <= kMaxFocal && c.fy >= 1 && c.fy <= kMaxFocal &&
-                         std::abs(c.cx) <= kMaxFocal && std::abs(c.cy) <= kMaxFocal && K[1] == 0 &&
-                         K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
+    const bool pinhole =
+        c.has_pinhole() && K[1] == 0 && K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
     if (!pinhole) reject("this is no camera's matrix", key("K"), "give fx 0 cx, 0 fy cy, 0 0 1");
   }
 
   void read_distortion() {
-    const std::size_t count = coefficient_count(model_);
-    const bool without_k3 = model_ == LensModel::kPlumbBob && D_.size() == 4;
-    // Other programs fill up with zeros.
-    const bool rest_is_zero =
-        D_.size() <= count || std::all_of(D_.begin() + static_cast<std::ptrdiff_t>(count), D_.end(),
-                                          [](double d) { return d == 0; });
-    if (!rest_is_zero || (D_.size() < count && !without_k3)) {
-      reject(fmt::format("there are {} coefficients, not {}", D_.size(), count), key("D"),
-             "give those of the distortion_model");
+    const auto coefficients = lens_coefficients(model_, D_);
+    if (!coefficients) {
+      reject(fmt::format("the {} coefficients are not those of '{}'", D_.size(), to_string(model_)),
+             key("D"), fmt::format("give its {}", coefficient_count(model_)));
     }
-    std::array<double, 8> coefficients{};
-    for (std::size_t i = 0; i < std::min(count, D_.size()); ++i) {
-      if (!(std::abs(D_[i]) <= kMaxCoefficient)) {
-        reject("a coefficient is out of range", key("D"), "give those of the distortion_model");
-      }
-      coefficients[i] = D_[i];
-    }
-    camera_.optics.lens = Lens(model_, coefficients);
+    camera_.optics.lens = Lens(model_, *coefficients);
   }
 
   std::string table_;

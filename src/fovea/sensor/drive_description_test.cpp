@@ -161,12 +161,12 @@ TEST(DriveDescription, DistortionIsChecked) {
   EXPECT_THAT(error(distorted("distortion_model = \"thin_prism\"\n")),
               AllOf(HasSubstr("thin_prism"), HasSubstr("'plumb_bob', 'rational_polynomial'")));
   EXPECT_THAT(error(distorted("distortion_model = \"plumb_bob\"\nD = [1, 2, 3]\n")),
-              HasSubstr("3 coefficients, not 5"));
+              HasSubstr("3 coefficients are not those of 'plumb_bob'"));
   EXPECT_THAT(error(distorted("distortion_model = \"equidistant\"\n")),
-              HasSubstr("0 coefficients, not 4"));
-  EXPECT_THAT(error(distorted("D = [0.1]\n")), HasSubstr("1 coefficients, not 0"));
+              HasSubstr("0 coefficients are not those of 'equidistant'"));
+  EXPECT_THAT(error(distorted("D = [0.1]\n")), HasSubstr("1 coefficients are not those of 'none'"));
   EXPECT_THAT(error(distorted("distortion_model = \"plumb_bob\"\nD = [inf, 0, 0, 0]\n")),
-              HasSubstr("out of range"));
+              HasSubstr("4 coefficients"));
   EXPECT_THAT(error(distorted("field_of_view = 175\n")), HasSubstr("10 to 170 degrees"));
   EXPECT_NO_THROW(parse(distorted("D = [0, 0, 0, 0, 0]\n")));  // as ROS has rectified cameras
   EXPECT_NO_THROW(parse(distorted("distortion_model = \"plumb_bob\"\nD = [0.1, 0, 0, 0]\n")));

@@ -9,14 +9,13 @@
 #include "fovea/sensor/course.h"
 #include "fovea/sensor/csv_rows.h"
 #include "fovea/sensor/navigation.h"
+#include "fovea/sensor/plausible.h"
 
 namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxAltitude = 20'000;      // m either way: no vehicle is there
-constexpr double kMaxAngle = 7;              // rad: a full turn and some rounding
 constexpr double kMaxWorldCoordinate = 1e8;  // m: any map projection's, earth-centred ones, too
 
 /// The rotation of the quaternion x y z w in four columns from `first` on; empty if that is none.

@@ -8,14 +8,13 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/plausible.h"
 #include "fovea/sensor/read_file.h"
 
 namespace fovea {
 namespace {
 
-constexpr int kCameras = 10;                 // KITTI has four; simulated drives may have more
-constexpr double kRotationTolerance = 1e-3;  // the files round to 7 digits
-constexpr double kMaxLever = 1000;           // m between sensors; no vehicle is as long
+constexpr int kCameras = 10;  // KITTI has four; simulated drives may have more
 constexpr const char* kRemedy = "restore the file from the KITTI archive's calibration";
 
 /// "key: numbers" lines of one file.

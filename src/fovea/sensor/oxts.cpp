@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/plausible.h"
 #include "fovea/sensor/read_file.h"
 
 namespace fovea {
 namespace {
 
 constexpr std::size_t kFields = 30;
-constexpr double kMaxAltitude = 20'000;  // m either way: no vehicle is there
-constexpr double kMaxAngle = 7;          // rad: a full turn and some rounding
 constexpr std::size_t kPositionAccuracy = 23, kSatellites = 26;
 
 }  // namespace

@@ -12,7 +12,6 @@
 namespace fovea {
 namespace {
 
-constexpr int kMaxHeaderLines = 1000;
 constexpr std::size_t kMaxPointBytes = 1 << 16;
 
 enum class Encoding { kAscii, kBinary, kCompressed };

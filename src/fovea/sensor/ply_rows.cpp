@@ -11,8 +11,6 @@
 namespace fovea {
 namespace {
 
-constexpr int kMaxHeaderLines = 1000;
-
 std::optional<Scalar> parse_scalar(std::string_view name) {
   if (name == "char" || name == "int8") return Scalar::kInt8;
   if (name == "uchar" || name == "uint8") return Scalar::kUint8;

@@ -1,0 +1,12 @@
+// What no vehicle's numbers exceed: a file with larger ones is damaged, or has other units.
+#pragma once
+
+namespace fovea {
+
+inline constexpr double kMaxLever = 1000;       ///< m, between sensors
+inline constexpr double kMaxAltitude = 20'000;  ///< m, either way
+inline constexpr double kMaxAngle = 7;          ///< rad: a full turn and some rounding
+/// Of a rotation's matrix, which files round.
+inline constexpr double kRotationTolerance = 1e-3;
+
+}  // namespace fovea
