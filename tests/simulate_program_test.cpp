@@ -11,6 +11,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 /// A drive that takes no time.
@@ -71,7 +72,11 @@ TEST_F(Simulate, WritesADriveThatOpens) {
 
 TEST_F(Simulate, NeverReplacesAndNeedsAParent) {
   std::filesystem::create_directory(folder_ / "out");
-  expect_error(simulate(kSmall), 1, "exists already");
+  for (const char* format : {" --format kitti", " --format generic"}) {
+    const ProgramRun run = simulate(kSmall + std::string(format));
+    expect_error(run, 1, "exists already");
+    EXPECT_THAT(run.err, Not(HasSubstr("--force"))) << "which simulate does not have";
+  }
   expect_error(run_fovea("simulate -o '" + (folder_ / "none/out").string() + "'" + kSmall), 1,
                "does not exist");
   EXPECT_THAT(folder_.names(), ElementsAre("out"));

@@ -20,10 +20,6 @@ static_assert(std::endian::native == std::endian::little, "the truth's files are
 
 namespace {
 
-std::string numbered(int frame, const char* extension) {
-  return fmt::format("{:010d}{}", frame, extension);
-}
-
 fs::path camera_folder(int camera) {
   return fs::path("truth") / fmt::format("image_{:02d}", camera);
 }
@@ -39,7 +35,18 @@ fs::path folder_of(const fs::path& path) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
+/// `fovea simulate` has no --force, which the folder's own error would name.
+void refuse_existing(const fs::path& root) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(root, ignored))) return;
+  throw OutputError("the output exists already", root.string(), "remove it or give another name");
+}
+
 }  // namespace
+
+std::string numbered(int frame, std::string_view extension) {
+  return fmt::format("{:010d}{}", frame, extension);
+}
 
 void DriveWriter::write_truth(int frame, const std::vector<TruthPoint>& points) {
   constexpr std::size_t kRecord = 28;
@@ -79,6 +86,7 @@ void DriveWriter::write_depth(int camera, int frame, int width, int height,
 
 std::unique_ptr<DriveWriter> make_drive_writer(const SimulationOptions& options,
                                                const fs::path& root) {
+  refuse_existing(root);
   if (options.format == DriveFormat::kGeneric) {
     return std::make_unique<GenericSimulationWriter>(options, root);
   }

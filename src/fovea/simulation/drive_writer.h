@@ -40,7 +40,11 @@ class DriveWriter {
   void write_depth(int camera, int frame, int width, int height, const std::vector<float>& depth);
 };
 
-/// The format that the options name, at `root`.
+/// A frame's file in KITTI's drives: "0000000012.png".
+std::string numbered(int frame, std::string_view extension);
+
+/// The format that the options name, at `root`. OutputError as OutputFolder's; what is there is
+/// never replaced.
 std::unique_ptr<DriveWriter> make_drive_writer(const SimulationOptions& options,
                                                const std::filesystem::path& root);
 

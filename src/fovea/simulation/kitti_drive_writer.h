@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/base/output_folder.h"
 #include "fovea/simulation/drive_writer.h"
 
 namespace fovea {
@@ -13,13 +14,8 @@ namespace fovea {
 /// not finished is removed.
 class KittiDriveWriter : public DriveWriter {
  public:
-  /// OutputError where anything exists at ROOT, its parent does not, or another program is writing
-  /// it. A ROOT.partial that a killed program left is removed first; any other is left alone:
-  /// OutputError.
+  /// OutputError as OutputFolder's where anything exists at ROOT.
   explicit KittiDriveWriter(const std::filesystem::path& root);
-  ~KittiDriveWriter() override;
-  KittiDriveWriter(const KittiDriveWriter&) = delete;
-  KittiDriveWriter& operator=(const KittiDriveWriter&) = delete;
 
   void write_scan(int frame, const SimulatedScan& scan) override;
   void write_image(int camera, int frame, const Image& image) override;
@@ -30,11 +26,8 @@ class KittiDriveWriter : public DriveWriter {
   std::filesystem::path finish() override;
 
  private:
-  /// @param name  below ROOT.partial
-  void write_below_root(const std::filesystem::path& name, std::string_view bytes);
-
-  std::filesystem::path root_, partial_;
-  int lock_ = -1;  // descriptor of the marker in partial_, locked while this writes
+  std::filesystem::path root_;
+  OutputFolder folder_;
 };
 
 }  // namespace fovea

@@ -83,7 +83,6 @@ TEST(KittiDriveWriter, TheProductsReaderOpensTheDrive) {
   EXPECT_EQ(drive, folder.path() / "drive/2026_01_01/2026_01_01_drive_0001_sync");
   EXPECT_THAT(folder.names(), ElementsAre("drive"));
   EXPECT_THAT(content(drive.parent_path() / "calib_cam_to_cam.txt"), HasSubstr("R_rect_00"));
-  EXPECT_FALSE(fs::exists(folder / "drive/.fovea-simulate"));
 
   DriveOptions open;
   open.cameras = {0, 2, 7};
@@ -158,7 +157,8 @@ TEST(KittiDriveWriter, RefusesWhatIsInTheWay) {
               AllOf(HasSubstr("exists already"), HasSubstr("there"), HasSubstr("another name")));
   EXPECT_THAT(output_error([&] { KittiDriveWriter writer(folder / "none/d"); }),
               AllOf(HasSubstr("does not exist"), HasSubstr("none")));
-  EXPECT_THAT(output_error([&] { KittiDriveWriter writer(""); }), HasSubstr("not a folder's name"));
+  EXPECT_THAT(output_error([&] { KittiDriveWriter writer(""); }),
+              HasSubstr("not the name of a folder"));
   // A folder of a user, whatever its name, is not ours to remove.
   fs::create_directory(folder / "d.partial");
   std::ofstream(folder / "d.partial/precious") << "x";
@@ -189,7 +189,7 @@ TEST(KittiDriveWriter, LeavesNothingUnfinished) {
 TEST(KittiDriveWriter, ReplacesWhatAKilledProgramLeft) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "d.partial/2026_01_01");
-  std::ofstream(folder / "d.partial/.fovea-simulate").flush();
+  std::ofstream(folder / "d.partial/2026_01_01/half").flush();
   KittiDriveWriter writer(folder / "d");
   writer.write_scan(0, {});
   const fs::path drive = writer.finish();
@@ -202,7 +202,7 @@ TEST(KittiDriveWriter, KeepsWhatAppearedMeanwhile) {
   {
     KittiDriveWriter writer(folder / "d");
     std::ofstream(folder / "d") << "mine";
-    EXPECT_THAT(output_error([&] { writer.finish(); }), HasSubstr("exists already"));
+    EXPECT_THAT(output_error([&] { writer.finish(); }), HasSubstr("this is a file"));
   }
   EXPECT_EQ(content(folder / "d"), "mine");
   EXPECT_THAT(folder.names(), ElementsAre("d"));
@@ -216,7 +216,7 @@ TEST(KittiDriveWriter, AFullDiskIsSaidAndLeavesNothing) {
                 writer.write_scan(0, {std::vector<std::array<float, 4>>(62), {}});
                 writer.write_scan(1, {std::vector<std::array<float, 4>>(63), {}});
               }),
-              AllOf(HasSubstr("the disk is full"), HasSubstr("0000000001.bin"),
+              AllOf(HasSubstr("the disk is full"), HasSubstr((folder / "d").string()),
                     HasSubstr("free some space")));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
