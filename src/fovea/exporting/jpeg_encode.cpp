@@ -1,30 +1,13 @@
 #include "fovea/exporting/jpeg_encode.h"
 
-#include <jpeglib.h>
-
-#include <csetjmp>
-#include <cstdio>  // jpeglib.h needs FILE and size_t, and includes neither
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 
+#include "fovea/base/jpeg_errors.h"
+
 namespace fovea {
 namespace {
-
-/// libjpeg's error manager with the place to jump to. libjpeg sees the first member only.
-struct JpegErrors {
-  jpeg_error_mgr manager;
-  std::jmp_buf failed;
-  char message[JMSG_LENGTH_MAX];
-};
-
-[[noreturn]] void fail(j_common_ptr codec) {
-  auto& errors = *reinterpret_cast<JpegErrors*>(codec->err);
-  (*codec->err->format_message)(codec, errors.message);
-  std::longjmp(errors.failed, 1);
-}
-
-void print_nothing(j_common_ptr) {}
 
 /// What a jump must not lose.
 struct JpegWriter {
@@ -33,9 +16,7 @@ struct JpegWriter {
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   JpegWriter() {
-    codec.err = jpeg_std_error(&errors.manager);
-    errors.manager.error_exit = &fail;
-    errors.manager.output_message = &print_nothing;
+    codec.err = errors.start();
     jpeg_create_compress(&codec);
   }
   ~JpegWriter() {

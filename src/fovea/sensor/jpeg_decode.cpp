@@ -1,36 +1,18 @@
 #include "fovea/sensor/jpeg_decode.h"
 
-#include <jpeglib.h>
-
-#include <csetjmp>
-#include <cstdio>  // jpeglib.h needs FILE and size_t, and includes neither
 #include <stdexcept>
 #include <string>
 
+#include "fovea/base/jpeg_errors.h"
 #include "fovea/sensor/image_decode.h"
 
 namespace fovea {
 namespace {
 
-/// libjpeg's error manager with the place to jump to. libjpeg sees the first member only.
-struct JpegErrors {
-  jpeg_error_mgr manager;
-  std::jmp_buf failed;
-  char message[JMSG_LENGTH_MAX];
-};
-
-[[noreturn]] void fail(j_common_ptr codec) {
-  auto& errors = *reinterpret_cast<JpegErrors*>(codec->err);
-  (*codec->err->format_message)(codec, errors.message);
-  std::longjmp(errors.failed, 1);
-}
-
 /// A warning (level < 0) means that pixels were made up, as after the end of a truncated file.
 void fail_on_warning(j_common_ptr codec, int level) {
-  if (level < 0) fail(codec);
+  if (level < 0) JpegErrors::fail(codec);
 }
-
-void print_nothing(j_common_ptr) {}
 
 /// A scan of a few bytes can ask for work on every pixel, and a file can have any number of them.
 /// Encoders write about ten.
@@ -38,7 +20,7 @@ constexpr int kMaxScans = 100;
 
 void limit_scans(j_common_ptr codec) {
   if (reinterpret_cast<j_decompress_ptr>(codec)->input_scan_number <= kMaxScans) return;
-  auto& errors = *reinterpret_cast<JpegErrors*>(codec->err);
+  JpegErrors& errors = JpegErrors::of(codec);
   std::snprintf(errors.message, sizeof errors.message, "more than %d scans are too many",
                 kMaxScans);
   std::longjmp(errors.failed, 1);
@@ -88,10 +70,8 @@ struct JpegReader {
   jpeg_progress_mgr progress{};
   jpeg_decompress_struct codec{};
   JpegReader() {
-    codec.err = jpeg_std_error(&errors.manager);
-    errors.manager.error_exit = &fail;
+    codec.err = errors.start();
     errors.manager.emit_message = &fail_on_warning;
-    errors.manager.output_message = &print_nothing;
     jpeg_create_decompress(&codec);
     progress.progress_monitor = &limit_scans;
     codec.progress = &progress;
