@@ -11,6 +11,7 @@
 #include "fovea/base/image.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/point_cloud.h"
+#include "fovea/base/printable.h"
 #include "fovea/base/random.h"
 
 namespace fovea::base_test {
@@ -18,6 +19,11 @@ namespace fovea::base_test {
 TEST(Errors, ReadWhatWhereRemedy) {
   const InputError error("matrix has 11 numbers", "calib.txt:3", "restore the file");
   EXPECT_STREQ(error.what(), "matrix has 11 numbers, calib.txt:3, restore the file");
+}
+
+TEST(Printable, ControlCharactersDoNotReachATerminal) {
+  EXPECT_EQ(printable("a\x1b[2Jb\n\x7f"), "a?[2Jb??");
+  EXPECT_EQ(printable("Straße ~"), "Straße ~");
 }
 
 TEST(Image, BilinearIsExactOnLinearRampAndAtPixelCentres) {
