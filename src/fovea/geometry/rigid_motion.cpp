@@ -50,6 +50,15 @@ Twist log_se3(const RigidMotion& T) {
   return twist;
 }
 
+Twist twist_of_part(const Twist& twist_a, const RigidMotion& T_a_b) {
+  const Eigen::Matrix3d R_b_a = T_a_b.linear().transpose();
+  const Eigen::Vector3d w_a = twist_a.head<3>(), v_a = twist_a.tail<3>();
+  Twist twist_b;
+  twist_b.head<3>() = R_b_a * w_a;
+  twist_b.tail<3>() = R_b_a * (v_a + w_a.cross(T_a_b.translation()));
+  return twist_b;
+}
+
 RigidMotion interpolate(const RigidMotion& T0, const RigidMotion& T1, double s) {
   return T0 * exp_se3(s * log_se3(T0.inverse() * T1));
 }

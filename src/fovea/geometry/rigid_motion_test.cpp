@@ -96,4 +96,13 @@ TEST(RigidMotion, NearestRotationTakesRoundingOut) {
   EXPECT_GT(nearest_rotation(Eigen::Vector3d(1, 1, -0.9).asDiagonal()).determinant(), 0);
 }
 
+TEST(RigidMotion, ATwistIsThatOfEachPartOfABody) {
+  Twist twist_a, T;
+  twist_a << 0.2, -0.1, 0.4, 9, 0.5, -0.3;
+  T << -1.1, 0.6, 2.0, 0.8, -0.3, 1.9;
+  const RigidMotion T_a_b = exp_se3(T);
+  const Twist twist_b = twist_of_part(twist_a, T_a_b);
+  EXPECT_TRUE(exp_se3(twist_b).isApprox(T_a_b.inverse() * exp_se3(twist_a) * T_a_b, 1e-12));
+}
+
 }  // namespace fovea::rigid_motion_test

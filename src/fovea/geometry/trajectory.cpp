@@ -40,16 +40,28 @@ std::optional<RigidMotion> Trajectory::nearest(TimeNs time) const {
       ->T_local_body;
 }
 
-std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const {
-  if (poses_.size() < 2) return std::nullopt;
-  // The latest pair of neighbours that is known and does not lie wholly after `time`.
-  const TimeNs latest = std::max(time, poses_[1].time);
-  std::size_t last = 1;
-  while (last + 1 < poses_.size() && poses_[last + 1].time <= known_until &&
-         poses_[last].time < latest) {
-    ++last;
+std::optional<Twist> Trajectory::measured_velocity(TimeNs begin, TimeNs end) const {
+  auto pose = std::lower_bound(poses_.begin(), poses_.end(), begin,
+                               [](const StampedPose& p, TimeNs t) { return p.time < t; });
+  Twist sum = Twist::Zero();
+  int count = 0;
+  for (; pose != poses_.end() && pose->time <= end; ++pose) {
+    if (!pose->velocity) continue;
+    sum += *pose->velocity;
+    ++count;
   }
-  const StampedPose &p0 = poses_[last - 1], &p1 = poses_[last];
+  return count > 0 ? std::optional<Twist>(sum / count) : std::nullopt;
+}
+
+std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const {
+  const TimeNs reach = known_until - time;
+  if (auto measured = measured_velocity(time - reach, known_until)) return measured;
+  if (poses_.size() < 2) return std::nullopt;
+  std::size_t last = poses_.size() - 1;
+  while (last > 1 && poses_[last].time > known_until) --last;
+  std::size_t first = last - 1;
+  while (first > 0 && poses_[last].time - poses_[first].time < reach * 3 / 2) --first;
+  const StampedPose &p0 = poses_[first], &p1 = poses_[last];
   if (p1.time - p0.time > kMaxGap) return std::nullopt;
   return Twist(log_se3(p0.T_local_body.inverse() * p1.T_local_body) / seconds(p1.time - p0.time));
 }

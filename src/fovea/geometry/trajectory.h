@@ -12,6 +12,7 @@ namespace fovea {
 struct StampedPose {
   TimeNs time = 0;
   RigidMotion T_local_body = RigidMotion::Identity();
+  std::optional<Twist> velocity = {};  ///< per second, in the body frame, where it was measured
 };
 
 class Trajectory {
@@ -35,11 +36,16 @@ class Trajectory {
   std::optional<RigidMotion> nearest(TimeNs time) const;
 
   /// Twist per second in the body frame around `time`, from what is known by `known_until` (the
-  /// last poses at or before it; a live program has no later ones). Where fewer than two poses are
-  /// that early, the first two of the trajectory. Empty for a single pose and in an outage.
+  /// poses at or before it; a live program has no later ones): the mean of the measured velocities
+  /// no farther from `time` than that. Without one, of the motion between the last pose known and
+  /// the next that lies before it by 3/4 of that span or more: poses a span apart, whose times
+  /// jitter, are enough, and the noise of closer ones would be divided by a moment. Where fewer
+  /// than two poses are that early, the first two of the trajectory. Empty for a single pose and in
+  /// an outage.
   std::optional<Twist> velocity(TimeNs time, TimeNs known_until) const;
 
  private:
+  std::optional<Twist> measured_velocity(TimeNs begin, TimeNs end) const;
   std::vector<StampedPose> poses_;
 };
 

@@ -69,7 +69,7 @@ TEST(Trajectory, BridgesNoOutage) {
   EXPECT_FALSE(trajectory.at(11 * kNsPerSecond - 1));
   EXPECT_FALSE(trajectory.nearest(6 * kNsPerSecond));
   EXPECT_FALSE(trajectory.velocity(6 * kNsPerSecond, 20 * kNsPerSecond));
-  EXPECT_NEAR(speed(trajectory, 12, 20), 2, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 12, 12.05), 2, 1e-12);
 }
 
 TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
@@ -82,13 +82,39 @@ TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
 
 TEST(Trajectory, VelocityIsThatAroundTheTimeAsFarAsItIsKnown) {
   const Trajectory trajectory = stop_and_go();
-  EXPECT_NEAR(speed(trajectory, 1.5, 9), 20, 1e-12);    // all known: the pair around the time
+  EXPECT_NEAR(speed(trajectory, 1.96, 2.01), 20, 1e-12);  // the pair around the time
   EXPECT_NEAR(speed(trajectory, 1.5, 1.9), 10, 1e-12);  // the pose at 2 s is still to come
   EXPECT_NEAR(speed(trajectory, 1.5, 2), 20, 1e-12);
   EXPECT_NEAR(speed(trajectory, 2.9, 2.9), 20, 1e-12);
   EXPECT_NEAR(speed(trajectory, 9, 9), 5, 1e-12);
   EXPECT_NEAR(speed(trajectory, 0.5, 0.5), 10, 1e-12);  // too early for two: the first two
   EXPECT_NEAR(speed(trajectory, -1, -1), 10, 1e-12);
+}
+
+TEST(Trajectory, FrequentPosesDoNotDivideTheirNoiseByAMoment) {
+  // 100 poses a second at 10 m/s, 1 cm too far and 1 cm too near in turn.
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 100; ++i) {
+    poses.push_back({i * kNsPerSecond / 100, at_x(0.1 * i + (i % 2 == 0 ? 0.01 : -0.01))});
+  }
+  const Trajectory trajectory(poses);
+  EXPECT_NEAR(speed(trajectory, 0.5, 0.55), 10, 0.26);  // 0.8 m in 0.08 s, 2 cm off
+  EXPECT_NEAR(speed(trajectory, 0.5, 0.5), 10, 2.001);
+}
+
+TEST(Trajectory, AMeasuredVelocityIsBetterThanDifferences) {
+  Twist fast = Twist::Zero(), faster = Twist::Zero();
+  fast[3] = 8;
+  faster[3] = 9;
+  std::vector<StampedPose> poses = stop_and_go().poses();  // its poses differ by 10, 20 and 5 m
+  poses[1].velocity = fast;
+  poses[2].velocity = faster;
+  const Trajectory trajectory(poses);
+  EXPECT_NEAR(speed(trajectory, 1.02, 1.07), 8, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 1.5, 2), 8.5, 1e-12);    // the mean of both
+  EXPECT_NEAR(speed(trajectory, 1.5, 1.99), 10, 1e-12);  // neither is near enough
+  EXPECT_NEAR(speed(trajectory, 3, 3.05), 5, 1e-12);     // not measured there
+  EXPECT_NEAR(speed(Trajectory({poses[1]}), 1, 1.05), 8, 1e-12);
 }
 
 TEST(Trajectory, RejectsTimesThatDoNotIncrease) {

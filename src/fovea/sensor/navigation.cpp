@@ -14,7 +14,8 @@ Trajectory lidar_trajectory(const LocalTangentPlane& local, const std::vector<Ge
     RigidMotion T_enu_body = RigidMotion::Identity();
     T_enu_body.linear() = pose.R_enu_body;
     const RigidMotion T_local_body = local.T_local_enu(pose.position) * T_enu_body;
-    lidar.push_back({pose.time, T_local_body * T_body_lidar});
+    lidar.push_back({pose.time, T_local_body * T_body_lidar, {}});
+    if (pose.velocity) lidar.back().velocity = twist_of_part(*pose.velocity, T_body_lidar);
   }
   return Trajectory(std::move(lidar));
 }
@@ -45,7 +46,8 @@ Navigation make_navigation(const std::vector<StampedOxts>& records, const RigidM
   for (const auto& [time, record] : records) {
     poses.push_back({time, record.position, record.R_enu_imu(),
                      record.satellites == 0 ? std::numeric_limits<double>::infinity()
-                                            : record.position_accuracy});
+                                            : record.position_accuracy,
+                     record.velocity});
   }
   return navigation_of(poses, T_imu_lidar, origin_time);
 }

@@ -22,6 +22,7 @@ struct GeodeticPose {
   GeodeticPoint position;
   Eigen::Matrix3d R_enu_body = Eigen::Matrix3d::Identity();  ///< to east-north-up at the position
   double accuracy = 0;  ///< standard deviation of a coordinate (m), see DriveInfo
+  std::optional<Twist> velocity = {};  ///< per second, in the body's frame, where it was measured
 };
 
 struct Navigation {

@@ -64,6 +64,20 @@ TEST(Navigation, OriginBeyondTheRecordsIsTheFirst) {
   EXPECT_NEAR(navigation.origin.latitude, 49, 1e-12);
 }
 
+TEST(Navigation, MeasuredVelocityIsThatOfTheLidar) {
+  // Turning left by 0.5 rad/s at 10 m/s, the LiDAR 2 m ahead of the imu and looking to its left:
+  // it goes 10 m/s to its own right and, swung around, 1 m/s forward.
+  std::vector<StampedOxts> records = drive_north();
+  records[1].record.velocity.emplace() << 0, 0, 0.5, 10, 0, 0;
+  RigidMotion T_imu_lidar(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+  T_imu_lidar.pretranslate(Eigen::Vector3d(2, 0, 0));
+  const auto poses = make_navigation(records, T_imu_lidar, 0).trajectory.poses();
+  EXPECT_FALSE(poses[0].velocity);
+  Twist expected;
+  expected << 0, 0, 0.5, 1, -10, 0;
+  EXPECT_LT((poses[1].velocity.value() - expected).norm(), 1e-12);
+}
+
 TEST(Navigation, NeedsARecord) {
   EXPECT_THROW(make_navigation({}, RigidMotion::Identity(), 0), std::invalid_argument);
 }

@@ -11,7 +11,14 @@ namespace fovea {
 namespace {
 
 constexpr std::size_t kFields = 30;
-constexpr std::size_t kPositionAccuracy = 23, kSatellites = 26;
+constexpr std::size_t kVelocityLevel = 8, kRateImu = 17, kPositionAccuracy = 23, kSatellites = 26;
+
+Eigen::Vector3d vector_at(const std::vector<double>& numbers, std::size_t first) {
+  return {numbers[first], numbers[first + 1], numbers[first + 2]};
+}
+
+/// A unit that measures never says exactly zero, even at rest.
+bool is_measured(const Eigen::Vector3d& v, double most) { return !v.isZero(0) && v.norm() <= most; }
 
 }  // namespace
 
@@ -38,12 +45,22 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
   for (std::size_t i = 3; i < 6; ++i) {
     if (std::abs(n[i]) > kMaxAngle) return "has angle " + std::to_string(n[i]) + " (rad)";
   }
-  return OxtsRecord{{n[0], n[1], n[2]},
+  OxtsRecord record{{n[0], n[1], n[2]},
                     n[3],
                     n[4],
                     n[5],
                     std::max(0.0, n[kPositionAccuracy]),
                     static_cast<int>(std::clamp(n[kSatellites], 0.0, 1000.0))};
+  const Eigen::Vector3d v_level = vector_at(n, kVelocityLevel), rate_imu = vector_at(n, kRateImu);
+  if (is_measured(v_level, kMaxSpeed) && is_measured(rate_imu, kMaxTurnRate)) {
+    // The level frame is turned as east-north-up is, but heads where the imu does.
+    const Eigen::AngleAxisd R_level_enu(-record.yaw, Eigen::Vector3d::UnitZ());
+    const Eigen::Matrix3d R_level_imu = R_level_enu * record.R_enu_imu();
+    record.velocity.emplace();
+    record.velocity->head<3>() = rate_imu;
+    record.velocity->tail<3>() = R_level_imu.transpose() * v_level;
+  }
+  return record;
 }
 
 std::variant<OxtsRecord, std::string> read_oxts(const std::filesystem::path& file) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 
 #include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
 
@@ -17,6 +19,9 @@ struct OxtsRecord {
   double roll = 0, pitch = 0, yaw = 0;
   double position_accuracy = 0;  ///< m, as the unit estimates it; 0: it says nothing
   int satellites = 0;            ///< in use
+  /// Of the imu in its own frame (forward, left, up), a second. None where a record has zeros, as
+  /// drives have that were brought into this format from others, or what no vehicle reaches.
+  std::optional<Twist> velocity = {};
 
   /// R = Rz(yaw) * Ry(pitch) * Rx(roll), from the imu (forward, left, up) to east-north-up there.
   Eigen::Matrix3d R_enu_imu() const;

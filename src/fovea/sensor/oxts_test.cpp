@@ -31,6 +31,35 @@ TEST(Oxts, ReadsPositionAndAttitude) {
   EXPECT_EQ(record.satellites, 7);
 }
 
+/// A record that is turned so, with a velocity in its level frame and rates about its own axes.
+OxtsRecord moving(const std::string& angles, const std::string& v_level, const std::string& rates) {
+  return std::get<OxtsRecord>(parse_oxts("49 8 100 " + angles + " 1 2 " + v_level +
+                                         " 0 0 9.8 0 0 9.8 " + rates +
+                                         " 0 0 0 0.1 0.02 4 7 4 4 0"));
+}
+
+TEST(Oxts, VelocityIsTheImusInItsOwnFrame) {
+  const Twist level = moving("0 0 2", "9 0.5 0.1", "0.01 -0.02 0.3").velocity.value();
+  EXPECT_LT((level.head<3>() - Eigen::Vector3d(0.01, -0.02, 0.3)).norm(), 1e-15);
+  EXPECT_LT((level.tail<3>() - Eigen::Vector3d(9, 0.5, 0.1)).norm(), 1e-14);
+  // Front down by 0.1: going level is going forward and up along the unit's own axes.
+  const Twist nodding = moving("0 0.1 2", "9 0 0", "0.01 -0.02 0.3").velocity.value();
+  EXPECT_LT(
+      (nodding.tail<3>() - Eigen::Vector3d(9 * std::cos(0.1), 0, 9 * std::sin(0.1))).norm(), 1e-14);
+  // Left side up by 0.1: to the left is left and down along its own.
+  const Twist rolling = moving("0.1 0 2", "0 1 0", "0.01 -0.02 0.3").velocity.value();
+  EXPECT_LT((rolling.tail<3>() - Eigen::Vector3d(0, std::cos(0.1), -std::sin(0.1))).norm(), 1e-14);
+}
+
+TEST(Oxts, ZerosAndNonsenseAreNoVelocity) {
+  EXPECT_TRUE(moving("0 0 0", "1e-9 0 0", "1e-9 0 0").velocity);
+  EXPECT_FALSE(moving("0 0 0", "0 0 0", "0.1 0 0").velocity);
+  EXPECT_FALSE(moving("0 0 0", "9 0 0", "0 0 0").velocity);
+  EXPECT_FALSE(moving("0 0 0", "201 0 0", "0.1 0 0").velocity);
+  EXPECT_FALSE(moving("0 0 0", "1e300 0 0", "0.1 0 0").velocity);
+  EXPECT_FALSE(moving("0 0 0", "9 0 0", "0 0 57").velocity);  // degrees
+}
+
 TEST(Oxts, SaysWhyARecordCannotBeUsed) {
   EXPECT_EQ(why("49 8 100 0 0 0 1 2 3"), "has 9 numbers, not 30");
   EXPECT_EQ(why(""), "has 0 numbers, not 30");

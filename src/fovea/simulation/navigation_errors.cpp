@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kOutageEvery = 20;  // s
 constexpr double kOutageDrift = 10;  // times the walk with satellites
+/// Walk of the velocity in an outage: times its noise, per square root of a second.
+constexpr double kOutageVelocityWalk = 5;
 
-enum Kind : std::uint64_t { kBias = 0x6e617600, kWhite, kWalk, kDrift, kJump, kOutage };
+enum Kind : std::uint64_t { kBias = 0x6e617600, kWhite, kWalk, kDrift, kJump, kOutage, kMotion };
 
 Eigen::Vector3d normal_vector(Random& random, double deviation) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
@@ -35,7 +37,7 @@ std::vector<NavigationError> navigation_errors(const std::vector<double>& times,
   Random of_bias = Random::of_item(stream, kBias, 0);
   Eigen::Vector3d bias = normal_vector(of_bias, options.position_bias);  // and what jumps add to it
   Eigen::Vector3d position_walk = Eigen::Vector3d::Zero(), angle_walk = position_walk,
-                  drift = position_walk;
+                  drift = position_walk, velocity_drift = position_walk;
   std::vector<NavigationError> errors;
   errors.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -44,14 +46,18 @@ std::vector<NavigationError> navigation_errors(const std::vector<double>& times,
     Random of_walk = Random::of_item(stream, kWalk, i),
            of_drift = Random::of_item(stream, kDrift, i),
            of_jump = Random::of_item(stream, kJump, i),
-           of_white = Random::of_item(stream, kWhite, i);
+           of_white = Random::of_item(stream, kWhite, i),
+           of_motion = Random::of_item(stream, kMotion, i);
 
     position_walk += normal_vector(of_walk, options.position_walk * std::sqrt(step));
     angle_walk += normal_vector(of_walk, options.angle_walk * std::sqrt(step));
     if (lost_for > 0) {
       drift += normal_vector(of_drift, kOutageDrift * options.position_walk * std::sqrt(step));
+      velocity_drift +=
+          normal_vector(of_motion, kOutageVelocityWalk * options.velocity_noise * std::sqrt(step));
     } else {
       drift.setZero();
+      velocity_drift.setZero();
       if (of_jump.uniform() < -std::expm1(-options.jump_rate * step)) {
         bias += normal_vector(of_jump, options.jump_size);
       }
@@ -59,6 +65,8 @@ std::vector<NavigationError> navigation_errors(const std::vector<double>& times,
     NavigationError error;
     error.position = bias + position_walk + drift + normal_vector(of_white, options.position_noise);
     error.angles = angle_walk + normal_vector(of_white, options.angle_noise);
+    error.velocity = velocity_drift + normal_vector(of_motion, options.velocity_noise);
+    error.rate = normal_vector(of_motion, options.rate_noise);
     error.outage = lost_for > 0;
     error.accuracy =
         std::sqrt(std::pow(options.position_bias, 2) + std::pow(options.position_noise, 2) +

@@ -12,6 +12,7 @@ NavigationOptions exact() {
   NavigationOptions options;
   options.position_noise = options.position_walk = options.position_bias = 0;
   options.angle_noise = options.angle_walk = options.jump_rate = 0;
+  options.velocity_noise = options.rate_noise = 0;
   return options;
 }
 
@@ -32,6 +33,8 @@ TEST(NavigationErrors, NoneIsExact) {
   for (const NavigationError& error : navigation_errors(times(500), exact(), 3)) {
     EXPECT_EQ(error.position, Eigen::Vector3d::Zero());
     EXPECT_EQ(error.angles, Eigen::Vector3d::Zero());
+    EXPECT_EQ(error.velocity, Eigen::Vector3d::Zero());
+    EXPECT_EQ(error.rate, Eigen::Vector3d::Zero());
     EXPECT_FALSE(error.outage);
     EXPECT_EQ(error.accuracy, 0);
   }
@@ -54,16 +57,22 @@ TEST(NavigationErrors, WhiteNoiseIsOfItsSizeAndWhite) {
   NavigationOptions options = exact();
   options.position_noise = 0.01;
   options.angle_noise = 0.0002;
+  options.velocity_noise = 0.02;
+  options.rate_noise = 0.001;
   constexpr int n = 20'000;
   const auto errors = navigation_errors(times(n), options, 1);
-  double position = 0, angles = 0, neighbours = 0;
+  double position = 0, angles = 0, velocity = 0, rate = 0, neighbours = 0;
   for (int i = 0; i < n; ++i) {
     position += errors[i].position.squaredNorm();
     angles += errors[i].angles.squaredNorm();
+    velocity += errors[i].velocity.squaredNorm();
+    rate += errors[i].rate.squaredNorm();
     if (i > 0) neighbours += errors[i].position.dot(errors[i - 1].position);
   }
   expect_deviation(position, 3 * n, 0.01);
   expect_deviation(angles, 3 * n, 0.0002);
+  expect_deviation(velocity, 3 * n, 0.02);
+  expect_deviation(rate, 3 * n, 0.001);
   EXPECT_NEAR(neighbours / position, 0, 5 / std::sqrt(3.0 * n));
 }
 
@@ -131,6 +140,26 @@ TEST(NavigationErrors, OutagesDriftTenfoldAndPass) {
   }
   expect_deviation(outside, n_outside, 0.03 * std::sqrt(kPeriod));
   expect_deviation(inside, n_inside, 0.03 * std::sqrt(101 * kPeriod));  // 10 x and the walk itself
+}
+
+TEST(NavigationErrors, InAnOutageTheVelocityDriftsToo) {
+  NavigationOptions options = exact();
+  options.velocity_noise = 0.02;
+  options.outages = true;
+  double steps = 0;
+  int n = 0;
+  for (int seed = 0; seed < 50; ++seed) {
+    const auto errors = navigation_errors(times(400), options, seed);
+    for (std::size_t i = 1; i < errors.size(); ++i) {
+      if (!errors[i].outage || !errors[i - 1].outage) continue;
+      steps += (errors[i].velocity - errors[i - 1].velocity).squaredNorm();
+      n += 3;
+    }
+  }
+  // White noise of two records, and the walk between them. Neighbouring steps share a record's: a
+  // wider bound.
+  const double variance = 0.02 * 0.02 * (2 + 25 * kPeriod);
+  EXPECT_NEAR(steps / n, variance, 10 * variance * std::sqrt(2.0 / n));
 }
 
 TEST(NavigationErrors, DoNotDependOnWhatFollows) {

@@ -70,11 +70,12 @@ NavigationRecord record_of(TimeNs time, const LocalTangentPlane& local,
   // Level: forward along the heading, left, up.
   const Eigen::Matrix3d R_level_enu =
       Eigen::AngleAxisd(-heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const Eigen::Vector3d velocity_enu = R_enu_local * derivatives.velocity;
+  const Eigen::Vector3d velocity_enu = R_enu_local * derivatives.velocity + error.velocity;
   const Eigen::Vector3d velocity_level = R_level_enu * velocity_enu;
   const Eigen::Vector3d force_enu =
       R_enu_local * derivatives.acceleration + kGravity * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d rate_enu = R_enu_imu * derivatives.rate_body;
+  const Eigen::Vector3d rate_body = derivatives.rate_body + error.rate;
+  const Eigen::Vector3d rate_enu = R_enu_imu * rate_body;
 
   constexpr int kLocked = 4, kDifferential = 4, kNone = 0, kSatellites = 8;
   const int mode = error.outage ? kNone : kDifferential;
@@ -82,7 +83,7 @@ NavigationRecord record_of(TimeNs time, const LocalTangentPlane& local,
                             place.latitude, place.longitude, place.altitude, record.roll,
                             record.pitch, record.yaw, velocity_enu.y(), velocity_enu.x()) +
                 join({velocity_level, R_enu_imu.transpose() * force_enu, R_level_enu * force_enu,
-                      derivatives.rate_body, R_level_enu * rate_enu}) +
+                      rate_body, R_level_enu * rate_enu}) +
                 fmt::format(" {:.15g} {:.15g} {} {} {} {} {}\n", error.accuracy, kVelocityAccuracy,
                             kLocked, error.outage ? 0 : kSatellites, mode, mode, kNone);
   return record;

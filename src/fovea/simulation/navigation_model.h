@@ -25,9 +25,9 @@ struct NavigationRecord {
 std::string navigation_format_text();
 
 /// One record a frame, of the time at which it was taken: its scan's stamp and a delay, which is
-/// the same without noise: stamps do not lie. Position and angles are off by navigation_errors();
-/// velocities, accelerations (of which gravity is a part, as the unit measures it) and rates are
-/// the motion's own. The motion's path must reach half a second beyond the last stamp.
+/// the same without noise: stamps do not lie. Position, angles, velocities and rates are off by
+/// navigation_errors(); accelerations (of which gravity is a part, as the unit measures it) are the
+/// motion's own. The motion's path must reach half a second beyond the last stamp.
 /// @param T_world_local  the truth's local frame in the world (a translation): east-north-up at
 ///                       options.navigation.origin
 std::vector<NavigationRecord> simulate_navigation(const VehicleMotion& motion, const Rig& rig,

@@ -47,7 +47,7 @@ SimulationOptions exact() {
   options.frames = 120;
   NavigationOptions& n = options.navigation;
   n.position_noise = n.position_walk = n.position_bias = n.angle_noise = n.angle_walk =
-      n.jump_rate = 0;
+      n.velocity_noise = n.rate_noise = n.jump_rate = 0;
   return options;
 }
 

@@ -149,6 +149,8 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("navigation.position_bias", n.position_bias);
   visit("navigation.angle_noise", Degrees{n.angle_noise});
   visit("navigation.angle_walk", Degrees{n.angle_walk});
+  visit("navigation.velocity_noise", n.velocity_noise);
+  visit("navigation.rate_noise", Degrees{n.rate_noise});
   visit("navigation.jump_rate", n.jump_rate);
   visit("navigation.jump_size", n.jump_size);
   visit("navigation.outages", n.outages);

@@ -52,7 +52,8 @@ TEST(SimulationOptions, NoiseLevelsGrowAndLeaveTheVehicleAlone) {
                                o.camera.vignetting, o.camera.noise,
                                n.position_noise,    n.position_walk,
                                n.position_bias,     n.angle_noise,
-                               n.angle_walk,        n.jump_rate};
+                               n.angle_walk,        n.velocity_noise,
+                               n.rate_noise,        n.jump_rate};
   };
   for (std::size_t i = 0; i < levels(none).size(); ++i) {
     EXPECT_EQ(levels(none)[i], 0) << i;
@@ -119,6 +120,7 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     EXPECT_EQ(back.camera.trigger_delay, options.camera.trigger_delay);
     EXPECT_EQ(back.navigation.angle_noise, options.navigation.angle_noise);
     EXPECT_EQ(back.navigation.angle_walk, options.navigation.angle_walk);
+    EXPECT_EQ(back.navigation.rate_noise, options.navigation.rate_noise);
     ASSERT_EQ(back.camera.cameras.size(), 3u);
     EXPECT_EQ(back.camera.cameras[2].number, 9);
     EXPECT_EQ(back.camera.cameras[2].right, -0.3);

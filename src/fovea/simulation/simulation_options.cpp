@@ -149,6 +149,8 @@ void check(const NavigationOptions& navigation, double period) {
   check("navigation.position_bias", navigation.position_bias, 0, 100, "m");
   check_degrees("navigation.angle_noise", navigation.angle_noise, 0, 10);
   check_degrees("navigation.angle_walk", navigation.angle_walk, 0, 10);
+  check("navigation.velocity_noise", navigation.velocity_noise, 0, 100, "m/s");
+  check_degrees("navigation.rate_noise", navigation.rate_noise, 0, 100);
   check("navigation.jump_rate", navigation.jump_rate, 0, 10, "a second");
   check("navigation.jump_size", navigation.jump_size, 0, 100, "m");
 }
@@ -186,6 +188,7 @@ void take_errors_off(SimulationOptions& options) {
   NavigationOptions& n = options.navigation;
   n.position_noise = n.position_walk = n.position_bias = 0;
   n.angle_noise = n.angle_walk = 0;
+  n.velocity_noise = n.rate_noise = 0;
   n.jump_rate = n.jump_size = 0;
   n.outages = false;
 }
@@ -203,6 +206,8 @@ void make_harsh(SimulationOptions& options) {
   n.position_bias = 1;
   n.angle_noise = 0.035 * kDegree;
   n.angle_walk = 0.05 * kDegree;
+  n.velocity_noise = 0.05;
+  n.rate_noise = 0.15 * kDegree;
   n.jump_rate = 0.06;
   n.jump_size = 1;
   n.outages = true;

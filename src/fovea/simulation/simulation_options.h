@@ -105,6 +105,8 @@ struct NavigationOptions {
   double position_bias = 0.4;                   ///< m, standard deviation of the constant error
   double angle_noise = 0.012 * kDegree;         ///< rad, white
   double angle_walk = 0.018 * kDegree;          ///< rad per square root of a second
+  double velocity_noise = 0.02;                 ///< m/s, white, each axis
+  double rate_noise = 0.05 * kDegree;           ///< rad/s, white, each axis
   double jump_rate = 0.02;                      ///< GPS jumps a second
   double jump_size = 0.4;                       ///< m, standard deviation
   bool outages = false;  ///< satellites are lost for a while: the walk grows tenfold
