@@ -17,7 +17,8 @@ Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 RigidMotion exp_se3(const Twist& twist);
 Twist log_se3(const RigidMotion& T);
 
-/// The twist of a rigid body in frame a as one of its parts in frame b, which is fixed to it, has it.
+/// The twist of a rigid body in frame a as one of its parts in frame b, which is fixed to it, has
+/// it.
 Twist twist_of_part(const Twist& twist_a, const RigidMotion& T_a_b);
 
 /// Constant-twist interpolation from T0 (s = 0) to T1 (s = 1); s outside [0, 1] extrapolates.

@@ -83,7 +83,7 @@ TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
 TEST(Trajectory, VelocityIsThatAroundTheTimeAsFarAsItIsKnown) {
   const Trajectory trajectory = stop_and_go();
   EXPECT_NEAR(speed(trajectory, 1.96, 2.01), 20, 1e-12);  // the pair around the time
-  EXPECT_NEAR(speed(trajectory, 1.5, 1.9), 10, 1e-12);  // the pose at 2 s is still to come
+  EXPECT_NEAR(speed(trajectory, 1.5, 1.9), 10, 1e-12);    // the pose at 2 s is still to come
   EXPECT_NEAR(speed(trajectory, 1.5, 2), 20, 1e-12);
   EXPECT_NEAR(speed(trajectory, 2.9, 2.9), 20, 1e-12);
   EXPECT_NEAR(speed(trajectory, 9, 9), 5, 1e-12);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <stdexcept>
@@ -102,16 +103,27 @@ std::string poses_text(const std::vector<RecordedPose>& poses) {
 }
 
 std::string positions_text(const std::vector<RecordedPosition>& positions) {
-  std::string text = "time_ns,latitude,longitude,altitude,accuracy,roll,pitch,yaw\n";
+  std::string text = "time_ns,latitude,longitude,altitude,accuracy,roll,pitch,yaw";
+  const bool has_velocities =
+      std::any_of(positions.begin(), positions.end(),
+                  [](const RecordedPosition& position) { return position.velocity.has_value(); });
+  text += has_velocities ? ",vx,vy,vz,wx,wy,wz\n" : "\n";
   for (const RecordedPosition& position : positions) {
     const GeodeticPoint& p = position.antenna;
     text += fmt::format("{},{},{},{},{}", position.time, p.latitude, p.longitude, p.altitude,
                         position.accuracy);
     if (const auto& angles = position.roll_pitch_yaw) {
-      text += fmt::format(",{},{},{}\n", angles->x(), angles->y(), angles->z());
+      text += fmt::format(",{},{},{}", angles->x(), angles->y(), angles->z());
     } else {
-      text += ",,,\n";
+      text += ",,,";
     }
+    if (const auto& v = position.velocity) {
+      text +=
+          fmt::format(",{},{},{},{},{},{}", (*v)[3], (*v)[4], (*v)[5], (*v)[0], (*v)[1], (*v)[2]);
+    } else if (has_velocities) {
+      text += ",,,,,,";
+    }
+    text += '\n';
   }
   return text;
 }

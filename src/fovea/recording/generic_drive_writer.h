@@ -17,6 +17,7 @@
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/quaternion_motion.h"
+#include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
 
@@ -39,6 +40,7 @@ struct RecordedPosition {
   GeodeticPoint antenna;
   double accuracy = 0;  ///< standard deviation of a coordinate (m); 0: not known, infinite: no fix
   std::optional<Eigen::Vector3d> roll_pitch_yaw;  ///< rad, as in oxts.h
+  std::optional<Twist> velocity = {};             ///< of the body in its own frame, a second
 };
 
 /// A line of imu.csv.

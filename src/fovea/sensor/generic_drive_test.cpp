@@ -340,6 +340,29 @@ TEST_F(GenericNavigation, TheAntennasPlaceIsTakenIntoAccount) {
   EXPECT_NEAR(with.longitude, without.longitude, 1e-9);
 }
 
+TEST_F(GenericNavigation, VelocitiesAreTheBodysAndBecomeTheLidars) {
+  const auto expect_velocity = [&](const Eigen::Vector3d& expected) {
+    const auto drive = open();
+    const TimeNs stamp = *drive->stamp(1);
+    const Twist velocity =
+        drive->info().navigation->velocity(stamp, stamp + kNsPerSecond / 20).value();
+    EXPECT_LT((velocity.head<3>() - Eigen::Vector3d(0, 0, 0.5)).norm(), 1e-12);
+    EXPECT_LT((velocity.tail<3>() - expected).norm(), 1e-12) << velocity.transpose();
+  };
+  const auto cells = [](int) { return ",0,0,0,10,0,0,0,0,0.5"; };
+  write_text(folder_ / "gnss.csv", gnss(",roll,pitch,yaw,vx,vy,vz,wx,wy,wz", cells));
+  // The body turns left: what lies ahead of its origin swings to the left, wherever the antenna is.
+  test::edit(toml_, "[body]\n", "[body]\nantenna = [-1, 0.5, 0.5]\n");
+  test::edit(toml_, "{translation = [0, 0, 2]}", "{translation = [3, 0, 2]}");
+  expect_velocity({10, 1.5, 0});
+  std::string text = "time_ns,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz\n";
+  for (int i = 0; i < kFrames; ++i) {
+    text += fmt::format("{},{},0,0,0,0,0,1,10,0,0,0,0,0.5\n", kStart + i * kStep, 1.2 * i);
+  }
+  write_text(folder_ / "poses.csv", text);
+  expect_velocity({10, 1.5, 0});
+}
+
 TEST_F(GenericNavigation, BadLinesAreNotedAndNotUsed) {
   std::string text = gnss();
   text += fmt::format("{},91,8.4,100\n{},nan,8.4,100\n{},49,8.4,1e300\nnonsense\n5,49,8.4,100\n",

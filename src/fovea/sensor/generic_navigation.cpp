@@ -8,6 +8,7 @@
 
 #include "fovea/sensor/course.h"
 #include "fovea/sensor/csv_rows.h"
+#include "fovea/sensor/measured_velocity.h"
 #include "fovea/sensor/navigation.h"
 #include "fovea/sensor/plausible.h"
 
@@ -53,6 +54,15 @@ class LeftOut {
   std::size_t out_of_order_ = 0;
 };
 
+/// The velocity in six columns from `first` on, where the line has one.
+std::optional<Twist> velocity_of(const CsvRows& rows, std::size_t row, std::size_t first) {
+  const auto vector = [&](std::size_t column) {
+    return Eigen::Vector3d(rows.at(row, column), rows.at(row, column + 1),
+                           rows.at(row, column + 2));
+  };
+  return measured_velocity(vector(first + 3), vector(first));
+}
+
 /// Standard deviation as DriveInfo has it: 0 where the file says nothing.
 double accuracy_of(const CsvRows& rows, std::size_t row, std::size_t column) {
   const double accuracy = rows.at(row, column);
@@ -61,9 +71,21 @@ double accuracy_of(const CsvRows& rows, std::size_t row, std::size_t column) {
 
 GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& drive,
                                   TimeNs origin_time) {
-  enum { kX, kY, kZ, kQx, kAccuracy = 7 };
-  constexpr std::array<CsvColumn, 8> kColumns = {
-      {{"x"}, {"y"}, {"z"}, {"qx"}, {"qy"}, {"qz"}, {"qw"}, {"accuracy", false}}};
+  enum { kX, kY, kZ, kQx, kAccuracy = 7, kVelocity };
+  constexpr std::array<CsvColumn, kVelocity + 6> kColumns = {{{"x"},
+                                                              {"y"},
+                                                              {"z"},
+                                                              {"qx"},
+                                                              {"qy"},
+                                                              {"qz"},
+                                                              {"qw"},
+                                                              {"accuracy", false},
+                                                              {"vx", false},
+                                                              {"vy", false},
+                                                              {"vz", false},
+                                                              {"wx", false},
+                                                              {"wy", false},
+                                                              {"wz", false}}};
   GenericNavigation result;
   CsvRows rows = read_csv(file, kColumns);
   LeftOut left_out(file, rows);
@@ -79,7 +101,10 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
     }
     RigidMotion T_world_body(*q);
     T_world_body.pretranslate(position);
-    poses.push_back({rows.times[row], T_world_body * drive.T_body_lidar});
+    poses.push_back({rows.times[row], T_world_body * drive.T_body_lidar, {}});
+    if (const auto velocity = velocity_of(rows, row, kVelocity)) {
+      poses.back().velocity = twist_of_part(*velocity, drive.T_body_lidar);
+    }
     result.accuracy.push_back(accuracy_of(rows, row, kAccuracy));
   }
   left_out.note(result.notes);
@@ -139,7 +164,8 @@ enum GnssColumn : std::size_t {
   kPitch,
   kYaw,
   kGnssQx,
-  kGnssColumns = kGnssQx + 4
+  kGnssVelocity = kGnssQx + 4,
+  kGnssColumns = kGnssVelocity + 6
 };
 constexpr std::array<CsvColumn, kGnssColumns> kGnssNames = {{{"latitude"},
                                                              {"longitude"},
@@ -151,7 +177,13 @@ constexpr std::array<CsvColumn, kGnssColumns> kGnssNames = {{{"latitude"},
                                                              {"qx", false},
                                                              {"qy", false},
                                                              {"qz", false},
-                                                             {"qw", false}}};
+                                                             {"qw", false},
+                                                             {"vx", false},
+                                                             {"vy", false},
+                                                             {"vz", false},
+                                                             {"wx", false},
+                                                             {"wy", false},
+                                                             {"wz", false}}};
 
 bool has_place(const CsvRows& rows, std::size_t row) {
   // Written so that NaN fails, too.
@@ -200,6 +232,7 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
   std::optional<ImuOrientations> imu;
   if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, result.notes);
 
+  const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body));
   std::vector<GeodeticPose> level, turned;  // all places, and those of a known attitude
   std::vector<int> without_attitude;
   for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -211,6 +244,9 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
     pose.time = rows.times[row];
     pose.position = {rows.at(row, kLatitude), rows.at(row, kLongitude), rows.at(row, kAltitude)};
     pose.accuracy = accuracy_of(rows, row, kGnssAccuracy);
+    if (const auto velocity = velocity_of(rows, row, kGnssVelocity)) {
+      pose.velocity = twist_of_part(*velocity, T_body_antenna);
+    }
     level.push_back(pose);
     std::optional<Eigen::Matrix3d> R = own_attitude(rows, row);
     if (!R && imu) R = imu->at(pose.time);
@@ -238,9 +274,8 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
     for (const int line : without_attitude) left_out.add(line);
   }
   left_out.note(result.notes);
-  const RigidMotion T_antenna_lidar =
-      Eigen::Translation3d(-drive.antenna_body) * drive.T_body_lidar;
-  Navigation navigation = navigation_of(turned, T_antenna_lidar, origin_time);
+  Navigation navigation =
+      navigation_of(turned, T_body_antenna.inverse() * drive.T_body_lidar, origin_time);
   result.T_local_lidar = std::move(navigation.trajectory);
   result.accuracy = std::move(navigation.accuracy);
   result.origin = navigation.origin;

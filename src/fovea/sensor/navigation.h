@@ -21,7 +21,7 @@ struct GeodeticPose {
   TimeNs time = 0;
   GeodeticPoint position;
   Eigen::Matrix3d R_enu_body = Eigen::Matrix3d::Identity();  ///< to east-north-up at the position
-  double accuracy = 0;  ///< standard deviation of a coordinate (m), see DriveInfo
+  double accuracy = 0;                 ///< standard deviation of a coordinate (m), see DriveInfo
   std::optional<Twist> velocity = {};  ///< per second, in the body's frame, where it was measured
 };
 

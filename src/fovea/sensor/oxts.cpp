@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/measured_velocity.h"
 #include "fovea/sensor/plausible.h"
 #include "fovea/sensor/read_file.h"
 
@@ -16,9 +17,6 @@ constexpr std::size_t kVelocityLevel = 8, kRateImu = 17, kPositionAccuracy = 23,
 Eigen::Vector3d vector_at(const std::vector<double>& numbers, std::size_t first) {
   return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
-
-/// A unit that measures never says exactly zero, even at rest.
-bool is_measured(const Eigen::Vector3d& v, double most) { return !v.isZero(0) && v.norm() <= most; }
 
 }  // namespace
 
@@ -51,15 +49,11 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
                     n[5],
                     std::max(0.0, n[kPositionAccuracy]),
                     static_cast<int>(std::clamp(n[kSatellites], 0.0, 1000.0))};
-  const Eigen::Vector3d v_level = vector_at(n, kVelocityLevel), rate_imu = vector_at(n, kRateImu);
-  if (is_measured(v_level, kMaxSpeed) && is_measured(rate_imu, kMaxTurnRate)) {
-    // The level frame is turned as east-north-up is, but heads where the imu does.
-    const Eigen::AngleAxisd R_level_enu(-record.yaw, Eigen::Vector3d::UnitZ());
-    const Eigen::Matrix3d R_level_imu = R_level_enu * record.R_enu_imu();
-    record.velocity.emplace();
-    record.velocity->head<3>() = rate_imu;
-    record.velocity->tail<3>() = R_level_imu.transpose() * v_level;
-  }
+  // The level frame is turned as east-north-up is, but heads where the imu does.
+  const Eigen::AngleAxisd R_level_enu(-record.yaw, Eigen::Vector3d::UnitZ());
+  const Eigen::Matrix3d R_level_imu = R_level_enu * record.R_enu_imu();
+  record.velocity = measured_velocity(vector_at(n, kRateImu),
+                                      R_level_imu.transpose() * vector_at(n, kVelocityLevel));
   return record;
 }
 

@@ -19,8 +19,7 @@ struct OxtsRecord {
   double roll = 0, pitch = 0, yaw = 0;
   double position_accuracy = 0;  ///< m, as the unit estimates it; 0: it says nothing
   int satellites = 0;            ///< in use
-  /// Of the imu in its own frame (forward, left, up), a second. None where a record has zeros, as
-  /// drives have that were brought into this format from others, or what no vehicle reaches.
+  /// Of the imu in its own frame (forward, left, up), a second; see measured_velocity().
   std::optional<Twist> velocity = {};
 
   /// R = Rz(yaw) * Ry(pitch) * Rx(roll), from the imu (forward, left, up) to east-north-up there.

@@ -44,8 +44,8 @@ TEST(Oxts, VelocityIsTheImusInItsOwnFrame) {
   EXPECT_LT((level.tail<3>() - Eigen::Vector3d(9, 0.5, 0.1)).norm(), 1e-14);
   // Front down by 0.1: going level is going forward and up along the unit's own axes.
   const Twist nodding = moving("0 0.1 2", "9 0 0", "0.01 -0.02 0.3").velocity.value();
-  EXPECT_LT(
-      (nodding.tail<3>() - Eigen::Vector3d(9 * std::cos(0.1), 0, 9 * std::sin(0.1))).norm(), 1e-14);
+  EXPECT_LT((nodding.tail<3>() - Eigen::Vector3d(9 * std::cos(0.1), 0, 9 * std::sin(0.1))).norm(),
+            1e-14);
   // Left side up by 0.1: to the left is left and down along its own.
   const Twist rolling = moving("0.1 0 2", "0 1 0", "0.01 -0.02 0.3").velocity.value();
   EXPECT_LT((rolling.tail<3>() - Eigen::Vector3d(0, std::cos(0.1), -std::sin(0.1))).norm(), 1e-14);

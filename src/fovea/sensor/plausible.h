@@ -6,8 +6,6 @@ namespace fovea {
 inline constexpr double kMaxLever = 1000;       ///< m, between sensors
 inline constexpr double kMaxAltitude = 20'000;  ///< m, either way
 inline constexpr double kMaxAngle = 7;          ///< rad: a full turn and some rounding
-inline constexpr double kMaxSpeed = 200;        ///< m/s
-inline constexpr double kMaxTurnRate = 20;      ///< rad/s
 /// Of a rotation's matrix, which files round.
 inline constexpr double kRotationTolerance = 1e-3;
 

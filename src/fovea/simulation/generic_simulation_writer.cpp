@@ -43,7 +43,8 @@ void GenericSimulationWriter::write_texts(const Rig& rig,
   }
   for (const NavigationRecord& record : records) {
     drive_.positions.push_back({record.time, record.place, record.accuracy,
-                                Eigen::Vector3d(record.roll, record.pitch, record.yaw)});
+                                Eigen::Vector3d(record.roll, record.pitch, record.yaw),
+                                record.velocity});
   }
 }
 

@@ -99,6 +99,9 @@ TEST_F(GenericSimulation, TheReaderFindsTheRigAndWhatItRecorded) {
         std::remainder(std::atan2(ahead.y(), ahead.x()) - double(k) * 72 * kDegree, 360 * kDegree),
         0, 2 * kDegree);
   }
+  for (const StampedPose& pose : drive->info().navigation->poses()) {
+    EXPECT_GT(pose.velocity.value().tail<3>().norm(), 1);
+  }
   const Frame frame = std::get<Frame>(drive->load(1));
   EXPECT_EQ(frame.stamp, stamp_of(1, options));
   const std::vector<TrueReturn> returns = DriveTruth(path()).returns(1);

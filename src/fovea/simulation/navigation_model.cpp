@@ -65,6 +65,7 @@ NavigationRecord record_of(TimeNs time, const LocalTangentPlane& local,
       .pitch = wrap(pitch),
       .yaw = wrap(yaw),
       .accuracy = error.outage ? std::numeric_limits<double>::infinity() : error.accuracy,
+      .velocity = {},
       .text = {}};
 
   // Level: forward along the heading, left, up.
@@ -76,6 +77,10 @@ NavigationRecord record_of(TimeNs time, const LocalTangentPlane& local,
       R_enu_local * derivatives.acceleration + kGravity * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d rate_body = derivatives.rate_body + error.rate;
   const Eigen::Vector3d rate_enu = R_enu_imu * rate_body;
+
+  record.velocity.head<3>() = rate_body;
+  record.velocity.tail<3>() = Eigen::AngleAxisd(-roll, Eigen::Vector3d::UnitX()) *
+                              Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) * velocity_level;
 
   constexpr int kLocked = 4, kDifferential = 4, kNone = 0, kSatellites = 8;
   const int mode = error.outage ? kNone : kDifferential;

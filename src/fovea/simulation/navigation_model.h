@@ -17,8 +17,9 @@ struct NavigationRecord {
   GeodeticPoint place;
   /// rad, from the imu (forward, left, up) to east-north-up: Rz(yaw) * Ry(pitch) * Rx(roll).
   double roll = 0, pitch = 0, yaw = 0;
-  double accuracy = 0;  ///< m, of a coordinate; infinite without satellites
-  std::string text;     ///< the 30 fields of oxts/data/NNNNNNNNNN.txt, one line
+  double accuracy = 0;             ///< m, of a coordinate; infinite without satellites
+  Twist velocity = Twist::Zero();  ///< of the imu in its own frame, a second
+  std::string text;                ///< the 30 fields of oxts/data/NNNNNNNNNN.txt, one line
 };
 
 /// What the fields mean (oxts/dataformat.txt).

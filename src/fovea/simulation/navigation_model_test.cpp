@@ -122,6 +122,22 @@ TEST(SimulatedNavigation, RecordsLieAfterTheirScansByTheDelay) {
   EXPECT_NEAR(sum / options.frames, 0.0245, 0.0013);  // uniform: five standard errors
 }
 
+TEST(SimulatedNavigation, ReaderFindsTheVelocityOfTheLidar) {
+  const Drive drive(exact());
+  const auto records = drive.records();
+  const Trajectory trajectory = read_trajectory(drive);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    constexpr TimeNs kHalf = kNsPerSecond / 500;
+    const RigidMotion before = drive.T_local_lidar(records[i].time - kHalf),
+                      after = drive.T_local_lidar(records[i].time + kHalf);
+    const Twist expected = log_se3(before.inverse() * after) / seconds(2 * kHalf);
+    EXPECT_LT((trajectory.poses()[i].velocity.value() - expected).norm(), 2e-3);
+    // What the generic format is given is what is read from KITTI's.
+    const OxtsRecord read = std::get<OxtsRecord>(parse_oxts(records[i].text));
+    EXPECT_LT((records[i].velocity - read.velocity.value()).norm(), 1e-12);
+  }
+}
+
 TEST(SimulatedNavigation, VelocitiesAccelerationsAndRatesFitThePoses) {
   const Drive drive(exact());
   const auto records = drive.records();
