@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "fovea/map/map_store.h"
@@ -158,6 +160,32 @@ TEST(SimulatedChain, AnOrdinaryDriveIsOffByItsInterpolationOnly) {
   ASSERT_GT(chain.map.size(), 50'000u);
   const std::vector<double> distances = chain.surface_distances();
   EXPECT_LT(*std::max_element(distances.begin(), distances.end()), 0.006);
+}
+
+TEST(SimulatedChain, PositionsThatJitterDoNotBendScans) {
+  // 15 cm from record to record are 2 m/s; the velocities that the unit measures are right.
+  SimulationOptions options = simulation_options(Scene::kStreet, "default");
+  options.frames = 10;
+  options.navigation.position_noise = 0.15;
+  options.camera.cameras = {kitti_camera(2)};
+  options.camera.width = 310;
+  options.camera.height = 94;
+  options.camera.focal = 180;
+  options.camera.cx = 152;
+  options.camera.cy = 43;
+  const TemporaryFolder own;
+  const std::string drive = "'" + simulate(options, own / "drive").string() + "'";
+  const std::string map = "'" + (own / "map.fovea").string() + "'";
+  const std::filesystem::path json = own / "truth.json";
+  const ProgramRun mapped = run_fovea("map " + drive + " -o " + map + " --quiet");
+  ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
+  const ProgramRun scored =
+      run_fovea("evaluate " + map + " " + drive + " --truth --json '" + json.string() + "'");
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  std::ifstream file(json);
+  const nlohmann::json figures = nlohmann::json::parse(file);
+  EXPECT_LT(figures["pose_relative_deg"]["max"].get<double>(), 0.1);
+  EXPECT_LT(figures["pose_relative_m"]["max"].get<double>(), 0.02);
 }
 
 }  // namespace fovea::simulated_chain_test

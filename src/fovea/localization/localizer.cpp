@@ -41,7 +41,7 @@ constexpr double kFarPairs = 2;
 constexpr int kTries = 1;
 /// Pairs of a scan err alike (normals, the map's own bends, calibration): so many count as one.
 /// With it covariances are as large as errors are on simulated drives (docs/localization.md).
-constexpr double kPairsAlike = 150;
+constexpr double kPairsAlike = 80;
 /// What prediction alone loses a scan along a direction that the scene leaves open, standard
 /// deviation, m (of turns: at kRotationArm).
 constexpr double kOpen = 0.2;
