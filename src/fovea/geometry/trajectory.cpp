@@ -57,11 +57,12 @@ std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const
   const TimeNs reach = known_until - time;
   if (auto measured = measured_velocity(time - reach, known_until)) return measured;
   if (poses_.size() < 2) return std::nullopt;
-  std::size_t last = poses_.size() - 1;
-  while (last > 1 && poses_[last].time > known_until) --last;
-  std::size_t first = last - 1;
-  while (first > 0 && poses_[last].time - poses_[first].time < reach * 3 / 2) --first;
-  const StampedPose &p0 = poses_[first], &p1 = poses_[last];
+  const auto unknown = std::upper_bound(poses_.begin() + 2, poses_.end(), known_until,
+                                        [](TimeNs t, const StampedPose& p) { return t < p.time; });
+  const auto last = unknown - 1;
+  auto first = last - 1;
+  while (first != poses_.begin() && last->time - first->time < reach * 3 / 2) --first;
+  const StampedPose &p0 = *first, &p1 = *last;
   if (p1.time - p0.time > kMaxGap) return std::nullopt;
   return Twist(log_se3(p0.T_local_body.inverse() * p1.T_local_body) / seconds(p1.time - p0.time));
 }

@@ -78,6 +78,17 @@ TEST(Navigation, MeasuredVelocityIsThatOfTheLidar) {
   EXPECT_LT((poses[1].velocity.value() - expected).norm(), 1e-12);
 }
 
+TEST(Navigation, AFrozenUnitMeasuresNoVelocity) {
+  std::vector<StampedOxts> records = drive_north();
+  for (StampedOxts& record : records) record.record.velocity = Twist::Ones();
+  for (int i = 2; i < 4; ++i) records.push_back({i * kNsPerSecond, records[1].record});
+  const auto poses = make_navigation(records, RigidMotion::Identity(), 0).trajectory.poses();
+  EXPECT_TRUE(poses[0].velocity);
+  EXPECT_TRUE(poses[1].velocity);
+  EXPECT_FALSE(poses[2].velocity);
+  EXPECT_FALSE(poses[3].velocity);
+}
+
 TEST(Navigation, NeedsARecord) {
   EXPECT_THROW(make_navigation({}, RigidMotion::Identity(), 0), std::invalid_argument);
 }
