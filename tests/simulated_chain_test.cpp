@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -182,8 +181,7 @@ TEST(SimulatedChain, PositionsThatJitterDoNotBendScans) {
   const ProgramRun scored =
       run_fovea("evaluate " + map + " " + drive + " --truth --json '" + json.string() + "'");
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
-  std::ifstream file(json);
-  const nlohmann::json figures = nlohmann::json::parse(file);
+  const nlohmann::json figures = nlohmann::json::parse(read_text(json));
   EXPECT_LT(figures["pose_relative_deg"]["max"].get<double>(), 0.1);
   EXPECT_LT(figures["pose_relative_m"]["max"].get<double>(), 0.02);
 }

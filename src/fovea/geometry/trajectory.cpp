@@ -11,6 +11,9 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
     if (poses_[i].time <= poses_[i - 1].time) {
       throw std::invalid_argument("the times of a trajectory must increase");
     }
+    if (poses_[i].T_local_body.translation() == poses_[i - 1].T_local_body.translation()) {
+      poses_[i].velocity.reset();
+    }
   }
 }
 

@@ -23,7 +23,8 @@ class Trajectory {
   static constexpr TimeNs kMaxGap = kNsPerSecond;
 
   Trajectory() = default;
-  /// Poses in strictly increasing time, at least one; std::invalid_argument otherwise.
+  /// Poses in strictly increasing time, at least one; std::invalid_argument otherwise. What repeats
+  /// the last place to the bit has frozen, and its velocity with it: that one is dropped.
   explicit Trajectory(std::vector<StampedPose> poses);
 
   const std::vector<StampedPose>& poses() const { return poses_; }

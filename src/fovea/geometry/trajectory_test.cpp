@@ -117,6 +117,18 @@ TEST(Trajectory, AMeasuredVelocityIsBetterThanDifferences) {
   EXPECT_NEAR(speed(Trajectory({poses[1]}), 1, 1.05), 8, 1e-12);
 }
 
+TEST(Trajectory, AFrozenPoseHasNoVelocity) {
+  std::vector<StampedPose> poses = {{0, at_x(0)}, {kNsPerSecond, at_x(8)}};
+  for (StampedPose& pose : poses) pose.velocity = Twist::Ones();
+  poses.push_back(poses.back());
+  poses.back().time = 2 * kNsPerSecond;
+  const Trajectory trajectory(poses);
+  EXPECT_TRUE(trajectory.poses()[0].velocity);
+  EXPECT_TRUE(trajectory.poses()[1].velocity);
+  EXPECT_FALSE(trajectory.poses()[2].velocity);
+  EXPECT_NEAR(speed(trajectory, 2, 2.05), 0, 1e-12);
+}
+
 TEST(Trajectory, RejectsTimesThatDoNotIncrease) {
   EXPECT_THROW(Trajectory(std::vector<StampedPose>{}), std::invalid_argument);
   EXPECT_THROW(Trajectory({{5, at_x(0)}, {5, at_x(1)}}), std::invalid_argument);

@@ -54,6 +54,16 @@ class LeftOut {
   std::size_t out_of_order_ = 0;
 };
 
+/// A table's columns, and after them those of a velocity.
+template <std::size_t N>
+constexpr std::array<CsvColumn, N + 6> with_velocity(const std::array<CsvColumn, N>& columns) {
+  std::array<CsvColumn, N + 6> all{};
+  std::size_t next = 0;
+  for (const CsvColumn& column : columns) all[next++] = column;
+  for (const char* name : {"vx", "vy", "vz", "wx", "wy", "wz"}) all[next++] = {name, false};
+  return all;
+}
+
 /// The velocity in six columns from `first` on, where the line has one.
 std::optional<Twist> velocity_of(const CsvRows& rows, std::size_t row, std::size_t first) {
   const auto vector = [&](std::size_t column) {
@@ -72,20 +82,8 @@ double accuracy_of(const CsvRows& rows, std::size_t row, std::size_t column) {
 GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& drive,
                                   TimeNs origin_time) {
   enum { kX, kY, kZ, kQx, kAccuracy = 7, kVelocity };
-  constexpr std::array<CsvColumn, kVelocity + 6> kColumns = {{{"x"},
-                                                              {"y"},
-                                                              {"z"},
-                                                              {"qx"},
-                                                              {"qy"},
-                                                              {"qz"},
-                                                              {"qw"},
-                                                              {"accuracy", false},
-                                                              {"vx", false},
-                                                              {"vy", false},
-                                                              {"vz", false},
-                                                              {"wx", false},
-                                                              {"wy", false},
-                                                              {"wz", false}}};
+  constexpr auto kColumns = with_velocity<kVelocity>(
+      {{{"x"}, {"y"}, {"z"}, {"qx"}, {"qy"}, {"qz"}, {"qw"}, {"accuracy", false}}});
   GenericNavigation result;
   CsvRows rows = read_csv(file, kColumns);
   LeftOut left_out(file, rows);
@@ -164,26 +162,19 @@ enum GnssColumn : std::size_t {
   kPitch,
   kYaw,
   kGnssQx,
-  kGnssVelocity = kGnssQx + 4,
-  kGnssColumns = kGnssVelocity + 6
+  kGnssVelocity = kGnssQx + 4
 };
-constexpr std::array<CsvColumn, kGnssColumns> kGnssNames = {{{"latitude"},
-                                                             {"longitude"},
-                                                             {"altitude"},
-                                                             {"accuracy", false},
-                                                             {"roll", false},
-                                                             {"pitch", false},
-                                                             {"yaw", false},
-                                                             {"qx", false},
-                                                             {"qy", false},
-                                                             {"qz", false},
-                                                             {"qw", false},
-                                                             {"vx", false},
-                                                             {"vy", false},
-                                                             {"vz", false},
-                                                             {"wx", false},
-                                                             {"wy", false},
-                                                             {"wz", false}}};
+constexpr auto kGnssNames = with_velocity<kGnssVelocity>({{{"latitude"},
+                                                           {"longitude"},
+                                                           {"altitude"},
+                                                           {"accuracy", false},
+                                                           {"roll", false},
+                                                           {"pitch", false},
+                                                           {"yaw", false},
+                                                           {"qx", false},
+                                                           {"qy", false},
+                                                           {"qz", false},
+                                                           {"qw", false}}});
 
 bool has_place(const CsvRows& rows, std::size_t row) {
   // Written so that NaN fails, too.

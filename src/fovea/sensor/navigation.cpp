@@ -6,25 +6,16 @@
 namespace fovea {
 namespace {
 
-bool is_same_place(const GeodeticPose& a, const GeodeticPose& b) {
-  return a.position.latitude == b.position.latitude &&
-         a.position.longitude == b.position.longitude && a.position.altitude == b.position.altitude;
-}
-
 Trajectory lidar_trajectory(const LocalTangentPlane& local, const std::vector<GeodeticPose>& poses,
                             const RigidMotion& T_body_lidar) {
   std::vector<StampedPose> lidar;
   lidar.reserve(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const GeodeticPose& pose = poses[i];
+  for (const GeodeticPose& pose : poses) {
     RigidMotion T_enu_body = RigidMotion::Identity();
     T_enu_body.linear() = pose.R_enu_body;
     const RigidMotion T_local_body = local.T_local_enu(pose.position) * T_enu_body;
     lidar.push_back({pose.time, T_local_body * T_body_lidar, {}});
-    // A unit that repeats its last place has frozen, and its velocity with it.
-    if (pose.velocity && !(i > 0 && is_same_place(pose, poses[i - 1]))) {
-      lidar.back().velocity = twist_of_part(*pose.velocity, T_body_lidar);
-    }
+    if (pose.velocity) lidar.back().velocity = twist_of_part(*pose.velocity, T_body_lidar);
   }
   return Trajectory(std::move(lidar));
 }
