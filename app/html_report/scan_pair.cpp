@@ -43,9 +43,7 @@ std::optional<RigidMotion> guess(const FrameSource& drive, const PlacedFrame* be
   if (before_time) motion.update(*before_time, before->T_local_lidar);
   if (!before_time && !info.navigation) return std::nullopt;
   motion.update(*target_time, target.T_local_lidar);
-  return motion.predict(*source_time, *source_time + from_seconds(info.sweep_period / 2))
-      .guesses.front()
-      .T_odom_lidar;
+  return motion.predict(*source_time).guesses.front().T_odom_lidar;
 }
 
 /// Of pairs whose frames follow each other, the one that is guessed worst.

@@ -119,7 +119,8 @@ Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationG
 }
 
 MotionModel Localizer::new_motion_model() const {
-  return MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr);
+  return MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr,
+                     {.sweep_rest = from_seconds(drive_.sweep_period / 2)});
 }
 
 Localization Localizer::localize(const Frame& frame) {
@@ -130,8 +131,7 @@ Localization Localizer::localize(const Frame& frame) {
   Localization result;
   result.index = frame.index;
   result.stamp = frame.stamp;
-  const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
-  MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
+  MotionPrediction motion = motion_model_.predict(frame.stamp);
   const bool begins = !last_ && !guess_.trajectory && guess_.first;
   if (begins) motion.guesses.front() = {*guess_.first, {}, false};
   const bool placed = last_ || motion.T_local_lidar_navigation || begins;

@@ -1,5 +1,7 @@
 #include "fovea/pipeline/motion_model.h"
 
+#include <algorithm>
+
 #include "fovea/base/angle.h"
 
 namespace fovea {
@@ -9,6 +11,24 @@ namespace {
 /// faster, and registration and GPS are better than the constants.
 constexpr double kAcceleration = 10, kShift = 0.2;                  // m/s^2, m
 constexpr double kTurnRate = 100 * kDegree, kTurn = 1.5 * kDegree;  // rad/s^2, rad
+
+/// What a velocity is taken to err by before anything is known of it, and what a single error
+/// counts at most: a moment without satellites is not held against a receiver for long.
+constexpr double kFirstWay = 0.1, kFirstTurn = 0.5 * kDegree;  // m/s, rad/s
+constexpr double kMostWay = 1, kMostTurn = 5 * kDegree;        // m/s, rad/s
+constexpr int kRemembered = 10;                                // frames
+
+Twist squares(double turn, double way) {
+  Twist squares;
+  squares.head<3>().setConstant(turn * turn);
+  squares.tail<3>().setConstant(way * way);
+  return squares;
+}
+
+/// Twist per second from one pose to a later one.
+Twist velocity_between(const StampedPose& a, const StampedPose& b) {
+  return log_se3(a.T_local_body.inverse() * b.T_local_body) / seconds(b.time - a.time);
+}
 
 bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
   const double shift = kShift + kAcceleration * elapsed * elapsed;
@@ -22,15 +42,33 @@ bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
 
 }  // namespace
 
+Twist VelocityError::before_any() { return squares(kFirstTurn, kFirstWay); }
+
+void VelocityError::add(const Twist& foretold, const Twist& actual) {
+  count_ = std::min(count_ + 1, kRemembered);
+  const Twist square = (foretold - actual).cwiseAbs2().cwiseMin(squares(kMostTurn, kMostWay));
+  mean_square_ += (square - mean_square_) / count_;
+}
+
 std::optional<RigidMotion> MotionModel::navigation_at(TimeNs stamp) const {
   if (navigation_ == nullptr) return std::nullopt;
   return options_.interpolate ? navigation_->at(stamp) : navigation_->nearest(stamp);
 }
 
-std::optional<MotionGuess> MotionModel::by_navigation(TimeNs stamp, TimeNs sweep_end) const {
+std::optional<Twist> MotionModel::navigation_velocity(TimeNs stamp) const {
+  if (navigation_ == nullptr) return std::nullopt;
+  return navigation_->velocity(stamp, stamp + options_.sweep_rest);
+}
+
+std::optional<Twist> MotionModel::motion_velocity() const {
+  if (!last_ || !before_last_) return std::nullopt;
+  return velocity_between(*before_last_, *last_);
+}
+
+std::optional<MotionGuess> MotionModel::by_navigation(TimeNs stamp) const {
   const auto now = navigation_at(stamp);
   if (!now) return std::nullopt;
-  const auto velocity = navigation_->velocity(stamp, sweep_end);
+  const auto velocity = navigation_velocity(stamp);
   if (!last_) return MotionGuess{*now, velocity, true};
   const auto then = navigation_at(last_->time);
   if (!then) return std::nullopt;
@@ -38,25 +76,36 @@ std::optional<MotionGuess> MotionModel::by_navigation(TimeNs stamp, TimeNs sweep
 }
 
 std::optional<MotionGuess> MotionModel::by_velocity(TimeNs stamp) const {
-  if (!last_ || !before_last_) return std::nullopt;
-  const Twist velocity = log_se3(before_last_->T_local_body.inverse() * last_->T_local_body) /
-                         seconds(last_->time - before_last_->time);
-  MotionGuess guess{last_->T_local_body * exp_se3(velocity * seconds(stamp - last_->time)),
+  const auto velocity = motion_velocity();
+  if (!velocity) return std::nullopt;
+  MotionGuess guess{last_->T_local_body * exp_se3(*velocity * seconds(stamp - last_->time)),
                     velocity, false};
   // Guesses made of guesses would double their rounding every frame.
   guess.T_odom_lidar.linear() = nearest_rotation(guess.T_odom_lidar.linear());
   return guess;
 }
 
-MotionPrediction MotionModel::predict(TimeNs stamp, TimeNs sweep_end) const {
+/// The best of two independent measurements.
+Twist MotionModel::weighed(const Twist& by_navigation, const Twist& by_motion) const {
+  const Twist &navigation = navigation_error_.mean_square(), &motion = motion_error_.mean_square();
+  return (motion.cwiseProduct(by_navigation) + navigation.cwiseProduct(by_motion))
+      .cwiseQuotient(navigation + motion);
+}
+
+MotionPrediction MotionModel::predict(TimeNs stamp) const {
   MotionPrediction prediction;
   prediction.T_local_lidar_navigation = navigation_at(stamp);
-  const auto by_nav = by_navigation(stamp, sweep_end);
+  auto by_nav = by_navigation(stamp);
   const auto by_motion = by_velocity(stamp);
-  if (by_nav && by_motion && options_.doubt &&
-      contradict(*by_nav, *by_motion, seconds(stamp - last_->time))) {
-    prediction.guesses = {*by_motion, *by_nav};
-  } else if (by_nav) {
+  if (by_nav && by_motion && options_.doubt) {
+    if (contradict(*by_nav, *by_motion, seconds(stamp - last_->time))) {
+      prediction.guesses = {*by_motion, *by_nav};
+      return prediction;
+    }
+    by_nav->velocity =
+        by_nav->velocity ? weighed(*by_nav->velocity, *by_motion->velocity) : by_motion->velocity;
+  }
+  if (by_nav) {
     prediction.guesses = {*by_nav};
   } else if (by_motion) {
     prediction.guesses = {*by_motion};
@@ -67,8 +116,16 @@ MotionPrediction MotionModel::predict(TimeNs stamp, TimeNs sweep_end) const {
 }
 
 void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar) {
+  const StampedPose now{stamp, T_odom_lidar};
+  if (before_last_) {
+    const Twist actual = velocity_between(*before_last_, now);  // at last_, between the two
+    if (last_by_navigation_) navigation_error_.add(*last_by_navigation_, actual);
+    if (last_by_motion_) motion_error_.add(*last_by_motion_, actual);
+  }
+  last_by_navigation_ = navigation_velocity(stamp);
+  last_by_motion_ = motion_velocity();
   before_last_ = last_;
-  last_ = StampedPose{stamp, T_odom_lidar};
+  last_ = now;
 }
 
 }  // namespace fovea

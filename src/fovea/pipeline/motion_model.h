@@ -27,30 +27,56 @@ struct MotionPrediction {
 
 struct MotionModelOptions {
   bool interpolate = true;  ///< navigation between records; false: the record nearest in time
-  bool doubt = true;        ///< a second guess where navigation contradicts the motion so far
+  /// Navigation is held against the motion so far: both are weighed for the velocity, and a second
+  /// guess is made where they contradict each other.
+  bool doubt = true;
+  /// From a frame's stamp to the end of its sweep; what navigation tells later is not used for the
+  /// velocity, since a live program would not know it.
+  TimeNs sweep_rest = 0;
 };
 
-/// Predicts by the navigation's motion since the last frame, or else by constant velocity.
+/// How wrong the velocities were that something foretold.
+class VelocityError {
+ public:
+  void add(const Twist& foretold, const Twist& actual);
+  /// Mean square of each coordinate; of the last ten or so.
+  const Twist& mean_square() const { return mean_square_; }
+
+ private:
+  Twist mean_square_ = before_any();
+  int count_ = 1;  // that one
+
+  static Twist before_any();
+};
+
+/// Predicts by the navigation's motion since the last frame, or else by constant velocity. The
+/// velocity, which undoes the sweep, is the mean of navigation's and of the motion so far, each
+/// coordinate weighed by how well they foretold it for the last frames: positions that jitter by a
+/// centimetre err by 0.14 m/s in 0.1 s, the motion so far by what the vehicle accelerates.
 class MotionModel {
  public:
   /// @param navigation  T_local_lidar, or null; must outlive the model
   explicit MotionModel(const Trajectory* navigation, const MotionModelOptions& options = {})
       : navigation_(navigation), options_(options) {}
 
-  /// @param sweep_end  what is known later than this is not used for the velocity (live)
-  MotionPrediction predict(TimeNs stamp, TimeNs sweep_end) const;
+  MotionPrediction predict(TimeNs stamp) const;
 
-  /// Tells the pose that the frame got in the end.
+  /// Tells the pose that the frame got in the end. All that the model knows is of these calls.
   void update(TimeNs stamp, const RigidMotion& T_odom_lidar);
 
  private:
   std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
-  std::optional<MotionGuess> by_navigation(TimeNs stamp, TimeNs sweep_end) const;
+  std::optional<Twist> navigation_velocity(TimeNs stamp) const;
+  std::optional<Twist> motion_velocity() const;
+  std::optional<MotionGuess> by_navigation(TimeNs stamp) const;
   std::optional<MotionGuess> by_velocity(TimeNs stamp) const;
+  Twist weighed(const Twist& by_navigation, const Twist& by_motion) const;
 
   const Trajectory* navigation_;
   MotionModelOptions options_;
   std::optional<StampedPose> last_, before_last_;
+  std::optional<Twist> last_by_navigation_, last_by_motion_;  // what was foretold for last_
+  VelocityError navigation_error_, motion_error_;
 };
 
 }  // namespace fovea

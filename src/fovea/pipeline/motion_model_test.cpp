@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
 namespace fovea::motion_model_test {
 
 constexpr TimeNs kTenth = kNsPerSecond / 10;
@@ -14,11 +18,11 @@ RigidMotion at_x(double x) {
 
 TEST(MotionModel, WithoutNavigationStartsAtRestAndThenKeepsItsVelocity) {
   MotionModel model(nullptr);
-  EXPECT_TRUE(model.predict(0, 0).guesses[0].T_odom_lidar.isApprox(RigidMotion::Identity()));
-  EXPECT_FALSE(model.predict(0, 0).guesses[0].velocity);
+  EXPECT_TRUE(model.predict(0).guesses[0].T_odom_lidar.isApprox(RigidMotion::Identity()));
+  EXPECT_FALSE(model.predict(0).guesses[0].velocity);
   model.update(0, at_x(0));
   model.update(kTenth, at_x(1.5));
-  const MotionPrediction next = model.predict(3 * kTenth, 3 * kTenth);  // one frame is missing
+  const MotionPrediction next = model.predict(3 * kTenth);  // one frame is missing
   EXPECT_NEAR(next.guesses[0].T_odom_lidar.translation().x(), 4.5, 1e-12);
   EXPECT_NEAR((*next.guesses[0].velocity)[3], 15, 1e-9);
   EXPECT_FALSE(next.T_local_lidar_navigation);
@@ -28,10 +32,10 @@ TEST(MotionModel, NavigationsMotionIsAppliedToTheRefinedPose) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back({i * kTenth, at_x(i)});
   const Trajectory navigation(poses);
-  MotionModel model(&navigation);
-  EXPECT_NEAR(model.predict(kTenth, kTenth).guesses[0].T_odom_lidar.translation().x(), 1, 1e-12);
+  MotionModel model(&navigation, {.sweep_rest = kTenth / 2});
+  EXPECT_NEAR(model.predict(kTenth).guesses[0].T_odom_lidar.translation().x(), 1, 1e-12);
   model.update(kTenth, at_x(1.25));  // refined: navigation was 25 cm off
-  const MotionPrediction next = model.predict(2 * kTenth, 2 * kTenth + kTenth / 2);
+  const MotionPrediction next = model.predict(2 * kTenth);
   EXPECT_NEAR(next.guesses[0].T_odom_lidar.translation().x(), 2.25, 1e-12);
   EXPECT_NEAR(next.T_local_lidar_navigation->translation().x(), 2, 1e-12);
   EXPECT_NEAR((*next.guesses[0].velocity)[3], 10, 1e-9);
@@ -40,10 +44,8 @@ TEST(MotionModel, NavigationsMotionIsAppliedToTheRefinedPose) {
 TEST(MotionModel, WithoutInterpolationTheNearestRecordCounts) {
   const Trajectory navigation({{0, at_x(0)}, {kTenth, at_x(1)}, {2 * kTenth, at_x(2)}});
   const MotionModel model(&navigation, {.interpolate = false});
-  EXPECT_NEAR(model.predict(kTenth * 6 / 10, kTenth).guesses[0].T_odom_lidar.translation().x(), 1,
-              1e-12);
-  EXPECT_NEAR(model.predict(kTenth * 4 / 10, kTenth).guesses[0].T_odom_lidar.translation().x(), 0,
-              1e-12);
+  EXPECT_NEAR(model.predict(kTenth * 6 / 10).guesses[0].T_odom_lidar.translation().x(), 1, 1e-12);
+  EXPECT_NEAR(model.predict(kTenth * 4 / 10).guesses[0].T_odom_lidar.translation().x(), 0, 1e-12);
 }
 
 /// Navigation that leaves the true motion (1 m a frame) at frame 5.
@@ -54,7 +56,7 @@ MotionPrediction predict_fifth(const RigidMotion& navigation_at_5, bool doubt) {
   const Trajectory navigation(poses);
   MotionModel model(&navigation, {.doubt = doubt});
   for (int i = 3; i < 5; ++i) model.update(i * kTenth, at_x(i));
-  return model.predict(5 * kTenth, 5 * kTenth);
+  return model.predict(5 * kTenth);
 }
 
 TEST(MotionModel, NavigationThatContradictsTheMotionIsTheSecondGuess) {
@@ -79,13 +81,55 @@ TEST(MotionModel, BrakingIsNoContradiction) {
   EXPECT_NEAR(prediction.guesses[0].T_odom_lidar.translation().x(), 4.9, 1e-9);
 }
 
+/// What the model makes of a vehicle at x(frame) whose positions are off by jitter(frame): the
+/// largest error of its velocity (m/s) from the fifth frame on.
+double worst_velocity(const std::function<double(double)>& x,
+                      const std::function<double(int)>& jitter, bool doubt) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 30; ++i) poses.push_back({i * kTenth, at_x(x(i) + jitter(i))});
+  const Trajectory navigation(poses);
+  MotionModel model(&navigation, {.doubt = doubt, .sweep_rest = kTenth / 2});
+  double worst = 0;
+  for (int i = 0; i < 30; ++i) {
+    const MotionPrediction prediction = model.predict(i * kTenth);
+    EXPECT_EQ(prediction.guesses.size(), 1u) << i;
+    const double actual = (x(i + 0.5) - x(i - 0.5)) * 10;
+    if (i >= 5) worst = std::max(worst, std::abs((*prediction.guesses[0].velocity)[3] - actual));
+    model.update(i * kTenth, at_x(x(i)));
+  }
+  return worst;
+}
+
+TEST(MotionModel, VelocityIsOfWhatForetoldItBetter) {
+  const auto steady = [](double frame) { return frame; };
+  const auto braking = [](double frame) { return 2 * frame - 0.02 * frame * frame; };  // 4 m/s^2
+  const auto none = [](int) { return 0.0; };
+  const auto two_centimetres = [](int frame) { return frame % 2 == 0 ? 0.01 : -0.01; };
+  EXPECT_NEAR(worst_velocity(steady, two_centimetres, /*doubt=*/false), 0.2, 1e-9);
+  EXPECT_LT(worst_velocity(steady, two_centimetres, true), 0.04);
+  // By the motion so far it would be 0.6 m/s: three half frames late.
+  EXPECT_NEAR(worst_velocity(braking, none, /*doubt=*/false), 0.2, 1e-9);
+  EXPECT_LT(worst_velocity(braking, none, true), 0.26);
+}
+
+TEST(MotionModel, ErrorsOfVelocityAreBoundedAndForgotten) {
+  const Twist none = Twist::Zero();
+  VelocityError error;
+  const Twist unknown = error.mean_square();
+  EXPECT_GT(unknown.minCoeff(), 0);
+  error.add(Twist::Constant(1e6), none);  // one outlier
+  EXPECT_LT(error.mean_square().maxCoeff(), 1);
+  for (int i = 0; i < 60; ++i) error.add(Twist::Constant(0.01), none);
+  EXPECT_NEAR(error.mean_square()[3], 1e-4, 1e-3);
+  EXPECT_LT(error.mean_square()[3], unknown[3]);
+}
+
 TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
   const Trajectory navigation({{0, at_x(0)}, {kTenth, at_x(1)}});
   MotionModel model(&navigation);
   model.update(0, at_x(0));
   model.update(kTenth, at_x(1));
-  const MotionPrediction late =
-      model.predict(10 * kTenth, 10 * kTenth);  // 0.9 s after the last record
+  const MotionPrediction late = model.predict(10 * kTenth);  // 0.9 s after the last record
   EXPECT_NEAR(late.guesses[0].T_odom_lidar.translation().x(), 10, 1e-9);
   EXPECT_FALSE(late.T_local_lidar_navigation);
 }
@@ -97,7 +141,7 @@ TEST(MotionModel, AThousandGuessesInARowStayRigid) {
   T.linear() = Eigen::AngleAxisd(0.01, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
   model.update(kTenth, T);
   for (int i = 2; i < 1000; ++i) {
-    T = model.predict(i * kTenth, i * kTenth).guesses[0].T_odom_lidar;
+    T = model.predict(i * kTenth).guesses[0].T_odom_lidar;
     model.update(i * kTenth, T);
   }
   EXPECT_TRUE(is_rotation(T.linear(), 1e-12));

@@ -23,9 +23,10 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
     : drive_(drive),
       compensate_motion_(options.compensate_motion),
       pose_source_(pose_source),
-      motion_model_(
-          drive.navigation ? &*drive.navigation : nullptr,
-          {.interpolate = options.interpolate_navigation, .doubt = fuses(options, pose_source)}),
+      motion_model_(drive.navigation ? &*drive.navigation : nullptr,
+                    {.interpolate = options.interpolate_navigation,
+                     .doubt = fuses(options, pose_source),
+                     .sweep_rest = from_seconds(drive.sweep_period / 2)}),
       refiner_(options.refinement, drive.calibration.cameras),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive) {}
 
@@ -41,8 +42,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   record.figures["points_dropped"] = as_figure(frame.dropped_points);
 
   // Where are we, and how do we move?
-  const TimeNs sweep_end = frame.stamp + from_seconds(drive_.sweep_period / 2);
-  const MotionPrediction motion = motion_model_.predict(frame.stamp, sweep_end);
+  const MotionPrediction motion = motion_model_.predict(frame.stamp);
   record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
 
   // Pose refinement.
