@@ -25,7 +25,7 @@ std::string sample_map(const std::filesystem::path& path) {
   frame.index = 0;
   frame.stamp = 1'317'046'453'072'943'357;
   frame.T_local_lidar_navigation = RigidMotion::Identity();
-  frame.velocity = Twist::Ones();
+  frame.motion = SweepMotion{Twist::Ones(), Twist::Constant(0.5)};
   frame.submap = 0;
   frame.revisit = Revisit{};
   frame.figures = {{"points_scan", 19'329}};

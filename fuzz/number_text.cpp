@@ -16,7 +16,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(pose->matrix().allFinite(), "a pose is finite");
     require(motion_from_text(format_pose(*pose))->matrix() == pose->matrix(), "a pose comes back");
   }
-  twist_from_text(text);
+  if (const auto motion = sweep_motion_from_text(text)) {
+    require(sweep_motion_from_text(to_text(*motion)) == motion, "a motion comes back");
+  }
   if (const auto numbers = numbers_from_json(text)) {
     const std::string json = to_json(*numbers);
     const auto again = numbers_from_json(json);

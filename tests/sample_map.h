@@ -93,7 +93,8 @@ inline std::vector<FrameRecord> sample_frames() {
   frames[0].T_local_lidar =
       exp_se3((Twist() << 0.1, 0.2, -3, 1e-17, 12345.678901234567, -5).finished());
   frames[0].T_local_lidar_navigation = exp_se3((Twist() << 1, 2, 0.5, 1, 2, 3).finished());
-  frames[0].velocity = (Twist() << 1e-3, -2e-9, 1.0 / 3, 10.7, 0, -1e300).finished();
+  frames[0].motion = SweepMotion{(Twist() << 1e-3, -2e-9, 1.0 / 3, 10.7, 0, -1e300).finished(),
+                                 (Twist() << 0, 1e-7, -0.1, 4, 0, 2.5).finished()};
   frames[0].figures = {{"points_scan", 19'329}, {"a \"quoted\\\" name\n", 0.1}, {"b", -1e-300}};
   frames[0].milliseconds = {{"decode", 12.5}, {"frame", 1.0 / 7}};
   frames[1].index = 8;

@@ -36,10 +36,17 @@ void bind_frame_record(py::module_& module) {
       .def_property_readonly(
           "velocity",
           [](const FrameRecord& record) -> std::optional<py::array_t<double>> {
-            if (!record.velocity) return std::nullopt;
-            return py::array_t<double>(6, record.velocity->data());
+            if (!record.motion) return std::nullopt;
+            return py::array_t<double>(6, record.motion->velocity.data());
           },
           "Twist of the LiDAR in its own frame, rotation first (rad/s, m/s), 6 numbers, or None.")
+      .def_property_readonly(
+          "acceleration",
+          [](const FrameRecord& record) -> std::optional<py::array_t<double>> {
+            if (!record.motion) return std::nullopt;
+            return py::array_t<double>(6, record.motion->acceleration.data());
+          },
+          "Change of the velocity (rad/s^2, m/s^2), 6 numbers, or None.")
       .def_readonly("figures", &FrameRecord::figures, "Figures of the stages by name.")
       .def_readonly("milliseconds", &FrameRecord::milliseconds, "Wall time of the stages by name.")
       .def("__repr__", [](const FrameRecord& record) {

@@ -45,6 +45,7 @@ class MapTest(unittest.TestCase):
         np.testing.assert_allclose(first.T_local_lidar[:3, :3] @ first.T_local_lidar[:3, :3].T,
                                    np.eye(3), atol=1e-9)
         self.assertEqual(first.velocity.shape, (6,))
+        self.assertEqual(first.acceleration.shape, (6,))
         self.assertGreater(first.figures["points_scan"], 0)
         self.assertLess(first.stamp, frames[1].stamp)
         self.assertIn("scan", frames[sample.WITHOUT_SCAN].note)

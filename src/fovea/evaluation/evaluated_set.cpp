@@ -31,9 +31,9 @@ PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& pla
                             const DriveInfo& drive) {
   PointCloud compensated;
   compensated.position = scan_lidar.position;
-  if (placed.velocity && !drive.sweep_compensated) {
+  if (placed.motion && !drive.sweep_compensated) {
     compensated.time = scan_lidar.time;
-    compensate_sweep(compensated, *placed.velocity, drive.sweep_period);
+    compensate_sweep(compensated, *placed.motion, drive.sweep_period);
   }
   return compensated;
 }

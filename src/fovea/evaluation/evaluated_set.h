@@ -18,8 +18,8 @@ inline constexpr double kEvaluatedDepth = 0.5;
 struct PlacedFrame {
   int index = 0;
   RigidMotion T_local_lidar = RigidMotion::Identity();
-  /// Twist per second of the LiDAR in its own frame during the sweep; absent: not compensated.
-  std::optional<Twist> velocity;
+  /// Of the LiDAR during the sweep; absent: not compensated.
+  std::optional<SweepMotion> motion;
 };
 
 /// The evaluated points of one scan in one scored camera.
@@ -41,7 +41,7 @@ EvaluatedView select(const EvaluatedView& view, const std::vector<std::uint8_t>&
 std::optional<Eigen::Vector2d> scored_pixel(const Camera& camera, const Eigen::Vector3d& p_cam);
 
 /// The scan with the sweep's motion taken out; as it is where the drive has done that already or
-/// the frame's velocity is unknown.
+/// the frame's motion is unknown.
 PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& placed,
                             const DriveInfo& drive);
 

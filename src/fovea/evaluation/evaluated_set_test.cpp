@@ -96,8 +96,8 @@ TEST(CompensatedScan, MovesPointsUnlessTheDriveHasDoneSo) {
   PlacedFrame placed;
   DriveInfo drive;
   EXPECT_EQ(compensated_scan(scan, placed, drive).position[0], scan.position[0]);
-  placed.velocity = Twist::Zero();
-  (*placed.velocity)(3) = 10;  // forwards: the vehicle was 0.25 m further back
+  placed.motion = SweepMotion();
+  placed.motion->velocity(3) = 10;  // forwards: the vehicle was 0.25 m further back
   EXPECT_TRUE(compensated_scan(scan, placed, drive)
                   .position[0]
                   .isApprox(Eigen::Vector3f(-0.25f, 5, 0), 1e-4f));

@@ -30,10 +30,10 @@ ScoredMap keep_every_point(const FrameSource& drive) {
     }
     record.T_local_lidar = *pose;
     record.T_local_lidar_navigation = pose;
-    record.velocity = info.navigation->velocity(*record.stamp, *record.stamp + kNsPerSecond / 20);
+    record.motion = info.navigation->motion(*record.stamp, *record.stamp + kNsPerSecond / 20);
     map.frames.push_back(record);
     if (record.status == FrameStatus::kHeldOut) continue;
-    const PlacedFrame placed{index, *pose, record.velocity};
+    const PlacedFrame placed{index, *pose, record.motion};
     const PointCloud scan = compensated_scan(frame->scan, placed, info);
     const EvaluatedView view =
         evaluated_view(frame->scan, scan, placed, info.calibration.cameras[0], frame->images[0],

@@ -20,18 +20,18 @@ std::optional<Trajectory> refined_trajectory(const ScoredMap& map, const FrameSo
   return Trajectory(std::move(poses));
 }
 
-/// Twist per second over the sweep around the frame's stamp. The set must not depend on whether the
+/// The motion during the sweep around the frame's stamp. The set must not depend on whether the
 /// map's maker knew it: without it points would lie up to half a sweep's motion off.
-std::optional<Twist> sweep_velocity(const FrameRecord& record, const FrameSource& drive,
-                                    const std::optional<Trajectory>& refined) {
-  if (record.velocity) return record.velocity;
+std::optional<SweepMotion> sweep_motion(const FrameRecord& record, const FrameSource& drive,
+                                        const std::optional<Trajectory>& refined) {
+  if (record.motion) return record.motion;
   const std::optional<TimeNs> stamp = record.stamp ? record.stamp : drive.stamp(record.index);
   if (!refined || !stamp) return std::nullopt;
   const double period = drive.info().sweep_period;
   const auto begin = refined->at(*stamp - from_seconds(period / 2));
   const auto end = refined->at(*stamp + from_seconds(period / 2));
   if (!begin || !end) return std::nullopt;
-  return Twist(log_se3(begin->inverse() * *end) / period);
+  return SweepMotion{log_se3(begin->inverse() * *end) / period};
 }
 
 /// Whether the protocol scores this frame. InputError if it was mapped and must not have been.
@@ -140,7 +140,7 @@ std::vector<PlacedFrame> select_frames(const ScoredMap& map, const FrameSource& 
     if (by_navigation && !record.T_local_lidar_navigation) continue;
     selected.push_back({record.index,
                         by_navigation ? *record.T_local_lidar_navigation : record.T_local_lidar,
-                        sweep_velocity(record, drive, refined)});
+                        sweep_motion(record, drive, refined)});
   }
   if (!any_scored) reject_empty_selection(options);
   if (selected.empty()) {

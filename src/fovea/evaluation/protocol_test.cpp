@@ -89,13 +89,13 @@ TEST_F(ProtocolTest, NavigationPosesWhereAskedFor) {
 }
 
 TEST_F(ProtocolTest, VelocityIsTheMapsOrElseThatOfThePoses) {
-  map_.frames[4].velocity = Twist::Constant(0.5);
+  map_.frames[4].motion = SweepMotion{Twist::Constant(0.5), Twist::Constant(0.1)};
   const std::vector<PlacedFrame> frames = select(Protocol::kHeldOut);
-  EXPECT_EQ(*frames[0].velocity, Twist::Constant(0.5));
+  EXPECT_EQ(frames[0].motion, map_.frames[4].motion);
   Twist forwards = Twist::Zero();
   forwards(3) = 2;  // 0.2 m in 0.1 s
-  ASSERT_TRUE(frames[1].velocity.has_value());
-  EXPECT_TRUE(frames[1].velocity->isApprox(forwards, 1e-9));
+  ASSERT_TRUE(frames[1].motion.has_value());
+  EXPECT_TRUE(frames[1].motion->velocity.isApprox(forwards, 1e-9));
 }
 
 TEST_F(ProtocolTest, VelocityFromPosesTurnsWithTheVehicle) {
@@ -106,7 +106,7 @@ TEST_F(ProtocolTest, VelocityFromPosesTurnsWithTheVehicle) {
   }
   Twist forwards = Twist::Zero();
   forwards(3) = 5;
-  EXPECT_TRUE(select(Protocol::kHeldOut)[0].velocity->isApprox(forwards, 1e-9));
+  EXPECT_TRUE(select(Protocol::kHeldOut)[0].motion->velocity.isApprox(forwards, 1e-9));
 }
 
 TEST_F(ProtocolTest, CamerasAreTheMapsUnlessOthersAreAskedFor) {

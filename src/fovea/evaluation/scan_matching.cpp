@@ -18,7 +18,7 @@ std::vector<Eigen::Vector3f> frame_points(const FrameRecord& record, const Frame
   if (record.index < info.begin || record.index >= info.end) return {};
   const FrameResult loaded = drive.load(record.index);
   if (std::holds_alternative<SkippedFrame>(loaded)) return {};
-  const PlacedFrame placed{record.index, record.T_local_lidar, record.velocity};
+  const PlacedFrame placed{record.index, record.T_local_lidar, record.motion};
   return matched_points(compensated_scan(std::get<Frame>(loaded).scan, placed, info),
                         info.calibration.cameras);
 }

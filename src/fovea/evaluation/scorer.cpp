@@ -84,7 +84,7 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   const Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, info);
   std::vector<Camera> cameras;
-  for (const Camera& camera : cameras_) cameras.push_back(camera.at_image(placed.velocity));
+  for (const Camera& camera : cameras_) cameras.push_back(camera.at_image(placed.motion));
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     const Image& image = frame.images.at(options_.cameras[k]);
     if (image.empty()) {
@@ -137,7 +137,7 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
   Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, info);
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
-    const Camera camera = cameras_[k].at_image(placed.velocity);
+    const Camera camera = cameras_[k].at_image(placed.motion);
     Image& image = frame.images.at(options_.cameras[k]);
     if (image.empty()) continue;
     ScoredPoints scored = score_points(frame, scan, placed, camera, image);

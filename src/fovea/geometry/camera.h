@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {
 
@@ -30,11 +30,11 @@ struct Camera {
     return pixel.x() >= 0 && pixel.x() <= width - 1 && pixel.y() >= 0 && pixel.y() <= height - 1;
   }
   /// The camera where it was when the image was taken, against the LiDAR frame at the scan's stamp.
-  /// @param velocity  twist per second of the LiDAR in its own frame; absent: as if it stood
-  Camera at_image(const std::optional<Twist>& velocity) const {
+  /// @param motion  of the LiDAR at the stamp; absent: as if it stood
+  Camera at_image(const std::optional<SweepMotion>& motion) const {
     Camera moved = *this;
-    if (velocity && image_delay != 0) {
-      moved.T_cam_lidar = T_cam_lidar * exp_se3(-image_delay * *velocity);
+    if (motion && image_delay != 0) {
+      moved.T_cam_lidar = T_cam_lidar * exp_se3(-motion->over(image_delay));
     }
     moved.image_delay = 0;
     return moved;

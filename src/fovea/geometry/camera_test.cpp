@@ -45,14 +45,18 @@ TEST(Camera, StandsWhereItWasWhenTheImageWasTaken) {
   camera.image_delay = 0.5;
   const Twist forward = (Twist() << 0, 0, 0, 10, 0, 0).finished();
   const Eigen::Vector3d ahead(20, 1, 0);
-  const Camera at_image = camera.at_image(forward);
+  const Camera at_image = camera.at_image(SweepMotion{forward});
   EXPECT_LT((at_image.T_cam_lidar * ahead - Eigen::Vector3d(-1, 0, 15)).norm(), 1e-12);
   EXPECT_EQ(at_image.image_delay, 0);
   EXPECT_LT((camera.at_image(std::nullopt).T_cam_lidar * ahead - Eigen::Vector3d(-1, 0, 20)).norm(),
             1e-12);
+  // Braking with 4 m/s^2 it is only 4.5 m further on.
+  const Twist brake = (Twist() << 0, 0, 0, -4, 0, 0).finished();
+  const Camera braking = camera.at_image(SweepMotion{forward, brake});
+  EXPECT_LT((braking.T_cam_lidar * ahead - Eigen::Vector3d(-1, 0, 15.5)).norm(), 1e-12);
   // Turning left by 0.2 rad a second: straight ahead moves to the right.
   const Twist left = (Twist() << 0, 0, 0.2, 0, 0, 0).finished();
-  EXPECT_GT((camera.at_image(left).T_cam_lidar * Eigen::Vector3d(20, 0, 0)).x(), 1.9);
+  EXPECT_GT((camera.at_image(SweepMotion{left}).T_cam_lidar * Eigen::Vector3d(20, 0, 0)).x(), 1.9);
 }
 
 }  // namespace fovea::camera_test

@@ -3,7 +3,16 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "fovea/base/angle.h"
+
 namespace fovea {
+namespace {
+
+/// No vehicle's velocity changes faster; a hand-held rig's may, and is then taken as steady.
+constexpr double kMaxAcceleration = 20;                 // m/s^2
+constexpr double kMaxTurnAcceleration = 200 * kDegree;  // rad/s^2
+
+}  // namespace
 
 Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
   if (poses_.empty()) throw std::invalid_argument("a trajectory needs at least one pose");
@@ -43,22 +52,38 @@ std::optional<RigidMotion> Trajectory::nearest(TimeNs time) const {
       ->T_local_body;
 }
 
-std::optional<Twist> Trajectory::measured_velocity(TimeNs begin, TimeNs end) const {
+std::optional<Trajectory::MeanVelocity> Trajectory::mean_velocity(TimeNs begin, TimeNs end,
+                                                                  TimeNs about) const {
   auto pose = std::lower_bound(poses_.begin(), poses_.end(), begin,
                                [](const StampedPose& p, TimeNs t) { return p.time < t; });
-  Twist sum = Twist::Zero();
+  MeanVelocity mean{Twist::Zero(), 0};
   int count = 0;
-  for (; pose != poses_.end() && pose->time <= end; ++pose) {
+  for (; pose != poses_.end() && pose->time < end; ++pose) {
     if (!pose->velocity) continue;
-    sum += *pose->velocity;
+    mean.velocity += *pose->velocity;
+    mean.time += seconds(pose->time - about);
     ++count;
   }
-  return count > 0 ? std::optional<Twist>(sum / count) : std::nullopt;
+  if (count == 0) return std::nullopt;
+  return MeanVelocity{mean.velocity / count, mean.time / count};
 }
 
-std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const {
+std::optional<SweepMotion> Trajectory::measured_motion(TimeNs time, TimeNs known_until) const {
   const TimeNs reach = known_until - time;
-  if (auto measured = measured_velocity(time - reach, known_until)) return measured;
+  const auto now = mean_velocity(time - reach, known_until + 1, time);
+  if (!now) return std::nullopt;
+  const auto before = mean_velocity(time - 3 * reach, time - reach, time);
+  // Of velocities a moment apart the change would be their noise.
+  if (!before || now->time - before->time < seconds(reach)) return SweepMotion{now->velocity};
+  const Twist change = (now->velocity - before->velocity) / (now->time - before->time);
+  if (change.head<3>().norm() > kMaxTurnAcceleration || change.tail<3>().norm() > kMaxAcceleration)
+    return SweepMotion{now->velocity};
+  return SweepMotion{now->velocity - now->time * change, change};
+}
+
+std::optional<SweepMotion> Trajectory::motion(TimeNs time, TimeNs known_until) const {
+  const TimeNs reach = known_until - time;
+  if (auto measured = measured_motion(time, known_until)) return measured;
   if (poses_.size() < 2) return std::nullopt;
   const auto unknown = std::upper_bound(poses_.begin() + 2, poses_.end(), known_until,
                                         [](TimeNs t, const StampedPose& p) { return t < p.time; });
@@ -67,7 +92,8 @@ std::optional<Twist> Trajectory::velocity(TimeNs time, TimeNs known_until) const
   while (first != poses_.begin() && last->time - first->time < reach * 3 / 2) --first;
   const StampedPose &p0 = *first, &p1 = *last;
   if (p1.time - p0.time > kMaxGap) return std::nullopt;
-  return Twist(log_se3(p0.T_local_body.inverse() * p1.T_local_body) / seconds(p1.time - p0.time));
+  return SweepMotion{log_se3(p0.T_local_body.inverse() * p1.T_local_body) /
+                     seconds(p1.time - p0.time)};
 }
 
 }  // namespace fovea

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fovea/base/time.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {
 
@@ -36,17 +36,24 @@ class Trajectory {
   /// The pose nearest in time, where at() has one.
   std::optional<RigidMotion> nearest(TimeNs time) const;
 
-  /// Twist per second in the body frame around `time`, from what is known by `known_until` (the
-  /// poses at or before it; a live program has no later ones): the mean of the measured velocities
-  /// no farther from `time` than that. Without one, of the motion between the last pose known and
-  /// the next that lies before it by 3/4 of that span or more: poses a span apart, whose times
-  /// jitter, are enough, and the noise of closer ones would be divided by a moment. Where fewer
-  /// than two poses are that early, the first two of the trajectory. Empty for a single pose and in
-  /// an outage.
-  std::optional<Twist> velocity(TimeNs time, TimeNs known_until) const;
+  /// How the body moves at `time`, from what is known by `known_until` (the poses at or before it;
+  /// a live program has no later ones). Where velocities were measured no farther from `time` than
+  /// that: their mean, and its change since the ones before them, three times as far back, which
+  /// takes the mean from their time to `time`; no change that a measurement's fault must be. Where
+  /// none was: the motion between the last pose known and the next that lies before it by 3/4 of
+  /// that span or more, without change: poses a span apart, whose times jitter, are enough, and the
+  /// noise of closer ones would be divided by a moment. Where fewer than two poses are that early,
+  /// the first two of the trajectory. Empty for a single pose and in an outage.
+  std::optional<SweepMotion> motion(TimeNs time, TimeNs known_until) const;
 
  private:
-  std::optional<Twist> measured_velocity(TimeNs begin, TimeNs end) const;
+  struct MeanVelocity {
+    Twist velocity;
+    double time;  // s, about the time asked for
+  };
+  /// Of what was measured from `begin` on, before `end`.
+  std::optional<MeanVelocity> mean_velocity(TimeNs begin, TimeNs end, TimeNs about) const;
+  std::optional<SweepMotion> measured_motion(TimeNs time, TimeNs known_until) const;
   std::vector<StampedPose> poses_;
 };
 

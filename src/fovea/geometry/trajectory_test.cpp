@@ -21,7 +21,7 @@ double x_at(const Trajectory& trajectory, double time) {
 }
 
 double speed(const Trajectory& trajectory, double time, double known_until) {
-  return trajectory.velocity(from_seconds(time), from_seconds(known_until)).value()[3];
+  return trajectory.motion(from_seconds(time), from_seconds(known_until)).value().velocity[3];
 }
 
 TEST(Trajectory, InterpolatesBetweenNeighbours) {
@@ -41,7 +41,7 @@ TEST(Trajectory, FollowsAnArc) {
   EXPECT_TRUE(trajectory.at(kNsPerSecond / 2)->isApprox(exp_se3(0.5 * turn), 1e-12));
   EXPECT_NEAR((trajectory.at(kNsPerSecond / 3)->translation() - Eigen::Vector3d(0, 10, 0)).norm(),
               10, 1e-12);
-  EXPECT_TRUE(trajectory.velocity(kNsPerSecond / 2, kNsPerSecond)->isApprox(turn, 1e-12));
+  EXPECT_TRUE(trajectory.motion(kNsPerSecond / 2, kNsPerSecond)->velocity.isApprox(turn, 1e-12));
 }
 
 TEST(Trajectory, ExtrapolatesByTheVelocityOfTheEndForAFifthOfASecond) {
@@ -68,7 +68,7 @@ TEST(Trajectory, BridgesNoOutage) {
   EXPECT_FALSE(trajectory.at(kNsPerSecond + 1));
   EXPECT_FALSE(trajectory.at(11 * kNsPerSecond - 1));
   EXPECT_FALSE(trajectory.nearest(6 * kNsPerSecond));
-  EXPECT_FALSE(trajectory.velocity(6 * kNsPerSecond, 20 * kNsPerSecond));
+  EXPECT_FALSE(trajectory.motion(6 * kNsPerSecond, 20 * kNsPerSecond));
   EXPECT_NEAR(speed(trajectory, 12, 12.05), 2, 1e-12);
 }
 
@@ -76,7 +76,7 @@ TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
   const Trajectory trajectory({{kNsPerSecond, at_x(7)}});
   EXPECT_EQ(x_at(trajectory, 1.1), 7);
   EXPECT_FALSE(trajectory.at(from_seconds(1.3)));
-  EXPECT_FALSE(trajectory.velocity(kNsPerSecond, 2 * kNsPerSecond));
+  EXPECT_FALSE(trajectory.motion(kNsPerSecond, 2 * kNsPerSecond));
   EXPECT_FALSE(Trajectory().at(0));
 }
 
@@ -115,6 +115,55 @@ TEST(Trajectory, AMeasuredVelocityIsBetterThanDifferences) {
   EXPECT_NEAR(speed(trajectory, 1.5, 1.99), 10, 1e-12);  // neither is near enough
   EXPECT_NEAR(speed(trajectory, 3, 3.05), 5, 1e-12);     // not measured there
   EXPECT_NEAR(speed(Trajectory({poses[1]}), 1, 1.05), 8, 1e-12);
+}
+
+/// A body whose velocity changes steadily, measured so often, `late` after a multiple of the
+/// period.
+Trajectory accelerating(double rate, double late, const Twist& velocity, const Twist& change) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 2 * rate; ++i) {
+    const double time = i / rate + late;
+    poses.push_back({from_seconds(time), at_x(time), Twist(velocity + time * change)});
+  }
+  return Trajectory(poses);
+}
+
+TEST(Trajectory, TheMotionIsThatOfTheTimeNotOfTheMeasurements) {
+  Twist velocity, change;
+  velocity << 0.1, 0, 0.4, 9, 0.2, 0;
+  change << 0.2, -0.1, 0.8, -4, 1, 0.1;
+  for (const double rate : {10.0, 100.0}) {
+    for (const double late : {0.0, 0.012, 0.034}) {
+      const auto motion = accelerating(rate, late, velocity, change)
+                              .motion(kNsPerSecond, kNsPerSecond + kNsPerSecond / 20);
+      ASSERT_TRUE(motion);
+      EXPECT_LT((motion->velocity - velocity - change).norm(), 1e-6) << rate << ' ' << late;
+      EXPECT_LT((motion->acceleration - change).norm(), 1e-6) << rate << ' ' << late;
+    }
+  }
+}
+
+TEST(Trajectory, ChangesThatNobodyMeasuredAreNone) {
+  Twist change = Twist::Zero();
+  change[3] = 30;  // m/s^2: what was measured is wrong
+  const TimeNs now = kNsPerSecond, known = now + kNsPerSecond / 20;
+  const auto absurd = accelerating(10, 0.02, Twist::Zero(), change).motion(now, known);
+  EXPECT_NEAR(absurd->velocity[3], 30 * 1.02, 1e-9);
+  EXPECT_EQ(absurd->acceleration, Twist::Zero());
+  change << 0, 0, 4, 0, 0, 0;  // rad/s^2
+  EXPECT_EQ(accelerating(10, 0.02, Twist::Zero(), change).motion(now, known)->acceleration,
+            Twist::Zero());
+  // Once a second: nothing was measured just before.
+  change << 0, 0, 0, 3, 0, 0;
+  const auto seldom = accelerating(1, 0.02, Twist::Zero(), change).motion(now, known);
+  EXPECT_NEAR(seldom->velocity[3], 3.06, 1e-9);
+  EXPECT_EQ(seldom->acceleration, Twist::Zero());
+  // Two measurements 10 ms apart, one of which is just out of reach.
+  std::vector<StampedPose> close = {{from_seconds(0.945), at_x(0), Twist::Zero()},
+                                    {from_seconds(0.955), at_x(0.1), Twist::Constant(0.1)}};
+  const auto motion = Trajectory(close).motion(now, known);
+  EXPECT_EQ(motion->velocity, Twist::Constant(0.1));
+  EXPECT_EQ(motion->acceleration, Twist::Zero());
 }
 
 TEST(Trajectory, AFrozenPoseHasNoVelocity) {

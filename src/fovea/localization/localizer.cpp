@@ -138,7 +138,7 @@ Localization Localizer::localize(const Frame& frame) {
 
   Attempt best;
   tracking_ = tracking_ && seconds(frame.stamp - last_->time) < kPredicts;
-  if (tracking_ && motion.guesses.front().velocity) best = track(frame, motion);
+  if (tracking_ && motion.guesses.front().motion) best = track(frame, motion);
   const bool tracked = best.fits;
   if (!tracked) {
     const Attempt found = search(frame, motion, placed);
@@ -155,10 +155,11 @@ Localization Localizer::localize(const Frame& frame) {
   return result;
 }
 
-Localizer::Scan Localizer::prepare(const Frame& frame, const std::optional<Twist>& velocity) const {
+Localizer::Scan Localizer::prepare(const Frame& frame,
+                                   const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = frame.scan;
   const bool moves = options_.compensate_motion && !drive_.sweep_compensated;
-  if (velocity && moves) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
+  if (motion && moves) compensate_sweep(scan_lidar, *motion, drive_.sweep_period);
   std::vector<Eigen::Vector3f> near;
   std::copy_if(scan_lidar.position.begin(), scan_lidar.position.end(), std::back_inserter(near),
                [](const Eigen::Vector3f& p) { return p.norm() < float(kLocalizationRange); });
@@ -226,7 +227,7 @@ RigidMotion Localizer::register_coarsely(const Scan& scan, const RigidMotion& gu
 Localizer::Attempt Localizer::track(const Frame& frame, const MotionPrediction& motion) {
   Attempt best;
   for (const MotionGuess& guess : motion.guesses) {
-    Attempt attempt = follow(prepare(frame, guess.velocity), guess.T_odom_lidar);
+    Attempt attempt = follow(prepare(frame, guess.motion), guess.T_odom_lidar);
     if (attempt.better_than(best)) best = std::move(attempt);
   }
   return best;
@@ -246,9 +247,9 @@ Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction&
   const MotionGuess& first = motion.guesses.front();
   if (placed) {
     for (const MotionGuess& guess : motion.guesses) {
-      const Scan scan = prepare(frame, guess.velocity);
+      const Scan scan = prepare(frame, guess.motion);
       if (!take(scan, guess.T_odom_lidar, false)) continue;
-      return guess.velocity ? best : compensated(frame, best);
+      return guess.motion ? best : compensated(frame, best);
     }
   }
   const bool covered = best.covered;
@@ -256,8 +257,8 @@ Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction&
   const auto by_navigation =
       std::find_if(motion.guesses.begin(), motion.guesses.end(),
                    [](const MotionGuess& guess) { return guess.by_navigation; });
-  const Scan scan = prepare(
-      frame, by_navigation == motion.guesses.end() ? std::nullopt : by_navigation->velocity);
+  const Scan scan =
+      prepare(frame, by_navigation == motion.guesses.end() ? std::nullopt : by_navigation->motion);
   const Eigen::Vector3d near =
       placed ? first.T_odom_lidar.translation() : candidates_.first().translation();
   for (int i = 0; i < kTries && !best.fits; ++i) take(scan, candidates_.next(near), true);
@@ -269,7 +270,8 @@ Localizer::Attempt Localizer::compensated(const Frame& frame, const Attempt& fou
   if (!tracking_) return found;  // it has moved in whatever ways since
   const RigidMotion motion = last_->T_local_body.inverse() * found.registration.T_target_source;
   const Twist velocity = log_se3(motion) / seconds(frame.stamp - last_->time);
-  Attempt attempt = follow(prepare(frame, velocity), found.registration.T_target_source);
+  Attempt attempt =
+      follow(prepare(frame, SweepMotion{velocity}), found.registration.T_target_source);
   return attempt.better_than(found) ? attempt : found;
 }
 

@@ -94,7 +94,7 @@ class Localizer {
     std::vector<Eigen::Vector3f> points;  // near ones, thinned
     RangeImage image;                     // of all
   };
-  Scan prepare(const Frame& frame, const std::optional<Twist>& velocity) const;
+  Scan prepare(const Frame& frame, const std::optional<SweepMotion>& motion) const;
   /// The points of a scan where the map has something; none if these are too few to tell anything.
   RegistrationCloud covered(const Scan& scan, const PriorMap::Target& target,
                             const RigidMotion& T_target_lidar, double height) const;

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "fovea/base/time.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {
 
@@ -39,8 +39,8 @@ struct FrameRecord {
   RigidMotion T_odom_lidar = RigidMotion::Identity();
   int submap = -1;
   std::optional<Revisit> revisit;
-  /// Twist per second of the LiDAR that compensated its sweep; absent where nothing did.
-  std::optional<Twist> velocity;
+  /// Of the LiDAR, as its sweep was compensated by; absent where nothing did.
+  std::optional<SweepMotion> motion;
   /// Per-stage figures by name ("points_scan", "registration_iterations", "filter_occluded", ...),
   /// part of the digest.
   std::map<std::string, double> figures;

@@ -157,7 +157,7 @@ FrameRecord frame_record(const Statement& row, const std::string& map_path) {
                              require(motion_from_text(row.text(9)), "revisited_pose")};
   }
   if (!row.is_null(10)) {
-    record.velocity = require(twist_from_text(row.text(10)), "velocity");
+    record.motion = require(sweep_motion_from_text(row.text(10)), "velocity");
   }
   record.figures = require(numbers_from_json(row.text(11)), "figures");
   record.milliseconds = require(numbers_from_json(row.text(12)), "timings");

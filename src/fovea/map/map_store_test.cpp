@@ -32,7 +32,7 @@ void expect_same_frame(const FrameRecord& a, const FrameRecord& b) {
   if (a.T_local_lidar_navigation) {
     EXPECT_EQ(a.T_local_lidar_navigation->matrix(), b.T_local_lidar_navigation->matrix());
   }
-  EXPECT_EQ(a.velocity, b.velocity);
+  EXPECT_EQ(a.motion, b.motion);
   EXPECT_EQ(a.figures, b.figures);
   EXPECT_EQ(a.milliseconds, b.milliseconds);
 }
@@ -143,7 +143,7 @@ TEST(MapStore, PuttingAgainReplaces) {
     FrameRecord frame = sample_frames()[0];
     frame.note = "new";
     frame.stamp.reset();
-    frame.velocity.reset();
+    frame.motion.reset();
     writer->put_frame(frame);
     writer->put_submap(1, RigidMotion::Identity());
     writer->put_tile({0, {0, 0, 0}}, one_point_each({{1, 1, 1}}));
@@ -153,7 +153,7 @@ TEST(MapStore, PuttingAgainReplaces) {
   EXPECT_EQ(reader.meta().at("config"), "new");
   EXPECT_EQ(reader.frames()[0].note, "new");
   EXPECT_EQ(reader.frames()[0].stamp, std::nullopt);
-  EXPECT_EQ(reader.frames()[0].velocity, std::nullopt);
+  EXPECT_EQ(reader.frames()[0].motion, std::nullopt);
   EXPECT_EQ(reader.submaps()[1].matrix(), Eigen::Matrix4d::Identity());
   std::size_t size = 0;
   reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
@@ -242,7 +242,7 @@ TEST(MapDigest, LeavesOutTimingsOnly) {
   expect_new(with_frame([](FrameRecord& f) { f.stamp.reset(); }));
   expect_new(with_frame([](FrameRecord& f) { f.status = FrameStatus::kHeldOut; }));
   expect_new(with_frame([](FrameRecord& f) { f.note += "another"; }));
-  expect_new(with_frame([](FrameRecord& f) { f.velocity.reset(); }));
+  expect_new(with_frame([](FrameRecord& f) { f.motion.reset(); }));
   expect_new(with_frame([](FrameRecord& f) { f.T_local_lidar_navigation.reset(); }));
   expect_new(with_frame([](FrameRecord& f) {
     double& x = f.T_local_lidar.translation().x();

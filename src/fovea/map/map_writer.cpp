@@ -229,9 +229,10 @@ void SqliteMapWriter::put_frame(const FrameRecord& record) {
     require_finite(record.T_local_lidar_navigation->matrix().allFinite(), what);
     navigation = format_pose(*record.T_local_lidar_navigation);
   }
-  if (record.velocity) {
-    require_finite(record.velocity->allFinite(), what);
-    velocity = to_text(std::span<const double>(record.velocity->data(), 6));
+  if (record.motion) {
+    require_finite(record.motion->velocity.allFinite(), what);
+    require_finite(record.motion->acceleration.allFinite(), what);
+    velocity = to_text(*record.motion);
   }
   if (record.revisit) {
     require_finite(record.revisit->T_submap_lidar.matrix().allFinite(), what);

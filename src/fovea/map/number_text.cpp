@@ -133,10 +133,20 @@ std::optional<RigidMotion> motion_from_text(std::string_view text) {
   return T;
 }
 
-std::optional<Twist> twist_from_text(std::string_view text) {
+std::string to_text(const SweepMotion& motion) {
+  std::vector<double> numbers(motion.velocity.begin(), motion.velocity.end());
+  if (!motion.acceleration.isZero(0)) {
+    numbers.insert(numbers.end(), motion.acceleration.begin(), motion.acceleration.end());
+  }
+  return to_text(numbers);
+}
+
+std::optional<SweepMotion> sweep_motion_from_text(std::string_view text) {
   const std::optional<std::vector<double>> numbers = numbers_from_text(text);
-  if (!numbers || numbers->size() != 6) return std::nullopt;
-  return Twist(Eigen::Map<const Twist>(numbers->data()));
+  if (!numbers || (numbers->size() != 6 && numbers->size() != 12)) return std::nullopt;
+  SweepMotion motion{Eigen::Map<const Twist>(numbers->data())};
+  if (numbers->size() == 12) motion.acceleration = Eigen::Map<const Twist>(numbers->data() + 6);
+  return motion;
 }
 
 std::string to_json(const std::map<std::string, double>& numbers) {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {
 
@@ -20,8 +20,10 @@ std::optional<std::vector<double>> numbers_from_text(std::string_view text);
 /// What format_pose() wrote; nothing unless the text is 12 finite numbers.
 std::optional<RigidMotion> motion_from_text(std::string_view text);
 
-/// Nothing unless the text is 6 finite numbers.
-std::optional<Twist> twist_from_text(std::string_view text);
+/// The velocity, and the acceleration where there is one.
+std::string to_text(const SweepMotion& motion);
+/// Nothing unless the text is 6 or 12 finite numbers.
+std::optional<SweepMotion> sweep_motion_from_text(std::string_view text);
 
 /// A JSON object in the order of the names; a number that is not finite becomes null.
 std::string to_json(const std::map<std::string, double>& numbers);

@@ -30,8 +30,20 @@ TEST(NumberText, RefusesWhatIsNoNumber) {
   }
   EXPECT_FALSE(motion_from_text("1 0 0 0 0 1 0 0 0 0 1"));
   EXPECT_FALSE(motion_from_text("1 0 0 0 0 1 0 0 0 0 1 0 0"));
-  EXPECT_FALSE(twist_from_text("1 2 3 4 5"));
+  for (const char* text : {"", "1 2 3 4 5", "1 2 3 4 5 6 7", "1 2 3 4 5 6 7 8 9 10 11 12 13"}) {
+    EXPECT_FALSE(sweep_motion_from_text(text)) << text;
+  }
   EXPECT_EQ(motion_from_text("1 0 0 4 0 1 0 5 0 0 1 6")->translation(), Eigen::Vector3d(4, 5, 6));
+}
+
+TEST(NumberText, SweepMotionsHaveTheirAccelerationWhereThereIsOne) {
+  SweepMotion motion;
+  motion.velocity << 0.1, 0, -0.2, 9.5, 0, 1e-9;
+  EXPECT_EQ(to_text(motion), "0.1 0 -0.2 9.5 0 1e-09");
+  EXPECT_EQ(sweep_motion_from_text(to_text(motion)), motion);
+  motion.acceleration << 1, 2, 3, 4, 5, 6;
+  EXPECT_EQ(to_text(motion), "0.1 0 -0.2 9.5 0 1e-09 1 2 3 4 5 6");
+  EXPECT_EQ(sweep_motion_from_text(to_text(motion)), motion);
 }
 
 TEST(NumberText, JsonObjectsKeepNamesAndValues) {

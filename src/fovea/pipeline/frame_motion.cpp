@@ -6,7 +6,7 @@ namespace {
 std::optional<FrameMotion> between(const RigidMotion& here, TimeNs stamp, const RigidMotion& other,
                                    TimeNs other_stamp) {
   if (stamp == other_stamp) return std::nullopt;
-  return FrameMotion{here, log_se3(here.inverse() * other) / seconds(other_stamp - stamp)};
+  return FrameMotion{here, {log_se3(here.inverse() * other) / seconds(other_stamp - stamp)}};
 }
 
 }  // namespace
@@ -18,10 +18,10 @@ std::optional<FrameMotion> known_motion(const FrameSource& source,
   if (!stamp) return std::nullopt;
   if (drive.navigation) {
     const auto pose = drive.navigation->at(*stamp);
-    const auto velocity =
-        drive.navigation->velocity(*stamp, *stamp + from_seconds(drive.sweep_period / 2));
-    if (!pose || !velocity) return std::nullopt;
-    return FrameMotion{*pose, *velocity};
+    const auto motion =
+        drive.navigation->motion(*stamp, *stamp + from_seconds(drive.sweep_period / 2));
+    if (!pose || !motion) return std::nullopt;
+    return FrameMotion{*pose, *motion};
   }
   const int other = index > drive.begin ? index - 1 : index + 1;
   const auto poses_end = drive.begin + static_cast<int>(given_poses.size());
@@ -34,7 +34,7 @@ std::optional<FrameMotion> known_motion(const FrameSource& source,
 
 std::optional<FrameMotion> mapped_motion(const FrameRecord& record,
                                          const std::optional<FrameRecord>& before) {
-  if (record.velocity) return FrameMotion{record.T_local_lidar, *record.velocity};
+  if (record.motion) return FrameMotion{record.T_local_lidar, *record.motion};
   if (!before || before->status == FrameStatus::kSkipped) return std::nullopt;
   return between(record.T_local_lidar, *record.stamp, before->T_local_lidar, *before->stamp);
 }

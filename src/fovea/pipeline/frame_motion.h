@@ -11,7 +11,7 @@ namespace fovea {
 
 struct FrameMotion {
   RigidMotion T_local_lidar = RigidMotion::Identity();
-  Twist velocity = Twist::Zero();  ///< per second, of the LiDAR in its own frame
+  SweepMotion sweep;  ///< of the LiDAR
 };
 
 /// Of a frame that need not be mapped yet: by navigation, or else by the poses given, one a frame
@@ -19,7 +19,7 @@ struct FrameMotion {
 std::optional<FrameMotion> known_motion(const FrameSource& source,
                                         const std::vector<RigidMotion>& given_poses, int index);
 
-/// Of a frame that was not skipped: its velocity is that by which its sweep was compensated, or
+/// Of a frame that was not skipped: its motion is that by which its sweep was compensated, or
 /// else follows from the poses of it and the frame before, if that is known and was not skipped.
 std::optional<FrameMotion> mapped_motion(const FrameRecord& record,
                                          const std::optional<FrameRecord>& before);

@@ -37,7 +37,7 @@ class Stamps : public FrameSource {
 
 void expect_motion(const std::optional<FrameMotion>& motion, double s) {
   ASSERT_TRUE(motion);
-  EXPECT_LT((motion->velocity - kTwist).norm(), 1e-6);
+  EXPECT_LT((motion->sweep.velocity - kTwist).norm(), 1e-6);
   EXPECT_TRUE(motion->T_local_lidar.isApprox(pose_at(s), 1e-9));
 }
 
@@ -70,9 +70,9 @@ TEST(FrameMotion, OfTheLatestMappedFrame) {
   FrameRecord latest = record(11);
   expect_motion(mapped_motion(latest, before), 1.1);
   // That by which its sweep was compensated comes first.
-  latest.velocity = 2 * kTwist;
-  EXPECT_EQ(mapped_motion(latest, before)->velocity, Twist(2 * kTwist));
-  latest.velocity.reset();
+  latest.motion = SweepMotion{2 * kTwist, kTwist};
+  EXPECT_EQ(mapped_motion(latest, before)->sweep, *latest.motion);
+  latest.motion.reset();
   before->status = FrameStatus::kSkipped;
   EXPECT_FALSE(mapped_motion(latest, before));
 }

@@ -119,7 +119,7 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
     }
     cameras_.clear();
     for (const Camera& camera : drive_.calibration.cameras) {
-      cameras_.push_back(camera.at_image(tracked.velocity));
+      cameras_.push_back(camera.at_image(tracked.motion));
     }
     if (options_.foveal_enabled) {
       for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
@@ -307,7 +307,7 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
 }
 
 void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool looked_at) {
-  const PointCloud scan_lidar = tracker_.compensated(scan, record.velocity);
+  const PointCloud scan_lidar = tracker_.compensated(scan, record.motion);
   tracker_.replay(scan_lidar, record);
   follow_submaps(tracker_.submaps());
   if (looked_at) {

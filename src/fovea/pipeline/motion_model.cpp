@@ -35,8 +35,8 @@ bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
   const double turn = kTurn + kTurnRate * elapsed * elapsed;
   const RigidMotion apart = a.T_odom_lidar.inverse() * b.T_odom_lidar;
   if (apart.translation().norm() > shift || rotation_angle(apart.linear()) > turn) return true;
-  if (!a.velocity || !b.velocity) return false;
-  const Twist change = (*a.velocity - *b.velocity) * elapsed;
+  if (!a.motion || !b.motion) return false;
+  const Twist change = (a.motion->velocity - b.motion->velocity) * elapsed;
   return change.tail<3>().norm() > shift || change.head<3>().norm() > turn;
 }
 
@@ -55,9 +55,9 @@ std::optional<RigidMotion> MotionModel::navigation_at(TimeNs stamp) const {
   return options_.interpolate ? navigation_->at(stamp) : navigation_->nearest(stamp);
 }
 
-std::optional<Twist> MotionModel::navigation_velocity(TimeNs stamp) const {
+std::optional<SweepMotion> MotionModel::navigation_motion(TimeNs stamp) const {
   if (navigation_ == nullptr) return std::nullopt;
-  return navigation_->velocity(stamp, stamp + options_.sweep_rest);
+  return navigation_->motion(stamp, stamp + options_.sweep_rest);
 }
 
 std::optional<Twist> MotionModel::motion_velocity() const {
@@ -68,28 +68,33 @@ std::optional<Twist> MotionModel::motion_velocity() const {
 std::optional<MotionGuess> MotionModel::by_navigation(TimeNs stamp) const {
   const auto now = navigation_at(stamp);
   if (!now) return std::nullopt;
-  const auto velocity = navigation_velocity(stamp);
-  if (!last_) return MotionGuess{*now, velocity, true};
+  const auto motion = navigation_motion(stamp);
+  if (!last_) return MotionGuess{*now, motion, true};
   const auto then = navigation_at(last_->time);
   if (!then) return std::nullopt;
-  return MotionGuess{last_->T_local_body * (then->inverse() * *now), velocity, true};
+  return MotionGuess{last_->T_local_body * (then->inverse() * *now), motion, true};
 }
 
 std::optional<MotionGuess> MotionModel::by_velocity(TimeNs stamp) const {
   const auto velocity = motion_velocity();
   if (!velocity) return std::nullopt;
   MotionGuess guess{last_->T_local_body * exp_se3(*velocity * seconds(stamp - last_->time)),
-                    velocity, false};
+                    SweepMotion{*velocity}, false};
   // Guesses made of guesses would double their rounding every frame.
   guess.T_odom_lidar.linear() = nearest_rotation(guess.T_odom_lidar.linear());
   return guess;
 }
 
 /// The best of two independent measurements.
-Twist MotionModel::weighed(const Twist& by_navigation, const Twist& by_motion) const {
+SweepMotion MotionModel::weighed(const SweepMotion& by_navigation,
+                                 const SweepMotion& by_motion) const {
   const Twist &navigation = navigation_error_.mean_square(), &motion = motion_error_.mean_square();
-  return (motion.cwiseProduct(by_navigation) + navigation.cwiseProduct(by_motion))
-      .cwiseQuotient(navigation + motion);
+  const auto mean = [&](const Twist& of_navigation, const Twist& of_motion) -> Twist {
+    return (motion.cwiseProduct(of_navigation) + navigation.cwiseProduct(of_motion))
+        .cwiseQuotient(navigation + motion);
+  };
+  return {mean(by_navigation.velocity, by_motion.velocity),
+          mean(by_navigation.acceleration, by_motion.acceleration)};
 }
 
 MotionPrediction MotionModel::predict(TimeNs stamp) const {
@@ -102,8 +107,8 @@ MotionPrediction MotionModel::predict(TimeNs stamp) const {
       prediction.guesses = {*by_motion, *by_nav};
       return prediction;
     }
-    by_nav->velocity =
-        by_nav->velocity ? weighed(*by_nav->velocity, *by_motion->velocity) : by_motion->velocity;
+    by_nav->motion =
+        by_nav->motion ? weighed(*by_nav->motion, *by_motion->motion) : by_motion->motion;
   }
   if (by_nav) {
     prediction.guesses = {*by_nav};
@@ -122,7 +127,8 @@ void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar) {
     if (last_by_navigation_) navigation_error_.add(*last_by_navigation_, actual);
     if (last_by_motion_) motion_error_.add(*last_by_motion_, actual);
   }
-  last_by_navigation_ = navigation_velocity(stamp);
+  const auto by_navigation = navigation_motion(stamp);
+  last_by_navigation_ = by_navigation ? std::optional(by_navigation->velocity) : std::nullopt;
   last_by_motion_ = motion_velocity();
   before_last_ = last_;
   last_ = now;

@@ -11,9 +11,8 @@ namespace fovea {
 
 struct MotionGuess {
   RigidMotion T_odom_lidar = RigidMotion::Identity();
-  /// Twist per second of the LiDAR in its own frame during the sweep; absent where nothing is
-  /// known.
-  std::optional<Twist> velocity;
+  /// Of the LiDAR during the sweep; absent where nothing is known.
+  std::optional<SweepMotion> motion;
   bool by_navigation = false;
 };
 
@@ -66,11 +65,11 @@ class MotionModel {
 
  private:
   std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
-  std::optional<Twist> navigation_velocity(TimeNs stamp) const;
+  std::optional<SweepMotion> navigation_motion(TimeNs stamp) const;
   std::optional<Twist> motion_velocity() const;
   std::optional<MotionGuess> by_navigation(TimeNs stamp) const;
   std::optional<MotionGuess> by_velocity(TimeNs stamp) const;
-  Twist weighed(const Twist& by_navigation, const Twist& by_motion) const;
+  SweepMotion weighed(const SweepMotion& by_navigation, const SweepMotion& by_motion) const;
 
   const Trajectory* navigation_;
   MotionModelOptions options_;

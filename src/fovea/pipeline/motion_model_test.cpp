@@ -19,12 +19,12 @@ RigidMotion at_x(double x) {
 TEST(MotionModel, WithoutNavigationStartsAtRestAndThenKeepsItsVelocity) {
   MotionModel model(nullptr);
   EXPECT_TRUE(model.predict(0).guesses[0].T_odom_lidar.isApprox(RigidMotion::Identity()));
-  EXPECT_FALSE(model.predict(0).guesses[0].velocity);
+  EXPECT_FALSE(model.predict(0).guesses[0].motion);
   model.update(0, at_x(0));
   model.update(kTenth, at_x(1.5));
   const MotionPrediction next = model.predict(3 * kTenth);  // one frame is missing
   EXPECT_NEAR(next.guesses[0].T_odom_lidar.translation().x(), 4.5, 1e-12);
-  EXPECT_NEAR((*next.guesses[0].velocity)[3], 15, 1e-9);
+  EXPECT_NEAR(next.guesses[0].motion->velocity[3], 15, 1e-9);
   EXPECT_FALSE(next.T_local_lidar_navigation);
 }
 
@@ -38,7 +38,7 @@ TEST(MotionModel, NavigationsMotionIsAppliedToTheRefinedPose) {
   const MotionPrediction next = model.predict(2 * kTenth);
   EXPECT_NEAR(next.guesses[0].T_odom_lidar.translation().x(), 2.25, 1e-12);
   EXPECT_NEAR(next.T_local_lidar_navigation->translation().x(), 2, 1e-12);
-  EXPECT_NEAR((*next.guesses[0].velocity)[3], 10, 1e-9);
+  EXPECT_NEAR(next.guesses[0].motion->velocity[3], 10, 1e-9);
 }
 
 TEST(MotionModel, WithoutInterpolationTheNearestRecordCounts) {
@@ -65,7 +65,7 @@ TEST(MotionModel, NavigationThatContradictsTheMotionIsTheSecondGuess) {
     ASSERT_EQ(prediction.guesses.size(), 2u) << x;
     EXPECT_FALSE(prediction.guesses[0].by_navigation);
     EXPECT_NEAR(prediction.guesses[0].T_odom_lidar.translation().x(), 5, 1e-9);
-    EXPECT_NEAR((*prediction.guesses[0].velocity)[3], 10, 1e-9);
+    EXPECT_NEAR(prediction.guesses[0].motion->velocity[3], 10, 1e-9);
     EXPECT_TRUE(prediction.guesses[1].by_navigation);
     EXPECT_NEAR(prediction.guesses[1].T_odom_lidar.translation().x(), x, 1e-9);
   }
@@ -94,10 +94,29 @@ double worst_velocity(const std::function<double(double)>& x,
     const MotionPrediction prediction = model.predict(i * kTenth);
     EXPECT_EQ(prediction.guesses.size(), 1u) << i;
     const double actual = (x(i + 0.5) - x(i - 0.5)) * 10;
-    if (i >= 5) worst = std::max(worst, std::abs((*prediction.guesses[0].velocity)[3] - actual));
+    if (i >= 5)
+      worst = std::max(worst, std::abs(prediction.guesses[0].motion->velocity[3] - actual));
     model.update(i * kTenth, at_x(x(i)));
   }
   return worst;
+}
+
+TEST(MotionModel, AccelerationIsNavigationsAsFarAsThatIsTrusted) {
+  // Braking with 4 m/s^2; what is measured is right, or errs by 2 m/s to and fro.
+  const auto acceleration = [](double error) {
+    std::vector<StampedPose> poses;
+    for (int i = 0; i < 30; ++i) {
+      Twist velocity = Twist::Zero();
+      velocity[3] = 20 - 0.4 * i + (i % 2 == 0 ? error : -error);
+      poses.push_back({i * kTenth, at_x(2 * i - 0.02 * i * i), velocity});
+    }
+    const Trajectory navigation(poses);
+    MotionModel model(&navigation, {.doubt = true, .sweep_rest = kTenth / 2});
+    for (int i = 0; i < 20; ++i) model.update(i * kTenth, at_x(2 * i - 0.02 * i * i));
+    return model.predict(20 * kTenth).guesses[0].motion->acceleration[3];
+  };
+  EXPECT_NEAR(acceleration(0), -4, 0.1);
+  EXPECT_LT(std::abs(acceleration(0.9)), 7);  // 14 m/s^2 by what is measured
 }
 
 TEST(MotionModel, VelocityIsOfWhatForetoldItBetter) {

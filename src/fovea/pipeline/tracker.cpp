@@ -47,7 +47,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
 
   // Pose refinement.
   Placed placed = place(frame, motion, given_pose, clock);
-  if (compensates()) record.velocity = placed.velocity;
+  if (compensates()) record.motion = placed.motion;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
   record.T_odom_lidar = placed.refined.T_odom_lidar;
@@ -61,16 +61,16 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   }
 
   tracked.scan_lidar = std::move(placed.scan_lidar);
-  tracked.velocity = placed.velocity;
+  tracked.motion = placed.motion;
   tracked.submaps = fusion_.submaps();
   tracked.T_local_odom = fusion_.T_local_odom();
   return tracked;
 }
 
 PointCloud Tracker::compensated(const PointCloud& scan,
-                                const std::optional<Twist>& velocity) const {
+                                const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = scan;
-  if (velocity) compensate_sweep(scan_lidar, *velocity, drive_.sweep_period);
+  if (motion) compensate_sweep(scan_lidar, *motion, drive_.sweep_period);
   scan_lidar.time.clear();  // of no use to any stage
   return scan_lidar;
 }
@@ -81,9 +81,9 @@ Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motio
   std::optional<Placed> best;
   for (const MotionGuess& guess : motion.guesses) {
     Placed placed;
-    placed.velocity = guess.velocity;
+    placed.motion = guess.motion;
     placed.scan_lidar = clock.time("register", [&] {
-      return compensated(frame.scan, compensates() ? guess.velocity : std::nullopt);
+      return compensated(frame.scan, compensates() ? guess.motion : std::nullopt);
     });
     if (pose_source_ == PoseSource::kNavigation) {
       placed.refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);

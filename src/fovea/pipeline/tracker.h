@@ -27,8 +27,8 @@ enum class PoseSource {
 /// All that mapping a frame needs to know of its tracking. Later frames do not change it.
 struct TrackedFrame {
   FrameRecord record;
-  PointCloud scan_lidar;          ///< motion compensated
-  std::optional<Twist> velocity;  ///< per second, of the LiDAR in its own frame
+  PointCloud scan_lidar;              ///< motion compensated
+  std::optional<SweepMotion> motion;  ///< of the LiDAR
   /// T_local_submap of all submaps, and the motion that puts the latest into local, as of this
   /// frame.
   std::vector<RigidMotion> submaps;
@@ -54,7 +54,7 @@ class Tracker {
   /// How many of the latest target scans registration depends on.
   int memory() const { return refiner_.memory(); }
 
-  PointCloud compensated(const PointCloud& scan, const std::optional<Twist>& velocity) const;
+  PointCloud compensated(const PointCloud& scan, const std::optional<SweepMotion>& motion) const;
   /// T_local_submap by number.
   const std::vector<RigidMotion>& submaps() const { return fusion_.submaps(); }
   RigidMotion T_local_odom() const { return fusion_.T_local_odom(); }
@@ -63,7 +63,7 @@ class Tracker {
   /// A frame's scan as it is mapped, and what registration said of it.
   struct Placed {
     PointCloud scan_lidar;
-    std::optional<Twist> velocity;
+    std::optional<SweepMotion> motion;
     RefinedPose refined;
   };
   Placed place(const Frame& frame, const MotionPrediction& motion,

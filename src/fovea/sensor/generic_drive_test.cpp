@@ -345,7 +345,7 @@ TEST_F(GenericNavigation, VelocitiesAreTheBodysAndBecomeTheLidars) {
     const auto drive = open();
     const TimeNs stamp = *drive->stamp(1);
     const Twist velocity =
-        drive->info().navigation->velocity(stamp, stamp + kNsPerSecond / 20).value();
+        drive->info().navigation->motion(stamp, stamp + kNsPerSecond / 20).value().velocity;
     EXPECT_LT((velocity.head<3>() - Eigen::Vector3d(0, 0, 0.5)).norm(), 1e-12);
     EXPECT_LT((velocity.tail<3>() - expected).norm(), 1e-12) << velocity.transpose();
   };

@@ -120,11 +120,11 @@ TEST(KittiSample, CompensationMovesPointsByTheWayDriven) {
   FOVEA_KITTI_SAMPLE_OR_SKIP(path);
   const auto drive = open_drive(path, {});
   const Frame frame = std::get<Frame>(drive->load(0));
-  const auto velocity = drive->info().navigation->velocity(frame.stamp, frame.stamp);
-  ASSERT_TRUE(velocity);
+  const auto motion = drive->info().navigation->motion(frame.stamp, frame.stamp);
+  ASSERT_TRUE(motion);
   PointCloud scan = frame.scan;
-  compensate_sweep(scan, *velocity, drive->info().sweep_period);
-  const double half_way = velocity->tail<3>().norm() * drive->info().sweep_period / 2;
+  compensate_sweep(scan, *motion, drive->info().sweep_period);
+  const double half_way = motion->velocity.tail<3>().norm() * drive->info().sweep_period / 2;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3f& measured = frame.scan.position[i];
     const double share = std::abs(std::atan2(measured.y(), measured.x())) / std::numbers::pi;

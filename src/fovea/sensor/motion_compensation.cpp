@@ -51,12 +51,14 @@ class ConstantTwist {
 
 }  // namespace
 
-void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double period) {
+void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, double period) {
   if (!scan_lidar.origin.isZero()) {
     throw std::invalid_argument("a sweep's origin must be the LiDAR: azimuths are taken from it");
   }
   constexpr std::size_t kGrain = 8192;
-  const ConstantTwist motion(velocity);
+  const ConstantTwist steady(motion.velocity);
+  const Eigen::Vector3d turning = motion.acceleration.head<3>() / 2;
+  const Eigen::Vector3d speeding = motion.acceleration.tail<3>() / 2;
   const double time_per_radian = -period / (2 * std::numbers::pi);  // clockwise
   const bool timed = !scan_lidar.time.empty();
   parallel_for(scan_lidar.size(), kGrain, [&](std::size_t i) {
@@ -64,7 +66,11 @@ void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double peri
     const double dt =
         timed ? double(scan_lidar.time[i]) : time_per_radian * double(quick_atan2(p.y(), p.x()));
     Eigen::Vector3f* normal = scan_lidar.normal.empty() ? nullptr : &scan_lidar.normal[i];
-    p = motion.move(p.cast<double>(), dt, normal).cast<float>();
+    // What the acceleration adds is a few milliradians at most: no sine is needed for that.
+    const Eigen::Vector3d q = p.cast<double>();
+    const Eigen::Vector3d changed = q + dt * dt * (turning.cross(q) + speeding);
+    if (normal != nullptr) *normal += (dt * dt * turning).cast<float>().cross(*normal);
+    p = steady.move(changed, dt, normal).cast<float>();
   });
   scan_lidar.time.clear();
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fovea/base/point_cloud.h"
-#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {
 
@@ -12,8 +12,8 @@ namespace fovea {
 /// has none, the sweep turns clockwise seen from above and faces forward at the stamp, its middle:
 /// a point at azimuth a = atan2(y, x) was measured at stamp - a / (2 pi) * period.
 /// @param scan_lidar  points as measured, origin 0; std::invalid_argument for another
-/// @param velocity    twist per second of the LiDAR in its own frame (rotation, translation)
+/// @param motion      of the LiDAR at the stamp
 /// @param period      s, duration of the sweep; unused where points have times
-void compensate_sweep(PointCloud& scan_lidar, const Twist& velocity, double period);
+void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, double period);
 
 }  // namespace fovea

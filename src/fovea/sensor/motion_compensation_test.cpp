@@ -21,7 +21,7 @@ Twist twist(std::initializer_list<double> values) {
 Eigen::Vector3f compensated(const Eigen::Vector3f& p, const Twist& velocity) {
   PointCloud scan;
   scan.position = {p};
-  compensate_sweep(scan, velocity, kPeriod);
+  compensate_sweep(scan, {velocity}, kPeriod);
   return scan.position[0];
 }
 
@@ -55,6 +55,43 @@ TEST(MotionCompensation, EqualsTheExponentialOfTheTwist) {
   }
 }
 
+/// Where a body is, dt after a moment, by small steps.
+RigidMotion integrated(const SweepMotion& motion, double dt) {
+  constexpr int kSteps = 1000;
+  RigidMotion T = RigidMotion::Identity();
+  for (int i = 0; i < kSteps; ++i) {
+    const double middle = dt * (i + 0.5) / kSteps;
+    T = T * exp_se3(dt / kSteps * (motion.velocity + middle * motion.acceleration));
+  }
+  return T;
+}
+
+TEST(MotionCompensation, FollowsABendThatBegins) {
+  // Into a bend within a second, while braking: steady motion would be 10 cm off at 50 m.
+  const SweepMotion motion{twist({0.05, -0.02, 0.6, 9, 0.3, 0.1}),
+                           twist({0.2, -0.3, 1.6, -8, 2, 0.5})};
+  Random random(7);
+  double farthest = 0;
+  for (int i = 0; i < 200; ++i) {
+    PointCloud one;
+    const Eigen::Vector3d p(random.uniform(-50, 50), random.uniform(-50, 50),
+                            random.uniform(-2, 5));
+    const double dt = random.uniform(-0.05, 0.05);
+    one.position = {p.cast<float>()};
+    one.normal = {Eigen::Vector3f::UnitY()};
+    one.time = {float(dt)};
+    PointCloud steady = one;
+    compensate_sweep(one, motion, kPeriod);
+    compensate_sweep(steady, {motion.velocity}, kPeriod);
+    const RigidMotion T = integrated(motion, dt);
+    EXPECT_LT((one.position[0].cast<double>() - T * p).norm(), 5e-4);
+    EXPECT_LT((one.normal[0] - (T.linear() * Eigen::Vector3d::UnitY()).cast<float>()).norm(),
+              1e-5f);
+    farthest = std::max(farthest, (steady.position[0].cast<double>() - T * p).norm());
+  }
+  EXPECT_GT(farthest, 0.08);
+}
+
 TEST(MotionCompensation, TimesOfThePointsCountWhereThereAreAny) {
   const Twist velocity = twist({0.4, -0.2, 1.1, 12, 1, 2});
   Random random(6);
@@ -66,7 +103,7 @@ TEST(MotionCompensation, TimesOfThePointsCountWhereThereAreAny) {
     scan.time.push_back(static_cast<float>(random.uniform(0, 0.1)));
   }
   const PointCloud measured = scan;
-  compensate_sweep(scan, velocity, kPeriod);
+  compensate_sweep(scan, {velocity}, kPeriod);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3d expected =
         exp_se3(double(measured.time[i]) * velocity) * measured.position[i].cast<double>();
@@ -104,7 +141,7 @@ TEST(MotionCompensation, StraightensAWallSeenFromACarInACurve) {
     return result;
   };
   EXPECT_GT(worst(), 0.2);
-  compensate_sweep(wall, velocity, kPeriod);
+  compensate_sweep(wall, {velocity}, kPeriod);
   EXPECT_LT(worst(), 1e-4);
   for (const auto& normal : wall.normal) EXPECT_LT((normal + n.cast<float>()).norm(), 1e-6f);
 }
@@ -119,18 +156,18 @@ TEST(MotionCompensation, SameAtAnyNumberOfThreads) {
   const Twist velocity = twist({0.1, 0, 0.5, 10, 0, 0});
   {
     const ThreadLimit limit(1);
-    compensate_sweep(one, velocity, kPeriod);
+    compensate_sweep(one, {velocity}, kPeriod);
   }
-  compensate_sweep(many, velocity, kPeriod);
+  compensate_sweep(many, {velocity}, kPeriod);
   EXPECT_EQ(one.position, many.position);
 }
 
 TEST(MotionCompensation, EmptyScanAndForeignOrigin) {
   PointCloud scan;
-  compensate_sweep(scan, twist({0, 0, 1, 10, 0, 0}), kPeriod);
+  compensate_sweep(scan, {twist({0, 0, 1, 10, 0, 0})}, kPeriod);
   EXPECT_TRUE(scan.empty());
   scan.origin.x() = 1;
-  EXPECT_THROW(compensate_sweep(scan, Twist::Zero(), kPeriod), std::invalid_argument);
+  EXPECT_THROW(compensate_sweep(scan, SweepMotion(), kPeriod), std::invalid_argument);
 }
 
 }  // namespace fovea::motion_compensation_test

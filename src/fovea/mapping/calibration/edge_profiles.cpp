@@ -140,7 +140,7 @@ std::array<float, EdgeProfile::kSize> strengths(const Image& image, const Vector
 
 std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Image& image,
                                        const EdgeView& view) {
-  const Camera camera = view.camera.at_image(view.velocity);
+  const Camera camera = view.camera.at_image(SweepMotion{view.velocity});
   const std::vector<ImageEdge> edges = edges_in_view(edges_lidar, camera);
   std::vector<EdgeProfile> profiles;
   for (std::size_t i = 0; i < edges.size(); ++i) {

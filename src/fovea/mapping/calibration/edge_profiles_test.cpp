@@ -77,9 +77,9 @@ TEST(EdgeProfiles, KnowHowTheyMoveWithTheCalibration) {
   const Twist velocity = (Twist() << 0.02, -0.05, 0.3, 9, 0.2, -0.1).finished();
   const double end = 300;
   const auto place = [&](const Camera& c, const Eigen::Vector3d& p) {
-    return c.project(c.at_image(velocity).T_cam_lidar * p).value();
+    return c.project(c.at_image(SweepMotion{velocity}).T_cam_lidar * p).value();
   };
-  const LidarEdges edges = upright_edges(camera.at_image(velocity), end, 3, 0.05);
+  const LidarEdges edges = upright_edges(camera.at_image(SweepMotion{velocity}), end, 3, 0.05);
   const auto profiles =
       edge_profiles(edges, half_bright(end, 0.05), {.camera = camera, .velocity = velocity});
   ASSERT_EQ(profiles.size(), edges.size());
