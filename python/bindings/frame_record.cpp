@@ -9,6 +9,17 @@
 namespace fovea::python {
 namespace py = pybind11;
 
+namespace {
+
+/// One of the twists that its sweep was compensated by.
+std::optional<py::array_t<double>> twist_array(const FrameRecord& record,
+                                               Twist SweepMotion::*twist) {
+  if (!record.motion) return std::nullopt;
+  return py::array_t<double>(6, ((*record.motion).*twist).data());
+}
+
+}  // namespace
+
 void bind_frame_record(py::module_& module) {
   py::class_<FrameRecord>(module, "FrameRecord", "What a map keeps of a frame of its drive.")
       .def_readonly("index", &FrameRecord::index)
@@ -35,17 +46,11 @@ void bind_frame_record(py::module_& module) {
       .def_readonly("submap", &FrameRecord::submap, "Its number; -1 of a skipped frame.")
       .def_property_readonly(
           "velocity",
-          [](const FrameRecord& record) -> std::optional<py::array_t<double>> {
-            if (!record.motion) return std::nullopt;
-            return py::array_t<double>(6, record.motion->velocity.data());
-          },
+          [](const FrameRecord& record) { return twist_array(record, &SweepMotion::velocity); },
           "Twist of the LiDAR in its own frame, rotation first (rad/s, m/s), 6 numbers, or None.")
       .def_property_readonly(
           "acceleration",
-          [](const FrameRecord& record) -> std::optional<py::array_t<double>> {
-            if (!record.motion) return std::nullopt;
-            return py::array_t<double>(6, record.motion->acceleration.data());
-          },
+          [](const FrameRecord& record) { return twist_array(record, &SweepMotion::acceleration); },
           "Change of the velocity (rad/s^2, m/s^2), 6 numbers, or None.")
       .def_readonly("figures", &FrameRecord::figures, "Figures of the stages by name.")
       .def_readonly("milliseconds", &FrameRecord::milliseconds, "Wall time of the stages by name.")

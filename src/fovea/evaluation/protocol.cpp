@@ -31,7 +31,7 @@ std::optional<SweepMotion> sweep_motion(const FrameRecord& record, const FrameSo
   const auto begin = refined->at(*stamp - from_seconds(period / 2));
   const auto end = refined->at(*stamp + from_seconds(period / 2));
   if (!begin || !end) return std::nullopt;
-  return SweepMotion{log_se3(begin->inverse() * *end) / period};
+  return SweepMotion{velocity_between(*begin, *end, period)};
 }
 
 /// Whether the protocol scores this frame. InputError if it was mapped and must not have been.

@@ -42,7 +42,7 @@ struct ProtocolOptions {
 ///
 /// Poses are the map's T_local_lidar or, in-sample-nav, its T_local_lidar_navigation; frames that
 /// the map skipped are left out, and so are frames without a navigation pose where one is asked
-/// for. The velocity is the map's and, where it has none, that of its refined poses over the sweep.
+/// for. The motion is the map's and, where it has none, that of its refined poses over the sweep.
 /// InputError if no frame is left, if a frame asked for as held-out was mapped or has coloured
 /// points in the map, if a cloud does not say what was held out, or if a map has no navigation
 /// poses.

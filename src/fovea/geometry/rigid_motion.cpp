@@ -63,6 +63,10 @@ RigidMotion interpolate(const RigidMotion& T0, const RigidMotion& T1, double s) 
   return T0 * exp_se3(s * log_se3(T0.inverse() * T1));
 }
 
+Twist velocity_between(const RigidMotion& T0, const RigidMotion& T1, double elapsed) {
+  return log_se3(T0.inverse() * T1) / elapsed;
+}
+
 double rotation_angle(const Eigen::Matrix3d& R) { return Eigen::AngleAxisd(R).angle(); }
 
 bool is_rotation(const Eigen::Matrix3d& R, double tolerance) {

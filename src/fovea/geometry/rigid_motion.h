@@ -24,6 +24,9 @@ Twist twist_of_part(const Twist& twist_a, const RigidMotion& T_a_b);
 /// Constant-twist interpolation from T0 (s = 0) to T1 (s = 1); s outside [0, 1] extrapolates.
 RigidMotion interpolate(const RigidMotion& T0, const RigidMotion& T1, double s);
 
+/// Twist per second, in its own frame, of a body that moves from T0 to T1 in `elapsed` s.
+Twist velocity_between(const RigidMotion& T0, const RigidMotion& T1, double elapsed);
+
 /// Angle of the rotation, rad in [0, pi].
 double rotation_angle(const Eigen::Matrix3d& R);
 

@@ -92,8 +92,8 @@ std::optional<SweepMotion> Trajectory::motion(TimeNs time, TimeNs known_until) c
   while (first != poses_.begin() && last->time - first->time < reach * 3 / 2) --first;
   const StampedPose &p0 = *first, &p1 = *last;
   if (p1.time - p0.time > kMaxGap) return std::nullopt;
-  return SweepMotion{log_se3(p0.T_local_body.inverse() * p1.T_local_body) /
-                     seconds(p1.time - p0.time)};
+  return SweepMotion{
+      velocity_between(p0.T_local_body, p1.T_local_body, seconds(p1.time - p0.time))};
 }
 
 }  // namespace fovea

@@ -268,10 +268,10 @@ Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction&
 
 Localizer::Attempt Localizer::compensated(const Frame& frame, const Attempt& found) {
   if (!tracking_) return found;  // it has moved in whatever ways since
-  const RigidMotion motion = last_->T_local_body.inverse() * found.registration.T_target_source;
-  const Twist velocity = log_se3(motion) / seconds(frame.stamp - last_->time);
-  Attempt attempt =
-      follow(prepare(frame, SweepMotion{velocity}), found.registration.T_target_source);
+  const RigidMotion& T_local_lidar = found.registration.T_target_source;
+  const SweepMotion motion{
+      velocity_between(last_->T_local_body, T_local_lidar, seconds(frame.stamp - last_->time))};
+  Attempt attempt = follow(prepare(frame, motion), T_local_lidar);
   return attempt.better_than(found) ? attempt : found;
 }
 

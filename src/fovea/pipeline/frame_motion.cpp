@@ -6,7 +6,7 @@ namespace {
 std::optional<FrameMotion> between(const RigidMotion& here, TimeNs stamp, const RigidMotion& other,
                                    TimeNs other_stamp) {
   if (stamp == other_stamp) return std::nullopt;
-  return FrameMotion{here, {log_se3(here.inverse() * other) / seconds(other_stamp - stamp)}};
+  return FrameMotion{here, {velocity_between(here, other, seconds(other_stamp - stamp))}};
 }
 
 }  // namespace

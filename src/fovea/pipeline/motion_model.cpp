@@ -25,9 +25,8 @@ Twist squares(double turn, double way) {
   return squares;
 }
 
-/// Twist per second from one pose to a later one.
 Twist velocity_between(const StampedPose& a, const StampedPose& b) {
-  return log_se3(a.T_local_body.inverse() * b.T_local_body) / seconds(b.time - a.time);
+  return fovea::velocity_between(a.T_local_body, b.T_local_body, seconds(b.time - a.time));
 }
 
 bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
@@ -124,11 +123,10 @@ void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar) {
   const StampedPose now{stamp, T_odom_lidar};
   if (before_last_) {
     const Twist actual = velocity_between(*before_last_, now);  // at last_, between the two
-    if (last_by_navigation_) navigation_error_.add(*last_by_navigation_, actual);
+    if (last_by_navigation_) navigation_error_.add(last_by_navigation_->velocity, actual);
     if (last_by_motion_) motion_error_.add(*last_by_motion_, actual);
   }
-  const auto by_navigation = navigation_motion(stamp);
-  last_by_navigation_ = by_navigation ? std::optional(by_navigation->velocity) : std::nullopt;
+  last_by_navigation_ = navigation_motion(stamp);
   last_by_motion_ = motion_velocity();
   before_last_ = last_;
   last_ = now;

@@ -74,7 +74,9 @@ class MotionModel {
   const Trajectory* navigation_;
   MotionModelOptions options_;
   std::optional<StampedPose> last_, before_last_;
-  std::optional<Twist> last_by_navigation_, last_by_motion_;  // what was foretold for last_
+  // What was foretold for last_.
+  std::optional<SweepMotion> last_by_navigation_;
+  std::optional<Twist> last_by_motion_;
   VelocityError navigation_error_, motion_error_;
 };
 
