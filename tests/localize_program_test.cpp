@@ -52,8 +52,7 @@ TEST_F(LocalizeProgram, AnotherDayOfTheStreetIsFoundToCentimetres) {
     EXPECT_LE(figures["truth"]["position_rms_m"], 0.03) << guess;
     EXPECT_LE(figures["truth"]["rotation_rms_deg"], 0.1) << guess;
     EXPECT_LE(figures["truth"]["normalized_error"], 3) << guess;
-    // The errors of twenty frames are alike: one draw, not twenty.
-    EXPECT_GE(figures["truth"]["normalized_error"], 0.1) << guess;
+    EXPECT_GE(figures["truth"]["normalized_error"], 0.2) << guess;
     EXPECT_GT(figures["health_mean"], 0.6) << guess;
     EXPECT_GT(figures["latency_ms"]["frame"]["p50"], 0);
     EXPECT_THAT(read_text(path("b.csv")), HasSubstr("19,"));
