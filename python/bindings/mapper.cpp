@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "fovea/pipeline/initial_motion.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/drive.h"
@@ -20,8 +21,7 @@ namespace {
 class DriveMapper {
  public:
   DriveMapper(Drive drive, const std::string& preset, const py::dict& settings)
-      : drive_(std::move(drive)),
-        mapper_(drive_.source->info(), mapper_options(preset, settings), PoseSource::kRefine) {}
+      : DriveMapper(std::move(drive), mapper_options(preset, settings)) {}
 
   FrameRecord process(const DriveFrame& frame, bool held_out) {
     frame.require_of(drive_);
@@ -30,6 +30,7 @@ class DriveMapper {
     if (last_ && frame.frame->index <= *last_) {
       throw std::invalid_argument("frames are mapped in the drive's order, each once");
     }
+    if (!last_) begin_at(frame.frame->index);
     last_ = frame.frame->index;
     return mapper_.process(*frame.frame, held_out);
   }
@@ -42,7 +43,18 @@ class DriveMapper {
   }
 
  private:
+  DriveMapper(Drive drive, const MapperOptions& options)
+      : drive_(std::move(drive)),
+        compensate_(options.compensate_motion),
+        mapper_(drive_.source->info(), options, PoseSource::kRefine) {}
+
+  void begin_at(int index) {
+    const auto velocity = initial_velocity(*drive_.source, {}, index, compensate_);
+    if (velocity) mapper_.begin_with(*velocity);
+  }
+
   Drive drive_;
+  bool compensate_;
   Mapper mapper_;
   std::optional<int> last_;
   mutable std::mutex mutex_;

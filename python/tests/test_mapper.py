@@ -62,6 +62,15 @@ class MapperTest(unittest.TestCase):
         for color, before in kept.values():  # later frames leave earlier arrays alone
             np.testing.assert_array_equal(color, before)
 
+    def test_begins_with_the_motion_of_two_scans_where_navigation_says_nothing(self):
+        first = []
+        for use_navigation in True, False:
+            drive = fovea.Drive(sample.drive(), use_navigation=use_navigation)
+            mapper = fovea.Mapper(drive, settings=sample.SETTINGS)
+            first.append(mapper.process(drive.load(0)))
+        self.assertGreater(first[0].velocity[3], 5)
+        np.testing.assert_allclose(first[1].velocity, first[0].velocity, atol=0.3)
+
     def test_only_the_drives_own_frames_in_order(self):
         drive = fovea.Drive(sample.drive(), frames=(0, 2))
         mapper = fovea.Mapper(drive, settings=sample.SETTINGS)

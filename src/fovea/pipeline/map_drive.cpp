@@ -12,6 +12,7 @@
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/frame_pipeline.h"
+#include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/pipeline/stored_calibration.h"
 
@@ -152,6 +153,10 @@ class MapRun {
         figures_(drive, job.rate) {
     if (job.options.check_calibration && !job.calibrate) {
       check_.emplace(drive, has_sweep_motion(drive, job));
+    }
+    if (const auto velocity =
+            initial_velocity(source, job.given_poses, drive.begin, job.options.compensate_motion)) {
+      mapper_.begin_with(*velocity);
     }
     if (job.resume) take_up_earlier_run();
     frames_before_ = log_.size();

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "../../../tests/raw_drive.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -76,6 +77,41 @@ TEST_F(MapDrive, AnInterruptedRunGoesOnToTheSameMap) {
   job.resume = true;
   EXPECT_FALSE(map_drive(drive_, job, {}).interrupted);
   EXPECT_EQ(digest(), whole);
+}
+
+// Without navigation too, and with a vehicle that is under way.
+TEST_F(MapDrive, ADriveThatBeginsAtSpeedIsMappedAndResumed) {
+  const Twist velocity = (Twist() << 0, 0, 0.1, 28, 0, 0).finished();
+  for (const bool compensated : {false, true}) {
+    RawDrive drive(5, velocity);
+    drive.editable_info().sweep_compensated = compensated;
+    MapJob job = this->job();
+    job.checkpoint_frames = 1;
+    map_drive(drive, job, {});
+    const std::string whole = digest();
+    for (const FrameRecord& record : MapReader(job.output).frames()) {
+      const RigidMotion error =
+          drive.T_local_lidar[std::size_t(record.index)].inverse() * record.T_local_lidar;
+      EXPECT_LT(error.translation().norm(), 0.03) << record.index;
+      EXPECT_EQ(record.motion.has_value(), !compensated);
+      if (record.motion) {
+        EXPECT_LT((record.motion->velocity - velocity).norm(), 0.3) << record.index;
+      }
+    }
+    for (int frames = 1; frames <= 2; ++frames) {
+      std::stop_source stop;
+      MapJob part = job;
+      part.overlap = false;
+      part.stop = stop.get_token();
+      map_drive(drive, part, [&](const MapProgress& progress) {
+        if (progress.done == frames) stop.request_stop();
+      });
+      part.stop = {};
+      part.resume = true;
+      map_drive(drive, part, {});
+      EXPECT_EQ(digest(), whole) << frames;
+    }
+  }
 }
 
 TEST_F(MapDrive, AnErrorEndsTheRunAndLeavesNothing) {

@@ -29,6 +29,10 @@ class Mapper {
       const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
       BringNear bring_near = [](TileMap&, const Eigen::Vector3d&, double) {});
 
+  /// Tells the LiDAR's velocity at the first frame, before it, where the drive's navigation does
+  /// not (initial_velocity); without either it is taken to be at rest, and its sweep left as it is.
+  void begin_with(const Twist& velocity) { tracker_.begin_with(velocity); }
+
   /// Maps one frame and returns what is to be kept of it.
   /// @param held_out    registered like any other, but adds no point, colour or registration target
   /// @param given_pose  T_local_lidar where the pose source is kGiven, or kGivenFirst and the frame

@@ -60,7 +60,7 @@ std::optional<SweepMotion> MotionModel::navigation_motion(TimeNs stamp) const {
 }
 
 std::optional<Twist> MotionModel::motion_velocity() const {
-  if (!last_ || !before_last_) return std::nullopt;
+  if (!before_last_) return initial_velocity_;
   return velocity_between(*before_last_, *last_);
 }
 
@@ -77,8 +77,9 @@ std::optional<MotionGuess> MotionModel::by_navigation(TimeNs stamp) const {
 std::optional<MotionGuess> MotionModel::by_velocity(TimeNs stamp) const {
   const auto velocity = motion_velocity();
   if (!velocity) return std::nullopt;
-  MotionGuess guess{last_->T_local_body * exp_se3(*velocity * seconds(stamp - last_->time)),
-                    SweepMotion{*velocity}, false};
+  MotionGuess guess{RigidMotion::Identity(), SweepMotion{*velocity}, false};
+  if (!last_) return guess;
+  guess.T_odom_lidar = last_->T_local_body * exp_se3(*velocity * seconds(stamp - last_->time));
   // Guesses made of guesses would double their rounding every frame.
   guess.T_odom_lidar.linear() = nearest_rotation(guess.T_odom_lidar.linear());
   return guess;

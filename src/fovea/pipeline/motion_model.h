@@ -58,9 +58,13 @@ class MotionModel {
   explicit MotionModel(const Trajectory* navigation, const MotionModelOptions& options = {})
       : navigation_(navigation), options_(options) {}
 
+  /// The velocity (of the LiDAR, its own frame, a second) that the motion begins with, where it is
+  /// known and navigation does not tell it: before the first update().
+  void begin_with(const Twist& velocity) { initial_velocity_ = velocity; }
+
   MotionPrediction predict(TimeNs stamp) const;
 
-  /// Tells the pose that the frame got in the end. All that the model knows is of these calls.
+  /// Tells the pose that the frame got in the end. All else that the model knows is of these calls.
   void update(TimeNs stamp, const RigidMotion& T_odom_lidar);
 
  private:
@@ -73,6 +77,7 @@ class MotionModel {
 
   const Trajectory* navigation_;
   MotionModelOptions options_;
+  std::optional<Twist> initial_velocity_;
   std::optional<StampedPose> last_, before_last_;
   // What was foretold for last_.
   std::optional<SweepMotion> last_by_navigation_;

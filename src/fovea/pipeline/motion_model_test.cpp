@@ -28,6 +28,20 @@ TEST(MotionModel, WithoutNavigationStartsAtRestAndThenKeepsItsVelocity) {
   EXPECT_FALSE(next.T_local_lidar_navigation);
 }
 
+TEST(MotionModel, BeginsWithTheVelocityTold) {
+  Twist velocity = Twist::Zero();
+  velocity[3] = 20;
+  MotionModel model(nullptr);
+  model.begin_with(velocity);
+  const MotionPrediction first = model.predict(0);
+  EXPECT_TRUE(first.guesses[0].T_odom_lidar.isApprox(RigidMotion::Identity()));
+  EXPECT_EQ(first.guesses[0].motion->velocity, velocity);
+  model.update(0, at_x(0));
+  EXPECT_NEAR(model.predict(kTenth).guesses[0].T_odom_lidar.translation().x(), 2, 1e-12);
+  model.update(kTenth, at_x(1.5));  // from here on it is what the poses say
+  EXPECT_NEAR(model.predict(2 * kTenth).guesses[0].T_odom_lidar.translation().x(), 3, 1e-12);
+}
+
 TEST(MotionModel, NavigationsMotionIsAppliedToTheRefinedPose) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back({i * kTenth, at_x(i)});

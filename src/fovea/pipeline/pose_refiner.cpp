@@ -10,6 +10,11 @@
 
 namespace fovea {
 
+double fit_of(const RegistrationResult& result, const RegistrationOptions& options) {
+  const double away = result.rms_distance / options.max_distance;
+  return static_cast<double>(result.pairs) * std::max(0.0, 1 - away * away);
+}
+
 PoseRefiner::PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras)
     : options_(options), cameras_(std::move(cameras)), local_map_(options.local_map) {}
 
@@ -93,8 +98,7 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
                                moved, turned * 180 / std::numbers::pi);
   } else {
     refined.T_odom_lidar = result.T_target_source;
-    const double away = result.rms_distance / options_.registration.max_distance;
-    refined.fit = static_cast<double>(result.pairs) * std::max(0.0, 1 - away * away);
+    refined.fit = fit_of(result, options_.registration);
   }
   refined.figures["registration_iterations"] = result.iterations;
   refined.figures["registration_pairs"] = static_cast<double>(result.pairs);

@@ -24,6 +24,9 @@ struct RefinedPose {
   std::map<std::string, double> figures;  ///< registration_iterations, _pairs, _rms, ...
 };
 
+/// See RefinedPose::fit.
+double fit_of(const RegistrationResult& result, const RegistrationOptions& options);
+
 class PoseRefiner {
  public:
   /// @param cameras  whose view bounds the points where options.visible_only

@@ -41,6 +41,9 @@ class Tracker {
   /// @param drive  must outlive the tracker
   Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source);
 
+  /// See Mapper::begin_with.
+  void begin_with(const Twist& velocity) { motion_model_.begin_with(velocity); }
+
   /// The next frame's pose; see Mapper::process.
   TrackedFrame track(const Frame& frame, bool held_out,
                      const std::optional<RigidMotion>& given_pose);
