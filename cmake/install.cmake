@@ -9,7 +9,8 @@ target_link_libraries(fovea_all INTERFACE ${modules})
 
 install(TARGETS fovea_app RUNTIME)
 install(TARGETS ${modules} fovea_all EXPORT fovea_targets)
-install(DIRECTORY src/fovea DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY src/fovea DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.h" PATTERN "*test_*" EXCLUDE)
 install(EXPORT fovea_targets NAMESPACE fovea:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/fovea)
 install(FILES cmake/dependencies.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/fovea)
 configure_package_config_file(cmake/fovea-config.cmake.in ${PROJECT_BINARY_DIR}/fovea-config.cmake
