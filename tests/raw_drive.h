@@ -8,7 +8,8 @@
 namespace fovea {
 
 /// A drive without navigation at a constant velocity whose scans are raw (or compensated, if
-/// the drive is made to say so): each point where the LiDAR of its moment saw it. `dropped` frames have no scan.
+/// the drive is made to say so): each point where the LiDAR of its moment saw it. `dropped` frames
+/// have no scan.
 class RawDrive : public SyntheticDrive {
  public:
   std::set<int> dropped;

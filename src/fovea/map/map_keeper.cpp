@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "fovea/base/give_way.h"
 #include "fovea/base/process_memory.h"
 
 namespace fovea {
@@ -14,6 +15,9 @@ constexpr double kAhead = 20, kBeyond = 30;  // m
 
 /// Of a tile in memory: all columns, and what vectors that grow hold in reserve.
 constexpr std::size_t kBytesPerPoint = 38 * 3 / 2;
+
+/// What is written can wait, a frame cannot; but what is read is waited for, if seldom.
+constexpr int kNice = 5;
 
 template <class T>
 bool is_ready(const std::future<T>& result) {
@@ -43,7 +47,9 @@ MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& 
       commit_at_end_(options.commit_at_end),
       on_checkpoint_(options.on_checkpoint),
       writer_(std::move(writer)),
-      worker_(options.threaded) {}
+      worker_(options.threaded) {
+  if (options.threaded) worker_.post([] { give_way(kNice); });
+}
 
 MapKeeper::~MapKeeper() {
   if (written_.valid()) written_.wait();

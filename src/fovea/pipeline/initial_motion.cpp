@@ -72,8 +72,7 @@ class ScanPair {
     RigidMotion best = RigidMotion::Identity();
     double best_fit = 0;
     for (const RigidMotion& guess : first_guesses(elapsed_)) {
-      const RigidMotion nearby =
-          register_clouds(first, index, second, guess, far).T_target_source;
+      const RigidMotion nearby = register_clouds(first, index, second, guess, far).T_target_source;
       const RegistrationResult result = register_clouds(first, index, second, nearby, near);
       if (!result.converged || fit_of(result, near) <= best_fit) continue;
       best_fit = fit_of(result, near);
@@ -106,7 +105,8 @@ class ScanPair {
   }
 
   RegistrationCloud standing(const PointCloud& scan) const {
-    const std::vector<std::uint8_t> ground = segment_ground(scan.position, {.method = GroundMethod::kRansac});
+    const std::vector<std::uint8_t> ground =
+        segment_ground(scan.position, {.method = GroundMethod::kRansac});
     std::vector<Eigen::Vector3f> points;
     for (std::size_t i = 0; i < ground.size(); ++i) {
       if (ground[i] == 0) points.push_back(scan.position[i]);
@@ -128,8 +128,7 @@ std::optional<Twist> velocity_by_registration(const ScanPair& scans) {
   std::optional<RigidMotion> T_first_second = scans.found();
   for (int i = 0; T_first_second && i < kMostRegistrations; ++i) {
     const auto next = scans.registered(*T_first_second);
-    const RigidMotion change =
-        next ? T_first_second->inverse() * *next : RigidMotion::Identity();
+    const RigidMotion change = next ? T_first_second->inverse() * *next : RigidMotion::Identity();
     T_first_second = next;
     if (change.translation().norm() < kSettledWay &&
         rotation_angle(change.linear()) < kSettledTurn) {

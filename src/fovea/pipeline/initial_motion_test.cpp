@@ -6,7 +6,9 @@
 
 namespace fovea::initial_motion_test {
 
-Twist twist(double turn, double forward) { return (Twist() << 0, 0, turn, forward, 0, 0).finished(); }
+Twist twist(double turn, double forward) {
+  return (Twist() << 0, 0, turn, forward, 0, 0).finished();
+}
 
 void expect_near(const std::optional<Twist>& velocity, const Twist& truth) {
   ASSERT_TRUE(velocity);

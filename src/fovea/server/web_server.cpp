@@ -3,8 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -21,6 +19,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/give_way.h"
 #include "fovea/base/version.h"
 #include "fovea/server/web_request.h"
 
@@ -43,16 +42,12 @@ constexpr const char* kContentPolicy =
 /// A WebSocket holds at most so much that its client has not taken: what comes later is newer.
 constexpr int kSendBuffer = 256 * 1024;  // bytes
 
+constexpr int kNice = 15;  // who looks at a map waits for who makes it
+
 constexpr std::size_t kFragment = 64 * 1024;  // bytes
 
 /// Programs that are started, a browser say, do not keep the port.
 void keep_to_this_program(int socket) { static_cast<void>(fcntl(socket, F_SETFD, FD_CLOEXEC)); }
-
-/// On Linux a thread has a priority of its own.
-void give_way() {
-  constexpr int kNice = 15;
-  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
-}
 
 }  // namespace
 
@@ -72,10 +67,10 @@ class WebServer::Impl {
     listen();
     accept();
     if (options_.in_background) {
-      for (int i = 0; i < options_.threads; ++i) asio::post(makers_, give_way);
+      for (int i = 0; i < options_.threads; ++i) asio::post(makers_, [] { give_way(kNice); });
     }
     thread_ = std::thread([this] {
-      if (options_.in_background) give_way();
+      if (options_.in_background) give_way(kNice);
       while (!io_.stopped()) {
         try {
           io_.run();
