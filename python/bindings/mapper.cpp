@@ -86,7 +86,10 @@ void bind_mapper(py::module_& module) {
       .def("process", &DriveMapper::process, py::arg("frame"), py::kw_only(),
            py::arg("held_out") = false,
            "Maps the drive's next frame and returns its record. A held-out one gets a pose, and "
-           "adds nothing. ValueError for a frame of another drive or one that is not later.")
+           "adds nothing. Where navigation does not tell how the vehicle moves, the first call "
+           "reads "
+           "the drive's next frame, too. ValueError for a frame of another drive or one that is "
+           "not later.")
       .def_property_readonly(
           "size",
           [](const DriveMapper& self) {
