@@ -8,6 +8,10 @@
 #include <malloc.h>
 #endif
 
+/// jemalloc's, in programs that are linked with it (jemalloc(3)).
+extern "C" [[gnu::weak]] int mallctl(const char* name, void* old_value, std::size_t* old_size,
+                                     void* new_value, std::size_t new_size);
+
 namespace fovea {
 
 std::size_t resident_memory() {
@@ -24,6 +28,11 @@ std::size_t peak_resident_memory() {
 }
 
 void release_free_memory() {
+  if (mallctl != nullptr) {
+    mallctl("thread.tcache.flush", nullptr, nullptr, nullptr, 0);
+    mallctl("arena.4096.purge", nullptr, nullptr, nullptr, 0);  // of all arenas
+    return;
+  }
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif
