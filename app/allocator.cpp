@@ -1,10 +1,10 @@
-// How the program gets its memory: from jemalloc, in huge pages where the kernel lends them to those
-// who ask (docs/performance.md, "Memory"). A map of half a gigabyte is 130,000 pages of 4 kB, each of
-// which costs a fault when it is first written.
+// How the program gets its memory: from jemalloc, in huge pages where the kernel lends them to
+// those who ask (docs/performance.md, "Memory"). A map of half a gigabyte is 130,000 pages of 4 kB,
+// each of which costs a fault when it is first written.
 
 /// jemalloc reads its settings here when the program starts (jemalloc(3), "TUNING"); MALLOC_CONF in
-/// the environment overrides them. One arena, so that what one thread frees serves all; blocks up to
-/// 64 kB stay with their thread; what is freed is kept until the map's keeper gives it back.
+/// the environment overrides them. One arena, so that what one thread frees serves all; blocks up
+/// to 64 kB stay with their thread; what is freed is kept until the map's keeper gives it back.
 extern "C" {
 const char* malloc_conf =
     "thp:always,metadata_thp:auto,narenas:1,lg_tcache_max:16,dirty_decay_ms:-1,muzzy_decay_ms:-1";

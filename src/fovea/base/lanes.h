@@ -1,7 +1,9 @@
 // Eight floats computed side by side.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace fovea {
 
@@ -13,12 +15,25 @@ inline constexpr int kLanes = 8;
 
 inline Lanes all_lanes(float value) { return value - Lanes{}; }
 
+/// From and to eight floats in a row, anywhere.
+inline Lanes lanes_at(const float* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof(Lanes));
+  return lanes;
+}
+inline void put_lanes(const Lanes& lanes, float* to) { std::memcpy(to, &lanes, sizeof(Lanes)); }
+
 /// The value where the mask is true, 0 elsewhere.
 inline Lanes where(LaneMask mask, Lanes value) {
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(value) & mask);
 }
 
 inline Lanes min_of(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
+
+inline Lanes sqrt_of(Lanes v) {
+  for (int i = 0; i < kLanes; ++i) v[i] = std::sqrt(v[i]);
+  return v;
+}
 
 inline float min_of_lanes(const Lanes& v) {
   float least = v[0];

@@ -1,7 +1,10 @@
 // Planes through points near one place: sums over them, and the direction of least variance.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <array>
+
+#include "fovea/base/lanes.h"
 
 namespace fovea {
 
@@ -35,32 +38,71 @@ struct PlaneMoments {
   }
 };
 
-/// Unit, of either sign; zero where the points are one, or lie on one line: there is no plane then.
-inline Eigen::Vector3f direction_of_least_variance(Eigen::Matrix3f covariance) {
+/// Symmetric matrices, eight side by side.
+struct SymmetricLanes {
+  Lanes xx{}, yy{}, zz{}, yz{}, xz{}, xy{};
+
+  void put(int lane, const Eigen::Matrix3f& m) {
+    xx[lane] = m(0, 0);
+    yy[lane] = m(1, 1);
+    zz[lane] = m(2, 2);
+    yz[lane] = m(1, 2);
+    xz[lane] = m(0, 2);
+    xy[lane] = m(0, 1);
+  }
+  Lanes trace() const { return xx + yy + zz; }
+  SymmetricLanes operator*(const Lanes& factor) const {
+    return {xx * factor, yy * factor, zz * factor, yz * factor, xz * factor, xy * factor};
+  }
+  SymmetricLanes squared() const {
+    return {xx * xx + xy * xy + xz * xz, xy * xy + yy * yy + yz * yz, xz * xz + yz * yz + zz * zz,
+            xy * xz + yy * yz + yz * zz, xx * xz + xy * yz + xz * zz, xx * xy + xy * yy + xz * yz};
+  }
+  /// The inverse but for a factor, and there where the matrix is singular, too.
+  SymmetricLanes adjugate() const {
+    return {yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy,
+            xz * xy - xx * yz, xy * yz - xz * yy, xz * yz - xy * zz};
+  }
+};
+
+/// Of eight covariances, a row for each coordinate: unit, of either sign; zero where the points are
+/// one, or lie on one line: there is no plane then.
+inline std::array<Lanes, 3> directions_of_least_variance(const SymmetricLanes& covariance) {
   // No plane, if the second variance is below this share of the first.
   constexpr float kLineRatio = 1e-4f;
   constexpr int kSquarings = 4;  // power iterations: to the 2^4th power
-  const float spread = covariance.trace();
-  if (!(spread > 0)) return Eigen::Vector3f::Zero();
-  covariance /= spread;
+  const Lanes spread = covariance.trace();
 
-  // The adjugate (the inverse but for a factor, and there where the matrix is singular) has the
-  // same eigenvectors, and that of the least variance has the largest eigenvalue, the product of
-  // the two others. Squaring makes it prevail (power iteration).
-  Eigen::Matrix3f power;
-  power.col(0) = covariance.col(1).cross(covariance.col(2));
-  power.col(1) = covariance.col(2).cross(covariance.col(0));
-  power.col(2) = covariance.col(0).cross(covariance.col(1));
-  const float area = power.trace();
-  if (!(area > kLineRatio)) return Eigen::Vector3f::Zero();
-  power /= area;
+  // The adjugate has the same eigenvectors, and that of the least variance has the largest
+  // eigenvalue, the product of the two others. Squaring makes it prevail (power iteration).
+  SymmetricLanes power = (covariance * (1 / spread)).adjugate();
+  const Lanes area = power.trace();
+  const LaneMask is_plane = (spread > 0) & (area > kLineRatio);
+  power = power * (1 / area);
   for (int i = 0; i < kSquarings; ++i) {
-    power = (power * power).eval();
-    power /= power.trace();
+    power = power.squared();
+    power = power * (1 / power.trace());
   }
-  Eigen::Index widest = 0;
-  power.diagonal().maxCoeff(&widest);
-  return power.col(widest).normalized();
+  // The column with the most on the diagonal.
+  std::array<Lanes, 3> direction{power.xx, power.xy, power.xz};
+  const LaneMask y_over_x = power.yy > power.xx;
+  const Lanes widest = y_over_x ? power.yy : power.xx;
+  const LaneMask z_over_both = power.zz > widest;
+  direction[0] = z_over_both ? power.xz : (y_over_x ? power.xy : direction[0]);
+  direction[1] = z_over_both ? power.yz : (y_over_x ? power.yy : direction[1]);
+  direction[2] = z_over_both ? power.zz : (y_over_x ? power.yz : direction[2]);
+  const Lanes length = sqrt_of(direction[0] * direction[0] + direction[1] * direction[1] +
+                               direction[2] * direction[2]);
+  for (Lanes& coordinate : direction) coordinate = where(is_plane, coordinate / length);
+  return direction;
+}
+
+/// Of one covariance.
+inline Eigen::Vector3f direction_of_least_variance(const Eigen::Matrix3f& covariance) {
+  SymmetricLanes lanes;
+  lanes.put(0, covariance);
+  const auto [x, y, z] = directions_of_least_variance(lanes);
+  return {x[0], y[0], z[0]};
 }
 
 }  // namespace fovea

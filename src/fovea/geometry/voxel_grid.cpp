@@ -24,8 +24,12 @@ std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points,
   VoxelTable table(size);
   std::vector<VoxelMean> means;
   std::vector<std::uint32_t> voxel(points.size());
+  VoxelTable::Voxel last = VoxelTable::Voxel::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    voxel[i] = table.insert(table.voxel_of(points[i]));
+    // Points in the order of a sweep mostly share a voxel with the one before.
+    const VoxelTable::Voxel own = table.voxel_of(points[i]);
+    voxel[i] = i > 0 && own == last ? voxel[i - 1] : table.insert(own);
+    last = own;
     if (voxel[i] == means.size()) means.push_back({.anchor = points[i]});
     VoxelMean& mean = means[voxel[i]];
     mean.sum += points[i] - mean.anchor;

@@ -26,6 +26,10 @@ class VoxelMembers {
     }
   }
 
+  /// All points, voxel by voxel, and where those of a voxel begin among them.
+  std::span<const std::uint32_t> all() const { return members_; }
+  std::size_t first(std::size_t voxel) const { return first_[voxel]; }
+
   /// Indices of the points in a voxel, ascending.
   std::span<const std::uint32_t> of(std::size_t voxel) const {
     return std::span(members_).subspan(first_[voxel], first_[voxel + 1] - first_[voxel]);

@@ -19,7 +19,8 @@ constexpr std::uint8_t kUnknownIncidence = 255;
 /// Steps of a value in what an unsigned number can hold; 0 of NaN.
 template <class Number>
 Number steps(double value, double step, Number most) {
-  const double count = std::floor(value / step + 0.5);  // std::round would be a call
+  // std::round would be a call; a step is known to the compiler, which divides once by it.
+  const double count = std::floor(value * (1 / step) + 0.5);
   if (!(count > 0)) return 0;
   return count < most ? static_cast<Number>(count) : most;
 }

@@ -30,23 +30,29 @@ std::int32_t tile_index(double tiles) {
   return static_cast<std::int32_t>(index);
 }
 
-TileKey key_of(const Eigen::Vector3d& p_submap, double tile_size) {
-  const Eigen::Vector3d tiles = p_submap / tile_size;
+TileKey key_of(const Eigen::Vector3d& p_submap, double tiles_per_metre) {
+  const Eigen::Vector3d tiles = p_submap * tiles_per_metre;
   return {tile_index(tiles.x()), tile_index(tiles.y()), tile_index(tiles.z())};
 }
 
-/// Appends the chosen points, positions apart, to a tile, as the file keeps them.
-void append_columns(const PointCloud& points, const std::vector<std::uint32_t>& indices,
-                    PointCloud& tile) {
-  const auto gather = [&](const auto& from, auto& to) {
+/// Appends the chosen points to a tile, as the file keeps them.
+/// @param p_submap  m, of all points
+void append_points(const PointCloud& points, const std::vector<Eigen::Vector3d>& p_submap,
+                   const std::vector<std::uint32_t>& indices, PointCloud& tile) {
+  const auto append = [&](auto& to, const auto& value_of) {
     std::size_t next = to.size();
-    to.resize(next + indices.size());
-    for (const std::uint32_t i : indices) to[next++] = from[i];
+    const std::size_t size = next + indices.size();
+    // Half as much again, not twice: what is in reserve takes memory, too.
+    if (to.capacity() < size) to.reserve(std::max(size, next + next / 2));
+    to.resize(size);
+    for (const std::uint32_t i : indices) to[next++] = value_of(i);
   };
-  for (const std::uint32_t i : indices) {
-    tile.range.push_back(kept_range(points.range[i]));
-    tile.incidence.push_back(kept_incidence(points.incidence[i]));
-  }
+  const auto gather = [&](const auto& from, auto& to) {
+    append(to, [&](std::uint32_t i) { return from[i]; });
+  };
+  append(tile.position, [&](std::uint32_t i) { return kept_position(p_submap[i] - tile.origin); });
+  append(tile.range, [&](std::uint32_t i) { return kept_range(points.range[i]); });
+  append(tile.incidence, [&](std::uint32_t i) { return kept_incidence(points.incidence[i]); });
   gather(points.color, tile.color);
   gather(points.frame, tile.frame);
   gather(points.camera, tile.camera);
@@ -151,7 +157,7 @@ void TileMap::add(const PointCloud& points_local) {
   std::vector<TileKey> keys(p_submap.size());
   parallel_for(p_submap.size(), kGrain, [&](std::size_t i) {
     p_submap[i] = R * points_local.position[i].cast<double>() + t;
-    keys[i] = key_of(p_submap[i], tile_size_);
+    keys[i] = key_of(p_submap[i], 1 / tile_size_);
   });
   std::map<TileKey, std::vector<std::uint32_t>> groups;
   auto group = groups.end();  // neighbours in a cloud mostly share a tile
@@ -176,11 +182,7 @@ void TileMap::add(const PointCloud& points_local) {
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
     const std::vector<std::uint32_t>& indices = *additions[k].second;
-    PointCloud& tile = additions[k].first->points.write();
-    append_columns(points_local, indices, tile);
-    for (const std::uint32_t i : indices) {
-      tile.position.push_back(kept_position(p_submap[i] - tile.origin));
-    }
+    append_points(points_local, p_submap, indices, additions[k].first->points.write());
   });
   size_ += points_local.size();
   size_in_memory_ += points_local.size();

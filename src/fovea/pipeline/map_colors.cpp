@@ -228,7 +228,7 @@ SeenMap::Comparison SeenMap::compare(const ColorView& view) const {
 }
 
 std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,
-                                    const PatchColors& patches, const Random::Items& noise) const {
+                                    const PatchColors& patches, const NoiseKinds& noise) const {
   const auto this_camera = static_cast<std::int8_t>(camera_.index);
   std::array<const Point*, kBlock> visible;
   std::size_t n = 0;
@@ -239,19 +239,21 @@ std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileCol
   PatchPlaces places;
   FusedColors fused;
   SeenColors seen;
+  std::array<std::uint32_t, kBlock> index;
   for (std::size_t j = 0; j < n; ++j) {
     const Point& point = *visible[j];
     places.put(j, point.pixel(), point.depth);
     get(colors, point.index, fused, j);
-    const std::uint64_t bits = noise.of(point.index).next();
-    seen.noise[0][j] = static_cast<std::uint32_t>(bits);
-    seen.noise[1][j] = static_cast<std::uint32_t>(bits >> 32);
+    index[j] = point.index;
     seen.weight[j] = point.weight;
+  }
+  for (std::size_t word = 0; word < noise.size(); ++word) {
+    for (std::size_t j = 0; j < n; ++j) seen.noise[word][j] = quick_bits(index[j], noise[word]);
   }
   patches.at(places, n, seen.color);
   fuse(fused, seen, n);
   for (std::size_t j = 0; j < n; ++j) {
-    const std::uint32_t i = visible[j]->index;
+    const std::uint32_t i = index[j];
     put(colors, i, fused, j);
     if (colors.camera[i] == kNoCamera) colors.camera[i] = this_camera;
   }
@@ -280,7 +282,10 @@ std::vector<TileColors> SeenMap::colors_of_pieces(TileMap& map) const {
 
 std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
   const auto camera = static_cast<std::uint64_t>(view.camera.index);
-  const Random::Items noise(static_cast<std::uint64_t>(view.frame) << 8 | camera, kRounding);
+  Random random =
+      Random::of_item(static_cast<std::uint64_t>(view.frame) << 8 | camera, kRounding, 0);
+  const NoiseKinds noise{static_cast<std::uint32_t>(random.next()),
+                         static_cast<std::uint32_t>(random.next())};
   const PatchColors patches(view);
   const std::vector<TileColors> colors = colors_of_pieces(map);
   return parallel_sum(pieces_.size(), 1, std::size_t{0}, [&](std::size_t k, std::size_t) {

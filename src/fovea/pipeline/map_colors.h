@@ -5,7 +5,6 @@
 #include <array>
 #include <span>
 
-#include "fovea/base/random.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/depth_buffer.h"
 #include "fovea/mapping/exposure.h"
@@ -85,12 +84,14 @@ class SeenMap {
     std::size_t points = 0;
     double sum = 0;  // of the differences
   };
+  /// What makes the two words of chance that a point takes to its fusion those of this view.
+  using NoiseKinds = std::array<std::uint32_t, 2>;
   Differences differences_at(const Piece& piece, const PatchColors& patches) const;
   /// The colours of each piece's tile, empty where nothing of the tile was seen.
   std::vector<TileColors> colors_of_pieces(TileMap& map) const;
   /// @return how many of the points were in view
   std::size_t recolour_block(std::span<const Point> points, const TileColors& colors,
-                             const PatchColors& patches, const Random::Items& noise) const;
+                             const PatchColors& patches, const NoiseKinds& noise) const;
   std::span<const Point> seen(const Piece& piece) const {
     return {points_.data() + piece.first, piece.seen};
   }

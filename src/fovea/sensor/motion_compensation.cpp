@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
@@ -26,19 +27,30 @@ class ConstantTwist {
     v_turned_ = axis_.cross(v_) / rate_;
   }
 
-  Eigen::Vector3d rotate(const Eigen::Vector3d& p, double s, double c) const {  // Rodrigues
-    return c * p + s * axis_.cross(p) + (1 - c) * axis_.dot(p) * axis_;
+  /// Rodrigues; `v` is 1 less the cosine.
+  Eigen::Vector3d rotate(const Eigen::Vector3d& p, double s, double v) const {
+    return p + s * axis_.cross(p) + v * (axis_.dot(p) * axis_ - p);
   }
 
   /// Point `p` (and its direction `normal`, where there is one) moved by the motion over `dt`.
   Eigen::Vector3d move(const Eigen::Vector3d& p, double dt, Eigen::Vector3f* normal) const {
     if (rate_ == 0) return p + dt * v_;
-    const double s = std::sin(rate_ * dt), c = std::cos(rate_ * dt);
-    if (normal != nullptr) *normal = rotate(normal->cast<double>(), s, c).cast<float>();
-    return rotate(p, s, c) + dt * v_along_ + s * v_across_ + (1 - c) * v_turned_;
+    const auto [s, v] = sine_and_versine(rate_ * dt);
+    if (normal != nullptr) *normal = rotate(normal->cast<double>(), s, v).cast<float>();
+    return rotate(p, s, v) + dt * v_along_ + s * v_across_ + v * v_turned_;
   }
 
  private:
+  /// sin(a) and 1 - cos(a). Of the small angles within a sweep by their series, to 1e-14: a
+  /// library's sine for each of 100,000 points takes as long as all else.
+  static std::pair<double, double> sine_and_versine(double a) {
+    constexpr double kSmall = 0.25;
+    if (!(std::abs(a) <= kSmall)) return {std::sin(a), 1 - std::cos(a)};
+    const double b = a * a;
+    return {a * (1 - b * (1. / 6 - b * (1. / 120 - b * (1. / 5040 - b * (1. / 362880))))),
+            b * (1. / 2 - b * (1. / 24 - b * (1. / 720 - b * (1. / 40320 - b * (1. / 3628800)))))};
+  }
+
   static constexpr double kNegligibleRate = 1e-9;  // rad/s: below a micrometre at 1 km in a second
 
   double rate_;

@@ -14,18 +14,45 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// Direction of least variance, towards the origin; zero where there is no plane.
-/// @param center  of the moments
-Eigen::Vector3f plane_normal(const PlaneMoments& moments, const Eigen::Vector3f& center) {
-  if (moments.count < 3) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f normal = direction_of_least_variance(moments.covariance());
-  return normal.dot(center) > 0 ? Eigen::Vector3f(-normal) : normal;
-}
+/// Normals of planes, towards the origin; eight are worked out at a time.
+class PlaneNormals {
+ public:
+  explicit PlaneNormals(std::vector<Eigen::Vector3f>& normals) : normals_(normals) {}
+
+  /// @param point, center  whose normal it is; zero where there is no plane
+  void put(std::size_t point, const PlaneMoments& moments, const Eigen::Vector3f& center) {
+    if (moments.count < 3) return;
+    covariance_.put(count_, moments.covariance());
+    for (std::size_t i = 0; i < 3; ++i) center_[i][count_] = center[Eigen::Index(i)];
+    point_[static_cast<std::size_t>(count_)] = point;
+    if (++count_ == kLanes) finish();
+  }
+
+  void finish() {
+    std::array<Lanes, 3> normal = directions_of_least_variance(covariance_);
+    const Lanes away = normal[0] * center_[0] + normal[1] * center_[1] + normal[2] * center_[2];
+    for (Lanes& coordinate : normal) coordinate = away > 0 ? -coordinate : coordinate;
+    for (int lane = 0; lane < count_; ++lane) {
+      normals_[point_[static_cast<std::size_t>(lane)]] = {normal[0][lane], normal[1][lane],
+                                                          normal[2][lane]};
+    }
+    count_ = 0;
+  }
+
+ private:
+  std::vector<Eigen::Vector3f>& normals_;
+  SymmetricLanes covariance_;
+  std::array<Lanes, 3> center_{};
+  std::array<std::size_t, kLanes> point_{};
+  int count_ = 0;
+};
 
 /// Points by the cells of a grid.
 struct PointCells {
   VoxelTable table;
   VoxelMembers members;
+  /// Of the members, a row for each coordinate, and some more for whole lanes to be read.
+  std::array<std::vector<float>, 3> row;
 
   static PointCells of(std::span<const Eigen::Vector3f> points, float edge) {
     VoxelTable table(edge);
@@ -33,7 +60,15 @@ struct PointCells {
     for (std::size_t i = 0; i < points.size(); ++i)
       cell[i] = table.insert(table.voxel_of(points[i]));
     VoxelMembers members(cell, table.size());
-    return {std::move(table), std::move(members)};
+    std::array<std::vector<float>, 3> rows;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rows[axis].reserve(points.size() + kLanes);
+      for (const std::uint32_t i : members.all()) {
+        rows[axis].push_back(points[i][Eigen::Index(axis)]);
+      }
+      rows[axis].resize(points.size() + kLanes);
+    }
+    return {std::move(table), std::move(members), std::move(rows)};
   }
 };
 
@@ -43,25 +78,28 @@ class Surroundings {
   void clear() { size_ = 0; }
   std::size_t size() const { return size_; }
 
-  void add(std::span<const Eigen::Vector3f> points, std::span<const std::uint32_t> members) {
-    blocks_.resize(std::max(blocks_.size(), (size_ + members.size()) / kLanes + 1));
-    for (const std::uint32_t member : members) {
-      Block& block = blocks_[size_ / kLanes];
-      const std::size_t lane = size_ % kLanes;
-      if (lane == 0) block.fill(all_lanes(kNowhere));
-      for (std::size_t i = 0; i < 3; ++i) block[i][lane] = points[member][Eigen::Index(i)];
-      ++size_;
+  void add(const PointCells& cells, std::uint32_t cell) {
+    const std::size_t first = cells.members.first(cell), count = cells.members.of(cell).size();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<float>& to = row_[axis];
+      // What is copied beyond the last is overwritten by the next, or by nowhere.
+      if (to.size() < size_ + count + 2 * kLanes) to.resize(2 * (size_ + count) + 2 * kLanes);
+      for (std::size_t i = 0; i < count; i += kLanes) {
+        put_lanes(lanes_at(cells.row[axis].data() + first + i), to.data() + size_ + i);
+      }
+      put_lanes(all_lanes(kNowhere), to.data() + size_ + count);
     }
+    size_ += count;
   }
 
   /// Of those within a radius.
   PlaneMoments moments(const Eigen::Vector3f& center, float radius) const {
     Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
     const Lanes radius2 = all_lanes(radius * radius), one = all_lanes(1);
-    const std::size_t blocks = (size_ + kLanes - 1) / kLanes;
-    for (std::size_t k = 0; k < blocks; ++k) {
-      const Lanes x = blocks_[k][0] - center.x(), y = blocks_[k][1] - center.y(),
-                  z = blocks_[k][2] - center.z();
+    for (std::size_t i = 0; i < size_; i += kLanes) {
+      const Lanes x = lanes_at(row_[0].data() + i) - center.x(),
+                  y = lanes_at(row_[1].data() + i) - center.y(),
+                  z = lanes_at(row_[2].data() + i) - center.z();
       const LaneMask inside = x * x + y * y + z * z <= radius2;
       const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
       count += where(inside, one);
@@ -83,8 +121,7 @@ class Surroundings {
 
  private:
   static constexpr float kNowhere = 1e9f;  // m: outside of every radius
-  using Block = std::array<Lanes, 3>;
-  std::vector<Block> blocks_;
+  std::array<std::vector<float>, 3> row_;  // a row for each coordinate; nowhere beyond the last
   std::size_t size_ = 0;
 };
 
@@ -106,11 +143,12 @@ void look_around(std::span<const Eigen::Vector3f> points, float radius, float en
     // Cells as wide as the radius: no point within it is missed.
     for (const VoxelTable::Voxel& near : VoxelTable::block_around(table.voxel(cell))) {
       const std::uint32_t id = table.find(near);
-      if (id != VoxelTable::kNone) surroundings.add(points, members.of(id));
+      if (id != VoxelTable::kNone) surroundings.add(cells, id);
     }
   };
   parallel_chunks(table.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
     Surroundings surroundings;
+    PlaneNormals planes(normals);
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
       surroundings.clear();
       for (const std::uint32_t i : members.of(cell)) {
@@ -119,10 +157,11 @@ void look_around(std::span<const Eigen::Vector3f> points, float radius, float en
         if (static_cast<float>(surroundings.size()) < enough) break;
         const PlaneMoments moments = surroundings.moments(points[i], radius);
         if (moments.count < enough) continue;
-        normals[i] = plane_normal(moments, points[i]);
+        planes.put(i, moments, points[i]);
         done[i] = 1;
       }
     }
+    planes.finish();
   });
 }
 
@@ -140,15 +179,17 @@ std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> 
 std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> points,
                                              int neighbors) {
   const KdTree tree(points);
-  std::vector<Eigen::Vector3f> normals(points.size());
+  std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
   parallel_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> found;
+    PlaneNormals planes(normals);
     for (std::size_t i = begin; i < end; ++i) {
       tree.nearest_k(points[i], static_cast<std::size_t>(neighbors), found);
       PlaneMoments moments;
       for (const Neighbor& neighbor : found) moments.add(points[neighbor.index] - points[i]);
-      normals[i] = plane_normal(moments, points[i]);
+      planes.put(i, moments, points[i]);
     }
+    planes.finish();
   });
   return normals;
 }
