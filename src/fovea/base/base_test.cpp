@@ -114,7 +114,26 @@ TEST(PointCloud, KeepsAsItSelects) {
       EXPECT_EQ(kept.range, selected.range);
       EXPECT_EQ(kept.color, selected.color);
       EXPECT_TRUE(kept.frame.empty());
+      std::vector<std::uint8_t> marks(cloud.size(), 1);
+      for (const std::uint32_t i : indices) marks[i] = 0;
+      PointCloud rest = cloud;
+      EXPECT_EQ(rest.drop(marks), cloud.size() - indices.size());
+      EXPECT_EQ(rest.position, selected.position);
+      EXPECT_EQ(rest.color, selected.color);
     }
+  }
+}
+
+TEST(Parallel, BothRunAndEitherMayFail) {
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    int a = 0, b = 0;
+    run_both([&] { a = 1; }, [&] { b = 2; });
+    EXPECT_EQ(a, 1);
+    EXPECT_EQ(b, 2);
+    const auto fails = [] { throw InputError("a", "b", "c"); };
+    EXPECT_THROW(run_both(fails, [] {}), InputError);
+    EXPECT_THROW(run_both([] {}, fails), InputError);
   }
 }
 
@@ -180,6 +199,28 @@ TEST(Random, NormalHasTheRightMomentsAndTails) {
   EXPECT_NEAR(square / n, 1, five * std::sqrt(2));
   EXPECT_NEAR(fourth / n, 3, five * std::sqrt(96));
   EXPECT_NEAR(double(beyond_two) / n, 0.0455, five * std::sqrt(0.0434));
+}
+
+TEST(Random, QuickBitsAreUniformAndIndependentOfNeighboursAndKinds) {
+  constexpr std::uint32_t n = 100'000;
+  double sum = 0, square = 0, neighbours = 0, kinds = 0, halves = 0;
+  const auto centred = [](std::uint32_t bits) { return double(bits) / 0x1p32 - 0.5; };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t bits = quick_bits(i, 0x12345678u);
+    const double x = centred(bits);
+    sum += x;
+    square += x * x;
+    neighbours += x * centred(quick_bits(i + 1, 0x12345678u));
+    kinds += x * centred(quick_bits(i, 0x12345679u));
+    halves += x * (double(bits & 0xffff) / 0x1p16 - 0.5);
+  }
+  // Five standard errors of the means.
+  const double five = 5 / std::sqrt(double(n)), variance = 1. / 12;
+  EXPECT_NEAR(sum / n, 0, five * std::sqrt(variance));
+  EXPECT_NEAR(square / n, variance, five * std::sqrt(1. / 180));
+  EXPECT_NEAR(neighbours / n, 0, five * variance);
+  EXPECT_NEAR(kinds / n, 0, five * variance);
+  EXPECT_NEAR(halves / n, 0, five * variance);
 }
 
 TEST(Random, ItemsAreIndependent) {

@@ -63,6 +63,10 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   }
 }
 
+void run_both(const std::function<void()>& a, const std::function<void()>& b) {
+  parallel_chunks(2, 1, [&](std::size_t begin, std::size_t) { begin == 0 ? a() : b(); });
+}
+
 void run_alone(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 
 int available_threads() {

@@ -33,6 +33,9 @@ T parallel_sum(std::size_t count, std::size_t grain, T zero, Map&& map) {
   return zero;
 }
 
+/// Runs two things side by side where there are two threads.
+void run_both(const std::function<void()>& a, const std::function<void()>& b);
+
 /// Runs `body` as on a machine with one processor: a library that splits its work by the number of
 /// threads then does it the same way everywhere.
 void run_alone(const std::function<void()>& body);

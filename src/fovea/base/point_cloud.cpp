@@ -52,6 +52,16 @@ void PointCloud::keep(const std::vector<std::uint32_t>& indices) {
   close_up(position);
 }
 
+std::size_t PointCloud::drop(const std::vector<std::uint8_t>& marks) {
+  std::vector<std::uint32_t> kept;
+  kept.reserve(marks.size());
+  for (std::uint32_t i = 0; i < marks.size(); ++i) {
+    if (marks[i] == 0) kept.push_back(i);
+  }
+  keep(kept);
+  return marks.size() - kept.size();
+}
+
 void PointCloud::append(const PointCloud& other) {
   if (other.empty()) return;
   if (empty()) {

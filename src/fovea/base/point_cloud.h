@@ -47,6 +47,9 @@ struct PointCloud {
   /// Keeps only the points at `indices` (ascending), in place.
   void keep(const std::vector<std::uint32_t>& indices);
 
+  /// Drops the points that are marked, in place, and returns how many.
+  std::size_t drop(const std::vector<std::uint8_t>& marks);
+
   /// Appends `other`, which must have the same origin and columns (or this cloud is empty).
   void append(const PointCloud& other);
 };

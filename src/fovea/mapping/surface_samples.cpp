@@ -8,7 +8,6 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/cell_brick.h"
-#include "fovea/mapping/image_mesh.h"
 
 namespace fovea {
 namespace {
@@ -17,15 +16,6 @@ using Vertices = DelaunayTriangulation::Vertices;
 constexpr std::size_t kGrain = 512;  // triangles
 /// Rounds of averaging normals over neighbours: ranges are noisy, and triangles small.
 constexpr int kSmoothing = 2;
-
-/// The triangles that are surface, and its normals at their corners.
-struct Surface {
-  ImageMesh mesh;
-  std::vector<Vertices> triangles;
-  std::vector<PointRule> rule;          // by triangle: why it is surface
-  std::vector<Eigen::Vector3f> area;    // by triangle: its normal, as long as twice its area
-  std::vector<Eigen::Vector3f> normal;  // by vertex; zero without a triangle
-};
 
 std::size_t neighbor(const ImageMesh& mesh, std::size_t triangle, int corner) {
   return static_cast<std::size_t>(mesh.triangulation.neighbor(triangle, corner));
@@ -277,14 +267,19 @@ void SurfaceOptions::validate() const {
   }
 }
 
-PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
-                           const SurfaceOptions& options, const SampleGrid& grid) {
+Surface find_surface(const PointCloud& points_cam, const Camera& camera,
+                     const SurfaceOptions& options) {
   options.validate();
   points_cam.check();
   const GridProjection project(camera, points_cam.origin);
   Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}};
   find_triangles(project, options, surface);
   find_normals(surface);
+  return surface;
+}
+
+PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
+                          const SampleGrid& grid) {
   const std::vector<std::vector<Sample>> samples = sample_triangles(surface, grid);
 
   CellSet cells;
@@ -304,6 +299,11 @@ PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
     }
   }
   return points;
+}
+
+PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
+                           const SurfaceOptions& options, const SampleGrid& grid) {
+  return sample_surface(points_cam, find_surface(points_cam, camera, options), grid);
 }
 
 }  // namespace fovea

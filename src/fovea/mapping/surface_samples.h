@@ -6,6 +6,7 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/mapping/image_mesh.h"
 
 namespace fovea {
 
@@ -25,21 +26,38 @@ struct SampleGrid {
   std::function<bool(const Eigen::Vector3d& p_grid)> taken;
 };
 
-/// Samples the triangles between the projected points (2D Delaunay, as upsample() has them).
+/// The triangles between a cloud's projected points that are surface, and its normals.
+struct Surface {
+  ImageMesh mesh;
+  std::vector<DelaunayTriangulation::Vertices> triangles;
+  std::vector<PointRule> rule;          ///< by triangle: why it is surface
+  std::vector<Eigen::Vector3f> area;    ///< by triangle: its normal, as long as twice its area
+  std::vector<Eigen::Vector3f> normal;  ///< by vertex of the mesh; zero without a triangle
+};
+
+/// Finds the surface among the triangles between the projected points (2D Delaunay, as upsample()
+/// has them).
 ///
 /// A triangle is surface if its edges are shorter than max_edge. Rings of a LiDAR fall onto the far
 /// ground more than that apart: one of edges up to planar_edge is surface, too, if the surface goes
 /// on straight across each of its edges. Across a gap in depth it does not: one of the edges there
-/// belongs to what is before or behind.
+/// belongs to what is before or behind. Normals are smoothed over neighbouring triangles.
 ///
+/// @param points_cam  camera frame, origin 0, all more than Camera::kMinDepth in front of it
+Surface find_surface(const PointCloud& points_cam, const Camera& camera,
+                     const SurfaceOptions& options);
+
 /// Each triangle is looked at along the axis of the grid nearest to its normal, and sampled where
 /// centres of cells fall onto it: samples of all frames and triangles have the same places.
 ///
-/// @param points_cam  camera frame, origin 0, all more than Camera::kMinDepth in front of it
-/// @return the input points, in their order, then the samples (intensity: mean of the corners'),
-///         without those in taken cells, and one for each cell; columns as upsample() gives them,
-///         and normals smoothed over neighbouring triangles; `reason` says which edges admitted a
-///         sample's triangle
+/// @param points_cam  those whose surface it is
+/// @return the points, in their order, then the samples (intensity: mean of the corners'), without
+///         those in taken cells, and one for each cell; columns as upsample() gives them, and
+///         normals; `reason` says which edges admitted a sample's triangle
+PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
+                          const SampleGrid& grid);
+
+/// Both, one after the other.
 PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
                            const SurfaceOptions& options, const SampleGrid& grid);
 

@@ -54,6 +54,7 @@ std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_toke
 }
 
 std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
+  options_.settle();
   std::optional<Arrived> arrived = arrived_.next(stop);
   if (!arrived || options_.stop.stop_requested()) return std::nullopt;
   LocatedFrame located;

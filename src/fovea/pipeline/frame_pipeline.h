@@ -18,6 +18,8 @@ struct FramePipelineOptions {
   double rate = 0;
   bool overlap = true;        ///< false: one after the other, all in the thread that takes them
   std::stop_token stop = {};  ///< ends after the frames that tracking has begun
+  /// Called by the thread that tracks before it waits for a frame: what nobody waits for.
+  std::function<void()> settle = [] {};
 };
 
 /// A frame that has been tracked, or was skipped.

@@ -236,7 +236,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
   FramePipeline frames(source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
-                       {job_.rate, threaded_, job_.stop});
+                       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle(); }});
   while (std::optional<LocatedFrame> located = frames.next()) {
     FrameRecord record = map_frame(mapper_, source_, *located);
     check_calibration(*located, record);

@@ -247,17 +247,15 @@ TEST_F(MapDrive, AFrameIsAsLateAsAllThatItWaitedFor) {
   drive_.editable_info().end = 4;
   MapJob job = this->job();
   job.rate = 1e6;
-  std::vector<double> latencies, stages;
+  std::vector<double> latencies, in_turn;
   map_drive(drive_, job, [&](const MapProgress& progress) {
     const auto& ms = progress.latest->milliseconds;
     latencies.push_back(ms.at("frame"));
-    double sum = 0;
-    for (const auto& [stage, time] : ms) {
-      if (stage != "frame" && stage != "decode" && stage != "calibration") sum += time;
-    }
-    stages.push_back(sum);
+    // What the scan alone shows is made beside the registration, and a scan becomes a target while
+    // the next one waits. These two never overlap.
+    in_turn.push_back(ms.at("wait") + (ms.contains("store") ? ms.at("store") : 0));
   });
-  for (std::size_t i = 0; i < latencies.size(); ++i) EXPECT_GE(latencies[i], stages[i]);
+  for (std::size_t i = 0; i < latencies.size(); ++i) EXPECT_GE(latencies[i], in_turn[i]);
   // All arrive in the first microseconds, and end one after the other.
   EXPECT_THAT(latencies, testing::WhenSorted(testing::ElementsAreArray(latencies)));
 }

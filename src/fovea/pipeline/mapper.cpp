@@ -3,11 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/blank_image.h"
-#include "fovea/mapping/scan_projection.h"
-#include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {
@@ -15,15 +11,6 @@ namespace {
 
 /// Samples lie at most this far beyond the foveal region (m).
 constexpr double kMargin = 1.0;
-constexpr std::size_t kGrain = 1024;  // points
-
-/// Whether an image can give colours; a blank one is counted, a missing one the drive has told of.
-bool shows_something(const Image& image, FrameRecord& record) {
-  if (image.empty()) return false;
-  if (!is_blank(image)) return true;
-  ++record.figures["images_blank"];
-  return false;
-}
 
 /// How well the map foretold an image that it had not seen; of several cameras the mean over all
 /// points. Of too few it would be chance.
@@ -50,18 +37,6 @@ PointCloud keep_visible(const PointCloud& points, const std::vector<RayVerdict>&
   figures["filter_occluded"] += as_figure(counts[std::size_t(RayVerdict::kOccluded)]);
   figures["filter_shared"] += as_figure(counts[std::size_t(RayVerdict::kShared)]);
   return points.select(visible);
-}
-
-/// The points that are not marked; `left_out` counts the others.
-PointCloud without(PointCloud points, const std::vector<std::uint8_t>& marks, double& left_out) {
-  std::vector<std::uint32_t> kept;
-  kept.reserve(marks.size());
-  for (std::uint32_t i = 0; i < marks.size(); ++i) {
-    if (marks[i] == 0) kept.push_back(i);
-  }
-  left_out += as_figure(marks.size() - kept.size());
-  points.keep(kept);
-  return points;
 }
 
 /// How far from the LiDAR any stage looks at the map.
@@ -98,12 +73,18 @@ FrameRecord Mapper::process(const Frame& frame, bool held_out,
 
 TrackedFrame Mapper::track(const Frame& frame, bool held_out,
                            const std::optional<RigidMotion>& given_pose) {
-  return tracker_.track(frame, held_out, given_pose);
+  return tracker_.track(
+      frame, held_out, given_pose,
+      [&](const PointCloud& scan_lidar, const std::optional<SweepMotion>& motion) {
+        return view_scan(scan_lidar, frame, cameras_at_images(motion), options_);
+      });
 }
 
 FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
   FrameRecord record = std::move(tracked.record);
   StageClock& clock = tracked.clock;
+  clock.add(tracked.views.clock);
+  for (const auto& [name, value] : tracked.views.figures) record.figures[name] += value;
   const PointCloud& scan_lidar = tracked.scan_lidar;
   follow_submaps(tracked.submaps);
   T_odom_local_ = tracked.T_local_odom.inverse();
@@ -117,17 +98,14 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
                                       frame.index);
       }));
     }
-    cameras_.clear();
-    for (const Camera& camera : drive_.calibration.cameras) {
-      cameras_.push_back(camera.at_image(tracked.motion));
-    }
     if (options_.foveal_enabled) {
-      for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
-        if (!shows_something(frame.images[camera], record)) continue;
-        map_camera(scan_lidar, frame, camera, record.T_local_lidar, record, clock);
+      for (std::size_t k = 0; k < tracked.views.of_camera.size(); ++k) {
+        std::optional<ScanView>& view = tracked.views.of_camera[k];
+        if (view) map_view(*std::move(view), frame.images[k], record, clock);
       }
     } else {
-      map_whole_scan(scan_lidar, frame, record.T_local_lidar, record, clock);
+      map_whole_scan(scan_lidar, frame, cameras_at_images(tracked.motion), record.T_local_lidar,
+                     record, clock);
     }
   }
   record.milliseconds = clock.milliseconds();
@@ -144,35 +122,22 @@ void Mapper::follow_submaps(const std::vector<RigidMotion>& poses) {
   }
 }
 
-PointCloud Mapper::foveal_part(const PointCloud& scan_lidar, const FovealRegion& region,
-                               FrameRecord& record, StageClock& clock) const {
-  const Camera& camera = region.camera();
-  PointCloud foveal_cam = clock.time("fovea", [&] {
-    const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
-    return points_cam.select(foveal_points(points_cam, region));
-  });
-  record.figures["points_foveal"] += as_figure(foveal_cam.size());
-  if (options_.ray_filter.mode != RayFilterMode::kScan) return foveal_cam;
-  return clock.time("filter", [&] {
-    const ScanProjection projection(scan_lidar, camera);
-    std::vector<std::uint8_t> hidden(foveal_cam.size());
-    parallel_for(hidden.size(), kGrain, [&](std::size_t i) {
-      const Eigen::Vector3d p = foveal_cam.position[i].cast<double>();
-      hidden[i] = projection.hidden(camera.project(p).value(), p.norm());
-    });
-    return without(std::move(foveal_cam), hidden, record.figures["filter_hidden"]);
-  });
+std::vector<Camera> Mapper::cameras_at_images(const std::optional<SweepMotion>& motion) const {
+  std::vector<Camera> cameras;
+  for (const Camera& camera : drive_.calibration.cameras) {
+    cameras.push_back(camera.at_image(motion));
+  }
+  return cameras;
 }
 
-PointCloud Mapper::densified(const PointCloud& foveal_cam, const Camera& camera,
-                             const RigidMotion& T_local_cam, StageClock& clock) {
+PointCloud Mapper::densified(ScanView& view, const RigidMotion& T_local_cam, StageClock& clock) {
+  if (view.upsampled) return *std::move(view.upsampled);
   return clock.time("upsample", [&] {
-    if (!occupancy_) return upsample(foveal_cam, camera, options_.upsample);
     occupancy_->follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
     const SampleGrid grid{map_.submaps().back().T_local_submap.inverse() * T_local_cam,
                           occupancy_->cell(),
                           [&](const Eigen::Vector3d& p_grid) { return occupancy_->taken(p_grid); }};
-    return sample_surfaces(foveal_cam, camera, options_.surface, grid);
+    return sample_surface(view.foveal_cam, *view.surface, grid);
   });
 }
 
@@ -199,20 +164,20 @@ PointCloud Mapper::visible_part(PointCloud dense_cam, const FovealRegion& region
     case RayFilterMode::kPaper:
       return filter_rays(dense_cam, region, T_local_lidar, record);
     case RayFilterMode::kScan:
-      return without(std::move(dense_cam), before, record.figures["filter_occluding"]);
+      record.figures["filter_occluding"] += as_figure(dense_cam.drop(before));
+      break;
     case RayFilterMode::kOff:
       break;
   }
   return dense_cam;
 }
 
-void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera_slot,
-                        const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock) {
-  const Camera& camera = cameras_[camera_slot];
+void Mapper::map_view(ScanView view, const Image& image, FrameRecord& record, StageClock& clock) {
+  const Camera& camera = view.camera;
+  const RigidMotion& T_local_lidar = record.T_local_lidar;
   const FovealRegion region(foveal_options_of(options_, camera.index), camera);
   const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
-  const PointCloud foveal_cam = foveal_part(scan_lidar, region, record, clock);
-  PointCloud dense_cam = densified(foveal_cam, camera, T_local_cam, clock);
+  PointCloud dense_cam = densified(view, T_local_cam, clock);
   const std::size_t oblique = clock.time(
       "fovea", [&] { return limit_incidence(dense_cam, options_.foveal.max_incidence); });
   record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
@@ -221,31 +186,28 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
   PointCloud visible_cam = clock.time(
       "filter", [&] { return visible_part(std::move(dense_cam), region, T_local_lidar, record); });
   clock.time("texture", [&] {
-    const Image& image = frame.images[camera_slot];
-    if (options_.texture.views == TextureViews::kFirst) {
-      colour_points(visible_cam, {image, camera, frame.index}, options_.texture);
+    if (!view.pyramid) {  // the paper's one view
+      colour_points(visible_cam, {image, camera, record.index}, options_.texture);
       return;
     }
-    const ImagePyramid pyramid(image);
-    ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
-    const SeenMap::Comparison before = seen_map_.compare(view);
+    ColorView colors{*view.pyramid, camera, record.index, options_.texture.footprint};
+    const SeenMap::Comparison before = seen_map_.compare(colors);
     note_texture_error(before, record);
     if (is_exposure_off(before.gain)) {
-      view.gain = matching_gain(before.gain);
+      colors.gain = matching_gain(before.gain);
       ++record.figures["exposure_off"];
     } else {
-      record.figures["points_recoloured"] += as_figure(seen_map_.recolour(map_, view));
+      record.figures["points_recoloured"] += as_figure(seen_map_.recolour(map_, colors));
     }
-    colour_new_points(visible_cam, view);
+    colour_new_points(visible_cam, colors);
   });
   visible_cam.normal.clear();  // a map has none
   PointCloud added_local =
       transform_cloud(std::move(visible_cam), T_local_cam, T_local_lidar.translation());
   if (options_.moving.remove) {
-    added_local = clock.time("filter", [&] {
-      const std::vector<std::uint8_t> moving = moving_things_.marks(added_local, T_odom_local_);
-      return without(std::move(added_local), moving, record.figures["filter_moving"]);
-    });
+    record.figures["filter_moving"] += as_figure(clock.time("filter", [&] {
+      return added_local.drop(moving_things_.marks(added_local, T_odom_local_));
+    }));
   }
   clock.time("store", [&] {
     // The cells' record of the map must not miss what goes before the next frame.
@@ -258,21 +220,21 @@ void Mapper::map_camera(const PointCloud& scan_lidar, const Frame& frame, std::s
 }
 
 void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
-                            const RigidMotion& T_local_lidar, FrameRecord& record,
-                            StageClock& clock) {
+                            const std::vector<Camera>& cameras, const RigidMotion& T_local_lidar,
+                            FrameRecord& record, StageClock& clock) {
   clock.time("texture", [&] {
     PointCloud rest_lidar = scan_lidar;
     for (std::size_t slot = 0; slot <= frame.images.size() && !rest_lidar.empty(); ++slot) {
       // Each camera colours what the ones before it have not seen; last, what none has seen.
       const bool last = slot == frame.images.size();
-      const Camera& camera = cameras_[last ? 0 : slot];
+      const Camera& camera = cameras[last ? 0 : slot];
       PointCloud points_cam = transform_cloud(rest_lidar, camera.T_cam_lidar);
       points_cam.normal.assign(points_cam.size(), Eigen::Vector3f::Zero());
       points_cam.interpolated.assign(points_cam.size(), 0);
       points_cam.reason.assign(points_cam.size(), reason_of(PointRule::kMeasured));
       limit_incidence(points_cam, std::numeric_limits<double>::infinity());
       const Image none;
-      const bool sees = !last && shows_something(frame.images[slot], record);
+      const bool sees = !last && shows_something(frame.images[slot], record.figures);
       colour_points(points_cam, {sees ? frame.images[slot] : none, camera, frame.index},
                     options_.texture);
       std::vector<std::uint32_t> added, unseen;

@@ -46,6 +46,9 @@ class Mapper {
   TrackedFrame track(const Frame& frame, bool held_out,
                      const std::optional<RigidMotion>& given_pose);
   FrameRecord add(const Frame& frame, TrackedFrame tracked);
+  /// What tracking the next frame needs of the last one and its map does not; track() does it where
+  /// it was not done before. In the thread of track().
+  void settle() { tracker_.settle(); }
 
   const TileMap& map() const { return map_; }
   TileMap& map() { return map_; }  ///< for a store
@@ -61,15 +64,10 @@ class Mapper {
   /// Index of the first frame of an earlier run whose scan targets or evidence now depend on.
   int first_to_replay(const std::vector<FrameRecord>& records) const;
   void replay(const PointCloud& scan, const FrameRecord& record, bool looked_at);
-  void map_camera(const PointCloud& scan_lidar, const Frame& frame, std::size_t camera,
-                  const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
-  /// The points of a scan in the foveal region; where the ray filter says so, without those that
-  /// other points hide from the camera.
-  PointCloud foveal_part(const PointCloud& scan_lidar, const FovealRegion& region,
-                         FrameRecord& record, StageClock& clock) const;
+  /// What one camera sees, into the map.
+  void map_view(ScanView view, const Image& image, FrameRecord& record, StageClock& clock);
   /// The foveal points and what is sampled between them.
-  PointCloud densified(const PointCloud& foveal_cam, const Camera& camera,
-                       const RigidMotion& T_local_cam, StageClock& clock);
+  PointCloud densified(ScanView& view, const RigidMotion& T_local_cam, StageClock& clock);
   /// What the paper's ray filter leaves.
   PointCloud filter_rays(const PointCloud& dense_cam, const FovealRegion& region,
                          const RigidMotion& T_local_lidar, FrameRecord& record);
@@ -77,7 +75,10 @@ class Mapper {
   PointCloud visible_part(PointCloud dense_cam, const FovealRegion& region,
                           const RigidMotion& T_local_lidar, FrameRecord& record);
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
-                      const RigidMotion& T_local_lidar, FrameRecord& record, StageClock& clock);
+                      const std::vector<Camera>& cameras, const RigidMotion& T_local_lidar,
+                      FrameRecord& record, StageClock& clock);
+  /// The drive's, where they were when the images of a frame were taken.
+  std::vector<Camera> cameras_at_images(const std::optional<SweepMotion>& motion) const;
 
   const DriveInfo& drive_;
   MapperOptions options_;
@@ -88,9 +89,7 @@ class Mapper {
   MovingThings moving_things_;
   TileMap map_;
   SeenMap seen_map_;
-  std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid
-  /// Where the cameras were when the images of the frame at hand were taken.
-  std::vector<Camera> cameras_;
+  std::optional<Occupancy> occupancy_;                  // where surfaces are sampled on a grid
   RigidMotion T_odom_local_ = RigidMotion::Identity();  // as of the frame at hand
 };
 

@@ -17,6 +17,12 @@ class StageClock {
     const Timer timer{milliseconds_[stage]};
     return std::forward<Work>(work)();
   }
+  /// Adds what another clock has measured, in another thread perhaps.
+  void add(const StageClock& other) {
+    for (const auto& [stage, milliseconds] : other.milliseconds_) {
+      milliseconds_[stage] += milliseconds;
+    }
+  }
   const std::map<std::string, double>& milliseconds() const { return milliseconds_; }
 
  private:

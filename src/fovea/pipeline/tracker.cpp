@@ -1,5 +1,8 @@
 #include "fovea/pipeline/tracker.h"
 
+#include <utility>
+
+#include "fovea/base/parallel.h"
 #include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
@@ -31,9 +34,11 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive) {}
 
 TrackedFrame Tracker::track(const Frame& frame, bool held_out,
-                            const std::optional<RigidMotion>& given_pose) {
+                            const std::optional<RigidMotion>& given_pose, const View& view) {
+  settle();
   TrackedFrame tracked;
   StageClock& clock = tracked.clock;
+  clock.add(std::exchange(settling_, {}));
   FrameRecord& record = tracked.record;
   record.index = frame.index;
   record.stamp = frame.stamp;
@@ -45,8 +50,13 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   const MotionPrediction motion = motion_model_.predict(frame.stamp);
   record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
 
-  // Pose refinement.
-  Placed placed = place(frame, motion, given_pose, clock);
+  // Pose refinement, and what needs no pose.
+  std::optional<ScanViews> views;
+  const auto look = [&](const Placed& at) {
+    if (!held_out) views = view(at.scan_lidar, at.motion);
+  };
+  Placed placed = place(frame, motion, given_pose, clock, look);
+  if (!views) look(placed);
   if (compensates()) record.motion = placed.motion;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
@@ -57,14 +67,21 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
     if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
   });
   if (!held_out && registers()) {
-    refiner_.keep(std::move(placed.refined.cloud), record.T_odom_lidar, clock);
+    next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
   }
 
+  if (views) tracked.views = *std::move(views);
   tracked.scan_lidar = std::move(placed.scan_lidar);
   tracked.motion = placed.motion;
   tracked.submaps = fusion_.submaps();
   tracked.T_local_odom = fusion_.T_local_odom();
   return tracked;
+}
+
+void Tracker::settle() {
+  if (!next_target_) return;
+  refiner_.keep(std::move(next_target_->cloud_lidar), next_target_->T_odom_lidar, settling_);
+  next_target_.reset();
 }
 
 PointCloud Tracker::compensated(const PointCloud& scan,
@@ -76,8 +93,8 @@ PointCloud Tracker::compensated(const PointCloud& scan,
 }
 
 Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motion,
-                               const std::optional<RigidMotion>& given_pose,
-                               StageClock& clock) const {
+                               const std::optional<RigidMotion>& given_pose, StageClock& clock,
+                               const std::function<void(const Placed&)>& beside) const {
   std::optional<Placed> best;
   for (const MotionGuess& guess : motion.guesses) {
     Placed placed;
@@ -85,17 +102,34 @@ Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motio
     placed.scan_lidar = clock.time("register", [&] {
       return compensated(frame.scan, compensates() ? guess.motion : std::nullopt);
     });
-    if (pose_source_ == PoseSource::kNavigation) {
-      placed.refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
-    } else if (given_pose) {
-      if (registers()) placed.refined.cloud = refiner_.prepare(placed.scan_lidar, clock);
-      placed.refined.T_odom_lidar = *given_pose;
+    RefinedPose refined;
+    const auto locate_it = [&] {
+      refined = locate(placed.scan_lidar, motion, guess, given_pose, clock);
+    };
+    if (motion.guesses.size() == 1) {
+      run_both(locate_it, [&] { beside(placed); });
     } else {
-      placed.refined = refiner_.refine(placed.scan_lidar, guess.T_odom_lidar, clock);
+      locate_it();  // which of the scans it will be is not known yet
     }
+    placed.refined = std::move(refined);
     if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
   }
   return std::move(*best);
+}
+
+RefinedPose Tracker::locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
+                            const MotionGuess& guess, const std::optional<RigidMotion>& given_pose,
+                            StageClock& clock) const {
+  RefinedPose refined;
+  if (pose_source_ == PoseSource::kNavigation) {
+    refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
+  } else if (given_pose) {
+    if (registers()) refined.cloud = refiner_.prepare(scan_lidar, clock);
+    refined.T_odom_lidar = *given_pose;
+  } else {
+    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, clock);
+  }
+  return refined;
 }
 
 bool Tracker::compensates() const { return compensate_motion_ && !drive_.sweep_compensated; }

@@ -3,6 +3,7 @@
 // mapped.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/pose_refiner.h"
+#include "fovea/pipeline/scan_views.h"
 #include "fovea/pipeline/stage_clock.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -29,6 +31,7 @@ struct TrackedFrame {
   FrameRecord record;
   PointCloud scan_lidar;              ///< motion compensated
   std::optional<SweepMotion> motion;  ///< of the LiDAR
+  ScanViews views;                    ///< of the scan, unless it is held out
   /// T_local_submap of all submaps, and the motion that puts the latest into local, as of this
   /// frame.
   std::vector<RigidMotion> submaps;
@@ -44,9 +47,18 @@ class Tracker {
   /// See Mapper::begin_with.
   void begin_with(const Twist& velocity) { motion_model_.begin_with(velocity); }
 
+  /// What is to be made of a scan that needs no pose.
+  using View = std::function<ScanViews(const PointCloud& scan_lidar,
+                                       const std::optional<SweepMotion>& motion)>;
+
   /// The next frame's pose; see Mapper::process.
+  /// @param view  runs while the scan is registered, not at all if the frame is held out
   TrackedFrame track(const Frame& frame, bool held_out,
-                     const std::optional<RigidMotion>& given_pose);
+                     const std::optional<RigidMotion>& given_pose, const View& view);
+
+  /// Makes the last frame's scan a target of later ones, if it is to be one. track() does so first,
+  /// unless it was done while nobody waited.
+  void settle();
 
   /// Follows the next frame of an earlier run, which was not skipped.
   void follow(const FrameRecord& record);
@@ -69,8 +81,13 @@ class Tracker {
     std::optional<SweepMotion> motion;
     RefinedPose refined;
   };
+  /// @param beside  called with the one guess's scan while that is registered
   Placed place(const Frame& frame, const MotionPrediction& motion,
-               const std::optional<RigidMotion>& given_pose, StageClock& clock) const;
+               const std::optional<RigidMotion>& given_pose, StageClock& clock,
+               const std::function<void(const Placed&)>& beside) const;
+  RefinedPose locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
+                     const MotionGuess& guess, const std::optional<RigidMotion>& given_pose,
+                     StageClock& clock) const;
   bool compensates() const;
   bool registers() const;
 
@@ -80,6 +97,12 @@ class Tracker {
   MotionModel motion_model_;
   PoseRefiner refiner_;
   Fusion fusion_;
+  struct Target {
+    RegistrationCloud cloud_lidar;
+    RigidMotion T_odom_lidar;
+  };
+  std::optional<Target> next_target_;
+  StageClock settling_;  // time that counts for the next frame
 };
 
 }  // namespace fovea
