@@ -1,5 +1,7 @@
 #include "fovea/pipeline/fusion.h"
 
+#include <utility>
+
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 
@@ -70,10 +72,16 @@ void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar) {
   weak_frames_ = 0;
   if (!options_.enabled) return;
   if (measured) graph_.add(*measured);
-  graph_.optimize();
+  is_solved_ = false;
+  if (node == 0) settle();
+}
+
+void Fusion::settle() {
+  if (!std::exchange(is_solved_, true)) graph_.optimize();
 }
 
 void Fusion::track(FrameRecord& record) {
+  settle();
   const RigidMotion& T_odom_lidar = record.T_odom_lidar;
   if (last_T_odom_lidar_) {
     path_ += (T_odom_lidar.translation() - last_T_odom_lidar_->translation()).norm();
@@ -128,7 +136,8 @@ void Fusion::close_loop(const FrameRecord& record) {
   graph_.add(RelativePose{static_cast<std::size_t>(record.revisit->submap), submap,
                           record.revisit->T_submap_lidar * T_submap_lidar(record).inverse(),
                           deviations(kClosureRotation, kClosureTranslation), /*robust=*/true});
-  graph_.optimize();
+  is_solved_ = false;
+  settle();
 }
 
 RigidMotion Fusion::T_local_odom() const {

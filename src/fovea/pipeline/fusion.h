@@ -33,6 +33,10 @@ class Fusion {
   /// Takes the next frame's pose in odom, opens a submap if one is due, and sets record.submap and
   /// record.T_local_lidar; appends to record.note what is wrong with the navigation.
   void track(FrameRecord& record);
+  /// Solves the graph with the submap that the last frame opened: until then that is where odometry
+  /// puts it. The longer the drive, the longer it takes; track() does it first, unless it was done
+  /// while nobody waited.
+  void settle();
 
   /// Gives the scan of a frame just tracked, which was not held out: the first of a submap is kept
   /// and compared with earlier places. Sets record.revisit and record.T_local_lidar if that closes
@@ -65,6 +69,7 @@ class Fusion {
   FusionOptions options_;
   NavigationCheck navigation_;
   PoseGraph graph_;
+  bool is_solved_ = true;
   LoopCloser closer_;
   std::vector<Submap> submaps_;
   std::optional<RigidMotion> last_T_odom_lidar_;

@@ -1,5 +1,5 @@
-// What a scan and its images show before anybody knows where they were taken: made while the scan is
-// registered.
+// What a scan and its images show before anybody knows where they were taken: made while the scan
+// is registered.
 #pragma once
 
 #include <map>
@@ -18,8 +18,8 @@ namespace fovea {
 /// One camera's view of a scan.
 struct ScanView {
   Camera camera;  ///< where it was when the image was taken
-  /// The foveal points in the camera's frame; where the ray filter says so, without those that other
-  /// points hide from the camera.
+  /// The foveal points in the camera's frame; where the ray filter says so, without those that
+  /// other points hide from the camera.
   PointCloud foveal_cam;
   std::optional<Surface> surface;       ///< between them, where it is sampled on a grid ...
   std::optional<PointCloud> upsampled;  ///< ... or else they and what is between them
@@ -27,8 +27,8 @@ struct ScanView {
 };
 
 struct ScanViews {
-  /// By camera of the drive; none of those whose image is missing or blank, and none at all unless a
-  /// foveal region is mapped.
+  /// By camera of the drive; none of those whose image is missing or blank, and none at all unless
+  /// a foveal region is mapped.
   std::vector<std::optional<ScanView>> of_camera;
   std::map<std::string, double> figures;  ///< for the frame's record
   StageClock clock;

@@ -79,6 +79,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
 }
 
 void Tracker::settle() {
+  settling_.time("register", [&] { fusion_.settle(); });
   if (!next_target_) return;
   refiner_.keep(std::move(next_target_->cloud_lidar), next_target_->T_odom_lidar, settling_);
   next_target_.reset();

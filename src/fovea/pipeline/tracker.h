@@ -56,8 +56,8 @@ class Tracker {
   TrackedFrame track(const Frame& frame, bool held_out,
                      const std::optional<RigidMotion>& given_pose, const View& view);
 
-  /// Makes the last frame's scan a target of later ones, if it is to be one. track() does so first,
-  /// unless it was done while nobody waited.
+  /// Makes the last frame's scan a target of later ones, if it is to be one, and moves submaps to
+  /// where all agree. track() does so first, unless it was done while nobody waited.
   void settle();
 
   /// Follows the next frame of an earlier run, which was not skipped.
