@@ -87,9 +87,8 @@ void bind_mapper(py::module_& module) {
            py::arg("held_out") = false,
            "Maps the drive's next frame and returns its record. A held-out one gets a pose, and "
            "adds nothing. Where navigation does not tell how the vehicle moves, the first call "
-           "reads "
-           "the drive's next frame, too. ValueError for a frame of another drive or one that is "
-           "not later.")
+           "reads the drive's next frame, too. ValueError for a frame of another drive or one that "
+           "is not later.")
       .def_property_readonly(
           "size",
           [](const DriveMapper& self) {

@@ -84,7 +84,7 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
   FrameRecord record = std::move(tracked.record);
   StageClock& clock = tracked.clock;
   clock.add(tracked.views.clock);
-  for (const auto& [name, value] : tracked.views.figures) record.figures[name] += value;
+  record.figures.merge(tracked.views.figures);
   const PointCloud& scan_lidar = tracked.scan_lidar;
   follow_submaps(tracked.submaps);
   T_odom_local_ = tracked.T_local_odom.inverse();
