@@ -193,11 +193,11 @@ void write_and_read_again(const std::filesystem::path& path) {
   read_or_refuse([&] {
     TileEncoder encoder;
     TileDecoder decoder;
-    TileColumns columns, columns_again;
     MapReader(path).for_each_tile(
         [&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
-          const PointCloud again = decoder.decode(encoder.encode({submap, key}, tile), "again");
-          require(columns.pack(tile) == columns_again.pack(again) && tile.origin == again.origin,
+          const PackedTile packed = pack_tile({submap, key}, tile);
+          const PointCloud again = decoder.decode(encoder.encode(packed), "again");
+          require(packed.columns == pack_columns(again) && tile.origin == again.origin,
                   "a tile is written as it is read");
         });
   });

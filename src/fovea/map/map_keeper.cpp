@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "fovea/base/give_way.h"
+#include "fovea/base/parallel.h"
 #include "fovea/base/process_memory.h"
 
 namespace fovea {
@@ -16,8 +17,9 @@ constexpr double kAhead = 20, kBeyond = 30;  // m
 /// Of a tile in memory: all columns, and what vectors that grow hold in reserve.
 constexpr std::size_t kBytesPerPoint = 38 * 3 / 2;
 
-/// What is written can wait, a frame cannot; but what is read is waited for, if seldom.
-constexpr int kNice = 5;
+/// What is written can wait, a frame cannot: the processor is left to the frame while it lasts.
+/// What is read is waited for, but seldom, and by threads that leave the processor meanwhile.
+constexpr int kNice = 15;
 
 template <class T>
 bool is_ready(const std::future<T>& result) {
@@ -30,6 +32,21 @@ void put(MapWriter& writer, const MapRows& rows, const TileChanges& tiles) {
   for (const auto& [frame, T_local_lidar] : rows.poses) writer.put_pose(frame, T_local_lidar);
   for (const auto& [id, T_local_submap] : rows.submaps) writer.put_submap(id, T_local_submap);
   for (const TileId& id : tiles.removed) writer.remove_tile(id);
+}
+
+/// Packs the tiles that have changed lately, whose handles are dropped: what the next frame changes
+/// would have to be copied if the writer shared it.
+std::vector<PackedTile> pack_lately_changed(TileChanges& changes) {
+  auto& tiles = changes.changed;
+  const auto first = std::stable_partition(
+      tiles.begin(), tiles.end(), [](const TileChanges::Changed& tile) { return !tile.lately; });
+  std::vector<PackedTile> packed(std::size_t(tiles.end() - first));
+  parallel_for(packed.size(), 1, [&](std::size_t i) {
+    const TileChanges::Changed& tile = first[std::ptrdiff_t(i)];
+    packed[i] = pack_tile(tile.id, *tile.points);
+  });
+  tiles.erase(first, tiles.end());
+  return packed;
 }
 
 }  // namespace
@@ -56,6 +73,7 @@ MapKeeper::~MapKeeper() {
 }
 
 void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, double radius) {
+  map.begin_step();
   for (const TileId& id : map.stored_near(center_local, radius + kAhead)) {
     if (requested_.contains(id)) continue;
     requested_.emplace(id, worker_.post([this, id] { return writer_->read_tile(id); }));
@@ -74,20 +92,35 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
 
 bool MapKeeper::is_writing() const { return written_.valid() && !is_ready(written_); }
 
-void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local,
-                           double radius) {
+TileChanges MapKeeper::take_changes(TileMap& map, const MapRows& rows) {
   if (written_.valid()) written_.get();
   TileChanges changes = map.take_changes();
   if (on_checkpoint_) on_checkpoint_(changes, rows);
-  written_ = worker_.post([this, rows = std::move(rows), tiles = std::move(changes)]() mutable {
-    put(*writer_, rows, tiles);
-    for (TileChanges::Changed& tile : tiles.changed) {
+  return changes;
+}
+
+void MapKeeper::write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared) {
+  written_ = worker_.post([this, rows = std::move(rows), packed = std::move(packed),
+                           shared = std::move(shared)]() mutable {
+    put(*writer_, rows, shared);
+    for (PackedTile& tile : packed) {
+      writer_->put_tile(tile);
+      tile = {};
+    }
+    for (TileChanges::Changed& tile : shared.changed) {
       writer_->put_tile(tile.id, *tile.points);
       tile.points = {};  // the map need not copy it any more when it changes it
     }
     if (!commit_at_end_) writer_->commit();
     if (resident_memory() > memory_ - memory_ / 4) release_free_memory();
   });
+}
+
+void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local,
+                           double radius) {
+  TileChanges changes = take_changes(map, rows);
+  std::vector<PackedTile> packed = pack_lately_changed(changes);
+  write(std::move(rows), std::move(packed), std::move(changes));
   map.drop_beyond(center_local, radius + (needs_memory(map) ? kAhead : kBeyond));
   undroppable_ = map.size_in_memory();
 }
@@ -100,6 +133,12 @@ bool MapKeeper::needs_memory(const TileMap& map) const {
 void MapKeeper::finish() {
   if (written_.valid()) written_.get();
   if (commit_at_end_) worker_.post([this] { writer_->commit(); }).get();
+}
+
+void MapKeeper::finish(TileMap& map, MapRows rows) {
+  TileChanges changes = take_changes(map, rows);
+  write(std::move(rows), {}, std::move(changes));
+  finish();
 }
 
 }  // namespace fovea

@@ -48,13 +48,15 @@ class MapKeeper {
   /// Waits for the checkpoint that was begun: whatever ends the run, what it was given is kept.
   ~MapKeeper();
 
-  /// Has all tiles that a ball touches in memory, and those of the last submap, and sees to it that
-  /// those somewhat beyond come. InputError if the file has been damaged meanwhile.
+  /// Begins a step of the map with all tiles that a ball touches in memory, and those of the last
+  /// submap, and sees to it that those somewhat beyond come. InputError if the file has been
+  /// damaged meanwhile.
   void bring_near(TileMap& map, const Eigen::Vector3d& center_local, double radius);
 
-  /// Begins to write what has changed since the last one, and returns: the tiles are shared until
-  /// they are written. Drops from memory what lies well beyond the ball, but no tile of the last
-  /// submap. Waits for the checkpoint before. OutputError of an earlier one, e.g. of a full disk.
+  /// Begins to write what has changed since the last one, and returns: tiles that changed lately
+  /// are packed first, others are shared until they are written. Drops from memory what lies well
+  /// beyond the ball, but no tile of the last submap. Waits for the checkpoint before. OutputError
+  /// of an earlier one, e.g. of a full disk.
   void checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local, double radius);
 
   /// Whether a checkpoint would have to wait.
@@ -65,8 +67,13 @@ class MapKeeper {
 
   /// Waits until all checkpoints are written and committed.
   void finish();
+  /// The last checkpoint, of a map that changes no more: finish() with what has changed.
+  void finish(TileMap& map, MapRows rows);
 
  private:
+  TileChanges take_changes(TileMap& map, const MapRows& rows);
+  void write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared);
+
   std::size_t memory_;       // bytes that the process should keep to
   std::size_t most_points_;  // in memory
   bool commit_at_end_;

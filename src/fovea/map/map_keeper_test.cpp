@@ -102,6 +102,26 @@ TEST_P(Keeper, EachCheckpointIsCommitted) {
   EXPECT_EQ(MapReader(path_).frames()[1].T_local_lidar.translation(), Eigen::Vector3d(1, 2, 3));
 }
 
+// Points are added and recoloured while what they were before is still to be written, in tiles that
+// are packed and in tiles that are shared.
+TEST_P(Keeper, ACheckpointIsWrittenAsItWasWhateverChangesAfter) {
+  const auto keeper = this->keeper();
+  TileMap map(2.0);
+  map.add_submap(RigidMotion::Identity());
+  for (const double x : {0, 4, 8, 12}) {
+    keeper->bring_near(map, {x, 0, 0}, kNear);
+    map.add(points_at(x, random_));
+  }
+  const TileMap before = map;
+  keeper->checkpoint(map, rows_of(map), {12, 0, 0}, kNear);
+  for (const double x : {0, 4, 8, 12}) map.add(points_at(x, random_));
+  for (const auto& [key, tile] : before.submaps()[0].tiles) map.colors({0, key}).views[0] ^= 3;
+  keeper->finish();
+  expect_stored(path_, before);
+  keeper->finish(map, {});
+  expect_stored(path_, map);
+}
+
 TEST_P(Keeper, WantsACheckpointWhenMemoryRunsOut) {
   const auto keeper = this->keeper(/*memory=*/100'000);
   TileMap map(2.0);

@@ -394,12 +394,11 @@ std::string MapReader::digest() const {
   Statement submaps(database, "SELECT id, pose FROM submaps ORDER BY id");
   while (submaps.step()) digest.row(submaps.integer(0), submaps.text(1));
   digest.section("tiles");
-  TileColumns columns;
   for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
     digest.row(static_cast<std::int64_t>(submap), std::int64_t{key.x}, std::int64_t{key.y},
                std::int64_t{key.z}, static_cast<std::int64_t>(tile.size()), tile.origin.x(),
                tile.origin.y(), tile.origin.z());
-    const auto& packed = columns.pack(tile);
+    const PackedColumns packed = pack_columns(tile);
     for (std::size_t i = 0; i < kStoredColumns; ++i) {
       const bool missing = i == kIntensityColumn && tile.intensity.empty();
       missing ? digest.null() : digest.value(std::span<const std::byte>(packed[i]));

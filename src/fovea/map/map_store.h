@@ -12,6 +12,7 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/map/frame_record.h"
+#include "fovea/map/packed_tile.h"
 #include "fovea/map/point_filter.h"
 #include "fovea/map/tile_map.h"
 
@@ -49,8 +50,9 @@ class MapWriter {
   virtual void put_submap(std::size_t id, const RigidMotion& T_local_submap) = 0;
   /// Of a frame that has been put; std::invalid_argument if not finite.
   virtual void put_pose(int frame, const RigidMotion& T_local_lidar) = 0;
+  virtual void put_tile(const PackedTile& tile) = 0;
   /// std::logic_error if the tile lacks a column (see Tile::points).
-  virtual void put_tile(const TileId& id, const PointCloud& tile) = 0;
+  void put_tile(const TileId& id, const PointCloud& tile) { put_tile(pack_tile(id, tile)); }
   virtual void remove_tile(const TileId& id) = 0;
   /// A tile as it was put, committed or not; InputError if it is not there or damaged.
   virtual PointCloud read_tile(const TileId& id) = 0;

@@ -108,7 +108,7 @@ class SqliteMapWriter : public MapWriter {
   void put_frame(const FrameRecord& record) override;
   void put_submap(std::size_t id, const RigidMotion& T_local_submap) override;
   void put_pose(int frame, const RigidMotion& T_local_lidar) override;
-  void put_tile(const TileId& id, const PointCloud& tile) override;
+  void put_tile(const PackedTile& tile) override;
   void remove_tile(const TileId& id) override;
   PointCloud read_tile(const TileId& id) override;
 
@@ -293,11 +293,11 @@ PointCloud SqliteMapWriter::read_tile(const TileId& id) {
   return tile;
 }
 
-void SqliteMapWriter::put_tile(const TileId& id, const PointCloud& tile) {
-  const TileRow row = encoder_.encode(id, tile);
+void SqliteMapWriter::put_tile(const PackedTile& tile) {
+  const TileRow row = encoder_.encode(tile);
   write([&] {
     Statement& put = puts_->tile;
-    bind_tile(put, id);
+    bind_tile(put, tile.id);
     int parameter = 4;
     for (const std::int64_t number : {row.points, row.colored}) put.bind(++parameter, number);
     for (const double coordinate : row.origin) put.bind(++parameter, coordinate);

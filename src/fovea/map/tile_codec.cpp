@@ -23,11 +23,6 @@ void add_bytes(XXH3_state_t* state, const void* data, std::size_t size) {
   XXH3_64bits_update(state, data, size);
 }
 
-std::int64_t count_colored(const PointCloud& tile) {
-  return std::count_if(tile.camera.begin(), tile.camera.end(),
-                       [](std::int8_t camera) { return camera != kNoCamera; });
-}
-
 }  // namespace
 
 std::uint64_t checksum(const TileRow& row) {
@@ -53,28 +48,20 @@ TileEncoder::TileEncoder() : context_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
 }
 TileEncoder::~TileEncoder() = default;
 
-TileRow TileEncoder::encode(const TileId& id, const PointCloud& tile) {
-  check_tile_columns(tile);
-  if (static_cast<std::int64_t>(tile.size()) > kMaxTilePoints || !tile.origin.allFinite()) {
-    throw std::invalid_argument(fmt::format("tile {} {} {} has {} points and the origin {} {} {}",
-                                            id.key.x, id.key.y, id.key.z, tile.size(),
-                                            tile.origin.x(), tile.origin.y(), tile.origin.z()));
-  }
+TileRow TileEncoder::encode(const PackedTile& tile) {
   TileRow row;
-  row.submap = static_cast<std::int64_t>(id.submap);
-  row.key = id.key;
-  row.points = static_cast<std::int64_t>(tile.size());
-  row.colored = count_colored(tile);
-  // Adding zero turns -0, which SQLite cannot keep, into 0.
-  row.origin = tile.origin.array() + 0.0;
-  const auto& columns = columns_.pack(tile);
+  row.submap = static_cast<std::int64_t>(tile.id.submap);
+  row.key = tile.id.key;
+  row.points = tile.points;
+  row.colored = tile.colored;
+  row.origin = tile.origin;
   for (std::size_t i = 0; i < kStoredColumns; ++i) {
-    if (i == kIntensityColumn && tile.intensity.empty()) continue;
+    const std::vector<std::byte>& column = tile.columns[i];
+    if (i == kIntensityColumn && column.empty()) continue;
     std::vector<std::byte>& memory = memory_[i];
-    memory.resize(ZSTD_compressBound(columns[i].size()));
-    const std::size_t size =
-        ZSTD_compressCCtx(context_.get(), memory.data(), memory.size(), columns[i].data(),
-                          columns[i].size(), kCompressionLevel);
+    memory.resize(ZSTD_compressBound(column.size()));
+    const std::size_t size = ZSTD_compressCCtx(context_.get(), memory.data(), memory.size(),
+                                               column.data(), column.size(), kCompressionLevel);
     // With this bound only memory can run out.
     if (ZSTD_isError(size) != 0) throw std::bad_alloc();
     row.blobs[i] = std::span(memory.data(), size);

@@ -10,16 +10,12 @@
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
-#include "fovea/map/tile_columns.h"
-#include "fovea/map/tile_map.h"
+#include "fovea/map/packed_tile.h"
 
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
 
 namespace fovea {
-
-/// Points that one tile may hold; bounds what a damaged row can make a reader allocate.
-inline constexpr std::int64_t kMaxTilePoints = std::int64_t{1} << 26;
 
 /// A row of `tiles`.
 struct TileRow {
@@ -41,14 +37,11 @@ class TileEncoder {
   TileEncoder();
   ~TileEncoder();
 
-  /// The row of a tile; its blobs are valid until the next call. std::logic_error if a column is
-  /// missing, std::invalid_argument if the tile has too many points or an origin that is not
-  /// finite.
-  TileRow encode(const TileId& id, const PointCloud& tile);
+  /// The row of a tile; its blobs are valid until the next call.
+  TileRow encode(const PackedTile& tile);
 
  private:
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> context_;
-  TileColumns columns_;
   std::array<std::vector<std::byte>, kStoredColumns> memory_;
 };
 

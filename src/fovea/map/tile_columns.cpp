@@ -110,11 +110,12 @@ Eigen::Vector3f kept_position(const Eigen::Vector3d& p_tile) {
 float kept_range(float range) { return range_of(range_steps(range)); }
 float kept_incidence(float incidence) { return incidence_of(incidence_steps(incidence)); }
 
-const std::array<TileColumns::Bytes, kStoredColumns>& TileColumns::pack(const PointCloud& tile) {
+PackedColumns pack_columns(const PointCloud& tile) {
+  PackedColumns columns;
   const std::size_t n = tile.size();
   std::size_t next = 0;
   for_each_stored_column(tile, [&](const auto& column) {
-    Bytes& bytes = columns_[next++];
+    std::vector<std::byte>& bytes = columns[next++];
     const Packing packing = packing_of(tile, column);
     bytes.resize(column.size() * bytes_per_point(packing, sizeof(column[0])));
     switch (packing) {
@@ -137,7 +138,7 @@ const std::array<TileColumns::Bytes, kStoredColumns>& TileColumns::pack(const Po
         if (!bytes.empty()) std::memcpy(bytes.data(), column.data(), bytes.size());
     }
   });
-  return columns_;
+  return columns;
 }
 
 std::size_t packed_size(std::size_t column, std::size_t points) {

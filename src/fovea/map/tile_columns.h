@@ -45,17 +45,9 @@ Eigen::Vector3f kept_position(const Eigen::Vector3d& p_tile);
 float kept_range(float range);
 float kept_incidence(float incidence);
 
-/// Packs and unpacks columns; the memory is used again.
-class TileColumns {
- public:
-  using Bytes = std::vector<std::byte>;
-
-  /// The bytes of each column, empty where the tile lacks it; valid until the next call.
-  const std::array<Bytes, kStoredColumns>& pack(const PointCloud& tile);
-
- private:
-  std::array<Bytes, kStoredColumns> columns_;
-};
+/// The bytes of each column, empty where the tile lacks it.
+using PackedColumns = std::array<std::vector<std::byte>, kStoredColumns>;
+PackedColumns pack_columns(const PointCloud& tile);
 
 /// Bytes that column i of so many points takes.
 std::size_t packed_size(std::size_t column, std::size_t points);

@@ -177,7 +177,7 @@ void TileMap::add(const PointCloud& points_local) {
       place->second.points.write().origin = corner(key);
       widen(submap, key);
     }
-    place->second.changed = true;
+    place->second.changed_at = step_;
     additions.emplace_back(&place->second, &indices);
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
@@ -206,13 +206,13 @@ void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& in
     removed_.push_back(id);
   } else {
     tile.points.write().keep(indices);
-    tile.changed = true;
+    tile.changed_at = step_;
   }
 }
 
 TileColors TileMap::colors(const TileId& id) {
   Tile& tile = existing_tile(id);
-  tile.changed = true;
+  tile.changed_at = step_;
   PointCloud& points = tile.points.write();
   return {points.color, points.views, points.spread, points.weight, points.camera};
 }
@@ -253,8 +253,9 @@ TileChanges TileMap::take_changes() {
   TileChanges changes;
   for (std::size_t id = 0; id < submaps_.size(); ++id) {
     for (auto& [key, tile] : submaps_[id].tiles) {
-      if (!std::exchange(tile.changed, false)) continue;
-      changes.changed.push_back({{id, key}, tile.points});
+      const std::uint64_t changed_at = std::exchange(tile.changed_at, 0);
+      if (changed_at == 0) continue;
+      changes.changed.push_back({{id, key}, tile.points, changed_at + 1 >= step_});
     }
   }
   // One that went and came again is among the changed.
@@ -272,7 +273,7 @@ void TileMap::drop_beyond(const Eigen::Vector3d& center_local, double radius) {
     Submap& submap = submaps_[id];
     std::erase_if(submap.tiles, [&](const auto& entry) {
       const auto& [key, tile] = entry;
-      if (tile.changed || near.contains({id, key})) return false;
+      if (tile.changed_at != 0 || near.contains({id, key})) return false;
       submap.stored.emplace(key, tile.points->size());
       size_in_memory_ -= tile.points->size();
       return true;
@@ -317,7 +318,7 @@ void TileMap::restore(const TileId& id, PointCloud tile) {
   require_same_columns(tile);
   size_in_memory_ += tile.size();
   submap->stored.erase(stored);
-  submap->tiles.emplace(id.key, Tile{CopyOnWrite(std::move(tile)), false});
+  submap->tiles.emplace(id.key, Tile{CopyOnWrite(std::move(tile))});
 }
 
 }  // namespace fovea

@@ -35,7 +35,7 @@ struct Tile {
   /// there; intensity in all tiles of a map or in none; normals are not kept. Positions, range and
   /// incidence in the steps that the file keeps (docs/map-format.md).
   CopyOnWrite<PointCloud> points;
-  bool changed = false;  ///< since take_changes()
+  std::uint64_t changed_at = 0;  ///< step of the map; 0: not since take_changes()
 };
 
 /// Some seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
@@ -53,6 +53,7 @@ struct TileChanges {
   struct Changed {
     TileId id;
     CopyOnWrite<PointCloud> points;
+    bool lately = false;  ///< in this step or the one before: it may well go on changing
   };
   std::vector<Changed> changed;
   std::vector<TileId> removed;
@@ -83,6 +84,9 @@ class TileMap {
   /// Points of all tiles, and of those in memory.
   std::size_t size() const { return size_; }
   std::size_t size_in_memory() const { return size_in_memory_; }
+
+  /// What changes from here on is told from what has changed before, e.g. with each frame.
+  void begin_step() { ++step_; }
 
   /// Opens a new submap, which becomes the last.
   void add_submap(const RigidMotion& T_local_submap);
@@ -137,6 +141,7 @@ class TileMap {
   double tile_size_;
   std::vector<Submap> submaps_;
   std::vector<TileId> removed_;
+  std::uint64_t step_ = 1;
   std::size_t size_ = 0, size_in_memory_ = 0;
   std::optional<bool> has_intensity_;  // known from the first points on
 };

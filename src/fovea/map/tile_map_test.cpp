@@ -96,6 +96,26 @@ TEST(TileMap, ChangesToldOfStayAsTheyWere) {
   EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).points->views[0], 99);
 }
 
+TEST(TileMap, TellsWhichTilesChangedLately) {
+  TileMap map(2.0);
+  map.add_submap(RigidMotion::Identity());
+  for (int x = 0; x < 3; ++x) {
+    map.begin_step();
+    map.add(one_point_each({{2.0F * float(x), 1, 1}}));
+  }
+  const auto lately = [&] {
+    std::vector<int> at;
+    for (const TileChanges::Changed& tile : map.take_changes().changed) {
+      if (tile.lately) at.push_back(tile.id.key.x);
+    }
+    return at;
+  };
+  EXPECT_EQ(lately(), (std::vector<int>{1, 2}));
+  map.colors({0, {0, 0, 0}}).spread[0] = 1;
+  map.begin_step();
+  EXPECT_EQ(lately(), (std::vector<int>{0}));
+}
+
 TEST(TileMap, PointsOfATileComeInTheOrderOfAdding) {
   TileMap map(1.0);
   map.add_submap(RigidMotion::Identity());

@@ -296,8 +296,7 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
     MapKeeper keeper(std::move(writer),
                      {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, keeper);
-    keeper.checkpoint(map, {}, Eigen::Vector3d::Zero(), 0);
-    keeper.finish();
+    keeper.finish(map, {});
   }
   figures.points = map.size();
   return figures;

@@ -171,7 +171,7 @@ class MapRun {
   MapKeeperOptions keeper_options();
   void take_up_earlier_run();
   void check_calibration(const LocatedFrame& located, FrameRecord& record);
-  void checkpoint(bool last);
+  MapRows fresh_rows(bool last);
   bool complete() const { return log_.size() == std::size_t(drive_.end - drive_.begin); }
 
   const FrameSource& source_;
@@ -219,12 +219,12 @@ void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record)
   record.milliseconds["calibration"] = milliseconds_since(start);
 }
 
-void MapRun::checkpoint(bool last) {
+/// What a checkpoint writes besides tiles.
+MapRows MapRun::fresh_rows(bool last) {
   MapRows rows = log_.rows(mapper_.map(), /*exact=*/last);
   rows.meta = std::exchange(meta_, {});
   rows.meta["complete"] = fmt::to_string(last && complete() ? 1 : 0);
-  keeper_.checkpoint(mapper_.map(), std::move(rows), latest_->T_local_lidar.translation(),
-                     mapper_.reach());
+  return rows;
 }
 
 void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress) {
@@ -249,7 +249,8 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     latest_ = std::move(record);
     const bool due = log_.fresh() >= job_.checkpoint_frames && !keeper_.is_writing();
     if (log_.has_mapped() && (due || keeper_.needs_memory(mapper_.map()))) {
-      checkpoint(/*last=*/false);
+      keeper_.checkpoint(mapper_.map(), fresh_rows(/*last=*/false),
+                         latest_->T_local_lidar.translation(), mapper_.reach());
     }
   }
 }
@@ -259,8 +260,7 @@ void MapRun::finish() {
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
                      "check that the drive has scans and images for the frames asked for");
   }
-  checkpoint(/*last=*/true);
-  keeper_.finish();
+  keeper_.finish(mapper_.map(), fresh_rows(/*last=*/true));
 }
 
 MapSummary MapRun::summary() const {

@@ -72,10 +72,10 @@ class Recolorer {
         seen_map_.recolour(map_, view);
       }
     }
-    if (keeper_.needs_memory(map_)) checkpoint();
+    if (keeper_.needs_memory(map_)) keeper_.checkpoint(map_, {}, position_local_, reach_);
   }
 
-  void checkpoint() { keeper_.checkpoint(map_, {}, position_local_, reach_); }
+  void finish() { keeper_.finish(map_, {}); }
 
  private:
   const DriveInfo& drive_;
@@ -115,8 +115,7 @@ RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, cons
       ++(frame != nullptr ? figures.frames : figures.unread);
       if (progress) progress(int(i) + 1, int(records.size()));
     }
-    recolorer.checkpoint();
-    keeper.finish();
+    recolorer.finish();
   }
   const MapReader recolored(job.output);
   figures.points = recolored.size();
