@@ -11,14 +11,18 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kMaxIterations = 20;
-/// A step below this (rad and m) changes nothing that a map shows.
-constexpr double kConverged = 1e-6;
+/// A step below this (rad and m) changes nothing that a map shows; while the kernel is still to be
+/// narrowed, larger ones do not, either.
+constexpr double kConverged = 1e-5, kConvergedCoarsely = 1e-3;
 /// Added to the diagonal, relative to a measurement of 1 rad and 1 m: nodes that nothing holds.
 constexpr double kLeastInformation = 1e-9;
 constexpr double kMaxDamping = 1e6;
 /// Squared error that one honest measurement in twenty exceeds (chi squared, six degrees).
 constexpr double kRobustWidth = 12.6;
 constexpr double kNarrowing = 4;
+/// What neither is far off nor closes a loop moves no more than so many of the last nodes: what it
+/// takes does not grow with the graph.
+constexpr std::size_t kLately = 64;
 
 /// A residual in standard deviations, and how it changes with the twists of its nodes: each node's
 /// pose is T * exp(twist).
@@ -95,21 +99,24 @@ RigidMotion moved(const RigidMotion& T, const Twist& twist) {
 
 }  // namespace
 
-/// Normal equations H step = -b, H by its lower blocks.
+/// Normal equations H step = -b of the nodes from `first` on, H by its lower blocks.
 struct PoseGraph::Equations {
-  explicit Equations(std::size_t nodes) : b(Eigen::VectorXd::Zero(Eigen::Index(6 * nodes))) {}
+  Equations(std::size_t first_node, std::size_t end)
+      : first(first_node), b(Eigen::VectorXd::Zero(Eigen::Index(6 * (end - first_node)))) {}
 
   void add_block(std::size_t row, std::size_t col, const Matrix6& block) {
+    if (col < first) return;  // which is not after the row
     for (int i = 0; i < 6; ++i) {
       for (int j = 0; j < 6; ++j) {
-        H.emplace_back(int(6 * row) + i, int(6 * col) + j, block(i, j));
+        H.emplace_back(int(6 * (row - first)) + i, int(6 * (col - first)) + j, block(i, j));
       }
     }
   }
   void add_gradient(std::size_t node, const Twist& gradient) {
-    b.segment<6>(Eigen::Index(6 * node)) += gradient;
+    if (node >= first) b.segment<6>(Eigen::Index(6 * (node - first))) += gradient;
   }
 
+  std::size_t first;
   std::vector<Eigen::Triplet<double>> H;
   Eigen::VectorXd b;
 };
@@ -137,22 +144,26 @@ double PoseGraph::squared_error(const RelativePose& measurement) const {
   return term_of(measurement, poses_).error.squaredNorm();
 }
 
-double PoseGraph::cost(const std::vector<RigidMotion>& poses, double width) const {
+double PoseGraph::cost(const std::vector<RigidMotion>& poses, double width,
+                       std::size_t first) const {
   double total = 0;
   for (const RelativePose& m : relative_) {
+    if (m.to < first) continue;
     const double squared = term_of(m, poses).error.squaredNorm();
     total += m.robust ? robust_cost(squared, width) : squared;
   }
   for (const AbsolutePose& m : absolute_) {
+    if (m.node < first) continue;
     const double squared = term_of(m, poses).error.squaredNorm();
     total += m.robust ? robust_cost(squared, width) : squared;
   }
   return total;
 }
 
-PoseGraph::Equations PoseGraph::linearize(double width) const {
-  Equations equations(poses_.size());
+PoseGraph::Equations PoseGraph::linearize(double width, std::size_t first) const {
+  Equations equations(first, poses_.size());
   for (const RelativePose& m : relative_) {
+    if (m.to < first) continue;
     const Term term = term_of(m, poses_);
     const double weight = m.robust ? robust_weight(term.error.squaredNorm(), width) : 1;
     equations.add_block(m.from, m.from, weight * term.by_from.transpose() * term.by_from);
@@ -162,6 +173,7 @@ PoseGraph::Equations PoseGraph::linearize(double width) const {
     equations.add_gradient(m.to, weight * term.by_to.transpose() * term.error);
   }
   for (const AbsolutePose& m : absolute_) {
+    if (m.node < first) continue;
     const Term term = term_of(m, poses_);
     const double weight = m.robust ? robust_weight(term.error.squaredNorm(), width) : 1;
     equations.add_block(m.node, m.node, weight * term.by_to.transpose() * term.by_to);
@@ -170,46 +182,60 @@ PoseGraph::Equations PoseGraph::linearize(double width) const {
   return equations;
 }
 
-double PoseGraph::worst_robust_error() const {
+double PoseGraph::worst_new_error() const {
+  const auto squared_error_of = [&](const auto& measurement) {
+    return measurement.robust ? term_of(measurement, poses_).error.squaredNorm() : 0;
+  };
   double worst = 0;
-  for (const RelativePose& m : relative_) {
-    if (m.robust) worst = std::max(worst, term_of(m, poses_).error.squaredNorm());
+  for (std::size_t i = heeded_relative_; i < relative_.size(); ++i) {
+    worst = std::max(worst, squared_error_of(relative_[i]));
   }
-  for (const AbsolutePose& m : absolute_) {
-    if (m.robust) worst = std::max(worst, term_of(m, poses_).error.squaredNorm());
+  for (std::size_t i = heeded_absolute_; i < absolute_.size(); ++i) {
+    // Navigation that stays as far off as it was tells nothing new.
+    const double before = i > 0 ? squared_error_of(absolute_[i - 1]) : 0;
+    const double now = squared_error_of(absolute_[i]);
+    if (now > kNarrowing * before) worst = std::max(worst, now);
   }
   return worst;
 }
 
 void PoseGraph::optimize() {
-  // A narrow kernel would not see a true measurement that is far off yet: it narrows step by step.
   if (poses_.empty()) return;
-  double width = worst_robust_error();
-  while (std::isfinite(width) && width > kRobustWidth) {
-    descend(width);
-    width /= kNarrowing;
+  // A narrow kernel would not see a true measurement that is far off yet: it narrows step by step.
+  // Those heeded before have been seen.
+  double width = worst_new_error();
+  const bool closes_loop =
+      std::any_of(relative_.begin() + std::ptrdiff_t(heeded_relative_), relative_.end(),
+                  [](const RelativePose& m) { return m.to > m.from + 1; });
+  const bool is_local = width <= kRobustWidth && !closes_loop && poses_.size() > kLately;
+  for (; std::isfinite(width) && width > kRobustWidth; width /= kNarrowing) {
+    descend(width, kConvergedCoarsely, 0);
   }
-  descend(kRobustWidth);
+  descend(kRobustWidth, kConverged, is_local ? poses_.size() - kLately : 0);
+  heeded_relative_ = relative_.size();
+  heeded_absolute_ = absolute_.size();
 }
 
-void PoseGraph::descend(double width) {
-  const auto size = Eigen::Index(6 * poses_.size());
+void PoseGraph::descend(double width, double converged, std::size_t first) {
+  const std::size_t nodes = poses_.size() - first;
+  const auto size = Eigen::Index(6 * nodes);
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver;
-  double best = cost(poses_, width), damping = 0;
+  double best = cost(poses_, width, first), damping = 0;
   for (int iteration = 0; iteration < kMaxIterations && damping < kMaxDamping; ++iteration) {
-    Equations equations = linearize(width);
+    Equations equations = linearize(width, first);
     for (int i = 0; i < size; ++i) equations.H.emplace_back(i, i, kLeastInformation + damping);
     Eigen::SparseMatrix<double> H(size, size);
     H.setFromTriplets(equations.H.begin(), equations.H.end());
-    solver.compute(H);
+    if (iteration == 0) solver.analyzePattern(H);
+    solver.factorize(H);
     const Eigen::VectorXd step = solver.solve(-equations.b);
     if (solver.info() != Eigen::Success || !step.allFinite()) return;
 
     std::vector<RigidMotion> poses = poses_;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      poses[i] = moved(poses_[i], step.segment<6>(Eigen::Index(6 * i)));
+    for (std::size_t i = 0; i < nodes; ++i) {
+      poses[first + i] = moved(poses_[first + i], step.segment<6>(Eigen::Index(6 * i)));
     }
-    const double error = cost(poses, width);
+    const double error = cost(poses, width, first);
     if (!(error <= best)) {
       damping = std::max(1.0, damping * 10);
       continue;
@@ -217,7 +243,7 @@ void PoseGraph::descend(double width) {
     poses_ = std::move(poses);
     best = error;
     damping = damping > 1 ? damping / 10 : 0;
-    if (step.lpNorm<Eigen::Infinity>() < kConverged) return;
+    if (step.lpNorm<Eigen::Infinity>() < converged) return;
   }
 }
 

@@ -38,20 +38,26 @@ class PoseGraph {
   /// Squared error of a measurement in standard deviations, at the present poses.
   double squared_error(const RelativePose& measurement) const;
 
-  /// Improves the poses. Directions that no measurement tells stay as they are.
+  /// Improves the poses from where they are, as far back as what is new may move them. Directions
+  /// that no measurement tells stay as they are.
   void optimize();
 
  private:
   struct Equations;
   /// @param width  squared, of the robust kernel
-  Equations linearize(double width) const;
-  double cost(const std::vector<RigidMotion>& poses, double width) const;
-  double worst_robust_error() const;
-  void descend(double width);
+  /// @param first  nodes before it stay, and what is measured of them alone does not count
+  Equations linearize(double width, std::size_t first) const;
+  double cost(const std::vector<RigidMotion>& poses, double width, std::size_t first) const;
+  /// Largest squared error of the robust measurements since the last optimize(), but for navigation
+  /// that is as far off as before.
+  double worst_new_error() const;
+  /// @param converged  a smaller step ends it, rad and m
+  void descend(double width, double converged, std::size_t first);
 
   std::vector<RigidMotion> poses_;
   std::vector<RelativePose> relative_;
   std::vector<AbsolutePose> absolute_;
+  std::size_t heeded_relative_ = 0, heeded_absolute_ = 0;  // at the last optimize()
 };
 
 }  // namespace fovea

@@ -144,6 +144,46 @@ TEST(PoseGraph, PositionsBendADriftingChainTowardsThem) {
   EXPECT_LT(sum / double(truth.size()), 0.5);
 }
 
+// A road on which positions are measured as it is driven: solving after each node, as a mapper
+// does, leaves what lies far back where it is, and ends where one solution of all ends.
+TEST(PoseGraph, ALongRoadIsSolvedAsItComes) {
+  const std::vector<RigidMotion> truth = laps(200, 1000);
+  const Twist odometry = sigmas(0.05 * kDegree, 0.02), navigation = sigmas(2 * kDegree, 0.5);
+  Random random(5);
+  PoseGraph graph, whole;
+  std::vector<RigidMotion> before;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const AbsolutePose measured{i, truth[i], navigation, /*robust=*/true};
+    if (i == 0) {
+      graph.add_node(truth[0]);
+      whole.add_node(truth[0]);
+    } else {
+      const RigidMotion T = truth[i - 1].inverse() * truth[i] * exp_se3(noise(random, odometry));
+      for (PoseGraph* each : {&graph, &whole}) {
+        each->add_node(each->poses().back() * T);
+        each->add(RelativePose{i - 1, i, T, odometry});
+      }
+    }
+    graph.add(measured);
+    whole.add(measured);
+    if (i + 1 == truth.size()) before = graph.poses();
+    graph.optimize();
+  }
+  whole.optimize();
+  whole.add(RelativePose{0, 199, RigidMotion::Identity(), sigmas(1e9, 1e9)});  // look at all again
+  whole.optimize();
+  EXPECT_EQ(distance(graph.poses()[100], before[100]), 0);
+  EXPECT_GT(distance(graph.poses()[198], before[198]), 0);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_LT(distance(graph.poses()[i], whole.poses()[i]), 0.05) << i;
+    EXPECT_LT(distance(graph.poses()[i], truth[i]), 0.3) << i;
+  }
+  // A loop moves all.
+  graph.add(RelativePose{0, 199, pose(1, 0, 0) * truth[0].inverse() * truth[199], odometry});
+  graph.optimize();
+  EXPECT_GT(distance(graph.poses()[100], before[100]), 0.001);
+}
+
 TEST(PoseGraph, WhatNothingHoldsStays) {
   PoseGraph graph;
   graph.add_node(pose(1, 2, 0.1));
