@@ -6,6 +6,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/quick_angle.h"
 
 namespace fovea {
 namespace {
@@ -92,11 +93,12 @@ std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {
   parallel_for(n, kGrain, [&](std::size_t i) {
     const Eigen::Vector3f& p = points_cam.position[i];
     const Eigen::Vector3f& normal = points_cam.normal[i];
-    const float range = p.norm();
-    points_cam.range[i] = range;
-    points_cam.incidence[i] = normal.squaredNorm() > 0.5f
-                                  ? std::acos(std::clamp(-normal.dot(p) / range, -1.0f, 1.0f))
-                                  : std::numeric_limits<float>::quiet_NaN();
+    const float squared = p.squaredNorm(), facing = -normal.dot(p);
+    points_cam.range[i] = std::sqrt(squared);
+    points_cam.incidence[i] =
+        normal.squaredNorm() > 0.5f
+            ? quick_atan2(std::sqrt(std::max(0.0f, squared - facing * facing)), facing)
+            : std::numeric_limits<float>::quiet_NaN();
   });
   std::vector<std::uint32_t> kept;
   kept.reserve(n);

@@ -81,6 +81,7 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
 
   visit("registration.method", r.registration.method);
   visit("registration.max_iterations", r.registration.max_iterations);
+  visit("registration.max_points", r.registration.max_points);
   visit("registration.max_distance", r.registration.max_distance);
   visit("registration.converged_rotation", r.registration.converged_rotation);
   visit("registration.converged_translation", r.registration.converged_translation);

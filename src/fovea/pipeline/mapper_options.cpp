@@ -95,6 +95,7 @@ void apply_variant(std::string_view name, MapperOptions& options) {
   options.refinement.registration.method = method_of_variant(number);
   options.refinement.target = RegistrationTarget::kPreviousScan;
   options.refinement.registration.robust_width = 0;
+  options.refinement.registration.max_points = 0;
   options.refinement.voxel = 0;
   options.refinement.visible_only = !baseline;
   options.refinement.upsample_rate = baseline ? 0 : number % 4;

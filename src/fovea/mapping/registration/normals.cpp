@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "fovea/base/lanes.h"
 #include "fovea/base/parallel.h"
@@ -47,7 +48,8 @@ class PlaneNormals {
   int count_ = 0;
 };
 
-/// Points by the cells of a grid.
+/// Points by the cells of a grid: no point within an edge of one is missed in the cells around its
+/// own.
 struct PointCells {
   VoxelTable table;
   VoxelMembers members;
@@ -128,19 +130,21 @@ class Surroundings {
 /// Radii over the points' spacing: where points are far apart, wider ones are tried.
 constexpr float kFirstRadius = 2, kWider = 1.5f;
 constexpr int kRadii = 8;
+/// The first radii serve most points and have cells of their own; of those after them, which are
+/// for the few that lie far apart, two share a grid.
+constexpr int kAlone = 2;
 /// From radius to radius a surface's points become 2.25 times as many: of at least this share of k,
 /// they are k in the mean.
 constexpr float kFewest = 0.6f;
 constexpr std::size_t kCellGrain = 64;
 
 /// Normals of the points not yet done that have neighbours enough within the radius.
-void look_around(std::span<const Eigen::Vector3f> points, float radius, float enough,
-                 std::vector<std::uint8_t>& done, std::vector<Eigen::Vector3f>& normals) {
-  const PointCells cells = PointCells::of(points, radius);
+void look_around(std::span<const Eigen::Vector3f> points, const PointCells& cells, float radius,
+                 float enough, std::vector<std::uint8_t>& done,
+                 std::vector<Eigen::Vector3f>& normals) {
   const VoxelTable& table = cells.table;
   const VoxelMembers& members = cells.members;
   const auto gather = [&](std::uint32_t cell, Surroundings& surroundings) {
-    // Cells as wide as the radius: no point within it is missed.
     for (const VoxelTable::Voxel& near : VoxelTable::block_around(table.voxel(cell))) {
       const std::uint32_t id = table.find(near);
       if (id != VoxelTable::kNone) surroundings.add(cells, id);
@@ -169,9 +173,14 @@ std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> 
                                                int neighbors, double spacing) {
   std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
   std::vector<std::uint8_t> done(points.size(), 0);
-  float radius = kFirstRadius * static_cast<float>(spacing);
+  std::optional<PointCells> cells;
+  float radius = kFirstRadius * static_cast<float>(spacing), edge = 0;
   for (int i = 0; i < kRadii; ++i, radius *= kWider) {
-    look_around(points, radius, kFewest * static_cast<float>(neighbors), done, normals);
+    if (radius > edge) {
+      edge = i < kAlone ? radius : radius * kWider;
+      cells = PointCells::of(points, edge);
+    }
+    look_around(points, *cells, radius, kFewest * static_cast<float>(neighbors), done, normals);
   }
   return normals;
 }

@@ -20,21 +20,25 @@ constexpr std::size_t kGrain = 256;
 /// A pair is looked for again once its points have moved by this share of how far pairs are apart.
 constexpr double kKeepsPairShare = 0.1;
 
-/// How many points are asked first, at least.
+/// How many points say enough of where to go while the kernel is wide.
 constexpr std::size_t kCoarsePoints = 4000;
 
 /// Fewer pairs than this are no evidence of six numbers.
 constexpr std::size_t kMinPairs = 50;
 
+/// The source point of pair i of so many.
+std::size_t source_of(std::size_t i, std::size_t pairs, const RegistrationCloud& source) {
+  return i * source.points.size() / pairs;
+}
+
 /// Gives each source point its nearest target point and the factor's weight of the two. A pair is
 /// kept while its source point moves by less than `keep_within` (m); otherwise it bounds the
 /// search, which then ends early.
-/// @param stride  pairs are of every how many-th source point
+/// @param pairs  of source points at even steps (see source_of)
 template <class Factor>
 void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
-                const RegistrationCloud& source, std::size_t stride,
-                const RigidMotion& T_target_source, const RegistrationOptions& options,
-                float keep_within, std::vector<Pair>& pairs) {
+                const RegistrationCloud& source, const RigidMotion& T_target_source,
+                const RegistrationOptions& options, float keep_within, std::vector<Pair>& pairs) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
   const float max_distance = static_cast<float>(options.max_distance);
@@ -54,7 +58,7 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
     Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
     if constexpr (Factor::kNeedsNormals) {
       n = target.normals[nearest.index];
-      m = R * source.normals[i * stride];
+      m = R * source.normals[source_of(i, pairs.size(), source)];
       if (n.isZero() && m.isZero()) return;
     }
     pair.target_index = nearest.index;
@@ -64,16 +68,12 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
   });
 }
 
-/// While the kernel is wide, some thousand points say enough of where to go; all of them are asked
-/// for the last of it.
-std::size_t coarse_stride(const RegistrationCloud& source, const RegistrationOptions& options) {
-  const bool narrows = options.robust_width > 0 && options.robust_width < options.max_distance;
-  return narrows ? std::max<std::size_t>(1, source.points.size() / kCoarsePoints) : 1;
-}
-
-std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t stride) {
-  std::vector<Pair> pairs((source.points.size() + stride - 1) / stride);
-  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].source = source.points[i * stride];
+/// Pairs of at most so many source points, as yet without target.
+std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t most) {
+  std::vector<Pair> pairs(std::min(most, source.points.size()));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].source = source.points[source_of(i, pairs.size(), source)];
+  }
   return pairs;
 }
 
@@ -84,8 +84,11 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
   OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
                              Factor::kNeedsNormals, options.converged_rotation,
                              options.converged_translation};
-  std::size_t stride = coarse_stride(source, options);
-  std::vector<Pair> pairs = pairs_of(source, stride);
+  const bool narrows = options.robust_width > 0 && options.robust_width < options.max_distance;
+  const std::size_t fine = options.max_points > 0 ? static_cast<std::size_t>(options.max_points)
+                                                  : std::numeric_limits<std::size_t>::max();
+  std::size_t most = narrows ? std::min(kCoarsePoints, fine) : fine;
+  std::vector<Pair> pairs = pairs_of(source, most);
 
   RegistrationResult result;
   result.T_target_source = guess;
@@ -95,14 +98,14 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
       optimizer.robust_width =
           std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
     }
-    if (optimizer.robust_width <= options.robust_width && stride > 1) {
-      stride = 1;
-      pairs = pairs_of(source, stride);
+    if (optimizer.robust_width <= options.robust_width && most < fine) {
+      most = fine;
+      pairs = pairs_of(source, most);
     }
     const auto keep_within =
         static_cast<float>(std::min(Factor::kKeepsPairFor, kKeepsPairShare * result.rms_distance));
-    find_pairs<Factor>(target, target_index, source, stride, result.T_target_source, options,
-                       keep_within, pairs);
+    find_pairs<Factor>(target, target_index, source, result.T_target_source, options, keep_within,
+                       pairs);
     const auto [T, degenerate, equations] =
         minimize(PairBlocks(pairs), result.T_target_source, optimizer);
     ++result.iterations;
@@ -120,10 +123,12 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
     result.degenerate_directions = degenerate;
     result.rms_distance =
         std::sqrt(equations.squared_distance / static_cast<double>(equations.pairs));
-    // The pairs' own scatter says how much one of them is worth.
+    // The pairs' own scatter says how much one of them is worth. Of a part of the points they stand
+    // for all.
     result.information =
         (Factor::kNeedsNormals ? equations.H_planes : equations.H) *
-        (equations.weight / std::max(equations.error, std::numeric_limits<double>::min()));
+        (equations.weight / std::max(equations.error, std::numeric_limits<double>::min())) *
+        (double(source.points.size()) / double(pairs.size()));
   }
   return result;
 }
@@ -136,6 +141,10 @@ void RegistrationOptions::validate() const {
   };
   if (max_iterations < 1 || max_iterations > 1000) {
     reject("an iteration limit is out of range", "registration.max_iterations", "give 1 to 1000");
+  }
+  if (max_points < 0 || max_points > 10'000'000) {
+    reject("a number of points is out of range", "registration.max_points",
+           "give 0 (all) or a number up to 10000000");
   }
   if (!(max_distance > 0 && max_distance <= 100)) {
     reject("a pair distance is out of range", "registration.max_distance",

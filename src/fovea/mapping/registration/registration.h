@@ -16,6 +16,7 @@ enum class RegistrationMethod { kGicp, kPointToPoint, kPointToPlane };
 struct RegistrationOptions {
   RegistrationMethod method = RegistrationMethod::kGicp;
   int max_iterations = 100;             ///< point to point takes dozens, the others a few
+  int max_points = 0;                   ///< of the source, at even steps, that are paired; 0: all
   double max_distance = 1.0;            ///< m, pairs further apart are not used
   double converged_rotation = 1e-4;     ///< rad: a smaller step ends the iteration
   double converged_translation = 1e-3;  ///< m

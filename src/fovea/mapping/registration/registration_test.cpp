@@ -99,6 +99,21 @@ TEST_P(EveryMethod, RecoversKnownMotionsOfSeparatelySampledScans) {
   }
 }
 
+TEST_P(EveryMethod, SomeOfThePointsTellWhatAllDo) {
+  const RigidMotion truth = motion(0.01, -0.02, 0.04, 0.15, -0.1, 0.05);
+  const Scans scans = two_scans(test::room_corner(), test::room_corner(), truth, 0.01);
+  RegistrationOptions options = options_for(GetParam());
+  const RegistrationResult all = align(scans, RigidMotion::Identity(), options);
+  options.max_points = static_cast<int>(scans.source.size() / 3);
+  const RegistrationResult some = align(scans, RigidMotion::Identity(), options);
+  EXPECT_TRUE(some.converged);
+  EXPECT_LE(some.pairs, scans.source.size() / 3);
+  EXPECT_LT(error_of(some.T_target_source, truth).metres,
+            error_of(all.T_target_source, truth).metres + 0.005);
+  // They stand for all.
+  EXPECT_NEAR(some.information.trace() / all.information.trace(), 1, 0.2);
+}
+
 TEST_P(EveryMethod, IsTheSameAtAnyThreadCount) {
   const Scans scans = two_scans(test::room_corner(), test::room_corner(),
                                 motion(0.01, 0.02, 0.05, 0.2, 0.1, 0), 0.01);
