@@ -35,8 +35,8 @@ struct RefinementOptions {
   double max_correction_translation = 2.0;               ///< m
   double max_correction_rotation = 0.08726646259971647;  ///< rad
   GroundOptions ground;
-  /// With a robust kernel, so that what moves does not pull (the paper has none), and a limit to the
-  /// points: what more of them would add is less than what their errors have in common.
+  /// With a robust kernel, so that what moves does not pull (the paper has none), and a limit to
+  /// the points: what more of them would add is less than what their errors have in common.
   RegistrationOptions registration{.max_points = 12000, .robust_width = 0.1};
   LocalMapOptions local_map;
   void validate() const;  ///< ConfigError that names the field
