@@ -4,8 +4,10 @@
 
 /// jemalloc reads its settings here when the program starts (jemalloc(3), "TUNING"); MALLOC_CONF in
 /// the environment overrides them. One arena, so that what one thread frees serves all; blocks up
-/// to 64 kB stay with their thread; what is freed is kept until the map's keeper gives it back.
+/// to 64 kB stay with their thread; what is freed is kept until the map's keeper gives it back, in
+/// one arena whatever its size, and cut as it is needed.
 extern "C" {
 const char* malloc_conf =
-    "thp:always,metadata_thp:auto,narenas:1,lg_tcache_max:16,dirty_decay_ms:-1,muzzy_decay_ms:-1";
+    "thp:always,metadata_thp:auto,narenas:1,oversize_threshold:0,lg_extent_max_active_fit:16,"
+    "lg_tcache_max:16,dirty_decay_ms:-1,muzzy_decay_ms:-1";
 }

@@ -18,6 +18,7 @@
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/process_memory.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
@@ -26,6 +27,9 @@
 
 namespace fovea::app {
 namespace {
+
+/// The part of the memory to keep to that the first second of a drive takes.
+constexpr std::size_t kWarmShare = 4;
 
 /// What --live without a port stands for.
 constexpr const char* kSomePort = "some";
@@ -138,6 +142,8 @@ void run(const MapArguments& arguments) {
       job.pose_source = PoseSource::kGivenFirst;
     }
   }
+  // Played live, the first frames are as much in a hurry as any.
+  if (job.rate > 0) warm_memory(job.memory / kWarmShare);
   std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
   job.observer = show.get();
   const MapSummary summary = [&] {

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <memory>
+#include <new>
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
@@ -25,6 +27,15 @@ std::size_t peak_resident_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+void warm_memory(std::size_t bytes) {
+  if (mallctl == nullptr) return;
+  const std::unique_ptr<std::byte[]> memory(new (std::nothrow) std::byte[bytes]);
+  if (memory == nullptr) return;  // then it will not be had later, either
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  volatile std::byte* write = memory.get();  // which the compiler must not leave out
+  for (std::size_t i = 0; i < bytes; i += page) write[i] = std::byte{1};
 }
 
 void release_free_memory() {

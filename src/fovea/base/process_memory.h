@@ -10,6 +10,11 @@ std::size_t resident_memory();
 /// The most that it ever had there, bytes.
 std::size_t peak_resident_memory();
 
+/// Has the allocator keep so much more memory that has been written to: what is taken of it next
+/// costs no page faults, each of which a virtual machine's host may have to serve. Nothing happens
+/// with an allocator that would give it back.
+void warm_memory(std::size_t bytes);
+
 /// Gives back what the allocator keeps of freed memory. In a long run memory that comes and goes
 /// leaves more and more pages of which a part is in use; this returns those that are free.
 void release_free_memory();

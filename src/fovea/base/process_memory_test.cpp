@@ -32,4 +32,20 @@ TEST(ProcessMemory, WhatIsFreedAmongWhatStaysIsGivenBack) {
   }
 }
 
+TEST(ProcessMemory, WarmMemoryIsTakenAgain) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20, kBlock = std::size_t{1} << 18;
+  release_free_memory();
+  const std::size_t before = resident_memory();
+  warm_memory(kBytes);
+  // Where it is not kept, there is nothing to be said of it.
+  if (kOwnAllocator || resident_memory() < before + kBytes * 3 / 4) GTEST_SKIP();
+  const std::size_t warm = resident_memory();
+  std::vector<std::vector<char>> blocks;
+  while (blocks.size() * kBlock < kBytes / 2) blocks.emplace_back(kBlock, 'x');
+  EXPECT_LT(resident_memory(), warm + kBytes / 8);
+  blocks.clear();
+  release_free_memory();
+  EXPECT_LT(resident_memory(), before + kBytes / 4);
+}
+
 }  // namespace fovea::process_memory_test
