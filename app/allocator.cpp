@@ -3,9 +3,9 @@
 // each of which costs a fault when it is first written.
 
 /// jemalloc reads its settings here when the program starts (jemalloc(3), "TUNING"); MALLOC_CONF in
-/// the environment overrides them. One arena, so that what one thread frees serves all; blocks up
-/// to 64 kB stay with their thread; what is freed is kept until the map's keeper gives it back, in
-/// one arena whatever its size, and cut as it is needed.
+/// the environment overrides them. One arena for blocks of any size, so that what one thread
+/// frees serves all, cut as it is needed; blocks up to 64 kB stay with their thread; what is freed
+/// is kept until the map's keeper gives it back.
 extern "C" {
 const char* malloc_conf =
     "thp:always,metadata_thp:auto,narenas:1,oversize_threshold:0,lg_extent_max_active_fit:16,"

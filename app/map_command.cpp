@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,8 +29,9 @@
 namespace fovea::app {
 namespace {
 
-/// The part of the memory to keep to that the first second of a drive takes.
-constexpr std::size_t kWarmShare = 4;
+/// What a drive played live begins with, bytes, but no more than this part of what it is to keep
+/// to.
+constexpr std::size_t kWarmMemory = std::size_t{256} << 20, kWarmShare = 4;
 
 /// What --live without a port stands for.
 constexpr const char* kSomePort = "some";
@@ -143,7 +145,7 @@ void run(const MapArguments& arguments) {
     }
   }
   // Played live, the first frames are as much in a hurry as any.
-  if (job.rate > 0) warm_memory(job.memory / kWarmShare);
+  if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
   std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
   job.observer = show.get();
   const MapSummary summary = [&] {
