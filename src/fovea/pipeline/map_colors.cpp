@@ -90,7 +90,6 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
 void SeenMap::gather(const TileMap& map, const FovealRegion& region,
                      const RigidMotion& T_cam_local) {
   pieces_.clear();
-  std::size_t first = 0;
   // A tile's ball, and a hair for points that rounding has put outside the tile.
   const double half = map.tile_size() / 2, radius = half * 1.7321 + 1e-3;
   const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
@@ -102,11 +101,9 @@ void SeenMap::gather(const TileMap& map, const FovealRegion& region,
         const auto size = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kGrain)) {
           const std::uint32_t end = std::min(size, begin + std::uint32_t(kGrain));
-          pieces_.push_back({id, &points, begin, end, first, 0});
-          first += end - begin;
+          pieces_.push_back({id, &points, begin, end, pieces_.size() % kShares, 0, 0});
         }
       });
-  if (points_.size() < first) points_.resize(first);
 }
 
 void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
@@ -115,24 +112,30 @@ void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMo
   disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
   gather(map, region, T_cam_local);
   parallel_for(kShares, 1, [&](std::size_t share) {
-    fronts_[share].clear(camera_);
+    shares_[share].front.clear(camera_);
+    std::size_t first = 0;
     for (std::size_t k = share; k < pieces_.size(); k += kShares) {
-      look_at(map, region, T_cam_local, pieces_[k], fronts_[share]);
+      pieces_[k].first = first;
+      look_at(map, region, T_cam_local, pieces_[k]);
+      first += pieces_[k].seen;
     }
   });
-  std::swap(front_, fronts_[0]);
-  for (std::size_t share = 1; share < kShares; ++share) front_.add(fronts_[share]);
+  std::swap(front_, shares_[0].front);
+  for (std::size_t share = 1; share < kShares; ++share) front_.add(shares_[share].front);
 }
 
 void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
-                      const RigidMotion& T_cam_local, Piece& piece, DepthBuffer& front) {
+                      const RigidMotion& T_cam_local, Piece& piece) {
   const RigidMotion T_cam_submap = T_cam_local * map.submaps()[piece.tile.submap].T_local_submap;
   const Eigen::Matrix3f R = T_cam_submap.linear().cast<float>();
   const Eigen::Vector3f t = (T_cam_submap * piece.points->origin).cast<float>();
   ProjectedBlock block(camera_);
   std::array<std::uint16_t, ProjectedBlock::kSize> weight;
   DepthBuffer::Samples samples;
-  Point* out = points_.data() + piece.first;
+  Share& share = shares_[piece.share];
+  const std::size_t most = piece.first + (piece.end - piece.begin);
+  if (share.points.size() < most) share.points.resize(most + most / 2);
+  Point* out = share.points.data() + piece.first;
   for (std::uint32_t begin = piece.begin; begin < piece.end;) {
     const std::uint32_t n = std::min(piece.end - begin, std::uint32_t(ProjectedBlock::kSize));
     block.project({piece.points->position.data() + begin, n}, R, t);
@@ -145,16 +148,18 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
         if (weight[i] != 0 && !region.in_slices(block.p_cam(i))) weight[i] = 0;
       }
     }
-    std::size_t count = 0;
+    std::size_t in_view = 0, in_region = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       // Written always, and kept by a step on: no branch, which nobody could foresee.
-      out[count] = {begin + i, block.pixel(i).x(), block.pixel(i).y(), block.depth(i), weight[i]};
-      samples.put(count, block.pixel(i), block.depth(i));
-      count += block.in_view(i);
+      out[in_region] = {begin + i, block.pixel(i).x(), block.pixel(i).y(), block.depth(i),
+                        weight[i]};
+      samples.put(in_view, block.pixel(i), block.depth(i));
+      in_view += block.in_view(i);
+      in_region += block.in_view(i) & (weight[i] != 0);
     }
-    front.add(samples, count, disc_radius_);
-    out += count;
-    piece.seen += count;
+    share.front.add(samples, in_view, disc_radius_);
+    out += in_region;
+    piece.seen += in_region;
     begin += n;
   }
 }
@@ -192,7 +197,7 @@ SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColo
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); i += kExposureStep) {
     const Point& point = points[i];
-    if (point.weight == 0 || tile.views[point.index] < 2) continue;
+    if (tile.views[point.index] < 2) continue;
     if (front_.hides(point.pixel(), point.depth)) continue;
     known[n] = to_float(tile.color[point.index]).array();
     places.put(n++, point.pixel(), point.depth);
@@ -234,7 +239,7 @@ std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileCol
   std::size_t n = 0;
   for (const Point& point : points) {
     visible[n] = &point;
-    n += point.weight != 0 && !front_.hides(point.pixel(), point.depth);
+    n += !front_.hides(point.pixel(), point.depth);
   }
   PatchPlaces places;
   FusedColors fused;

@@ -62,7 +62,7 @@ class SeenMap {
   struct Point {
     std::uint32_t index;  // in its tile
     float u, v, depth;
-    std::uint16_t weight;  // of this view; 0: outside the region
+    std::uint16_t weight;  // of this view
     Eigen::Vector2f pixel() const { return {u, v}; }
   };
   /// Points of a tile; of one length, so that threads share the work evenly.
@@ -70,14 +70,19 @@ class SeenMap {
     TileId tile;
     const PointCloud* points;
     std::uint32_t begin, end;  // in the tile
-    std::size_t first, seen;   // in points_
+    std::size_t share;
+    std::size_t first, seen;  // of those in the region, among the share's
   };
-  /// A share of the pieces has its own depth buffer, for threads not to wait for each other.
+  /// What threads fill at the same time.
+  struct Share {
+    std::vector<Point> points;  // in the region
+    DepthBuffer front;          // of all in view
+  };
   static constexpr std::size_t kShares = 4;
 
   void gather(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local);
   void look_at(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
-               Piece& piece, DepthBuffer& front);
+               Piece& piece);
   /// Some points of a piece, as compare() wants them.
   struct Differences {
     std::vector<Eigen::Array3f> gains;
@@ -93,14 +98,13 @@ class SeenMap {
   std::size_t recolour_block(std::span<const Point> points, const TileColors& colors,
                              const PatchColors& patches, const NoiseKinds& noise) const;
   std::span<const Point> seen(const Piece& piece) const {
-    return {points_.data() + piece.first, piece.seen};
+    return {shares_[piece.share].points.data() + piece.first, piece.seen};
   }
 
   Camera camera_;
   float disc_radius_ = 0;  // that a point stands for, pixels at a depth of 1 m
   std::vector<Piece> pieces_;
-  std::vector<Point> points_;
-  std::array<DepthBuffer, kShares> fronts_;
+  std::array<Share, kShares> shares_;
   DepthBuffer front_;
 };
 

@@ -51,12 +51,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
 
   // Pose refinement, and what needs no pose.
-  std::optional<ScanViews> views;
-  const auto look = [&](const Placed& at) {
-    if (!held_out) views = view(at.scan_lidar, at.motion);
-  };
-  Placed placed = place(frame, motion, given_pose, clock, look);
-  if (!views) look(placed);
+  Placed placed = place(frame, motion, given_pose, clock, held_out ? View() : view);
   if (compensates()) record.motion = placed.motion;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
@@ -70,7 +65,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
     next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
   }
 
-  if (views) tracked.views = *std::move(views);
+  tracked.views = std::move(placed.views);
   tracked.scan_lidar = std::move(placed.scan_lidar);
   tracked.motion = placed.motion;
   tracked.submaps = fusion_.submaps();
@@ -95,7 +90,7 @@ PointCloud Tracker::compensated(const PointCloud& scan,
 
 Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motion,
                                const std::optional<RigidMotion>& given_pose, StageClock& clock,
-                               const std::function<void(const Placed&)>& beside) const {
+                               const View& view) const {
   std::optional<Placed> best;
   for (const MotionGuess& guess : motion.guesses) {
     Placed placed;
@@ -107,11 +102,10 @@ Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motio
     const auto locate_it = [&] {
       refined = locate(placed.scan_lidar, motion, guess, given_pose, clock);
     };
-    if (motion.guesses.size() == 1) {
-      run_both(locate_it, [&] { beside(placed); });
-    } else {
-      locate_it();  // which of the scans it will be is not known yet
-    }
+    // Where it is doubted which of two scans it will be, both are looked at: that takes no longer.
+    run_both(locate_it, [&] {
+      if (view) placed.views = view(placed.scan_lidar, placed.motion);
+    });
     placed.refined = std::move(refined);
     if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
   }

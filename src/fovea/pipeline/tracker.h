@@ -75,16 +75,17 @@ class Tracker {
   RigidMotion T_local_odom() const { return fusion_.T_local_odom(); }
 
  private:
-  /// A frame's scan as it is mapped, and what registration said of it.
+  /// A frame's scan as it is mapped, what it shows, and what registration said of it.
   struct Placed {
     PointCloud scan_lidar;
     std::optional<SweepMotion> motion;
+    ScanViews views;
     RefinedPose refined;
   };
-  /// @param beside  called with the one guess's scan while that is registered
+  /// @param view  of each guess's scan, while that is registered; may be empty
   Placed place(const Frame& frame, const MotionPrediction& motion,
                const std::optional<RigidMotion>& given_pose, StageClock& clock,
-               const std::function<void(const Placed&)>& beside) const;
+               const View& view) const;
   RefinedPose locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
                      const MotionGuess& guess, const std::optional<RigidMotion>& given_pose,
                      StageClock& clock) const;
