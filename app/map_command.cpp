@@ -31,7 +31,7 @@ namespace {
 
 /// What a drive played live begins with, bytes, but no more than this part of what it is to keep
 /// to.
-constexpr std::size_t kWarmMemory = std::size_t{256} << 20, kWarmShare = 4;
+constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
 
 /// What --live without a port stands for.
 constexpr const char* kSomePort = "some";

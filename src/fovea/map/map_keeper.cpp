@@ -21,6 +21,9 @@ constexpr std::size_t kBytesPerPoint = 38 * 3 / 2;
 /// What is read is waited for, but seldom, and by threads that leave the processor meanwhile.
 constexpr int kNice = 15;
 
+/// A checkpoint may take so long to wait for moments in which no frame is under way.
+constexpr std::chrono::seconds kPatience{1};
+
 template <class T>
 bool is_ready(const std::future<T>& result) {
   return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -63,12 +66,16 @@ MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& 
       most_points_(options.memory / 2 / kBytesPerPoint),
       commit_at_end_(options.commit_at_end),
       on_checkpoint_(options.on_checkpoint),
+      pause_(options.pause),
       writer_(std::move(writer)),
       worker_(options.threaded) {
   if (options.threaded) worker_.post([] { give_way(kNice); });
 }
 
-MapKeeper::~MapKeeper() {
+MapKeeper::~MapKeeper() { wait_for_checkpoint(); }
+
+void MapKeeper::wait_for_checkpoint() {
+  hurry_.request_stop();
   if (written_.valid()) written_.wait();
 }
 
@@ -78,7 +85,12 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
     if (requested_.contains(id)) continue;
     requested_.emplace(id, worker_.post([this, id] { return writer_->read_tile(id); }));
   }
-  for (const TileId& id : map.stored_near(center_local, radius)) requested_.at(id).wait();
+  for (const TileId& id : map.stored_near(center_local, radius)) {
+    const std::future<PointCloud>& tile = requested_.at(id);
+    if (is_ready(tile)) continue;
+    hurry_.request_stop();  // the worker may have a checkpoint to write first
+    tile.wait();
+  }
   for (auto entry = requested_.begin(); entry != requested_.end();) {
     auto& [id, tile] = *entry;
     if (is_ready(tile)) {
@@ -93,6 +105,7 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
 bool MapKeeper::is_writing() const { return written_.valid() && !is_ready(written_); }
 
 TileChanges MapKeeper::take_changes(TileMap& map, const MapRows& rows) {
+  wait_for_checkpoint();
   if (written_.valid()) written_.get();
   TileChanges changes = map.take_changes();
   if (on_checkpoint_) on_checkpoint_(changes, rows);
@@ -100,14 +113,18 @@ TileChanges MapKeeper::take_changes(TileMap& map, const MapRows& rows) {
 }
 
 void MapKeeper::write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared) {
+  hurry_ = std::stop_source();
   written_ = worker_.post([this, rows = std::move(rows), packed = std::move(packed),
-                           shared = std::move(shared)]() mutable {
+                           shared = std::move(shared), hurry = hurry_.get_token()]() mutable {
+    const WallClock::time_point latest = WallClock::now() + kPatience;
     put(*writer_, rows, shared);
     for (PackedTile& tile : packed) {
+      pause_(latest, hurry);
       writer_->put_tile(tile);
       tile = {};
     }
     for (TileChanges::Changed& tile : shared.changed) {
+      pause_(latest, hurry);
       writer_->put_tile(tile.id, *tile.points);
       tile.points = {};  // the map need not copy it any more when it changes it
     }
@@ -131,6 +148,7 @@ bool MapKeeper::needs_memory(const TileMap& map) const {
 }
 
 void MapKeeper::finish() {
+  wait_for_checkpoint();
   if (written_.valid()) written_.get();
   if (commit_at_end_) worker_.post([this] { writer_->commit(); }).get();
 }

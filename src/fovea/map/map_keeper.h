@@ -6,9 +6,11 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
+#include "fovea/base/wall_clock.h"
 #include "fovea/base/worker.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
@@ -33,6 +35,10 @@ struct MapKeeperOptions {
   /// Told what a checkpoint is going to write, by whoever asks for it, when the one before is
   /// committed.
   std::function<void(const TileChanges&, const MapRows&)> on_checkpoint = {};
+  /// Called by the thread that writes before each tile. It may wait for a better moment, but not
+  /// beyond `latest` nor once `hurry` is asked for.
+  using Pause = std::function<void(WallClock::time_point latest, const std::stop_token& hurry)>;
+  Pause pause = [](WallClock::time_point, const std::stop_token&) {};
 };
 
 /// What a file has of a map; all tiles stay there until they are needed.
@@ -71,6 +77,8 @@ class MapKeeper {
   void finish(TileMap& map, MapRows rows);
 
  private:
+  /// Waits for the latest checkpoint; what it throws is not thrown here.
+  void wait_for_checkpoint();
   TileChanges take_changes(TileMap& map, const MapRows& rows);
   void write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared);
 
@@ -78,9 +86,11 @@ class MapKeeper {
   std::size_t most_points_;  // in memory
   bool commit_at_end_;
   std::function<void(const TileChanges&, const MapRows&)> on_checkpoint_;
+  MapKeeperOptions::Pause pause_;
   std::size_t undroppable_ = 0;        // points that stayed there at the last checkpoint
   std::unique_ptr<MapWriter> writer_;  // the worker's, once there is one
   std::future<void> written_;          // of the latest checkpoint
+  std::stop_source hurry_;             // for it
   std::map<TileId, std::future<PointCloud>> requested_;
   Worker worker_;
 };

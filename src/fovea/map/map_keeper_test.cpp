@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 
@@ -120,6 +126,45 @@ TEST_P(Keeper, ACheckpointIsWrittenAsItWasWhateverChangesAfter) {
   expect_stored(path_, before);
   keeper->finish(map, {});
   expect_stored(path_, map);
+}
+
+// A writer that would wait for ever is told to hurry by whoever needs what it writes, or a tile
+// that it is to read after that.
+TEST(PatientKeeper, HurriesWhenItIsWaitedFor) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "a.fovea";
+  Random random(4);
+  std::atomic<int> pauses = 0;
+  MapKeeperOptions options;
+  options.pause = [&](WallClock::time_point latest, const std::stop_token& hurry) {
+    EXPECT_LE(latest, WallClock::now() + std::chrono::seconds(1));
+    ++pauses;
+    std::mutex guard;
+    std::unique_lock lock(guard);
+    std::condition_variable_any nobody;
+    nobody.wait(lock, hurry, [] { return false; });
+  };
+  std::optional<MapKeeper> keeper(std::in_place, MapWriter::create(path, true), options);
+  TileMap map(2.0);
+  map.add_submap(RigidMotion::Identity());
+  map.add(points_at(0, random));
+  map.add_submap(RigidMotion(Eigen::Translation3d(100, 0, 0)));
+  map.add(points_at(100, random));
+  const Eigen::Vector3d here(0, 0, 0), there(100, 0, 0);
+  keeper->checkpoint(map, rows_of(map), there, kNear);
+  keeper->checkpoint(map, {}, there, kNear);  // waits for the first, drops what lies behind
+  ASSERT_LT(map.size_in_memory(), map.size());
+  map.add(points_at(100, random));
+  keeper->checkpoint(map, {}, there, kNear);
+  keeper->bring_near(map, here, kNear);
+  EXPECT_EQ(map.size_in_memory(), map.size());
+  map.add(points_at(100, random));
+  keeper->finish(map, {});
+  expect_stored(path, map);
+  map.add(points_at(100, random));
+  keeper->checkpoint(map, {}, there, kNear);
+  keeper.reset();
+  EXPECT_GE(pauses, 4);
 }
 
 TEST_P(Keeper, WantsACheckpointWhenMemoryRunsOut) {

@@ -14,6 +14,7 @@ namespace {
 
 using Vertices = DelaunayTriangulation::Vertices;
 constexpr std::size_t kGrain = 512;  // triangles
+constexpr std::size_t kSampleGrain = 4096;
 /// Rounds of averaging normals over neighbours: ranges are noisy, and triangles small.
 constexpr int kSmoothing = 2;
 
@@ -218,14 +219,16 @@ float mean_intensity(const PointCloud& points, const Surface& surface, std::size
   return sum / 3;
 }
 
-void reserve_more(PointCloud& points, const std::vector<std::vector<Sample>>& samples) {
-  std::size_t count = points.size();
-  for (const std::vector<Sample>& chunk : samples) count += chunk.size();
-  points.position.reserve(count);
-  points.normal.reserve(count);
-  points.interpolated.reserve(count);
-  points.reason.reserve(count);
-  if (!points.intensity.empty()) points.intensity.reserve(count);
+/// One sample a cell, the first; none where a cell is marked.
+std::vector<const Sample*> one_a_cell(const std::vector<std::vector<Sample>>& chunks,
+                                      CellSet& cells) {
+  std::vector<const Sample*> kept;
+  for (const std::vector<Sample>& chunk : chunks) {
+    for (const Sample& sample : chunk) {
+      if (cells.mark(sample.cell())) kept.push_back(&sample);
+    }
+  }
+  return kept;
 }
 
 /// What all samples of a triangle share, found once for those that follow each other.
@@ -239,7 +242,7 @@ class TriangleValues {
     normal = normal_of(surface_, triangle);
     intensity = mean_intensity(points_, surface_, triangle);
   }
-  Eigen::Vector3f normal;
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   float intensity = 0;
 
  private:
@@ -280,24 +283,30 @@ Surface find_surface(const PointCloud& points_cam, const Camera& camera,
 
 PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
                           const SampleGrid& grid) {
-  const std::vector<std::vector<Sample>> samples = sample_triangles(surface, grid);
-
   CellSet cells;
   PointCloud points = measured_points(points_cam, surface, grid, cells);
+  const std::vector<std::vector<Sample>> chunks = sample_triangles(surface, grid);
+  const std::vector<const Sample*> samples = one_a_cell(chunks, cells);
+
+  const std::size_t measured = points.size(), all = measured + samples.size();
+  points.position.resize(all);
+  points.normal.resize(all);
+  points.interpolated.resize(all, 1);
+  points.reason.resize(all);
+  if (!points_cam.intensity.empty()) points.intensity.resize(all);
   const RigidMotion T_cam_grid = grid.T_grid_cam.inverse();
-  reserve_more(points, samples);
-  TriangleValues values(points_cam, surface);
-  for (const std::vector<Sample>& chunk : samples) {
-    for (const Sample& sample : chunk) {
-      if (!cells.mark(sample.cell())) continue;
+  parallel_chunks(samples.size(), kSampleGrain, [&](std::size_t begin, std::size_t end) {
+    TriangleValues values(points_cam, surface);
+    for (std::size_t k = begin; k < end; ++k) {
+      const Sample& sample = *samples[k];
+      const std::size_t i = measured + k;
       values.of(sample.triangle);
-      points.position.push_back((T_cam_grid * sample.position(grid.cell)).cast<float>());
-      points.normal.push_back(values.normal);
-      points.interpolated.push_back(1);
-      points.reason.push_back(reason_of(surface.rule[sample.triangle]));
-      if (!points_cam.intensity.empty()) points.intensity.push_back(values.intensity);
+      points.position[i] = (T_cam_grid * sample.position(grid.cell)).cast<float>();
+      points.normal[i] = values.normal;
+      points.reason[i] = reason_of(surface.rule[sample.triangle]);
+      if (!points.intensity.empty()) points.intensity[i] = values.intensity;
     }
-  }
+  });
   return points;
 }
 

@@ -1,7 +1,6 @@
 #include "fovea/pipeline/frame_pipeline.h"
 
-#include <condition_variable>
-#include <mutex>
+#include <utility>
 
 namespace fovea {
 namespace {
@@ -9,6 +8,8 @@ namespace {
 /// Frames that a stage is ahead of the next one, the one at hand included: what overlap needs. More
 /// would only wait.
 constexpr std::size_t kAhead = 1;
+/// What a frame needs before it is due is begun this long before at the latest, in periods.
+constexpr double kInTime = 0.25;
 
 /// Whether the time has come; not if `stop` came before.
 bool wait_until(WallClock::time_point due, const std::stop_token& stop) {
@@ -36,24 +37,42 @@ FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
       located_(options.overlap ? kAhead : 0,
                [this](const std::stop_token& stop) { return locate(stop); }) {}
 
+WallClock::duration FramePipeline::periods(double count) const {
+  return std::chrono::duration_cast<WallClock::duration>(
+      std::chrono::duration<double>(count / options_.rate));
+}
+
+std::optional<LocatedFrame> FramePipeline::next() {
+  if (std::exchange(taken_, false)) options_.gate->end();
+  std::optional<LocatedFrame> located = located_.next();
+  taken_ = located.has_value();
+  return located;
+}
+
+void FramePipeline::wait_until_idle(TimePoint next_due, const std::stop_token& stop) {
+  options_.gate->wait(next_due - periods(kInTime), stop);
+}
+
 std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
   if (next_ == end_) return std::nullopt;
   const int index = next_++;
-  const WallClock::time_point start = WallClock::now();
+  const bool is_first = index == begin_;
+  const bool at_rate = options_.rate != 0;
+  const auto due = [&] { return first_arrival_ + periods(index - begin_); };
+  if (at_rate && !is_first) wait_until_idle(due(), stop);
+  const TimePoint start = WallClock::now();
   FrameResult result = source_.load(index);
-  const WallClock::time_point loaded = WallClock::now();
+  const TimePoint loaded = WallClock::now();
   const double decode_ms = milliseconds(loaded - start);
-  if (options_.rate == 0) return Arrived{std::move(result), decode_ms, std::nullopt};
-
-  if (index == begin_) first_arrival_ = loaded;
-  const WallClock::time_point due =
-      first_arrival_ + std::chrono::duration_cast<WallClock::duration>(
-                           std::chrono::duration<double>((index - begin_) / options_.rate));
-  if (!wait_until(due, stop)) return std::nullopt;
-  return Arrived{std::move(result), decode_ms, due};
+  if (is_first) first_arrival_ = loaded;
+  if (at_rate && !wait_until(due(), stop)) return std::nullopt;
+  options_.gate->begin();
+  if (!at_rate) return Arrived{std::move(result), decode_ms, std::nullopt};
+  return Arrived{std::move(result), decode_ms, due()};
 }
 
 std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
+  if (last_due_) wait_until_idle(*last_due_ + periods(1), stop);
   options_.settle();
   std::optional<Arrived> arrived = arrived_.next(stop);
   if (!arrived || options_.stop.stop_requested()) return std::nullopt;
@@ -62,6 +81,7 @@ std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
   located.result = std::move(arrived->result);
   located.tracking_began = WallClock::now();
   located.arrival = arrived->due.value_or(located.tracking_began);
+  last_due_ = arrived->due;
   if (const auto* frame = std::get_if<Frame>(&located.result)) located.tracked = track_(*frame);
   located.tracking_ended = WallClock::now();
   return located;

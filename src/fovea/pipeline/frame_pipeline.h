@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 
+#include "fovea/base/idle_gate.h"
 #include "fovea/base/producer.h"
 #include "fovea/base/wall_clock.h"
 #include "fovea/pipeline/tracker.h"
@@ -18,8 +20,11 @@ struct FramePipelineOptions {
   double rate = 0;
   bool overlap = true;        ///< false: one after the other, all in the thread that takes them
   std::stop_token stop = {};  ///< ends after the frames that tracking has begun
-  /// Called by the thread that tracks before it waits for a frame: what nobody waits for.
+  /// Called by the thread that tracks before it waits for a frame: what nobody waits for. At a
+  /// rate, it and decoding leave the processors to frames that have arrived, while there is time.
   std::function<void()> settle = [] {};
+  /// Knows of each frame from its arrival until its taker has done with it.
+  std::shared_ptr<IdleGate> gate = std::make_shared<IdleGate>();
 };
 
 /// A frame that has been tracked, or was skipped.
@@ -44,23 +49,29 @@ class FramePipeline {
                 const FramePipelineOptions& options);
 
   /// The next frame, in order; nothing at the end. Errors of decoding and tracking come when all
-  /// frames before have been taken.
-  std::optional<LocatedFrame> next() { return located_.next(); }
+  /// frames before have been taken. Who asks has done with the frame before.
+  std::optional<LocatedFrame> next();
 
  private:
+  using TimePoint = WallClock::time_point;
   struct Arrived {
     FrameResult result;
     double decode_ms;
-    std::optional<WallClock::time_point> due;
+    std::optional<TimePoint> due;
   };
   std::optional<Arrived> arrive(const std::stop_token& stop);
   std::optional<LocatedFrame> locate(const std::stop_token& stop);
+  WallClock::duration periods(double count) const;
+  /// Waits until no frame is under way, but not for longer than one due then leaves time for.
+  void wait_until_idle(TimePoint next_due, const std::stop_token& stop);
 
   const FrameSource& source_;
   int begin_, next_, end_;
   std::function<TrackedFrame(const Frame&)> track_;
   FramePipelineOptions options_;
-  WallClock::time_point first_arrival_;
+  TimePoint first_arrival_;
+  std::optional<TimePoint> last_due_;  // of the frames tracked
+  bool taken_ = false;                 // whether the taker has a frame
   Producer<Arrived> arrived_;
   std::stop_callback<std::function<void()>> stop_arrivals_;  // nobody waits for a frame not due yet
   Producer<LocatedFrame> located_;

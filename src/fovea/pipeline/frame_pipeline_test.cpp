@@ -118,6 +118,30 @@ TEST(FramePipeline, WaitingCountsAtARateAndNotWithoutOne) {
   }
 }
 
+// A frame in hand has the processors for itself while the next one is far from due.
+TEST(FramePipeline, AtARateWhatCanWaitWaitsForTheFrameInHand) {
+  const Numbers source;
+  std::atomic<int> settled = 0;
+  std::stop_source stop;
+  FramePipeline frames(source, 0, 9, number_of,
+                       {.rate = 1e-3, .stop = stop.get_token(), .settle = [&] { ++settled; }});
+  ASSERT_TRUE(frames.next());
+  std::this_thread::sleep_for(5ms);  // so that it could go on
+  EXPECT_EQ(source.loaded, 1);
+  EXPECT_EQ(settled, 1);  // before the first frame
+  std::jthread taker([&] { EXPECT_FALSE(frames.next()); });
+  while (source.loaded < 2 || settled < 2) std::this_thread::yield();
+  stop.request_stop();
+}
+
+TEST(FramePipeline, AFrameInHandForLongHoldsUpNoOther) {
+  const Numbers source;
+  FramePipeline frames(source, 10, 14, number_of, {.rate = 100});
+  ASSERT_TRUE(frames.next());
+  while (source.loaded < 2) std::this_thread::yield();  // it is about to be due
+  EXPECT_TRUE(frames.next());
+}
+
 TEST(FramePipeline, AStopEndsTheWaitForAFrameNotDue) {
   const Numbers source;
   for (const bool overlap : {false, true}) {

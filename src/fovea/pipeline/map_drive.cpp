@@ -179,6 +179,7 @@ class MapRun {
   const MapJob& job_;
   MapMeta meta_;
   bool threaded_;
+  std::shared_ptr<IdleGate> gate_ = std::make_shared<IdleGate>();
   MapKeeper keeper_;
   Mapper mapper_;
   DriveLog log_;
@@ -190,6 +191,11 @@ class MapRun {
 
 MapKeeperOptions MapRun::keeper_options() {
   MapKeeperOptions options{threaded_, job_.memory};
+  if (threaded_ && job_.rate > 0) {
+    options.pause = [gate = gate_](WallClock::time_point latest, const std::stop_token& hurry) {
+      gate->wait(latest, hurry);
+    };
+  }
   if (job_.observer != nullptr) {
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
       job_.observer->map_changed(changes, rows, mapper_.map());
@@ -236,7 +242,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
   FramePipeline frames(source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
-                       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle(); }});
+                       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle(); }, gate_});
   while (std::optional<LocatedFrame> located = frames.next()) {
     FrameRecord record = map_frame(mapper_, source_, *located);
     check_calibration(*located, record);

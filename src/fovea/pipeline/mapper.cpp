@@ -94,8 +94,8 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
   if (record.status != FrameStatus::kHeldOut) {
     if (options_.moving.remove) {
       record.figures["moving_removed"] = as_figure(clock.time("filter", [&] {
-        return moving_things_.observe(map_, scan_lidar, record.T_odom_lidar, T_odom_local_,
-                                      frame.index);
+        return moving_things_.observe(map_, *std::move(tracked.views.ranges), record.T_odom_lidar,
+                                      T_odom_local_, frame.index);
       }));
     }
     if (options_.foveal_enabled) {
@@ -274,8 +274,8 @@ void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool look
   follow_submaps(tracker_.submaps());
   if (looked_at) {
     bring_near_(map_, (tracker_.T_local_odom() * record.T_odom_lidar).translation(), reach_);
-    moving_things_.replay(map_, scan_lidar, record.T_odom_lidar, tracker_.T_local_odom().inverse(),
-                          record.index);
+    moving_things_.replay(map_, RangeImage(scan_lidar.position), record.T_odom_lidar,
+                          tracker_.T_local_odom().inverse(), record.index);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -199,22 +200,20 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   block.known_points = tile.kept.size();
 }
 
-std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map,
-                                                     const PointCloud& scan_lidar,
+std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map, RangeImage scan,
                                                      const RigidMotion& T_odom_lidar,
                                                      const RigidMotion& T_odom_local, int frame) {
-  scans_.push_back({RangeImage(scan_lidar.position), T_odom_lidar.inverse()});
+  scans_.push_back({std::move(scan), T_odom_lidar.inverse()});
   if (scans_.size() > kJudges) scans_.pop_front();
   std::vector<Tile> tiles = tiles_near(map, T_odom_local.inverse() * T_odom_lidar.translation());
   parallel_for(tiles.size(), 1, [&](std::size_t i) { look(map, T_odom_local, frame, tiles[i]); });
   return tiles;
 }
 
-std::size_t MovingThings::observe(TileMap& map, const PointCloud& scan_lidar,
-                                  const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
-                                  int frame) {
+std::size_t MovingThings::observe(TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
+                                  const RigidMotion& T_odom_local, int frame) {
   if (!options_.remove) return 0;
-  std::vector<Tile> tiles = gather(map, scan_lidar, T_odom_lidar, T_odom_local, frame);
+  std::vector<Tile> tiles = gather(map, std::move(scan), T_odom_lidar, T_odom_local, frame);
   parallel_for(tiles.size(), 1, [&](std::size_t i) { select_kept(map, tiles[i]); });
   const std::size_t before = map.size();
   for (const Tile& tile : tiles) {
@@ -224,10 +223,9 @@ std::size_t MovingThings::observe(TileMap& map, const PointCloud& scan_lidar,
   return before - map.size();
 }
 
-void MovingThings::replay(const TileMap& map, const PointCloud& scan_lidar,
-                          const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
-                          int frame) {
-  if (options_.remove) gather(map, scan_lidar, T_odom_lidar, T_odom_local, frame);
+void MovingThings::replay(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
+                          const RigidMotion& T_odom_local, int frame) {
+  if (options_.remove) gather(map, std::move(scan), T_odom_lidar, T_odom_local, frame);
 }
 
 }  // namespace fovea

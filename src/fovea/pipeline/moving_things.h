@@ -38,11 +38,11 @@ class MovingThings {
   /// Looks at the map through a scan and removes the points of voxels that it and the scans before
   /// see through: something was there and has gone; and what came with them within 40 cm beneath.
   /// @return how many points were removed
-  std::size_t observe(TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_odom_lidar,
+  std::size_t observe(TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
                       const RigidMotion& T_odom_local, int frame);
 
   /// The same without removing: scans that a map has been built from (resume).
-  void replay(const TileMap& map, const PointCloud& scan_lidar, const RigidMotion& T_odom_lidar,
+  void replay(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
               const RigidMotion& T_odom_local, int frame);
 
  private:
@@ -71,9 +71,8 @@ class MovingThings {
   std::vector<Tile> tiles_near(const TileMap& map, const Eigen::Vector3d& center_local);
   void look(const TileMap& map, const RigidMotion& T_odom_local, int frame, Tile& tile) const;
   void select_kept(const TileMap& map, Tile& tile) const;
-  std::vector<Tile> gather(const TileMap& map, const PointCloud& scan_lidar,
-                           const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
-                           int frame);
+  std::vector<Tile> gather(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
+                           const RigidMotion& T_odom_local, int frame);
 
   MovingOptions options_;
   std::map<TileId, Block> blocks_;  // of the tiles within reach

@@ -27,6 +27,8 @@ PointCloud scan_of(float thing) {
   return scan;
 }
 
+RangeImage seen(float thing) { return RangeImage(scan_of(thing).position); }
+
 /// Points of a face at x, as a frame adds them to a map.
 PointCloud face_points(float x, int frame) {
   PointCloud points;
@@ -58,11 +60,11 @@ TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
   map.add(face_points(20, 0));  // the wall itself
   const std::size_t all = map.size();
   for (int frame = 1; frame <= 3; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, frame), 0u) << "too few scans yet";
+    EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, frame), 0u) << "too few scans yet";
   }
-  EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, 4), face);
+  EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, 4), face);
   EXPECT_EQ(map.size(), all - face);
-  EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, 5), 0u);
+  EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, 5), 0u);
 }
 
 // A road 1 m below the LiDAR: rays graze it, so that the lowest decimetres above it are never seen
@@ -81,7 +83,7 @@ TEST(MovingThings, TheFootOfWhatHasGoneGoesToo) {
   map.add(face);
   std::size_t removed = 0;
   for (int frame = 2; frame < 10; ++frame) {
-    removed += things.observe(map, scan, kHere, kHere, frame);
+    removed += things.observe(map, RangeImage(scan.position), kHere, kHere, frame);
   }
   EXPECT_EQ(removed, face.size());
   EXPECT_EQ(map.size(), road.size());
@@ -93,7 +95,7 @@ TEST(MovingThings, WhatIsSeenNowAndThenStays) {
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 40; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(frame % 4 == 0 ? 10.f : 0.f), kHere, kHere, frame), 0u);
+    EXPECT_EQ(things.observe(map, seen(frame % 4 == 0 ? 10.f : 0.f), kHere, kHere, frame), 0u);
   }
 }
 
@@ -103,7 +105,7 @@ TEST(MovingThings, WhatIsHiddenStays) {
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 20; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(6), kHere, kHere, frame), 0u);
+    EXPECT_EQ(things.observe(map, seen(6), kHere, kHere, frame), 0u);
   }
 }
 
@@ -116,11 +118,11 @@ TEST(MovingThings, MarksWhatCameWhereScansSawThrough) {
     return std::count(marks.begin(), marks.end(), 1);
   };
   EXPECT_EQ(marked(10), 0) << "nothing is known yet";
-  for (int frame = 0; frame < 6; ++frame) things.observe(map, scan_of(0), kHere, kHere, frame);
+  for (int frame = 0; frame < 6; ++frame) things.observe(map, seen(0), kHere, kHere, frame);
   EXPECT_EQ(marked(10), std::int64_t(face_points(10, 9).size()));
   EXPECT_EQ(marked(20), 0);
   // It stays there: after as many scans it is part of the world.
-  for (int frame = 6; frame < 12; ++frame) things.observe(map, scan_of(10), kHere, kHere, frame);
+  for (int frame = 6; frame < 12; ++frame) things.observe(map, seen(10), kHere, kHere, frame);
   EXPECT_EQ(marked(10), 0);
 }
 
@@ -132,7 +134,7 @@ TEST(MovingThings, SwitchedOffNothingGoes) {
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 20; ++frame) {
-    EXPECT_EQ(things.observe(map, scan_of(0), kHere, kHere, frame), 0u);
+    EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, frame), 0u);
   }
   const auto marks = things.marks(face_points(10, 20), kHere);
   EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 0);
@@ -144,11 +146,11 @@ TEST(MovingThings, ReplayedScansLeadToTheSameDecision) {
   map.add(face_points(10, 0));
   TileMap again = map;
   MovingThings first({}), resumed({});
-  for (int frame = 1; frame <= 2; ++frame) first.observe(map, scan_of(0), kHere, kHere, frame);
-  for (int frame = 1; frame <= 2; ++frame) resumed.replay(again, scan_of(0), kHere, kHere, frame);
+  for (int frame = 1; frame <= 2; ++frame) first.observe(map, seen(0), kHere, kHere, frame);
+  for (int frame = 1; frame <= 2; ++frame) resumed.replay(again, seen(0), kHere, kHere, frame);
   for (int frame = 3; frame <= 4; ++frame) {
-    EXPECT_EQ(first.observe(map, scan_of(0), kHere, kHere, frame),
-              resumed.observe(again, scan_of(0), kHere, kHere, frame));
+    EXPECT_EQ(first.observe(map, seen(0), kHere, kHere, frame),
+              resumed.observe(again, seen(0), kHere, kHere, frame));
   }
   EXPECT_EQ(map.size(), 0u);
   EXPECT_EQ(again.size(), 0u);

@@ -45,6 +45,9 @@ bool shows_something(const Image& image, std::map<std::string, double>& figures)
 ScanViews view_scan(const PointCloud& scan_lidar, const Frame& frame,
                     const std::vector<Camera>& cameras, const MapperOptions& options) {
   ScanViews views;
+  if (options.moving.remove) {
+    views.clock.time("filter", [&] { views.ranges.emplace(scan_lidar.position); });
+  }
   if (!options.foveal_enabled) return views;
   views.of_camera.resize(cameras.size());
   for (std::size_t k = 0; k < cameras.size(); ++k) {

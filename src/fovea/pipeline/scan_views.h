@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/mapping/image_pyramid.h"
+#include "fovea/mapping/moving/range_image.h"
 #include "fovea/mapping/surface_samples.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/stage_clock.h"
@@ -30,6 +31,7 @@ struct ScanViews {
   /// By camera of the drive; none of those whose image is missing or blank, and none at all unless
   /// a foveal region is mapped.
   std::vector<std::optional<ScanView>> of_camera;
+  std::optional<RangeImage> ranges;       ///< of the whole scan, where moving things are removed
   std::map<std::string, double> figures;  ///< for the frame's record
   StageClock clock;
 };
