@@ -72,11 +72,14 @@ MapKeeper::MapKeeper(std::unique_ptr<MapWriter> writer, const MapKeeperOptions& 
   if (options.threaded) worker_.post([] { give_way(kNice); });
 }
 
-MapKeeper::~MapKeeper() { wait_for_checkpoint(); }
-
-void MapKeeper::wait_for_checkpoint() {
+MapKeeper::~MapKeeper() {
   hurry_.request_stop();
   if (written_.valid()) written_.wait();
+}
+
+void MapKeeper::end_checkpoint() {
+  hurry_.request_stop();
+  if (written_.valid()) written_.get();
 }
 
 void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, double radius) {
@@ -105,8 +108,7 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
 bool MapKeeper::is_writing() const { return written_.valid() && !is_ready(written_); }
 
 TileChanges MapKeeper::take_changes(TileMap& map, const MapRows& rows) {
-  wait_for_checkpoint();
-  if (written_.valid()) written_.get();
+  end_checkpoint();
   TileChanges changes = map.take_changes();
   if (on_checkpoint_) on_checkpoint_(changes, rows);
   return changes;
@@ -148,8 +150,7 @@ bool MapKeeper::needs_memory(const TileMap& map) const {
 }
 
 void MapKeeper::finish() {
-  wait_for_checkpoint();
-  if (written_.valid()) written_.get();
+  end_checkpoint();
   if (commit_at_end_) worker_.post([this] { writer_->commit(); }).get();
 }
 

@@ -77,8 +77,8 @@ class MapKeeper {
   void finish(TileMap& map, MapRows rows);
 
  private:
-  /// Waits for the latest checkpoint; what it throws is not thrown here.
-  void wait_for_checkpoint();
+  /// Waits for the latest checkpoint, which need not be patient any more. Its error comes out here.
+  void end_checkpoint();
   TileChanges take_changes(TileMap& map, const MapRows& rows);
   void write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared);
 

@@ -56,19 +56,19 @@ void FramePipeline::wait_until_idle(TimePoint next_due, const std::stop_token& s
 std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
   if (next_ == end_) return std::nullopt;
   const int index = next_++;
-  const bool is_first = index == begin_;
-  const bool at_rate = options_.rate != 0;
-  const auto due = [&] { return first_arrival_ + periods(index - begin_); };
-  if (at_rate && !is_first) wait_until_idle(due(), stop);
+  const bool is_first = index == begin_, at_rate = options_.rate != 0;
+  std::optional<TimePoint> due;
+  if (at_rate && !is_first) {
+    due = first_arrival_ + periods(index - begin_);
+    wait_until_idle(*due, stop);
+  }
   const TimePoint start = WallClock::now();
   FrameResult result = source_.load(index);
   const TimePoint loaded = WallClock::now();
-  const double decode_ms = milliseconds(loaded - start);
-  if (is_first) first_arrival_ = loaded;
-  if (at_rate && !wait_until(due(), stop)) return std::nullopt;
+  if (at_rate && is_first) due = first_arrival_ = loaded;
+  if (due && !wait_until(*due, stop)) return std::nullopt;
   options_.gate->begin();
-  if (!at_rate) return Arrived{std::move(result), decode_ms, std::nullopt};
-  return Arrived{std::move(result), decode_ms, due()};
+  return Arrived{std::move(result), milliseconds(loaded - start), due};
 }
 
 std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {

@@ -98,15 +98,11 @@ Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motio
     placed.scan_lidar = clock.time("register", [&] {
       return compensated(frame.scan, compensates() ? guess.motion : std::nullopt);
     });
-    RefinedPose refined;
-    const auto locate_it = [&] {
-      refined = locate(placed.scan_lidar, motion, guess, given_pose, clock);
-    };
-    // Where it is doubted which of two scans it will be, both are looked at: that takes no longer.
-    run_both(locate_it, [&] {
-      if (view) placed.views = view(placed.scan_lidar, placed.motion);
-    });
-    placed.refined = std::move(refined);
+    // Where it is doubted which of two scans it will be, both are looked at.
+    run_both([&] { placed.refined = locate(placed.scan_lidar, motion, guess, given_pose, clock); },
+             [&] {
+               if (view) placed.views = view(placed.scan_lidar, placed.motion);
+             });
     if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
   }
   return std::move(*best);
