@@ -66,7 +66,7 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   points_cam.views.resize(n);
   points_cam.spread.resize(n);
   points_cam.weight.resize(n);
-  if ((view.gain != 1).any()) {
+  if (view.is_exposure_matched()) {
     for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
   }
   const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight,

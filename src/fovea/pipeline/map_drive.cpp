@@ -241,8 +241,9 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     if (place < job_.given_poses.size()) given = job_.given_poses[place];
     return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
-  FramePipeline frames(source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
-                       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle(); }, gate_});
+  FramePipeline frames(
+      source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
+      {job_.rate, threaded_, job_.stop, [this] { mapper_.settle_tracking(); }, gate_});
   while (std::optional<LocatedFrame> located = frames.next()) {
     FrameRecord record = map_frame(mapper_, source_, *located);
     check_calibration(*located, record);
@@ -253,6 +254,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     }
     if (progress) progress({static_cast<int>(log_.size()), total, mapper_.map().size(), &record});
     latest_ = std::move(record);
+    mapper_.settle_map();
     const bool due = log_.fresh() >= job_.checkpoint_frames && !keeper_.is_writing();
     if (log_.has_mapped() && (due || keeper_.needs_memory(mapper_.map()))) {
       keeper_.checkpoint(mapper_.map(), fresh_rows(/*last=*/false),

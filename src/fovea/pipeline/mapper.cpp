@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/pipeline/foveal_query.h"
 
@@ -81,6 +82,7 @@ TrackedFrame Mapper::track(const Frame& frame, bool held_out,
 }
 
 FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
+  settle_map();
   FrameRecord record = std::move(tracked.record);
   StageClock& clock = tracked.clock;
   clock.add(tracked.views.clock);
@@ -110,6 +112,13 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
   }
   record.milliseconds = clock.milliseconds();
   return record;
+}
+
+void Mapper::settle_map() {
+  if (occupancy_ && added_near_) {
+    occupancy_->follow(map_, *added_near_, options_.foveal.far_range + kMargin);
+  }
+  added_near_.reset();
 }
 
 void Mapper::follow_submaps(const std::vector<RigidMotion>& poses) {
@@ -150,16 +159,22 @@ PointCloud Mapper::filter_rays(const PointCloud& dense_cam, const FovealRegion& 
   return keep_visible(dense_cam, verdicts, record.figures);
 }
 
+bool Mapper::looks_at_map() const {
+  return options_.ray_filter.mode == RayFilterMode::kScan ||
+         options_.texture.views == TextureViews::kMean;
+}
+
+void Mapper::look_at_map(const FovealRegion& region, const RigidMotion& T_local_lidar) {
+  if (!looks_at_map()) return;
+  seen_map_.look(map_, region, region.camera().T_cam_lidar * T_local_lidar.inverse(),
+                 occupancy_ ? occupancy_->cell() : options_.texture.footprint);
+}
+
 PointCloud Mapper::visible_part(PointCloud dense_cam, const FovealRegion& region,
                                 const RigidMotion& T_local_lidar, FrameRecord& record) {
-  const bool is_scan_mode = options_.ray_filter.mode == RayFilterMode::kScan;
   std::vector<std::uint8_t> before;
-  if (is_scan_mode || options_.texture.views == TextureViews::kMean) {
-    seen_map_.look(map_, region, region.camera().T_cam_lidar * T_local_lidar.inverse(),
-                   occupancy_ ? occupancy_->cell() : options_.texture.footprint);
-    if (is_scan_mode) before = seen_map_.marks_before(dense_cam);
-    seen_map_.put_in_front(dense_cam);
-  }
+  if (options_.ray_filter.mode == RayFilterMode::kScan) before = seen_map_.marks_before(dense_cam);
+  if (looks_at_map()) seen_map_.put_in_front(dense_cam);
   switch (options_.ray_filter.mode) {
     case RayFilterMode::kPaper:
       return filter_rays(dense_cam, region, T_local_lidar, record);
@@ -172,50 +187,70 @@ PointCloud Mapper::visible_part(PointCloud dense_cam, const FovealRegion& region
   return dense_cam;
 }
 
+std::optional<ColorView> Mapper::colors_of(const ScanView& view, FrameRecord& record) const {
+  if (!view.pyramid) return std::nullopt;
+  ColorView colors{*view.pyramid, view.camera, record.index, options_.texture.footprint};
+  const SeenMap::Comparison before = seen_map_.compare(colors);
+  note_texture_error(before, record);
+  if (is_exposure_off(before.gain)) {
+    colors.gain = matching_gain(before.gain);
+    ++record.figures["exposure_off"];
+  }
+  return colors;
+}
+
 void Mapper::map_view(ScanView view, const Image& image, FrameRecord& record, StageClock& clock) {
   const Camera& camera = view.camera;
   const RigidMotion& T_local_lidar = record.T_local_lidar;
   const FovealRegion region(foveal_options_of(options_, camera.index), camera);
   const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
-  PointCloud dense_cam = densified(view, T_local_cam, clock);
-  const std::size_t oblique = clock.time(
-      "fovea", [&] { return limit_incidence(dense_cam, options_.foveal.max_incidence); });
-  record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
-  record.figures["points_oblique"] += as_figure(oblique);
 
+  // What the scan has to add, and what of the map is in view.
+  StageClock beside;
+  PointCloud dense_cam;
+  run_both(
+      [&] {
+        dense_cam = densified(view, T_local_cam, clock);
+        const std::size_t oblique = clock.time(
+            "fovea", [&] { return limit_incidence(dense_cam, options_.foveal.max_incidence); });
+        record.figures["points_upsampled"] += as_figure(dense_cam.size() + oblique);
+        record.figures["points_oblique"] += as_figure(oblique);
+      },
+      [&] { beside.time("filter", [&] { look_at_map(region, T_local_lidar); }); });
   PointCloud visible_cam = clock.time(
       "filter", [&] { return visible_part(std::move(dense_cam), region, T_local_lidar, record); });
-  clock.time("texture", [&] {
-    if (!view.pyramid) {  // the paper's one view
-      colour_points(visible_cam, {image, camera, record.index}, options_.texture);
-      return;
-    }
-    ColorView colors{*view.pyramid, camera, record.index, options_.texture.footprint};
-    const SeenMap::Comparison before = seen_map_.compare(colors);
-    note_texture_error(before, record);
-    if (is_exposure_off(before.gain)) {
-      colors.gain = matching_gain(before.gain);
-      ++record.figures["exposure_off"];
-    } else {
-      record.figures["points_recoloured"] += as_figure(seen_map_.recolour(map_, colors));
-    }
-    colour_new_points(visible_cam, colors);
-  });
-  visible_cam.normal.clear();  // a map has none
-  PointCloud added_local =
-      transform_cloud(std::move(visible_cam), T_local_cam, T_local_lidar.translation());
-  if (options_.moving.remove) {
-    record.figures["filter_moving"] += as_figure(clock.time("filter", [&] {
-      return added_local.drop(moving_things_.marks(added_local, T_odom_local_));
-    }));
-  }
-  clock.time("store", [&] {
-    // The cells' record of the map must not miss what goes before the next frame.
-    map_.add(added_local);
-    if (occupancy_) {
-      occupancy_->follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
-    }
-  });
+
+  // Colours of what is known, and of what is new.
+  const std::optional<ColorView> colors =
+      clock.time("texture", [&] { return colors_of(view, record); });
+  std::size_t recoloured = 0, moving = 0;
+  PointCloud added_local;
+  run_both(
+      [&] {
+        if (!colors || colors->is_exposure_matched()) return;
+        recoloured = clock.time("texture", [&] { return seen_map_.recolour(map_, *colors); });
+      },
+      [&] {
+        beside.time("texture", [&] {
+          if (colors) {
+            colour_new_points(visible_cam, *colors);
+          } else {  // the paper's one view
+            colour_points(visible_cam, {image, camera, record.index}, options_.texture);
+          }
+        });
+        visible_cam.normal.clear();  // a map has none
+        added_local =
+            transform_cloud(std::move(visible_cam), T_local_cam, T_local_lidar.translation());
+        if (!options_.moving.remove) return;
+        moving = beside.time("filter", [&] {
+          return added_local.drop(moving_things_.marks(added_local, T_odom_local_));
+        });
+      });
+  clock.add(beside);
+  if (colors) record.figures["points_recoloured"] += as_figure(recoloured);
+  if (options_.moving.remove) record.figures["filter_moving"] += as_figure(moving);
+  clock.time("store", [&] { map_.add(added_local); });
+  added_near_ = T_local_cam.translation();
   record.figures["points_added"] += as_figure(added_local.size());
 }
 

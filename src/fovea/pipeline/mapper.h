@@ -48,7 +48,9 @@ class Mapper {
   FrameRecord add(const Frame& frame, TrackedFrame tracked);
   /// What tracking the next frame needs of the last one and its map does not; track() does it where
   /// it was not done before. In the thread of track().
-  void settle() { tracker_.settle(); }
+  void settle_tracking() { tracker_.settle(); }
+  /// The same of add(), in its thread.
+  void settle_map();
 
   const TileMap& map() const { return map_; }
   TileMap& map() { return map_; }  ///< for a store
@@ -66,12 +68,16 @@ class Mapper {
   void replay(const PointCloud& scan, const FrameRecord& record, bool looked_at);
   /// What one camera sees, into the map.
   void map_view(ScanView view, const Image& image, FrameRecord& record, StageClock& clock);
+  bool looks_at_map() const;
+  void look_at_map(const FovealRegion& region, const RigidMotion& T_local_lidar);
+  /// How a view colours points, after a comparison with the map; none with the paper's one view.
+  std::optional<ColorView> colors_of(const ScanView& view, FrameRecord& record) const;
   /// The foveal points and what is sampled between them.
   PointCloud densified(ScanView& view, const RigidMotion& T_local_cam, StageClock& clock);
   /// What the paper's ray filter leaves.
   PointCloud filter_rays(const PointCloud& dense_cam, const FovealRegion& region,
                          const RigidMotion& T_local_lidar, FrameRecord& record);
-  /// What the ray filter leaves; the map is looked at where it or the texture asks for that.
+  /// What the ray filter leaves. The map has been looked at.
   PointCloud visible_part(PointCloud dense_cam, const FovealRegion& region,
                           const RigidMotion& T_local_lidar, FrameRecord& record);
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
@@ -89,7 +95,9 @@ class Mapper {
   MovingThings moving_things_;
   TileMap map_;
   SeenMap seen_map_;
-  std::optional<Occupancy> occupancy_;                  // where surfaces are sampled on a grid
+  std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid
+  /// Where points have come of which `occupancy_` does not know yet.
+  std::optional<Eigen::Vector3d> added_near_;
   RigidMotion T_odom_local_ = RigidMotion::Identity();  // as of the frame at hand
 };
 

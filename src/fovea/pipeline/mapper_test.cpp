@@ -376,6 +376,7 @@ TEST(Mapper, TrackingAheadChangesNothing) {
     const FrameRecord record =
         ahead.add(std::get<Frame>(drive.load(i)), std::move(tracked[std::size_t(i)]));
     EXPECT_EQ(record.figures, records[std::size_t(i)].figures) << i;
+    if (i % 2 == 0) ahead.settle_map();  // where it is not called, the next frame does it
   }
   EXPECT_GT(ahead.map().submaps().size(), 2u);
   expect_same_maps(stepwise.map(), ahead.map());

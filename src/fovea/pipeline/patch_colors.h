@@ -14,6 +14,7 @@ struct ColorView {
   double footprint = 0.02;  ///< m: edge of the patch of surface whose mean colour a point gets
   /// By which the image's colours are multiplied, a channel.
   Eigen::Array3f gain = Eigen::Array3f::Ones();
+  bool is_exposure_matched() const { return (gain != 1).any(); }
 };
 
 /// Where some points are in a view.
