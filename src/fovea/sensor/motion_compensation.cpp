@@ -1,9 +1,11 @@
 #include "fovea/sensor/motion_compensation.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
-#include <utility>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
@@ -11,54 +13,107 @@
 namespace fovea {
 namespace {
 
-/// exp_se3(velocity * dt) for many dt: the axis does not change, only the angle along it does, so a
-/// point costs one sine and one cosine.
-class ConstantTwist {
+/// Some points of a sweep, or directions there, and when they were measured: a row for each number,
+/// on which the compiler works four wide.
+struct SweepBlock {
+  static constexpr std::size_t kSize = 256;
+  using Row = std::array<double, kSize>;
+  alignas(64) Row x{}, y{}, z{}, dt{}, sine{}, versine{};  // m, s; of the angle turned in dt
+
+  void take(std::span<const Eigen::Vector3f> from) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      x[i] = double(from[i].x());
+      y[i] = double(from[i].y());
+      z[i] = double(from[i].z());
+    }
+  }
+  void give(std::span<Eigen::Vector3f> to) const {
+    for (std::size_t i = 0; i < to.size(); ++i)
+      to[i] = Eigen::Vector3d(x[i], y[i], z[i]).cast<float>();
+  }
+};
+
+/// exp_se3(velocity * dt) after half the acceleration times dt^2, for many dt: the axis does not
+/// change, only the angle along it does, so a point costs one sine and one cosine. What the
+/// acceleration adds is a few milliradians at most, for which no sine is needed.
+class SweptMotion {
  public:
-  explicit ConstantTwist(const Twist& velocity)
-      : rate_(velocity.head<3>().norm()), v_(velocity.tail<3>()) {
+  explicit SweptMotion(const SweepMotion& motion)
+      : rate_(motion.velocity.head<3>().norm()),
+        turning_(motion.acceleration.head<3>() / 2),
+        speeding_(motion.acceleration.tail<3>() / 2) {
+    const Eigen::Vector3d v = motion.velocity.tail<3>();
     if (rate_ < kNegligibleRate) {
       rate_ = 0;
+      along_ = v;
       return;
     }
-    axis_ = velocity.head<3>() / rate_;
-    v_along_ = axis_.dot(v_) * axis_;
-    v_across_ = (v_ - v_along_) / rate_;
-    v_turned_ = axis_.cross(v_) / rate_;
+    axis_ = motion.velocity.head<3>() / rate_;
+    along_ = axis_.dot(v) * axis_;
+    across_ = (v - along_) / rate_;
+    turned_ = axis_.cross(v) / rate_;
   }
 
-  /// Rodrigues; `v` is 1 less the cosine.
-  Eigen::Vector3d rotate(const Eigen::Vector3d& p, double s, double v) const {
-    return p + s * axis_.cross(p) + v * (axis_.dot(p) * axis_ - p);
+  /// The angles of a block's times. Of the small ones within a sweep by their series, to 1e-14: a
+  /// library's sine for each of 100,000 points takes as long as all else.
+  void turn(SweepBlock& block) const {
+    constexpr double kSmall = 0.25;
+    double largest = 0;
+    for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
+      const double a = rate_ * block.dt[i], b = a * a;
+      block.sine[i] = a * (1 - b * (1. / 6 - b * (1. / 120 - b * (1. / 5040 - b / 362880))));
+      block.versine[i] =
+          b * (1. / 2 - b * (1. / 24 - b * (1. / 720 - b * (1. / 40320 - b / 3628800))));
+      largest = std::max(largest, std::abs(a));
+    }
+    if (largest <= kSmall) return;
+    for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
+      block.sine[i] = std::sin(rate_ * block.dt[i]);
+      block.versine[i] = 1 - std::cos(rate_ * block.dt[i]);
+    }
   }
 
-  /// Point `p` (and its direction `normal`, where there is one) moved by the motion over `dt`.
-  Eigen::Vector3d move(const Eigen::Vector3d& p, double dt, Eigen::Vector3f* normal) const {
-    if (rate_ == 0) return p + dt * v_;
-    const auto [s, v] = sine_and_versine(rate_ * dt);
-    if (normal != nullptr) *normal = rotate(normal->cast<double>(), s, v).cast<float>();
-    return rotate(p, s, v) + dt * v_along_ + s * v_across_ + v * v_turned_;
+  /// Moves a block's points by the motion over their times, or turns its directions (Rodrigues).
+  template <bool kPoints>
+  void move(SweepBlock& block) const {
+    // Copies: the compiler cannot know that the rows do not overlap what `this` refers to.
+    const Eigen::Vector3d axis = axis_, turning = turning_, along = along_, across = across_,
+                          turned = turned_, speeding = speeding_;
+    for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
+      const double dt = block.dt[i], s = block.sine[i], v = block.versine[i], dt2 = dt * dt;
+      const double x = block.x[i], y = block.y[i], z = block.z[i];
+      double qx = x + dt2 * (turning.y() * z - turning.z() * y);
+      double qy = y + dt2 * (turning.z() * x - turning.x() * z);
+      double qz = z + dt2 * (turning.x() * y - turning.y() * x);
+      if constexpr (kPoints) {
+        qx += dt2 * speeding.x();
+        qy += dt2 * speeding.y();
+        qz += dt2 * speeding.z();
+      }
+      const double on_axis = axis.x() * qx + axis.y() * qy + axis.z() * qz;
+      double px = qx + s * (axis.y() * qz - axis.z() * qy) + v * (on_axis * axis.x() - qx);
+      double py = qy + s * (axis.z() * qx - axis.x() * qz) + v * (on_axis * axis.y() - qy);
+      double pz = qz + s * (axis.x() * qy - axis.y() * qx) + v * (on_axis * axis.z() - qz);
+      if constexpr (kPoints) {
+        px += dt * along.x() + s * across.x() + v * turned.x();
+        py += dt * along.y() + s * across.y() + v * turned.y();
+        pz += dt * along.z() + s * across.z() + v * turned.z();
+      }
+      block.x[i] = px;
+      block.y[i] = py;
+      block.z[i] = pz;
+    }
   }
 
  private:
-  /// sin(a) and 1 - cos(a). Of the small angles within a sweep by their series, to 1e-14: a
-  /// library's sine for each of 100,000 points takes as long as all else.
-  static std::pair<double, double> sine_and_versine(double a) {
-    constexpr double kSmall = 0.25;
-    if (!(std::abs(a) <= kSmall)) return {std::sin(a), 1 - std::cos(a)};
-    const double b = a * a;
-    return {a * (1 - b * (1. / 6 - b * (1. / 120 - b * (1. / 5040 - b * (1. / 362880))))),
-            b * (1. / 2 - b * (1. / 24 - b * (1. / 720 - b * (1. / 40320 - b * (1. / 3628800)))))};
-  }
-
   static constexpr double kNegligibleRate = 1e-9;  // rad/s: below a micrometre at 1 km in a second
 
   double rate_;
-  Eigen::Vector3d v_;
+  Eigen::Vector3d turning_, speeding_;  // half the acceleration
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d v_along_ = Eigen::Vector3d::Zero();   // part of v_ along the axis
-  Eigen::Vector3d v_across_ = Eigen::Vector3d::Zero();  // part across it, over the rate
-  Eigen::Vector3d v_turned_ = Eigen::Vector3d::Zero();  // axis x v_, over the rate
+  Eigen::Vector3d along_ = Eigen::Vector3d::Zero();   // part of the velocity along the axis
+  Eigen::Vector3d across_ = Eigen::Vector3d::Zero();  // part across it, over the rate
+  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  // axis x velocity, over the rate
 };
 
 }  // namespace
@@ -67,22 +122,31 @@ void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, double 
   if (!scan_lidar.origin.isZero()) {
     throw std::invalid_argument("a sweep's origin must be the LiDAR: azimuths are taken from it");
   }
-  constexpr std::size_t kGrain = 8192;
-  const ConstantTwist steady(motion.velocity);
-  const Eigen::Vector3d turning = motion.acceleration.head<3>() / 2;
-  const Eigen::Vector3d speeding = motion.acceleration.tail<3>() / 2;
+  constexpr std::size_t kGrain = 32 * SweepBlock::kSize;
+  const SweptMotion swept(motion);
   const double time_per_radian = -period / (2 * std::numbers::pi);  // clockwise
-  const bool timed = !scan_lidar.time.empty();
-  parallel_for(scan_lidar.size(), kGrain, [&](std::size_t i) {
-    Eigen::Vector3f& p = scan_lidar.position[i];
-    const double dt =
-        timed ? double(scan_lidar.time[i]) : time_per_radian * double(quick_atan2(p.y(), p.x()));
-    Eigen::Vector3f* normal = scan_lidar.normal.empty() ? nullptr : &scan_lidar.normal[i];
-    // What the acceleration adds is a few milliradians at most: no sine is needed for that.
-    const Eigen::Vector3d q = p.cast<double>();
-    const Eigen::Vector3d changed = q + dt * dt * (turning.cross(q) + speeding);
-    if (normal != nullptr) *normal += (dt * dt * turning).cast<float>().cross(*normal);
-    p = steady.move(changed, dt, normal).cast<float>();
+  parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    SweepBlock block;
+    for (; begin < end; begin += SweepBlock::kSize) {
+      const std::size_t n = std::min(SweepBlock::kSize, end - begin);
+      const auto of_block = [&](auto& column) { return std::span(column).subspan(begin, n); };
+      block.take(of_block(scan_lidar.position));
+      if (scan_lidar.time.empty()) {
+        for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
+          const auto x = static_cast<float>(block.x[i]), y = static_cast<float>(block.y[i]);
+          block.dt[i] = time_per_radian * double(quick_atan2(y, x));
+        }
+      } else {
+        std::ranges::copy(of_block(scan_lidar.time), block.dt.begin());
+      }
+      swept.turn(block);
+      swept.move<true>(block);
+      block.give(of_block(scan_lidar.position));
+      if (scan_lidar.normal.empty()) continue;
+      block.take(of_block(scan_lidar.normal));
+      swept.move<false>(block);
+      block.give(of_block(scan_lidar.normal));
+    }
   });
   scan_lidar.time.clear();
 }

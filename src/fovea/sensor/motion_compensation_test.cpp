@@ -40,9 +40,9 @@ TEST(MotionCompensation, SweepTurnsClockwiseAndFacesForwardAtTheStamp) {
 
 TEST(MotionCompensation, EqualsTheExponentialOfTheTwist) {
   Random random(5);
-  for (const Twist& velocity :
-       {twist({0, 0, 0, 0, 0, 0}), twist({0, 0, 1.5, 12, 0.3, -0.1}),
-        twist({0.4, -0.2, 0.1, 5, 1, 2}), twist({1e-7, 0, -1e-7, 30, 0, 0})}) {
+  for (const Twist& velocity : {twist({0, 0, 0, 0, 0, 0}), twist({0, 0, 1.5, 12, 0.3, -0.1}),
+                                twist({0.4, -0.2, 0.1, 5, 1, 2}), twist({1e-7, 0, -1e-7, 30, 0, 0}),
+                                twist({3, -2, 8, 5, 1, 2})}) {  // whirled round by hand
     for (int i = 0; i < 200; ++i) {
       const Eigen::Vector3f p(
           Eigen::Vector3d(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-2, 5))
