@@ -70,11 +70,8 @@ std::vector<float> sample_spacing(const std::vector<Eigen::Vector3f>& position) 
   std::vector<float> spacing(table.size());
   parallel_for(table.size(), kGrain, [&](std::size_t id) {
     std::uint32_t points = 0;
-    for (const VoxelTable::Voxel& v :
-         VoxelTable::block_around(table.voxel(static_cast<std::uint32_t>(id)))) {
-      const std::uint32_t neighbor = table.find(v);
-      if (neighbor != VoxelTable::kNone) points += count[neighbor];
-    }
+    table.for_each_around(table.voxel(static_cast<std::uint32_t>(id)),
+                          [&](std::uint32_t near) { points += count[near]; });
     spacing[id] = std::min(kMaxSpacing, 3 * kVoxelEdge / std::sqrt(static_cast<float>(points)));
   });
   std::vector<float> per_point(position.size());
@@ -98,11 +95,11 @@ double surface_density(const std::vector<Eigen::Vector3f>& map,
     double count = 0;
     for (std::size_t s = begin; s < end; ++s) {
       const Eigen::Vector3f& center = evaluated[samples[s]];
-      for (const VoxelTable::Voxel& v : VoxelTable::block_around(table.voxel_of(center))) {
-        for (const std::uint32_t i : sorted.of(table.find(v))) {
+      table.for_each_around(table.voxel_of(center), [&](std::uint32_t near) {
+        for (const std::uint32_t i : sorted.of(near)) {
           if ((map[i] - center).squaredNorm() <= kRadius * kRadius) ++count;
         }
-      }
+      });
     }
     return count;
   };

@@ -13,11 +13,8 @@ VoxelMoments::VoxelMoments(const std::vector<Eigen::Vector3f>& points, float edg
 
 Moments VoxelMoments::around(std::size_t voxel) const {
   Moments total;
-  for (const VoxelTable::Voxel& near :
-       VoxelTable::block_around(table_.voxel(static_cast<std::uint32_t>(voxel)))) {
-    const std::uint32_t neighbor = table_.find(near);
-    if (neighbor != VoxelTable::kNone) total.add(moments_[neighbor]);
-  }
+  table_.for_each_around(table_.voxel(static_cast<std::uint32_t>(voxel)),
+                         [&](std::uint32_t near) { total.add(moments_[near]); });
   return total;
 }
 

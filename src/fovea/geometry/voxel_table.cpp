@@ -9,8 +9,8 @@ VoxelTable::VoxelTable(float edge) : inverse_edge_(1 / edge) {
 }
 
 std::uint32_t VoxelTable::insert(const Voxel& voxel) {
-  const auto [brick, is_new] =
-      number_of_brick_.try_emplace(brick_key(voxel), static_cast<std::uint32_t>(bricks_.size()));
+  const auto [brick, is_new] = number_of_brick_.try_emplace(
+      cell_key(brick_of(voxel)), static_cast<std::uint32_t>(bricks_.size()));
   if (is_new) bricks_.emplace_back().fill(kNone);
   std::uint32_t& id = bricks_[*brick][place_in_brick(voxel)];
   if (id == kNone) {

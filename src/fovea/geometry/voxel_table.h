@@ -33,18 +33,54 @@ class VoxelTable {
   std::uint32_t insert(const Voxel& voxel);
   /// Number of a voxel, or kNone. Thread-safe while nothing is inserted.
   std::uint32_t find(const Voxel& voxel) const {
-    const std::uint32_t* brick = number_of_brick_.find(brick_key(voxel));
-    return brick == nullptr ? kNone : bricks_[*brick][place_in_brick(voxel)];
+    const Brick* brick = find_brick(brick_of(voxel));
+    return brick == nullptr ? kNone : (*brick)[place_in_brick(voxel)];
   }
 
   /// The voxel and its 26 neighbours.
   static std::array<Voxel, 27> block_around(const Voxel& center);
 
+  /// Calls f(number) for those of them that have one, in the same order. Thread-safe while nothing
+  /// is inserted.
+  template <class F>
+  void for_each_around(const Voxel& center, F&& f) const {
+    // They lie in two bricks along an axis at most, which are looked up once.
+    const Voxel low = brick_of(center.array() - 1), high = brick_of(center.array() + 1);
+    std::array<const Brick*, 8> bricks{};
+    for (int z = low.z(); z <= high.z(); ++z) {
+      for (int y = low.y(); y <= high.y(); ++y) {
+        for (int x = low.x(); x <= high.x(); ++x) {
+          const Voxel brick(x, y, z);
+          bricks[place_among(brick - low)] = find_brick(brick);
+        }
+      }
+    }
+    for (int z = -1; z <= 1; ++z) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+          const Voxel voxel = center + Voxel(x, y, z);
+          const Brick* brick = bricks[place_among(brick_of(voxel) - low)];
+          if (brick == nullptr) continue;
+          const std::uint32_t id = (*brick)[place_in_brick(voxel)];
+          if (id != kNone) f(id);
+        }
+      }
+    }
+  }
+
  private:
   static constexpr int kBits = 2;  // of a coordinate, in its brick
   using Brick = std::array<std::uint32_t, 1 << 3 * kBits>;
-  static std::uint64_t brick_key(const Voxel& voxel) {
-    return cell_key(voxel.array().unaryExpr([](int i) { return i >> kBits; }));
+  static Voxel brick_of(const Voxel& voxel) {
+    return voxel.unaryExpr([](int i) { return i >> kBits; });
+  }
+  const Brick* find_brick(const Voxel& brick) const {
+    const std::uint32_t* number = number_of_brick_.find(cell_key(brick));
+    return number == nullptr ? nullptr : &bricks_[*number];
+  }
+  /// Of two bricks along each axis.
+  static std::size_t place_among(const Voxel& step) {
+    return static_cast<std::size_t>(step.x() | step.y() << 1 | step.z() << 2);
   }
   static std::size_t place_in_brick(const Voxel& voxel) {
     const auto axis = [](int value) {

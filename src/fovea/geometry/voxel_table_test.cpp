@@ -25,4 +25,23 @@ TEST(VoxelTable, NumbersVoxelsInTheOrderOfAppearance) {
   EXPECT_EQ(table.voxel_of({-0.1f, 0.1f, 0.6f}), VoxelTable::Voxel(-1, 0, 1));
 }
 
+TEST(VoxelTable, KnowsWhatIsAroundAVoxel) {
+  VoxelTable table(1);
+  Random random(2);
+  for (int i = 0; i < 600; ++i) {
+    table.insert(
+        {int(random.uniform(-6, 6)), int(random.uniform(-6, 6)), int(random.uniform(-6, 6))});
+  }
+  for (int i = 0; i < 300; ++i) {
+    const VoxelTable::Voxel center(int(random.uniform(-9, 9)), int(random.uniform(-9, 9)),
+                                   int(random.uniform(-9, 9)));
+    std::vector<std::uint32_t> asked, found;
+    for (const VoxelTable::Voxel& near : VoxelTable::block_around(center)) {
+      if (table.find(near) != VoxelTable::kNone) asked.push_back(table.find(near));
+    }
+    table.for_each_around(center, [&](std::uint32_t id) { found.push_back(id); });
+    EXPECT_EQ(found, asked);
+  }
+}
+
 }  // namespace fovea::voxel_table_test
