@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -22,6 +23,12 @@ inline Lanes lanes_at(const float* from) {
   return lanes;
 }
 inline void put_lanes(const Lanes& lanes, float* to) { std::memcpy(to, &lanes, sizeof(Lanes)); }
+
+/// True in the first `count` lanes, in all where there are no more than eight.
+inline LaneMask first_lanes(std::size_t count) {
+  constexpr LaneMask kNumber{0, 1, 2, 3, 4, 5, 6, 7};
+  return kNumber < static_cast<std::int32_t>(count);
+}
 
 /// The value where the mask is true, 0 elsewhere.
 inline Lanes where(LaneMask mask, Lanes value) {

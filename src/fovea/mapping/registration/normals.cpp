@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 
 #include "fovea/base/lanes.h"
@@ -77,43 +78,41 @@ struct PointCells {
 /// Points of some cells.
 class Surroundings {
  public:
-  void clear() { size_ = 0; }
+  explicit Surroundings(const PointCells& cells) : cells_(cells) {}
+  void clear() { count_ = size_ = 0; }
   std::size_t size() const { return size_; }
 
-  void add(const PointCells& cells, std::uint32_t cell) {
-    const std::size_t first = cells.members.first(cell), count = cells.members.of(cell).size();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::vector<float>& to = row_[axis];
-      // What is copied beyond the last is overwritten by the next, or by nowhere.
-      if (to.size() < size_ + count + 2 * kLanes) to.resize(2 * (size_ + count) + 2 * kLanes);
-      for (std::size_t i = 0; i < count; i += kLanes) {
-        put_lanes(lanes_at(cells.row[axis].data() + first + i), to.data() + size_ + i);
-      }
-      put_lanes(all_lanes(kNowhere), to.data() + size_ + count);
-    }
-    size_ += count;
+  /// At most 27 cells.
+  void add(std::uint32_t cell) {
+    const std::size_t points = cells_.members.of(cell).size();
+    range_[count_++] = {cells_.members.first(cell), points};
+    size_ += points;
   }
 
   /// Of those within a radius.
   PlaneMoments moments(const Eigen::Vector3f& center, float radius) const {
     Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
     const Lanes radius2 = all_lanes(radius * radius), one = all_lanes(1);
-    for (std::size_t i = 0; i < size_; i += kLanes) {
-      const Lanes x = lanes_at(row_[0].data() + i) - center.x(),
-                  y = lanes_at(row_[1].data() + i) - center.y(),
-                  z = lanes_at(row_[2].data() + i) - center.z();
-      const LaneMask inside = x * x + y * y + z * z <= radius2;
-      const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
-      count += where(inside, one);
-      sx += in_x;
-      sy += in_y;
-      sz += in_z;
-      sxx += in_x * x;
-      syy += in_y * y;
-      szz += in_z * z;
-      syz += in_y * z;
-      sxz += in_x * z;
-      sxy += in_x * y;
+    for (const Range& range : std::span(range_).first(count_)) {
+      for (std::size_t i = 0; i < range.count; i += kLanes) {
+        const std::size_t place = range.first + i;
+        const Lanes x = lanes_at(cells_.row[0].data() + place) - center.x(),
+                    y = lanes_at(cells_.row[1].data() + place) - center.y(),
+                    z = lanes_at(cells_.row[2].data() + place) - center.z();
+        // What follows the last of a cell is another's.
+        const LaneMask inside = (x * x + y * y + z * z <= radius2) & first_lanes(range.count - i);
+        const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
+        count += where(inside, one);
+        sx += in_x;
+        sy += in_y;
+        sz += in_z;
+        sxx += in_x * x;
+        syy += in_y * y;
+        szz += in_z * z;
+        syz += in_y * z;
+        sxz += in_x * z;
+        sxy += in_x * y;
+      }
     }
     return {sum_of_lanes(count),
             {sum_of_lanes(sx), sum_of_lanes(sy), sum_of_lanes(sz)},
@@ -122,17 +121,20 @@ class Surroundings {
   }
 
  private:
-  static constexpr float kNowhere = 1e9f;  // m: outside of every radius
-  std::array<std::vector<float>, 3> row_;  // a row for each coordinate; nowhere beyond the last
-  std::size_t size_ = 0;
+  struct Range {
+    std::size_t first, count;  // in the rows of the cells
+  };
+  const PointCells& cells_;
+  std::array<Range, 27> range_;
+  std::size_t count_ = 0, size_ = 0;  // of ranges, and of points in them
 };
 
 /// Radii over the points' spacing: where points are far apart, wider ones are tried.
 constexpr float kFirstRadius = 2, kWider = 1.5f;
-constexpr int kRadii = 8;
+constexpr std::size_t kRadii = 8;
 /// The first radii serve most points and have cells of their own; of those after them, which are
 /// for the few that lie far apart, two share a grid.
-constexpr int kAlone = 2;
+constexpr std::size_t kAlone = 2;
 /// From radius to radius a surface's points become 2.25 times as many: of at least this share of k,
 /// they are k in the mean.
 constexpr float kFewest = 0.6f;
@@ -145,13 +147,10 @@ void look_around(std::span<const Eigen::Vector3f> points, const PointCells& cell
   const VoxelTable& table = cells.table;
   const VoxelMembers& members = cells.members;
   const auto gather = [&](std::uint32_t cell, Surroundings& surroundings) {
-    for (const VoxelTable::Voxel& near : VoxelTable::block_around(table.voxel(cell))) {
-      const std::uint32_t id = table.find(near);
-      if (id != VoxelTable::kNone) surroundings.add(cells, id);
-    }
+    table.for_each_around(table.voxel(cell), [&](std::uint32_t near) { surroundings.add(near); });
   };
   parallel_chunks(table.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
-    Surroundings surroundings;
+    Surroundings surroundings(cells);
     PlaneNormals planes(normals);
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
       surroundings.clear();
@@ -169,30 +168,42 @@ void look_around(std::span<const Eigen::Vector3f> points, const PointCells& cell
   });
 }
 
+/// By point; of those not asked for they are zero.
 std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> points,
-                                               int neighbors, double spacing) {
+                                               std::span<const std::uint32_t> of, int neighbors,
+                                               double spacing) {
   std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
-  std::vector<std::uint8_t> done(points.size(), 0);
-  std::optional<PointCells> cells;
-  float radius = kFirstRadius * static_cast<float>(spacing), edge = 0;
-  for (int i = 0; i < kRadii; ++i, radius *= kWider) {
-    if (radius > edge) {
-      edge = i < kAlone ? radius : radius * kWider;
-      cells = PointCells::of(points, edge);
+  std::vector<std::uint8_t> done(points.size(), 1);
+  for (const std::uint32_t i : of) done[i] = 0;
+  std::array<float, kRadii> radius;
+  std::array<std::size_t, kRadii> grid;
+  std::vector<float> edges;
+  for (std::size_t i = 0; i < kRadii; ++i) {
+    radius[i] = i == 0 ? kFirstRadius * static_cast<float>(spacing) : radius[i - 1] * kWider;
+    if (edges.empty() || radius[i] > edges.back()) {
+      edges.push_back(i < kAlone ? radius[i] : radius[i] * kWider);
     }
-    look_around(points, *cells, radius, kFewest * static_cast<float>(neighbors), done, normals);
+    grid[i] = edges.size() - 1;
+  }
+  // All of them first: each is one thread's work.
+  std::vector<std::optional<PointCells>> grids(edges.size());
+  parallel_for(grids.size(), 1,
+               [&](std::size_t k) { grids[k] = PointCells::of(points, edges[k]); });
+  for (std::size_t i = 0; i < kRadii; ++i) {
+    look_around(points, *grids[grid[i]], radius[i], kFewest * static_cast<float>(neighbors), done,
+                normals);
   }
   return normals;
 }
 
 std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> points,
-                                             int neighbors) {
+                                             std::span<const std::uint32_t> of, int neighbors) {
   const KdTree tree(points);
   std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
-  parallel_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(of.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbor> found;
     PlaneNormals planes(normals);
-    for (std::size_t i = begin; i < end; ++i) {
+    for (const std::uint32_t i : of.subspan(begin, end - begin)) {
       tree.nearest_k(points[i], static_cast<std::size_t>(neighbors), found);
       PlaneMoments moments;
       for (const Neighbor& neighbor : found) moments.add(points[neighbor.index] - points[i]);
@@ -206,9 +217,22 @@ std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> po
 }  // namespace
 
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
+                                              std::span<const std::uint32_t> of, int neighbors,
+                                              double spacing) {
+  const std::vector<Eigen::Vector3f> by_point =
+      spacing > 0 ? normals_by_radius(points, of, neighbors, spacing)
+                  : normals_by_tree(points, of, neighbors);
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(of.size());
+  for (const std::uint32_t i : of) normals.push_back(by_point[i]);
+  return normals;
+}
+
+std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
                                               int neighbors, double spacing) {
-  return spacing > 0 ? normals_by_radius(points, neighbors, spacing)
-                     : normals_by_tree(points, neighbors);
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return estimate_normals(points, all, neighbors, spacing);
 }
 
 }  // namespace fovea

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,5 +22,12 @@ namespace fovea {
 ///         or where they lie on one line and leave the plane undetermined
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
                                               int neighbors, double spacing = 0);
+
+/// Those of some points, among all.
+/// @param of  indices of the points whose normals are wanted
+/// @return one for each of `of`
+std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
+                                              std::span<const std::uint32_t> of, int neighbors,
+                                              double spacing);
 
 }  // namespace fovea

@@ -64,6 +64,17 @@ TEST(Normals, OfThinnedPointsFarFromAllOthersAreUnknown) {
   EXPECT_TRUE(estimate_normals(points, 10, 0.25).back().isZero());
 }
 
+TEST(Normals, OfSomePointsAreTheirsAmongAll) {
+  const std::vector<Eigen::Vector3f> points = test::sample(test::corridor(5), 12, 1);
+  for (const double spacing : {0.0, 0.25}) {
+    const std::vector<Eigen::Vector3f> all = estimate_normals(points, 10, spacing);
+    const std::vector<std::uint32_t> of{7, 300, 301, std::uint32_t(points.size() - 1)};
+    const std::vector<Eigen::Vector3f> some = estimate_normals(points, of, 10, spacing);
+    ASSERT_EQ(some.size(), of.size());
+    for (std::size_t k = 0; k < of.size(); ++k) EXPECT_EQ(some[k], all[of[k]]) << spacing;
+  }
+}
+
 TEST(Normals, OfAFewPointsByTheirNearest) {
   const std::vector<Eigen::Vector3f> points{{5, 0, 0}, {5, 1, 0}, {5, 0, 1}, {5, 1, 1.5f}};
   for (const Eigen::Vector3f& normal : estimate_normals(points, 10)) {

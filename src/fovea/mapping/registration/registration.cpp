@@ -26,15 +26,15 @@ constexpr std::size_t kCoarsePoints = 4000;
 /// Fewer pairs than this are no evidence of six numbers.
 constexpr std::size_t kMinPairs = 50;
 
-/// The source point of pair i of so many.
-std::size_t source_of(std::size_t i, std::size_t pairs, const RegistrationCloud& source) {
-  return i * source.points.size() / pairs;
+/// Item i of `some` that stand at even steps among `all`.
+std::size_t at_even_step(std::size_t i, std::size_t some, std::size_t all) {
+  return i * all / some;
 }
 
 /// Gives each source point its nearest target point and the factor's weight of the two. A pair is
 /// kept while its source point moves by less than `keep_within` (m); otherwise it bounds the
 /// search, which then ends early.
-/// @param pairs  of source points at even steps (see source_of)
+/// @param pairs  of source points at even steps
 template <class Factor>
 void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
                 const RegistrationCloud& source, const RigidMotion& T_target_source,
@@ -58,7 +58,7 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
     Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
     if constexpr (Factor::kNeedsNormals) {
       n = target.normals[nearest.index];
-      m = R * source.normals[source_of(i, pairs.size(), source)];
+      m = R * source.normals[at_even_step(i, pairs.size(), source.points.size())];
       if (n.isZero() && m.isZero()) return;
     }
     pair.target_index = nearest.index;
@@ -72,7 +72,7 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
 std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t most) {
   std::vector<Pair> pairs(std::min(most, source.points.size()));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[i].source = source.points[source_of(i, pairs.size(), source)];
+    pairs[i].source = source.points[at_even_step(i, pairs.size(), source.points.size())];
   }
   return pairs;
 }
@@ -85,10 +85,7 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
                              Factor::kNeedsNormals, options.converged_rotation,
                              options.converged_translation};
   const bool narrows = options.robust_width > 0 && options.robust_width < options.max_distance;
-  const std::size_t fine = options.max_points > 0 ? static_cast<std::size_t>(options.max_points)
-                                                  : std::numeric_limits<std::size_t>::max();
-  std::size_t most = narrows ? std::min(kCoarsePoints, fine) : fine;
-  std::vector<Pair> pairs = pairs_of(source, most);
+  std::vector<Pair> pairs = pairs_of(source, narrows ? kCoarsePoints : source.points.size());
 
   RegistrationResult result;
   result.T_target_source = guess;
@@ -98,9 +95,8 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
       optimizer.robust_width =
           std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
     }
-    if (optimizer.robust_width <= options.robust_width && most < fine) {
-      most = fine;
-      pairs = pairs_of(source, most);
+    if (optimizer.robust_width <= options.robust_width && pairs.size() < source.points.size()) {
+      pairs = pairs_of(source, source.points.size());
     }
     const auto keep_within =
         static_cast<float>(std::min(Factor::kKeepsPairFor, kKeepsPairShare * result.rms_distance));
@@ -123,12 +119,10 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
     result.degenerate_directions = degenerate;
     result.rms_distance =
         std::sqrt(equations.squared_distance / static_cast<double>(equations.pairs));
-    // The pairs' own scatter says how much one of them is worth. Of a part of the points they stand
-    // for all.
+    // The pairs' own scatter says how much one of them is worth.
     result.information =
         (Factor::kNeedsNormals ? equations.H_planes : equations.H) *
-        (equations.weight / std::max(equations.error, std::numeric_limits<double>::min())) *
-        (double(source.points.size()) / double(pairs.size()));
+        (equations.weight / std::max(equations.error, std::numeric_limits<double>::min()));
   }
   return result;
 }
@@ -177,12 +171,18 @@ void RegistrationOptions::validate() const {
 
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
                                 const RegistrationOptions& options, double spacing) {
-  RegistrationCloud cloud;
-  cloud.points = std::move(points);
-  std::erase_if(cloud.points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
-  if (options.method != RegistrationMethod::kPointToPoint) {
-    cloud.normals = estimate_normals(cloud.points, options.neighbors, spacing);
+  std::erase_if(points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
+  const std::size_t most = options.max_points > 0 ? static_cast<std::size_t>(options.max_points)
+                                                  : std::numeric_limits<std::size_t>::max();
+  std::vector<std::uint32_t> chosen(std::min(most, points.size()));
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    chosen[i] = static_cast<std::uint32_t>(at_even_step(i, chosen.size(), points.size()));
   }
+  RegistrationCloud cloud;
+  if (options.method != RegistrationMethod::kPointToPoint) {
+    cloud.normals = estimate_normals(points, chosen, options.neighbors, spacing);
+  }
+  for (const std::uint32_t i : chosen) cloud.points.push_back(points[i]);
   return cloud;
 }
 

@@ -16,7 +16,7 @@ enum class RegistrationMethod { kGicp, kPointToPoint, kPointToPlane };
 struct RegistrationOptions {
   RegistrationMethod method = RegistrationMethod::kGicp;
   int max_iterations = 100;             ///< point to point takes dozens, the others a few
-  int max_points = 0;                   ///< of the source, at even steps, that are paired; 0: all
+  int max_points = 0;                   ///< of a cloud, at even steps, that are kept; 0: all
   double max_distance = 1.0;            ///< m, pairs further apart are not used
   double converged_rotation = 1e-4;     ///< rad: a smaller step ends the iteration
   double converged_translation = 1e-3;  ///< m
@@ -39,8 +39,8 @@ struct RegistrationCloud {
   std::vector<Eigen::Vector3f> normals;  ///< unit, zero where unknown; empty for point to point
 };
 
-/// The finite points, and unless the method is point to point their normals (plane of least
-/// variance through the k nearest neighbours, see normals.h).
+/// At most max_points of the finite points, and unless the method is point to point their normals
+/// (plane of least variance through the k nearest neighbours, of all points; see normals.h).
 /// @param points   m, in the sensor's frame
 /// @param spacing  that they have been thinned to (m); 0: they have not
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
