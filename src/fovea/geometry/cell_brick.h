@@ -22,6 +22,11 @@ class CellBrick {
  public:
   static constexpr int kEdge = 8;  ///< cells
 
+  /// Number of a cell's brick: that of the cell over kEdge, rounded down along each axis.
+  static Eigen::Array3i number_of(const Eigen::Array3i& cell) {
+    return cell.unaryExpr([](int i) { return i >> 3; });  // a division would round towards zero
+  }
+
   /// @param cell  in the brick, each coordinate 0-7
   bool test(const Eigen::Array3i& cell) const {
     return (layers_[static_cast<std::size_t>(cell.z())] >> bit(cell) & 1) != 0;
@@ -45,7 +50,7 @@ class CellSet {
   /// @param cell  each coordinate within 2^23
   /// @return whether it was not marked before
   bool mark(const Eigen::Array3i& cell) {
-    const Eigen::Array3i brick = cell.unaryExpr([](int i) { return i >> 3; });
+    const Eigen::Array3i brick = CellBrick::number_of(cell);
     const std::uint64_t key = cell_key(brick);
     if (bricks_.empty() || key != last_key_) {
       const auto [brick_number, is_new] =

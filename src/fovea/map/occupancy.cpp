@@ -16,11 +16,8 @@ std::size_t place_in(const Eigen::Array3i& place, const Eigen::Array3i& size) {
   return static_cast<std::size_t>((place.z() * size.y() + place.y()) * size.x() + place.x());
 }
 
-/// A cell's brick, and its place there, by shift and mask: a division of signed numbers is not one.
+/// A cell's place in its brick, by a mask.
 static_assert(kBrick == 8);
-Eigen::Array3i brick_of(const Eigen::Array3i& cell) {
-  return cell.unaryExpr([](int i) { return i >> 3; });
-}
 Eigen::Array3i in_brick(const Eigen::Array3i& cell) {
   return cell.unaryExpr([](int i) { return i & 7; });
 }
@@ -49,7 +46,7 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
   for (; tile.points < points.size(); ++tile.points) {
     const Cell cell =
         (points.position[tile.points].array() * per_metre).max(0.0f).min(last).cast<int>();
-    std::int32_t& brick = tile.brick[place_of(brick_of(cell))];
+    std::int32_t& brick = tile.brick[place_of(CellBrick::number_of(cell))];
     if (brick == kNoBrick) {
       brick = static_cast<std::int32_t>(tile.bricks.size());
       tile.bricks.emplace_back();
@@ -73,6 +70,7 @@ void Occupancy::follow(const TileMap& map, const Eigen::Vector3d& center_local, 
 
 void Occupancy::open_windows(const TileMap& map) {
   windows_.clear();
+  own_.reset();
   for (auto begin = tiles_.begin(); begin != tiles_.end();) {
     const std::size_t submap = begin->first.submap;
     const auto end = std::find_if(begin, tiles_.end(),
@@ -90,13 +88,19 @@ void Occupancy::open_windows(const TileMap& map) {
       window.tiles[place_in(number_of(begin->first.key) - low, size)] = &begin->second;
     }
     window.places = places_of(size);
+    window.low = low * (edge_ / kBrick);
+    window.bricks = size * (edge_ / kBrick);
     window.size = (size * edge_).cast<double>().matrix();
     const RigidMotion T_submap_last =
         map.submaps()[submap].T_local_submap.inverse() * map.submaps().back().T_local_submap;
     window.R_cells_last = T_submap_last.linear() / cell_;
     window.t_cells_last =
         T_submap_last.translation() / cell_ - (low.cast<double>() * edge_).matrix();
-    windows_.push_back(std::move(window));
+    if (submap + 1 == map.submaps().size()) {
+      own_ = std::move(window);
+    } else {
+      windows_.push_back(std::move(window));
+    }
   }
 }
 
@@ -123,19 +127,30 @@ bool Occupancy::is_marked(const Window& window, const Eigen::Vector3d& p_last) {
     return false;
   }
   const Cell cell = p_cells.array().cast<int>();
-  const auto place = [&](int axis) {
-    return window.places[std::size_t(axis)][std::size_t(cell[axis]) / kBrick];
-  };
-  const Place x = place(0), y = place(1), z = place(2);
-  const Tile* tile = window.tiles[x.tile + y.tile + z.tile];
-  if (tile == nullptr) return false;
-  const std::int32_t brick = tile->brick[x.brick + y.brick + z.brick];
-  return brick != kNoBrick && tile->bricks[static_cast<std::size_t>(brick)].test(in_brick(cell));
+  const CellBrick* brick = brick_at(window, CellBrick::number_of(cell));
+  return brick != nullptr && brick->test(in_brick(cell));
 }
 
-bool Occupancy::taken(const Eigen::Vector3d& p_grid) const {
+const CellBrick* Occupancy::brick_at(const Window& window, const Eigen::Array3i& place) {
+  const Place x = window.places[0][std::size_t(place.x())],
+              y = window.places[1][std::size_t(place.y())],
+              z = window.places[2][std::size_t(place.z())];
+  const Tile* tile = window.tiles[x.tile + y.tile + z.tile];
+  if (tile == nullptr) return nullptr;
+  const std::int32_t brick = tile->brick[x.brick + y.brick + z.brick];
+  return brick == kNoBrick ? nullptr : &tile->bricks[static_cast<std::size_t>(brick)];
+}
+
+const CellBrick* Occupancy::brick(const Eigen::Array3i& number) const {
+  if (!own_) return nullptr;
+  const Eigen::Array3i place = number - own_->low;
+  if ((place < 0).any() || (place >= own_->bricks).any()) return nullptr;
+  return brick_at(*own_, place);
+}
+
+bool Occupancy::taken_before(const Eigen::Vector3d& p_last) const {
   return std::any_of(windows_.rbegin(), windows_.rend(),
-                     [&](const Window& window) { return is_marked(window, p_grid); });
+                     [&](const Window& window) { return is_marked(window, p_last); });
 }
 
 }  // namespace fovea

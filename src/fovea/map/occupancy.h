@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "fovea/geometry/cell_brick.h"
@@ -25,9 +26,13 @@ class Occupancy {
   /// same tile would not be noticed.
   void follow(const TileMap& map, const Eigen::Vector3d& center_local, double radius);
 
-  /// Whether a point of any submap lies in the cell of `p_grid` there. Thread-safe.
-  /// @param p_grid  m, in the frame of the last submap
-  bool taken(const Eigen::Vector3d& p_grid) const;
+  /// The cells of the last submap that hold one of its points, a brick by its number
+  /// (CellBrick::number_of); nullptr where none does. Thread-safe, valid until the next follow().
+  const CellBrick* brick(const Eigen::Array3i& number) const;
+
+  /// Whether a point of any submap before it lies in the cell of `p_last` there. Thread-safe.
+  /// @param p_last  m, in the frame of the last submap
+  bool taken_before(const Eigen::Vector3d& p_last) const;
 
  private:
   using Cell = Eigen::Array3i;
@@ -47,6 +52,7 @@ class Occupancy {
     Eigen::Matrix3d R_cells_last;
     Eigen::Vector3d t_cells_last;
     Eigen::Vector3d size;                      // cells
+    Eigen::Array3i low, bricks;                // the box's lowest brick, and how many it has
     std::array<std::vector<Place>, 3> places;  // of each brick of the box, an axis
     std::vector<const Tile*> tiles;
   };
@@ -55,12 +61,15 @@ class Occupancy {
   void open_windows(const TileMap& map);
   std::array<std::vector<Place>, 3> places_of(const Eigen::Array3i& tiles) const;
   static bool is_marked(const Window& window, const Eigen::Vector3d& p_last);
+  /// @param place  of the brick among the window's
+  static const CellBrick* brick_at(const Window& window, const Eigen::Array3i& place);
   std::size_t place_of(const Cell& brick) const;
 
   int edge_;  // cells of a tile
   double cell_;
   std::map<TileId, Tile> tiles_;
-  std::vector<Window> windows_;  // the last submap's is the last
+  std::vector<Window> windows_;  // of the submaps before the last
+  std::optional<Window> own_;    // of the last
 };
 
 }  // namespace fovea

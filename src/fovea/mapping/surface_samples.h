@@ -6,6 +6,7 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/geometry/cell_brick.h"
 #include "fovea/mapping/image_mesh.h"
 
 namespace fovea {
@@ -24,6 +25,10 @@ struct SampleGrid {
   double cell = 0;  ///< edge of its cubes, m
   /// Whether there is a point already in the cell of this one; called from many threads.
   std::function<bool(const Eigen::Vector3d& p_grid)> taken;
+  /// Cells that are taken besides, a brick by its number (CellBrick::number_of), nullptr where none
+  /// is; for many cells, of which neighbours share a brick.
+  std::function<const CellBrick*(const Eigen::Array3i& brick)> taken_brick =
+      [](const Eigen::Array3i&) { return nullptr; };
 };
 
 /// The triangles between a cloud's projected points that are surface, and its normals.

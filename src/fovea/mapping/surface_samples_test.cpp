@@ -303,6 +303,27 @@ TEST(SurfaceSamples, TakenCellsGetNothing) {
     if (!grid.taken(grid.T_grid_cam * p.cast<double>())) expected.push_back(p);
   }
   EXPECT_EQ(points.position, expected);
+
+  // And those of bricks: in every second one, every second cell.
+  CellBrick half;
+  for (int i = 0; i < 512; ++i) {
+    const Eigen::Array3i cell(i & 7, i >> 3 & 7, i >> 6);
+    if (cell.sum() % 2 == 0) half.mark(cell);
+  }
+  grid.taken_brick = [&](const Eigen::Array3i& brick) {
+    return brick.sum() % 2 == 0 ? &half : nullptr;
+  };
+  std::erase_if(expected, [&](const Eigen::Vector3f& p) {
+    const CellKey cell = cell_of(grid.T_grid_cam * p.cast<double>());
+    int brick_sum = 0, sum = 0;
+    for (const int i : cell) {
+      brick_sum += i >> 3;
+      sum += i & 7;
+    }
+    return brick_sum % 2 == 0 && sum % 2 == 0;
+  });
+  EXPECT_EQ(sample_surfaces(measured, test_camera(), {}, grid).position, expected);
+
   grid.taken = [](const Eigen::Vector3d&) { return true; };
   EXPECT_TRUE(sample_surfaces(measured, test_camera(), {}, grid).empty());
 }

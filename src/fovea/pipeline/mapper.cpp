@@ -145,7 +145,8 @@ PointCloud Mapper::densified(ScanView& view, const RigidMotion& T_local_cam, Sta
     occupancy_->follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
     const SampleGrid grid{map_.submaps().back().T_local_submap.inverse() * T_local_cam,
                           occupancy_->cell(),
-                          [&](const Eigen::Vector3d& p_grid) { return occupancy_->taken(p_grid); }};
+                          [&](const Eigen::Vector3d& p) { return occupancy_->taken_before(p); },
+                          [&](const Eigen::Array3i& brick) { return occupancy_->brick(brick); }};
     return sample_surface(view.foveal_cam, *view.surface, grid);
   });
 }
