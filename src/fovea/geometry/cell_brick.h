@@ -27,20 +27,23 @@ class CellBrick {
     return cell.unaryExpr([](int i) { return i >> 3; });  // a division would round towards zero
   }
 
-  /// @param cell  in the brick, each coordinate 0-7
+  /// @param cell  of the grid: what counts is its place in its brick
   bool test(const Eigen::Array3i& cell) const {
-    return (layers_[static_cast<std::size_t>(cell.z())] >> bit(cell) & 1) != 0;
+    return (layers_[layer(cell)] >> bit(cell) & 1) != 0;
   }
   /// @return whether it was not marked before
   bool mark(const Eigen::Array3i& cell) {
-    std::uint64_t& layer = layers_[static_cast<std::size_t>(cell.z())];
-    const std::uint64_t before = layer;
-    layer |= std::uint64_t{1} << bit(cell);
-    return layer != before;
+    std::uint64_t& bits = layers_[layer(cell)];
+    const std::uint64_t before = bits;
+    bits |= std::uint64_t{1} << bit(cell);
+    return bits != before;
   }
 
  private:
-  static int bit(const Eigen::Array3i& cell) { return cell.y() * kEdge + cell.x(); }
+  static std::size_t layer(const Eigen::Array3i& cell) {
+    return static_cast<std::size_t>(cell.z() & 7);
+  }
+  static int bit(const Eigen::Array3i& cell) { return (cell.y() & 7) * kEdge + (cell.x() & 7); }
   std::array<std::uint64_t, kEdge> layers_{};
 };
 
@@ -59,7 +62,7 @@ class CellSet {
       last_ = *brick_number;
       last_key_ = key;
     }
-    return bricks_[last_].mark(cell - brick * CellBrick::kEdge);
+    return bricks_[last_].mark(cell);
   }
 
  private:

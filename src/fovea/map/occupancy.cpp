@@ -16,12 +16,6 @@ std::size_t place_in(const Eigen::Array3i& place, const Eigen::Array3i& size) {
   return static_cast<std::size_t>((place.z() * size.y() + place.y()) * size.x() + place.x());
 }
 
-/// A cell's place in its brick, by a mask.
-static_assert(kBrick == 8);
-Eigen::Array3i in_brick(const Eigen::Array3i& cell) {
-  return cell.unaryExpr([](int i) { return i & 7; });
-}
-
 Eigen::Array3i number_of(const TileKey& key) { return {key.x, key.y, key.z}; }
 
 }  // namespace
@@ -51,7 +45,7 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
       brick = static_cast<std::int32_t>(tile.bricks.size());
       tile.bricks.emplace_back();
     }
-    tile.bricks[static_cast<std::size_t>(brick)].mark(in_brick(cell));
+    tile.bricks[static_cast<std::size_t>(brick)].mark(cell);
   }
 }
 
@@ -128,7 +122,7 @@ bool Occupancy::is_marked(const Window& window, const Eigen::Vector3d& p_last) {
   }
   const Cell cell = p_cells.array().cast<int>();
   const CellBrick* brick = brick_at(window, CellBrick::number_of(cell));
-  return brick != nullptr && brick->test(in_brick(cell));
+  return brick != nullptr && brick->test(cell);
 }
 
 const CellBrick* Occupancy::brick_at(const Window& window, const Eigen::Array3i& place) {

@@ -47,8 +47,7 @@ bool taken(const Occupancy& occupancy, const Eigen::Vector3d& p_last) {
   if ((at.abs() > 1e6).any()) return occupancy.taken_before(p_last);  // no number of a cell
   const Eigen::Array3i cell = at.cast<int>(), number = CellBrick::number_of(cell);
   const CellBrick* brick = occupancy.brick(number);
-  return (brick != nullptr && brick->test(cell - number * CellBrick::kEdge)) ||
-         occupancy.taken_before(p_last);
+  return (brick != nullptr && brick->test(cell)) || occupancy.taken_before(p_last);
 }
 
 TEST(Occupancy, ATileHasAMultipleOfEightCellsAnEdge) {

@@ -179,7 +179,7 @@ class TakenCells {
       number_ = number;
       brick_ = grid_.taken_brick(number);
     }
-    if (brick_ != nullptr && brick_->test(cell - number * CellBrick::kEdge)) return true;
+    if (brick_ != nullptr && brick_->test(cell)) return true;
     return grid_.taken(p_grid());
   }
 
