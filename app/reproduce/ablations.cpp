@@ -70,6 +70,8 @@ const std::vector<Ablation>& ablations() {
       {"planar-edge-0.6", kDense, {"surface.planar_edge=0.6"}},
       {"planar-angle-20", kDense, {"surface.planar_angle=20"}},
       {"planar-angle-40", kDense, {"surface.planar_angle=40"}},
+      {"per-pixel-2", kDense, {"surface.max_per_pixel=2"}},
+      {"no-limit-per-pixel", kDense, {"surface.max_per_pixel=0"}},
       {"footprint-0.01", kDense, {"texture.footprint=0.01"}},
       {"footprint-0.03", kDense, {"texture.footprint=0.03"}},
       {"paper-filter", kDense, {"ray_filter.mode=paper"}},

@@ -49,6 +49,20 @@ bool is_flat(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area, st
   return true;
 }
 
+/// How often the samples of a piece of surface are to be halved, that no more than `max_per_pixel`
+/// of them show in a pixel.
+/// @param normal  of length 1
+std::uint8_t halvings_for(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& normal,
+                          const Camera& camera, const SurfaceOptions& options) {
+  // What a pixel sees of a plane: depth^3 / (fx fy |normal . p|).
+  const double limit = options.max_per_pixel * options.spacing * options.spacing * camera.fx *
+                       camera.fy * std::abs(normal.dot(p_cam));
+  double shown = p_cam.z() * p_cam.z() * p_cam.z();
+  std::uint8_t halvings = 0;
+  for (; halvings < Surface::kMostHalvings && shown > limit; ++halvings) shown /= 2;
+  return halvings;
+}
+
 void find_triangles(const GridProjection& project, const SurfaceOptions& options,
                     Surface& surface) {
   const ImageMesh& mesh = surface.mesh;
@@ -94,6 +108,18 @@ Eigen::Vector3f normal_of(const Surface& surface, std::size_t triangle) {
   return unit_or_zero(surface.normal[a] + surface.normal[b] + surface.normal[c]);
 }
 
+void find_halvings(const GridProjection& project, const Camera& camera,
+                   const SurfaceOptions& options, Surface& surface) {
+  surface.halvings.assign(surface.triangles.size(), 0);
+  if (options.max_per_pixel == 0) return;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const std::vector<Eigen::Vector3f>& p = surface.mesh.position;
+    surface.halvings[t] = halvings_for(project.from_camera((p[a] + p[b] + p[c]) / 3),
+                                       normal_of(surface, t).cast<double>(), camera, options);
+  }
+}
+
 /// Where a column of the grid's cells along `axis` meets a triangle.
 struct Sample {
   double height;             // m along the axis
@@ -120,19 +146,43 @@ struct Sample {
   }
 };
 
+/// Which columns of cells are sampled: all, or after so many halvings every second (as on a
+/// chessboard), fourth, eighth of them. What coarser ones have is part of every finer one, and all
+/// triangles share them.
+class Columns {
+ public:
+  explicit Columns(int halvings)
+      : row_step_(1 << halvings / 2), column_step_(1 << (halvings + 1) / 2) {}
+  double row_step() const { return row_step_; }
+  double column_step() const { return column_step_; }
+  /// The first of those rows from `row` on.
+  double first_row(double row) const { return next(row, row_step_, 0); }
+  double first_column(double column, double row) const {
+    const bool shifted = column_step_ > row_step_ && (static_cast<int>(row) & row_step_) != 0;
+    return next(column, column_step_, shifted ? row_step_ : 0);
+  }
+
+ private:
+  static double next(double at, int step, int shift) {
+    return step == 1 ? at : std::ceil((at - shift) / step) * step + shift;
+  }
+  int row_step_, column_step_;
+};
+
 /// Calls f(sample) at the centres of cells that fall onto a triangle when looked at along kAxis.
 template <std::uint32_t kAxis, class F>
 void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
-                     double cell, F&& f) {
+                     const SampleGrid& grid, const Columns& sampled, F&& f) {
   constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
   const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   if (!(std::abs(n[kAxis]) > 1e-3 * n.norm())) return;  // seen from its edge
   const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
-  const double per_metre = 1 / cell;  // a product for each sample, where a quotient takes longer
+  const double cell = grid.cell,
+               per_metre = 1 / cell;  // a product for each sample, where a quotient takes longer
   const auto first_center = [&](double low) { return std::ceil(low * per_metre - 0.5); };
   const auto [v_low, v_high] = std::minmax({corner[0][kV], corner[1][kV], corner[2][kV]});
   const double rows = first_center(v_high);
-  for (double row = first_center(v_low); row < rows; ++row) {
+  for (double row = sampled.first_row(first_center(v_low)); row < rows; row += sampled.row_step()) {
     const double at_v = (row + 0.5) * cell;
     double u_low = std::numeric_limits<double>::infinity(), u_high = -u_low;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -143,11 +193,12 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
       u_high = std::max(u_high, crossing);
     }
     const double columns = first_center(u_high);
-    for (double column = first_center(u_low); column < columns; ++column) {
+    for (double column = sampled.first_column(first_center(u_low), row); column < columns;
+         column += sampled.column_step()) {
       const double at_u = (column + 0.5) * cell;
       const double height =
           corner[0][kAxis] + slope_u * (at_u - corner[0][kU]) + slope_v * (at_v - corner[0][kV]);
-      f(Sample{height, static_cast<std::int32_t>(std::floor(height * per_metre)),
+      f(Sample{height, static_cast<std::int32_t>(std::floor(grid.kept(height) * per_metre)),
                static_cast<std::int32_t>(column), static_cast<std::int32_t>(row), triangle, kAxis});
     }
   }
@@ -155,14 +206,14 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
 
 template <class F>
 void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
-                     Eigen::Index axis, double cell, F&& f) {
+                     Eigen::Index axis, const SampleGrid& grid, const Columns& sampled, F&& f) {
   switch (axis) {
     case 0:
-      return for_each_center<0>(corner, triangle, cell, f);
+      return for_each_center<0>(corner, triangle, grid, sampled, f);
     case 1:
-      return for_each_center<1>(corner, triangle, cell, f);
+      return for_each_center<1>(corner, triangle, grid, sampled, f);
     default:
-      return for_each_center<2>(corner, triangle, cell, f);
+      return for_each_center<2>(corner, triangle, grid, sampled, f);
   }
 }
 
@@ -206,8 +257,8 @@ std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const 
       }
       Eigen::Index axis;
       (R_grid_cam * normal_of(surface, t)).cwiseAbs().maxCoeff(&axis);
-      for_each_center(corner, static_cast<std::uint32_t>(t), axis, grid.cell,
-                      [&](const Sample& sample) {
+      for_each_center(corner, static_cast<std::uint32_t>(t), axis, grid,
+                      Columns(surface.halvings[t]), [&](const Sample& sample) {
                         const auto position = [&] { return sample.position(grid.cell); };
                         if (!taken(sample.cell(), position)) samples.push_back(sample);
                       });
@@ -222,7 +273,8 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
   TakenCells taken(grid);
   for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
     const Eigen::Vector3d p_grid = grid.T_grid_cam * points_cam.position[i].cast<double>();
-    const Eigen::Array3i cell = (p_grid.array() / grid.cell).floor().cast<int>();
+    const Eigen::Vector3d kept_grid = p_grid.unaryExpr([&](double x) { return grid.kept(x); });
+    const Eigen::Array3i cell = (kept_grid.array() / grid.cell).floor().cast<int>();
     if (!taken(cell, [&] { return p_grid; }) && cells.mark(cell)) kept.push_back(i);
   }
   PointCloud points = points_cam.select(kept);
@@ -293,6 +345,10 @@ void SurfaceOptions::validate() const {
                         "give metres above 0 and up to 100");
     }
   }
+  if (!(max_per_pixel == 0 || (max_per_pixel >= 0.1 && max_per_pixel <= 1000))) {
+    throw ConfigError("the number of samples in a pixel is out of range", "surface.max_per_pixel",
+                      "give 0.1 to 1000, or 0 for no limit");
+  }
   if (!(planar_angle >= 0 && planar_angle <= 1.5707963267948966)) {
     throw ConfigError("an angle is out of range", "surface.planar_angle", "give 0 to 90 degrees");
   }
@@ -303,9 +359,10 @@ Surface find_surface(const PointCloud& points_cam, const Camera& camera,
   options.validate();
   points_cam.check();
   const GridProjection project(camera, points_cam.origin);
-  Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}};
+  Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}, {}};
   find_triangles(project, options, surface);
   find_normals(surface);
+  find_halvings(project, camera, options, surface);
   return surface;
 }
 

@@ -2,6 +2,7 @@
 // (goes past the paper; docs/method.md 3).
 #pragma once
 
+#include <cmath>
 #include <functional>
 
 #include "fovea/base/point_cloud.h"
@@ -16,7 +17,11 @@ struct SurfaceOptions {
   double max_edge = 0.4;     ///< a triangle of shorter edges is surface (m)
   double planar_edge = 1.0;  ///< longest edge where the surface is flat (m)
   double planar_angle = 0.5235987755982988;  ///< between normals on two sides of an edge there, rad
-  void validate() const;                     ///< ConfigError that names the field
+  /// Samples in a pixel of the image, at most; 0: no limit. Where more cells fall onto a pixel,
+  /// far away and at a slant, only every second, fourth or eighth is sampled until a camera is
+  /// nearer: the image has nothing to tell the others apart by.
+  double max_per_pixel = 4;
+  void validate() const;  ///< ConfigError that names the field
 };
 
 /// The grid that samples lie on.
@@ -29,6 +34,13 @@ struct SampleGrid {
   /// is; for many cells, of which neighbours share a brick.
   std::function<const CellBrick*(const Eigen::Array3i& brick)> taken_brick =
       [](const Eigen::Array3i&) { return nullptr; };
+  double step = 0;  ///< positions will be rounded to multiples of it, m; 0: they will not
+
+  /// A coordinate as it will be rounded: a point's cell is where it will be, or it would be added
+  /// with each scan anew.
+  double kept(double coordinate) const {
+    return step == 0 ? coordinate : std::floor(coordinate / step + 0.5) * step;
+  }
 };
 
 /// The triangles between a cloud's projected points that are surface, and its normals.
@@ -38,6 +50,9 @@ struct Surface {
   std::vector<PointRule> rule;          ///< by triangle: why it is surface
   std::vector<Eigen::Vector3f> area;    ///< by triangle: its normal, as long as twice its area
   std::vector<Eigen::Vector3f> normal;  ///< by vertex of the mesh; zero without a triangle
+  std::vector<std::uint8_t> halvings;   ///< by triangle: one in 2^n of its cells is sampled
+
+  static constexpr std::uint8_t kMostHalvings = 3;
 };
 
 /// Finds the surface among the triangles between the projected points (2D Delaunay, as upsample()

@@ -171,7 +171,8 @@ TEST(SurfaceSamples, GroundBetweenDistantRingsIsFilled) {
   };
   for (const double noise : {0.0, 0.015}) {
     const PointCloud measured = scan(ground, {.noise = noise});
-    const PointCloud points = sample_surfaces(measured, test_camera(), {}, plain_grid());
+    const PointCloud points =
+        sample_surfaces(measured, test_camera(), {.max_per_pixel = 0}, plain_grid());
     for (std::size_t i = 0; i < points.size(); ++i) {
       ASSERT_NEAR(points.position[i].y(), kHeight, noise == 0 ? 1e-5 : 0.05);
     }
@@ -183,6 +184,70 @@ TEST(SurfaceSamples, GroundBetweenDistantRingsIsFilled) {
         measured, test_camera(), {.max_edge = 0.3, .planar_edge = 0.1}, plain_grid());
     EXPECT_LT(density(tau_alone, 9, 14), 0.05) << noise;
   }
+}
+
+// Ground at depth z fills a pixel with z^3 / (fx fy height) of its area.
+TEST(SurfaceSamples, NoMoreFallOntoAPixelThanMay) {
+  constexpr double kHeight = 1.653;
+  const PointCloud measured = scan({{{{-50, kHeight, -5}, {50, kHeight + 1, 60}}}});
+  const Camera camera = test_camera();
+  for (const double limit : {1.0, 3.0, 6.0}) {
+    const SurfaceOptions options{.spacing = kCell, .max_per_pixel = limit};
+    const PointCloud points = sample_surfaces(measured, camera, options, plain_grid());
+    std::size_t limited = 0;
+    for (double z = 8.5; z < 14; z += 0.25) {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector3f& p = points.position[i];
+        count += points.interpolated[i] == 1 && std::abs(p.x()) < 1.5 && std::abs(p.z() - z) < 0.25;
+      }
+      const double area = z * z * z / (camera.fx * camera.fy * kHeight);
+      const double all = area / (kCell * kCell), per_pixel = double(count) / 1.5 * area;
+      // A triangle is as its middle is, up to half a metre away.
+      const double lowest = std::min(all, limit / 2) * std::pow(1 - 0.5 / z, 3);
+      EXPECT_LT(per_pixel, std::min(all, limit) * std::pow(1 + 0.5 / z, 3)) << z;
+      if (all < limit * 8) {
+        EXPECT_GT(per_pixel, 0.93 * lowest) << z;  // measured points have cells, too
+      }
+      limited += all > limit;
+    }
+    EXPECT_GT(limited, 0u) << limit;
+  }
+}
+
+// So that a coarse surface becomes the fine one where it is seen nearer.
+TEST(SurfaceSamples, WhatIsSampledCoarselyIsPartOfWhatIsSampledFinely) {
+  const BoxScene scene{{{{-50, 1.653, -5}, {50, 3, 60}}, {{-1.31, 0.4, 8.2}, {1.12, 1.653, 12}}}};
+  const PointCloud measured = scan(scene);
+  Random random(11);
+  SampleGrid grid = grid_at(random_motion(random));
+  const auto cells = [&](const PointCloud& points) {
+    std::set<CellKey> keys;
+    for (const Eigen::Vector3f& p : points.position) {
+      keys.insert(cell_of(grid.T_grid_cam * p.cast<double>()));
+    }
+    return keys;
+  };
+  const auto sampled = [&](double limit) {
+    return sample_surfaces(measured, test_camera(), {.spacing = kCell, .max_per_pixel = limit},
+                           grid);
+  };
+  const std::set<CellKey> all = cells(sampled(0));
+  std::set<CellKey> finer = all;
+  for (const double limit : {6.0, 3.0, 1.5, 0.75}) {
+    const std::set<CellKey> coarse = cells(sampled(limit));
+    EXPECT_LT(coarse.size(), finer.size()) << limit;
+    std::size_t new_ones = 0;
+    for (const CellKey& cell : coarse) new_ones += !finer.contains(cell);
+    EXPECT_LE(new_ones, coarse.size() / 10'000) << limit;  // floats at a cell's border
+    finer = coarse;
+  }
+  EXPECT_LT(finer.size(), all.size() / 2);
+
+  grid.taken = [&](const Eigen::Vector3d& p_grid) { return finer.contains(cell_of(p_grid)); };
+  std::set<CellKey> in_the_end = cells(sampled(0));
+  in_the_end.insert(finer.begin(), finer.end());
+  EXPECT_NEAR(double(in_the_end.size()), double(all.size()), double(all.size()) / 10'000);
 }
 
 // Rings 0.3 to 1 m apart: a sample says whether short edges let it in, or only the ground's being
@@ -326,6 +391,35 @@ TEST(SurfaceSamples, TakenCellsGetNothing) {
 
   grid.taken = [](const Eigen::Vector3d&) { return true; };
   EXPECT_TRUE(sample_surfaces(measured, test_camera(), {}, grid).empty());
+}
+
+// A map that rounds what it keeps: asked again for the same scan, it has all of it.
+TEST(SurfaceSamples, WhatIsRoundedHasItsCell) {
+  const PointCloud measured = scan({{wall_at(8.003)}}, {.noise = 0.02});
+  Random random(12);
+  SampleGrid grid = grid_at(random_motion(random));
+  const auto cells_of_rounded = [&](const PointCloud& points) {
+    std::set<CellKey> cells;
+    for (const Eigen::Vector3f& p : points.position) {
+      const Eigen::Vector3d steps = grid.T_grid_cam * p.cast<double>() / 0.001;
+      cells.insert(cell_of(steps.array().round().matrix() * 0.001));
+    }
+    return cells;
+  };
+  const auto again = [&] {
+    const PointCloud first = sample_surfaces(measured, test_camera(), {}, grid);
+    const std::set<CellKey> had = cells_of_rounded(first);
+    SampleGrid next = grid;
+    next.taken = [&](const Eigen::Vector3d& p_grid) {
+      Eigen::Vector3d kept;
+      for (int i = 0; i < 3; ++i) kept[i] = grid.kept(p_grid[i]);
+      return had.contains(cell_of(kept));
+    };
+    return sample_surfaces(measured, test_camera(), {}, next).size();
+  };
+  EXPECT_GT(again(), 100u);  // asked for where they are
+  grid.step = 0.001;
+  EXPECT_LE(again(), 10u);
 }
 
 TEST(SurfaceSamples, NoTwoPointsHaveOneCell) {
@@ -472,6 +566,11 @@ TEST(SurfaceOptions, NameTheBadField) {
   for (const double bad : {0.0, -0.3, kInfinite, kNaN}) {
     EXPECT_NE(message({.max_edge = bad}).find("surface.max_edge"), std::string::npos) << bad;
     EXPECT_NE(message({.planar_edge = bad}).find("surface.planar_edge"), std::string::npos) << bad;
+  }
+  EXPECT_NO_THROW(SurfaceOptions{.max_per_pixel = 0}.validate());
+  for (const double bad : {-1.0, 0.05, 2000.0, kNaN}) {
+    EXPECT_NE(message({.max_per_pixel = bad}).find("surface.max_per_pixel"), std::string::npos)
+        << bad;
   }
   for (const double bad : {-0.1, 1.6, kNaN}) {
     EXPECT_NE(message({.planar_angle = bad}).find("surface.planar_angle"), std::string::npos)

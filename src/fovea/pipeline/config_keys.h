@@ -113,6 +113,7 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("surface.max_edge", o.surface.max_edge);
   visit("surface.planar_edge", o.surface.planar_edge);
   visit("surface.planar_angle", Degrees{o.surface.planar_angle});
+  visit("surface.max_per_pixel", o.surface.max_per_pixel);
 
   visit("upsample.rate", o.upsample.rate);
   visit("upsample.max_edge", o.upsample.max_edge);

@@ -5,6 +5,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/map/tile_columns.h"
 #include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {
@@ -143,10 +144,10 @@ PointCloud Mapper::densified(ScanView& view, const RigidMotion& T_local_cam, Sta
   if (view.upsampled) return *std::move(view.upsampled);
   return clock.time("upsample", [&] {
     occupancy_->follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
-    const SampleGrid grid{map_.submaps().back().T_local_submap.inverse() * T_local_cam,
-                          occupancy_->cell(),
-                          [&](const Eigen::Vector3d& p) { return occupancy_->taken_before(p); },
-                          [&](const Eigen::Array3i& brick) { return occupancy_->brick(brick); }};
+    const SampleGrid grid{
+        map_.submaps().back().T_local_submap.inverse() * T_local_cam, occupancy_->cell(),
+        [&](const Eigen::Vector3d& p) { return occupancy_->taken_before(p); },
+        [&](const Eigen::Array3i& brick) { return occupancy_->brick(brick); }, kPositionStep};
     return sample_surface(view.foveal_cam, *view.surface, grid);
   });
 }
