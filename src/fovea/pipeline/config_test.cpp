@@ -21,7 +21,7 @@ std::string error_of(const std::function<void()>& work) {
 }
 
 TEST(Config, EveryPresetLoads) {
-  EXPECT_THAT(preset_names(), testing::IsSupersetOf({"default", "paper"}));
+  EXPECT_THAT(preset_names(), testing::IsSupersetOf({"default", "paper", "realtime"}));
   for (const std::string& name : preset_names()) EXPECT_NO_THROW(load_preset(name)) << name;
   EXPECT_THROW(load_preset("nonsense"), ConfigError);
 }

@@ -20,8 +20,12 @@ constexpr std::size_t kGrain = 256;
 /// A pair is looked for again once its points have moved by this share of how far pairs are apart.
 constexpr double kKeepsPairShare = 0.1;
 
-/// How many points say enough of where to go while the kernel is wide.
+/// How many points say enough of where to go while the kernel is wide, and until they move less
+/// than kNearlyThere times what ends the iteration. Should they not agree on a place, all are asked
+/// after so many rounds.
 constexpr std::size_t kCoarsePoints = 4000;
+constexpr double kNearlyThere = 20;
+constexpr int kCoarseRounds = 30;
 
 /// Fewer pairs than this are no evidence of six numbers.
 constexpr std::size_t kMinPairs = 50;
@@ -89,13 +93,16 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
 
   RegistrationResult result;
   result.T_target_source = guess;
+  bool nearly_there = false;
   while (result.iterations < options.max_iterations && !result.converged) {
     // The kernel narrows step by step: from a poor guess the true pairs are far apart, too.
     if (options.robust_width > 0) {
       optimizer.robust_width =
           std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
     }
-    if (optimizer.robust_width <= options.robust_width && pairs.size() < source.points.size()) {
+    const bool narrow = optimizer.robust_width <= options.robust_width;
+    if (narrow && (nearly_there || result.iterations >= kCoarseRounds) &&
+        pairs.size() < source.points.size()) {
       pairs = pairs_of(source, source.points.size());
     }
     const auto keep_within =
@@ -112,9 +119,12 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
       return result;
     }
     const Twist step = log_se3(result.T_target_source.inverse() * T);
-    result.converged = optimizer.robust_width <= options.robust_width &&
-                       step.head<3>().norm() < options.converged_rotation &&
-                       step.tail<3>().norm() < options.converged_translation;
+    const auto moves_less_than = [&](double times) {
+      return step.head<3>().norm() < times * options.converged_rotation &&
+             step.tail<3>().norm() < times * options.converged_translation;
+    };
+    nearly_there = moves_less_than(kNearlyThere);
+    result.converged = narrow && pairs.size() == source.points.size() && moves_less_than(1);
     result.T_target_source = T;
     result.degenerate_directions = degenerate;
     result.rms_distance =
