@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fovea/base/parallel.h"
+#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -36,10 +37,12 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
     tile.points = 0;
   }
   const auto per_metre = static_cast<float>(1 / cell_);
+  // Positions are multiples of a step: just where a cell ends a tenth of one decides.
+  const float beyond = 0.1f * kPositionStep * per_metre;
   const auto last = static_cast<float>(edge_ - 1);
   for (; tile.points < points.size(); ++tile.points) {
     const Cell cell =
-        (points.position[tile.points].array() * per_metre).max(0.0f).min(last).cast<int>();
+        (points.position[tile.points].array() * per_metre + beyond).max(0.0f).min(last).cast<int>();
     std::int32_t& brick = tile.brick[place_of(CellBrick::number_of(cell))];
     if (brick == kNoBrick) {
       brick = static_cast<std::int32_t>(tile.bricks.size());

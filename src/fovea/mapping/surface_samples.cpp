@@ -120,6 +120,26 @@ void find_halvings(const GridProjection& project, const Camera& camera,
   }
 }
 
+/// The number, along one axis, of the cell in which a coordinate (m) will be once it is rounded.
+class CellNumber {
+ public:
+  explicit CellNumber(const SampleGrid& grid)
+      : steps_per_metre_(1 / (grid.step > 0 ? grid.step : grid.cell)),
+        cells_per_step_(grid.step > 0 ? grid.step / grid.cell : 1),
+        half_(grid.step > 0 ? 0.5 : 0),
+        beyond_(grid.step > 0 ? 0.1 : 0) {}
+  // Products, since this is asked for every sample and quotients take longer.
+  std::int32_t operator()(double coordinate) const {
+    return static_cast<std::int32_t>(std::floor(
+        (std::floor(coordinate * steps_per_metre_ + half_) + beyond_) * cells_per_step_));
+  }
+
+ private:
+  double steps_per_metre_, cells_per_step_, half_;
+  // Just where a cell ends a tenth of a step decides, as in the map, and not how floats round.
+  double beyond_;
+};
+
 /// Where a column of the grid's cells along `axis` meets a triangle.
 struct Sample {
   double height;             // m along the axis
@@ -177,8 +197,8 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
   const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   if (!(std::abs(n[kAxis]) > 1e-3 * n.norm())) return;  // seen from its edge
   const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
-  const double cell = grid.cell,
-               per_metre = 1 / cell;  // a product for each sample, where a quotient takes longer
+  const CellNumber cell_number(grid);
+  const double cell = grid.cell, per_metre = 1 / cell;
   const auto first_center = [&](double low) { return std::ceil(low * per_metre - 0.5); };
   const auto [v_low, v_high] = std::minmax({corner[0][kV], corner[1][kV], corner[2][kV]});
   const double rows = first_center(v_high);
@@ -198,8 +218,8 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
       const double at_u = (column + 0.5) * cell;
       const double height =
           corner[0][kAxis] + slope_u * (at_u - corner[0][kU]) + slope_v * (at_v - corner[0][kV]);
-      f(Sample{height, static_cast<std::int32_t>(std::floor(grid.kept(height) * per_metre)),
-               static_cast<std::int32_t>(column), static_cast<std::int32_t>(row), triangle, kAxis});
+      f(Sample{height, cell_number(height), static_cast<std::int32_t>(column),
+               static_cast<std::int32_t>(row), triangle, kAxis});
     }
   }
 }
@@ -271,10 +291,11 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
                            const SampleGrid& grid, CellSet& cells) {
   std::vector<std::uint32_t> kept;
   TakenCells taken(grid);
+  const CellNumber cell_number(grid);
   for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
     const Eigen::Vector3d p_grid = grid.T_grid_cam * points_cam.position[i].cast<double>();
-    const Eigen::Vector3d kept_grid = p_grid.unaryExpr([&](double x) { return grid.kept(x); });
-    const Eigen::Array3i cell = (kept_grid.array() / grid.cell).floor().cast<int>();
+    const Eigen::Array3i cell(cell_number(p_grid.x()), cell_number(p_grid.y()),
+                              cell_number(p_grid.z()));
     if (!taken(cell, [&] { return p_grid; }) && cells.mark(cell)) kept.push_back(i);
   }
   PointCloud points = points_cam.select(kept);

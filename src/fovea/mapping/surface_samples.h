@@ -2,7 +2,6 @@
 // (goes past the paper; docs/method.md 3).
 #pragma once
 
-#include <cmath>
 #include <functional>
 
 #include "fovea/base/point_cloud.h"
@@ -34,13 +33,9 @@ struct SampleGrid {
   /// is; for many cells, of which neighbours share a brick.
   std::function<const CellBrick*(const Eigen::Array3i& brick)> taken_brick =
       [](const Eigen::Array3i&) { return nullptr; };
-  double step = 0;  ///< positions will be rounded to multiples of it, m; 0: they will not
-
-  /// A coordinate as it will be rounded: a point's cell is where it will be, or it would be added
-  /// with each scan anew.
-  double kept(double coordinate) const {
-    return step == 0 ? coordinate : std::floor(coordinate / step + 0.5) * step;
-  }
+  /// Positions will be rounded to multiples of it, m; 0: they will not. A point's cell is where it
+  /// will be, or with each scan it would be added anew.
+  double step = 0;
 };
 
 /// The triangles between a cloud's projected points that are surface, and its normals.

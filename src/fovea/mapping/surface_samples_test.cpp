@@ -398,27 +398,25 @@ TEST(SurfaceSamples, WhatIsRoundedHasItsCell) {
   const PointCloud measured = scan({{wall_at(8.003)}}, {.noise = 0.02});
   Random random(12);
   SampleGrid grid = grid_at(random_motion(random));
-  const auto cells_of_rounded = [&](const PointCloud& points) {
-    std::set<CellKey> cells;
-    for (const Eigen::Vector3f& p : points.position) {
-      const Eigen::Vector3d steps = grid.T_grid_cam * p.cast<double>() / 0.001;
-      cells.insert(cell_of(steps.array().round().matrix() * 0.001));
-    }
-    return cells;
+  static constexpr double kStep = 0.001;
+  const auto rounded = [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    // A tenth of a step beyond, that decides where a cell ends just there.
+    return ((p / kStep).array().round() + 0.1).matrix() * kStep;
   };
   const auto again = [&] {
     const PointCloud first = sample_surfaces(measured, test_camera(), {}, grid);
-    const std::set<CellKey> had = cells_of_rounded(first);
+    std::set<CellKey> had;
+    for (const Eigen::Vector3f& p : first.position) {
+      had.insert(cell_of(rounded(grid.T_grid_cam * p.cast<double>())));
+    }
     SampleGrid next = grid;
     next.taken = [&](const Eigen::Vector3d& p_grid) {
-      Eigen::Vector3d kept;
-      for (int i = 0; i < 3; ++i) kept[i] = grid.kept(p_grid[i]);
-      return had.contains(cell_of(kept));
+      return had.contains(cell_of(grid.step > 0 ? rounded(p_grid) : p_grid));
     };
     return sample_surfaces(measured, test_camera(), {}, next).size();
   };
   EXPECT_GT(again(), 100u);  // asked for where they are
-  grid.step = 0.001;
+  grid.step = kStep;
   EXPECT_LE(again(), 10u);
 }
 

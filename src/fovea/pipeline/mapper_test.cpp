@@ -116,6 +116,23 @@ TEST(Mapper, ManyViewsGiveTrueColoursAtOnePointACell) {
   EXPECT_LT(double(crowded_points(mapper.map(), 4.0 / 216)), 1e-3 * double(count));
 }
 
+// However long a vehicle stands: also where cells end just where positions are rounded to (2 cm).
+TEST(Mapper, AStandingVehicleAddsNothing) {
+  for (const double spacing : {0.0185, 0.02, 0.03}) {
+    SyntheticDrive drive(street_off_borders(), 4, 0);
+    for (RigidMotion& T : drive.T_local_lidar) T = RigidMotion::Identity();
+    MapperOptions options;
+    options.surface.spacing = spacing;
+    Mapper mapper(drive.info(), options, PoseSource::kGiven);
+    std::vector<std::size_t> size;
+    for (int i = 0; i < 4; ++i) {
+      mapper.process(std::get<Frame>(drive.load(i)), false, RigidMotion::Identity());
+      size.push_back(mapper.map().size());
+    }
+    EXPECT_LE(size[3] - size[0], size[0] / 5000) << spacing;
+  }
+}
+
 // The same scan and image again: nothing is new, and every point is seen again.
 TEST(Mapper, AScanOfWhatIsMappedAddsViewsAndNoPoints) {
   SyntheticDrive drive(street_off_borders(), 10, 0);

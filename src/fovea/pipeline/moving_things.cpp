@@ -90,11 +90,13 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
     voxel[i] = *place;
   }
   std::vector<std::uint8_t> moving(first_point.size());
+  const int judges = static_cast<int>(scans_.size());
   parallel_for(first_point.size(), kVoxelGrain, [&](std::size_t v) {
     const Eigen::Vector3d p_odom =
         T_odom_local * (points_local.origin + points_local.position[first_point[v]].cast<double>());
     int free = 0, filled = 0;
-    for (std::size_t k = scans_.size() - std::min(scans_.size(), kJudges); k < scans_.size(); ++k) {
+    // Until the judges that are left cannot make it free; mostly half of them are asked.
+    for (int k = judges; k-- > 0 && free + k + 1 >= kMinFree && free + k + 1 > filled;) {
       const Sight sight = scans_[k].image.sight((scans_[k].T_lidar_odom * p_odom).cast<float>());
       free += sight == Sight::kFree;
       filled += sight == Sight::kSurface;
