@@ -146,7 +146,11 @@ Localization Localizer::localize(const Frame& frame) {
   }
   result.health = best.health;
   if (best.fits) {
-    result.found = !tracking_ || best.elsewhere;
+    // Farther from where it was expected than anything is tracked: not how it moves.
+    const RigidMotion correction =
+        motion.guesses.front().T_odom_lidar.inverse() * best.registration.T_target_source;
+    const bool jumped = correction.translation().norm() > kMaxCorrection;
+    result.found = !tracking_ || best.elsewhere || jumped;
     accept(best, result);
   } else {
     tracking_ = false;

@@ -67,7 +67,8 @@ TEST_F(Recolor, PointsStayAndColoursAreTrue) {
   }
   EXPECT_EQ(coloured, after.size() - figures.uncolored);
   EXPECT_LT(error_after / double(coloured), 2.0);
-  EXPECT_LT(error_after, 1.05 * error_before);
+  // Far views, too, which a point filled in when the camera was near has not had before.
+  EXPECT_LT(error_after, 1.1 * error_before);
 }
 
 TEST_F(Recolor, IsTheSameAtAnyNumberOfThreadsAndAgain) {
