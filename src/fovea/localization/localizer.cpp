@@ -146,10 +146,11 @@ Localization Localizer::localize(const Frame& frame) {
   }
   result.health = best.health;
   if (best.fits) {
-    // Farther from where it was expected than anything is tracked: not how it moves.
+    // Farther from where its motion has it than anything is tracked: not how it moves.
+    const MotionGuess& expected = motion.guesses.front();
     const RigidMotion correction =
-        motion.guesses.front().T_odom_lidar.inverse() * best.registration.T_target_source;
-    const bool jumped = correction.translation().norm() > kMaxCorrection;
+        expected.T_odom_lidar.inverse() * best.registration.T_target_source;
+    const bool jumped = expected.motion && correction.translation().norm() > kMaxCorrection;
     result.found = !tracking_ || best.elsewhere || jumped;
     accept(best, result);
   } else {
