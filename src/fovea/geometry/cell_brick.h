@@ -17,6 +17,10 @@ inline std::uint64_t cell_key(const Eigen::Array3i& cell) {
   return key;
 }
 
+/// Of positions that are rounded to steps many lie just where a cell ends. Whoever looks for the
+/// cell of one goes so many steps on, or it depended on how his floats round.
+inline constexpr double kStepsOn = 0.1;
+
 /// 8 x 8 x 8 cells, one bit each.
 class CellBrick {
  public:

@@ -37,8 +37,7 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
     tile.points = 0;
   }
   const auto per_metre = static_cast<float>(1 / cell_);
-  // Positions are multiples of a step: just where a cell ends a tenth of one decides.
-  const float beyond = 0.1f * kPositionStep * per_metre;
+  const float beyond = static_cast<float>(kStepsOn) * kPositionStep * per_metre;
   const auto last = static_cast<float>(edge_ - 1);
   for (; tile.points < points.size(); ++tile.points) {
     const Cell cell =

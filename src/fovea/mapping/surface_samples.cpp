@@ -127,7 +127,7 @@ class CellNumber {
       : steps_per_metre_(1 / (grid.step > 0 ? grid.step : grid.cell)),
         cells_per_step_(grid.step > 0 ? grid.step / grid.cell : 1),
         half_(grid.step > 0 ? 0.5 : 0),
-        beyond_(grid.step > 0 ? 0.1 : 0) {}
+        beyond_(grid.step > 0 ? kStepsOn : 0) {}
   // Products, since this is asked for every sample and quotients take longer.
   std::int32_t operator()(double coordinate) const {
     return static_cast<std::int32_t>(std::floor(
@@ -135,9 +135,7 @@ class CellNumber {
   }
 
  private:
-  double steps_per_metre_, cells_per_step_, half_;
-  // Just where a cell ends a tenth of a step decides, as in the map, and not how floats round.
-  double beyond_;
+  double steps_per_metre_, cells_per_step_, half_, beyond_;
 };
 
 /// Where a column of the grid's cells along `axis` meets a triangle.
