@@ -101,7 +101,7 @@ void bench_store(benchmark::State& state, const MappedStreet& street) {
   const int newest = street.data.frames[street.data.frames.size() - 2].index;
   for (const Submap& submap : street.map.submaps()) {
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       std::vector<std::uint32_t> of_frame;
       for (std::uint32_t i = 0; i < tile.size(); ++i) {
         if (tile.frame[i] == newest) of_frame.push_back(i);

@@ -3,8 +3,7 @@
 
 #include <limits>
 
-#include "fovea/base/point_cloud.h"
-#include "fovea/map/tile_columns.h"
+#include "fovea/map/tile_points.h"
 
 namespace fovea {
 
@@ -12,10 +11,10 @@ inline PointCloud sample_tile() {
   PointCloud tile;
   for (int i = 0; i < 6; ++i) {
     const float x = 0.1f * static_cast<float>(i);
-    tile.position.push_back(kept_position({x, 1.5 * x, 0.25}));
+    tile.position.push_back({x, 1.5f * x, 0.25f});
     tile.intensity.push_back(x);
-    tile.range.push_back(kept_range(3 + x));
-    tile.incidence.push_back(kept_incidence(i == 0 ? std::numeric_limits<float>::quiet_NaN() : x));
+    tile.range.push_back(3 + x);
+    tile.incidence.push_back(i == 0 ? std::numeric_limits<float>::quiet_NaN() : x);
     tile.color.push_back({std::uint8_t(i), 128, 255});
     tile.frame.push_back(i);
     tile.camera.push_back(i % 3 == 0 ? kNoCamera : std::int8_t{2});
@@ -25,7 +24,7 @@ inline PointCloud sample_tile() {
     tile.weight.push_back(std::uint16_t(300 * i));
     tile.reason.push_back(i % 2 == 0 ? 0x10 : 2);
   }
-  return tile;
+  return TilePoints::of(tile).cloud();
 }
 
 }  // namespace fovea

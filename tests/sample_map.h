@@ -135,7 +135,7 @@ inline void for_each_sample_point(
   const TileMap map = sample_tile_map();
   for (const Submap& submap : map.submaps()) {
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       for (std::size_t i = 0; i < tile.size(); ++i) {
         f(submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()), tile, i);
       }

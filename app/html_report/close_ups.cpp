@@ -35,8 +35,7 @@ ColouredPoints baseline_points(const FrameSource& drive, const std::vector<Place
   all.origin = origin_local;
   for (const Submap& submap : mapper.map().submaps()) {
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
-      all.append(transform_cloud(tile, submap.T_local_submap, origin_local));
+      all.append(transform_cloud(stored.points->cloud(), submap.T_local_submap, origin_local));
     }
   }
   return coloured_points(all);

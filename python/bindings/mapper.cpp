@@ -70,7 +70,7 @@ std::map<TileTuple, Points> tiles_of(const TileMap& map) {
   std::map<TileTuple, Points> tiles;
   for (std::size_t number = 0; number < map.submaps().size(); ++number) {
     for (const auto& [key, tile] : map.submaps()[number].tiles) {
-      tiles.emplace(tuple_of({number, key}), Points(tile.points));
+      tiles.emplace(tuple_of({number, key}), Points(tile.points->cloud()));
     }
   }
   return tiles;

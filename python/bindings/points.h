@@ -15,11 +15,6 @@ namespace fovea::python {
 struct Points {
   explicit Points(PointCloud points)
       : cloud(std::make_shared<const PointCloud>(std::move(points))) {}
-  /// Of a tile in memory, without a copy: who changes the tile later leaves this one alone.
-  explicit Points(const CopyOnWrite<PointCloud>& tile) {
-    const auto held = std::make_shared<const CopyOnWrite<PointCloud>>(tile);
-    cloud = std::shared_ptr<const PointCloud>(held, &**held);
-  }
   std::shared_ptr<const PointCloud> cloud;
 };
 

@@ -63,7 +63,7 @@ void write(const std::filesystem::path& folder) {
     const Submap& submap = map.submaps()[id];
     writer->put_submap(id, submap.T_local_submap);
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       writer->put_tile({id, key}, tile);
       for (std::size_t i = 0; i < tile.size(); ++i) {
         if (tile.camera[i] == kNoCamera) continue;

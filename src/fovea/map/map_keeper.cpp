@@ -15,7 +15,7 @@ namespace {
 constexpr double kAhead = 20, kBeyond = 30;  // m
 
 /// Of a tile in memory: all columns, and what vectors that grow hold in reserve.
-constexpr std::size_t kBytesPerPoint = 38 * 3 / 2;
+constexpr std::size_t kBytesPerPoint = 27 * 3 / 2;
 
 /// What is written can wait, a frame cannot: the processor is left to the frame while it lasts.
 /// What is read is waited for, but seldom, and by threads that leave the processor meanwhile.
@@ -89,7 +89,7 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
     requested_.emplace(id, worker_.post([this, id] { return writer_->read_tile(id); }));
   }
   for (const TileId& id : map.stored_near(center_local, radius)) {
-    const std::future<PointCloud>& tile = requested_.at(id);
+    const std::future<TilePoints>& tile = requested_.at(id);
     if (is_ready(tile)) continue;
     hurry_.request_stop();  // the worker may have a checkpoint to write first
     tile.wait();

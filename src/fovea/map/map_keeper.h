@@ -91,7 +91,7 @@ class MapKeeper {
   std::unique_ptr<MapWriter> writer_;  // the worker's, once there is one
   std::future<void> written_;          // of the latest checkpoint
   std::stop_source hurry_;             // for it
-  std::map<TileId, std::future<PointCloud>> requested_;
+  std::map<TileId, std::future<TilePoints>> requested_;
   Worker worker_;
 };
 

@@ -35,7 +35,7 @@ void expect_stored(const std::filesystem::path& path, const TileMap& map) {
       [&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
         ++tiles;
         ASSERT_TRUE(map.submaps()[submap].tiles.contains(key));
-        expect_same_columns(tile, *map.submaps()[submap].tiles.at(key).points);
+        expect_same_columns(tile, map.submaps()[submap].tiles.at(key).points->cloud());
       });
   std::size_t expected = 0;
   for (const Submap& submap : map.submaps()) expected += submap.tiles.size();
@@ -70,7 +70,7 @@ TEST_P(Keeper, TheMapIsTheSameAsInMemory) {
     const PointCloud points = points_at(center.x(), random_);
     std::vector<TileId> near;
     whole.for_each_tile_near(center, kNear,
-                             [&](const TileId& id, const PointCloud&) { near.push_back(id); });
+                             [&](const TileId& id, const TilePoints&) { near.push_back(id); });
     both([&](TileMap& m) {
       m.add(points);
       for (std::size_t i = 0; i < near.size(); ++i) {

@@ -6,7 +6,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/map/number_text.h"
-#include "fovea/map/tile_columns.h"
+#include "fovea/map/tile_points.h"
 
 namespace fovea {
 namespace {

@@ -321,15 +321,21 @@ std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
 }
 
 PointCloud MapReader::read_tile(const TileId& id) const {
-  return database_->tile().read(id, database_->sqlite->where());
+  return database_->tile().read(id, database_->sqlite->where()).cloud();
 }
 
-std::optional<PointCloud> MapReader::find_tile(const TileId& id) const {
+std::optional<TilePoints> MapReader::find_tile(const TileId& id) const {
   return database_->tile().find(id, database_->sqlite->where());
 }
 
 void MapReader::for_each_tile(
     const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const {
+  for_each_stored_tile(
+      [&](const TileId& id, const TilePoints& tile) { f(id.submap, id.key, tile.cloud()); });
+}
+
+void MapReader::for_each_stored_tile(
+    const std::function<void(const TileId&, const TilePoints&)>& f) const {
   sqlite::Database& database = *database_->sqlite;
   const Snapshot snapshot(database);
   const std::size_t submap_count = submaps().size();
@@ -342,7 +348,7 @@ void MapReader::for_each_tile(
     }
     const TileId id{static_cast<std::size_t>(row.submap), row.key};
     if (!database_->on_damage) order.require_after_last(id);
-    f(id.submap, id.key, decoder.decode(row, database.where()));
+    f(id, decoder.decode(row, database.where()));
   });
 }
 
@@ -394,9 +400,9 @@ std::string MapReader::digest() const {
   Statement submaps(database, "SELECT id, pose FROM submaps ORDER BY id");
   while (submaps.step()) digest.row(submaps.integer(0), submaps.text(1));
   digest.section("tiles");
-  for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
-    digest.row(static_cast<std::int64_t>(submap), std::int64_t{key.x}, std::int64_t{key.y},
-               std::int64_t{key.z}, static_cast<std::int64_t>(tile.size()), tile.origin.x(),
+  for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
+    digest.row(static_cast<std::int64_t>(id.submap), std::int64_t{id.key.x}, std::int64_t{id.key.y},
+               std::int64_t{id.key.z}, static_cast<std::int64_t>(tile.size()), tile.origin.x(),
                tile.origin.y(), tile.origin.z());
     const PackedColumns packed = pack_columns(tile);
     for (std::size_t i = 0; i < kStoredColumns; ++i) {

@@ -51,11 +51,12 @@ class MapWriter {
   /// Of a frame that has been put; std::invalid_argument if not finite.
   virtual void put_pose(int frame, const RigidMotion& T_local_lidar) = 0;
   virtual void put_tile(const PackedTile& tile) = 0;
-  /// std::logic_error if the tile lacks a column (see Tile::points).
-  void put_tile(const TileId& id, const PointCloud& tile) { put_tile(pack_tile(id, tile)); }
+  void put_tile(const TileId& id, const TilePoints& tile) { put_tile(pack_tile(id, tile)); }
+  /// std::logic_error as TilePoints::of().
+  void put_tile(const TileId& id, const PointCloud& tile) { put_tile(id, TilePoints::of(tile)); }
   virtual void remove_tile(const TileId& id) = 0;
   /// A tile as it was put, committed or not; InputError if it is not there or damaged.
-  virtual PointCloud read_tile(const TileId& id) = 0;
+  virtual TilePoints read_tile(const TileId& id) = 0;
   /// OutputError when the disk is full or the file cannot be written.
   virtual void commit() = 0;
 };
@@ -84,11 +85,12 @@ class MapReader {
   std::size_t colored_size() const;          ///< number of those that a camera has coloured
   /// The tiles that there are, in the order of submap and key, and how many points each has.
   std::vector<std::pair<TileId, std::size_t>> tile_sizes() const;
-  /// InputError if the tile is not there or damaged.
+  /// Submap frame, relative to the cloud's `origin` = the tile's lowest corner; InputError if the
+  /// tile is not there or damaged.
   PointCloud read_tile(const TileId& id) const;
   /// Nothing if the tile is not there; InputError if it is damaged.
-  std::optional<PointCloud> find_tile(const TileId& id) const;
-  /// Calls f(submap, key, tile) in the order of submap and key; positions as in Submap::tiles.
+  std::optional<TilePoints> find_tile(const TileId& id) const;
+  /// Calls f(submap, key, tile) in the order of submap and key.
   void for_each_tile(
       const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const;
   /// All points that pass, in the local frame, origin at 0.
@@ -97,6 +99,8 @@ class MapReader {
   std::string digest() const;
 
  private:
+  void for_each_stored_tile(const std::function<void(const TileId&, const TilePoints&)>& f) const;
+
   struct Database;
   std::unique_ptr<Database> database_;
 };

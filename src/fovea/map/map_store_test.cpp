@@ -16,7 +16,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
-#include "fovea/map/tile_columns.h"
+#include "fovea/map/tile_points.h"
 
 namespace fovea::map_store_test {
 
@@ -65,7 +65,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   std::size_t colored = 0;
   reader.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
     order.emplace_back(submap, key);
-    expect_same_columns(tile, *map.submaps()[submap].tiles.at(key).points);
+    expect_same_columns(tile, map.submaps()[submap].tiles.at(key).points->cloud());
     colored += std::count(tile.camera.begin(), tile.camera.end(), std::int8_t{2});
   });
   EXPECT_EQ(order.size(), map.submaps()[0].tiles.size() + map.submaps()[1].tiles.size());
@@ -75,10 +75,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
 
 TEST(MapStore, TilesWithoutIntensityOrPointsComeBack) {
   const TemporaryFolder folder;
-  PointCloud tile = one_point_each({{1, 2, 3}, {3, 2, 1}});
-  for (Eigen::Vector3f& p : tile.position) p = kept_position(p.cast<double>());
-  for (float& range : tile.range) range = kept_range(range);
-  for (float& incidence : tile.incidence) incidence = kept_incidence(incidence);
+  const PointCloud tile = TilePoints::of(one_point_each({{1, 2, 3}, {3, 2, 1}})).cloud();
   {
     const auto writer = MapWriter::create(folder / "a.fovea", false);
     writer->put_submap(0, RigidMotion::Identity());
@@ -106,7 +103,7 @@ TEST(MapStore, AllPointsLieInTheLocalFrame) {
   std::size_t i = 0;
   for (const Submap& submap : map.submaps()) {
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       for (std::size_t j = 0; j < tile.size(); ++j, ++i) {
         const Eigen::Vector3d expected =
             submap.T_local_submap * (tile.origin + tile.position[j].cast<double>());
@@ -258,7 +255,7 @@ TEST(MapDigest, ChangesWithAnyBitOfATile) {
                         [](const auto& a, const auto& b) {
                           return a.second.points->size() < b.second.points->size();
                         });
-  const PointCloud& tile = *largest.points;
+  const PointCloud tile = largest.points->cloud();
   std::set<std::string> digests = {digest_with([](MapWriter&) {})};
   const auto expect_new = [&, key = key](const PointCloud& changed) {
     EXPECT_TRUE(digests.insert(digest_with([&](MapWriter& w) {
@@ -359,7 +356,7 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
     const auto submap = static_cast<std::size_t>(sqlite3_column_int64(row, 0));
     const TileKey key = {sqlite3_column_int(row, 1), sqlite3_column_int(row, 2),
                          sqlite3_column_int(row, 3)};
-    const PointCloud& tile = *map.submaps()[submap].tiles.at(key).points;
+    const PointCloud tile = map.submaps()[submap].tiles.at(key).points->cloud();
     const auto count = static_cast<std::size_t>(sqlite3_column_int64(row, 4));
     ASSERT_EQ(count, tile.size());
     points += count;

@@ -110,7 +110,7 @@ class SqliteMapWriter : public MapWriter {
   void put_pose(int frame, const RigidMotion& T_local_lidar) override;
   void put_tile(const PackedTile& tile) override;
   void remove_tile(const TileId& id) override;
-  PointCloud read_tile(const TileId& id) override;
+  TilePoints read_tile(const TileId& id) override;
 
   void commit() override {
     write([&] {
@@ -287,8 +287,8 @@ void SqliteMapWriter::remove_tile(const TileId& id) {
   });
 }
 
-PointCloud SqliteMapWriter::read_tile(const TileId& id) {
-  PointCloud tile;
+TilePoints SqliteMapWriter::read_tile(const TileId& id) {
+  TilePoints tile;
   write([&] { tile = puts_->read_tile.read(id, path_.string()); });
   return tile;
 }

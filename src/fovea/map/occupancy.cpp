@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "fovea/base/parallel.h"
-#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -29,7 +28,7 @@ std::size_t Occupancy::place_of(const Cell& brick) const {
   return place_in(brick, Eigen::Array3i::Constant(edge_ / kBrick));
 }
 
-void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
+void Occupancy::take_in(const TilePoints& points, Tile& tile) const {
   if (points.size() < tile.points || tile.brick.empty()) {  // some have gone, or it is new
     const std::size_t bricks = static_cast<std::size_t>(edge_ / kBrick);
     tile.brick.assign(bricks * bricks * bricks, kNoBrick);
@@ -40,8 +39,10 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
   const float beyond = static_cast<float>(kStepsOn) * kPositionStep * per_metre;
   const auto last = static_cast<float>(edge_ - 1);
   for (; tile.points < points.size(); ++tile.points) {
-    const Cell cell =
-        (points.position[tile.points].array() * per_metre + beyond).max(0.0f).min(last).cast<int>();
+    const Cell cell = (points.position_at(tile.points).array() * per_metre + beyond)
+                          .max(0.0f)
+                          .min(last)
+                          .cast<int>();
     std::int32_t& brick = tile.brick[place_of(CellBrick::number_of(cell))];
     if (brick == kNoBrick) {
       brick = static_cast<std::int32_t>(tile.bricks.size());
@@ -53,8 +54,8 @@ void Occupancy::take_in(const PointCloud& points, Tile& tile) const {
 
 void Occupancy::follow(const TileMap& map, const Eigen::Vector3d& center_local, double radius) {
   std::map<TileId, Tile> within_reach;
-  std::vector<std::pair<const PointCloud*, Tile*>> tiles;
-  map.for_each_tile_near(center_local, radius, [&](const TileId& id, const PointCloud& points) {
+  std::vector<std::pair<const TilePoints*, Tile*>> tiles;
+  map.for_each_tile_near(center_local, radius, [&](const TileId& id, const TilePoints& points) {
     auto node = tiles_.extract(id);
     Tile& tile = node ? within_reach.insert(std::move(node)).position->second : within_reach[id];
     if (points.size() != tile.points) tiles.emplace_back(&points, &tile);

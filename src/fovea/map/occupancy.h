@@ -57,7 +57,7 @@ class Occupancy {
     std::vector<const Tile*> tiles;
   };
 
-  void take_in(const PointCloud& points, Tile& tile) const;
+  void take_in(const TilePoints& points, Tile& tile) const;
   void open_windows(const TileMap& map);
   std::array<std::vector<Place>, 3> places_of(const Eigen::Array3i& tiles) const;
   static bool is_marked(const Window& window, const Eigen::Vector3d& p_last);

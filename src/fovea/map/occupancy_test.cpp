@@ -30,7 +30,7 @@ bool taken_by_search(const TileMap& map, double cell, const Eigen::Vector3d& p_l
         submap.T_local_submap.inverse() * (map.submaps().back().T_local_submap * p_last);
     const Eigen::Array3d wanted = (p.array() / cell).floor();
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       for (const Eigen::Vector3f& position : tile.position) {
         const Eigen::Array3d found =
             ((tile.origin + position.cast<double>()).array() / cell).floor();
@@ -115,9 +115,9 @@ TEST(Occupancy, EqualsASearchThroughAllPoints) {
       if (step % 4 == 3) {
         std::vector<TileId> ids;
         map.for_each_tile_near({0, 0, 0}, kAll,
-                               [&](const TileId& id, const PointCloud&) { ids.push_back(id); });
+                               [&](const TileId& id, const TilePoints&) { ids.push_back(id); });
         for (const TileId& id : ids) {
-          const PointCloud& tile = *map.submaps()[id.submap].tiles.at(id.key).points;
+          const PointCloud tile = map.submaps()[id.submap].tiles.at(id.key).points->cloud();
           std::vector<std::uint32_t> kept;
           for (std::uint32_t i = 0; i < tile.size(); ++i) {
             if (random.below(2) == 0) kept.push_back(i);
@@ -135,7 +135,7 @@ TEST(Occupancy, EqualsASearchThroughAllPoints) {
       };
       for (const Submap& submap : map.submaps()) {
         for (const auto& [key, stored] : submap.tiles) {
-          const PointCloud& tile = *stored.points;
+          const PointCloud tile = stored.points->cloud();
           // On the tile's border rounding decides.
           if (tile.position[0].minCoeff() == 0 || tile.position[0].maxCoeff() >= kOdd) continue;
           const Eigen::Vector3d p = tile.origin + tile.position[0].cast<double>();

@@ -7,8 +7,7 @@
 
 namespace fovea {
 
-PackedTile pack_tile(const TileId& id, const PointCloud& tile) {
-  check_tile_columns(tile);
+PackedTile pack_tile(const TileId& id, const TilePoints& tile) {
   if (static_cast<std::int64_t>(tile.size()) > kMaxTilePoints || !tile.origin.allFinite()) {
     throw std::invalid_argument(fmt::format("tile {} {} {} has {} points and the origin {} {} {}",
                                             id.key.x, id.key.y, id.key.z, tile.size(),
@@ -24,7 +23,7 @@ PackedTile pack_tile(const TileId& id, const PointCloud& tile) {
   return packed;
 }
 
-std::int64_t count_colored(const PointCloud& tile) {
+std::int64_t count_colored(const TilePoints& tile) {
   return std::count_if(tile.camera.begin(), tile.camera.end(),
                        [](std::int8_t camera) { return camera != kNoCamera; });
 }

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-#include "fovea/base/point_cloud.h"
 #include "fovea/map/tile_columns.h"
 #include "fovea/map/tile_map.h"
 
@@ -12,7 +11,6 @@ namespace fovea {
 /// Points that one tile may hold; bounds what a damaged row can make a reader allocate.
 inline constexpr std::int64_t kMaxTilePoints = std::int64_t{1} << 26;
 
-/// About half of what the tile takes in memory.
 struct PackedTile {
   TileId id;
   std::int64_t points = 0;
@@ -21,11 +19,10 @@ struct PackedTile {
   PackedColumns columns;
 };
 
-/// std::logic_error if a column is missing (see Tile::points), std::invalid_argument if the tile
-/// has too many points or an origin that is not finite.
-PackedTile pack_tile(const TileId& id, const PointCloud& tile);
+/// std::invalid_argument if the tile has too many points or an origin that is not finite.
+PackedTile pack_tile(const TileId& id, const TilePoints& tile);
 
 /// Points of a tile that a camera has coloured.
-std::int64_t count_colored(const PointCloud& tile);
+std::int64_t count_colored(const TilePoints& tile);
 
 }  // namespace fovea

@@ -75,7 +75,7 @@ TileDecoder::TileDecoder() : context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
 }
 TileDecoder::~TileDecoder() = default;
 
-PointCloud TileDecoder::decode(const TileRow& row, const std::string& map_path) {
+TilePoints TileDecoder::decode(const TileRow& row, const std::string& map_path) {
   const auto fail = [&](const char* what) {
     throw InputError(what,
                      fmt::format("{}, tile {} {} {} of submap {}", map_path, row.key.x, row.key.y,
@@ -86,7 +86,7 @@ PointCloud TileDecoder::decode(const TileRow& row, const std::string& map_path) 
   if (row.points < 0 || row.points > kMaxTilePoints || !row.origin.allFinite()) {
     fail("a tile has an impossible size or origin");
   }
-  PointCloud tile;
+  TilePoints tile;
   tile.origin = row.origin;
   const auto points = static_cast<std::size_t>(row.points);
   for (std::size_t i = 0; i < kStoredColumns; ++i) {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
 #include "fovea/map/packed_tile.h"
 
 struct ZSTD_CCtx_s;
@@ -51,7 +50,7 @@ class TileDecoder {
   ~TileDecoder();
 
   /// The tile of a row; InputError that names tile and `map_path` if the row is damaged.
-  PointCloud decode(const TileRow& row, const std::string& map_path);
+  TilePoints decode(const TileRow& row, const std::string& map_path);
 
  private:
   std::unique_ptr<ZSTD_DCtx_s, std::size_t (*)(ZSTD_DCtx_s*)> context_;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "fovea/base/parallel.h"
-#include "fovea/map/tile_columns.h"
 
 namespace fovea {
 namespace {
@@ -33,35 +32,6 @@ std::int32_t tile_index(double tiles) {
 TileKey key_of(const Eigen::Vector3d& p_submap, double tiles_per_metre) {
   const Eigen::Vector3d tiles = p_submap * tiles_per_metre;
   return {tile_index(tiles.x()), tile_index(tiles.y()), tile_index(tiles.z())};
-}
-
-/// Appends the chosen points to a tile, as the file keeps them.
-/// @param p_submap  m, of all points
-void append_points(const PointCloud& points, const std::vector<Eigen::Vector3d>& p_submap,
-                   const std::vector<std::uint32_t>& indices, PointCloud& tile) {
-  const auto append = [&](auto& to, const auto& value_of) {
-    std::size_t next = to.size();
-    const std::size_t size = next + indices.size();
-    // Half as much again, not twice: what is in reserve takes memory, too.
-    if (to.capacity() < size) to.reserve(std::max(size, next + next / 2));
-    to.resize(size);
-    for (const std::uint32_t i : indices) to[next++] = value_of(i);
-  };
-  const auto gather = [&](const auto& from, auto& to) {
-    append(to, [&](std::uint32_t i) { return from[i]; });
-  };
-  append(tile.position, [&](std::uint32_t i) { return kept_position(p_submap[i] - tile.origin); });
-  append(tile.range, [&](std::uint32_t i) { return kept_range(points.range[i]); });
-  append(tile.incidence, [&](std::uint32_t i) { return kept_incidence(points.incidence[i]); });
-  gather(points.color, tile.color);
-  gather(points.frame, tile.frame);
-  gather(points.camera, tile.camera);
-  gather(points.interpolated, tile.interpolated);
-  gather(points.views, tile.views);
-  gather(points.spread, tile.spread);
-  gather(points.weight, tile.weight);
-  gather(points.reason, tile.reason);
-  if (!points.intensity.empty()) gather(points.intensity, tile.intensity);
 }
 
 /// Indices of tiles that [low, high] m may touch, clamped to what a key can hold.
@@ -87,26 +57,6 @@ void widen(Submap& submap, const TileKey& key) {
 
 }  // namespace
 
-void check_tile_columns(const PointCloud& cloud) {
-  cloud.check();
-  if (cloud.empty()) return;
-  const auto require = [](const char* name, const auto& column) {
-    if (column.empty()) {
-      throw std::logic_error(fmt::format("points of a map must have the column '{}'", name));
-    }
-  };
-  require("range", cloud.range);
-  require("incidence", cloud.incidence);
-  require("color", cloud.color);
-  require("frame", cloud.frame);
-  require("camera", cloud.camera);
-  require("interpolated", cloud.interpolated);
-  require("views", cloud.views);
-  require("spread", cloud.spread);
-  require("weight", cloud.weight);
-  require("reason", cloud.reason);
-}
-
 TileMap::TileMap(double tile_size) : tile_size_(tile_size) {
   if (!(tile_size > 0 && tile_size <= kMaxTileSize)) {
     throw std::invalid_argument(
@@ -118,9 +68,7 @@ Eigen::Vector3d TileMap::corner(const TileKey& key) const {
   return Eigen::Vector3d(key.x, key.y, key.z) * tile_size_;
 }
 
-void TileMap::require_same_columns(const PointCloud& cloud) {
-  check_tile_columns(cloud);
-  const bool has_intensity = !cloud.intensity.empty();
+void TileMap::require_same_columns(bool has_intensity) {
   if (has_intensity_.value_or(has_intensity) != has_intensity) {
     throw std::logic_error("only some points of the map have the column 'intensity'");
   }
@@ -147,7 +95,8 @@ void TileMap::move_submap(std::size_t submap, const RigidMotion& T_local_submap)
 void TileMap::add(const PointCloud& points_local) {
   if (submaps_.empty()) throw std::logic_error("points need a submap to be added to");
   if (points_local.empty()) return;
-  require_same_columns(points_local);
+  check_tile_columns(points_local);
+  require_same_columns(!points_local.intensity.empty());
   Submap& submap = submaps_.back();
 
   const RigidMotion T_submap_local = submap.T_local_submap.inverse();
@@ -181,8 +130,7 @@ void TileMap::add(const PointCloud& points_local) {
     additions.emplace_back(&place->second, &indices);
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
-    const std::vector<std::uint32_t>& indices = *additions[k].second;
-    append_points(points_local, p_submap, indices, additions[k].first->points.write());
+    additions[k].first->points.write().append(points_local, p_submap, *additions[k].second);
   });
   size_ += points_local.size();
   size_in_memory_ += points_local.size();
@@ -213,7 +161,7 @@ void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& in
 TileColors TileMap::colors(const TileId& id) {
   Tile& tile = existing_tile(id);
   tile.changed_at = step_;
-  PointCloud& points = tile.points.write();
+  TilePoints& points = tile.points.write();
   return {points.color, points.views, points.spread, points.weight, points.camera};
 }
 
@@ -244,7 +192,7 @@ void TileMap::for_each_near(Tiles Submap::*tiles, const Eigen::Vector3d& center_
 
 void TileMap::for_each_tile_near(
     const Eigen::Vector3d& center_local, double radius,
-    const std::function<void(const TileId&, const PointCloud&)>& f) const {
+    const std::function<void(const TileId&, const TilePoints&)>& f) const {
   for_each_near(&Submap::tiles, center_local, radius,
                 [&](const TileId& id, const Tile& tile) { f(id, *tile.points); });
 }
@@ -306,7 +254,7 @@ void TileMap::declare_stored(const TileId& id, std::size_t points) {
   size_ += points;
 }
 
-void TileMap::restore(const TileId& id, PointCloud tile) {
+void TileMap::restore(const TileId& id, TilePoints tile) {
   const auto submap = id.submap < submaps_.size() ? &submaps_[id.submap] : nullptr;
   const auto stored = submap ? submap->stored.find(id.key) : decltype(submap->stored.end()){};
   if (submap == nullptr || stored == submap->stored.end()) {
@@ -315,7 +263,7 @@ void TileMap::restore(const TileId& id, PointCloud tile) {
   if (tile.origin != corner(id.key) || tile.size() != stored->second) {
     throw std::logic_error(name_of(id) + " comes back as another one");
   }
-  require_same_columns(tile);
+  require_same_columns(!tile.intensity.empty());
   size_in_memory_ += tile.size();
   submap->stored.erase(stored);
   submap->tiles.emplace(id.key, Tile{CopyOnWrite(std::move(tile))});

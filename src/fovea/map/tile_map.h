@@ -12,6 +12,7 @@
 #include "fovea/base/copy_on_write.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/rigid_motion.h"
+#include "fovea/map/tile_points.h"
 
 namespace fovea {
 
@@ -30,11 +31,7 @@ struct TileId {
 
 /// A tile in memory.
 struct Tile {
-  /// Submap frame, relative to the cloud's `origin` = the tile's lowest corner. Columns range,
-  /// incidence, color, frame, camera, interpolated, views, spread, weight and reason are always
-  /// there; intensity in all tiles of a map or in none; normals are not kept. Positions, range and
-  /// incidence in the steps that the file keeps (docs/map-format.md).
-  CopyOnWrite<PointCloud> points;
+  CopyOnWrite<TilePoints> points;
   std::uint64_t changed_at = 0;  ///< step of the map; 0: not since take_changes()
 };
 
@@ -52,7 +49,7 @@ struct Submap {
 struct TileChanges {
   struct Changed {
     TileId id;
-    CopyOnWrite<PointCloud> points;
+    CopyOnWrite<TilePoints> points;
     bool lately = false;  ///< in this step or the one before: it may well go on changing
   };
   std::vector<Changed> changed;
@@ -66,10 +63,6 @@ struct TileColors {
   std::span<std::uint16_t> weight;
   std::span<std::int8_t> camera;  ///< that gave the first
 };
-
-/// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a
-/// column of a wrong length.
-void check_tile_columns(const PointCloud& cloud);
 
 /// Points are added to the last submap. Tiles that are far away may be given to a store and taken
 /// back when they are near: whoever adds, removes, colours or looks for points sees only those in
@@ -112,7 +105,7 @@ class TileMap {
   /// Calls f for every tile in memory that a ball of `radius` m around `center_local` touches, in
   /// the order of submaps and keys.
   void for_each_tile_near(const Eigen::Vector3d& center_local, double radius,
-                          const std::function<void(const TileId&, const PointCloud&)>& f) const;
+                          const std::function<void(const TileId&, const TilePoints&)>& f) const;
 
   /// What changed since the last call. The points are shared, not copied.
   TileChanges take_changes();
@@ -126,13 +119,13 @@ class TileMap {
   /// exist or the tile does already.
   void declare_stored(const TileId& id, std::size_t points);
   /// Puts a stored tile back into memory; std::logic_error if it is not stored, or its number of
-  /// points, columns or origin are not those of the tile.
-  void restore(const TileId& id, PointCloud tile);
+  /// points, intensity or origin are not those of the tile.
+  void restore(const TileId& id, TilePoints tile);
 
  private:
   Eigen::Vector3d corner(const TileKey& key) const;
   Tile& existing_tile(const TileId& id);
-  void require_same_columns(const PointCloud& cloud);
+  void require_same_columns(bool has_intensity);
   /// Calls f(id, value) for what a map by keys of each submap has within a ball.
   template <class Tiles, class F>
   void for_each_near(Tiles Submap::*tiles, const Eigen::Vector3d& center_local, double radius,

@@ -9,7 +9,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "fovea/base/random.h"
-#include "fovea/map/tile_columns.h"
+#include "fovea/map/tile_points.h"
 
 namespace fovea::tile_map_test {
 
@@ -32,7 +32,7 @@ TEST(TileMap, PointsComeBackWithTheirColumns) {
   // `frame` numbers the points of random_map_points().
   std::vector<int> seen(points.size(), 0);
   for (const auto& [key, stored] : map.submaps()[0].tiles) {
-    const PointCloud& tile = *stored.points;
+    const PointCloud tile = stored.points->cloud();
     EXPECT_EQ(tile.origin, Eigen::Vector3d(key.x * 4.0, key.y * 4.0, key.z * 4.0));
     std::vector<std::uint32_t> chosen(tile.frame.begin(), tile.frame.end());
     PointCloud expected = points.select(chosen);
@@ -46,9 +46,7 @@ TEST(TileMap, PointsComeBackWithTheirColumns) {
     }
     expected.origin = tile.origin;
     expected.position = tile.position;
-    for (float& range : expected.range) range = kept_range(range);
-    for (float& incidence : expected.incidence) incidence = kept_incidence(incidence);
-    expect_same_columns(tile, expected);
+    expect_same_columns(tile, TilePoints::of(expected).cloud());
   }
   EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ptrdiff_t(points.size()));
 }
@@ -120,7 +118,7 @@ TEST(TileMap, PointsOfATileComeInTheOrderOfAdding) {
   TileMap map(1.0);
   map.add_submap(RigidMotion::Identity());
   map.add(one_point_each({{0.5f, 0.5f, 0.5f}, {-0.5f, 0.5f, 0.5f}, {0.6f, 0.f, 0.f}}));
-  const PointCloud& tile = *map.submaps()[0].tiles.at({0, 0, 0}).points;
+  const PointCloud tile = map.submaps()[0].tiles.at({0, 0, 0}).points->cloud();
   ASSERT_EQ(tile.size(), 2u);
   EXPECT_EQ(tile.frame[0], 0);
   EXPECT_EQ(tile.frame[1], 2);
@@ -154,17 +152,17 @@ TEST(TileMap, TilesNearCoverEveryPointInTheBallAndNoTileBeyondIt) {
       const Eigen::Vector3d center(random.uniform(-20, 20), random.uniform(-20, 20),
                                    random.uniform(-20, 20));
       const double radius = trial == 0 ? 0 : random.uniform(0, 8);
-      std::set<const PointCloud*> near;
-      map.for_each_tile_near(center, radius, [&](const TileId&, const PointCloud& tile) {
+      std::set<const TilePoints*> near;
+      map.for_each_tile_near(center, radius, [&](const TileId&, const TilePoints& tile) {
         EXPECT_TRUE(near.insert(&tile).second) << "a tile came twice";
       });
       visited += near.size();
       for (const Submap& submap : map.submaps()) {
         const double half = tile_size / 2;
         for (const auto& [key, stored] : submap.tiles) {
-          const PointCloud& tile = *stored.points;
+          const PointCloud tile = stored.points->cloud();
           ++all;
-          if (near.contains(&tile)) {
+          if (near.contains(&*stored.points)) {
             // Distance from the box by way of its centre: another formula than the code's.
             const Eigen::Vector3d box =
                 Eigen::Vector3d(key.x, key.y, key.z) * tile_size + Eigen::Vector3d::Constant(half);
@@ -192,7 +190,7 @@ TEST(TileMap, TilesNearComeInTheOrderOfSubmapsAndKeys) {
     map.add(random_map_points(500, random, 5.0));
   }
   std::vector<std::pair<double, TileKey>> order;
-  map.for_each_tile_near({0, 0, 0}, 100, [&](const TileId& id, const PointCloud& tile) {
+  map.for_each_tile_near({0, 0, 0}, 100, [&](const TileId& id, const TilePoints& tile) {
     EXPECT_EQ(id.key, (TileKey{int(tile.origin.x()), int(tile.origin.y()), int(tile.origin.z())}));
     order.push_back(
         {double(id.submap), {int(tile.origin.x()), int(tile.origin.y()), int(tile.origin.z())}});
@@ -207,11 +205,11 @@ TEST(TileMap, KeptPointsStayAndEmptyTilesGo) {
   map.add_submap(RigidMotion::Identity());
   map.add(random_map_points(20000, random, 3.0));
   const auto [key, first] = *map.submaps()[0].tiles.begin();
-  const PointCloud before = *first.points;
+  const PointCloud before = first.points->cloud();
   ASSERT_GT(before.size(), 3u);
   const std::size_t size = map.size(), tiles = map.submaps()[0].tiles.size();
   map.keep_points({0, key}, {0, 2});
-  expect_same_columns(*map.submaps()[0].tiles.at(key).points, before.select({0, 2}));
+  expect_same_columns(map.submaps()[0].tiles.at(key).points->cloud(), before.select({0, 2}));
   EXPECT_EQ(map.size(), size - before.size() + 2);
   map.keep_points({0, key}, {});
   EXPECT_FALSE(map.submaps()[0].tiles.contains(key));
@@ -229,7 +227,7 @@ TEST(TileMap, FarTilesLeaveTheMemoryAndComeBack) {
     map.add(random_map_points(1000, random, 10.0));
   }
   const TileMap whole = map;
-  std::map<TileId, CopyOnWrite<PointCloud>> store;
+  std::map<TileId, CopyOnWrite<TilePoints>> store;
   for (const TileChanges::Changed& tile : map.take_changes().changed) {
     store.emplace(tile.id, tile.points);
   }
@@ -241,7 +239,7 @@ TEST(TileMap, FarTilesLeaveTheMemoryAndComeBack) {
   const auto visited = [&](const TileMap& from) {
     std::vector<TileId> ids;
     from.for_each_tile_near(center, 4,
-                            [&](const TileId& id, const PointCloud&) { ids.push_back(id); });
+                            [&](const TileId& id, const TilePoints&) { ids.push_back(id); });
     return ids;
   };
   EXPECT_EQ(visited(map), visited(whole));
@@ -260,7 +258,7 @@ TEST(TileMap, FarTilesLeaveTheMemoryAndComeBack) {
   EXPECT_EQ(map.size_in_memory(), whole.size());
   for (const auto& [id, points] : store) {
     if (id == TileId{0, whole.submaps()[0].tiles.begin()->first}) continue;
-    expect_same_columns(*map.submaps()[id.submap].tiles.at(id.key).points, *points);
+    expect_same_columns(map.submaps()[id.submap].tiles.at(id.key).points->cloud(), points->cloud());
   }
 }
 
@@ -300,17 +298,13 @@ TEST(TileMap, KeepsWhatTheFileKeeps) {
   std::size_t unknown = 0;
   for (const auto& [key, tile] : map.submaps()[0].tiles) {
     for (std::size_t i = 0; i < tile.points->size(); ++i) {
-      const Eigen::Vector3f& p = tile.points->position[i];
-      EXPECT_EQ(p, kept_position(p.cast<double>()));
-      const float range = tile.points->range[i], incidence = tile.points->incidence[i];
-      EXPECT_EQ(range, kept_range(range));
+      const float range = tile.points->range_at(i), incidence = tile.points->incidence_at(i);
       const auto from = static_cast<std::size_t>(tile.points->frame[i]);
       if (from > 1) {
         EXPECT_NEAR(range, points.range[from], 0.00501);
       }
       unknown += std::isnan(incidence);
       if (std::isnan(incidence)) continue;
-      EXPECT_EQ(incidence, kept_incidence(incidence));
       EXPECT_NEAR(incidence, points.incidence[from], 0.00437);
     }
   }
@@ -350,8 +344,8 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   map.add_submap(RigidMotion::Identity());
   map.add(random_map_points(300, random, 1.5));
   const TileId id{1, {-1, 0, -1}};
-  const PointCloud before = *map.submaps()[1].tiles.at(id.key).points;
-  const PointCloud other = *map.submaps()[1].tiles.at({0, 0, 0}).points;
+  const PointCloud before = map.submaps()[1].tiles.at(id.key).points->cloud();
+  const PointCloud other = map.submaps()[1].tiles.at({0, 0, 0}).points->cloud();
   const TileColors colors = map.colors(id);
   ASSERT_GT(before.size(), 5u);
   ASSERT_EQ(colors.color.size(), before.size());
@@ -363,8 +357,8 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   expected.views[3] = colors.views[3] = 77;
   expected.spread[2] = colors.spread[2] = 66;
   expected.weight[1] = colors.weight[1] = 55'555;
-  expect_same_columns(*map.submaps()[1].tiles.at(id.key).points, expected);
-  expect_same_columns(*map.submaps()[1].tiles.at({0, 0, 0}).points, other);
+  expect_same_columns(map.submaps()[1].tiles.at(id.key).points->cloud(), expected);
+  expect_same_columns(map.submaps()[1].tiles.at({0, 0, 0}).points->cloud(), other);
   EXPECT_EQ(map.size(), 300u);
   EXPECT_THROW(map.colors({0, id.key}), std::logic_error);
   EXPECT_THROW(map.colors({1, {50, 0, 0}}), std::logic_error);

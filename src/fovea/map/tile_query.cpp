@@ -45,7 +45,7 @@ void bind_tile(sqlite::Statement& statement, const TileId& id) {
 TileQuery::TileQuery(sqlite::Database& database)
     : row_(database, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile)) {}
 
-std::optional<PointCloud> TileQuery::find(const TileId& id, const std::string& map_path) {
+std::optional<TilePoints> TileQuery::find(const TileId& id, const std::string& map_path) {
   bind_tile(row_, id);
   // However this ends, the next tile can be asked for.
   const std::unique_ptr<sqlite::Statement, void (*)(sqlite::Statement*)> ready(
@@ -54,8 +54,8 @@ std::optional<PointCloud> TileQuery::find(const TileId& id, const std::string& m
   return decoder_.decode(tile_row(row_, map_path), map_path);
 }
 
-PointCloud TileQuery::read(const TileId& id, const std::string& map_path) {
-  if (std::optional<PointCloud> tile = find(id, map_path)) return std::move(*tile);
+TilePoints TileQuery::read(const TileId& id, const std::string& map_path) {
+  if (std::optional<TilePoints> tile = find(id, map_path)) return std::move(*tile);
   throw InputError(
       fmt::format("tile {} {} {} of submap {} is missing", id.key.x, id.key.y, id.key.z, id.submap),
       map_path, kRestoreMap);

@@ -32,9 +32,9 @@ class TileQuery {
  public:
   explicit TileQuery(sqlite::Database& database);
   /// Nothing if there is no such tile; InputError that names `map_path` if it is damaged.
-  std::optional<PointCloud> find(const TileId& id, const std::string& map_path);
+  std::optional<TilePoints> find(const TileId& id, const std::string& map_path);
   /// InputError that names tile and `map_path` also if it is not there.
-  PointCloud read(const TileId& id, const std::string& map_path);
+  TilePoints read(const TileId& id, const std::string& map_path);
 
  private:
   sqlite::Statement row_;

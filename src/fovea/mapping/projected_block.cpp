@@ -14,13 +14,37 @@ ProjectedBlock::ProjectedBlock(const Camera& camera)
 
 void ProjectedBlock::project(std::span<const Eigen::Vector3f> points_b,
                              const Eigen::Matrix3f& R_cam_b, const Eigen::Vector3f& t_cam_b) {
+  place(
+      points_b.size(),
+      [&](std::size_t i) {
+        return std::array{points_b[i].x(), points_b[i].y(), points_b[i].z()};
+      },
+      R_cam_b, t_cam_b);
+}
+
+void ProjectedBlock::project(const std::array<std::span<const std::uint16_t>, 3>& steps_b,
+                             float step, const Eigen::Matrix3f& R_cam_b,
+                             const Eigen::Vector3f& t_cam_b) {
+  const std::uint16_t* const x = steps_b[0].data();
+  const std::uint16_t* const y = steps_b[1].data();
+  const std::uint16_t* const z = steps_b[2].data();
+  place(
+      steps_b[0].size(),
+      [=](std::size_t i) {
+        return std::array{float(x[i]) * step, float(y[i]) * step, float(z[i]) * step};
+      },
+      R_cam_b, t_cam_b);
+}
+
+template <class F>
+void ProjectedBlock::place(std::size_t n, F&& coordinates, const Eigen::Matrix3f& R_cam_b,
+                           const Eigen::Vector3f& t_cam_b) {
   // Copies: the compiler cannot know that the rows do not overlap what a reference refers to.
   const Eigen::Matrix3f R = R_cam_b;
   const Eigen::Vector3f t = t_cam_b;
   const float fx = fx_, fy = fy_, cx = cx_, cy = cy_, right = right_, bottom = bottom_;
-  const std::size_t n = points_b.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const float x = points_b[i].x(), y = points_b[i].y(), z = points_b[i].z();
+    const auto [x, y, z] = coordinates(i);
     x_[i] = R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t.x();
     y_[i] = R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t.y();
     z_[i] = R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t.z();

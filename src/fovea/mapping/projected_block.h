@@ -22,6 +22,10 @@ class ProjectedBlock {
   /// @param points_b, T_cam_b  m; as rotation and translation in float: the points are near
   void project(std::span<const Eigen::Vector3f> points_b, const Eigen::Matrix3f& R_cam_b,
                const Eigen::Vector3f& t_cam_b);
+  /// The same of coordinates that are counted in steps, a row for each.
+  /// @param step  m
+  void project(const std::array<std::span<const std::uint16_t>, 3>& steps_b, float step,
+               const Eigen::Matrix3f& R_cam_b, const Eigen::Vector3f& t_cam_b);
 
   /// Whether the camera sees the place of point i: in front of it, and inside the image. Of no
   /// other point does the pixel mean anything.
@@ -32,6 +36,11 @@ class ProjectedBlock {
   float distance(std::size_t i) const { return distance_[i]; }  ///< m from the camera
 
  private:
+  /// @param coordinates  of point i, as an array
+  template <class F>
+  void place(std::size_t count, F&& coordinates, const Eigen::Matrix3f& R_cam_b,
+             const Eigen::Vector3f& t_cam_b);
+
   using Row = std::array<float, kSize>;
   float fx_, fy_, cx_, cy_, right_, bottom_;
   alignas(64) Row x_{}, y_{}, z_{}, u_{}, v_{}, distance_{};

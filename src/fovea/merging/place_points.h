@@ -23,13 +23,15 @@ class PlacePoints {
   explicit PlacePoints(const Eigen::Vector3d& center_local) : center_local_(center_local) {}
 
   /// The points of a tile that lie in a ball of `radius` m around the place.
-  /// @param tile  a number by which from() names it
-  void add(std::size_t tile, const PointCloud& points, const RigidMotion& T_local_submap,
-           double radius) {
+  /// @param tile    a number by which from() names it
+  /// @param points  PointCloud or TilePoints
+  template <class Tile>
+  void add(std::size_t tile, const Tile& points, const RigidMotion& T_local_submap, double radius) {
     const Eigen::Matrix3f R = T_local_submap.linear().cast<float>();
-    const Eigen::Vector3f t = (T_local_submap * points.origin - center_local_).cast<float>();
+    const Eigen::Vector3d origin = T_local_submap * points.origin - center_local_;
+    const Eigen::Vector3f t = origin.cast<float>();
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3f p = R * points.position[i] + t;
+      const Eigen::Vector3f p = R * position_in(points, i) + t;
       if (p.norm() > float(radius)) continue;
       position_.push_back(p);
       from_.push_back({std::uint32_t(tile), i});
@@ -44,12 +46,21 @@ class PlacePoints {
   const From& from(std::size_t i) const { return from_[i]; }
 
  private:
+  static Eigen::Vector3f position_in(const PointCloud& tile, std::size_t i) {
+    return tile.position[i];
+  }
+  static Eigen::Vector3f position_in(const TilePoints& tile, std::size_t i) {
+    return tile.position_at(i);
+  }
+
   Eigen::Vector3d center_local_;
   std::vector<Eigen::Vector3f> position_;
   std::vector<From> from_;
 };
 
-inline FusedColor color_of(const PointCloud& tile, std::size_t i) {
+/// @param tile  PointCloud or TilePoints
+template <class Tile>
+FusedColor color_of(const Tile& tile, std::size_t i) {
   return {tile.color[i], tile.views[i], tile.spread[i], tile.weight[i]};
 }
 

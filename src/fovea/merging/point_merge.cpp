@@ -58,7 +58,7 @@ class CubeMerger {
 
   void gather() {
     map_.for_each_tile_near(
-        center_local_, kCubeReach, [&](const TileId& id, const PointCloud& points) {
+        center_local_, kCubeReach, [&](const TileId& id, const TilePoints& points) {
           (id.submap < first_b_ ? a_ : b_)
               .add(tiles_.size(), points, map_.submaps()[id.submap].T_local_submap, kCubeReach);
           tiles_.push_back({id, &points});
@@ -95,7 +95,7 @@ class CubeMerger {
     for (std::size_t i = 0; i < seen_by.size(); ++i) {
       if (seen_by[i] == kNone) continue;
       const PlacePoints::From to = a_.from(i), from = b_.from(seen_by[i]);
-      const PointCloud& tile_b = *tiles_[from.tile].points;
+      const TilePoints& tile_b = *tiles_[from.tile].points;
       TileColors& colors = colors_of(to.tile);
       const FusedColor before{colors.color[to.point], colors.views[to.point],
                               colors.spread[to.point], colors.weight[to.point]};
@@ -145,7 +145,7 @@ class CubeMerger {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct TileHere {
     TileId id;
-    const PointCloud* points;
+    const TilePoints* points;
   };
 
   TileMap& map_;

@@ -94,7 +94,7 @@ void SeenMap::gather(const TileMap& map, const FovealRegion& region,
   const double half = map.tile_size() / 2, radius = half * 1.7321 + 1e-3;
   const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
   map.for_each_tile_near(
-      lidar_local, region.far_range(), [&](const TileId& id, const PointCloud& points) {
+      lidar_local, region.far_range(), [&](const TileId& id, const TilePoints& points) {
         const Eigen::Vector3d center = T_cam_local * map.submaps()[id.submap].T_local_submap *
                                        (points.origin + Eigen::Vector3d::Constant(half));
         if (!may_be_in_view(camera_, center, radius)) return;
@@ -138,7 +138,10 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
   Point* out = share.points.data() + piece.first;
   for (std::uint32_t begin = piece.begin; begin < piece.end;) {
     const std::uint32_t n = std::min(piece.end - begin, std::uint32_t(ProjectedBlock::kSize));
-    block.project({piece.points->position.data() + begin, n}, R, t);
+    const auto steps = [&](std::size_t axis) {
+      return std::span(piece.points->position[axis]).subspan(begin, n);
+    };
+    block.project({steps(0), steps(1), steps(2)}, kPositionStep, R, t);
     for (std::size_t i = 0; i < weight.size(); ++i) {
       const int in_zone = region.in_white_zone(block.p_cam(i));
       weight[i] = static_cast<std::uint16_t>(in_zone * view_weight(block.distance(i)));
@@ -190,7 +193,7 @@ std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) co
 }
 
 SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColors& patches) const {
-  const PointCloud& tile = *piece.points;
+  const TilePoints& tile = *piece.points;
   const std::span<const Point> points = seen(piece);
   PatchPlaces places;
   std::array<Eigen::Array3f, kBlock> known;

@@ -68,7 +68,7 @@ class SeenMap {
   /// Points of a tile; of one length, so that threads share the work evenly.
   struct Piece {
     TileId tile;
-    const PointCloud* points;
+    const TilePoints* points;
     std::uint32_t begin, end;  // in the tile
     std::size_t share;
     std::size_t first, seen;  // of those in the region, among the share's

@@ -99,7 +99,7 @@ void for_each_point(
     const std::function<void(const Eigen::Vector3d&, const PointCloud&, std::size_t)>& f) {
   for (const Submap& submap : map.submaps()) {
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       for (std::size_t i = 0; i < tile.size(); ++i) {
         f(submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()), tile, i);
       }
@@ -386,8 +386,8 @@ TEST(Recolour, GivesTheSameAtAnyThreadCount) {
   const TileMap one = run(1), two = run(2);
   for (std::size_t id = 0; id < 2; ++id) {
     for (const auto& [key, stored] : one.submaps()[id].tiles) {
-      const PointCloud& tile = *stored.points;
-      expect_same_columns(tile, *two.submaps()[id].tiles.at(key).points);
+      const PointCloud tile = stored.points->cloud();
+      expect_same_columns(tile, two.submaps()[id].tiles.at(key).points->cloud());
     }
   }
 }

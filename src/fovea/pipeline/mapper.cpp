@@ -5,7 +5,6 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/map/tile_columns.h"
 #include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {

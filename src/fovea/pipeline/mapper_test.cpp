@@ -19,9 +19,9 @@ void expect_same_maps(const TileMap& a, const TileMap& b) {
     EXPECT_EQ(left.T_local_submap.matrix(), right.T_local_submap.matrix());
     ASSERT_EQ(left.tiles.size(), right.tiles.size());
     for (const auto& [key, stored] : left.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       ASSERT_TRUE(right.tiles.contains(key));
-      expect_same_columns(tile, *right.tiles.at(key).points);
+      expect_same_columns(tile, right.tiles.at(key).points->cloud());
     }
   }
 }
@@ -40,7 +40,7 @@ std::size_t crowded_points(const TileMap& map, double cell) {
   for (const Submap& submap : map.submaps()) {
     std::set<std::array<std::int64_t, 3>> cells;
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       for (const Eigen::Vector3f& position : tile.position) {
         const Eigen::Array3d at = ((tile.origin + position.cast<double>()) / cell).array().floor();
         crowded += !cells.insert({std::int64_t(at.x()), std::int64_t(at.y()), std::int64_t(at.z())})
@@ -91,7 +91,7 @@ TEST(Mapper, ManyViewsGiveTrueColoursAtOnePointACell) {
   double color_error = 0, views = 0;
   std::size_t wrong = 0, count = 0;
   for (const auto& [key, stored] : mapper.map().submaps()[0].tiles) {
-    const PointCloud& tile = *stored.points;
+    const PointCloud tile = stored.points->cloud();
     for (std::size_t i = 0; i < tile.size(); ++i) {
       const Eigen::Vector3d p_local = mapper.map().submaps()[0].T_local_submap *
                                       (tile.origin + tile.position[i].cast<double>());
@@ -148,7 +148,7 @@ TEST(Mapper, AScanOfWhatIsMappedAddsViewsAndNoPoints) {
   EXPECT_LE(mapper.map().size(), after_first + after_first / 2000);
   std::size_t seen_again = 0;
   for (const auto& [key, stored] : mapper.map().submaps()[0].tiles) {
-    const PointCloud& tile = *stored.points;
+    const PointCloud tile = stored.points->cloud();
     for (std::size_t i = 0; i < tile.size(); ++i) {
       ASSERT_LE(tile.views[i], 10);
       seen_again += tile.views[i] == 10;

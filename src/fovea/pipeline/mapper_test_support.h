@@ -21,7 +21,7 @@ inline std::vector<MapPoint> points_of(const TileMap& map) {
   std::vector<MapPoint> points;
   for (const Submap& submap : map.submaps()) {
     for (const auto& [key, stored] : submap.tiles) {
-      const PointCloud& tile = *stored.points;
+      const PointCloud tile = stored.points->cloud();
       for (std::size_t i = 0; i < tile.size(); ++i) {
         points.push_back({submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()),
                           tile.color[i], tile.frame[i], tile.camera[i], tile.interpolated[i] != 0,

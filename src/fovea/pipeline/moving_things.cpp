@@ -112,7 +112,7 @@ std::vector<MovingThings::Tile> MovingThings::tiles_near(const TileMap& map,
   std::vector<Tile> tiles;
   std::map<TileId, Block> within_reach;  // the others are forgotten
   map.for_each_tile_near(center_local, options_.range,
-                         [&](const TileId& id, const PointCloud& points) {
+                         [&](const TileId& id, const TilePoints& points) {
                            auto node = blocks_.extract(id);
                            auto place = node ? within_reach.insert(std::move(node)).position
                                              : within_reach.try_emplace(id).first;
@@ -139,7 +139,7 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
   Voxel* last = nullptr;  // neighbours mostly share a voxel
   for (std::size_t& i = block.known_points; i < point_frame.size() && point_frame[i] <= frame;
        ++i) {
-    const std::uint32_t cell = cell_of(tile.points->position[i], 1 / size, edge);
+    const std::uint32_t cell = cell_of(tile.points->position_at(i), 1 / size, edge);
     if (last == nullptr || last->cell != cell) {
       const auto [place, is_new] =
           block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
@@ -177,7 +177,7 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   std::vector<const Voxel*> voxel(n);
   std::uint32_t last_cell = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t cell = cell_of(tile.points->position[i], cells_per_metre, edge);
+    const std::uint32_t cell = cell_of(tile.points->position_at(i), cells_per_metre, edge);
     voxel[i] = i > 0 && cell == last_cell ? voxel[i - 1] : &block.voxels[*block.place.find(cell)];
     last_cell = cell;
   }

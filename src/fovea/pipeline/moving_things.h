@@ -59,7 +59,7 @@ class MovingThings {
   };
   struct Tile {
     TileId id;
-    const PointCloud* points;
+    const TilePoints* points;
     Block* block;
     std::vector<std::uint32_t> kept;  // of the points, where some go
     bool shrinks = false;

@@ -249,7 +249,7 @@ class LiveBoard::Feed : public WebFeed {
   bool append_stored(const TileId& id, std::string& sections) {
     if (!reader_) reader_.emplace(board_.map_);
     try {
-      const std::optional<PointCloud> tile = reader_->find_tile(id);
+      const std::optional<TilePoints> tile = reader_->find_tile(id);
       LiveSample sample;
       if (tile) sample.more(*tile, board_.tile_size_);  // else it has gone meanwhile
       append_section(sections, id, tile ? &*tile : nullptr, sample.all(), /*whole=*/true);

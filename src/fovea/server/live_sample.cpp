@@ -20,34 +20,31 @@ std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_m) {
   return static_cast<std::uint32_t>((cell.x() * kCells + cell.y()) * kCells + cell.z());
 }
 
-/// Positions are kept in whole millimetres.
-std::uint16_t millimetres(float metres) {
-  return static_cast<std::uint16_t>(std::clamp(metres * 1000 + 0.5f, 0.f, 65535.f));
-}
+static_assert(kPositionStep == 0.001f);  // a live message has positions in whole millimetres
 
 }  // namespace
 
-bool LiveSample::has_lost_points(const PointCloud& tile) const {
+bool LiveSample::has_lost_points(const TilePoints& tile) const {
   if (looked_at_ == 0) return false;
-  return tile.size() < looked_at_ || tile.position[looked_at_ - 1] != last_;
+  return tile.size() < looked_at_ || tile.position_at(looked_at_ - 1) != last_;
 }
 
-std::span<const std::uint32_t> LiveSample::more(const PointCloud& tile, double tile_size) {
+std::span<const std::uint32_t> LiveSample::more(const TilePoints& tile, double tile_size) {
   if (has_lost_points(tile)) *this = LiveSample();
   if (taken_.empty()) taken_.resize(std::size_t{kCells} * kCells * kCells);
   const std::size_t before = chosen_.size();
   const auto cells_per_m = static_cast<float>(kCells / tile_size);
   for (; looked_at_ < tile.size(); ++looked_at_) {
-    const std::uint32_t cell = cell_of(tile.position[looked_at_], cells_per_m);
+    const std::uint32_t cell = cell_of(tile.position_at(looked_at_), cells_per_m);
     if (taken_[cell]) continue;
     taken_[cell] = true;
     chosen_.push_back(static_cast<std::uint32_t>(looked_at_));
   }
-  if (looked_at_ > 0) last_ = tile.position[looked_at_ - 1];
+  if (looked_at_ > 0) last_ = tile.position_at(looked_at_ - 1);
   return std::span(chosen_).subspan(before);
 }
 
-void append_section(std::string& message, const TileId& id, const PointCloud* tile,
+void append_section(std::string& message, const TileId& id, const TilePoints* tile,
                     std::span<const std::uint32_t> points, bool whole) {
   BytePacker packer(message);
   packer.put(static_cast<std::uint32_t>(id.submap));
@@ -64,8 +61,7 @@ void append_section(std::string& message, const TileId& id, const PointCloud* ti
     to += sizeof(values);
   };
   for (const std::uint32_t i : points) {
-    const Eigen::Vector3f& p = tile->position[i];
-    put(std::array{millimetres(p.x()), millimetres(p.y()), millimetres(p.z())});
+    put(std::array{tile->position[0][i], tile->position[1][i], tile->position[2][i]});
   }
   to += padding;
   for (const std::uint32_t i : points) {
@@ -78,7 +74,7 @@ void append_section(std::string& message, const TileId& id, const PointCloud* ti
   }
   for (const std::uint32_t i : points) put(std::array{static_cast<float>(tile->frame[i])});
   for (const std::uint32_t i : points) {
-    put(std::array{sight_range(tile->range[i]), sight_incidence(tile->incidence[i])});
+    put(std::array{sight_range(tile->range_at(i)), sight_incidence(tile->incidence_at(i))});
   }
 }
 

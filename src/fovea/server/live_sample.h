@@ -16,13 +16,13 @@ class LiveSample {
   /// Looks at the points that have been added since the last call, the first in each cell. Where
   /// points have gone from the tile, it begins anew.
   /// @return their indices in the tile
-  std::span<const std::uint32_t> more(const PointCloud& tile, double tile_size);
+  std::span<const std::uint32_t> more(const TilePoints& tile, double tile_size);
 
   /// All that are chosen, after more().
   const std::vector<std::uint32_t>& all() const { return chosen_; }
 
  private:
-  bool has_lost_points(const PointCloud& tile) const;
+  bool has_lost_points(const TilePoints& tile) const;
 
   std::vector<bool> taken_;                         // by cell
   std::vector<std::uint32_t> chosen_;               // indices in the tile
@@ -33,7 +33,7 @@ class LiveSample {
 /// Appends a section of a live message (docs/viewer-protocol.md).
 /// @param tile   at `id`; nullptr for one that has gone
 /// @param whole  the points are all that the tile has
-void append_section(std::string& message, const TileId& id, const PointCloud* tile,
+void append_section(std::string& message, const TileId& id, const TilePoints* tile,
                     std::span<const std::uint32_t> points, bool whole);
 
 /// What stands before the sections.

@@ -109,7 +109,7 @@ std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap
   std::string sections;
   std::size_t count = 0;
   for (const auto& [key, tile] : map.submaps().back().tiles) {
-    const PointCloud& points = *tile.points;
+    const TilePoints& points = *tile.points;
     if (points.empty() || points.frame.back() != frame) continue;
     const TileId id{submap, key};
     std::vector<std::uint32_t> fresh;  // of a tile that was not looked at before, not the others
@@ -151,7 +151,7 @@ LiveBoard::Bytes LiveShow::whole_section(const TileId& id, const TileMap& map) {
   const Submap& submap = map.submaps().at(id.submap);
   const auto tile = submap.tiles.find(id.key);
   if (tile != submap.tiles.end()) {
-    const PointCloud& points = *tile->second.points;
+    const TilePoints& points = *tile->second.points;
     LiveSample& sample = samples_[id];
     sample.more(points, map.tile_size());
     append_section(section, id, &points, sample.all(), /*whole=*/true);

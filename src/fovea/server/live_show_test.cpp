@@ -149,12 +149,12 @@ class LiveRun : public testing::Test {
   void change_map(int index) {
     std::vector<TileId> near;
     map_.for_each_tile_near({double(index), 0, 0}, 5,
-                            [&](const TileId& id, const PointCloud&) { near.push_back(id); });
+                            [&](const TileId& id, const TilePoints&) { near.push_back(id); });
     for (const TileId& id : near) {
       for (Rgb& color : map_.colors(id).color) color.g = static_cast<std::uint8_t>(index);
     }
     if (index % 7 == 3 && !near.empty()) {
-      const PointCloud& tile = *map_.submaps()[near[0].submap].tiles.at(near[0].key).points;
+      const PointCloud tile = map_.submaps()[near[0].submap].tiles.at(near[0].key).points->cloud();
       std::vector<std::uint32_t> kept;
       for (std::uint32_t i = 0; i < tile.size(); i += 2) kept.push_back(i);
       map_.keep_points(near[0], kept);
@@ -216,7 +216,7 @@ class LiveRun : public testing::Test {
         ++tiles;
         const Picture::Id id{static_cast<std::int32_t>(submap), key.x, key.y, key.z};
         ASSERT_TRUE(picture.tiles.contains(id));
-        expect_sample(picture.tiles.at(id), *tile.points);
+        expect_sample(picture.tiles.at(id), tile.points->cloud());
       }
     }
     for (const auto& [id, points] : picture.tiles) tiles -= !points.empty();

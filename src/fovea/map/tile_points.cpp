@@ -1,0 +1,147 @@
+#include "fovea/map/tile_points.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace fovea {
+namespace {
+
+/// Steps of a value in what an unsigned number can hold; 0 of NaN.
+template <class Number>
+Number steps(double value, double step, Number most) {
+  // std::round would be a call; a step is known to the compiler, which divides once by it.
+  const double count = std::floor(value * (1 / step) + 0.5);
+  if (!(count > 0)) return 0;
+  return count < most ? static_cast<Number>(count) : most;
+}
+
+constexpr std::uint16_t kMost16 = std::numeric_limits<std::uint16_t>::max();
+
+std::uint16_t position_steps(double p) { return steps(p, double(kPositionStep), kMost16); }
+std::uint16_t range_steps(float range) { return steps(range, double(kRangeStep), kMost16); }
+std::uint8_t incidence_steps(float incidence) {
+  if (std::isnan(incidence)) return TilePoints::kUnknownIncidence;
+  return steps<std::uint8_t>(incidence, double(kIncidenceStep), TilePoints::kUnknownIncidence - 1);
+}
+
+/// Calls `f(column_a, column_b)` for each column that tiles and clouds keep alike.
+template <class A, class B, class F>
+void for_each_alike_column(A& a, B& b, F&& f) {
+  f(a.color, b.color);
+  f(a.camera, b.camera);
+  f(a.frame, b.frame);
+  f(a.interpolated, b.interpolated);
+  f(a.views, b.views);
+  f(a.spread, b.spread);
+  f(a.weight, b.weight);
+  f(a.reason, b.reason);
+  f(a.intensity, b.intensity);
+}
+
+/// value_of(i) of each i.
+template <class Value, class F>
+void append_each(std::vector<Value>& to, std::span<const std::uint32_t> indices, F&& value_of) {
+  std::size_t next = to.size();
+  const std::size_t size = next + indices.size();
+  // Half as much again, not twice: what is in reserve takes memory, too.
+  if (to.capacity() < size) to.reserve(std::max(size, next + next / 2));
+  to.resize(size);
+  for (const std::uint32_t i : indices) to[next++] = value_of(i);
+}
+
+template <class Value>
+void keep_of(std::vector<Value>& column, std::span<const std::uint32_t> indices) {
+  if (column.empty()) return;
+  std::size_t next = 0;
+  for (const std::uint32_t i : indices) column[next++] = column[i];
+  column.resize(next);
+}
+
+}  // namespace
+
+float TilePoints::incidence_at(std::size_t i) const {
+  return incidence[i] == kUnknownIncidence ? std::numeric_limits<float>::quiet_NaN()
+                                           : float(incidence[i]) * kIncidenceStep;
+}
+
+TilePoints TilePoints::of(const PointCloud& tile) {
+  check_tile_columns(tile);
+  TilePoints points;
+  points.origin = tile.origin;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    points.position[axis].reserve(tile.size());
+    for (const Eigen::Vector3f& p : tile.position) {
+      points.position[axis].push_back(position_steps(p[Eigen::Index(axis)]));
+    }
+  }
+  points.range.reserve(tile.size());
+  for (const float range : tile.range) points.range.push_back(range_steps(range));
+  points.incidence.reserve(tile.size());
+  for (const float incidence : tile.incidence) {
+    points.incidence.push_back(incidence_steps(incidence));
+  }
+  for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
+  return points;
+}
+
+PointCloud TilePoints::cloud() const {
+  PointCloud tile;
+  tile.origin = origin;
+  tile.position.reserve(size());
+  tile.range.reserve(size());
+  tile.incidence.reserve(size());
+  for (std::size_t i = 0; i < size(); ++i) {
+    tile.position.push_back(position_at(i));
+    tile.range.push_back(range_at(i));
+    tile.incidence.push_back(incidence_at(i));
+  }
+  for_each_alike_column(tile, *this, [](auto& to, const auto& from) { to = from; });
+  return tile;
+}
+
+void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
+                        std::span<const std::uint32_t> indices) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto k = Eigen::Index(axis);
+    append_each(position[axis], indices,
+                [&](std::uint32_t i) { return position_steps(p_submap[i][k] - origin[k]); });
+  }
+  append_each(range, indices, [&](std::uint32_t i) { return range_steps(points.range[i]); });
+  append_each(incidence, indices,
+              [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
+  for_each_alike_column(*this, points, [&](auto& to, const auto& from) {
+    if (!from.empty()) append_each(to, indices, [&](std::uint32_t i) { return from[i]; });
+  });
+}
+
+void TilePoints::keep(std::span<const std::uint32_t> indices) {
+  for (std::vector<std::uint16_t>& axis : position) keep_of(axis, indices);
+  keep_of(range, indices);
+  keep_of(incidence, indices);
+  for_each_alike_column(*this, *this, [&](auto& column, auto&) { keep_of(column, indices); });
+}
+
+void check_tile_columns(const PointCloud& cloud) {
+  cloud.check();
+  if (cloud.empty()) return;
+  const auto require = [](const char* name, const auto& column) {
+    if (column.empty()) {
+      throw std::logic_error(fmt::format("points of a map must have the column '{}'", name));
+    }
+  };
+  require("range", cloud.range);
+  require("incidence", cloud.incidence);
+  require("color", cloud.color);
+  require("frame", cloud.frame);
+  require("camera", cloud.camera);
+  require("interpolated", cloud.interpolated);
+  require("views", cloud.views);
+  require("spread", cloud.spread);
+  require("weight", cloud.weight);
+  require("reason", cloud.reason);
+}
+
+}  // namespace fovea

@@ -1,0 +1,87 @@
+// The points of a tile as memory and file keep them (docs/map-format.md): numbers in whole steps,
+// finer than any sensor knows them, in two thirds of the memory that floats would take.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fovea/base/point_cloud.h"
+
+namespace fovea {
+
+inline constexpr float kPositionStep = 0.001f;         // m
+inline constexpr float kRangeStep = 0.01f;             // m
+inline constexpr float kIncidenceStep = 0.008726646f;  // rad: half a degree
+/// Largest edge of a tile whose points the steps reach, m.
+inline constexpr double kMaxTileSize = 65.5;
+
+/// Columns of equal length, intensity excepted, which all tiles of a map have or none. What is not
+/// said otherwise is as in PointCloud; normals and times are not kept.
+struct TilePoints {
+  static constexpr std::uint8_t kUnknownIncidence = 255;
+
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the tile's lowest corner, submap frame, m
+  std::array<std::vector<std::uint16_t>, 3> position;  ///< steps from there along x, y, z
+  std::vector<Rgb> color;
+  std::vector<std::int8_t> camera;
+  std::vector<std::int32_t> frame;
+  std::vector<std::uint16_t> range;     ///< steps
+  std::vector<std::uint8_t> incidence;  ///< steps, or kUnknownIncidence
+  std::vector<std::uint8_t> interpolated;
+  std::vector<std::uint8_t> views;
+  std::vector<std::uint8_t> spread;
+  std::vector<std::uint16_t> weight;
+  std::vector<std::uint8_t> reason;
+  std::vector<float> intensity;
+
+  std::size_t size() const { return position[0].size(); }
+  bool empty() const { return position[0].empty(); }
+
+  /// m, relative to `origin`.
+  Eigen::Vector3f position_at(std::size_t i) const {
+    return {float(position[0][i]) * kPositionStep, float(position[1][i]) * kPositionStep,
+            float(position[2][i]) * kPositionStep};
+  }
+  float range_at(std::size_t i) const { return float(range[i]) * kRangeStep; }  ///< m
+  float incidence_at(std::size_t i) const;  ///< rad; NaN where unknown
+
+  /// A tile of a cloud with its origin, rounded to steps; what is out of their range becomes the
+  /// nearest that can be kept. std::logic_error as check_tile_columns().
+  static TilePoints of(const PointCloud& tile);
+  /// The same as a cloud, which of() turns back into what it was.
+  PointCloud cloud() const;
+
+  /// Appends those of a cloud at `indices`, rounded as by of().
+  /// @param p_submap  m, submap frame; of all of them, in place of their positions
+  void append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
+              std::span<const std::uint32_t> indices);
+  /// Keeps only the points at `indices` (ascending), in place.
+  void keep(std::span<const std::uint32_t> indices);
+};
+
+/// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a
+/// column of a wrong length.
+void check_tile_columns(const PointCloud& cloud);
+
+/// Calls `f(column)` for each column in the order of the file, of which position is the first.
+template <class Tile, class F>
+void for_each_stored_column(Tile& tile, F&& f) {
+  f(tile.position);
+  f(tile.color);
+  f(tile.camera);
+  f(tile.frame);
+  f(tile.range);
+  f(tile.incidence);
+  f(tile.interpolated);
+  f(tile.views);
+  f(tile.spread);
+  f(tile.weight);
+  f(tile.reason);
+  f(tile.intensity);
+}
+inline constexpr std::size_t kStoredColumns = 12;
+inline constexpr std::size_t kIntensityColumn = 11;  // the only one that may be missing
+
+}  // namespace fovea

@@ -1,0 +1,79 @@
+#include "fovea/map/tile_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../../../tests/sample_map.h"
+#include "fovea/base/random.h"
+
+namespace fovea::tile_points_test {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+PointCloud random_tile(std::size_t count) {
+  Random random(11);
+  PointCloud tile = random_map_points(count, random, 4.0);
+  for (Eigen::Vector3f& p : tile.position) p = p.cwiseAbs();
+  return tile;
+}
+
+TEST(TilePoints, NumbersAreWithinHalfAStep) {
+  const PointCloud tile = random_tile(3000);
+  const TilePoints points = TilePoints::of(tile);
+  ASSERT_EQ(points.size(), tile.size());
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    EXPECT_LE((points.position_at(i) - tile.position[i]).cwiseAbs().maxCoeff(), 0.5005e-3f);
+    EXPECT_NEAR(points.range_at(i), tile.range[i], 0.00501);
+    if (std::isnan(tile.incidence[i])) {
+      EXPECT_TRUE(std::isnan(points.incidence_at(i)));
+    } else {
+      EXPECT_NEAR(points.incidence_at(i), tile.incidence[i], 0.00437);
+    }
+  }
+}
+
+TEST(TilePoints, ACloudThatWasRoundedComesBackAsItWas) {
+  const PointCloud rounded = TilePoints::of(random_tile(3000)).cloud();
+  expect_same_columns(TilePoints::of(rounded).cloud(), rounded);
+}
+
+TEST(TilePoints, WhatIsOutOfRangeBecomesTheNearestThatCanBeKept) {
+  PointCloud tile = one_point_each({{-1, 70, kNan}, {65.535f, 0, 1e30f}});
+  tile.range = {1e9f, -3};
+  tile.incidence = {kNan, 1e9f};
+  const TilePoints points = TilePoints::of(tile);
+  EXPECT_EQ(points.position[0], (std::vector<std::uint16_t>{0, 65535}));
+  EXPECT_EQ(points.position[1], (std::vector<std::uint16_t>{65535, 0}));
+  EXPECT_EQ(points.position[2], (std::vector<std::uint16_t>{0, 65535}));
+  EXPECT_EQ(points.range, (std::vector<std::uint16_t>{65535, 0}));
+  EXPECT_EQ(points.incidence, (std::vector<std::uint8_t>{TilePoints::kUnknownIncidence, 254}));
+}
+
+TEST(TilePoints, AppendedAndKeptPointsAreThoseOfTheCloud) {
+  const PointCloud cloud = random_tile(100);
+  std::vector<Eigen::Vector3d> p_submap;
+  TilePoints points;
+  points.origin = {4, -8, 12};
+  for (const Eigen::Vector3f& p : cloud.position) {
+    p_submap.emplace_back(points.origin + p.cast<double>());
+  }
+  const std::vector<std::uint32_t> first{3, 50, 7}, then{99, 0};
+  points.append(cloud, p_submap, first);
+  points.append(cloud, p_submap, then);
+  PointCloud expected = cloud.select({3, 50, 7, 99, 0});
+  expected.origin = points.origin;
+  expected.normal.clear();
+  expect_same_columns(points.cloud(), TilePoints::of(expected).cloud());
+  points.keep(std::vector<std::uint32_t>{1, 4});
+  expect_same_columns(points.cloud(), TilePoints::of(expected.select({1, 4})).cloud());
+}
+
+TEST(TilePoints, NamesAColumnThatIsMissing) {
+  PointCloud tile = one_point_each({{1, 1, 1}});
+  tile.views.clear();
+  EXPECT_THROW(TilePoints::of(tile), std::logic_error);
+}
+
+}  // namespace fovea::tile_points_test
