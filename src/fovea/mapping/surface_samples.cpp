@@ -63,8 +63,9 @@ std::uint8_t halvings_for(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& n
   return halvings;
 }
 
-void find_triangles(const GridProjection& project, const SurfaceOptions& options,
-                    Surface& surface) {
+/// @return by triangle found: its normal, as long as twice its area
+std::vector<Eigen::Vector3f> find_triangles(const GridProjection& project,
+                                            const SurfaceOptions& options, Surface& surface) {
   const ImageMesh& mesh = surface.mesh;
   const auto squared = [](double edge) { return static_cast<float>(edge * edge); };
   const float longest = squared(std::max(options.max_edge, options.planar_edge));
@@ -75,6 +76,7 @@ void find_triangles(const GridProjection& project, const SurfaceOptions& options
     if (mesh.edges_below(corners, longest)) area[t] = mesh.area_normal(corners, project);
   }
   const auto cos_angle = static_cast<float>(std::cos(options.planar_angle));
+  std::vector<Eigen::Vector3f> found;
   for (std::size_t t = 0; t < area.size(); ++t) {
     if (area[t].isZero(0)) continue;
     const Vertices& corners = mesh.triangulation.vertices(t);
@@ -82,15 +84,17 @@ void find_triangles(const GridProjection& project, const SurfaceOptions& options
     if (!is_short && !is_flat(mesh, area, t, cos_angle)) continue;
     surface.triangles.push_back(corners);
     surface.rule.push_back(is_short ? PointRule::kShortEdges : PointRule::kPlanar);
-    surface.area.push_back(area[t]);
+    found.push_back(area[t]);
   }
+  return found;
 }
 
-void find_normals(Surface& surface) {
-  std::vector<Eigen::Vector3f>& normal = surface.normal;
+/// @param area  as find_triangles() returns it
+void find_normals(const std::vector<Eigen::Vector3f>& area, Surface& surface) {
+  std::vector<Eigen::Vector3f>& normal = surface.vertex_normal;
   normal.assign(surface.mesh.position.size(), Eigen::Vector3f::Zero());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    for (const std::int32_t corner : surface.triangles[t]) normal[corner] += surface.area[t];
+    for (const std::int32_t corner : surface.triangles[t]) normal[corner] += area[t];
   }
   for (Eigen::Vector3f& n : normal) n = unit_or_zero(n);
   for (int round = 0; round < kSmoothing; ++round) {
@@ -101,11 +105,10 @@ void find_normals(Surface& surface) {
     }
     for (std::size_t v = 0; v < sum.size(); ++v) normal[v] = unit_or_zero(sum[v]);
   }
-}
-
-Eigen::Vector3f normal_of(const Surface& surface, std::size_t triangle) {
-  const auto& [a, b, c] = surface.triangles[triangle];
-  return unit_or_zero(surface.normal[a] + surface.normal[b] + surface.normal[c]);
+  surface.triangle_normal.reserve(surface.triangles.size());
+  for (const auto& [a, b, c] : surface.triangles) {
+    surface.triangle_normal.push_back(unit_or_zero(normal[a] + normal[b] + normal[c]));
+  }
 }
 
 void find_halvings(const GridProjection& project, const Camera& camera,
@@ -116,7 +119,7 @@ void find_halvings(const GridProjection& project, const Camera& camera,
     const auto& [a, b, c] = surface.triangles[t];
     const std::vector<Eigen::Vector3f>& p = surface.mesh.position;
     surface.halvings[t] = halvings_for(project.from_camera((p[a] + p[b] + p[c]) / 3),
-                                       normal_of(surface, t).cast<double>(), camera, options);
+                                       surface.triangle_normal[t].cast<double>(), camera, options);
   }
 }
 
@@ -136,6 +139,14 @@ class CellNumber {
 
  private:
   double steps_per_metre_, cells_per_step_, half_, beyond_;
+};
+
+/// What is the same for all triangles.
+struct Cells {
+  double edge, per_metre;
+  CellNumber number;
+  explicit Cells(const SampleGrid& grid)
+      : edge(grid.cell), per_metre(1 / grid.cell), number(grid) {}
 };
 
 /// Where a column of the grid's cells along `axis` meets a triangle.
@@ -190,14 +201,13 @@ class Columns {
 /// Calls f(sample) at the centres of cells that fall onto a triangle when looked at along kAxis.
 template <std::uint32_t kAxis, class F>
 void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
-                     const SampleGrid& grid, const Columns& sampled, F&& f) {
+                     const Cells& cells, const Columns& sampled, F&& f) {
   constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
   const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   if (!(std::abs(n[kAxis]) > 1e-3 * n.norm())) return;  // seen from its edge
   const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
-  const CellNumber cell_number(grid);
-  const double cell = grid.cell, per_metre = 1 / cell;
-  const auto first_center = [&](double low) { return std::ceil(low * per_metre - 0.5); };
+  const double cell = cells.edge;
+  const auto first_center = [&](double low) { return std::ceil(low * cells.per_metre - 0.5); };
   const auto [v_low, v_high] = std::minmax({corner[0][kV], corner[1][kV], corner[2][kV]});
   const double rows = first_center(v_high);
   for (double row = sampled.first_row(first_center(v_low)); row < rows; row += sampled.row_step()) {
@@ -216,7 +226,7 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
       const double at_u = (column + 0.5) * cell;
       const double height =
           corner[0][kAxis] + slope_u * (at_u - corner[0][kU]) + slope_v * (at_v - corner[0][kV]);
-      f(Sample{height, cell_number(height), static_cast<std::int32_t>(column),
+      f(Sample{height, cells.number(height), static_cast<std::int32_t>(column),
                static_cast<std::int32_t>(row), triangle, kAxis});
     }
   }
@@ -224,14 +234,14 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
 
 template <class F>
 void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
-                     Eigen::Index axis, const SampleGrid& grid, const Columns& sampled, F&& f) {
+                     Eigen::Index axis, const Cells& cells, const Columns& sampled, F&& f) {
   switch (axis) {
     case 0:
-      return for_each_center<0>(corner, triangle, grid, sampled, f);
+      return for_each_center<0>(corner, triangle, cells, sampled, f);
     case 1:
-      return for_each_center<1>(corner, triangle, grid, sampled, f);
+      return for_each_center<1>(corner, triangle, cells, sampled, f);
     default:
-      return for_each_center<2>(corner, triangle, grid, sampled, f);
+      return for_each_center<2>(corner, triangle, cells, sampled, f);
   }
 }
 
@@ -264,18 +274,19 @@ std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const 
   const std::size_t count = surface.triangles.size();
   std::vector<std::vector<Sample>> chunks((count + kGrain - 1) / kGrain);
   const Eigen::Matrix3f R_grid_cam = grid.T_grid_cam.linear().cast<float>();
+  const Cells cells(grid);
+  std::vector<Eigen::Vector3d> vertex(surface.mesh.position.size());
+  parallel_for(vertex.size(), kSampleGrain, [&](std::size_t v) {
+    vertex[v] = grid.T_grid_cam * surface.mesh.position[v].cast<double>();
+  });
   parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Sample>& samples = chunks[begin / kGrain];
     TakenCells taken(grid);
     for (std::size_t t = begin; t < end; ++t) {
-      std::array<Eigen::Vector3d, 3> corner;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto vertex = static_cast<std::size_t>(surface.triangles[t][i]);
-        corner[i] = grid.T_grid_cam * surface.mesh.position[vertex].cast<double>();
-      }
+      const auto& [a, b, c] = surface.triangles[t];
       Eigen::Index axis;
-      (R_grid_cam * normal_of(surface, t)).cwiseAbs().maxCoeff(&axis);
-      for_each_center(corner, static_cast<std::uint32_t>(t), axis, grid,
+      (R_grid_cam * surface.triangle_normal[t]).cwiseAbs().maxCoeff(&axis);
+      for_each_center({vertex[a], vertex[b], vertex[c]}, static_cast<std::uint32_t>(t), axis, cells,
                       Columns(surface.halvings[t]), [&](const Sample& sample) {
                         const auto position = [&] { return sample.position(grid.cell); };
                         if (!taken(sample.cell(), position)) samples.push_back(sample);
@@ -302,7 +313,7 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
     const std::int32_t vertex = surface.mesh.vertex_of_point[i];
     points.normal.push_back(vertex == ImageMesh::kNoVertex
                                 ? Eigen::Vector3f::Zero()
-                                : surface.normal[static_cast<std::size_t>(vertex)]);
+                                : surface.vertex_normal[static_cast<std::size_t>(vertex)]);
   }
   points.interpolated.assign(kept.size(), 0);
   points.reason.assign(kept.size(), reason_of(PointRule::kMeasured));
@@ -338,7 +349,7 @@ class TriangleValues {
   void of(std::uint32_t triangle) {
     if (triangle == triangle_) return;
     triangle_ = triangle;
-    normal = normal_of(surface_, triangle);
+    normal = surface_.triangle_normal[triangle];
     intensity = mean_intensity(points_, surface_, triangle);
   }
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
@@ -379,8 +390,7 @@ Surface find_surface(const PointCloud& points_cam, const Camera& camera,
   points_cam.check();
   const GridProjection project(camera, points_cam.origin);
   Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}, {}};
-  find_triangles(project, options, surface);
-  find_normals(surface);
+  find_normals(find_triangles(project, options, surface), surface);
   find_halvings(project, camera, options, surface);
   return surface;
 }

@@ -42,10 +42,10 @@ struct SampleGrid {
 struct Surface {
   ImageMesh mesh;
   std::vector<DelaunayTriangulation::Vertices> triangles;
-  std::vector<PointRule> rule;          ///< by triangle: why it is surface
-  std::vector<Eigen::Vector3f> area;    ///< by triangle: its normal, as long as twice its area
-  std::vector<Eigen::Vector3f> normal;  ///< by vertex of the mesh; zero without a triangle
-  std::vector<std::uint8_t> halvings;   ///< by triangle: one in 2^n of its cells is sampled
+  std::vector<PointRule> rule;                   ///< by triangle: why it is surface
+  std::vector<Eigen::Vector3f> vertex_normal;    ///< of the mesh's; zero without a triangle
+  std::vector<Eigen::Vector3f> triangle_normal;  ///< the mean of its corners'
+  std::vector<std::uint8_t> halvings;  ///< by triangle: one in 2^n of its cells is sampled
 
   static constexpr std::uint8_t kMostHalvings = 3;
 };
