@@ -1,6 +1,7 @@
 #include "fovea/pipeline/moving_things.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -15,7 +16,7 @@ namespace {
 constexpr double kVoxel = 0.2;  // m
 /// Fewer scans than this that saw through a place are taken for chance.
 constexpr int kMinFree = 3;
-constexpr std::size_t kVoxelGrain = 64;
+constexpr std::size_t kVoxelGrain = 256;
 /// How many voxels beneath one that goes lose what came with it: rays graze the road, so that they
 /// never see through what stands just above it, the foot of a thing.
 constexpr std::uint32_t kFoot = 2;
@@ -91,17 +92,37 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
   }
   std::vector<std::uint8_t> moving(first_point.size());
   const int judges = static_cast<int>(scans_.size());
-  parallel_for(first_point.size(), kVoxelGrain, [&](std::size_t v) {
-    const Eigen::Vector3d p_odom =
-        T_odom_local * (points_local.origin + points_local.position[first_point[v]].cast<double>());
+  struct Judged {
+    std::size_t voxel;
+    Eigen::Vector3d p_odom;
     int free = 0, filled = 0;
-    // Until the judges that are left cannot make it free; mostly half of them are asked.
-    for (int k = judges; k-- > 0 && free + k + 1 >= kMinFree && free + k + 1 > filled;) {
-      const Sight sight = scans_[k].image.sight((scans_[k].T_lidar_odom * p_odom).cast<float>());
-      free += sight == Sight::kFree;
-      filled += sight == Sight::kSurface;
+  };
+  parallel_chunks(first_point.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Judged> judged;
+    for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Vector3d p = points_local.position[first_point[v]].cast<double>();
+      judged.push_back({v, T_odom_local * (points_local.origin + p)});
     }
-    moving[v] = free >= kMinFree && free > filled;
+    std::vector<Eigen::Vector3f> p_lidar;
+    std::array<Sight, kVoxelGrain> sights;
+    for (int k = judges; k-- > 0;) {
+      // Those which the judges that are left cannot make free go; mostly half of them are asked.
+      std::erase_if(judged, [&](const Judged& j) {
+        return j.free + k + 1 < kMinFree || j.free + k + 1 <= j.filled;
+      });
+      p_lidar.clear();
+      for (const Judged& j : judged) {
+        p_lidar.push_back((scans_[k].T_lidar_odom * j.p_odom).cast<float>());
+      }
+      scans_[k].image.look(p_lidar, sights);
+      for (std::size_t i = 0; i < judged.size(); ++i) {
+        judged[i].free += sights[i] == Sight::kFree;
+        judged[i].filled += sights[i] == Sight::kSurface;
+      }
+    }
+    for (const Judged& j : judged) {
+      moving[j.voxel] = j.free >= kMinFree && j.free > j.filled;
+    }
   });
   for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = moving[voxel[i]];
   return marks;
@@ -151,10 +172,16 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
   const TileView view(
       scan.T_lidar_odom * T_odom_local * map.submaps()[tile.id.submap].T_local_submap,
       tile.points->origin);
-  for (Voxel& voxel : block.voxels) {
-    const Sight sight = scan.image.sight(view.R * center_of(voxel.cell, size, edge) + view.t);
-    if (sight == Sight::kSurface) voxel.filled |= 1;
-    if (sight == Sight::kFree) voxel.free |= 1;
+  std::vector<Eigen::Vector3f> p_lidar;
+  p_lidar.reserve(block.voxels.size());
+  for (const Voxel& voxel : block.voxels) {
+    p_lidar.push_back(view.R * center_of(voxel.cell, size, edge) + view.t);
+  }
+  std::vector<Sight> sights(p_lidar.size());
+  scan.image.look(p_lidar, sights);
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    block.voxels[i].filled |= sights[i] == Sight::kSurface ? 1 : 0;
+    block.voxels[i].free |= sights[i] == Sight::kFree ? 1 : 0;
   }
 }
 

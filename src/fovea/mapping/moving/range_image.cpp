@@ -142,17 +142,30 @@ RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
 }
 
 Sight RangeImage::sight(const Eigen::Vector3f& p) const {
-  const float range = p.norm();
+  return sight_at(p.norm(), row_of(p.z(), p.head<2>().norm()), column_of(p.x(), p.y()));
+}
+
+void RangeImage::look(std::span<const Eigen::Vector3f> p_lidar, std::span<Sight> sights) const {
+  DirectionBlock block;
+  for (std::size_t begin = 0; begin < p_lidar.size(); begin += DirectionBlock::kSize) {
+    const std::size_t count = std::min(DirectionBlock::kSize, p_lidar.size() - begin);
+    block.compute(p_lidar.subspan(begin, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      sights[begin + i] = sight_at(block.range[i], block.row[i], block.column[i]);
+    }
+  }
+}
+
+Sight RangeImage::sight_at(float range, float row_of_place, float column_of_place) const {
   if (!(range > kMinRange)) return Sight::kUnknown;
   const auto window =
       static_cast<std::size_t>(std::find_if(kWindows.begin(), kWindows.end(),
                                             [&](const Window& w) { return range >= w.range; }) -
                                kWindows.begin());
   const int half = kWindows[window].half_width;
-  const int row = static_cast<int>(row_of(p.z(), p.head<2>().norm())) - first_row_;
+  const int row = static_cast<int>(row_of_place) - first_row_;
   if (row < 0 || row >= rows_) return Sight::kUnknown;
-  const std::size_t cell =
-      static_cast<std::size_t>(row) * kColumns + whole_column(column_of(p.x(), p.y()));
+  const std::size_t cell = static_cast<std::size_t>(row) * kColumns + whole_column(column_of_place);
   const float nearest = levels_[window].nearest[cell];
   if (nearest < range - kMargin) return Sight::kUnknown;  // something stands before it
   if (nearest <= range + kMargin) return Sight::kSurface;

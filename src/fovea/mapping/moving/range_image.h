@@ -29,8 +29,13 @@ class RangeImage {
 
   /// @param p_lidar  m, frame of the scan's LiDAR
   Sight sight(const Eigen::Vector3f& p_lidar) const;
+  /// The same of many places.
+  /// @param sights  one for each
+  void look(std::span<const Eigen::Vector3f> p_lidar, std::span<Sight> sights) const;
 
  private:
+  /// @param row, column  of the place's direction, as of returns
+  Sight sight_at(float range, float row, float column) const;
   /// Nearest range and number of cells with a return in a window around each cell.
   struct Level {
     std::vector<float> nearest;
