@@ -84,6 +84,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
     points.incidence.push_back(incidence_steps(incidence));
   }
   for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
+  points.widen_box(0);
   return points;
 }
 
@@ -104,6 +105,7 @@ PointCloud TilePoints::cloud() const {
 
 void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
                         std::span<const std::uint32_t> indices) {
+  const std::size_t before = size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto k = Eigen::Index(axis);
     append_each(position[axis], indices,
@@ -115,6 +117,16 @@ void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3
   for_each_alike_column(*this, points, [&](auto& to, const auto& from) {
     if (!from.empty()) append_each(to, indices, [&](std::uint32_t i) { return from[i]; });
   });
+  widen_box(before);
+}
+
+void TilePoints::widen_box(std::size_t first) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = first; i < size(); ++i) {
+      low[axis] = std::min(low[axis], position[axis][i]);
+      high[axis] = std::max(high[axis], position[axis][i]);
+    }
+  }
 }
 
 void TilePoints::keep(std::span<const std::uint32_t> indices) {

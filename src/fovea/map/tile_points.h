@@ -20,6 +20,7 @@ inline constexpr double kMaxTileSize = 65.5;
 /// Columns of equal length, intensity excepted, which all tiles of a map have or none. What is not
 /// said otherwise is as in PointCloud; normals and times are not kept.
 struct TilePoints {
+  using Steps = std::array<std::uint16_t, 3>;  ///< along x, y, z
   static constexpr std::uint8_t kUnknownIncidence = 255;
 
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the tile's lowest corner, submap frame, m
@@ -35,6 +36,9 @@ struct TilePoints {
   std::vector<std::uint16_t> weight;
   std::vector<std::uint8_t> reason;
   std::vector<float> intensity;
+  /// A box around all points, in steps, both ends included; where points have gone it may be larger
+  /// than need be. Without points it holds none.
+  Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};
 
   std::size_t size() const { return position[0].size(); }
   bool empty() const { return position[0].empty(); }
@@ -59,6 +63,8 @@ struct TilePoints {
               std::span<const std::uint32_t> indices);
   /// Keeps only the points at `indices` (ascending), in place.
   void keep(std::span<const std::uint32_t> indices);
+  /// Has the box hold the points from `first` on.
+  void widen_box(std::size_t first);
 };
 
 /// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a

@@ -43,12 +43,22 @@ constexpr float kUndone = 0.9f;
 
 static_assert(kGrain / kExposureStep <= kBlock);
 
-/// Whether a ball in the camera's frame may reach into its view.
-bool may_be_in_view(const Camera& camera, const Eigen::Vector3d& center, double radius) {
-  const auto inside = [&](const Eigen::Vector3d& normal) {
-    return normal.normalized().dot(center) >= -radius;
+/// Whether a box of points may reach into a camera's view.
+bool may_be_in_view(const Camera& camera, const RigidMotion& T_cam_submap,
+                    const TilePoints& points) {
+  if (points.empty()) return false;
+  const Eigen::Array3d low(points.low[0], points.low[1], points.low[2]),
+      high(points.high[0], points.high[1], points.high[2]);
+  const Eigen::Vector3d half = (high - low) / 2 * double(kPositionStep);
+  const Eigen::Vector3d center =
+      T_cam_submap * (points.origin + ((low + high) / 2 * double(kPositionStep)).matrix());
+  constexpr double kHair = 1e-3;  // m: single precision tells which points are in view
+  const auto inside = [&](const Eigen::Vector3d& inwards) {
+    const Eigen::Vector3d normal = inwards.normalized();
+    const double reach = (T_cam_submap.linear().transpose() * normal).cwiseAbs().dot(half);
+    return normal.dot(center) + reach >= -kHair;
   };
-  return center.z() + radius > Camera::kMinDepth && inside({camera.fx, 0, camera.cx}) &&
+  return inside({0, 0, 1}) && inside({camera.fx, 0, camera.cx}) &&
          inside({-camera.fx, 0, camera.width - 1 - camera.cx}) &&
          inside({0, camera.fy, camera.cy}) &&
          inside({0, -camera.fy, camera.height - 1 - camera.cy});
@@ -90,14 +100,11 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
 void SeenMap::gather(const TileMap& map, const FovealRegion& region,
                      const RigidMotion& T_cam_local) {
   pieces_.clear();
-  // A tile's ball, and a hair for points that rounding has put outside the tile.
-  const double half = map.tile_size() / 2, radius = half * 1.7321 + 1e-3;
   const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
   map.for_each_tile_near(
       lidar_local, region.far_range(), [&](const TileId& id, const TilePoints& points) {
-        const Eigen::Vector3d center = T_cam_local * map.submaps()[id.submap].T_local_submap *
-                                       (points.origin + Eigen::Vector3d::Constant(half));
-        if (!may_be_in_view(camera_, center, radius)) return;
+        const RigidMotion T_cam_submap = T_cam_local * map.submaps()[id.submap].T_local_submap;
+        if (!may_be_in_view(camera_, T_cam_submap, points)) return;
         const auto size = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kGrain)) {
           const std::uint32_t end = std::min(size, begin + std::uint32_t(kGrain));
