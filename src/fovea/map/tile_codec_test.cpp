@@ -34,4 +34,14 @@ TEST(TileDecoder, LargeTilesOfOneValueComeBack) {
   expect_same_columns(decoder.decode(row, "map").cloud(), tile);
 }
 
+// A tile that is read again is looked for by its box.
+TEST(TileDecoder, TheBoxComesBack) {
+  const TilePoints tile = TilePoints::of(one_point_each({{1, 2, 0.5f}, {0.25f, 3, 4}}));
+  TileEncoder encoder;
+  TileDecoder decoder;
+  const TilePoints back = decoder.decode(encoder.encode(pack_tile({}, tile)), "map");
+  EXPECT_EQ(back.low, tile.low);
+  EXPECT_EQ(back.high, tile.high);
+}
+
 }  // namespace fovea::tile_codec_test

@@ -70,6 +70,16 @@ TEST(TilePoints, AppendedAndKeptPointsAreThoseOfTheCloud) {
   expect_same_columns(points.cloud(), TilePoints::of(expected.select({1, 4})).cloud());
 }
 
+TEST(TilePoints, TheBoxEndsAtThePoints) {
+  TilePoints points = TilePoints::of(one_point_each({{1, 2, 0.5f}, {0.25f, 3, 4}}));
+  EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
+  EXPECT_EQ(points.high, (TilePoints::Steps{1000, 3000, 4000}));
+  const std::vector<Eigen::Vector3d> p_submap{{0, 0, 0}, {2, 2.5, 1}};
+  points.append(one_point_each({{0, 0, 0}, {2, 2.5f, 1}}), p_submap, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
+  EXPECT_EQ(points.high, (TilePoints::Steps{2000, 3000, 4000}));
+}
+
 TEST(TilePoints, NamesAColumnThatIsMissing) {
   PointCloud tile = one_point_each({{1, 1, 1}});
   tile.views.clear();
