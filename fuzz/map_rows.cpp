@@ -195,8 +195,8 @@ void write_and_read_again(const std::filesystem::path& path) {
     TileDecoder decoder;
     MapReader(path).for_each_tile(
         [&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
-          const PackedTile packed = pack_tile({submap, key}, tile);
-          const PointCloud again = decoder.decode(encoder.encode(packed), "again");
+          const PackedTile packed = pack_tile({submap, key}, TilePoints::of(tile));
+          const TilePoints again = decoder.decode(encoder.encode(packed), "again");
           require(packed.columns == pack_columns(again) && tile.origin == again.origin,
                   "a tile is written as it is read");
         });
