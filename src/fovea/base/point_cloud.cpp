@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
+
+#include "fovea/base/kept_rows.h"
 
 namespace fovea {
 
@@ -32,24 +33,9 @@ PointCloud PointCloud::select(const std::vector<std::uint32_t>& indices) const {
 
 void PointCloud::keep(const std::vector<std::uint32_t>& indices) {
   if (indices.size() == size()) return;
-  // Mostly few points go: those between two of them move up together.
-  std::vector<std::size_t> run_begins;
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    if (k == 0 ? indices[k] != 0 : indices[k] != indices[k - 1] + 1) run_begins.push_back(k);
-  }
-  const auto close_up = [&](auto& column) {
-    if (column.empty()) return;
-    for (std::size_t r = 0; r < run_begins.size(); ++r) {
-      const std::size_t begin = run_begins[r];
-      const std::size_t end = r + 1 < run_begins.size() ? run_begins[r + 1] : indices.size();
-      const auto from = column.begin() + indices[begin];
-      std::move(from, from + static_cast<std::ptrdiff_t>(end - begin),
-                column.begin() + static_cast<std::ptrdiff_t>(begin));
-    }
-    column.resize(indices.size());
-  };
-  for_each_optional_column(*this, [&](const char*, auto& column) { close_up(column); });
-  close_up(position);
+  const KeptRows kept(indices);
+  for_each_optional_column(*this, [&](const char*, auto& column) { kept.close_up(column); });
+  kept.close_up(position);
 }
 
 std::size_t PointCloud::drop(const std::vector<std::uint8_t>& marks) {

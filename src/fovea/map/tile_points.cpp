@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "fovea/base/kept_rows.h"
+
 namespace fovea {
 namespace {
 
@@ -51,14 +53,6 @@ void append_each(std::vector<Value>& to, std::span<const std::uint32_t> indices,
   if (to.capacity() < size) to.reserve(std::max(size, next + next / 2));
   to.resize(size);
   for (const std::uint32_t i : indices) to[next++] = value_of(i);
-}
-
-template <class Value>
-void keep_of(std::vector<Value>& column, std::span<const std::uint32_t> indices) {
-  if (column.empty()) return;
-  std::size_t next = 0;
-  for (const std::uint32_t i : indices) column[next++] = column[i];
-  column.resize(next);
 }
 
 }  // namespace
@@ -131,10 +125,11 @@ void TilePoints::widen_box(std::size_t first) {
 }
 
 void TilePoints::keep(std::span<const std::uint32_t> indices) {
-  for (std::vector<std::uint16_t>& axis : position) keep_of(axis, indices);
-  keep_of(range, indices);
-  keep_of(incidence, indices);
-  for_each_alike_column(*this, *this, [&](auto& column, auto&) { keep_of(column, indices); });
+  const KeptRows kept(indices);
+  for (std::vector<std::uint16_t>& axis : position) kept.close_up(axis);
+  kept.close_up(range);
+  kept.close_up(incidence);
+  for_each_alike_column(*this, *this, [&](auto& column, auto&) { kept.close_up(column); });
 }
 
 void check_tile_columns(const PointCloud& cloud) {

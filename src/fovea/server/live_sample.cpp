@@ -1,6 +1,5 @@
 #include "fovea/server/live_sample.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 
