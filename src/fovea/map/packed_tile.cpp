@@ -8,6 +8,7 @@
 namespace fovea {
 
 PackedTile pack_tile(const TileId& id, const TilePoints& tile) {
+  tile.check();
   if (static_cast<std::int64_t>(tile.size()) > kMaxTilePoints || !tile.origin.allFinite()) {
     throw std::invalid_argument(fmt::format("tile {} {} {} has {} points and the origin {} {} {}",
                                             id.key.x, id.key.y, id.key.z, tile.size(),

@@ -19,7 +19,8 @@ struct PackedTile {
   PackedColumns columns;
 };
 
-/// std::invalid_argument if the tile has too many points or an origin that is not finite.
+/// std::logic_error if columns have different lengths, std::invalid_argument if the tile has too
+/// many points or an origin that is not finite.
 PackedTile pack_tile(const TileId& id, const TilePoints& tile);
 
 /// Points of a tile that a camera has coloured.

@@ -263,6 +263,7 @@ void TileMap::restore(const TileId& id, TilePoints tile) {
   if (tile.origin != corner(id.key) || tile.size() != stored->second) {
     throw std::logic_error(name_of(id) + " comes back as another one");
   }
+  tile.check();
   require_same_columns(!tile.intensity.empty());
   size_in_memory_ += tile.size();
   submap->stored.erase(stored);

@@ -119,7 +119,7 @@ class TileMap {
   /// exist or the tile does already.
   void declare_stored(const TileId& id, std::size_t points);
   /// Puts a stored tile back into memory; std::logic_error if it is not stored, or its number of
-  /// points, intensity or origin are not those of the tile.
+  /// points, columns or origin are not those of the tile.
   void restore(const TileId& id, TilePoints tile);
 
  private:

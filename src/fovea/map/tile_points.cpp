@@ -57,6 +57,20 @@ void append_each(std::vector<Value>& to, std::span<const std::uint32_t> indices,
 
 }  // namespace
 
+void TilePoints::check() const {
+  const auto require = [&](const auto& column, bool may_be_empty = false) {
+    if (column.size() == size() || (may_be_empty && column.empty())) return;
+    throw std::logic_error(
+        fmt::format("a column of a tile has {} entries for {} points", column.size(), size()));
+  };
+  for (const std::vector<std::uint16_t>& axis : position) require(axis);
+  require(range);
+  require(incidence);
+  for_each_alike_column(*this, *this, [&](const auto& column, const auto&) {
+    require(column, /*may_be_empty=*/static_cast<const void*>(&column) == &intensity);
+  });
+}
+
 float TilePoints::incidence_at(std::size_t i) const {
   return incidence[i] == kUnknownIncidence ? std::numeric_limits<float>::quiet_NaN()
                                            : float(incidence[i]) * kIncidenceStep;

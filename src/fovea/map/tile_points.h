@@ -43,6 +43,9 @@ struct TilePoints {
   std::size_t size() const { return position[0].size(); }
   bool empty() const { return position[0].empty(); }
 
+  /// Throws std::logic_error if the columns are not of one length.
+  void check() const;
+
   /// m, relative to `origin`.
   Eigen::Vector3f position_at(std::size_t i) const {
     return {float(position[0][i]) * kPositionStep, float(position[1][i]) * kPositionStep,

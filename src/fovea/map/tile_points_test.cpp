@@ -80,6 +80,20 @@ TEST(TilePoints, TheBoxEndsAtThePoints) {
   EXPECT_EQ(points.high, (TilePoints::Steps{2000, 3000, 4000}));
 }
 
+TEST(TilePoints, ColumnsOfDifferentLengthsAreRefused) {
+  const TilePoints whole = TilePoints::of(one_point_each({{1, 2, 3}, {3, 2, 1}}));
+  EXPECT_NO_THROW(whole.check());  // it has no intensities
+  TilePoints points = whole;
+  points.views.pop_back();
+  EXPECT_THROW(points.check(), std::logic_error);
+  points = whole;
+  points.position[2].pop_back();
+  EXPECT_THROW(points.check(), std::logic_error);
+  points = whole;
+  points.intensity.push_back(1);
+  EXPECT_THROW(points.check(), std::logic_error);
+}
+
 TEST(TilePoints, NamesAColumnThatIsMissing) {
   PointCloud tile = one_point_each({{1, 1, 1}});
   tile.views.clear();
