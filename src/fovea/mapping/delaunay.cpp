@@ -10,6 +10,7 @@ namespace fovea {
 void DelaunayTriangulation::clear() {
   points_.clear();
   triangles_.clear();
+  unsplit_.clear();
   suspects_.clear();
   collinear_.clear();
 }
@@ -53,79 +54,6 @@ std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoin
   }
   order_triangles();
   return vertex_of;
-}
-
-std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points,
-                                                         std::span<const std::int32_t> triangles) {
-  if (points.size() != triangles.size()) {
-    throw std::invalid_argument("Delaunay triangulation: as many triangles as points are needed");
-  }
-  check_arguments(points, triangles);
-  std::vector<std::uint32_t> point_of, to_locate;
-  point_of.reserve(points.size());
-  std::vector<std::int32_t> vertex_in(triangles_.size(), kInfiniteVertex);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const std::int32_t triangle = triangles[i];
-    if (triangle != kNoTriangle && vertex_in[triangle] == kInfiniteVertex &&
-        strictly_inside(points[i], triangle)) {
-      vertex_in[triangle] = add_vertex(points[i]);
-      point_of.push_back(i);
-    } else {
-      to_locate.push_back(i);
-    }
-  }
-  const std::vector<std::int32_t> moved_to = split_all(vertex_in);
-  legalize_after_split(vertex_in, moved_to);
-  for (const std::uint32_t i : to_locate) {
-    const std::int32_t hint = triangles[i] == kNoTriangle ? kNoTriangle : moved_to[triangles[i]];
-    if (insert_checked(points[i], hint).inserted) point_of.push_back(i);
-  }
-  return point_of;
-}
-
-// Splits each triangle that has a vertex in `vertex_in`. The three new triangles take its place in
-// memory, those behind it move up: what was near stays near.
-// @return where each triangle is now (the first of the three)
-std::vector<std::int32_t> DelaunayTriangulation::split_all(
-    std::span<const std::int32_t> vertex_in) {
-  std::vector<std::int32_t> moved_to(triangles_.size());
-  std::int32_t count = 0;
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    moved_to[t] = count;
-    count += vertex_in[t] == kInfiniteVertex ? 1 : 3;
-  }
-  const auto moved = [&](Edge edge) {
-    const std::int32_t triangle = edge >> 2, corner = edge & 3;
-    return vertex_in[triangle] == kInfiniteVertex ? 4 * moved_to[triangle] + corner
-                                                  : 4 * (moved_to[triangle] + corner);
-  };
-  std::size_t t = triangles_.size();
-  triangles_.resize(static_cast<std::size_t>(count));
-  while (t-- > 0) {  // from the last to the first, so that none is overwritten before it has moved
-    Triangle triangle = triangles_[t];
-    for (Edge& edge : triangle.twin) edge = moved(edge);
-    const std::int32_t to = moved_to[t];
-    if (vertex_in[t] == kInfiniteVertex) {
-      triangles_[to] = triangle;
-    } else {
-      put_fan(triangle, vertex_in[t], {to, to + 1, to + 2});
-    }
-  }
-  return moved_to;
-}
-
-// Makes the edges around the split triangles Delaunay, a group of triangles at a time: few enough
-// that the cache holds them, enough that most edges are tested once, after all flips beside them.
-void DelaunayTriangulation::legalize_after_split(std::span<const std::int32_t> vertex_in,
-                                                 std::span<const std::int32_t> moved_to) {
-  constexpr std::size_t kGroup = 256;
-  for (std::size_t t = 0; t < vertex_in.size(); ++t) {
-    if (vertex_in[t] != kInfiniteVertex) {
-      for (std::int32_t part = 0; part < 3; ++part) suspect(4 * (moved_to[t] + part));
-    }
-    if (t % kGroup == kGroup - 1) legalize_suspects();
-  }
-  legalize_suspects();
 }
 
 // Renumbers the triangles by their latest vertices, which follow a curve through the plane: what is
@@ -237,26 +165,18 @@ bool DelaunayTriangulation::strictly_inside(GridPoint point, std::int32_t triang
          orientation(at(c), at(a), point) > 0;
 }
 
-// Writes the three triangles between a vertex and the edges of `triangle`, the vertex in front.
-void DelaunayTriangulation::put_fan(const Triangle& triangle, std::int32_t vertex,
-                                    const std::array<std::int32_t, 3>& places) {
-  const auto [a, b, c] = triangle.vertex;
-  const auto [edge_a, edge_b, edge_c] = triangle.twin;
-  const auto [t_a, t_b, t_c] = places;
-  triangles_[t_a] = {{vertex, b, c}, {edge_a, 4 * t_b + 2, 4 * t_c + 1}};
-  triangles_[t_b] = {{vertex, c, a}, {edge_b, 4 * t_c + 2, 4 * t_a + 1}};
-  triangles_[t_c] = {{vertex, a, b}, {edge_c, 4 * t_a + 2, 4 * t_b + 1}};
-}
-
 // Three triangles for one. A vertex on an edge makes one of them flat for a moment: that edge is
 // then flipped, for the vertex lies inside the circle beyond it.
 void DelaunayTriangulation::split(std::int32_t triangle, std::int32_t vertex) {
-  const Triangle whole = triangles_[triangle];
+  const auto [a, b, c] = triangles_[triangle].vertex;
+  const std::array outside = triangles_[triangle].twin;
   const auto count = static_cast<std::int32_t>(triangles_.size());
   triangles_.resize(triangles_.size() + 2);
-  const std::array places{triangle, count, count + 1};
-  put_fan(whole, vertex, places);
-  for (int corner = 0; corner < 3; ++corner) twin(whole.twin[corner]) = 4 * places[corner];
+  const std::array part{triangle, count, count + 1};
+  triangles_[part[0]] = {{vertex, b, c}, {outside[0], 4 * part[1] + 2, 4 * part[2] + 1}};
+  triangles_[part[1]] = {{vertex, c, a}, {outside[1], 4 * part[2] + 2, 4 * part[0] + 1}};
+  triangles_[part[2]] = {{vertex, a, b}, {outside[2], 4 * part[0] + 2, 4 * part[1] + 1}};
+  for (int corner = 0; corner < 3; ++corner) twin(outside[corner]) = 4 * part[corner];
 }
 
 // Whether the vertex before the edge lies strictly inside the circumcircle of the triangle beyond
@@ -297,28 +217,17 @@ void DelaunayTriangulation::legalize_star(std::int32_t triangle) {
   } while (apex(next(edge)) != first);
 }
 
-// Notes an edge, under the lower of its two numbers and only once, for legalize_suspects().
-[[gnu::always_inline]] inline void DelaunayTriangulation::suspect(Edge edge) {
-  edge = std::min(edge, twin(edge));
-  std::int32_t& marks = triangles_[edge >> 2].suspects;
-  const std::int32_t mark = 1 << (edge & 3);
-  if ((marks & mark) != 0) return;
-  marks |= mark;
-  suspects_.push_back(edge);
-}
-
 // Lawson's algorithm from any edges: after a flip the four edges around it are suspects. A flip
 // gives some edges new numbers; as it makes suspects of those very edges, none is lost.
 void DelaunayTriangulation::legalize_suspects() {
-  for (std::size_t i = 0; i < suspects_.size(); ++i) {
-    const Edge edge = suspects_[i];
-    triangles_[edge >> 2].suspects &= ~(1 << (edge & 3));
+  while (!suspects_.empty()) {
+    const Edge edge = suspects_.back();
+    suspects_.pop_back();
     if (!must_flip(edge)) continue;
     const Edge beyond = twin(edge);
     flip(edge);
-    for (const Edge e : {edge, previous(edge), beyond, previous(beyond)}) suspect(e);
+    for (const Edge e : {edge, previous(edge), beyond, previous(beyond)}) suspects_.push_back(e);
   }
-  suspects_.clear();
 }
 
 }  // namespace fovea

@@ -77,10 +77,16 @@ class DelaunayTriangulation {
   using Edge = std::int32_t;
   struct alignas(32) Triangle {
     std::array<std::int32_t, 3> vertex;
-    std::array<Edge, 3> twin;   // of the edge opposite each vertex, its number from beyond
-    std::int32_t suspects = 0;  // bit k: the edge opposite vertex k is in suspects_
+    std::array<Edge, 3> twin;  // of the edge opposite each vertex, its number from beyond
   };
-
+  // What becomes of a triangle when many are split at once.
+  struct Fan {
+    std::int32_t vertex = kInfiniteVertex;  // at which it is split, if at all
+    std::int32_t first = 0;  // where it is then: whole, or the first of three triangles in a row
+    bool is_split() const { return vertex != kInfiniteVertex; }
+    /// Of the whole triangle's edge opposite `corner`; split, it is number 0 of that part.
+    Edge edge(int corner) const { return is_split() ? 4 * (first + corner) : 4 * first + corner; }
+  };
   // The next and the previous edge of the same triangle, without the branches that a processor
   // would mispredict all the time.
   static Edge next(Edge edge) { return edge + 1 - 3 * (edge >> 1 & 1); }
@@ -101,22 +107,20 @@ class DelaunayTriangulation {
   void start_with(std::int32_t apex_vertex);
   std::int32_t locate(GridPoint point, std::int32_t hint) const;
   bool strictly_inside(GridPoint point, std::int32_t triangle) const;
-  void put_fan(const Triangle& triangle, std::int32_t vertex,
-               const std::array<std::int32_t, 3>& places);
   void split(std::int32_t triangle, std::int32_t vertex);
   bool must_flip(Edge edge) const;
   void flip(Edge edge);
   void legalize_star(std::int32_t triangle);
-  void suspect(Edge edge);
   void legalize_suspects();
-  std::vector<std::int32_t> split_all(std::span<const std::int32_t> vertex_in);
-  void legalize_after_split(std::span<const std::int32_t> vertex_in,
-                            std::span<const std::int32_t> moved_to);
+  void split_all(std::span<Fan> fans);
+  void put_fan(const Triangle& whole, const std::array<Edge, 3>& outside, const Fan& fan,
+               std::span<const Fan> fans);
   void order_triangles();
 
   std::vector<GridPoint> points_;
   std::vector<Triangle> triangles_;
-  std::vector<Edge> suspects_;  // edges that may have to be flipped
+  std::vector<Triangle> unsplit_;  // what triangles_ was before split_all()
+  std::vector<Edge> suspects_;     // edges that may have to be flipped
   // The vertices while they are collinear, in their order on the line.
   std::map<GridPoint, std::int32_t> collinear_;
 };

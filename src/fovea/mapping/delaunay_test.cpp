@@ -163,27 +163,41 @@ TEST_P(DelaunayOf, HalfAtOnceThenHalfWithTriangles) {
   }
 }
 
-TEST_P(DelaunayOf, CentroidsInTheirTriangles) {
-  Points points = GetParam().points;
+/// Twice over, inserts a point into each triangle that `weight` gives a positive weight: the mean
+/// of its corners, of which the first has that weight and the others 1.
+template <class F>
+void check_points_in_triangles(Points points, F&& weight) {
   DelaunayTriangulation triangulation;
   triangulation.insert(points);
   for (int round = 0; round < 2; ++round) {
-    Points centroids;
+    Points means;
     std::vector<std::int32_t> triangles;
     for (std::size_t t = 0; t < triangulation.triangle_count(); ++t) {
-      if (!triangulation.is_finite(t)) continue;
-      std::int64_t x = 0, y = 0;
-      for (const std::int32_t v : triangulation.vertices(t)) {
-        x += triangulation.points()[v].x;
-        y += triangulation.points()[v].y;
-      }
-      centroids.push_back({static_cast<std::int32_t>(x / 3), static_cast<std::int32_t>(y / 3)});
+      const std::int64_t w = weight(t);
+      if (!triangulation.is_finite(t) || w == 0) continue;
+      const auto [a, b, c] = triangulation.vertices(t);
+      const auto at = triangulation.points();
+      const std::int64_t x = w * at[a].x + at[b].x + at[c].x, y = w * at[a].y + at[b].y + at[c].y;
+      means.push_back(
+          {static_cast<std::int32_t>(x / (w + 2)), static_cast<std::int32_t>(y / (w + 2))});
       triangles.push_back(static_cast<std::int32_t>(t));
     }
-    triangulation.insert(centroids, triangles);
-    points.insert(points.end(), centroids.begin(), centroids.end());
+    triangulation.insert(means, triangles);
+    points.insert(points.end(), means.begin(), means.end());
     check_delaunay(triangulation, points);
   }
+}
+
+TEST_P(DelaunayOf, CentroidsInTheirTriangles) {
+  check_points_in_triangles(GetParam().points, [](std::size_t) { return 1; });
+}
+
+// Triangles that are split lie beside others that are not, and many edges of fans stay.
+TEST_P(DelaunayOf, PointsInSomeTrianglesNearACorner) {
+  Random random(12);
+  check_points_in_triangles(GetParam().points, [&](std::size_t) {
+    return random.uniform() < 0.4 ? 0 : 1 + static_cast<int>(40 * random.uniform());
+  });
 }
 
 TEST(DelaunayTriangulation, CirclesAreEmptyOfAllVertices) {
