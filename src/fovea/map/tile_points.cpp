@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -44,13 +45,19 @@ void for_each_alike_column(A& a, B& b, F&& f) {
   f(a.intensity, b.intensity);
 }
 
+/// Bytes of the block in which an allocator puts so many: jemalloc's classes, four to a doubling.
+std::size_t block_size(std::size_t bytes) {
+  const std::size_t step = std::bit_floor(std::max<std::size_t>(bytes - 1, 64)) / 4;
+  return (bytes + step - 1) / step * step;
+}
+
 /// value_of(i) of each i.
 template <class Value, class F>
 void append_each(std::vector<Value>& to, std::span<const std::uint32_t> indices, F&& value_of) {
   std::size_t next = to.size();
   const std::size_t size = next + indices.size();
-  // Half as much again, not twice: what is in reserve takes memory, too.
-  if (to.capacity() < size) to.reserve(std::max(size, next + next / 2));
+  // What is in reserve takes memory, too: no more than the allocator would leave unused.
+  if (to.capacity() < size) to.reserve(block_size(size * sizeof(Value)) / sizeof(Value));
   to.resize(size);
   for (const std::uint32_t i : indices) to[next++] = value_of(i);
 }
