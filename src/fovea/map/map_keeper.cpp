@@ -14,8 +14,8 @@ namespace {
 /// drive, in which the disk answers, and a vehicle that turns on the spot moves none of them twice.
 constexpr double kAhead = 20, kBeyond = 30;  // m
 
-/// Of a tile in memory: all columns, and what vectors that grow hold in reserve.
-constexpr std::size_t kBytesPerPoint = 27 * 3 / 2;
+/// Of a tile in memory: 23 of columns, and what the allocator rounds up.
+constexpr std::size_t kBytesPerPoint = 26;
 
 /// What is written can wait, a frame cannot: the processor is left to the frame while it lasts.
 /// What is read is waited for, but seldom, and by threads that leave the processor meanwhile.

@@ -168,7 +168,7 @@ TEST(PatientKeeper, HurriesWhenItIsWaitedFor) {
 }
 
 TEST_P(Keeper, WantsACheckpointWhenMemoryRunsOut) {
-  const auto keeper = this->keeper(/*memory=*/100'000);
+  const auto keeper = this->keeper(/*memory=*/65'000);
   TileMap map(2.0);
   for (int place = 0; place < 4; ++place) {
     map.add_submap(RigidMotion::Identity());

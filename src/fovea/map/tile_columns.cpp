@@ -45,6 +45,35 @@ void unpack_plane(std::size_t n, const std::byte* bytes, std::vector<std::uint16
   }
 }
 
+/// A column as it is.
+template <class Value>
+void copy(const std::vector<Value>& values, std::vector<std::byte>& bytes) {
+  bytes.resize(values.size() * sizeof(Value));
+  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+}
+template <class Value>
+void copy(std::span<const std::byte> bytes, std::vector<Value>& values) {
+  values.resize(bytes.size() / sizeof(Value));
+  if (!bytes.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
+}
+void copy(const FrameRuns& frames, std::vector<std::byte>& bytes) {
+  bytes.resize(frames.size() * sizeof(FrameRuns::value_type));
+  std::byte* to = bytes.data();
+  frames.for_each_from(0, [&](std::size_t, FrameRuns::value_type frame) {
+    std::memcpy(to, &frame, sizeof(frame));
+    to += sizeof(frame);
+    return true;
+  });
+}
+void copy(std::span<const std::byte> bytes, FrameRuns& frames) {
+  frames = {};
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(FrameRuns::value_type)) {
+    FrameRuns::value_type frame;
+    std::memcpy(&frame, &bytes[at], sizeof(frame));
+    frames.push_back(frame);
+  }
+}
+
 /// Calls `planes` with the columns that are planes of differences, a span of them, and `as_it_is`
 /// with the others. Which they are is told by the tile's column itself.
 template <class Tile, class Column, class Planes, class AsItIs>
@@ -76,10 +105,7 @@ PackedColumns pack_columns(const TilePoints& tile) {
             to += kPlaneBytes * n;
           }
         },
-        [&](const auto& values) {
-          bytes.resize(values.size() * sizeof(values[0]));
-          if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-        });
+        [&](const auto& values) { copy(values, bytes); });
   });
   return columns;
 }
@@ -91,7 +117,7 @@ std::size_t packed_size(std::size_t column, std::size_t points) {
     if (next++ != column) return;
     by_packing(
         tile, of_tile, [&](const auto& planes) { size = points * planes.size() * kPlaneBytes; },
-        [&](const auto& values) { size = points * sizeof(values[0]); });
+        [&]<class Values>(const Values&) { size = points * sizeof(typename Values::value_type); });
   });
   return size;
 }
@@ -110,12 +136,7 @@ void unpack_column(std::size_t column, std::span<const std::byte> bytes, std::si
             from += kPlaneBytes * points;
           }
         },
-        [&](auto& values) {
-          values.resize(points);
-          if (points > 0) {
-            std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
-          }
-        });
+        [&](auto& values) { copy(bytes, values); });
   });
 }
 

@@ -36,7 +36,6 @@ template <class A, class B, class F>
 void for_each_alike_column(A& a, B& b, F&& f) {
   f(a.color, b.color);
   f(a.camera, b.camera);
-  f(a.frame, b.frame);
   f(a.interpolated, b.interpolated);
   f(a.views, b.views);
   f(a.spread, b.spread);
@@ -71,6 +70,7 @@ void TilePoints::check() const {
         fmt::format("a column of a tile has {} entries for {} points", column.size(), size()));
   };
   for (const std::vector<std::uint16_t>& axis : position) require(axis);
+  require(frame);
   require(range);
   require(incidence);
   for_each_alike_column(*this, *this, [&](const auto& column, const auto&) {
@@ -99,6 +99,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   for (const float incidence : tile.incidence) {
     points.incidence.push_back(incidence_steps(incidence));
   }
+  points.frame = FrameRuns(tile.frame);
   for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
   points.widen_box(0);
   return points;
@@ -115,6 +116,8 @@ PointCloud TilePoints::cloud() const {
     tile.range.push_back(range_at(i));
     tile.incidence.push_back(incidence_at(i));
   }
+  tile.frame.resize(size());
+  frame.copy_to(tile.frame);
   for_each_alike_column(tile, *this, [](auto& to, const auto& from) { to = from; });
   return tile;
 }
@@ -127,6 +130,7 @@ void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3
     append_each(position[axis], indices,
                 [&](std::uint32_t i) { return position_steps(p_submap[i][k] - origin[k]); });
   }
+  for (const std::uint32_t i : indices) frame.push_back(points.frame[i]);
   append_each(range, indices, [&](std::uint32_t i) { return range_steps(points.range[i]); });
   append_each(incidence, indices,
               [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
@@ -148,6 +152,7 @@ void TilePoints::widen_box(std::size_t first) {
 void TilePoints::keep(std::span<const std::uint32_t> indices) {
   const KeptRows kept(indices);
   for (std::vector<std::uint16_t>& axis : position) kept.close_up(axis);
+  frame.keep(indices);
   kept.close_up(range);
   kept.close_up(incidence);
   for_each_alike_column(*this, *this, [&](auto& column, auto&) { kept.close_up(column); });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
+#include "fovea/map/frame_runs.h"
 
 namespace fovea {
 
@@ -27,7 +28,7 @@ struct TilePoints {
   std::array<std::vector<std::uint16_t>, 3> position;  ///< steps from there along x, y, z
   std::vector<Rgb> color;
   std::vector<std::int8_t> camera;
-  std::vector<std::int32_t> frame;
+  FrameRuns frame;
   std::vector<std::uint16_t> range;     ///< steps
   std::vector<std::uint8_t> incidence;  ///< steps, or kUnknownIncidence
   std::vector<std::uint8_t> interpolated;

@@ -156,10 +156,10 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
     voxel.free = aged(voxel.free, age);
   }
   // Points that came since. Those of later frames are there when scans are replayed.
-  const std::vector<std::int32_t>& point_frame = tile.points->frame;
   Voxel* last = nullptr;  // neighbours mostly share a voxel
-  for (std::size_t& i = block.known_points; i < point_frame.size() && point_frame[i] <= frame;
-       ++i) {
+  tile.points->frame.for_each_from(block.known_points, [&](std::size_t i, std::int32_t came) {
+    if (came > frame) return false;
+    block.known_points = i + 1;
     const std::uint32_t cell = cell_of(tile.points->position_at(i), 1 / size, edge);
     if (last == nullptr || last->cell != cell) {
       const auto [place, is_new] =
@@ -167,8 +167,9 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
       if (is_new) block.voxels.push_back({cell, 0, 0});
       last = &block.voxels[*place];
     }
-    last->filled |= aged(1, frame - point_frame[i]);
-  }
+    last->filled |= aged(1, frame - came);
+    return true;
+  });
   const TileView view(
       scan.T_lidar_odom * T_odom_local * map.submaps()[tile.id.submap].T_local_submap,
       tile.points->origin);
