@@ -1,4 +1,4 @@
-// Registration beside PCL's GICP and ICP: each scan of a drive to the one before, the same points,
+// Registration beside PCL's and Open3D's: each scan of a drive to the one before, the same points,
 // the same guess, in turns in one process on one thread.
 #include <fmt/format.h>
 
@@ -9,7 +9,13 @@
 
 #include "bench/bench_data.h"
 #include "bench/duel.h"
-#include "bench/gicp_peer.h"
+#include "bench/registration_peer.h"
+#if defined(FOVEA_PCL_PEER)
+#include "bench/pcl_peer.h"
+#endif
+#if defined(FOVEA_OPEN3D_PEER)
+#include "bench/open3d_peer.h"
+#endif
 #include "fovea/base/parallel.h"
 #include "fovea/base/wall_clock.h"
 #include "fovea/geometry/voxel_grid.h"
@@ -22,12 +28,27 @@ constexpr double kVoxel = 0.25;  // m
 /// Poses further apart than this are not of the same pair of scans (m).
 constexpr double kApart = 0.1;
 
+struct Peer {
+  std::string name;
+  bool is_gicp;  // which ends where ours does
+  PeerRegistration (*align)(const RegistrationTask&);
+};
+
+const std::vector<Peer> kPeers {
+#if defined(FOVEA_PCL_PEER)
+  {"PCL's GICP", true, pcl_gicp}, {"PCL's ICP, point to point", false, pcl_icp},
+#endif
+#if defined(FOVEA_OPEN3D_PEER)
+      {"Open3D's GICP", true, open3d_gicp}, {"Open3D's ICP, point to plane", false, open3d_icp},
+#endif
+};
+
 struct Contender {
   std::string name;
   std::vector<double> ms, apart_mm;  // by scan
 };
 
-PclPoints points_of(const std::vector<Eigen::Vector3f>& points) {
+PeerPoints points_of(const std::vector<Eigen::Vector3f>& points) {
   static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
   return {points.front().data(), points.size()};
 }
@@ -47,8 +68,8 @@ RegistrationResult ours(const RegistrationCloud& target, const std::vector<Eigen
 
 void race(const BenchData& data, int runs) {
   const ThreadLimit limit(1);
-  std::vector<Contender> contenders{
-      {"Fovea's GICP", {}, {}}, {"PCL's GICP", {}, {}}, {"PCL's ICP", {}, {}}};
+  std::vector<Contender> contenders{{"Fovea's GICP", {}, {}}};
+  for (const Peer& peer : kPeers) contenders.push_back({peer.name, {}, {}});
   RigidMotion guess = RigidMotion::Identity();
   std::size_t points = 0;
   for (std::size_t k = 1; k < data.frames.size(); ++k) {
@@ -60,24 +81,23 @@ void race(const BenchData& data, int runs) {
     const RegistrationResult truth = ours(target, scan, guess);
     check(truth.converged, "a scan that does not fit the one before");
     points += scan.size();
-    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> T_guess = guess.matrix();
+    RegistrationTask task{
+        points_of(before), points_of(scan), {}, options().max_distance, options().neighbors};
+    using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(task.guess) = guess.matrix();
     for (int run = 0; run < runs; ++run) {
       const WallClock::time_point start = WallClock::now();
       benchmark::DoNotOptimize(ours(target, scan, guess));
       contenders[0].ms.push_back(milliseconds_since(start));
       contenders[0].apart_mm.push_back(0);
-      for (const PclMethod method : {PclMethod::kGicp, PclMethod::kIcp}) {
-        const PclRegistration result =
-            register_by_pcl(method, points_of(before), points_of(scan), T_guess.data(),
-                            options().max_distance, options().neighbors);
-        const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(
-            result.T_target_source);
+      for (std::size_t i = 0; i < kPeers.size(); ++i) {
+        const PeerRegistration result = kPeers[i].align(task);
+        const Eigen::Map<const RowMajor> T(result.T_target_source);
         const double apart =
             (T.topRightCorner<3, 1>() - truth.T_target_source.translation()).norm();
-        check(method == PclMethod::kIcp || apart < kApart, "a pose unlike PCL's GICP");
-        Contender& contender = contenders[method == PclMethod::kGicp ? 1 : 2];
-        contender.ms.push_back(1e3 * result.seconds);
-        contender.apart_mm.push_back(1e3 * apart);
+        check(!kPeers[i].is_gicp || apart < kApart, "a pose unlike " + kPeers[i].name);
+        contenders[i + 1].ms.push_back(1e3 * result.seconds);
+        contenders[i + 1].apart_mm.push_back(1e3 * apart);
       }
     }
     guess = truth.T_target_source;
@@ -101,7 +121,7 @@ void race(const BenchData& data, int runs) {
 }  // namespace fovea::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Registration of a drive's scans beside PCL's", "gicp_bench");
+  CLI::App app("Registration of a drive's scans beside PCL's and Open3D's", "gicp_bench");
   std::string drive;
   int runs = 3;
   app.add_option("drive", drive, "KITTI drive")->required();

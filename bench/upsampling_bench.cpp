@@ -21,6 +21,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/path_name.h"
 #include "fovea/mapping/upsample.h"
 
 namespace fovea::bench {
@@ -177,7 +178,7 @@ void run(const Arguments& arguments) {
   const auto drive = arguments.drive.open();
   const Camera& camera = drive->info().calibration.cameras.at(0);
   const PointCloud scan = app::shuffled_scan(*drive);
-  Json json{{"drive", app::name_of(arguments.drive.drive)},
+  Json json{{"drive", name_of(arguments.drive.drive)},
             {"runs", arguments.runs},
             {"search_radius", arguments.mls.search_radius},
             {"polynomial_order", arguments.mls.polynomial_order},
