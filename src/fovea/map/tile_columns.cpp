@@ -56,21 +56,23 @@ void copy(std::span<const std::byte> bytes, std::vector<Value>& values) {
   values.resize(bytes.size() / sizeof(Value));
   if (!bytes.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
 }
-void copy(const FrameRuns& frames, std::vector<std::byte>& bytes) {
-  bytes.resize(frames.size() * sizeof(FrameRuns::value_type));
+template <class Value>
+void copy(const RunColumn<Value>& column, std::vector<std::byte>& bytes) {
+  bytes.resize(column.size() * sizeof(Value));
   std::byte* to = bytes.data();
-  frames.for_each_from(0, [&](std::size_t, FrameRuns::value_type frame) {
-    std::memcpy(to, &frame, sizeof(frame));
-    to += sizeof(frame);
+  column.for_each_from(0, [&](std::size_t, Value value) {
+    std::memcpy(to, &value, sizeof(Value));
+    to += sizeof(Value);
     return true;
   });
 }
-void copy(std::span<const std::byte> bytes, FrameRuns& frames) {
-  frames = {};
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof(FrameRuns::value_type)) {
-    FrameRuns::value_type frame;
-    std::memcpy(&frame, &bytes[at], sizeof(frame));
-    frames.push_back(frame);
+template <class Value>
+void copy(std::span<const std::byte> bytes, RunColumn<Value>& column) {
+  column = {};
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Value)) {
+    Value value;
+    std::memcpy(&value, &bytes[at], sizeof(Value));
+    column.push_back(value);
   }
 }
 

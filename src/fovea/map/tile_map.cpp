@@ -108,15 +108,16 @@ void TileMap::add(const PointCloud& points_local) {
     p_submap[i] = R * points_local.position[i].cast<double>() + t;
     keys[i] = key_of(p_submap[i], 1 / tile_size_);
   });
-  std::map<TileKey, std::vector<std::uint32_t>> groups;
-  auto group = groups.end();  // neighbours in a cloud mostly share a tile
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (group == groups.end() || group->first != keys[i]) group = groups.try_emplace(keys[i]).first;
-    group->second.push_back(static_cast<std::uint32_t>(i));
+  // Neighbours in a cloud mostly share a tile.
+  using Ranges = std::vector<TilePoints::Range>;
+  std::map<TileKey, Ranges> groups;
+  for (std::uint32_t begin = 0, end = 0; begin < keys.size(); begin = end) {
+    while (end < keys.size() && keys[end] == keys[begin]) ++end;
+    groups[keys[begin]].push_back({begin, end});
   }
 
-  std::vector<std::pair<Tile*, const std::vector<std::uint32_t>*>> additions;
-  for (const auto& [key, indices] : groups) {
+  std::vector<std::pair<Tile*, const Ranges*>> additions;
+  for (const auto& [key, ranges] : groups) {
     if (submap.stored.contains(key)) {
       throw std::logic_error(fmt::format("points for {}, which is not in memory",
                                          name_of({submaps_.size() - 1, key})));
@@ -127,7 +128,7 @@ void TileMap::add(const PointCloud& points_local) {
       widen(submap, key);
     }
     place->second.changed_at = step_;
-    additions.emplace_back(&place->second, &indices);
+    additions.emplace_back(&place->second, &ranges);
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
     additions[k].first->points.write().append(points_local, p_submap, *additions[k].second);

@@ -50,15 +50,15 @@ std::size_t block_size(std::size_t bytes) {
   return (bytes + step - 1) / step * step;
 }
 
-/// value_of(i) of each i.
-template <class Value, class F>
-void append_each(std::vector<Value>& to, std::span<const std::uint32_t> indices, F&& value_of) {
-  std::size_t next = to.size();
-  const std::size_t size = next + indices.size();
+/// Makes room for so many more values.
+/// @return where to put them
+template <class Value>
+Value* grow(std::vector<Value>& column, std::size_t count) {
+  const std::size_t before = column.size(), size = before + count;
   // What is in reserve takes memory, too: no more than the allocator would leave unused.
-  if (to.capacity() < size) to.reserve(block_size(size * sizeof(Value)) / sizeof(Value));
-  to.resize(size);
-  for (const std::uint32_t i : indices) to[next++] = value_of(i);
+  if (column.capacity() < size) column.reserve(block_size(size * sizeof(Value)) / sizeof(Value));
+  column.resize(size);
+  return column.data() + before;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   for (const float incidence : tile.incidence) {
     points.incidence.push_back(incidence_steps(incidence));
   }
-  points.frame = FrameRuns(tile.frame);
+  points.frame = RunColumn<std::int32_t>(tile.frame);
   for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
   points.widen_box(0);
   return points;
@@ -123,19 +123,32 @@ PointCloud TilePoints::cloud() const {
 }
 
 void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
-                        std::span<const std::uint32_t> indices) {
+                        std::span<const Range> ranges) {
   const std::size_t before = size();
+  std::size_t count = 0;
+  for (const auto& [begin, end] : ranges) count += end - begin;
+  const auto append_each = [&](auto& column, auto&& value_of) {
+    auto* to = grow(column, count);
+    for (const auto& [begin, end] : ranges) {
+      for (std::uint32_t i = begin; i < end; ++i) *to++ = value_of(i);
+    }
+  };
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto k = Eigen::Index(axis);
-    append_each(position[axis], indices,
+    append_each(position[axis],
                 [&](std::uint32_t i) { return position_steps(p_submap[i][k] - origin[k]); });
   }
-  for (const std::uint32_t i : indices) frame.push_back(points.frame[i]);
-  append_each(range, indices, [&](std::uint32_t i) { return range_steps(points.range[i]); });
-  append_each(incidence, indices,
-              [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
+  append_each(range, [&](std::uint32_t i) { return range_steps(points.range[i]); });
+  append_each(incidence, [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
+  for (const auto& [begin, end] : ranges) {
+    for (std::uint32_t i = begin; i < end; ++i) frame.push_back(points.frame[i]);
+  }
   for_each_alike_column(*this, points, [&](auto& to, const auto& from) {
-    if (!from.empty()) append_each(to, indices, [&](std::uint32_t i) { return from[i]; });
+    if (from.empty()) return;
+    auto* at = grow(to, count);
+    for (const auto& [begin, end] : ranges) {
+      at = std::copy(from.begin() + begin, from.begin() + end, at);
+    }
   });
   widen_box(before);
 }

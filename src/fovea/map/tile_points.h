@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
-#include "fovea/map/frame_runs.h"
+#include "fovea/base/run_column.h"
 
 namespace fovea {
 
@@ -28,7 +28,7 @@ struct TilePoints {
   std::array<std::vector<std::uint16_t>, 3> position;  ///< steps from there along x, y, z
   std::vector<Rgb> color;
   std::vector<std::int8_t> camera;
-  FrameRuns frame;
+  RunColumn<std::int32_t> frame;        ///< points come frame by frame
   std::vector<std::uint16_t> range;     ///< steps
   std::vector<std::uint8_t> incidence;  ///< steps, or kUnknownIncidence
   std::vector<std::uint8_t> interpolated;
@@ -61,10 +61,14 @@ struct TilePoints {
   /// The same as a cloud, which of() turns back into what it was.
   PointCloud cloud() const;
 
-  /// Appends those of a cloud at `indices`, rounded as by of().
-  /// @param p_submap  m, submap frame; of all of them, in place of their positions
+  /// Points of a cloud that follow each other: from `begin` up to before `end`.
+  struct Range {
+    std::uint32_t begin, end;
+  };
+  /// Appends some ranges of a cloud, rounded as by of().
+  /// @param p_submap  m, submap frame; of all points, in place of their positions
   void append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
-              std::span<const std::uint32_t> indices);
+              std::span<const Range> ranges);
   /// Keeps only the points at `indices` (ascending), in place.
   void keep(std::span<const std::uint32_t> indices);
   /// Has the box hold the points from `first` on.

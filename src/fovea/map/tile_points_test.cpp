@@ -59,10 +59,11 @@ TEST(TilePoints, AppendedAndKeptPointsAreThoseOfTheCloud) {
   for (const Eigen::Vector3f& p : cloud.position) {
     p_submap.emplace_back(points.origin + p.cast<double>());
   }
-  const std::vector<std::uint32_t> first{3, 50, 7}, then{99, 0};
+  using Ranges = std::vector<TilePoints::Range>;
+  const Ranges first{{3, 5}, {50, 51}, {7, 8}}, then{{99, 100}, {0, 1}};
   points.append(cloud, p_submap, first);
   points.append(cloud, p_submap, then);
-  PointCloud expected = cloud.select({3, 50, 7, 99, 0});
+  PointCloud expected = cloud.select({3, 4, 50, 7, 99, 0});
   expected.origin = points.origin;
   expected.normal.clear();
   expect_same_columns(points.cloud(), TilePoints::of(expected).cloud());
@@ -75,7 +76,8 @@ TEST(TilePoints, TheBoxEndsAtThePoints) {
   EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
   EXPECT_EQ(points.high, (TilePoints::Steps{1000, 3000, 4000}));
   const std::vector<Eigen::Vector3d> p_submap{{0, 0, 0}, {2, 2.5, 1}};
-  points.append(one_point_each({{0, 0, 0}, {2, 2.5f, 1}}), p_submap, std::vector<std::uint32_t>{1});
+  points.append(one_point_each({{0, 0, 0}, {2, 2.5f, 1}}), p_submap,
+                std::vector<TilePoints::Range>{{1, 2}});
   EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
   EXPECT_EQ(points.high, (TilePoints::Steps{2000, 3000, 4000}));
 }

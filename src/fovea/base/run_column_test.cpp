@@ -1,0 +1,84 @@
+#include "fovea/base/run_column.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fovea/base/random.h"
+
+namespace fovea::run_column_test {
+
+using Values = std::vector<std::int32_t>;
+using Column = RunColumn<std::int32_t>;
+
+Values all_of(const Column& runs) {
+  Values values(runs.size());
+  runs.copy_to(values);
+  return values;
+}
+
+/// Runs of 1 to 5 equal values, of few, in any order.
+Values random_values(std::size_t count, Random& random) {
+  Values values;
+  while (values.size() < count) {
+    const auto value = static_cast<std::int32_t>(random.next() % 4) - 1;
+    for (std::uint64_t n = 1 + random.next() % 5; n > 0; --n) values.push_back(value);
+  }
+  return values;
+}
+
+TEST(RunColumn, TellsEachValue) {
+  Random random(1);
+  const Values values = random_values(300, random);
+  const Column runs(values);
+  ASSERT_EQ(runs.size(), values.size());
+  EXPECT_EQ(all_of(runs), values);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(runs[i], values[i]);
+  EXPECT_EQ(runs.back(), values.back());
+}
+
+TEST(RunColumn, EqualNeighboursAreOneRun) {
+  Column runs;
+  EXPECT_EQ(runs.size(), 0u);
+  for (const std::int32_t value : {7, 7, 7, 9, 7}) runs.push_back(value);
+  EXPECT_EQ(runs.runs(), (std::vector<Column::Run>{{7, 3}, {9, 4}, {7, 5}}));
+  runs.push_back(7, 3);
+  EXPECT_EQ(runs.runs().back(), (Column::Run{7, 8}));
+  runs.keep(std::vector<std::uint32_t>{1, 2, 4});
+  EXPECT_EQ(runs.runs(), (std::vector<Column::Run>{{7, 3}}));
+  runs.keep({});
+  EXPECT_EQ(runs, Column());
+}
+
+TEST(RunColumn, KeepsWhatIsAskedFor) {
+  Random random(2);
+  const Values values = random_values(300, random);
+  std::vector<std::uint32_t> indices;
+  Values kept;
+  for (std::uint32_t i = 0; i < values.size(); ++i) {
+    if (random.uniform() < 0.6) continue;
+    indices.push_back(i);
+    kept.push_back(values[i]);
+  }
+  Column runs(values);
+  runs.keep(indices);
+  EXPECT_EQ(runs, Column(kept));
+}
+
+TEST(RunColumn, GoesThroughValuesFromAnyPlaceOn) {
+  const Column runs(Values{4, 4, 5, 5, 5, 8});
+  for (std::size_t first = 0; first <= runs.size(); ++first) {
+    Values seen;
+    runs.for_each_from(first, [&](std::size_t i, std::int32_t value) {
+      EXPECT_EQ(i, first + seen.size());
+      if (value > 5) return false;
+      seen.push_back(value);
+      return true;
+    });
+    const Values all{4, 4, 5, 5, 5};
+    EXPECT_EQ(seen,
+              Values(all.begin() + std::min<std::ptrdiff_t>(std::ptrdiff_t(first), 5), all.end()));
+  }
+}
+
+}  // namespace fovea::run_column_test
