@@ -8,6 +8,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/run_column.h"
 #include "fovea/geometry/cell_brick.h"
 
 namespace fovea {
@@ -156,18 +157,19 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
     voxel.free = aged(voxel.free, age);
   }
   // Points that came since. Those of later frames are there when scans are replayed.
-  Voxel* last = nullptr;  // neighbours mostly share a voxel
-  tile.points->frame.for_each_from(block.known_points, [&](std::size_t i, std::int32_t came) {
+  std::uint32_t number = 0, last_cell = ~0u;  // of the voxel, which neighbours mostly share
+  tile.points->frame.for_each_from(block.known_points, [&](std::size_t i, int came) {
     if (came > frame) return false;
-    block.known_points = i + 1;
     const std::uint32_t cell = cell_of(tile.points->position_at(i), 1 / size, edge);
-    if (last == nullptr || last->cell != cell) {
+    if (cell != last_cell) {
       const auto [place, is_new] =
           block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
       if (is_new) block.voxels.push_back({cell, 0, 0});
-      last = &block.voxels[*place];
+      number = *place;
+      last_cell = cell;
     }
-    last->filled |= aged(1, frame - came);
+    block.voxels[number].filled |= aged(1, frame - came);
+    block.known_points = i + 1;
     return true;
   });
   const TileView view(
@@ -188,46 +190,61 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
 
 void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   Block& block = *tile.block;
-  const auto gone = [&](const Voxel& voxel) {
-    return (voxel.free & 1) != 0 &&
-           free_since_filled(voxel.filled, voxel.free) >= options_.free_scans;
-  };
-  tile.shrinks = std::any_of(block.voxels.begin(), block.voxels.end(), gone);
+  std::vector<char> gone;  // by voxel
+  for (const Voxel& voxel : block.voxels) {
+    gone.push_back((voxel.free & 1) != 0 &&
+                   free_since_filled(voxel.filled, voxel.free) >= options_.free_scans);
+  }
+  tile.shrinks = std::ranges::find(gone, true) != gone.end();
   if (!tile.shrinks) return;
   const int edge = voxels_per_edge(map);
   const auto cells_per_metre = static_cast<float>(edge / map.tile_size());
   const auto layer = static_cast<std::uint32_t>(edge * edge);
-  const std::size_t n = tile.points->size();
   const auto frame_bit = [&](std::size_t i) {
     return aged(1, block.frame - tile.points->frame[i]);
   };
-  // Of each point, its voxel; neighbours mostly share one.
-  std::vector<const Voxel*> voxel(n);
-  std::uint32_t last_cell = 0;
-  for (std::size_t i = 0; i < n; ++i) {
+  RunColumn<std::uint32_t> voxel_of_point;  // neighbours mostly share one
+  std::uint32_t last = 0, last_cell = ~0u;
+  for (std::size_t i = 0; i < tile.points->size(); ++i) {
     const std::uint32_t cell = cell_of(tile.points->position_at(i), cells_per_metre, edge);
-    voxel[i] = i > 0 && cell == last_cell ? voxel[i - 1] : &block.voxels[*block.place.find(cell)];
-    last_cell = cell;
+    if (cell != last_cell) last = *block.place.find(last_cell = cell);
+    voxel_of_point.push_back(last);
   }
-  FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!gone(*voxel[i])) continue;
-    const std::uint32_t cell = voxel[i]->cell;
-    for (std::uint32_t k = 1; k <= kFoot && cell >= k * layer; ++k) {
-      *foot.try_emplace(cell - k * layer).first |= frame_bit(i);
+  // Calls f(voxel, first point, one past the last) for points that follow each other.
+  const auto for_each_run = [&](auto&& f) {
+    std::uint32_t begin = 0;
+    for (const auto& [voxel, end] : voxel_of_point.runs()) {
+      f(voxel, begin, end);
+      begin = end;
     }
+  };
+  FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
+  for_each_run([&](std::uint32_t voxel, std::uint32_t begin, std::uint32_t end) {
+    if (!gone[voxel]) return;
+    const std::uint32_t cell = block.voxels[voxel].cell;
+    for (std::uint32_t k = 1; k <= kFoot && cell >= k * layer; ++k) {
+      std::uint32_t& frames = *foot.try_emplace(cell - k * layer).first;
+      for (std::uint32_t i = begin; i < end; ++i) frames |= frame_bit(i);
+    }
+  });
+  std::vector<Voxel> left;
+  for (std::size_t v = 0; v < gone.size(); ++v) {
+    if (!gone[v]) left.push_back(block.voxels[v]);
   }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (gone(*voxel[i])) continue;
-    const std::uint32_t* beneath = foot.find(voxel[i]->cell);
-    if (beneath == nullptr || (*beneath & frame_bit(i)) == 0) tile.kept.push_back(i);
-  }
-  std::erase_if(block.voxels, gone);
+  for_each_run([&](std::uint32_t voxel, std::uint32_t begin, std::uint32_t end) {
+    if (gone[voxel]) return;
+    const std::uint32_t* beneath = foot.find(block.voxels[voxel].cell);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (beneath != nullptr && (*beneath & frame_bit(i)) != 0) continue;
+      tile.kept.push_back(i);
+    }
+  });
+  block.known_points = tile.kept.size();
+  block.voxels = std::move(left);
   block.place.clear();
   for (std::uint32_t v = 0; v < block.voxels.size(); ++v) {
     block.place.try_emplace(block.voxels[v].cell, v);
   }
-  block.known_points = tile.kept.size();
 }
 
 std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map, RangeImage scan,
