@@ -175,18 +175,25 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
 }
 
 void SeenMap::put_in_front(const PointCloud& points_cam) {
-  ProjectedBlock block(camera_);
-  DepthBuffer::Samples samples;
-  for (std::size_t begin = 0; begin < points_cam.size(); begin += kBlock) {
-    const std::size_t n = std::min(kBlock, points_cam.size() - begin);
-    block.project({points_cam.position.data() + begin, n}, Eigen::Matrix3f::Identity(),
-                  Eigen::Vector3f::Zero());
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
+  const std::size_t of_share = (points_cam.size() + kShares - 1) / kShares;
+  parallel_for(kShares, 1, [&](std::size_t share) {
+    DepthBuffer& front = shares_[share].front;
+    front.clear(camera_);
+    const std::size_t end = std::min(points_cam.size(), (share + 1) * of_share);
+    ProjectedBlock block(camera_);
+    DepthBuffer::Samples samples;
+    for (std::size_t begin = share * of_share; begin < end; begin += kBlock) {
+      const std::size_t n = std::min(kBlock, end - begin);
+      block.project({points_cam.position.data() + begin, n}, Eigen::Matrix3f::Identity(),
+                    Eigen::Vector3f::Zero());
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
+      }
+      front.add(samples, count, disc_radius_);
     }
-    front_.add(samples, count, disc_radius_);
-  }
+  });
+  for (const Share& share : shares_) front_.add(share.front);
 }
 
 std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) const {
