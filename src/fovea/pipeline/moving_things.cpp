@@ -157,18 +157,17 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
     voxel.free = aged(voxel.free, age);
   }
   // Points that came since. Those of later frames are there when scans are replayed.
-  std::uint32_t number = 0, last_cell = ~0u;  // of the voxel, which neighbours mostly share
+  Voxel* last = nullptr;  // neighbours mostly share a voxel
   tile.points->frame.for_each_from(block.known_points, [&](std::size_t i, int came) {
     if (came > frame) return false;
     const std::uint32_t cell = cell_of(tile.points->position_at(i), 1 / size, edge);
-    if (cell != last_cell) {
+    if (last == nullptr || last->cell != cell) {
       const auto [place, is_new] =
           block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
       if (is_new) block.voxels.push_back({cell, 0, 0});
-      number = *place;
-      last_cell = cell;
+      last = &block.voxels[*place];
     }
-    block.voxels[number].filled |= aged(1, frame - came);
+    last->filled |= aged(1, frame - came);
     block.known_points = i + 1;
     return true;
   });
@@ -190,12 +189,11 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
 
 void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   Block& block = *tile.block;
-  std::vector<char> gone;  // by voxel
-  for (const Voxel& voxel : block.voxels) {
-    gone.push_back((voxel.free & 1) != 0 &&
-                   free_since_filled(voxel.filled, voxel.free) >= options_.free_scans);
-  }
-  tile.shrinks = std::ranges::find(gone, true) != gone.end();
+  const auto gone = [&](const Voxel& voxel) {
+    return (voxel.free & 1) != 0 &&
+           free_since_filled(voxel.filled, voxel.free) >= options_.free_scans;
+  };
+  tile.shrinks = std::any_of(block.voxels.begin(), block.voxels.end(), gone);
   if (!tile.shrinks) return;
   const int edge = voxels_per_edge(map);
   const auto cells_per_metre = static_cast<float>(edge / map.tile_size());
@@ -214,37 +212,31 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   const auto for_each_run = [&](auto&& f) {
     std::uint32_t begin = 0;
     for (const auto& [voxel, end] : voxel_of_point.runs()) {
-      f(voxel, begin, end);
+      f(block.voxels[voxel], begin, end);
       begin = end;
     }
   };
   FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
-  for_each_run([&](std::uint32_t voxel, std::uint32_t begin, std::uint32_t end) {
-    if (!gone[voxel]) return;
-    const std::uint32_t cell = block.voxels[voxel].cell;
-    for (std::uint32_t k = 1; k <= kFoot && cell >= k * layer; ++k) {
-      std::uint32_t& frames = *foot.try_emplace(cell - k * layer).first;
+  for_each_run([&](const Voxel& voxel, std::uint32_t begin, std::uint32_t end) {
+    if (!gone(voxel)) return;
+    for (std::uint32_t k = 1; k <= kFoot && voxel.cell >= k * layer; ++k) {
+      std::uint32_t& frames = *foot.try_emplace(voxel.cell - k * layer).first;
       for (std::uint32_t i = begin; i < end; ++i) frames |= frame_bit(i);
     }
   });
-  std::vector<Voxel> left;
-  for (std::size_t v = 0; v < gone.size(); ++v) {
-    if (!gone[v]) left.push_back(block.voxels[v]);
-  }
-  for_each_run([&](std::uint32_t voxel, std::uint32_t begin, std::uint32_t end) {
-    if (gone[voxel]) return;
-    const std::uint32_t* beneath = foot.find(block.voxels[voxel].cell);
+  for_each_run([&](const Voxel& voxel, std::uint32_t begin, std::uint32_t end) {
+    if (gone(voxel)) return;
+    const std::uint32_t* beneath = foot.find(voxel.cell);
     for (std::uint32_t i = begin; i < end; ++i) {
-      if (beneath != nullptr && (*beneath & frame_bit(i)) != 0) continue;
-      tile.kept.push_back(i);
+      if (beneath == nullptr || (*beneath & frame_bit(i)) == 0) tile.kept.push_back(i);
     }
   });
-  block.known_points = tile.kept.size();
-  block.voxels = std::move(left);
+  std::erase_if(block.voxels, gone);
   block.place.clear();
   for (std::uint32_t v = 0; v < block.voxels.size(); ++v) {
     block.place.try_emplace(block.voxels[v].cell, v);
   }
+  block.known_points = tile.kept.size();
 }
 
 std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map, RangeImage scan,
