@@ -22,6 +22,7 @@ using Mask = std::int64_t __attribute__((vector_size(32)));  // -1 where true
 [[gnu::always_inline]] inline unsigned bits(const Mask& mask) {
   return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4));
 }
+
 // A point for each corner, relative to the vertex at which the triangle is split.
 struct Points {
   Corners x, y, square;
@@ -59,12 +60,10 @@ struct Sign {
 };
 [[gnu::always_inline]] inline Sign in_circle_sign(const Points& a, const Points& b,
                                                   const Points& c) {
-  const Corners determinant = a.square * (b.x * c.y - b.y * c.x) +
-                              b.square * (c.x * a.y - c.y * a.x) +
-                              c.square * (a.x * b.y - a.y * b.x);
-  const Corners bound =
-      0x1.0p-49 * (a.square * b.square + b.square * c.square + c.square * a.square);
-  return {bits(determinant > bound), bits(determinant < -bound)};
+  const InCircleDeterminant<Corners> determinant(a.x, a.y, a.square, b.x, b.y, b.square, c.x, c.y,
+                                                 c.square);
+  return {bits(determinant.value > determinant.bound),
+          bits(determinant.value < -determinant.bound)};
 }
 
 }  // namespace
