@@ -8,7 +8,8 @@ namespace {
 /// Frames that a stage is ahead of the next one, the one at hand included: what overlap needs. More
 /// would only wait.
 constexpr std::size_t kAhead = 1;
-/// What a frame needs before it is due is begun this long before at the latest, in periods.
+/// At a rate a frame is decoded once none is under way, but begun this long before it is due at the
+/// latest, in periods.
 constexpr double kInTime = 0.25;
 
 /// Whether the time has come; not if `stop` came before.
@@ -34,7 +35,7 @@ FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
       arrived_(options.overlap ? kAhead : 0,
                [this](const std::stop_token& stop) { return arrive(stop); }),
       stop_arrivals_(options.stop, [this] { arrived_.stop(); }),
-      located_(options.overlap ? kAhead : 0,
+      located_(options.overlap && options.rate == 0 ? kAhead : 0,
                [this](const std::stop_token& stop) { return locate(stop); }) {}
 
 WallClock::duration FramePipeline::periods(double count) const {
@@ -49,10 +50,6 @@ std::optional<LocatedFrame> FramePipeline::next() {
   return located;
 }
 
-void FramePipeline::wait_until_idle(TimePoint next_due, const std::stop_token& stop) {
-  options_.gate->wait(next_due - periods(kInTime), stop);
-}
-
 std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
   if (next_ == end_) return std::nullopt;
   const int index = next_++;
@@ -60,7 +57,7 @@ std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_toke
   std::optional<TimePoint> due;
   if (at_rate && !is_first) {
     due = first_arrival_ + periods(index - begin_);
-    wait_until_idle(*due, stop);
+    options_.gate->wait(*due - periods(kInTime), stop);
   }
   const TimePoint start = WallClock::now();
   FrameResult result = source_.load(index);
@@ -72,7 +69,6 @@ std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_toke
 }
 
 std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
-  if (last_due_) wait_until_idle(*last_due_ + periods(1), stop);
   options_.settle();
   std::optional<Arrived> arrived = arrived_.next(stop);
   if (!arrived || options_.stop.stop_requested()) return std::nullopt;
@@ -81,7 +77,6 @@ std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
   located.result = std::move(arrived->result);
   located.tracking_began = WallClock::now();
   located.arrival = arrived->due.value_or(located.tracking_began);
-  last_due_ = arrived->due;
   if (const auto* frame = std::get_if<Frame>(&located.result)) located.tracked = track_(*frame);
   located.tracking_ended = WallClock::now();
   return located;

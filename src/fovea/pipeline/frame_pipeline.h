@@ -1,5 +1,6 @@
 // Frames on their way to the map: decoding of the next one, tracking of this one and, by whoever
-// takes them here, mapping of the one before, side by side (docs/performance.md).
+// takes them here, mapping of the one before, side by side (docs/performance.md). At a rate, where
+// it counts how long a frame takes and not how many there are, who takes them tracks them too.
 #pragma once
 
 #include <functional>
@@ -20,10 +21,10 @@ struct FramePipelineOptions {
   double rate = 0;
   bool overlap = true;        ///< false: one after the other, all in the thread that takes them
   std::stop_token stop = {};  ///< ends after the frames that tracking has begun
-  /// Called by the thread that tracks before it waits for a frame: what nobody waits for. At a
-  /// rate, it and decoding leave the processors to frames that have arrived, while there is time.
+  /// Called by the thread that tracks before it waits for a frame: what nobody waits for.
   std::function<void()> settle = [] {};
-  /// Knows of each frame from its arrival until its taker has done with it.
+  /// Knows of each frame from its arrival until its taker has done with it. At a rate decoding
+  /// leaves the processors to such frames while there is time.
   std::shared_ptr<IdleGate> gate = std::make_shared<IdleGate>();
 };
 
@@ -62,16 +63,13 @@ class FramePipeline {
   std::optional<Arrived> arrive(const std::stop_token& stop);
   std::optional<LocatedFrame> locate(const std::stop_token& stop);
   WallClock::duration periods(double count) const;
-  /// Waits until no frame is under way, but not for longer than one due then leaves time for.
-  void wait_until_idle(TimePoint next_due, const std::stop_token& stop);
 
   const FrameSource& source_;
   int begin_, next_, end_;
   std::function<TrackedFrame(const Frame&)> track_;
   FramePipelineOptions options_;
   TimePoint first_arrival_;
-  std::optional<TimePoint> last_due_;  // of the frames tracked
-  bool taken_ = false;                 // whether the taker has a frame
+  bool taken_ = false;  // whether the taker has a frame
   Producer<Arrived> arrived_;
   std::stop_callback<std::function<void()>> stop_arrivals_;  // nobody waits for a frame not due yet
   Producer<LocatedFrame> located_;
