@@ -21,6 +21,11 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
   });
 }
 
+/// Calls `make(i)` for each i of [0, count), in parallel, and after it `take(i)`, in order and one
+/// at a time: what needs the order goes on beside what does not.
+void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>& make,
+                       const std::function<void(std::size_t)>& take);
+
 /// Sums `map(begin, end)` of fixed chunks in the order of the chunks: floating-point results are
 /// the same at any number of threads.
 template <class T, class Map>

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <stdexcept>
 
 #include "fovea/base/kept_rows.h"
+#include "fovea/base/parallel.h"
 
 namespace fovea {
 
@@ -34,8 +36,11 @@ PointCloud PointCloud::select(const std::vector<std::uint32_t>& indices) const {
 void PointCloud::keep(const std::vector<std::uint32_t>& indices) {
   if (indices.size() == size()) return;
   const KeptRows kept(indices);
-  for_each_optional_column(*this, [&](const char*, auto& column) { kept.close_up(column); });
-  kept.close_up(position);
+  std::vector<std::function<void()>> columns{[&] { kept.close_up(position); }};
+  for_each_optional_column(*this, [&](const char*, auto& column) {
+    if (!column.empty()) columns.emplace_back([&] { kept.close_up(column); });
+  });
+  parallel_for(columns.size(), 1, [&](std::size_t i) { columns[i](); });
 }
 
 std::size_t PointCloud::drop(const std::vector<std::uint8_t>& marks) {

@@ -269,32 +269,47 @@ class TakenCells {
   const CellBrick* brick_ = nullptr;
 };
 
-/// By chunks of triangles.
-std::vector<std::vector<Sample>> sample_triangles(const Surface& surface, const SampleGrid& grid) {
-  const std::size_t count = surface.triangles.size();
-  std::vector<std::vector<Sample>> chunks((count + kGrain - 1) / kGrain);
-  const Eigen::Matrix3f R_grid_cam = grid.T_grid_cam.linear().cast<float>();
-  const Cells cells(grid);
-  std::vector<Eigen::Vector3d> vertex(surface.mesh.position.size());
-  parallel_for(vertex.size(), kSampleGrain, [&](std::size_t v) {
-    vertex[v] = grid.T_grid_cam * surface.mesh.position[v].cast<double>();
-  });
-  parallel_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Sample>& samples = chunks[begin / kGrain];
-    TakenCells taken(grid);
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = surface.triangles[t];
+/// Finds the samples of a surface by chunks of its triangles, which may be asked side by side.
+class SurfaceSampler {
+ public:
+  SurfaceSampler(const Surface& surface, const SampleGrid& grid)
+      : surface_(surface),
+        grid_(grid),
+        cells_(grid),
+        R_grid_cam_(grid.T_grid_cam.linear().cast<float>()),
+        vertex_(surface.mesh.position.size()) {
+    parallel_for(vertex_.size(), kSampleGrain, [&](std::size_t v) {
+      vertex_[v] = grid.T_grid_cam * surface.mesh.position[v].cast<double>();
+    });
+  }
+
+  std::size_t chunks() const { return (surface_.triangles.size() + kGrain - 1) / kGrain; }
+
+  /// Those of a chunk whose cells have no point yet.
+  std::vector<Sample> samples(std::size_t chunk) const {
+    std::vector<Sample> samples;
+    TakenCells taken(grid_);
+    const std::size_t end = std::min(surface_.triangles.size(), (chunk + 1) * kGrain);
+    for (std::size_t t = chunk * kGrain; t < end; ++t) {
+      const auto& [a, b, c] = surface_.triangles[t];
       Eigen::Index axis;
-      (R_grid_cam * surface.triangle_normal[t]).cwiseAbs().maxCoeff(&axis);
-      for_each_center({vertex[a], vertex[b], vertex[c]}, static_cast<std::uint32_t>(t), axis, cells,
-                      Columns(surface.halvings[t]), [&](const Sample& sample) {
-                        const auto position = [&] { return sample.position(grid.cell); };
+      (R_grid_cam_ * surface_.triangle_normal[t]).cwiseAbs().maxCoeff(&axis);
+      for_each_center({vertex_[a], vertex_[b], vertex_[c]}, static_cast<std::uint32_t>(t), axis,
+                      cells_, Columns(surface_.halvings[t]), [&](const Sample& sample) {
+                        const auto position = [&] { return sample.position(grid_.cell); };
                         if (!taken(sample.cell(), position)) samples.push_back(sample);
                       });
     }
-  });
-  return chunks;
-}
+    return samples;
+  }
+
+ private:
+  const Surface& surface_;
+  const SampleGrid& grid_;
+  Cells cells_;
+  Eigen::Matrix3f R_grid_cam_;
+  std::vector<Eigen::Vector3d> vertex_;  // in the grid's frame
+};
 
 PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
                            const SampleGrid& grid, CellSet& cells) {
@@ -327,18 +342,6 @@ float mean_intensity(const PointCloud& points, const Surface& surface, std::size
     sum += points.intensity[surface.mesh.point_of_vertex[static_cast<std::size_t>(vertex)]];
   }
   return sum / 3;
-}
-
-/// One sample a cell, the first; none where a cell is marked.
-std::vector<const Sample*> one_a_cell(const std::vector<std::vector<Sample>>& chunks,
-                                      CellSet& cells) {
-  std::vector<const Sample*> kept;
-  for (const std::vector<Sample>& chunk : chunks) {
-    for (const Sample& sample : chunk) {
-      if (cells.mark(sample.cell())) kept.push_back(&sample);
-    }
-  }
-  return kept;
 }
 
 /// What all samples of a triangle share, found once for those that follow each other.
@@ -399,8 +402,16 @@ PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
                           const SampleGrid& grid) {
   CellSet cells;
   PointCloud points = measured_points(points_cam, surface, grid, cells);
-  const std::vector<std::vector<Sample>> chunks = sample_triangles(surface, grid);
-  const std::vector<const Sample*> samples = one_a_cell(chunks, cells);
+  const SurfaceSampler sampler(surface, grid);
+  std::vector<std::vector<Sample>> chunks(sampler.chunks());
+  std::vector<const Sample*> samples;  // one a cell, the first; none where a point was measured
+  parallel_in_order(
+      chunks.size(), [&](std::size_t i) { chunks[i] = sampler.samples(i); },
+      [&](std::size_t i) {
+        for (const Sample& sample : chunks[i]) {
+          if (cells.mark(sample.cell())) samples.push_back(&sample);
+        }
+      });
 
   const std::size_t measured = points.size(), all = measured + samples.size();
   points.position.resize(all);
