@@ -55,7 +55,7 @@ void run_chunks(std::size_t chunks, const Run& run) {
 }
 
 /// So many items a thread are made before they are taken, at most: one may take long to make.
-constexpr std::size_t kAhead = 8;
+constexpr std::size_t kAhead = 2;
 
 template <class Make, class Take>
 void run_in_order(std::size_t count, const Make& make, const Take& take) {

@@ -155,9 +155,18 @@ void MapKeeper::finish() {
 }
 
 void MapKeeper::finish(TileMap& map, MapRows rows) {
-  TileChanges changes = take_changes(map, rows);
-  write(std::move(rows), {}, std::move(changes));
-  finish();
+  const TileChanges changes = take_changes(map, rows);
+  // No frame is to come any more: all processors are the writer's.
+  worker_
+      .post([&] {
+        put(*writer_, rows, changes);
+        writer_->put_tiles(changes.changed.size(), [&](std::size_t i) {
+          const TileChanges::Changed& tile = changes.changed[i];
+          return pack_tile(tile.id, *tile.points);
+        });
+        writer_->commit();
+      })
+      .get();
 }
 
 }  // namespace fovea

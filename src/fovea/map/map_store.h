@@ -51,6 +51,8 @@ class MapWriter {
   /// Of a frame that has been put; std::invalid_argument if not finite.
   virtual void put_pose(int frame, const RigidMotion& T_local_lidar) = 0;
   virtual void put_tile(const PackedTile& tile) = 0;
+  /// Puts `tile(i)` for each i of [0, count), packed and compressed by all threads there are.
+  virtual void put_tiles(std::size_t count, const std::function<PackedTile(std::size_t)>& tile) = 0;
   void put_tile(const TileId& id, const TilePoints& tile) { put_tile(pack_tile(id, tile)); }
   /// std::logic_error as TilePoints::of().
   void put_tile(const TileId& id, const PointCloud& tile) { put_tile(id, TilePoints::of(tile)); }

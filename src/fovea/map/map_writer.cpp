@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <mutex>
 #include <stdexcept>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/base/parallel.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
@@ -108,7 +110,8 @@ class SqliteMapWriter : public MapWriter {
   void put_frame(const FrameRecord& record) override;
   void put_submap(std::size_t id, const RigidMotion& T_local_submap) override;
   void put_pose(int frame, const RigidMotion& T_local_lidar) override;
-  void put_tile(const PackedTile& tile) override;
+  void put_tile(const PackedTile& tile) override { put_row(encoder_.encode(tile)); }
+  void put_tiles(std::size_t count, const std::function<PackedTile(std::size_t)>& tile) override;
   void remove_tile(const TileId& id) override;
   TilePoints read_tile(const TileId& id) override;
 
@@ -136,6 +139,7 @@ class SqliteMapWriter : public MapWriter {
     failed_ = false;
   }
 
+  void put_row(const TileRow& row);
   void put_meta_row(std::string_view key, std::string_view value) {
     puts_->meta.bind(1, key);
     puts_->meta.bind(2, value);
@@ -293,11 +297,38 @@ TilePoints SqliteMapWriter::read_tile(const TileId& id) {
   return tile;
 }
 
-void SqliteMapWriter::put_tile(const PackedTile& tile) {
-  const TileRow row = encoder_.encode(tile);
+void SqliteMapWriter::put_tiles(std::size_t count,
+                                const std::function<PackedTile(std::size_t)>& tile) {
+  struct Encoded {
+    TileEncoder encoder;
+    TileRow row;  // its memory is the encoder's
+  };
+  // As many as are under way at a time, which are few.
+  std::vector<std::unique_ptr<Encoded>> free;
+  std::mutex guard;
+  std::vector<std::unique_ptr<Encoded>> under_way(count);
+  parallel_in_order(
+      count,
+      [&](std::size_t i) {
+        std::unique_ptr<Encoded>& encoded = under_way[i];
+        if (const std::lock_guard lock(guard); !free.empty()) {
+          encoded = std::move(free.back());
+          free.pop_back();
+        }
+        if (encoded == nullptr) encoded = std::make_unique<Encoded>();
+        encoded->row = encoded->encoder.encode(tile(i));
+      },
+      [&](std::size_t i) {
+        put_row(under_way[i]->row);
+        const std::lock_guard lock(guard);
+        free.push_back(std::move(under_way[i]));
+      });
+}
+
+void SqliteMapWriter::put_row(const TileRow& row) {
   write([&] {
     Statement& put = puts_->tile;
-    bind_tile(put, tile.id);
+    bind_tile(put, {static_cast<std::size_t>(row.submap), row.key});
     int parameter = 4;
     for (const std::int64_t number : {row.points, row.colored}) put.bind(++parameter, number);
     for (const double coordinate : row.origin) put.bind(++parameter, coordinate);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <future>
+
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/path_name.h"
@@ -185,6 +187,7 @@ class MapRun {
   DriveLog log_;
   DriveFigures figures_;
   std::optional<CalibrationCheck> check_;
+  std::vector<CameraCalibration> calibration_;  // what it has found
   std::optional<FrameRecord> latest_;
   std::size_t frames_before_ = 0;  // of an earlier run
 };
@@ -268,7 +271,14 @@ void MapRun::finish() {
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
                      "check that the drive has scans and images for the frames asked for");
   }
+  // Beside the writer, which waits for the disk now and then.
+  std::future<std::vector<CameraCalibration>> calibration;
+  if (check_) {
+    calibration = std::async(threaded_ ? std::launch::async : std::launch::deferred,
+                             [this] { return check_->estimates(); });
+  }
   keeper_.finish(mapper_.map(), fresh_rows(/*last=*/true));
+  if (check_) calibration_ = calibration.get();
 }
 
 MapSummary MapRun::summary() const {
@@ -288,7 +298,7 @@ MapSummary MapRun::summary() const {
   summary.points = mapper_.map().size();
   summary.frames_new = log_.size() - frames_before_;
   summary.interrupted = !complete();
-  if (check_) summary.calibration = check_->estimates();
+  summary.calibration = calibration_;
   return summary;
 }
 
