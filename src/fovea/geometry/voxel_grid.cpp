@@ -1,6 +1,5 @@
 #include "fovea/geometry/voxel_grid.h"
 
-#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -17,37 +16,59 @@ struct VoxelMean {
   float squared_distance = std::numeric_limits<float>::infinity();
 };
 
+/// Points that follow each other and lie in one voxel, as points in the order of a sweep mostly do.
+struct Run {
+  std::uint32_t voxel, begin, end;
+};
+
+std::vector<Run> runs_in_voxels(std::span<const Eigen::Vector3f> points, VoxelTable& table) {
+  std::vector<Run> runs;
+  for (std::uint32_t begin = 0, end = 0; begin < points.size(); begin = end) {
+    const VoxelTable::Voxel own = table.voxel_of(points[begin]);
+    for (end = begin + 1; end < points.size() && table.voxel_of(points[end]) == own;) ++end;
+    runs.push_back({table.insert(own), begin, end});
+  }
+  return runs;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points, float size) {
   if (!(size > 0)) throw std::invalid_argument("the voxel size must be positive");
   VoxelTable table(size);
   std::vector<VoxelMean> means;
-  std::vector<std::uint32_t> voxel(points.size());
-  VoxelTable::Voxel last = VoxelTable::Voxel::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    // Points in the order of a sweep mostly share a voxel with the one before.
-    const VoxelTable::Voxel own = table.voxel_of(points[i]);
-    voxel[i] = i > 0 && own == last ? voxel[i - 1] : table.insert(own);
-    last = own;
-    if (voxel[i] == means.size()) means.push_back({.anchor = points[i]});
-    VoxelMean& mean = means[voxel[i]];
-    mean.sum += points[i] - mean.anchor;
-    ++mean.count;
+  const std::vector<Run> runs = runs_in_voxels(points, table);
+  for (const Run& run : runs) {
+    if (run.voxel == means.size()) means.push_back({.anchor = points[run.begin]});
+    VoxelMean& mean = means[run.voxel];
+    const Eigen::Vector3f anchor = mean.anchor;
+    Eigen::Vector3f sum = mean.sum;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) sum += points[i] - anchor;
+    mean.sum = sum;
+    mean.count += run.end - run.begin;
   }
   for (VoxelMean& mean : means) mean.sum = mean.anchor + mean.sum / static_cast<float>(mean.count);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    VoxelMean& mean = means[voxel[i]];
-    const float squared = (points[i] - mean.sum).squaredNorm();
-    if (squared < mean.squared_distance) {
-      mean.squared_distance = squared;
-      mean.nearest = i;
+  for (const Run& run : runs) {
+    VoxelMean& mean = means[run.voxel];
+    const Eigen::Vector3f center = mean.sum;
+    std::uint32_t nearest = mean.nearest;
+    float least = mean.squared_distance;
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      const float squared = (points[i] - center).squaredNorm();
+      if (squared >= least) continue;
+      least = squared;
+      nearest = i;
     }
+    mean.nearest = nearest;
+    mean.squared_distance = least;
   }
+  std::vector<std::uint8_t> is_chosen(points.size(), 0);
+  for (const VoxelMean& mean : means) is_chosen[mean.nearest] = 1;
   std::vector<std::uint32_t> chosen;
   chosen.reserve(means.size());
-  for (const VoxelMean& mean : means) chosen.push_back(mean.nearest);
-  std::sort(chosen.begin(), chosen.end());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (is_chosen[i] != 0) chosen.push_back(i);
+  }
   return chosen;
 }
 
