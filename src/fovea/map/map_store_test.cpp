@@ -165,6 +165,11 @@ TEST(MapStore, RefusesWhatItCannotKeep) {
   PointCloud tile = one_point_each({{1, 1, 1}});
   tile.range.clear();
   EXPECT_THROW(writer->put_tile({0, {}}, tile), std::logic_error);
+  const auto pack = [&](std::size_t i) {
+    if (i == 50) throw std::logic_error("no tile");
+    return pack_tile({0, {int(i), 0, 0}}, TilePoints());
+  };
+  EXPECT_THROW(writer->put_tiles(100, pack), std::logic_error);
   EXPECT_THROW(writer->put_meta("schema_version", "7"), std::invalid_argument);
   FrameRecord frame;
   frame.T_local_lidar.translation().x() = std::nan("");
