@@ -165,6 +165,19 @@ Json report(const app::UpsamplingCase& given, const std::vector<Contender>& cont
   return column;
 }
 
+/// All points of the scan, in its order, at the rates of the paper's Table II.
+std::vector<app::UpsamplingCase> whole_scan_cases(const FrameSource& drive, const Camera& camera) {
+  std::vector<app::UpsamplingCase> cases;
+  for (int rate = 1; rate <= 3; ++rate) {
+    app::UpsamplingCase given{0, rate, app::scan_in_view(drive)};
+    UpsampleOptions options;
+    options.rate = rate;
+    given.wanted = static_cast<int>(upsample(given.points_cam, camera, options).size());
+    cases.push_back(std::move(given));
+  }
+  return cases;
+}
+
 struct Arguments {
   app::DriveArguments drive;
   std::string json;
@@ -182,18 +195,23 @@ void run(const Arguments& arguments) {
             {"runs", arguments.runs},
             {"search_radius", arguments.mls.search_radius},
             {"polynomial_order", arguments.mls.polynomial_order},
-            {"columns", Json::array()}};
+            {"columns", Json::array()},
+            {"whole_scan", Json::array()}};
   fmt::print(
       "| points | method | threads | given | produced | ms | times Fovea |\n"
       "| --- | --- | --- | --- | --- | --- | --- |\n");
-  for (const app::UpsamplingCase& given : app::upsampling_cases(*drive)) {
-    const auto wanted = static_cast<std::size_t>(given.wanted);
-    std::vector<Contender> contenders{fovea(given, camera),
-                                      local_plane(scan, wanted, arguments.mls),
-                                      uniform_density(given.points_cam, wanted, arguments.mls)};
-    race(contenders, arguments.runs, wanted);
-    json["columns"].push_back(report(given, contenders));
-  }
+  const auto race_all = [&](const char* key, const std::vector<app::UpsamplingCase>& cases) {
+    for (const app::UpsamplingCase& given : cases) {
+      const auto wanted = static_cast<std::size_t>(given.wanted);
+      std::vector<Contender> contenders{fovea(given, camera),
+                                        local_plane(scan, wanted, arguments.mls),
+                                        uniform_density(given.points_cam, wanted, arguments.mls)};
+      race(contenders, arguments.runs, wanted);
+      json[key].push_back(report(given, contenders));
+    }
+  };
+  race_all("columns", app::upsampling_cases(*drive));
+  race_all("whole_scan", whole_scan_cases(*drive, camera));
   if (!file) return;
   file->stream() << json.dump(2) << "\n";
   file->commit();
