@@ -167,12 +167,11 @@ Json report(const app::UpsamplingCase& given, const std::vector<Contender>& cont
 
 /// All points of the scan, in its order, at the rates of the paper's Table II.
 std::vector<app::UpsamplingCase> whole_scan_cases(const FrameSource& drive, const Camera& camera) {
+  const PointCloud scan = app::scan_in_view(drive);
   std::vector<app::UpsamplingCase> cases;
   for (int rate = 1; rate <= 3; ++rate) {
-    app::UpsamplingCase given{0, rate, app::scan_in_view(drive)};
-    UpsampleOptions options;
-    options.rate = rate;
-    given.wanted = static_cast<int>(upsample(given.points_cam, camera, options).size());
+    app::UpsamplingCase given{0, rate, scan};
+    given.wanted = static_cast<int>(fovea(given, camera).run(1).points);
     cases.push_back(std::move(given));
   }
   return cases;

@@ -42,37 +42,10 @@ void run_chunks(std::size_t chunks, const Run& run) {
   for (std::thread& worker : workers) worker.join();
   if (error) std::rethrow_exception(error);
 }
-
-template <class Make, class Take>
-void run_in_order(std::size_t count, const Make& make, const Take& take) {
-  run_chunks(count, make);
-  for (std::size_t i = 0; i < count; ++i) take(i);
-}
 #else
 template <class Run>
 void run_chunks(std::size_t chunks, const Run& run) {
   tbb::parallel_for(std::size_t{0}, chunks, run);
-}
-
-/// So many items a thread are made before they are taken, at most: one may take long to make.
-constexpr std::size_t kAhead = 2;
-
-template <class Make, class Take>
-void run_in_order(std::size_t count, const Make& make, const Take& take) {
-  std::size_t next = 0;
-  const auto number = [&](tbb::flow_control& flow) {
-    if (next == count) flow.stop();
-    return next++;
-  };
-  const auto made = [&](std::size_t i) {
-    make(i);
-    return i;
-  };
-  using Mode = tbb::filter_mode;
-  tbb::parallel_pipeline(kAhead * static_cast<std::size_t>(available_threads()),
-                         tbb::make_filter<void, std::size_t>(Mode::serial_in_order, number) &
-                             tbb::make_filter<std::size_t, std::size_t>(Mode::parallel, made) &
-                             tbb::make_filter<std::size_t, void>(Mode::serial_in_order, take));
 }
 #endif
 
@@ -93,7 +66,27 @@ void parallel_chunks(std::size_t count, std::size_t grain,
 
 void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>& make,
                        const std::function<void(std::size_t)>& take) {
-  run_in_order(count, make, take);
+#if defined(__SANITIZE_THREAD__)
+  run_chunks(count, make);
+  for (std::size_t i = 0; i < count; ++i) take(i);
+#else
+  // So many items a thread are made before they are taken, at most: one may take long to make.
+  constexpr std::size_t kAhead = 2;
+  std::size_t next = 0;
+  const auto number = [&](tbb::flow_control& flow) {
+    if (next == count) flow.stop();
+    return next++;
+  };
+  const auto made = [&](std::size_t i) {
+    make(i);
+    return i;
+  };
+  using Mode = tbb::filter_mode;
+  tbb::parallel_pipeline(kAhead * static_cast<std::size_t>(available_threads()),
+                         tbb::make_filter<void, std::size_t>(Mode::serial_in_order, number) &
+                             tbb::make_filter<std::size_t, std::size_t>(Mode::parallel, made) &
+                             tbb::make_filter<std::size_t, void>(Mode::serial_in_order, take));
+#endif
 }
 
 void run_both(const std::function<void()>& a, const std::function<void()>& b) {

@@ -38,7 +38,7 @@ void PointCloud::keep(const std::vector<std::uint32_t>& indices) {
   const KeptRows kept(indices);
   std::vector<std::function<void()>> columns{[&] { kept.close_up(position); }};
   for_each_optional_column(*this, [&](const char*, auto& column) {
-    if (!column.empty()) columns.emplace_back([&] { kept.close_up(column); });
+    columns.emplace_back([&] { kept.close_up(column); });
   });
   parallel_for(columns.size(), 1, [&](std::size_t i) { columns[i](); });
 }

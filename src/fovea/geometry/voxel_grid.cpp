@@ -55,9 +55,10 @@ std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points,
     float least = mean.squared_distance;
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const float squared = (points[i] - center).squaredNorm();
-      if (squared >= least) continue;
-      least = squared;
-      nearest = i;
+      if (squared < least) {
+        least = squared;
+        nearest = i;
+      }
     }
     mean.nearest = nearest;
     mean.squared_distance = least;

@@ -272,13 +272,11 @@ void MapRun::finish() {
                      "check that the drive has scans and images for the frames asked for");
   }
   // Beside the writer, which waits for the disk now and then.
-  std::future<std::vector<CameraCalibration>> calibration;
-  if (check_) {
-    calibration = std::async(threaded_ ? std::launch::async : std::launch::deferred,
-                             [this] { return check_->estimates(); });
-  }
+  auto calibration = std::async(threaded_ ? std::launch::async : std::launch::deferred, [this] {
+    return check_ ? check_->estimates() : std::vector<CameraCalibration>();
+  });
   keeper_.finish(mapper_.map(), fresh_rows(/*last=*/true));
-  if (check_) calibration_ = calibration.get();
+  calibration_ = calibration.get();
 }
 
 MapSummary MapRun::summary() const {
