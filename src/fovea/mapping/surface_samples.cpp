@@ -147,6 +147,10 @@ struct Cells {
   CellNumber number;
   explicit Cells(const SampleGrid& grid)
       : edge(grid.cell), per_metre(1 / grid.cell), number(grid) {}
+  /// Number of the first cell whose centre is not before `coordinate` (m).
+  std::int32_t first_center(double coordinate) const {
+    return static_cast<std::int32_t>(std::ceil(coordinate * per_metre - 0.5));
+  }
 };
 
 /// Where a column of the grid's cells along `axis` meets a triangle.
@@ -182,20 +186,21 @@ class Columns {
  public:
   explicit Columns(int halvings)
       : row_step_(1 << halvings / 2), column_step_(1 << (halvings + 1) / 2) {}
-  double row_step() const { return row_step_; }
-  double column_step() const { return column_step_; }
+  std::int32_t row_step() const { return row_step_; }
+  std::int32_t column_step() const { return column_step_; }
   /// The first of those rows from `row` on.
-  double first_row(double row) const { return next(row, row_step_, 0); }
-  double first_column(double column, double row) const {
-    const bool shifted = column_step_ > row_step_ && (static_cast<int>(row) & row_step_) != 0;
+  std::int32_t first_row(std::int32_t row) const { return next(row, row_step_, 0); }
+  std::int32_t first_column(std::int32_t column, std::int32_t row) const {
+    const bool shifted = column_step_ > row_step_ && (row & row_step_) != 0;
     return next(column, column_step_, shifted ? row_step_ : 0);
   }
 
  private:
-  static double next(double at, int step, int shift) {
-    return step == 1 ? at : std::ceil((at - shift) / step) * step + shift;
+  /// The first number from `at` on that is `shift` more than a multiple of `step`, a power of two.
+  static std::int32_t next(std::int32_t at, std::int32_t step, std::int32_t shift) {
+    return ((at - shift + step - 1) & -step) + shift;
   }
-  int row_step_, column_step_;
+  std::int32_t row_step_, column_step_;
 };
 
 /// Calls f(sample) at the centres of cells that fall onto a triangle when looked at along kAxis.
@@ -204,30 +209,35 @@ void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t
                      const Cells& cells, const Columns& sampled, F&& f) {
   constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
   const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  if (!(std::abs(n[kAxis]) > 1e-3 * n.norm())) return;  // seen from its edge
+  if (!(n[kAxis] * n[kAxis] > 1e-6 * n.squaredNorm())) return;  // seen from its edge
   const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
   const double cell = cells.edge;
-  const auto first_center = [&](double low) { return std::ceil(low * cells.per_metre - 0.5); };
-  const auto [v_low, v_high] = std::minmax({corner[0][kV], corner[1][kV], corner[2][kV]});
-  const double rows = first_center(v_high);
-  for (double row = sampled.first_row(first_center(v_low)); row < rows; row += sampled.row_step()) {
+  // By v: an edge that two triangles share is the same for both, and each row crosses the long one
+  // and one of the others.
+  const Eigen::Vector3d *low = &corner[0], *middle = &corner[1], *high = &corner[2];
+  if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
+  if ((*high)[kV] < (*middle)[kV]) std::swap(middle, high);
+  if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
+  const double low_u = (*low)[kU], low_v = (*low)[kV], middle_u = (*middle)[kU],
+               middle_v = (*middle)[kV];
+  const double along_long = ((*high)[kU] - low_u) / ((*high)[kV] - low_v),
+               along_lower = (middle_u - low_u) / (middle_v - low_v),
+               along_upper = ((*high)[kU] - middle_u) / ((*high)[kV] - middle_v);
+  const double at_origin = (*low)[kAxis] - slope_u * low_u - slope_v * low_v;
+  const std::int32_t rows = cells.first_center((*high)[kV]);
+  for (std::int32_t row = sampled.first_row(cells.first_center(low_v)); row < rows;
+       row += sampled.row_step()) {
     const double at_v = (row + 0.5) * cell;
-    double u_low = std::numeric_limits<double>::infinity(), u_high = -u_low;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Eigen::Vector3d &a = corner[i], &b = corner[(i + 1) % 3];
-      if ((a[kV] <= at_v) == (b[kV] <= at_v)) continue;
-      const double crossing = a[kU] + (at_v - a[kV]) / (b[kV] - a[kV]) * (b[kU] - a[kU]);
-      u_low = std::min(u_low, crossing);
-      u_high = std::max(u_high, crossing);
-    }
-    const double columns = first_center(u_high);
-    for (double column = sampled.first_column(first_center(u_low), row); column < columns;
-         column += sampled.column_step()) {
-      const double at_u = (column + 0.5) * cell;
-      const double height =
-          corner[0][kAxis] + slope_u * (at_u - corner[0][kU]) + slope_v * (at_v - corner[0][kV]);
-      f(Sample{height, cells.number(height), static_cast<std::int32_t>(column),
-               static_cast<std::int32_t>(row), triangle, kAxis});
+    const double first = low_u + (at_v - low_v) * along_long;
+    const double second = at_v < middle_v ? low_u + (at_v - low_v) * along_lower
+                                          : middle_u + (at_v - middle_v) * along_upper;
+    const std::int32_t columns = cells.first_center(std::max(first, second));
+    const double at_row = at_origin + slope_v * at_v;
+    for (std::int32_t column =
+             sampled.first_column(cells.first_center(std::min(first, second)), row);
+         column < columns; column += sampled.column_step()) {
+      const double height = at_row + slope_u * ((column + 0.5) * cell);
+      f(Sample{height, cells.number(height), column, row, triangle, kAxis});
     }
   }
 }
