@@ -23,9 +23,7 @@ class RunColumn {
   };
 
   RunColumn() = default;
-  explicit RunColumn(std::span<const Value> values) {
-    for (const Value value : values) push_back(value);
-  }
+  explicit RunColumn(std::span<const Value> values) { append(values); }
 
   bool empty() const { return runs_.empty(); }
   std::size_t size() const { return runs_.empty() ? 0 : runs_.back().end; }
@@ -37,19 +35,59 @@ class RunColumn {
 
   void push_back(Value value, std::uint32_t count = 1) {
     if (runs_.empty() || runs_.back().value != value) {
+      // What is in reserve takes memory, too.
+      if (runs_.size() == runs_.capacity()) runs_.reserve(runs_.size() + runs_.size() / 4 + 4);
       runs_.push_back({value, static_cast<std::uint32_t>(size())});
     }
     runs_.back().end += count;
   }
+  void append(std::span<const Value> values) {
+    for (auto at = values.begin(); at != values.end();) {
+      // A NaN equals nothing, itself neither.
+      const auto end =
+          std::find_if(at + 1, values.end(), [&](const Value& value) { return value != *at; });
+      push_back(*at, static_cast<std::uint32_t>(end - at));
+      at = end;
+    }
+  }
   /// Keeps only what is at `indices` (ascending).
   void keep(std::span<const std::uint32_t> indices) {
     RunColumn kept;
-    auto run = runs_.begin();
-    for (const std::uint32_t i : indices) {
-      while (i >= run->end) ++run;
-      kept.push_back(run->value);
+    auto at = indices.begin();
+    for (const Run& run : runs_) {
+      const auto next =
+          std::find_if(at, indices.end(), [&](std::uint32_t index) { return index >= run.end; });
+      if (next != at) kept.push_back(run.value, static_cast<std::uint32_t>(next - at));
+      at = next;
     }
     *this = std::move(kept);
+  }
+  /// Puts a value in the place of those at `indices` (ascending).
+  void put(std::span<const std::uint32_t> indices, Value value) {
+    RunColumn changed;
+    auto at = indices.begin();
+    for_each_run([&](std::uint32_t begin, std::uint32_t end, Value before) {
+      for (std::uint32_t i = begin; i < end;) {
+        const std::uint32_t next = at == indices.end() ? end : std::min(*at, end);
+        if (next > i) changed.push_back(before, next - i);
+        i = next;
+        if (i < end) {
+          changed.push_back(value);
+          ++i;
+          ++at;
+        }
+      }
+    });
+    *this = std::move(changed);
+  }
+  /// Calls f(begin, end, value) for each run, in order.
+  template <class F>
+  void for_each_run(F&& f) const {
+    std::uint32_t begin = 0;
+    for (const Run& run : runs_) {
+      f(begin, run.end, run.value);
+      begin = run.end;
+    }
   }
   /// Calls f(i, value) from place `first` on, in order, while it returns true.
   template <class F>
@@ -64,12 +102,9 @@ class RunColumn {
   }
   /// @param values  as many as there are
   void copy_to(std::span<Value> values) const {
-    auto to = values.begin();
-    for (const Run& run : runs_) {
-      const auto end = values.begin() + run.end;
-      std::fill(to, end, run.value);
-      to = end;
-    }
+    for_each_run([&](std::uint32_t begin, std::uint32_t end, Value value) {
+      std::fill(values.begin() + begin, values.begin() + end, value);
+    });
   }
 
   friend bool operator==(const RunColumn&, const RunColumn&) = default;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 #include "fovea/base/random.h"
 
@@ -63,6 +66,41 @@ TEST(RunColumn, KeepsWhatIsAskedFor) {
   Column runs(values);
   runs.keep(indices);
   EXPECT_EQ(runs, Column(kept));
+}
+
+TEST(RunColumn, PutsAValueInThePlaceOfSome) {
+  Random random(3);
+  for (const double share : {0.0, 0.1, 0.6, 1.0}) {
+    Values values = random_values(300, random);
+    Column runs(values);
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < values.size(); ++i) {
+      if (random.uniform() >= share) continue;
+      indices.push_back(i);
+      values[i] = 1;
+    }
+    runs.put(indices, 1);
+    EXPECT_EQ(runs, Column(values));
+  }
+}
+
+TEST(RunColumn, ANanIsARunOfItsOwn) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  RunColumn<float> runs(std::vector<float>{1, nan, nan, 2});
+  EXPECT_EQ(runs.size(), 4u);
+  runs.keep(std::vector<std::uint32_t>{0, 2, 3});
+  ASSERT_EQ(runs.size(), 3u);
+  EXPECT_TRUE(std::isnan(runs[1]));
+  EXPECT_EQ(runs[2], 2);
+}
+
+TEST(RunColumn, GoesThroughRunsInOrder) {
+  std::vector<std::array<std::int64_t, 3>> seen;
+  Column(Values{4, 4, 5, 8, 8, 8}).for_each_run([&](auto begin, auto end, std::int32_t value) {
+    seen.push_back({begin, end, value});
+  });
+  EXPECT_EQ(seen, (std::vector<std::array<std::int64_t, 3>>{{0, 2, 4}, {2, 3, 5}, {3, 6, 8}}));
+  Column().for_each_run([](auto, auto, auto) { FAIL(); });
 }
 
 TEST(RunColumn, GoesThroughValuesFromAnyPlaceOn) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace fovea {
@@ -25,8 +24,11 @@ PackedTile pack_tile(const TileId& id, const TilePoints& tile) {
 }
 
 std::int64_t count_colored(const TilePoints& tile) {
-  return std::count_if(tile.camera.begin(), tile.camera.end(),
-                       [](std::int8_t camera) { return camera != kNoCamera; });
+  std::int64_t colored = 0;
+  tile.camera.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::int8_t camera) {
+    if (camera != kNoCamera) colored += end - begin;
+  });
+  return colored;
 }
 
 }  // namespace fovea

@@ -59,11 +59,10 @@ void copy(std::span<const std::byte> bytes, std::vector<Value>& values) {
 template <class Value>
 void copy(const RunColumn<Value>& column, std::vector<std::byte>& bytes) {
   bytes.resize(column.size() * sizeof(Value));
-  std::byte* to = bytes.data();
-  column.for_each_from(0, [&](std::size_t, Value value) {
-    std::memcpy(to, &value, sizeof(Value));
-    to += sizeof(Value);
-    return true;
+  column.for_each_run([&](std::uint32_t begin, std::uint32_t end, Value value) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::memcpy(&bytes[i * sizeof(Value)], &value, sizeof(Value));
+    }
   });
 }
 template <class Value>

@@ -163,7 +163,14 @@ TileColors TileMap::colors(const TileId& id) {
   Tile& tile = existing_tile(id);
   tile.changed_at = step_;
   TilePoints& points = tile.points.write();
-  return {points.color, points.views, points.spread, points.weight, points.camera};
+  return {points.color, points.views, points.spread, points.weight};
+}
+
+void TileMap::put_camera(const TileId& id, std::span<const std::uint32_t> indices,
+                         std::int8_t camera) {
+  Tile& tile = existing_tile(id);
+  tile.changed_at = step_;
+  tile.points.write().camera.put(indices, camera);
 }
 
 template <class Tiles, class F>

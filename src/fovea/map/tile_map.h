@@ -61,7 +61,6 @@ struct TileColors {
   std::span<Rgb> color;
   std::span<std::uint8_t> views, spread;
   std::span<std::uint16_t> weight;
-  std::span<std::int8_t> camera;  ///< that gave the first
 };
 
 /// Points are added to the last submap. Tiles that are far away may be given to a store and taken
@@ -101,6 +100,10 @@ class TileMap {
   /// The colours of a tile; std::logic_error if it is not in memory. For two tiles at a time from
   /// two threads.
   TileColors colors(const TileId& id);
+  /// Says which camera gave some points of a tile their first colour; std::logic_error if the tile
+  /// is not in memory.
+  /// @param indices  of the points, ascending
+  void put_camera(const TileId& id, std::span<const std::uint32_t> indices, std::int8_t camera);
 
   /// Calls f for every tile in memory that a ball of `radius` m around `center_local` touches, in
   /// the order of submaps and keys.

@@ -357,12 +357,15 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   expected.views[3] = colors.views[3] = 77;
   expected.spread[2] = colors.spread[2] = 66;
   expected.weight[1] = colors.weight[1] = 55'555;
+  expected.camera[0] = expected.camera[4] = 7;
+  map.put_camera(id, std::vector<std::uint32_t>{0, 4}, 7);
   expect_same_columns(map.submaps()[1].tiles.at(id.key).points->cloud(), expected);
   expect_same_columns(map.submaps()[1].tiles.at({0, 0, 0}).points->cloud(), other);
   EXPECT_EQ(map.size(), 300u);
   EXPECT_THROW(map.colors({0, id.key}), std::logic_error);
   EXPECT_THROW(map.colors({1, {50, 0, 0}}), std::logic_error);
   EXPECT_THROW(map.colors({2, id.key}), std::logic_error);
+  EXPECT_THROW(map.put_camera({2, id.key}, {}, 7), std::logic_error);
 }
 
 }  // namespace fovea::tile_map_test

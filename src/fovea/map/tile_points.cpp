@@ -35,11 +35,17 @@ std::uint8_t incidence_steps(float incidence) {
 template <class A, class B, class F>
 void for_each_alike_column(A& a, B& b, F&& f) {
   f(a.color, b.color);
-  f(a.camera, b.camera);
-  f(a.interpolated, b.interpolated);
   f(a.views, b.views);
   f(a.spread, b.spread);
   f(a.weight, b.weight);
+}
+
+/// For each that tiles keep as runs.
+template <class A, class B, class F>
+void for_each_run_column(A& a, B& b, F&& f) {
+  f(a.camera, b.camera);
+  f(a.frame, b.frame);
+  f(a.interpolated, b.interpolated);
   f(a.reason, b.reason);
   f(a.intensity, b.intensity);
 }
@@ -70,10 +76,10 @@ void TilePoints::check() const {
         fmt::format("a column of a tile has {} entries for {} points", column.size(), size()));
   };
   for (const std::vector<std::uint16_t>& axis : position) require(axis);
-  require(frame);
   require(range);
   require(incidence);
-  for_each_alike_column(*this, *this, [&](const auto& column, const auto&) {
+  for_each_alike_column(*this, *this, [&](const auto& column, const auto&) { require(column); });
+  for_each_run_column(*this, *this, [&](const auto& column, const auto&) {
     require(column, /*may_be_empty=*/static_cast<const void*>(&column) == &intensity);
   });
 }
@@ -99,8 +105,8 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   for (const float incidence : tile.incidence) {
     points.incidence.push_back(incidence_steps(incidence));
   }
-  points.frame = RunColumn<std::int32_t>(tile.frame);
   for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
+  for_each_run_column(points, tile, [](auto& to, const auto& from) { to.append(from); });
   points.widen_box(0);
   return points;
 }
@@ -116,9 +122,11 @@ PointCloud TilePoints::cloud() const {
     tile.range.push_back(range_at(i));
     tile.incidence.push_back(incidence_at(i));
   }
-  tile.frame.resize(size());
-  frame.copy_to(tile.frame);
   for_each_alike_column(tile, *this, [](auto& to, const auto& from) { to = from; });
+  for_each_run_column(tile, *this, [](auto& to, const auto& from) {
+    to.resize(from.size());
+    from.copy_to(to);
+  });
   return tile;
 }
 
@@ -140,15 +148,15 @@ void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3
   }
   append_each(range, [&](std::uint32_t i) { return range_steps(points.range[i]); });
   append_each(incidence, [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
-  for (const auto& [begin, end] : ranges) {
-    for (std::uint32_t i = begin; i < end; ++i) frame.push_back(points.frame[i]);
-  }
   for_each_alike_column(*this, points, [&](auto& to, const auto& from) {
-    if (from.empty()) return;
     auto* at = grow(to, count);
     for (const auto& [begin, end] : ranges) {
       at = std::copy(from.begin() + begin, from.begin() + end, at);
     }
+  });
+  for_each_run_column(*this, points, [&](auto& to, const auto& from) {
+    if (from.empty()) return;
+    for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));
   });
   widen_box(before);
 }
@@ -165,10 +173,10 @@ void TilePoints::widen_box(std::size_t first) {
 void TilePoints::keep(std::span<const std::uint32_t> indices) {
   const KeptRows kept(indices);
   for (std::vector<std::uint16_t>& axis : position) kept.close_up(axis);
-  frame.keep(indices);
   kept.close_up(range);
   kept.close_up(incidence);
   for_each_alike_column(*this, *this, [&](auto& column, auto&) { kept.close_up(column); });
+  for_each_run_column(*this, *this, [&](auto& column, auto&) { column.keep(indices); });
 }
 
 void check_tile_columns(const PointCloud& cloud) {

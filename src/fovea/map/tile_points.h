@@ -27,16 +27,17 @@ struct TilePoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the tile's lowest corner, submap frame, m
   std::array<std::vector<std::uint16_t>, 3> position;  ///< steps from there along x, y, z
   std::vector<Rgb> color;
-  std::vector<std::int8_t> camera;
-  RunColumn<std::int32_t> frame;        ///< points come frame by frame
+  // Points come frame by frame and triangle by triangle: what these say of one it says of the next.
+  RunColumn<std::int8_t> camera;
+  RunColumn<std::int32_t> frame;
   std::vector<std::uint16_t> range;     ///< steps
   std::vector<std::uint8_t> incidence;  ///< steps, or kUnknownIncidence
-  std::vector<std::uint8_t> interpolated;
+  RunColumn<std::uint8_t> interpolated;
   std::vector<std::uint8_t> views;
   std::vector<std::uint8_t> spread;
   std::vector<std::uint16_t> weight;
-  std::vector<std::uint8_t> reason;
-  std::vector<float> intensity;
+  RunColumn<std::uint8_t> reason;
+  RunColumn<float> intensity;
   /// A box around all points, in steps, both ends included; where points have gone it may be larger
   /// than need be. Without points it holds none.
   Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "fovea/base/parallel.h"
@@ -91,6 +92,7 @@ class CubeMerger {
         seen_by[i] = nearest.index;
       }
     });
+    std::map<std::pair<std::uint32_t, std::int8_t>, std::vector<std::uint32_t>> first_colored;
     // B's tiles are read, A's are changed.
     for (std::size_t i = 0; i < seen_by.size(); ++i) {
       if (seen_by[i] == kNone) continue;
@@ -104,8 +106,14 @@ class CubeMerger {
       colors.views[to.point] = both.views;
       colors.spread[to.point] = both.spread;
       colors.weight[to.point] = both.weight;
-      if (before.views == 0) colors.camera[to.point] = tile_b.camera[from.point];
+      if (before.views == 0) {
+        first_colored[{to.tile, tile_b.camera[from.point]}].push_back(to.point);
+      }
       ++figures.fused;
+    }
+    for (auto& [of, points] : first_colored) {
+      std::sort(points.begin(), points.end());
+      map_.put_camera(tiles_[of.first].id, points, of.second);
     }
   }
 

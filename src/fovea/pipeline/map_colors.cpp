@@ -79,8 +79,7 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   if (view.is_exposure_matched()) {
     for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
   }
-  const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight,
-                          points_cam.camera};
+  const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight};
   const PatchColors patches(view);
   parallel_chunks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     PatchPlaces places;
@@ -250,8 +249,8 @@ SeenMap::Comparison SeenMap::compare(const ColorView& view) const {
 }
 
 std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,
-                                    const PatchColors& patches, const NoiseKinds& noise) const {
-  const auto this_camera = static_cast<std::int8_t>(camera_.index);
+                                    const PatchColors& patches, const NoiseKinds& noise,
+                                    std::vector<std::uint32_t>& first_seen) const {
   std::array<const Point*, kBlock> visible;
   std::size_t n = 0;
   for (const Point& point : points) {
@@ -266,6 +265,7 @@ std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileCol
     const Point& point = *visible[j];
     places.put(j, point.pixel(), point.depth);
     get(colors, point.index, fused, j);
+    if (fused.views[j] == 0) first_seen.push_back(point.index);
     index[j] = point.index;
     seen.weight[j] = point.weight;
   }
@@ -274,11 +274,7 @@ std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileCol
   }
   patches.at(places, n, seen.color);
   fuse(fused, seen, n);
-  for (std::size_t j = 0; j < n; ++j) {
-    const std::uint32_t i = index[j];
-    put(colors, i, fused, j);
-    if (colors.camera[i] == kNoCamera) colors.camera[i] = this_camera;
-  }
+  for (std::size_t j = 0; j < n; ++j) put(colors, index[j], fused, j);
   return n;
 }
 
@@ -310,15 +306,22 @@ std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
                          static_cast<std::uint32_t>(random.next())};
   const PatchColors patches(view);
   const std::vector<TileColors> colors = colors_of_pieces(map);
-  return parallel_sum(pieces_.size(), 1, std::size_t{0}, [&](std::size_t k, std::size_t) {
+  std::vector<std::vector<std::uint32_t>> first_seen(pieces_.size());
+  const auto count_seen = [&](std::size_t k, std::size_t) {
     const std::span<const Point> points = seen(pieces_[k]);
     std::size_t count = 0;
     for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
       count += recolour_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),
-                              colors[k], patches, noise);
+                              colors[k], patches, noise, first_seen[k]);
     }
     return count;
-  });
+  };
+  const std::size_t seen_points = parallel_sum(pieces_.size(), 1, std::size_t{0}, count_seen);
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    if (first_seen[k].empty()) continue;
+    map.put_camera(pieces_[k].tile, first_seen[k], static_cast<std::int8_t>(camera_.index));
+  }
+  return seen_points;
 }
 
 }  // namespace fovea

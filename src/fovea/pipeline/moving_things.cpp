@@ -208,23 +208,17 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
     if (cell != last_cell) last = *block.place.find(last_cell = cell);
     voxel_of_point.push_back(last);
   }
-  // Calls f(voxel, first point, one past the last) for points that follow each other.
-  const auto for_each_run = [&](auto&& f) {
-    std::uint32_t begin = 0;
-    for (const auto& [voxel, end] : voxel_of_point.runs()) {
-      f(block.voxels[voxel], begin, end);
-      begin = end;
-    }
-  };
   FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
-  for_each_run([&](const Voxel& voxel, std::uint32_t begin, std::uint32_t end) {
+  voxel_of_point.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::uint32_t place) {
+    const Voxel& voxel = block.voxels[place];
     if (!gone(voxel)) return;
     for (std::uint32_t k = 1; k <= kFoot && voxel.cell >= k * layer; ++k) {
       std::uint32_t& frames = *foot.try_emplace(voxel.cell - k * layer).first;
       for (std::uint32_t i = begin; i < end; ++i) frames |= frame_bit(i);
     }
   });
-  for_each_run([&](const Voxel& voxel, std::uint32_t begin, std::uint32_t end) {
+  voxel_of_point.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::uint32_t place) {
+    const Voxel& voxel = block.voxels[place];
     if (gone(voxel)) return;
     const std::uint32_t* beneath = foot.find(voxel.cell);
     for (std::uint32_t i = begin; i < end; ++i) {
