@@ -41,7 +41,7 @@ constexpr std::size_t kExposureStep = 32;
 /// Share of a gain that is undone.
 constexpr float kUndone = 0.9f;
 
-static_assert(kGrain / kExposureStep <= kBlock);
+static_assert(kGrain / kExposureStep <= kBlock && kGrain <= 1 << 16);
 
 /// Whether a box of points may reach into a camera's view.
 bool may_be_in_view(const Camera& camera, const RigidMotion& T_cam_submap,
@@ -140,7 +140,7 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
   DepthBuffer::Samples samples;
   Share& share = shares_[piece.share];
   const std::size_t most = piece.first + (piece.end - piece.begin);
-  if (share.points.size() < most) share.points.resize(most + most / 2);
+  if (share.points.size() < most) share.points.resize(most + most / 8);
   Point* out = share.points.data() + piece.first;
   for (std::uint32_t begin = piece.begin; begin < piece.end;) {
     const std::uint32_t n = std::min(piece.end - begin, std::uint32_t(ProjectedBlock::kSize));
@@ -160,8 +160,8 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
     std::size_t in_view = 0, in_region = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       // Written always, and kept by a step on: no branch, which nobody could foresee.
-      out[in_region] = {begin + i, block.pixel(i).x(), block.pixel(i).y(), block.depth(i),
-                        weight[i]};
+      out[in_region] = {block.pixel(i).x(), block.pixel(i).y(), block.depth(i),
+                        static_cast<std::uint16_t>(begin - piece.begin + i), weight[i]};
       samples.put(in_view, block.pixel(i), block.depth(i));
       in_view += block.in_view(i);
       in_region += block.in_view(i) & (weight[i] != 0);
@@ -213,9 +213,10 @@ SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColo
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); i += kExposureStep) {
     const Point& point = points[i];
-    if (tile.views[point.index] < 2) continue;
+    const std::uint32_t index = piece.begin + point.place;
+    if (tile.views[index] < 2) continue;
     if (front_.hides(point.pixel(), point.depth)) continue;
-    known[n] = to_float(tile.color[point.index]).array();
+    known[n] = to_float(tile.color[index]).array();
     places.put(n++, point.pixel(), point.depth);
   }
   ColorBlock here;
@@ -248,8 +249,9 @@ SeenMap::Comparison SeenMap::compare(const ColorView& view) const {
   return comparison;
 }
 
-std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileColors& colors,
-                                    const PatchColors& patches, const NoiseKinds& noise,
+std::size_t SeenMap::recolour_block(std::span<const Point> points, std::uint32_t piece_begin,
+                                    const TileColors& colors, const PatchColors& patches,
+                                    const NoiseKinds& noise,
                                     std::vector<std::uint32_t>& first_seen) const {
   std::array<const Point*, kBlock> visible;
   std::size_t n = 0;
@@ -264,9 +266,9 @@ std::size_t SeenMap::recolour_block(std::span<const Point> points, const TileCol
   for (std::size_t j = 0; j < n; ++j) {
     const Point& point = *visible[j];
     places.put(j, point.pixel(), point.depth);
-    get(colors, point.index, fused, j);
-    if (fused.views[j] == 0) first_seen.push_back(point.index);
-    index[j] = point.index;
+    index[j] = piece_begin + point.place;
+    get(colors, index[j], fused, j);
+    if (fused.views[j] == 0) first_seen.push_back(index[j]);
     seen.weight[j] = point.weight;
   }
   for (std::size_t word = 0; word < noise.size(); ++word) {
@@ -312,7 +314,7 @@ std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
     std::size_t count = 0;
     for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
       count += recolour_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),
-                              colors[k], patches, noise, first_seen[k]);
+                              pieces_[k].begin, colors[k], patches, noise, first_seen[k]);
     }
     return count;
   };

@@ -60,8 +60,8 @@ class SeenMap {
 
  private:
   struct Point {
-    std::uint32_t index;  // in its tile
     float u, v, depth;
+    std::uint16_t place;   // in its piece
     std::uint16_t weight;  // of this view
     Eigen::Vector2f pixel() const { return {u, v}; }
   };
@@ -94,11 +94,12 @@ class SeenMap {
   Differences differences_at(const Piece& piece, const PatchColors& patches) const;
   /// The colours of each piece's tile, empty where nothing of the tile was seen.
   std::vector<TileColors> colors_of_pieces(TileMap& map) const;
-  /// @param first_seen  gets the points that had no colour
+  /// @param piece_begin  of the points' piece
+  /// @param first_seen   gets the points that had no colour
   /// @return how many of the points were in view
-  std::size_t recolour_block(std::span<const Point> points, const TileColors& colors,
-                             const PatchColors& patches, const NoiseKinds& noise,
-                             std::vector<std::uint32_t>& first_seen) const;
+  std::size_t recolour_block(std::span<const Point> points, std::uint32_t piece_begin,
+                             const TileColors& colors, const PatchColors& patches,
+                             const NoiseKinds& noise, std::vector<std::uint32_t>& first_seen) const;
   std::span<const Point> seen(const Piece& piece) const {
     return {shares_[piece.share].points.data() + piece.first, piece.seen};
   }
