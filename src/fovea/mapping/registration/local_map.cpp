@@ -66,35 +66,34 @@ void LocalMap::place(Keyframe& keyframe) {
   const Eigen::Vector3f t =
       (keyframe.T_local_lidar.translation() - target_.origin_local).cast<float>();
   const std::size_t n = source.points.size();
-  keyframe.cloud.points.resize(n);
-  keyframe.cloud.normals.resize(source.normals.size());
-  for (std::size_t i = 0; i < n; ++i) keyframe.cloud.points[i] = R * source.points[i] + t;
-  for (std::size_t i = 0; i < source.normals.size(); ++i) {
-    keyframe.cloud.normals[i] = R * source.normals[i];
-  }
+  keyframe.points.resize(n);
+  for (std::size_t i = 0; i < n; ++i) keyframe.points[i] = R * source.points[i] + t;
   keyframe.next.resize(n);
   keyframe.place.assign(n, kNoPlace);
   const auto max_range2 = static_cast<float>(options_.max_range * options_.max_range);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (i + kAhead < n) voxels_.prefetch(keyframe.cloud.points[i + kAhead]);
+    if (i + kAhead < n) voxels_.prefetch(keyframe.points[i + kAhead]);
     if (source.points[i].squaredNorm() > max_range2) continue;
     const bool is_first = options_.voxel == 0 ||
-                          voxels_.push(keyframe.cloud.points[i], {keyframe.number, i}, next_of());
+                          voxels_.push(keyframe.points[i], {keyframe.number, i}, next_of());
     if (is_first) stand(keyframe, i);
   }
 }
 
 void LocalMap::stand(Keyframe& keyframe, std::uint32_t index) {
   RegistrationCloud& cloud = target_.cloud;
+  const std::vector<Eigen::Vector3f>& normals_lidar = keyframe.cloud_lidar.normals;
   if (empty_.empty()) {
     empty_.push_back(static_cast<std::uint32_t>(cloud.points.size()));
     cloud.points.emplace_back();
-    if (!keyframe.cloud.normals.empty()) cloud.normals.emplace_back();
+    if (!normals_lidar.empty()) cloud.normals.emplace_back();
   }
   const std::uint32_t place = keyframe.place[index] = empty_.back();
   empty_.pop_back();
-  cloud.points[place] = keyframe.cloud.points[index];
-  if (!keyframe.cloud.normals.empty()) cloud.normals[place] = keyframe.cloud.normals[index];
+  cloud.points[place] = keyframe.points[index];
+  if (!normals_lidar.empty()) {
+    cloud.normals[place] = keyframe.T_local_lidar.linear().cast<float>() * normals_lidar[index];
+  }
   if (options_.voxel > 0) target_.index.insert(place, cloud.points[place]);
 }
 
@@ -102,9 +101,9 @@ void LocalMap::forget_oldest() {
   const Keyframe& oldest = keyframes_.front();
   const std::size_t n = options_.voxel > 0 ? oldest.place.size() : 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (i + kAhead < n) voxels_.prefetch(oldest.cloud.points[i + kAhead]);
+    if (i + kAhead < n) voxels_.prefetch(oldest.points[i + kAhead]);
     if (oldest.place[i] == kNoPlace) continue;  // a second one in its voxel
-    const Eigen::Vector3f& p = oldest.cloud.points[i];
+    const Eigen::Vector3f& p = oldest.points[i];
     target_.index.erase(oldest.place[i], p);
     empty_.push_back(oldest.place[i]);
     const VoxelQueues::Item heir = voxels_.pop(p, next_of());

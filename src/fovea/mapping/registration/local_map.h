@@ -52,7 +52,7 @@ class LocalMap {
     std::uint32_t number = 0;
     RegistrationCloud cloud_lidar;
     RigidMotion T_local_lidar;
-    RegistrationCloud cloud;              // placed: about the target's origin
+    std::vector<Eigen::Vector3f> points;  // placed: about the target's origin
     std::vector<std::uint32_t> place;     // in the target, of those that stand for their voxels
     std::vector<VoxelQueues::Item> next;  // behind each point in its voxel
   };

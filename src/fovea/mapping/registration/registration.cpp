@@ -192,6 +192,7 @@ RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
   if (options.method != RegistrationMethod::kPointToPoint) {
     cloud.normals = estimate_normals(points, chosen, options.neighbors, spacing);
   }
+  cloud.points.reserve(chosen.size());
   for (const std::uint32_t i : chosen) cloud.points.push_back(points[i]);
   return cloud;
 }
