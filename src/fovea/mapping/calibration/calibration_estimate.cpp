@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "fovea/base/angle.h"
 #include "fovea/mapping/calibration/edge_score.h"
@@ -20,7 +21,8 @@ using Free = std::array<bool, 6>;  // what is estimated; the others are held at 
 // Standard deviations of the Gaussian that image edges are seen through, pixels: coarse to fine.
 constexpr std::array<double, 5> kWidths{8, 4, 2, 1, 0.5};
 constexpr int kMaxIterations = 60;
-constexpr double kConverged = 1e-3;  // pixels
+constexpr double kConverged = 1e-3;   // pixels
+constexpr double kNearEnough = 0.02;  // of a coarse Gaussian's width
 constexpr int kDelay = 3;
 // A parameter with less than this share of the best one's curvature moves no edge.
 constexpr double kLeastCurvature = 1e-4;
@@ -69,19 +71,27 @@ bool positive(const Matrix& m) {
 Vector climb(const std::vector<EdgeProfile>& profiles, const Free& free) {
   Vector x = Vector::Zero();
   for (const double width : kWidths) {
+    const double converged = width == kWidths.back() ? kConverged : kNearEnough * width;
+    EdgeScore score = edge_score(profiles, x, width);
     for (int i = 0; i < kMaxIterations; ++i) {
-      const EdgeScore score = edge_score(profiles, x, width);
       const Vector gradient = only(free, score.gradient);
       const Matrix curvature = only(free, score.curvature), bound = only(free, score.bound);
       if (!(bound.diagonal().maxCoeff() > 0)) return x;  // nothing in sight
-      Vector step =
-          (bound + 1e-9 * bound.diagonal().maxCoeff() * Matrix::Identity()).ldlt().solve(gradient);
+      std::optional<EdgeScore> next;
+      Vector step = Vector::Zero();
       if (positive(curvature)) {
-        const Vector newton = curvature.ldlt().solve(gradient);
-        if (edge_score(profiles, x + newton, width).value >= score.value) step = newton;
+        step = curvature.ldlt().solve(gradient);
+        next = edge_score(profiles, x + step, width);
+        if (!(next->value >= score.value)) next.reset();
+      }
+      if (!next) {
+        step = (bound + 1e-9 * bound.diagonal().maxCoeff() * Matrix::Identity())
+                   .ldlt()
+                   .solve(gradient);
       }
       x += step;
-      if (step.norm() < kConverged) break;
+      if (step.norm() < converged) break;
+      score = next ? *next : edge_score(profiles, x, width);
     }
   }
   return x;
