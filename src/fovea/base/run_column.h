@@ -83,21 +83,20 @@ class RunColumn {
   /// Calls f(begin, end, value) for each run, in order.
   template <class F>
   void for_each_run(F&& f) const {
-    std::uint32_t begin = 0;
-    for (const Run& run : runs_) {
-      f(begin, run.end, run.value);
-      begin = run.end;
-    }
+    for_each_run_from(0, [&](std::uint32_t begin, std::uint32_t end, Value value) {
+      f(begin, end, value);
+      return true;
+    });
   }
-  /// Calls f(i, value) from place `first` on, in order, while it returns true.
+  /// Calls f(begin, end, value) for each run, or what is left of it, from place `first` on, while
+  /// it returns true.
   template <class F>
-  void for_each_from(std::size_t first, F&& f) const {
+  void for_each_run_from(std::size_t first, F&& f) const {
     if (first >= size()) return;
-    std::size_t i = first;
+    auto begin = static_cast<std::uint32_t>(first);
     for (std::size_t run = run_of(first); run < runs_.size(); ++run) {
-      for (; i < runs_[run].end; ++i) {
-        if (!f(i, runs_[run].value)) return;
-      }
+      if (!f(begin, runs_[run].end, runs_[run].value)) return;
+      begin = runs_[run].end;
     }
   }
   /// @param values  as many as there are

@@ -94,29 +94,30 @@ TEST(RunColumn, ANanIsARunOfItsOwn) {
   EXPECT_EQ(runs[2], 2);
 }
 
-TEST(RunColumn, GoesThroughRunsInOrder) {
-  std::vector<std::array<std::int64_t, 3>> seen;
-  Column(Values{4, 4, 5, 8, 8, 8}).for_each_run([&](auto begin, auto end, std::int32_t value) {
+TEST(RunColumn, GoesThroughRunsFromAnyPlaceOn) {
+  using Seen = std::vector<std::array<std::int64_t, 3>>;
+  const Column runs(Values{4, 4, 5, 5, 5, 8});
+  const Seen all{{0, 2, 4}, {2, 5, 5}, {5, 6, 8}};
+  Seen seen;
+  runs.for_each_run([&](auto begin, auto end, std::int32_t value) {
     seen.push_back({begin, end, value});
   });
-  EXPECT_EQ(seen, (std::vector<std::array<std::int64_t, 3>>{{0, 2, 4}, {2, 3, 5}, {3, 6, 8}}));
-  Column().for_each_run([](auto, auto, auto) { FAIL(); });
-}
-
-TEST(RunColumn, GoesThroughValuesFromAnyPlaceOn) {
-  const Column runs(Values{4, 4, 5, 5, 5, 8});
-  for (std::size_t first = 0; first <= runs.size(); ++first) {
-    Values seen;
-    runs.for_each_from(first, [&](std::size_t i, std::int32_t value) {
-      EXPECT_EQ(i, first + seen.size());
+  EXPECT_EQ(seen, all);
+  for (std::uint32_t first = 0; first <= runs.size(); ++first) {
+    Seen expected;
+    for (const auto& [begin, end, value] : all) {
+      if (end > first && value <= 5)
+        expected.push_back({std::max<std::int64_t>(begin, first), end, value});
+    }
+    seen.clear();
+    runs.for_each_run_from(first, [&](auto begin, auto end, std::int32_t value) {
       if (value > 5) return false;
-      seen.push_back(value);
+      seen.push_back({begin, end, value});
       return true;
     });
-    const Values all{4, 4, 5, 5, 5};
-    EXPECT_EQ(seen,
-              Values(all.begin() + std::min<std::ptrdiff_t>(std::ptrdiff_t(first), 5), all.end()));
+    EXPECT_EQ(seen, expected) << first;
   }
+  Column().for_each_run([](auto, auto, auto) { FAIL(); });
 }
 
 }  // namespace fovea::run_column_test

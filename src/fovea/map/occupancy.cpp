@@ -1,6 +1,7 @@
 #include "fovea/map/occupancy.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -38,17 +39,26 @@ void Occupancy::take_in(const TilePoints& points, Tile& tile) const {
   const auto per_metre = static_cast<float>(1 / cell_);
   const float beyond = static_cast<float>(kStepsOn) * kPositionStep * per_metre;
   const auto last = static_cast<float>(edge_ - 1);
-  for (; tile.points < points.size(); ++tile.points) {
-    const Cell cell = (points.position_at(tile.points).array() * per_metre + beyond)
-                          .max(0.0f)
-                          .min(last)
-                          .cast<int>();
-    std::int32_t& brick = tile.brick[place_of(CellBrick::number_of(cell))];
-    if (brick == kNoBrick) {
-      brick = static_cast<std::int32_t>(tile.bricks.size());
-      tile.bricks.emplace_back();
+  std::array<std::array<std::int32_t, 256>, 3> cells;  // along x, y, z; found eight at a time
+  while (tile.points < points.size()) {
+    const std::size_t n = std::min(cells[0].size(), points.size() - tile.points);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint16_t* steps = &points.position[axis][tile.points];
+      for (std::size_t i = 0; i < n; ++i) {
+        const float cell = float(steps[i]) * kPositionStep * per_metre + beyond;
+        cells[axis][i] = static_cast<std::int32_t>(std::min(std::max(cell, 0.0f), last));
+      }
     }
-    tile.bricks[static_cast<std::size_t>(brick)].mark(cell);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Cell cell(cells[0][i], cells[1][i], cells[2][i]);
+      std::int32_t& brick = tile.brick[place_of(CellBrick::number_of(cell))];
+      if (brick == kNoBrick) {
+        brick = static_cast<std::int32_t>(tile.bricks.size());
+        tile.bricks.emplace_back();
+      }
+      tile.bricks[static_cast<std::size_t>(brick)].mark(cell);
+    }
+    tile.points += n;
   }
 }
 

@@ -26,12 +26,25 @@ int voxels_per_edge(const TileMap& map) {
   return std::max(1, static_cast<int>(std::lround(map.tile_size() / kVoxel)));
 }
 
-std::uint32_t cell_of(const Eigen::Vector3f& p_tile, float cells_per_metre, int edge) {
-  const auto index = [&](float value) {
-    return static_cast<std::uint32_t>(std::clamp(int(value * cells_per_metre), 0, edge - 1));
-  };
-  const auto n = static_cast<std::uint32_t>(edge);
-  return (index(p_tile.z()) * n + index(p_tile.y())) * n + index(p_tile.x());
+/// Calls f(point, cell) for points of a tile that follow each other.
+template <class F>
+void for_each_cell(const TilePoints& points, std::size_t begin, std::size_t end,
+                   float cells_per_metre, int edge, F&& f) {
+  std::array<std::uint32_t, 256> cells;  // found eight at a time
+  for (; begin < end; begin += cells.size()) {
+    const std::size_t n = std::min(cells.size(), end - begin);
+    std::array<const std::uint16_t*, 3> steps;
+    for (std::size_t axis = 0; axis < 3; ++axis) steps[axis] = &points.position[axis][begin];
+    const auto along = [&](std::size_t axis, std::size_t i) {
+      const float value = float(steps[axis][i]) * kPositionStep;
+      return std::clamp(int(value * cells_per_metre), 0, edge - 1);
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      cells[i] =
+          static_cast<std::uint32_t>((along(2, i) * edge + along(1, i)) * edge + along(0, i));
+    }
+    for (std::size_t i = 0; i < n; ++i) f(static_cast<std::uint32_t>(begin + i), cells[i]);
+  }
 }
 
 Eigen::Vector3f center_of(std::uint32_t cell, float size, int edge) {
@@ -158,17 +171,19 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
   }
   // Points that came since. Those of later frames are there when scans are replayed.
   Voxel* last = nullptr;  // neighbours mostly share a voxel
-  tile.points->frame.for_each_from(block.known_points, [&](std::size_t i, int came) {
+  tile.points->frame.for_each_run_from(block.known_points, [&](auto begin, auto end, int came) {
     if (came > frame) return false;
-    const std::uint32_t cell = cell_of(tile.points->position_at(i), 1 / size, edge);
-    if (last == nullptr || last->cell != cell) {
-      const auto [place, is_new] =
-          block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
-      if (is_new) block.voxels.push_back({cell, 0, 0});
-      last = &block.voxels[*place];
-    }
-    last->filled |= aged(1, frame - came);
-    block.known_points = i + 1;
+    const std::uint32_t bit = aged(1, frame - came);
+    for_each_cell(*tile.points, begin, end, 1 / size, edge, [&](std::uint32_t, std::uint32_t cell) {
+      if (last == nullptr || last->cell != cell) {
+        const auto [place, is_new] =
+            block.place.try_emplace(cell, std::uint32_t(block.voxels.size()));
+        if (is_new) block.voxels.push_back({cell, 0, 0});
+        last = &block.voxels[*place];
+      }
+      last->filled |= bit;
+    });
+    block.known_points = end;
     return true;
   });
   const TileView view(
@@ -202,12 +217,19 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
     return aged(1, block.frame - tile.points->frame[i]);
   };
   RunColumn<std::uint32_t> voxel_of_point;  // neighbours mostly share one
-  std::uint32_t last = 0, last_cell = ~0u;
-  for (std::size_t i = 0; i < tile.points->size(); ++i) {
-    const std::uint32_t cell = cell_of(tile.points->position_at(i), cells_per_metre, edge);
-    if (cell != last_cell) last = *block.place.find(last_cell = cell);
-    voxel_of_point.push_back(last);
-  }
+  std::uint32_t first = 0, last_cell = ~0u;
+  const auto end_run = [&](std::uint32_t end) {
+    if (end > first) voxel_of_point.push_back(*block.place.find(last_cell), end - first);
+    first = end;
+  };
+  const std::size_t count = tile.points->size();
+  for_each_cell(*tile.points, 0, count, cells_per_metre, edge,
+                [&](std::uint32_t i, std::uint32_t cell) {
+                  if (cell == last_cell) return;
+                  end_run(i);
+                  last_cell = cell;
+                });
+  end_run(static_cast<std::uint32_t>(count));
   FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
   voxel_of_point.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::uint32_t place) {
     const Voxel& voxel = block.voxels[place];
