@@ -74,8 +74,8 @@ void LocalMap::place(Keyframe& keyframe) {
   for (std::uint32_t i = 0; i < n; ++i) {
     if (i + kAhead < n) voxels_.prefetch(keyframe.points[i + kAhead]);
     if (source.points[i].squaredNorm() > max_range2) continue;
-    const bool is_first = options_.voxel == 0 ||
-                          voxels_.push(keyframe.points[i], {keyframe.number, i}, next_of());
+    const bool is_first =
+        options_.voxel == 0 || voxels_.push(keyframe.points[i], {keyframe.number, i}, next_of());
     if (is_first) stand(keyframe, i);
   }
 }
