@@ -32,21 +32,21 @@ void pack_plane(const std::vector<std::uint16_t>& values, std::byte* bytes) {
   // By blocks of their own memory: the compiler then knows that nothing overlaps, and works on
   // sixteen values at a time.
   constexpr std::size_t kBlock = 256;
-  std::array<std::uint16_t, kBlock> before, differences;
+  std::array<std::uint16_t, kBlock> differences;
   std::array<std::byte, kBlock> lower, upper;
-  before[0] = 0;
+  std::uint16_t last = 0;
   for (std::size_t begin = 0; begin < n; begin += kBlock) {
     const std::size_t count = std::min(kBlock, n - begin);
     const std::uint16_t* block = values.data() + begin;
-    std::copy(block, block + count - 1, before.begin() + 1);
-    for (std::size_t i = 0; i < count; ++i) differences[i] = difference(before[i], block[i]);
+    differences[0] = difference(last, block[0]);
+    for (std::size_t i = 1; i < count; ++i) differences[i] = difference(block[i - 1], block[i]);
     for (std::size_t i = 0; i < count; ++i) {
       lower[i] = static_cast<std::byte>(differences[i] & 255);
       upper[i] = static_cast<std::byte>(differences[i] >> 8);
     }
     std::memcpy(bytes + begin, lower.data(), count);
     std::memcpy(bytes + n + begin, upper.data(), count);
-    before[0] = block[count - 1];
+    last = block[count - 1];
   }
 }
 void unpack_plane(std::size_t n, const std::byte* bytes, std::vector<std::uint16_t>& values) {
