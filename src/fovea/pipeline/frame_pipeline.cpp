@@ -1,5 +1,6 @@
 #include "fovea/pipeline/frame_pipeline.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace fovea {
@@ -8,6 +9,9 @@ namespace {
 /// Frames that a stage is ahead of the next one, the one at hand included: what overlap needs. More
 /// would only wait.
 constexpr std::size_t kAhead = 1;
+/// So many frames before its turn the disk is told of a frame: a second at 10 Hz, which a disk that
+/// sleeps or serves others may take.
+constexpr int kExpected = 10;
 /// At a rate a frame is decoded once none is under way, but begun this long before it is due at the
 /// latest, in periods.
 constexpr double kInTime = 0.25;
@@ -29,6 +33,7 @@ FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
     : source_(source),
       begin_(begin),
       next_(begin),
+      expected_(begin + 1),
       end_(end),
       track_(std::move(track)),
       options_(options),
@@ -50,10 +55,15 @@ std::optional<LocatedFrame> FramePipeline::next() {
   return located;
 }
 
+void FramePipeline::expect_until(int index) {
+  for (; expected_ < std::min(index, end_); ++expected_) source_.expect(expected_);
+}
+
 std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
   if (next_ == end_) return std::nullopt;
   const int index = next_++;
   const bool is_first = index == begin_, at_rate = options_.rate != 0;
+  expect_until(index + kExpected);
   std::optional<TimePoint> due;
   if (at_rate && !is_first) {
     due = first_arrival_ + periods(index - begin_);

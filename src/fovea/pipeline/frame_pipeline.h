@@ -60,12 +60,15 @@ class FramePipeline {
     double decode_ms;
     std::optional<TimePoint> due;
   };
+  void expect_until(int index);
   std::optional<Arrived> arrive(const std::stop_token& stop);
   std::optional<LocatedFrame> locate(const std::stop_token& stop);
   WallClock::duration periods(double count) const;
 
   const FrameSource& source_;
-  int begin_, next_, end_;
+  int begin_, next_;
+  int expected_;  // first frame of which the source has not been told
+  int end_;
   std::function<TrackedFrame(const Frame&)> track_;
   FramePipelineOptions options_;
   TimePoint first_arrival_;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <numeric>
+#include <vector>
 
 #include "fovea/base/errors.h"
 
@@ -17,9 +19,14 @@ class Numbers : public FrameSource {
  public:
   int error_at = -1;
   mutable std::atomic<int> loaded{0};
+  mutable std::vector<int> expected;
 
   const DriveInfo& info() const override { return info_; }
   std::optional<TimeNs> stamp(int index) const override { return index; }
+  void expect(int index) const override {
+    EXPECT_GE(index, loaded);  // before its turn
+    expected.push_back(index);
+  }
   FrameResult load(int index) const override {
     ++loaded;
     if (index == error_at) throw InputError("no such frame", "numbers", "ask for another");
@@ -47,6 +54,16 @@ std::vector<int> indices(FramePipeline& frames) {
     found.push_back(skipped != nullptr ? -skipped->index : located->tracked->record.index);
   }
   return found;
+}
+
+TEST(FramePipeline, EachFrameIsExpectedOnceBeforeItIsLoaded) {
+  const Numbers source;
+  FramePipeline frames(source, 0, 30, number_of, {.overlap = true});
+  while (frames.next()) {
+  }
+  std::vector<int> all_but_first(29);
+  std::iota(all_but_first.begin(), all_but_first.end(), 1);
+  EXPECT_EQ(source.expected, all_but_first);
 }
 
 TEST(FramePipeline, FramesComeInOrderTrackedOrSkipped) {

@@ -40,6 +40,14 @@ class FileFrameSource : public FrameSource {
     return frame;
   }
 
+  void expect(int index) const override {
+    const auto expect_of = [&](const NumberedFiles& files) {
+      if (const auto file = files.find(index); file != files.end()) expect_file(file->second);
+    };
+    expect_of(files_.scans);
+    for (const NumberedFiles& images : files_.images) expect_of(images);
+  }
+
  private:
   /// What can be known to be missing without reading the scan or an image.
   std::optional<SkippedFrame> missing_part(int index) const {

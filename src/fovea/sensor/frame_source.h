@@ -96,6 +96,8 @@ class FrameSource {
   virtual const DriveInfo& info() const = 0;
   /// Reads frame `index` of [info().begin, info().end). Thread-safe.
   virtual FrameResult load(int index) const = 0;
+  /// Has the disk fetch what load(index) will read, of any index, and waits for nothing.
+  virtual void expect(int /*index*/) const {}
   /// Time of a frame without reading it; empty if it has none.
   virtual std::optional<TimeNs> stamp(int index) const = 0;
 };

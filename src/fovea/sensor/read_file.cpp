@@ -1,5 +1,7 @@
 #include "fovea/sensor/read_file.h"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -55,6 +57,12 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), stream.get());
   if (got != bytes.size()) fail("only " + std::to_string(got) + " bytes could be read");
   return bytes;
+}
+
+void expect_file(const std::filesystem::path& file) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
+                                                               &std::fclose);
+  if (stream) static_cast<void>(posix_fadvise(fileno(stream.get()), 0, 0, POSIX_FADV_WILLNEED));
 }
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {

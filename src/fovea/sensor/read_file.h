@@ -15,6 +15,10 @@ namespace fovea {
 /// Whole content of a file; InputError if it cannot be read.
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file);
 
+/// Has the system fetch a file that will be read, and waits for nothing. Of a file that cannot be
+/// read nothing is said: who reads it will be told.
+void expect_file(const std::filesystem::path& file);
+
 /// Lines of a text file without their line ends (LF or CRLF); InputError if it cannot be read.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 

@@ -30,6 +30,15 @@ TEST(ReadFile, FailuresNameTheFile) {
   EXPECT_NE(message(folder.path()).find("it is a folder"), std::string::npos);
 }
 
+TEST(ReadFile, AnExpectedFileNeedNotBeThere) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "a.txt", "x");
+  expect_file(folder.path() / "a.txt");
+  expect_file(folder.path() / "none");
+  expect_file(folder.path());
+  EXPECT_EQ(read_lines(folder.path() / "a.txt"), std::vector<std::string>{"x"});
+}
+
 TEST(ReadFile, NumbersInAnyNotation) {
   EXPECT_EQ(parse_numbers(" 1 -2.5e+03\t7.215377e+02\r\n"),
             (std::vector<double>{1, -2500, 721.5377}));
