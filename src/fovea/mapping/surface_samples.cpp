@@ -185,7 +185,9 @@ struct Sample {
 class Columns {
  public:
   explicit Columns(int halvings)
-      : row_step_(1 << halvings / 2), column_step_(1 << (halvings + 1) / 2) {}
+      : column_shift_((halvings + 1) / 2),
+        row_step_(1 << halvings / 2),
+        column_step_(1 << column_shift_) {}
   std::int32_t row_step() const { return row_step_; }
   std::int32_t column_step() const { return column_step_; }
   /// The first of those rows from `row` on.
@@ -194,66 +196,20 @@ class Columns {
     const bool shifted = column_step_ > row_step_ && (row & row_step_) != 0;
     return next(column, column_step_, shifted ? row_step_ : 0);
   }
+  /// How many there are from one of those columns on up to before `end`; none or less than none if
+  /// that is not behind it.
+  std::int32_t columns_between(std::int32_t column, std::int32_t end) const {
+    return (end - column + column_step_ - 1) >> column_shift_;
+  }
 
  private:
   /// The first number from `at` on that is `shift` more than a multiple of `step`, a power of two.
   static std::int32_t next(std::int32_t at, std::int32_t step, std::int32_t shift) {
     return ((at - shift + step - 1) & -step) + shift;
   }
+  int column_shift_;
   std::int32_t row_step_, column_step_;
 };
-
-/// Calls f(sample) at the centres of cells that fall onto a triangle when looked at along kAxis.
-template <std::uint32_t kAxis, class F>
-void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
-                     const Cells& cells, const Columns& sampled, F&& f) {
-  constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
-  const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  if (!(n[kAxis] * n[kAxis] > 1e-6 * n.squaredNorm())) return;  // seen from its edge
-  const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
-  const double cell = cells.edge;
-  // By v: an edge that two triangles share is the same for both, and each row crosses the long one
-  // and one of the others.
-  const Eigen::Vector3d *low = &corner[0], *middle = &corner[1], *high = &corner[2];
-  if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
-  if ((*high)[kV] < (*middle)[kV]) std::swap(middle, high);
-  if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
-  const double low_u = (*low)[kU], low_v = (*low)[kV], middle_u = (*middle)[kU],
-               middle_v = (*middle)[kV];
-  const double along_long = ((*high)[kU] - low_u) / ((*high)[kV] - low_v),
-               along_lower = (middle_u - low_u) / (middle_v - low_v),
-               along_upper = ((*high)[kU] - middle_u) / ((*high)[kV] - middle_v);
-  const double at_origin = (*low)[kAxis] - slope_u * low_u - slope_v * low_v;
-  const std::int32_t rows = cells.first_center((*high)[kV]);
-  for (std::int32_t row = sampled.first_row(cells.first_center(low_v)); row < rows;
-       row += sampled.row_step()) {
-    const double at_v = (row + 0.5) * cell;
-    const double first = low_u + (at_v - low_v) * along_long;
-    const double second = at_v < middle_v ? low_u + (at_v - low_v) * along_lower
-                                          : middle_u + (at_v - middle_v) * along_upper;
-    const std::int32_t columns = cells.first_center(std::max(first, second));
-    const double at_row = at_origin + slope_v * at_v;
-    for (std::int32_t column =
-             sampled.first_column(cells.first_center(std::min(first, second)), row);
-         column < columns; column += sampled.column_step()) {
-      const double height = at_row + slope_u * ((column + 0.5) * cell);
-      f(Sample{height, cells.number(height), column, row, triangle, kAxis});
-    }
-  }
-}
-
-template <class F>
-void for_each_center(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
-                     Eigen::Index axis, const Cells& cells, const Columns& sampled, F&& f) {
-  switch (axis) {
-    case 0:
-      return for_each_center<0>(corner, triangle, cells, sampled, f);
-    case 1:
-      return for_each_center<1>(corner, triangle, cells, sampled, f);
-    default:
-      return for_each_center<2>(corner, triangle, cells, sampled, f);
-  }
-}
 
 /// Whether cells have a point already; fast where one is near the one before.
 class TakenCells {
@@ -261,15 +217,20 @@ class TakenCells {
   explicit TakenCells(const SampleGrid& grid) : grid_(grid) {}
 
   /// @param p_grid  in the cell
-  template <class Point>
-  bool operator()(const Eigen::Array3i& cell, Point&& p_grid) {
+  bool operator()(const Eigen::Array3i& cell, const Eigen::Vector3d& p_grid) {
+    return is_marked(cell) || grid_.taken(p_grid);
+  }
+  /// Whether it is marked in a brick of the grid.
+  bool is_marked(const Eigen::Array3i& cell) {
     const Eigen::Array3i number = CellBrick::number_of(cell);
-    if ((number != number_).any()) {
+    if (((number.x() ^ number_.x()) | (number.y() ^ number_.y()) | (number.z() ^ number_.z())) !=
+        0) {
+      static constexpr CellBrick kEmpty{};
       number_ = number;
       brick_ = grid_.taken_brick(number);
+      if (brick_ == nullptr) brick_ = &kEmpty;
     }
-    if (brick_ != nullptr && brick_->test(cell)) return true;
-    return grid_.taken(p_grid());
+    return brick_->test(cell);
   }
 
  private:
@@ -277,6 +238,122 @@ class TakenCells {
   // The brick last asked for; at first a number that no cell's brick has.
   Eigen::Array3i number_ = Eigen::Array3i::Constant(std::numeric_limits<int>::min());
   const CellBrick* brick_ = nullptr;
+};
+
+/// The samples of some triangles whose cells have no point yet. Triangles have a few cells each,
+/// of which nobody could foresee which are free: all of a triangle take a step together, and what
+/// goes is written over, so that few branches are left to guess.
+class FreeSamples {
+ public:
+  FreeSamples(const SampleGrid& grid, const Cells& cells)
+      : grid_(grid), cells_(cells), taken_(grid) {
+    samples_.reserve(kUsual);
+  }
+
+  /// Adds samples at the centres of cells that fall onto a triangle when looked at along `axis`.
+  void add(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle, Eigen::Index axis,
+           const Columns& sampled) {
+    switch (axis) {
+      case 0:
+        return add_along<0>(corner, triangle, sampled);
+      case 1:
+        return add_along<1>(corner, triangle, sampled);
+      default:
+        return add_along<2>(corner, triangle, sampled);
+    }
+  }
+
+  std::vector<Sample> take() && { return std::move(samples_); }
+
+ private:
+  static constexpr std::size_t kUsual = 4096;  // samples that there will be room for
+  static constexpr std::size_t kSize = 256;    // cells of a block
+  static constexpr int kWide = 4;              // so many are put at once
+  template <class T>
+  using Row = std::array<T, kSize + kWide>;
+  template <class T>
+  using Wide = Eigen::Array<T, kWide, 1>;
+
+  template <std::uint32_t kAxis>
+  void add_along(const std::array<Eigen::Vector3d, 3>& corner, std::uint32_t triangle,
+                 const Columns& sampled) {
+    constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
+    const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    if (!(n[kAxis] * n[kAxis] > 1e-6 * n.squaredNorm())) return;  // seen from its edge
+    const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
+    const double cell = cells_.edge;
+    // By v: an edge that two triangles share is the same for both, and each row crosses the long
+    // one and one of the others.
+    const Eigen::Vector3d *low = &corner[0], *middle = &corner[1], *high = &corner[2];
+    if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
+    if ((*high)[kV] < (*middle)[kV]) std::swap(middle, high);
+    if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
+    const double low_u = (*low)[kU], low_v = (*low)[kV], middle_u = (*middle)[kU],
+                 middle_v = (*middle)[kV];
+    const double along_long = ((*high)[kU] - low_u) / ((*high)[kV] - low_v),
+                 along_lower = (middle_u - low_u) / (middle_v - low_v),
+                 along_upper = ((*high)[kU] - middle_u) / ((*high)[kV] - middle_v);
+    const double at_origin = (*low)[kAxis] - slope_u * low_u - slope_v * low_v;
+    const std::int32_t rows = cells_.first_center((*high)[kV]), step = sampled.column_step();
+    const Wide<std::int32_t> whole_offsets = step * Wide<std::int32_t>(0, 1, 2, 3);
+    const Wide<double> offsets = whole_offsets.cast<double>();
+    for (std::int32_t row = sampled.first_row(cells_.first_center(low_v)); row < rows;
+         row += sampled.row_step()) {
+      const double at_v = (row + 0.5) * cell;
+      const double first = low_u + (at_v - low_v) * along_long;
+      const double second = at_v < middle_v ? low_u + (at_v - low_v) * along_lower
+                                            : middle_u + (at_v - middle_v) * along_upper;
+      const std::int32_t columns = cells_.first_center(std::max(first, second));
+      const double at_row = at_origin + slope_v * at_v;
+      std::int32_t column = sampled.first_column(cells_.first_center(std::min(first, second)), row);
+      std::int32_t left = sampled.columns_between(column, columns);
+      for (;; column += kWide * step, left -= kWide) {
+        const Wide<double> at_u = ((column + 0.5) + offsets) * cell;
+        put(at_row + slope_u * at_u, height_);
+        put(column + whole_offsets, column_);
+        put(Wide<std::int32_t>::Constant(row), row_);
+        count_ += static_cast<std::size_t>(std::clamp(left, 0, kWide));
+        if (count_ >= kSize) keep_free<kAxis>(triangle);
+        if (left <= kWide) break;
+      }
+    }
+    keep_free<kAxis>(triangle);
+  }
+
+  /// Writes values behind those of the block.
+  template <class T, class Values>
+  void put(const Values& values, Row<T>& row) {
+    Eigen::Map<Wide<T>> place(&row[count_]);
+    place = values;
+  }
+
+  /// Takes over what is free of the block, all of one triangle, and empties it.
+  template <std::uint32_t kAxis>
+  void keep_free(std::uint32_t triangle) {
+    for (std::size_t i = 0; i < count_; ++i) layer_[i] = cells_.number(height_[i]);
+    std::size_t free = 0;
+    const auto sample_at = [&](std::size_t i) {
+      return Sample{height_[i], layer_[i], column_[i], row_[i], triangle, kAxis};
+    };
+    for (std::size_t i = 0; i < count_; ++i) {
+      free_[free] = static_cast<std::uint16_t>(i);
+      free += !taken_.is_marked(sample_at(i).cell());
+    }
+    for (std::size_t k = 0; k < free; ++k) {
+      const Sample sample = sample_at(free_[k]);
+      if (!grid_.taken(sample.position(grid_.cell))) samples_.push_back(sample);
+    }
+    count_ = 0;
+  }
+
+  const SampleGrid& grid_;
+  const Cells& cells_;
+  TakenCells taken_;
+  Row<double> height_;
+  Row<std::int32_t> column_, row_, layer_;
+  std::size_t count_ = 0;
+  Row<std::uint16_t> free_;  // places in the block
+  std::vector<Sample> samples_;
 };
 
 /// Finds the samples of a surface by chunks of its triangles, which may be asked side by side.
@@ -297,20 +374,16 @@ class SurfaceSampler {
 
   /// Those of a chunk whose cells have no point yet.
   std::vector<Sample> samples(std::size_t chunk) const {
-    std::vector<Sample> samples;
-    TakenCells taken(grid_);
+    FreeSamples samples(grid_, cells_);
     const std::size_t end = std::min(surface_.triangles.size(), (chunk + 1) * kGrain);
     for (std::size_t t = chunk * kGrain; t < end; ++t) {
       const auto& [a, b, c] = surface_.triangles[t];
       Eigen::Index axis;
       (R_grid_cam_ * surface_.triangle_normal[t]).cwiseAbs().maxCoeff(&axis);
-      for_each_center({vertex_[a], vertex_[b], vertex_[c]}, static_cast<std::uint32_t>(t), axis,
-                      cells_, Columns(surface_.halvings[t]), [&](const Sample& sample) {
-                        const auto position = [&] { return sample.position(grid_.cell); };
-                        if (!taken(sample.cell(), position)) samples.push_back(sample);
-                      });
+      samples.add({vertex_[a], vertex_[b], vertex_[c]}, static_cast<std::uint32_t>(t), axis,
+                  Columns(surface_.halvings[t]));
     }
-    return samples;
+    return std::move(samples).take();
   }
 
  private:
@@ -330,7 +403,7 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
     const Eigen::Vector3d p_grid = grid.T_grid_cam * points_cam.position[i].cast<double>();
     const Eigen::Array3i cell(cell_number(p_grid.x()), cell_number(p_grid.y()),
                               cell_number(p_grid.z()));
-    if (!taken(cell, [&] { return p_grid; }) && cells.mark(cell)) kept.push_back(i);
+    if (!taken(cell, p_grid) && cells.mark(cell)) kept.push_back(i);
   }
   PointCloud points = points_cam.select(kept);
   points.normal.clear();
