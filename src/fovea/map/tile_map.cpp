@@ -10,34 +10,13 @@
 #include <utility>
 
 #include "fovea/base/parallel.h"
+#include "fovea/map/points_in_tiles.h"
 
 namespace fovea {
 namespace {
 
 /// Stored floats may round to just outside their tile; relative to the tile's edge.
 constexpr double kRoundingMargin = 1e-6;
-constexpr std::size_t kGrain = 8192;
-
-// Apart, so that what is asked of every point stays small.
-[[noreturn]] void throw_too_far(double tiles) {
-  throw std::invalid_argument(
-      fmt::format("a point lies {} tiles from its submap's origin: not finite or too far", tiles));
-}
-
-std::int32_t tile_index(double tiles) {
-  const double index = std::floor(tiles);
-  // Written so that NaN fails too.
-  if (!(index >= std::numeric_limits<std::int32_t>::min() &&
-        index <= std::numeric_limits<std::int32_t>::max())) {
-    throw_too_far(tiles);
-  }
-  return static_cast<std::int32_t>(index);
-}
-
-TileKey key_of(const Eigen::Vector3d& p_submap, double tiles_per_metre) {
-  const Eigen::Vector3d tiles = p_submap * tiles_per_metre;
-  return {tile_index(tiles.x()), tile_index(tiles.y()), tile_index(tiles.z())};
-}
 
 /// Indices of tiles that [low, high] m may touch, clamped to what a key can hold.
 std::pair<std::int32_t, std::int32_t> index_range(double low, double high, double tile_size) {
@@ -104,25 +83,12 @@ void TileMap::add(const PointCloud& points_local) {
   require_same_columns(!points_local.intensity.empty());
   Submap& submap = submaps_.back();
 
-  const RigidMotion T_submap_local = submap.T_local_submap.inverse();
-  const Eigen::Matrix3d R = T_submap_local.linear();
-  const Eigen::Vector3d t = T_submap_local * points_local.origin;
-  std::vector<Eigen::Vector3d> p_submap(points_local.size());
-  std::vector<TileKey> keys(p_submap.size());
-  parallel_for(p_submap.size(), kGrain, [&](std::size_t i) {
-    p_submap[i] = R * points_local.position[i].cast<double>() + t;
-    keys[i] = key_of(p_submap[i], 1 / tile_size_);
-  });
-  // Neighbours in a cloud mostly share a tile.
+  const PointsInTiles placed = points_in_tiles(
+      points_local.position,
+      submap.T_local_submap.inverse() * Eigen::Translation3d(points_local.origin), tile_size_);
   using Ranges = std::vector<TilePoints::Range>;
-  std::map<TileKey, Ranges> groups;
-  for (std::uint32_t begin = 0, end = 0; begin < keys.size(); begin = end) {
-    while (end < keys.size() && keys[end] == keys[begin]) ++end;
-    groups[keys[begin]].push_back({begin, end});
-  }
-
   std::vector<std::pair<Tile*, const Ranges*>> additions;
-  for (const auto& [key, ranges] : groups) {
+  for (const auto& [key, ranges] : placed.ranges) {
     if (submap.stored.contains(key)) {
       throw std::logic_error(fmt::format("points for {}, which is not in memory",
                                          name_of({submaps_.size() - 1, key})));
@@ -136,7 +102,7 @@ void TileMap::add(const PointCloud& points_local) {
     additions.emplace_back(&place->second, &ranges);
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
-    additions[k].first->points.write().append(points_local, p_submap, *additions[k].second);
+    additions[k].first->points.write().append(points_local, placed.position, *additions[k].second);
   });
   size_ += points_local.size();
   size_in_memory_ += points_local.size();

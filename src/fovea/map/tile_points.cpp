@@ -13,19 +13,9 @@
 namespace fovea {
 namespace {
 
-/// Steps of a value in what an unsigned number can hold; 0 of NaN.
-template <class Number>
-Number steps(double value, double step, Number most) {
-  // std::round would be a call; a step is known to the compiler, which divides once by it.
-  const double count = std::floor(value * (1 / step) + 0.5);
-  if (!(count > 0)) return 0;
-  return count < most ? static_cast<Number>(count) : most;
+std::uint16_t range_steps(float range) {
+  return steps<std::uint16_t>(double(range), double(kRangeStep));
 }
-
-constexpr std::uint16_t kMost16 = std::numeric_limits<std::uint16_t>::max();
-
-std::uint16_t position_steps(double p) { return steps(p, double(kPositionStep), kMost16); }
-std::uint16_t range_steps(float range) { return steps(range, double(kRangeStep), kMost16); }
 std::uint8_t incidence_steps(float incidence) {
   if (std::isnan(incidence)) return TilePoints::kUnknownIncidence;
   return steps<std::uint8_t>(incidence, double(kIncidenceStep), TilePoints::kUnknownIncidence - 1);
@@ -130,7 +120,7 @@ PointCloud TilePoints::cloud() const {
   return tile;
 }
 
-void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
+void TilePoints::append(const PointCloud& points, const TilePlaces& places,
                         std::span<const Range> ranges) {
   const std::size_t before = size();
   std::size_t count = 0;
@@ -141,19 +131,16 @@ void TilePoints::append(const PointCloud& points, std::span<const Eigen::Vector3
       for (std::uint32_t i = begin; i < end; ++i) *to++ = value_of(i);
     }
   };
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto k = Eigen::Index(axis);
-    append_each(position[axis],
-                [&](std::uint32_t i) { return position_steps(p_submap[i][k] - origin[k]); });
-  }
   append_each(range, [&](std::uint32_t i) { return range_steps(points.range[i]); });
   append_each(incidence, [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
-  for_each_alike_column(*this, points, [&](auto& to, const auto& from) {
+  const auto append_as_is = [&](auto& to, const auto& from) {
     auto* at = grow(to, count);
     for (const auto& [begin, end] : ranges) {
       at = std::copy(from.begin() + begin, from.begin() + end, at);
     }
-  });
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) append_as_is(position[axis], places[axis]);
+  for_each_alike_column(*this, points, append_as_is);
   for_each_run_column(*this, points, [&](auto& to, const auto& from) {
     if (from.empty()) return;
     for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));

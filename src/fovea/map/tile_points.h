@@ -2,8 +2,11 @@
 // finer than any sensor knows them, in two thirds of the memory that floats would take.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +21,22 @@ inline constexpr float kIncidenceStep = 0.008726646f;  // rad: half a degree
 /// Largest edge of a tile whose points the steps reach, m.
 inline constexpr double kMaxTileSize = 65.5;
 
+/// Whole number of steps nearest to a value, of those that `Number` holds; 0 of NaN.
+template <class Number>
+Number steps(double value, double step, Number most = std::numeric_limits<Number>::max()) {
+  // std::round would be a call; a step is known to the compiler, which divides once by it. Choices
+  // in this order are one instruction each.
+  const double count = std::floor(value * (1 / step) + 0.5);
+  return static_cast<Number>(
+      static_cast<std::int32_t>(std::min(double(most), std::max(0.0, count))));
+}
+inline std::uint16_t position_steps(double p) {
+  return steps<std::uint16_t>(p, double(kPositionStep));
+}
+
+/// Places in a tile, a column for each of x, y, z: steps from its lowest corner.
+using TilePlaces = std::array<std::vector<std::uint16_t>, 3>;
+
 /// Columns of equal length, intensity excepted, which all tiles of a map have or none. What is not
 /// said otherwise is as in PointCloud; normals and times are not kept.
 struct TilePoints {
@@ -25,7 +44,7 @@ struct TilePoints {
   static constexpr std::uint8_t kUnknownIncidence = 255;
 
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the tile's lowest corner, submap frame, m
-  std::array<std::vector<std::uint16_t>, 3> position;  ///< steps from there along x, y, z
+  TilePlaces position;
   std::vector<Rgb> color;
   // Points come frame by frame and triangle by triangle: what these say of one it says of the next.
   RunColumn<std::int8_t> camera;
@@ -67,9 +86,8 @@ struct TilePoints {
     std::uint32_t begin, end;
   };
   /// Appends some ranges of a cloud, rounded as by of().
-  /// @param p_submap  m, submap frame; of all points, in place of their positions
-  void append(const PointCloud& points, std::span<const Eigen::Vector3d> p_submap,
-              std::span<const Range> ranges);
+  /// @param places  of all points, in place of their positions
+  void append(const PointCloud& points, const TilePlaces& places, std::span<const Range> ranges);
   /// Keeps only the points at `indices` (ascending), in place.
   void keep(std::span<const std::uint32_t> indices);
   /// Has the box hold the points from `first` on.

@@ -53,16 +53,13 @@ TEST(TilePoints, WhatIsOutOfRangeBecomesTheNearestThatCanBeKept) {
 
 TEST(TilePoints, AppendedAndKeptPointsAreThoseOfTheCloud) {
   const PointCloud cloud = random_tile(100);
-  std::vector<Eigen::Vector3d> p_submap;
+  const TilePlaces places = TilePoints::of(cloud).position;
   TilePoints points;
   points.origin = {4, -8, 12};
-  for (const Eigen::Vector3f& p : cloud.position) {
-    p_submap.emplace_back(points.origin + p.cast<double>());
-  }
   using Ranges = std::vector<TilePoints::Range>;
   const Ranges first{{3, 5}, {50, 51}, {7, 8}}, then{{99, 100}, {0, 1}};
-  points.append(cloud, p_submap, first);
-  points.append(cloud, p_submap, then);
+  points.append(cloud, places, first);
+  points.append(cloud, places, then);
   PointCloud expected = cloud.select({3, 4, 50, 7, 99, 0});
   expected.origin = points.origin;
   expected.normal.clear();
@@ -75,9 +72,8 @@ TEST(TilePoints, TheBoxEndsAtThePoints) {
   TilePoints points = TilePoints::of(one_point_each({{1, 2, 0.5f}, {0.25f, 3, 4}}));
   EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
   EXPECT_EQ(points.high, (TilePoints::Steps{1000, 3000, 4000}));
-  const std::vector<Eigen::Vector3d> p_submap{{0, 0, 0}, {2, 2.5, 1}};
-  points.append(one_point_each({{0, 0, 0}, {2, 2.5f, 1}}), p_submap,
-                std::vector<TilePoints::Range>{{1, 2}});
+  const PointCloud cloud = one_point_each({{0, 0, 0}, {2, 2.5f, 1}});
+  points.append(cloud, TilePoints::of(cloud).position, std::vector<TilePoints::Range>{{1, 2}});
   EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
   EXPECT_EQ(points.high, (TilePoints::Steps{2000, 3000, 4000}));
 }
