@@ -173,34 +173,47 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
   }
 }
 
+template <class F>
+void SeenMap::for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
+                             F&& f) const {
+  ProjectedBlock block(camera_);
+  for (; begin < end; begin += kBlock) {
+    const std::size_t block_end = std::min(begin + kBlock, end);
+    block.project(std::span(points_cam.position).subspan(begin, block_end - begin),
+                  Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero());
+    f(begin, block_end, block);
+  }
+}
+
 void SeenMap::put_in_front(const PointCloud& points_cam) {
   const std::size_t of_share = (points_cam.size() + kShares - 1) / kShares;
   parallel_for(kShares, 1, [&](std::size_t share) {
     DepthBuffer& front = shares_[share].front;
     front.clear(camera_);
     const std::size_t end = std::min(points_cam.size(), (share + 1) * of_share);
-    ProjectedBlock block(camera_);
     DepthBuffer::Samples samples;
-    for (std::size_t begin = share * of_share; begin < end; begin += kBlock) {
-      const std::size_t n = std::min(kBlock, end - begin);
-      block.project({points_cam.position.data() + begin, n}, Eigen::Matrix3f::Identity(),
-                    Eigen::Vector3f::Zero());
-      std::size_t count = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
-      }
-      front.add(samples, count, disc_radius_);
-    }
+    for_each_block(points_cam, share * of_share, end,
+                   [&](std::size_t begin, std::size_t block_end, const ProjectedBlock& block) {
+                     std::size_t count = 0;
+                     for (std::size_t i = 0; i < block_end - begin; ++i) {
+                       if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
+                     }
+                     front.add(samples, count, disc_radius_);
+                   });
   });
   for (const Share& share : shares_) front_.add(share.front);
 }
 
 std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) const {
-  std::vector<std::uint8_t> marks(points_cam.size(), 0);
-  parallel_for(marks.size(), kGrain, [&](std::size_t i) {
-    const Eigen::Vector3f& p = points_cam.position[i];
-    const Eigen::Vector2f pixel = pixel_of(camera_, p);
-    marks[i] = camera_.in_view(pixel.cast<double>()) && front_.stands_before(pixel, p.z());
+  std::vector<std::uint8_t> marks(points_cam.size());
+  parallel_chunks(marks.size(), kGrain, [&](std::size_t chunk_begin, std::size_t chunk_end) {
+    for_each_block(points_cam, chunk_begin, chunk_end,
+                   [&](std::size_t begin, std::size_t end, const ProjectedBlock& block) {
+                     for (std::size_t i = 0; i < end - begin; ++i) {
+                       marks[begin + i] =
+                           block.in_view(i) && front_.stands_before(block.pixel(i), block.depth(i));
+                     }
+                   });
   });
   return marks;
 }

@@ -83,6 +83,10 @@ class SeenMap {
   void gather(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local);
   void look_at(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
                Piece& piece);
+  /// Calls f(begin, end, block) for points that follow each other, as the camera sees them.
+  template <class F>
+  void for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
+                      F&& f) const;
   /// Some points of a piece, as compare() wants them.
   struct Differences {
     std::vector<Eigen::Array3f> gains;
