@@ -5,123 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/cell_brick.h"
 
 namespace fovea {
 namespace {
 
-using Vertices = DelaunayTriangulation::Vertices;
 constexpr std::size_t kGrain = 512;  // triangles
 constexpr std::size_t kSampleGrain = 4096;
-/// Rounds of averaging normals over neighbours: ranges are noisy, and triangles small.
-constexpr int kSmoothing = 2;
-
-std::size_t neighbor(const ImageMesh& mesh, std::size_t triangle, int corner) {
-  return static_cast<std::size_t>(mesh.triangulation.neighbor(triangle, corner));
-}
-
-/// Normal of a triangle together with its neighbours but one: of areas as vectors, whose noise is
-/// that of the rim alone.
-Eigen::Vector3f patch_normal(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area,
-                             std::size_t triangle, std::size_t without) {
-  Eigen::Vector3f sum = area[triangle];
-  for (int corner = 0; corner < 3; ++corner) {
-    const std::size_t beyond = neighbor(mesh, triangle, corner);
-    if (beyond != without) sum += area[beyond];
-  }
-  return unit_or_zero(sum);
-}
-
-/// Whether the surface goes on straight across each edge of a triangle. The patches on either side
-/// have no triangle in common: across a gap in depth triangles are large, and would outweigh the
-/// small ones of the surface at its rim.
-bool is_flat(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area, std::size_t triangle,
-             float cos_angle) {
-  for (int corner = 0; corner < 3; ++corner) {
-    const std::size_t beyond = neighbor(mesh, triangle, corner);
-    if (area[beyond].isZero(0)) return false;
-    const float cos_fold =
-        patch_normal(mesh, area, triangle, beyond).dot(patch_normal(mesh, area, beyond, triangle));
-    if (!(cos_fold > cos_angle)) return false;
-  }
-  return true;
-}
-
-/// How often the samples of a piece of surface are to be halved, that no more than `max_per_pixel`
-/// of them show in a pixel.
-/// @param normal  of length 1
-std::uint8_t halvings_for(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& normal,
-                          const Camera& camera, const SurfaceOptions& options) {
-  // What a pixel sees of a plane: depth^3 / (fx fy |normal . p|).
-  const double limit = options.max_per_pixel * options.spacing * options.spacing * camera.fx *
-                       camera.fy * std::abs(normal.dot(p_cam));
-  double shown = p_cam.z() * p_cam.z() * p_cam.z();
-  std::uint8_t halvings = 0;
-  for (; halvings < Surface::kMostHalvings && shown > limit; ++halvings) shown /= 2;
-  return halvings;
-}
-
-/// @return by triangle found: its normal, as long as twice its area
-std::vector<Eigen::Vector3f> find_triangles(const GridProjection& project,
-                                            const SurfaceOptions& options, Surface& surface) {
-  const ImageMesh& mesh = surface.mesh;
-  const auto squared = [](double edge) { return static_cast<float>(edge * edge); };
-  const float longest = squared(std::max(options.max_edge, options.planar_edge));
-  std::vector<Eigen::Vector3f> area(mesh.triangulation.triangle_count(), Eigen::Vector3f::Zero());
-  for (std::size_t t = 0; t < area.size(); ++t) {
-    if (!mesh.triangulation.is_finite(t)) continue;
-    const Vertices& corners = mesh.triangulation.vertices(t);
-    if (mesh.edges_below(corners, longest)) area[t] = mesh.area_normal(corners, project);
-  }
-  const auto cos_angle = static_cast<float>(std::cos(options.planar_angle));
-  std::vector<Eigen::Vector3f> found;
-  for (std::size_t t = 0; t < area.size(); ++t) {
-    if (area[t].isZero(0)) continue;
-    const Vertices& corners = mesh.triangulation.vertices(t);
-    const bool is_short = mesh.edges_below(corners, squared(options.max_edge));
-    if (!is_short && !is_flat(mesh, area, t, cos_angle)) continue;
-    surface.triangles.push_back(corners);
-    surface.rule.push_back(is_short ? PointRule::kShortEdges : PointRule::kPlanar);
-    found.push_back(area[t]);
-  }
-  return found;
-}
-
-/// @param area  as find_triangles() returns it
-void find_normals(const std::vector<Eigen::Vector3f>& area, Surface& surface) {
-  std::vector<Eigen::Vector3f>& normal = surface.vertex_normal;
-  normal.assign(surface.mesh.position.size(), Eigen::Vector3f::Zero());
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    for (const std::int32_t corner : surface.triangles[t]) normal[corner] += area[t];
-  }
-  for (Eigen::Vector3f& n : normal) n = unit_or_zero(n);
-  for (int round = 0; round < kSmoothing; ++round) {
-    std::vector<Eigen::Vector3f> sum = normal;
-    for (const auto& [a, b, c] : surface.triangles) {
-      const Eigen::Vector3f together = normal[a] + normal[b] + normal[c];
-      for (const std::int32_t corner : {a, b, c}) sum[corner] += together;
-    }
-    for (std::size_t v = 0; v < sum.size(); ++v) normal[v] = unit_or_zero(sum[v]);
-  }
-  surface.triangle_normal.reserve(surface.triangles.size());
-  for (const auto& [a, b, c] : surface.triangles) {
-    surface.triangle_normal.push_back(unit_or_zero(normal[a] + normal[b] + normal[c]));
-  }
-}
-
-void find_halvings(const GridProjection& project, const Camera& camera,
-                   const SurfaceOptions& options, Surface& surface) {
-  surface.halvings.assign(surface.triangles.size(), 0);
-  if (options.max_per_pixel == 0) return;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const std::vector<Eigen::Vector3f>& p = surface.mesh.position;
-    surface.halvings[t] = halvings_for(project.from_camera((p[a] + p[b] + p[c]) / 3),
-                                       surface.triangle_normal[t].cast<double>(), camera, options);
-  }
-}
 
 /// The number, along one axis, of the cell in which a coordinate (m) will be once it is rounded.
 class CellNumber {
@@ -448,38 +339,6 @@ class TriangleValues {
 };
 
 }  // namespace
-
-void SurfaceOptions::validate() const {
-  if (!(spacing == 0 || (spacing >= 0.005 && spacing <= 1))) {
-    throw ConfigError("the spacing of samples is out of range", "surface.spacing",
-                      "give metres from 0.005 to 1, or 0 for the paper's upsampling");
-  }
-  for (const auto& [edge, key] :
-       {std::pair(max_edge, "surface.max_edge"), std::pair(planar_edge, "surface.planar_edge")}) {
-    if (!(edge > 0 && edge <= 100)) {
-      throw ConfigError("the longest edge of a triangle is out of range", key,
-                        "give metres above 0 and up to 100");
-    }
-  }
-  if (!(max_per_pixel == 0 || (max_per_pixel >= 0.1 && max_per_pixel <= 1000))) {
-    throw ConfigError("the number of samples in a pixel is out of range", "surface.max_per_pixel",
-                      "give 0.1 to 1000, or 0 for no limit");
-  }
-  if (!(planar_angle >= 0 && planar_angle <= 1.5707963267948966)) {
-    throw ConfigError("an angle is out of range", "surface.planar_angle", "give 0 to 90 degrees");
-  }
-}
-
-Surface find_surface(const PointCloud& points_cam, const Camera& camera,
-                     const SurfaceOptions& options) {
-  options.validate();
-  points_cam.check();
-  const GridProjection project(camera, points_cam.origin);
-  Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}, {}};
-  find_normals(find_triangles(project, options, surface), surface);
-  find_halvings(project, camera, options, surface);
-  return surface;
-}
 
 PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
                           const SampleGrid& grid) {

@@ -5,6 +5,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/mapping/surface_samples.h"
 #include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {

@@ -11,7 +11,7 @@
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
-#include "fovea/mapping/surface_samples.h"
+#include "fovea/mapping/surface.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/fusion.h"

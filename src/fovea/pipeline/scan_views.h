@@ -9,7 +9,7 @@
 
 #include "fovea/mapping/image_pyramid.h"
 #include "fovea/mapping/moving/range_image.h"
-#include "fovea/mapping/surface_samples.h"
+#include "fovea/mapping/surface.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/stage_clock.h"
 #include "fovea/sensor/frame_source.h"
