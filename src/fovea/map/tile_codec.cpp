@@ -113,7 +113,7 @@ TilePoints TileDecoder::decode(const TileRow& row, const std::string& map_path) 
     if (!unpacked()) fail("a column of a tile cannot be decoded");
     unpack_column(i, memory_, points, tile);
   }
-  tile.widen_box(0);
+  tile.widen_boxes(0);
   if (count_colored(tile) != row.colored) fail("a tile has another number of coloured points");
   return tile;
 }

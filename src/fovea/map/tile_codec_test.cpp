@@ -40,8 +40,8 @@ TEST(TileDecoder, TheBoxComesBack) {
   TileEncoder encoder;
   TileDecoder decoder;
   const TilePoints back = decoder.decode(encoder.encode(pack_tile({}, tile)), "map");
-  EXPECT_EQ(back.low, tile.low);
-  EXPECT_EQ(back.high, tile.high);
+  EXPECT_EQ(back.box.low, tile.box.low);
+  EXPECT_EQ(back.box.high, tile.box.high);
 }
 
 }  // namespace fovea::tile_codec_test

@@ -97,7 +97,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   }
   for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
   for_each_run_column(points, tile, [](auto& to, const auto& from) { to.append(from); });
-  points.widen_box(0);
+  points.widen_boxes(0);
   return points;
 }
 
@@ -145,14 +145,25 @@ void TilePoints::append(const PointCloud& points, const TilePlaces& places,
     if (from.empty()) return;
     for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));
   });
-  widen_box(before);
+  widen_boxes(before);
 }
 
-void TilePoints::widen_box(std::size_t first) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = first; i < size(); ++i) {
-      low[axis] = std::min(low[axis], position[axis][i]);
-      high[axis] = std::max(high[axis], position[axis][i]);
+void TilePoints::widen_boxes(std::size_t first) {
+  boxes.resize((size() + kBoxed - 1) / kBoxed);
+  for (std::size_t block = first / kBoxed; block < boxes.size(); ++block) {
+    Box& of_block = boxes[block];
+    const std::size_t begin = std::max(first, block * kBoxed),
+                      end = std::min(size(), (block + 1) * kBoxed);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::uint16_t low = of_block.low[axis], high = of_block.high[axis];
+      for (std::size_t i = begin; i < end; ++i) {
+        low = std::min(low, position[axis][i]);
+        high = std::max(high, position[axis][i]);
+      }
+      of_block.low[axis] = low;
+      of_block.high[axis] = high;
+      box.low[axis] = std::min(box.low[axis], low);
+      box.high[axis] = std::max(box.high[axis], high);
     }
   }
 }
@@ -164,6 +175,9 @@ void TilePoints::keep(std::span<const std::uint32_t> indices) {
   kept.close_up(incidence);
   for_each_alike_column(*this, *this, [&](auto& column, auto&) { kept.close_up(column); });
   for_each_run_column(*this, *this, [&](auto& column, auto&) { column.keep(indices); });
+  box = {};
+  boxes.clear();
+  widen_boxes(0);
 }
 
 void check_tile_columns(const PointCloud& cloud) {

@@ -57,9 +57,13 @@ struct TilePoints {
   std::vector<std::uint16_t> weight;
   RunColumn<std::uint8_t> reason;
   RunColumn<float> intensity;
-  /// A box around all points, in steps, both ends included; where points have gone it may be larger
-  /// than need be. Without points it holds none.
-  Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};
+  /// Around some points, in steps, both ends included; without points it holds none.
+  struct Box {
+    Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};
+  };
+  Box box;                 ///< around all points
+  std::vector<Box> boxes;  ///< around each kBoxed that follow each other: near each other, mostly
+  static constexpr std::size_t kBoxed = 256;
 
   std::size_t size() const { return position[0].size(); }
   bool empty() const { return position[0].empty(); }
@@ -90,8 +94,8 @@ struct TilePoints {
   void append(const PointCloud& points, const TilePlaces& places, std::span<const Range> ranges);
   /// Keeps only the points at `indices` (ascending), in place.
   void keep(std::span<const std::uint32_t> indices);
-  /// Has the box hold the points from `first` on.
-  void widen_box(std::size_t first);
+  /// Has the boxes hold the points from `first` on.
+  void widen_boxes(std::size_t first);
 };
 
 /// Throws std::logic_error that names a column which a tile must have and `cloud` lacks, or a

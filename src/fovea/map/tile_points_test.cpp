@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -68,14 +69,46 @@ TEST(TilePoints, AppendedAndKeptPointsAreThoseOfTheCloud) {
   expect_same_columns(points.cloud(), TilePoints::of(expected.select({1, 4})).cloud());
 }
 
-TEST(TilePoints, TheBoxEndsAtThePoints) {
+TEST(TilePoints, BoxesEndAtThePoints) {
   TilePoints points = TilePoints::of(one_point_each({{1, 2, 0.5f}, {0.25f, 3, 4}}));
-  EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
-  EXPECT_EQ(points.high, (TilePoints::Steps{1000, 3000, 4000}));
+  EXPECT_EQ(points.box.low, (TilePoints::Steps{250, 2000, 500}));
+  EXPECT_EQ(points.box.high, (TilePoints::Steps{1000, 3000, 4000}));
   const PointCloud cloud = one_point_each({{0, 0, 0}, {2, 2.5f, 1}});
   points.append(cloud, TilePoints::of(cloud).position, std::vector<TilePoints::Range>{{1, 2}});
-  EXPECT_EQ(points.low, (TilePoints::Steps{250, 2000, 500}));
-  EXPECT_EQ(points.high, (TilePoints::Steps{2000, 3000, 4000}));
+  EXPECT_EQ(points.box.low, (TilePoints::Steps{250, 2000, 500}));
+  EXPECT_EQ(points.box.high, (TilePoints::Steps{2000, 3000, 4000}));
+}
+
+TEST(TilePoints, EachBoxHoldsItsPointsWhateverComesAndGoes) {
+  const PointCloud cloud = random_tile(1000);
+  const auto expect_boxes = [](const TilePoints& points) {
+    constexpr std::size_t kBoxed = TilePoints::kBoxed;
+    ASSERT_EQ(points.boxes.size(), (points.size() + kBoxed - 1) / kBoxed);
+    for (std::size_t k = 0; k < points.boxes.size(); ++k) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto column = points.position[axis].begin();
+        const auto [low, high] =
+            std::minmax_element(column + std::ptrdiff_t(k * kBoxed),
+                                column + std::ptrdiff_t(std::min(points.size(), (k + 1) * kBoxed)));
+        EXPECT_EQ(points.boxes[k].low[axis], *low) << k;
+        EXPECT_EQ(points.boxes[k].high[axis], *high) << k;
+      }
+    }
+  };
+  TilePoints points = TilePoints::of(cloud.select({5, 6, 7}));
+  const TilePlaces places = TilePoints::of(cloud).position;
+  for (const auto& [begin, end] :
+       std::vector<TilePoints::Range>{{0, 100}, {100, 700}, {700, 701}}) {
+    points.append(cloud, places, std::vector<TilePoints::Range>{{begin, end}});
+    expect_boxes(points);
+  }
+  std::vector<std::uint32_t> odd;
+  for (std::uint32_t i = 1; i < points.size(); i += 2) odd.push_back(i);
+  points.keep(odd);
+  expect_boxes(points);
+  points.keep(std::vector<std::uint32_t>{3});
+  expect_boxes(points);
+  EXPECT_EQ(points.box.low, points.box.high);
 }
 
 TEST(TilePoints, ColumnsOfDifferentLengthsAreRefused) {

@@ -42,27 +42,44 @@ constexpr std::size_t kExposureStep = 32;
 constexpr float kUndone = 0.9f;
 
 static_assert(kGrain / kExposureStep <= kBlock && kGrain <= 1 << 16);
+static_assert(kGrain % TilePoints::kBoxed == 0 && TilePoints::kBoxed <= ProjectedBlock::kSize);
 
-/// Whether a box of points may reach into a camera's view.
-bool may_be_in_view(const Camera& camera, const RigidMotion& T_cam_submap,
-                    const TilePoints& points) {
-  if (points.empty()) return false;
-  const Eigen::Array3d low(points.low[0], points.low[1], points.low[2]),
-      high(points.high[0], points.high[1], points.high[2]);
-  const Eigen::Vector3d half = (high - low) / 2 * double(kPositionStep);
-  const Eigen::Vector3d center =
-      T_cam_submap * (points.origin + ((low + high) / 2 * double(kPositionStep)).matrix());
-  constexpr double kHair = 1e-3;  // m: single precision tells which points are in view
-  const auto inside = [&](const Eigen::Vector3d& inwards) {
-    const Eigen::Vector3d normal = inwards.normalized();
-    const double reach = (T_cam_submap.linear().transpose() * normal).cwiseAbs().dot(half);
-    return normal.dot(center) + reach >= -kHair;
+/// The planes that bound a camera's view, in the axes of a tile: which of its boxes may reach into
+/// it. Tells what is out of view without asking for each point.
+class ViewBounds {
+ public:
+  ViewBounds(const Camera& camera, const RigidMotion& T_cam_tile) {
+    const std::array<Eigen::Vector3d, 5> inwards{
+        Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(camera.fx, 0, camera.cx),
+        Eigen::Vector3d(-camera.fx, 0, camera.width - 1 - camera.cx),
+        Eigen::Vector3d(0, camera.fy, camera.cy),
+        Eigen::Vector3d(0, -camera.fy, camera.height - 1 - camera.cy)};
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      const Eigen::Vector3d normal_cam = inwards[i].normalized();
+      planes_[i].normal = (T_cam_tile.linear().transpose() * normal_cam).cast<float>();
+      planes_[i].offset = static_cast<float>(normal_cam.dot(T_cam_tile.translation())) + kHair;
+    }
+  }
+
+  bool may_hold(const TilePoints::Box& box) const {
+    const auto corner = [](const TilePoints::Steps& steps) -> Eigen::Array3f {
+      return Eigen::Array3f(steps[0], steps[1], steps[2]) * kPositionStep;
+    };
+    const Eigen::Array3f low = corner(box.low), high = corner(box.high);
+    const Eigen::Vector3f center = (low + high) / 2, half = (high - low) / 2;
+    return std::all_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
+      return plane.normal.dot(center) + plane.normal.cwiseAbs().dot(half) + plane.offset >= 0;
+    });
+  }
+
+ private:
+  static constexpr float kHair = 1e-3f;  // m: single precision tells which points are in view
+  struct Plane {
+    Eigen::Vector3f normal;  // to the inside
+    float offset;
   };
-  return inside({0, 0, 1}) && inside({camera.fx, 0, camera.cx}) &&
-         inside({-camera.fx, 0, camera.width - 1 - camera.cx}) &&
-         inside({0, camera.fy, camera.cy}) &&
-         inside({0, -camera.fy, camera.height - 1 - camera.cy});
-}
+  std::array<Plane, 5> planes_;
+};
 
 }  // namespace
 
@@ -102,8 +119,9 @@ void SeenMap::gather(const TileMap& map, const FovealRegion& region,
   const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
   map.for_each_tile_near(
       lidar_local, region.far_range(), [&](const TileId& id, const TilePoints& points) {
-        const RigidMotion T_cam_submap = T_cam_local * map.submaps()[id.submap].T_local_submap;
-        if (!may_be_in_view(camera_, T_cam_submap, points)) return;
+        const RigidMotion T_cam_tile = T_cam_local * map.submaps()[id.submap].T_local_submap *
+                                       Eigen::Translation3d(points.origin);
+        if (points.empty() || !ViewBounds(camera_, T_cam_tile).may_hold(points.box)) return;
         const auto size = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kGrain)) {
           const std::uint32_t end = std::min(size, begin + std::uint32_t(kGrain));
@@ -132,9 +150,11 @@ void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMo
 
 void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
                       const RigidMotion& T_cam_local, Piece& piece) {
-  const RigidMotion T_cam_submap = T_cam_local * map.submaps()[piece.tile.submap].T_local_submap;
-  const Eigen::Matrix3f R = T_cam_submap.linear().cast<float>();
-  const Eigen::Vector3f t = (T_cam_submap * piece.points->origin).cast<float>();
+  const RigidMotion T_cam_tile = T_cam_local * map.submaps()[piece.tile.submap].T_local_submap *
+                                 Eigen::Translation3d(piece.points->origin);
+  const Eigen::Matrix3f R = T_cam_tile.linear().cast<float>();
+  const Eigen::Vector3f t = T_cam_tile.translation().cast<float>();
+  const ViewBounds bounds(camera_, T_cam_tile);
   ProjectedBlock block(camera_);
   std::array<std::uint16_t, ProjectedBlock::kSize> weight;
   DepthBuffer::Samples samples;
@@ -142,8 +162,10 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
   const std::size_t most = piece.first + (piece.end - piece.begin);
   if (share.points.size() < most) share.points.resize(most + most / 8);
   Point* out = share.points.data() + piece.first;
-  for (std::uint32_t begin = piece.begin; begin < piece.end;) {
-    const std::uint32_t n = std::min(piece.end - begin, std::uint32_t(ProjectedBlock::kSize));
+  constexpr auto kBoxed = static_cast<std::uint32_t>(TilePoints::kBoxed);
+  for (std::uint32_t begin = piece.begin; begin < piece.end; begin += kBoxed) {
+    if (!bounds.may_hold(piece.points->boxes[begin / kBoxed])) continue;
+    const std::uint32_t n = std::min(piece.end - begin, kBoxed);
     const auto steps = [&](std::size_t axis) {
       return std::span(piece.points->position[axis]).subspan(begin, n);
     };
@@ -169,7 +191,6 @@ void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
     share.front.add(samples, in_view, disc_radius_);
     out += in_region;
     piece.seen += in_region;
-    begin += n;
   }
 }
 
