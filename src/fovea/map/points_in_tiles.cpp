@@ -43,9 +43,15 @@ class Block {
   TileKey tile(std::size_t i) const { return {tile_[0][i], tile_[1][i], tile_[2][i]}; }
 
  private:
+  static constexpr double kLeast = std::numeric_limits<std::int32_t>::min(),
+                          kMost = std::numeric_limits<std::int32_t>::max();
+
+  /// Whether a key can say which tile it is; NaN is none.
+  static int is_in_reach(double index) {
+    return static_cast<int>(index >= kLeast) & static_cast<int>(index <= kMost);  // no branch
+  }
+
   void compute_axis(std::size_t axis, std::size_t count, std::uint16_t* position) {
-    constexpr double kLeast = std::numeric_limits<std::int32_t>::min(),
-                     kMost = std::numeric_limits<std::int32_t>::max();
     const auto k = Eigen::Index(axis);
     const double rx = R_(k, 0), ry = R_(k, 1), rz = R_(k, 2), t = t_[k], tile_size = tile_size_,
                  tiles_per_metre = 1 / tile_size;
@@ -56,7 +62,7 @@ class Block {
     }
     for (std::size_t i = 0; i < count; ++i) {
       const double index = std::floor(p_[i] * tiles_per_metre);
-      all_in_reach &= static_cast<int>(index >= kLeast) & static_cast<int>(index <= kMost);
+      all_in_reach &= is_in_reach(index);
       tile[i] = static_cast<std::int32_t>(std::min(kMost, std::max(kLeast, index)));
     }
     if (all_in_reach == 0) throw_too_far(count, tiles_per_metre);
@@ -66,12 +72,12 @@ class Block {
   }
 
   [[noreturn]] void throw_too_far(std::size_t count, double tiles_per_metre) const {
-    const double* const far = std::find_if(p_.data(), p_.data() + count, [&](double p) {
-      return !(std::abs(p * tiles_per_metre) < double(std::numeric_limits<std::int32_t>::max()));
+    const double far = *std::find_if(p_.data(), p_.data() + count, [&](double p) {
+      return is_in_reach(std::floor(p * tiles_per_metre)) == 0;
     });
     throw std::invalid_argument(
         fmt::format("a point lies {} tiles from its submap's origin: not finite or too far",
-                    *far * tiles_per_metre));
+                    far * tiles_per_metre));
   }
 
   Eigen::Matrix3d R_;

@@ -125,7 +125,7 @@ void SeenMap::gather(const TileMap& map, const FovealRegion& region,
         const auto size = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kGrain)) {
           const std::uint32_t end = std::min(size, begin + std::uint32_t(kGrain));
-          pieces_.push_back({id, &points, begin, end, pieces_.size() % kShares, 0, 0});
+          pieces_.push_back({id, &points, T_cam_tile, begin, end, pieces_.size() % kShares, 0, 0});
         }
       });
 }
@@ -140,7 +140,7 @@ void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMo
     std::size_t first = 0;
     for (std::size_t k = share; k < pieces_.size(); k += kShares) {
       pieces_[k].first = first;
-      look_at(map, region, T_cam_local, pieces_[k]);
+      look_at(region, pieces_[k]);
       first += pieces_[k].seen;
     }
   });
@@ -148,13 +148,10 @@ void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMo
   for (std::size_t share = 1; share < kShares; ++share) front_.add(shares_[share].front);
 }
 
-void SeenMap::look_at(const TileMap& map, const FovealRegion& region,
-                      const RigidMotion& T_cam_local, Piece& piece) {
-  const RigidMotion T_cam_tile = T_cam_local * map.submaps()[piece.tile.submap].T_local_submap *
-                                 Eigen::Translation3d(piece.points->origin);
-  const Eigen::Matrix3f R = T_cam_tile.linear().cast<float>();
-  const Eigen::Vector3f t = T_cam_tile.translation().cast<float>();
-  const ViewBounds bounds(camera_, T_cam_tile);
+void SeenMap::look_at(const FovealRegion& region, Piece& piece) {
+  const Eigen::Matrix3f R = piece.T_cam_tile.linear().cast<float>();
+  const Eigen::Vector3f t = piece.T_cam_tile.translation().cast<float>();
+  const ViewBounds bounds(camera_, piece.T_cam_tile);
   ProjectedBlock block(camera_);
   std::array<std::uint16_t, ProjectedBlock::kSize> weight;
   DepthBuffer::Samples samples;

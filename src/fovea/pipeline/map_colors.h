@@ -69,6 +69,7 @@ class SeenMap {
   struct Piece {
     TileId tile;
     const TilePoints* points;
+    RigidMotion T_cam_tile;
     std::uint32_t begin, end;  // in the tile
     std::size_t share;
     std::size_t first, seen;  // of those in the region, among the share's
@@ -81,8 +82,7 @@ class SeenMap {
   static constexpr std::size_t kShares = 4;
 
   void gather(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local);
-  void look_at(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
-               Piece& piece);
+  void look_at(const FovealRegion& region, Piece& piece);
   /// Calls f(begin, end, block) for points that follow each other, as the camera sees them.
   template <class F>
   void for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
