@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -26,6 +27,28 @@ constexpr double kKeepsPairShare = 0.1;
 constexpr std::size_t kCoarsePoints = 4000;
 constexpr double kNearlyThere = 20;
 constexpr int kCoarseRounds = 30;
+
+/// Steps by which a scan that lies off creeps along a road: under a narrow kernel the few pairs
+/// that are right already draw it, a little at a time.
+class CreepingSteps {
+ public:
+  /// How many of the latest step to take at once: as many as follow it if steps go on as they do
+  /// (Aitken's extrapolation), and one where it has another direction than the one before.
+  double take(const Twist& step) {
+    const Eigen::Vector3d now = step.tail<3>(), before = std::exchange(last_, now);
+    if (now.dot(before) <= kSameDirection * now.norm() * before.norm()) return 1;
+    const double ratio = now.norm() / before.norm();
+    return ratio < 1 ? std::min(kMost, 1 / (1 - ratio)) : kMost;
+  }
+
+ private:
+  static constexpr double kSameDirection = 0.9;  // cosine
+  static constexpr double kMost = 4;
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+};
+
+/// Steps of less than so many times what ends the iteration do not creep.
+constexpr double kCreeps = 5;
 
 /// Fewer pairs than this are no evidence of six numbers.
 constexpr std::size_t kMinPairs = 50;
@@ -94,6 +117,7 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
   RegistrationResult result;
   result.T_target_source = guess;
   bool nearly_there = false;
+  CreepingSteps creeping;
   while (result.iterations < options.max_iterations && !result.converged) {
     // The kernel narrows step by step: from a poor guess the true pairs are far apart, too.
     if (options.robust_width > 0) {
@@ -109,7 +133,7 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
         static_cast<float>(std::min(Factor::kKeepsPairFor, kKeepsPairShare * result.rms_distance));
     find_pairs<Factor>(target, target_index, source, result.T_target_source, options, keep_within,
                        pairs);
-    const auto [T, degenerate, equations] =
+    auto [T, degenerate, equations] =
         minimize(PairBlocks(pairs), result.T_target_source, optimizer);
     ++result.iterations;
     result.pairs = equations.pairs;
@@ -125,6 +149,12 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
     };
     nearly_there = moves_less_than(kNearlyThere);
     result.converged = narrow && pairs.size() == source.points.size() && moves_less_than(1);
+    if (narrows && narrow) {
+      const double steps = creeping.take(step);
+      if (steps > 1 && !moves_less_than(kCreeps)) {
+        T = result.T_target_source * exp_se3(steps * step);
+      }
+    }
     result.T_target_source = T;
     result.degenerate_directions = degenerate;
     result.rms_distance =

@@ -95,4 +95,36 @@ TEST(RegistrationKitti, LocalMapCarriesTheDrive) {
   EXPECT_LT(iterations, 10u * kFrames);
 }
 
+// Metres ahead of where it is thought to be, few points say which way to go: 44, 68 and 93 rounds
+// of small steps.
+TEST(RegistrationKitti, AScanFarAheadDoesNotCreep) {
+  FOVEA_KITTI_SAMPLE_OR_SKIP(drive);
+  RegistrationOptions options;
+  options.max_points = 12000;
+  options.robust_width = 0.1;
+  const auto cloud = [&](int frame) {
+    return prepare_cloud(thinned_scan(drive, frame), options, 0.25);
+  };
+  LocalMap map{LocalMapOptions()};
+  RigidMotion T_local_lidar = RigidMotion::Identity(), step = RigidMotion::Identity();
+  map.add(cloud(0), T_local_lidar);
+  for (int frame = 1; frame < 10; ++frame) {
+    RegistrationCloud source = cloud(frame);
+    const RigidMotion found =
+        register_to(map, source, T_local_lidar * step, options).T_target_source;
+    step = T_local_lidar.inverse() * found;
+    T_local_lidar = found;
+    map.add(std::move(source), T_local_lidar);
+  }
+  int iterations = 0;
+  for (const int frame : {12, 13, 14}) {
+    const RegistrationResult result = register_to(map, cloud(frame), T_local_lidar, options);
+    EXPECT_TRUE(result.converged) << "frame " << frame;
+    const double ahead = (T_local_lidar.inverse() * result.T_target_source).translation().x();
+    EXPECT_NEAR(ahead, 1.1 * (frame - 9), 0.05) << "frame " << frame;
+    iterations += result.iterations;
+  }
+  EXPECT_LT(iterations, 120);
+}
+
 }  // namespace fovea::registration_kitti_test
