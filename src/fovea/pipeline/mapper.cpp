@@ -291,14 +291,16 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
 void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
                     const FrameSource& source) {
   map_ = std::move(map);
-  const int first_looked_at = first_to_replay(records);
+  const int first_looked_at = first_to_look_through(records),
+            first_target = tracker_.first_target(records);
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
     tracker_.follow(record);
     follow_submaps(tracker_.submaps());
     if (record.status == FrameStatus::kHeldOut) continue;
     const bool looked_at = record.index >= first_looked_at;
-    if (!looked_at && !tracker_.wants_scan()) continue;
+    const bool is_target = record.index >= first_target && tracker_.is_target();
+    if (!looked_at && !is_target && !tracker_.wants_scan()) continue;
     const FrameResult frame = source.load(record.index);
     if (!std::holds_alternative<Frame>(frame)) continue;
     replay(std::get<Frame>(frame).scan, record, looked_at);
@@ -316,15 +318,14 @@ void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool look
   }
 }
 
-int Mapper::first_to_replay(const std::vector<FrameRecord>& records) const {
-  const std::size_t count =
-      std::max(std::size_t(tracker_.memory()), std::size_t(MovingThings::kJudges));
+int Mapper::first_to_look_through(const std::vector<FrameRecord>& records) {
+  constexpr std::size_t kCount = MovingThings::kJudges;
   std::vector<int> mapped;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kMapped) mapped.push_back(record.index);
   }
-  if (mapped.size() <= count) return 0;
-  return std::min(mapped[mapped.size() - count], mapped.back() - MovingThings::kMemory + 1);
+  if (mapped.size() <= kCount) return 0;
+  return std::min(mapped[mapped.size() - kCount], mapped.back() - MovingThings::kMemory + 1);
 }
 
 }  // namespace fovea

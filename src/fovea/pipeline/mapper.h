@@ -63,8 +63,8 @@ class Mapper {
 
  private:
   void follow_submaps(const std::vector<RigidMotion>& poses);
-  /// Index of the first frame of an earlier run whose scan targets or evidence now depend on.
-  int first_to_replay(const std::vector<FrameRecord>& records) const;
+  /// Number of the first frame of an earlier run whose scan the evidence of what moves depends on.
+  static int first_to_look_through(const std::vector<FrameRecord>& records);
   void replay(const PointCloud& scan, const FrameRecord& record, bool looked_at);
   /// What one camera sees, into the map.
   void map_view(ScanView view, const Image& image, FrameRecord& record, StageClock& clock);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <tuple>
 
 #include "../../../tests/sample_map.h"
 #include "fovea/base/parallel.h"
@@ -400,9 +401,17 @@ TEST(Mapper, TrackingAheadChangesNothing) {
 }
 
 TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
-  for (const auto target : {RegistrationTarget::kLocalMap, RegistrationTarget::kPreviousScan}) {
+  // Targets are all scans, some, or the first alone; of a local map, or of the last few.
+  for (const auto& [target, keyframe_distance, max_keyframes] :
+       {std::tuple(RegistrationTarget::kLocalMap, 0.0, 20),
+        {RegistrationTarget::kLocalMap, 1.5, 20},
+        {RegistrationTarget::kLocalMap, 1.5, 1},
+        {RegistrationTarget::kLocalMap, 1000.0, 20},
+        {RegistrationTarget::kPreviousScan, 1.5, 20}}) {
     MapperOptions options;
     options.refinement.target = target;
+    options.refinement.local_map.keyframe_distance = keyframe_distance;
+    options.refinement.local_map.max_keyframes = max_keyframes;
     options.fusion.submap_duration = 0.25;  // several submaps
     Mapper whole(street().info(), options, PoseSource::kRefine);
     const auto records = map_frames(whole, street(), 0, 7, 3);

@@ -18,6 +18,11 @@ double fit_of(const RegistrationResult& result, const RegistrationOptions& optio
 PoseRefiner::PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras)
     : options_(options), cameras_(std::move(cameras)), local_map_(options.local_map) {}
 
+Keyframes PoseRefiner::keyframes() const {
+  if (options_.target == RegistrationTarget::kPreviousScan) return {0, 0};
+  return {options_.local_map.keyframe_distance, options_.local_map.keyframe_rotation};
+}
+
 int PoseRefiner::memory() const {
   return options_.target == RegistrationTarget::kPreviousScan ? 1
                                                               : options_.local_map.max_keyframes;

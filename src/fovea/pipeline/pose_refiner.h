@@ -8,6 +8,7 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/mapping/registration/keyframes.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/pipeline/mapper_options.h"
@@ -45,6 +46,8 @@ class PoseRefiner {
   /// Lets later scans be registered against this one, where it is.
   void keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar, StageClock& clock);
 
+  /// Chooses the scans that are to be kept, from the first on.
+  Keyframes keyframes() const;
   /// How many of the latest target scans all state depends on.
   int memory() const;
 

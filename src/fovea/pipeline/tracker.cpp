@@ -31,7 +31,8 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
                      .doubt = fuses(options, pose_source),
                      .sweep_rest = from_seconds(drive.sweep_period / 2)}),
       refiner_(options.refinement, drive.calibration.cameras),
-      fusion_(fusion_options(options, pose_source), options.refinement.registration, drive) {}
+      fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
+      keyframes_(refiner_.keyframes()) {}
 
 TrackedFrame Tracker::track(const Frame& frame, bool held_out,
                             const std::optional<RigidMotion>& given_pose, const View& view) {
@@ -61,7 +62,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
     fusion_.track(record);
     if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
   });
-  if (!held_out && registers()) {
+  if (!held_out && registers() && keyframes_.takes(record.T_odom_lidar)) {
     next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
   }
 
@@ -133,14 +134,28 @@ void Tracker::follow(const FrameRecord& record) {
   motion_model_.update(record.stamp.value(), record.T_odom_lidar);
   FrameRecord tracked = record;
   fusion_.track(tracked);
+  is_target_ =
+      record.status == FrameStatus::kMapped && registers() && keyframes_.takes(record.T_odom_lidar);
+}
+
+int Tracker::first_target(const std::vector<FrameRecord>& records) const {
+  Keyframes keyframes = refiner_.keyframes();
+  std::vector<int> targets;
+  for (const FrameRecord& record : records) {
+    if (record.status == FrameStatus::kMapped && keyframes.takes(record.T_odom_lidar)) {
+      targets.push_back(record.index);
+    }
+  }
+  const auto memory = static_cast<std::size_t>(refiner_.memory());
+  return targets.size() <= memory ? 0 : targets[targets.size() - memory];
 }
 
 void Tracker::replay(const PointCloud& scan_lidar, const FrameRecord& record) {
-  if (!registers()) return;
+  if (!is_target_ && !wants_scan()) return;
   StageClock unused;
   RegistrationCloud cloud = refiner_.prepare(scan_lidar, unused);
   fusion_.replay(record, cloud.points);
-  refiner_.keep(std::move(cloud), record.T_odom_lidar, unused);
+  if (is_target_) refiner_.keep(std::move(cloud), record.T_odom_lidar, unused);
 }
 
 }  // namespace fovea

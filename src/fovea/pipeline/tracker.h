@@ -64,10 +64,12 @@ class Tracker {
   void follow(const FrameRecord& record);
   /// Whether a frame just followed that was not held out has to be given to replay().
   bool wants_scan() const { return fusion_.wants_scan(); }
+  /// Whether it is a target of later scans, for which that has to be, too, from first_target() on.
+  bool is_target() const { return is_target_; }
   /// Takes the compensated scan of a frame just followed, as a target and a place to come back to.
   void replay(const PointCloud& scan_lidar, const FrameRecord& record);
-  /// How many of the latest target scans registration depends on.
-  int memory() const { return refiner_.memory(); }
+  /// The number of the first frame of an earlier run that registration still depends on.
+  int first_target(const std::vector<FrameRecord>& records) const;
 
   PointCloud compensated(const PointCloud& scan, const std::optional<SweepMotion>& motion) const;
   /// T_local_submap by number.
@@ -98,6 +100,8 @@ class Tracker {
   MotionModel motion_model_;
   PoseRefiner refiner_;
   Fusion fusion_;
+  Keyframes keyframes_;
+  bool is_target_ = false;  // the frame followed last
   struct Target {
     RegistrationCloud cloud_lidar;
     RigidMotion T_odom_lidar;

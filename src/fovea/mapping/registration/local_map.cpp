@@ -1,6 +1,7 @@
 #include "fovea/mapping/registration/local_map.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "fovea/base/errors.h"
@@ -25,6 +26,14 @@ void LocalMapOptions::validate() const {
   };
   if (max_keyframes < 1 || max_keyframes > 1000) {
     reject("a number of scans is out of range", "local_map.max_keyframes", "give 1 to 1000");
+  }
+  if (!(keyframe_distance >= 0 && keyframe_distance <= 1000)) {
+    reject("a distance is out of range", "local_map.keyframe_distance",
+           "give 0 (every scan) or metres up to 1000");
+  }
+  if (!(keyframe_rotation > 0 && keyframe_rotation <= std::numbers::pi)) {
+    reject("an angle is out of range", "local_map.keyframe_rotation",
+           "give degrees above 0 and up to 180");
   }
   if (!(max_range > 0 && max_range <= 1000)) {
     reject("a range is out of range", "local_map.max_range", "give metres above 0 and up to 1000");

@@ -131,6 +131,10 @@ TEST(LocalMapOptions, ValidateNamesTheField) {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_rejected([](LocalMapOptions& o) { o.max_keyframes = 0; }, "local_map.max_keyframes");
+  expect_rejected([&](LocalMapOptions& o) { o.keyframe_distance = nan; },
+                  "local_map.keyframe_distance");
+  expect_rejected([](LocalMapOptions& o) { o.keyframe_rotation = 0; },
+                  "local_map.keyframe_rotation");
   expect_rejected([](LocalMapOptions& o) { o.max_range = 0; }, "local_map.max_range");
   expect_rejected([&](LocalMapOptions& o) { o.voxel = nan; }, "local_map.voxel");
 }
