@@ -5,6 +5,7 @@
 #include <bit>
 #include <utility>
 
+#include "fovea/base/radix_sort.h"
 #include "fovea/base/random.h"
 
 namespace fovea {
@@ -66,22 +67,6 @@ struct Keyed {
   std::uint32_t key, index;
 };
 
-// Stable radix sort by key, least significant digit first: three passes.
-void radix_sort(std::vector<Keyed>& items) {
-  constexpr int kDigitBits = 11;
-  std::vector<Keyed> sorted(items.size());
-  for (int shift = 0; shift < 32; shift += kDigitBits) {
-    std::array<std::uint32_t, (1 << kDigitBits) + 1> start{};
-    const auto digit = [&](const Keyed& item) {
-      return (item.key >> shift) & ((1u << kDigitBits) - 1);
-    };
-    for (const Keyed& item : items) ++start[digit(item) + 1];
-    for (std::size_t d = 1; d < start.size(); ++d) start[d] += start[d - 1];
-    for (const Keyed& item : items) sorted[start[digit(item)]++] = item;
-    items.swap(sorted);
-  }
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> insertion_order(std::span<const GridPoint> points) {
@@ -101,7 +86,7 @@ std::vector<std::uint32_t> insertion_order(std::span<const GridPoint> points) {
     const auto y = static_cast<std::uint32_t>((std::int64_t{points[i].y} - low.y) >> shift);
     items[i] = {round_of(i) << (2 * kLevels) | place_on_hilbert_curve(x, y), i};
   }
-  radix_sort(items);
+  radix_sort(items, 2 * kLevels + 2);
   std::vector<std::uint32_t> order(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = items[i].index;
   return order;

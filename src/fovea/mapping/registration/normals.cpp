@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -9,7 +10,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/plane_moments.h"
-#include "fovea/geometry/voxel_members.h"
+#include "fovea/geometry/point_rows.h"
 
 namespace fovea {
 namespace {
@@ -49,119 +50,81 @@ class PlaneNormals {
   int count_ = 0;
 };
 
-/// Points by the cells of a grid: no point within an edge of one is missed in the cells around its
-/// own.
-struct PointCells {
-  VoxelTable table;
-  VoxelMembers members;
-  /// Of the members, a row for each coordinate, and some more for whole lanes to be read.
-  std::array<std::vector<float>, 3> row;
-
-  static PointCells of(std::span<const Eigen::Vector3f> points, float edge) {
-    VoxelTable table(edge);
-    std::vector<std::uint32_t> cell(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-      cell[i] = table.insert(table.voxel_of(points[i]));
-    VoxelMembers members(cell, table.size());
-    std::array<std::vector<float>, 3> rows;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      rows[axis].reserve(points.size() + kLanes);
-      for (const std::uint32_t i : members.all()) {
-        rows[axis].push_back(points[i][Eigen::Index(axis)]);
-      }
-      rows[axis].resize(points.size() + kLanes);
+/// Of the points within a radius.
+PlaneMoments moments_around(const Eigen::Vector3f& center, float radius, const PointRows& points,
+                            const RowSurroundings& surroundings) {
+  Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
+  const Lanes radius2 = all_lanes(radius * radius), one = all_lanes(1);
+  const std::array<const float*, 3> row{points.coordinates(0), points.coordinates(1),
+                                        points.coordinates(2)};
+  for (const PointRows::Range& range : surroundings.ranges()) {
+    for (std::size_t i = range.begin; i < range.end; i += kLanes) {
+      const Lanes x = lanes_at(row[0] + i) - center.x(), y = lanes_at(row[1] + i) - center.y(),
+                  z = lanes_at(row[2] + i) - center.z();
+      // What follows the last of a range is another's.
+      const LaneMask inside = (x * x + y * y + z * z <= radius2) & first_lanes(range.end - i);
+      const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
+      count += where(inside, one);
+      sx += in_x;
+      sy += in_y;
+      sz += in_z;
+      sxx += in_x * x;
+      syy += in_y * y;
+      szz += in_z * z;
+      syz += in_y * z;
+      sxz += in_x * z;
+      sxy += in_x * y;
     }
-    return {std::move(table), std::move(members), std::move(rows)};
   }
-};
-
-/// Points of some cells.
-class Surroundings {
- public:
-  explicit Surroundings(const PointCells& cells) : cells_(cells) {}
-  void clear() { count_ = size_ = 0; }
-  std::size_t size() const { return size_; }
-
-  /// At most 27 cells.
-  void add(std::uint32_t cell) {
-    const std::size_t points = cells_.members.of(cell).size();
-    range_[count_++] = {cells_.members.first(cell), points};
-    size_ += points;
-  }
-
-  /// Of those within a radius.
-  PlaneMoments moments(const Eigen::Vector3f& center, float radius) const {
-    Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
-    const Lanes radius2 = all_lanes(radius * radius), one = all_lanes(1);
-    for (const Range& range : std::span(range_).first(count_)) {
-      for (std::size_t i = 0; i < range.count; i += kLanes) {
-        const std::size_t place = range.first + i;
-        const Lanes x = lanes_at(cells_.row[0].data() + place) - center.x(),
-                    y = lanes_at(cells_.row[1].data() + place) - center.y(),
-                    z = lanes_at(cells_.row[2].data() + place) - center.z();
-        // What follows the last of a cell is another's.
-        const LaneMask inside = (x * x + y * y + z * z <= radius2) & first_lanes(range.count - i);
-        const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
-        count += where(inside, one);
-        sx += in_x;
-        sy += in_y;
-        sz += in_z;
-        sxx += in_x * x;
-        syy += in_y * y;
-        szz += in_z * z;
-        syz += in_y * z;
-        sxz += in_x * z;
-        sxy += in_x * y;
-      }
-    }
-    return {sum_of_lanes(count),
-            {sum_of_lanes(sx), sum_of_lanes(sy), sum_of_lanes(sz)},
-            {sum_of_lanes(sxx), sum_of_lanes(syy), sum_of_lanes(szz)},
-            {sum_of_lanes(syz), sum_of_lanes(sxz), sum_of_lanes(sxy)}};
-  }
-
- private:
-  struct Range {
-    std::size_t first, count;  // in the rows of the cells
-  };
-  const PointCells& cells_;
-  std::array<Range, 27> range_;
-  std::size_t count_ = 0, size_ = 0;  // of ranges, and of points in them
-};
+  return {sum_of_lanes(count),
+          {sum_of_lanes(sx), sum_of_lanes(sy), sum_of_lanes(sz)},
+          {sum_of_lanes(sxx), sum_of_lanes(syy), sum_of_lanes(szz)},
+          {sum_of_lanes(syz), sum_of_lanes(sxz), sum_of_lanes(sxy)}};
+}
 
 /// Radii over the points' spacing: where points are far apart, wider ones are tried.
 constexpr float kFirstRadius = 2, kWider = 1.5f;
 constexpr std::size_t kRadii = 8;
-/// The first radii serve most points and have cells of their own; of those after them, which are
-/// for the few that lie far apart, two share a grid.
-constexpr std::size_t kAlone = 2;
+/// The first radii serve most points and have cells of their own; those after them, for the few
+/// that lie far apart, share a grid of the edge of this one.
+constexpr std::size_t kShared = 3;
 /// From radius to radius a surface's points become 2.25 times as many: of at least this share of k,
 /// they are k in the mean.
 constexpr float kFewest = 0.6f;
-constexpr std::size_t kCellGrain = 64;
+constexpr std::size_t kRowGrain = 64;
 
 /// Normals of the points not yet done that have neighbours enough within the radius.
-void look_around(std::span<const Eigen::Vector3f> points, const PointCells& cells, float radius,
+void look_around(std::span<const Eigen::Vector3f> points, const PointRows& sorted, float radius,
                  float enough, std::vector<std::uint8_t>& done,
                  std::vector<Eigen::Vector3f>& normals) {
-  const VoxelTable& table = cells.table;
-  const VoxelMembers& members = cells.members;
-  const auto gather = [&](std::uint32_t cell, Surroundings& surroundings) {
-    table.for_each_around(table.voxel(cell), [&](std::uint32_t near) { surroundings.add(near); });
+  // A little less, as quotients round; what lies so far out is at the edge of the ball anyway.
+  const int reach = static_cast<int>(std::ceil(radius / sorted.edge() - 1e-4f));
+  const auto open = [&](std::uint32_t first_point, std::uint32_t end) {
+    const auto places = sorted.order().subspan(first_point, end - first_point);
+    return std::any_of(places.begin(), places.end(), [&](std::uint32_t i) { return done[i] == 0; });
   };
-  parallel_chunks(table.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
-    Surroundings surroundings(cells);
+  parallel_chunks(sorted.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
+    RowSurroundings surroundings(sorted, reach, begin);
     PlaneNormals planes(normals);
-    for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
-      surroundings.clear();
-      for (const std::uint32_t i : members.of(cell)) {
-        if (done[i] != 0) continue;
-        if (surroundings.size() == 0) gather(cell, surroundings);
-        if (static_cast<float>(surroundings.size()) < enough) break;
-        const PlaneMoments moments = surroundings.moments(points[i], radius);
-        if (moments.count < enough) continue;
-        planes.put(i, moments, points[i]);
-        done[i] = 1;
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::uint32_t first = sorted.rows()[row].first_cell,
+                          last = sorted.rows()[row + 1].first_cell;
+      const auto cells = sorted.cells();
+      if (!open(cells[first].first_point, cells[last].first_point)) continue;
+      surroundings.begin_row(row);
+      for (std::uint32_t cell = first; cell < last; ++cell) {
+        const std::uint32_t first_point = cells[cell].first_point,
+                            end_point = cells[cell + 1].first_point;
+        if (!open(first_point, end_point)) continue;
+        surroundings.move_to(cells[cell].x);
+        if (static_cast<float>(surroundings.size()) < enough) continue;
+        for (const std::uint32_t i : sorted.order().subspan(first_point, end_point - first_point)) {
+          if (done[i] != 0) continue;
+          const PlaneMoments moments = moments_around(points[i], radius, sorted, surroundings);
+          if (moments.count < enough) continue;
+          planes.put(i, moments, points[i]);
+          done[i] = 1;
+        }
       }
     }
     planes.finish();
@@ -176,22 +139,15 @@ std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> 
   std::vector<std::uint8_t> done(points.size(), 1);
   for (const std::uint32_t i : of) done[i] = 0;
   std::array<float, kRadii> radius;
-  std::array<std::size_t, kRadii> grid;
-  std::vector<float> edges;
-  for (std::size_t i = 0; i < kRadii; ++i) {
-    radius[i] = i == 0 ? kFirstRadius * static_cast<float>(spacing) : radius[i - 1] * kWider;
-    if (edges.empty() || radius[i] > edges.back()) {
-      edges.push_back(i < kAlone ? radius[i] : radius[i] * kWider);
-    }
-    grid[i] = edges.size() - 1;
-  }
+  radius[0] = kFirstRadius * static_cast<float>(spacing);
+  for (std::size_t i = 1; i < kRadii; ++i) radius[i] = radius[i - 1] * kWider;
   // All of them first: each is one thread's work.
-  std::vector<std::optional<PointCells>> grids(edges.size());
-  parallel_for(grids.size(), 1,
-               [&](std::size_t k) { grids[k] = PointCells::of(points, edges[k]); });
+  const std::array<float, 3> edges{radius[0], radius[1], radius[kShared]};
+  std::array<std::optional<PointRows>, edges.size()> grids;
+  parallel_for(grids.size(), 1, [&](std::size_t k) { grids[k].emplace(points, edges[k]); });
   for (std::size_t i = 0; i < kRadii; ++i) {
-    look_around(points, *grids[grid[i]], radius[i], kFewest * static_cast<float>(neighbors), done,
-                normals);
+    look_around(points, *grids[std::min(i, grids.size() - 1)], radius[i],
+                kFewest * static_cast<float>(neighbors), done, normals);
   }
   return normals;
 }

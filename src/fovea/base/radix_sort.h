@@ -1,0 +1,29 @@
+// Sorting by whole numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace fovea {
+
+/// Stable sort by `key`, an unsigned number, least significant digit first.
+/// @param bits  that keys have at most
+template <class Keyed>
+void radix_sort(std::vector<Keyed>& items, int bits) {
+  constexpr int kDigitBits = 11;
+  std::vector<Keyed> sorted(items.size());
+  for (int shift = 0; shift < bits; shift += kDigitBits) {
+    std::array<std::uint32_t, (1 << kDigitBits) + 1> start{};
+    const auto digit = [&](const Keyed& item) {
+      return static_cast<std::size_t>((item.key >> shift) & ((1u << kDigitBits) - 1));
+    };
+    for (const Keyed& item : items) ++start[digit(item) + 1];
+    for (std::size_t d = 1; d < start.size(); ++d) start[d] += start[d - 1];
+    for (const Keyed& item : items) sorted[start[digit(item)]++] = item;
+    items.swap(sorted);
+  }
+}
+
+}  // namespace fovea
