@@ -40,6 +40,9 @@ class TileEncoder {
   TileRow encode(const PackedTile& tile);
 
  private:
+  std::span<const std::byte> compress(std::span<const std::byte> column, const ColumnKind& kind,
+                                      std::vector<std::byte>& memory);
+
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> context_;
   std::array<std::vector<std::byte>, kStoredColumns> memory_;
 };

@@ -128,6 +128,24 @@ PackedColumns pack_columns(const TilePoints& tile) {
   return columns;
 }
 
+ColumnKind kind_of(std::size_t column) {
+  const TilePoints tile;
+  std::size_t next = 0;
+  ColumnKind kind;
+  for_each_stored_column(tile, [&](const auto& of_tile) {
+    if (next++ != column) return;
+    const void* const it = &of_tile;
+    kind.is_noisy = it == &tile.color || it == &tile.spread;
+    by_packing(
+        tile, of_tile,
+        [&](const auto& planes) {
+          kind = {planes.size() * kPlaneBytes, true};
+        },
+        [](const auto&) {});
+  });
+  return kind;
+}
+
 std::size_t packed_size(std::size_t column, std::size_t points) {
   const TilePoints tile;
   std::size_t next = 0, size = 0;

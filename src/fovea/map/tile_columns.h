@@ -16,6 +16,13 @@ namespace fovea {
 using PackedColumns = std::array<std::vector<std::byte>, kStoredColumns>;
 PackedColumns pack_columns(const TilePoints& tile);
 
+/// What a compressor should know of column i.
+struct ColumnKind {
+  std::size_t parts = 1;  ///< of one length, each with another kind of bytes
+  bool is_noisy = false;  ///< bytes seldom come again in the same order
+};
+ColumnKind kind_of(std::size_t column);
+
 /// Bytes that column i of so many points takes.
 std::size_t packed_size(std::size_t column, std::size_t points);
 /// Puts the packed bytes of column i, of the right size, into a tile of so many points.
