@@ -62,6 +62,39 @@ int free_since_filled(std::uint32_t filled, std::uint32_t free) {
   return std::popcount(free & ((filled & -filled) - 1));  // of no filled bit at all: every one
 }
 
+/// Of some cells of a tile and those beneath them: what lies elsewhere is told by its box.
+class CellBounds {
+ public:
+  CellBounds(int edge, double tile_size)
+      : edge_(static_cast<std::uint32_t>(edge)), steps_(tile_size / edge / double(kPositionStep)) {}
+
+  /// @param beneath  so many cells beneath it count, too
+  void add(std::uint32_t cell, std::uint32_t beneath) {
+    const std::uint32_t z = cell / edge_ / edge_;
+    const std::array<std::uint32_t, 3> high{cell % edge_, cell / edge_ % edge_, z};
+    const std::array<std::uint32_t, 3> low{high[0], high[1], z - std::min(z, beneath)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low_[axis] = std::min(low_[axis], low[axis] * steps_ - kHair);
+      high_[axis] = std::max(high_[axis], (high[axis] + 1) * steps_ + kHair);
+    }
+  }
+  bool may_hold_some_of(const TilePoints::Box& box) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      // What lies beyond the outermost cells counts to them.
+      const bool is_before = box.high[axis] < low_[axis] && low_[axis] > 0;
+      const bool is_behind = box.low[axis] > high_[axis] && high_[axis] < edge_ * steps_;
+      if (is_before || is_behind) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr double kHair = 1;  // steps: single precision tells which cell a point is in
+  std::uint32_t edge_;
+  double steps_;  // of a cell's edge
+  std::array<double, 3> low_{1e9, 1e9, 1e9}, high_{-1e9, -1e9, -1e9};
+};
+
 /// Tile coordinates to those of the LiDAR, in float: what is looked at is near.
 struct TileView {
   Eigen::Matrix3f R;
@@ -211,38 +244,52 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   tile.shrinks = std::any_of(block.voxels.begin(), block.voxels.end(), gone);
   if (!tile.shrinks) return;
   const int edge = voxels_per_edge(map);
+  CellBounds bounds(edge, map.tile_size());
+  for (const Voxel& voxel : block.voxels) {
+    if (gone(voxel)) bounds.add(voxel.cell, kFoot);
+  }
   const auto cells_per_metre = static_cast<float>(edge / map.tile_size());
   const auto layer = static_cast<std::uint32_t>(edge * edge);
   const auto frame_bit = [&](std::size_t i) {
     return aged(1, block.frame - tile.points->frame[i]);
   };
-  RunColumn<std::uint32_t> voxel_of_point;  // neighbours mostly share one
-  std::uint32_t first = 0, last_cell = ~0u;
+  RunColumn<std::uint32_t> voxel_of_point;   // neighbours mostly share one
+  constexpr std::uint32_t kElsewhere = ~0u;  // none that goes, nor beneath one
+  std::uint32_t first = 0, last_cell = kElsewhere;
   const auto end_run = [&](std::uint32_t end) {
-    if (end > first) voxel_of_point.push_back(*block.place.find(last_cell), end - first);
+    if (end == first) return;
+    const std::uint32_t place = last_cell == kElsewhere ? kElsewhere : *block.place.find(last_cell);
+    voxel_of_point.push_back(place, end - first);
     first = end;
   };
-  const std::size_t count = tile.points->size();
-  for_each_cell(*tile.points, 0, count, cells_per_metre, edge,
-                [&](std::uint32_t i, std::uint32_t cell) {
-                  if (cell == last_cell) return;
-                  end_run(i);
-                  last_cell = cell;
-                });
-  end_run(static_cast<std::uint32_t>(count));
+  const auto go_on = [&](std::uint32_t i, std::uint32_t cell) {
+    if (cell == last_cell) return;
+    end_run(i);
+    last_cell = cell;
+  };
+  const auto count = static_cast<std::uint32_t>(tile.points->size());
+  for (std::uint32_t begin = 0; begin < count; begin += TilePoints::kBoxed) {
+    if (bounds.may_hold_some_of(tile.points->boxes[begin / TilePoints::kBoxed])) {
+      for_each_cell(*tile.points, begin, std::min<std::size_t>(begin + TilePoints::kBoxed, count),
+                    cells_per_metre, edge, go_on);
+    } else {
+      go_on(begin, kElsewhere);
+    }
+  }
+  end_run(count);
   FlatMap<std::uint32_t> foot;  // by cell: frames whose points go
   voxel_of_point.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::uint32_t place) {
+    if (place == kElsewhere || !gone(block.voxels[place])) return;
     const Voxel& voxel = block.voxels[place];
-    if (!gone(voxel)) return;
     for (std::uint32_t k = 1; k <= kFoot && voxel.cell >= k * layer; ++k) {
       std::uint32_t& frames = *foot.try_emplace(voxel.cell - k * layer).first;
       for (std::uint32_t i = begin; i < end; ++i) frames |= frame_bit(i);
     }
   });
   voxel_of_point.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::uint32_t place) {
-    const Voxel& voxel = block.voxels[place];
-    if (gone(voxel)) return;
-    const std::uint32_t* beneath = foot.find(voxel.cell);
+    if (place != kElsewhere && gone(block.voxels[place])) return;
+    const std::uint32_t* beneath =
+        place == kElsewhere ? nullptr : foot.find(block.voxels[place].cell);
     for (std::uint32_t i = begin; i < end; ++i) {
       if (beneath == nullptr || (*beneath & frame_bit(i)) == 0) tile.kept.push_back(i);
     }
