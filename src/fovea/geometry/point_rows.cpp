@@ -66,8 +66,8 @@ void PointRows::sort(std::span<const Eigen::Vector3f> points,
   }
   radix_sort(keyed, x.bits() + y.bits() + z.bits());
 
-  order_.reserve(points.size());
-  for (std::vector<float>& row : coordinates_) row.reserve(points.size() + kLanes);
+  order_.resize(points.size());
+  for (std::vector<float>& row : coordinates_) row.resize(points.size() + kLanes);
   for (std::uint32_t place = 0; place < keyed.size(); ++place) {
     const std::uint32_t point = keyed[place].point;
     const Key key = keyed[place].key;
@@ -78,14 +78,13 @@ void PointRows::sort(std::span<const Eigen::Vector3f> points,
       }
       cells_.push_back({cell[0][point], place});
     }
-    order_.push_back(point);
+    order_[place] = point;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      coordinates_[axis].push_back(points[point][Eigen::Index(axis)]);
+      coordinates_[axis][place] = points[point][Eigen::Index(axis)];
     }
   }
   rows_.push_back({0, 0, static_cast<std::uint32_t>(cells_.size())});
   cells_.push_back({0, static_cast<std::uint32_t>(points.size())});
-  for (std::vector<float>& row : coordinates_) row.resize(points.size() + kLanes);
 }
 
 RowSurroundings::RowSurroundings(const PointRows& points, int reach, std::size_t first_row)

@@ -24,7 +24,7 @@ constexpr double kKeepsPairShare = 0.1;
 /// How many points say enough of where to go while the kernel is wide, and until they move less
 /// than kNearlyThere times what ends the iteration. Should they not agree on a place, all are asked
 /// after so many rounds.
-constexpr std::size_t kCoarsePoints = 4000;
+constexpr std::size_t kCoarsePoints = 2000;
 constexpr double kNearlyThere = 20;
 constexpr int kCoarseRounds = 30;
 
