@@ -12,7 +12,7 @@
 namespace fovea {
 
 struct SurfaceOptions {
-  double spacing = 0.0185;   ///< of the samples, m; 0: the paper's upsampling in their place
+  double spacing = 0.02;     ///< of the samples, m; 0: the paper's upsampling in their place
   double max_edge = 0.4;     ///< a triangle of shorter edges is surface (m)
   double planar_edge = 1.0;  ///< longest edge where the surface is flat (m)
   double planar_angle = 0.5235987755982988;  ///< between normals on two sides of an edge there, rad
