@@ -120,16 +120,21 @@ void MapKeeper::write(MapRows rows, std::vector<PackedTile> packed, TileChanges 
                            shared = std::move(shared), hurry = hurry_.get_token()]() mutable {
     const WallClock::time_point latest = WallClock::now() + kPatience;
     put(*writer_, rows, shared);
-    for (PackedTile& tile : packed) {
-      pause_(latest, hurry);
-      writer_->put_tile(tile);
-      tile = {};
-    }
-    for (TileChanges::Changed& tile : shared.changed) {
-      pause_(latest, hurry);
-      writer_->put_tile(tile.id, *tile.points);
+    const std::size_t count = packed.size() + shared.changed.size();
+    const auto take = [&](std::size_t i) {
+      if (i < packed.size()) return std::move(packed[i]);
+      TileChanges::Changed& tile = shared.changed[i - packed.size()];
+      PackedTile result = pack_tile(tile.id, *tile.points);
       tile.points = {};  // the map need not copy it any more when it changes it
+      return result;
+    };
+    std::size_t next = 0;
+    while (next < count && !hurry.stop_requested()) {
+      pause_(latest, hurry);
+      writer_->put_tile(take(next++));
     }
+    // Who waits lets the rest have all processors.
+    writer_->put_tiles(count - next, [&](std::size_t i) { return take(next + i); });
     if (!commit_at_end_) writer_->commit();
     if (resident_memory() > memory_ - memory_ / 4) release_free_memory();
   });
