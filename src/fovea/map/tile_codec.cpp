@@ -71,26 +71,33 @@ TileRow TileEncoder::encode(const PackedTile& tile) {
   row.points = tile.points;
   row.colored = tile.colored;
   row.origin = tile.origin;
+  std::array<std::size_t, kStoredColumns> size{};
+  blobs_.clear();
   for (std::size_t i = 0; i < kStoredColumns; ++i) {
     const std::vector<std::byte>& column = tile.columns[i];
     if (i == kIntensityColumn && column.empty()) continue;
-    row.blobs[i] = compress(column, kind_of(i), memory_[i]);
+    const std::span<const std::byte> blob = compress(column, kind_of(i));
+    blobs_.insert(blobs_.end(), blob.begin(), blob.end());
+    size[i] = blob.size();
+  }
+  for (std::size_t i = 0, begin = 0; i < kStoredColumns; begin += size[i++]) {
+    row.blobs[i] = std::span(blobs_).subspan(begin, size[i]);
   }
   row.checksum = checksum(row);
   return row;
 }
 
 std::span<const std::byte> TileEncoder::compress(std::span<const std::byte> column,
-                                                 const ColumnKind& kind,
-                                                 std::vector<std::byte>& memory) {
+                                                 const ColumnKind& kind) {
   check(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_targetLength, kind.is_noisy ? kSeldom : 0));
   // Otherwise it would keep bytes as they are where it looks seldom. A library that cannot be asked
   // for this does so.
   ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_literalCompressionMode,
                          kind.is_noisy ? ZSTD_ps_enable : ZSTD_ps_auto);
   check(ZSTD_CCtx_setPledgedSrcSize(context_.get(), column.size()));
-  memory.resize(ZSTD_compressBound(column.size()) + kind.parts * kMostOfFlush);
-  ZSTD_outBuffer out{memory.data(), memory.size(), 0};
+  const std::size_t most = ZSTD_compressBound(column.size()) + kind.parts * kMostOfFlush;
+  if (room_.size() < most) room_.resize(most);
+  ZSTD_outBuffer out{room_.data(), room_.size(), 0};
   const std::size_t size = column.size() / kind.parts;
   for (std::size_t part = 0; part < kind.parts; ++part) {
     // Each has a block, and so a code, of its own.
@@ -98,7 +105,7 @@ std::span<const std::byte> TileEncoder::compress(std::span<const std::byte> colu
     const bool is_last = part + 1 == kind.parts;
     check(ZSTD_compressStream2(context_.get(), &out, &in, is_last ? ZSTD_e_end : ZSTD_e_flush));
   }
-  return std::span(memory).first(out.pos);
+  return std::span(room_).first(out.pos);
 }
 
 TileDecoder::TileDecoder() : context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {

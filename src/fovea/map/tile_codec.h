@@ -40,11 +40,12 @@ class TileEncoder {
   TileRow encode(const PackedTile& tile);
 
  private:
-  std::span<const std::byte> compress(std::span<const std::byte> column, const ColumnKind& kind,
-                                      std::vector<std::byte>& memory);
+  /// Into room_, which the next call overwrites.
+  std::span<const std::byte> compress(std::span<const std::byte> column, const ColumnKind& kind);
 
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> context_;
-  std::array<std::vector<std::byte>, kStoredColumns> memory_;
+  std::vector<std::byte> room_;   // for what a column takes at most
+  std::vector<std::byte> blobs_;  // of a row, one behind the other
 };
 
 class TileDecoder {
