@@ -13,9 +13,6 @@
 namespace fovea {
 namespace {
 
-constexpr float kMaxCoordinate = 1000;  // m; no LiDAR reaches it
-constexpr double kMaxOffset = 1;        // s; no sweep lasts as long
-
 enum Column : std::size_t { kX, kY, kZ, kIntensity, kFirstTime };
 constexpr auto kColumns = [] {
   std::array<const char*, kFirstTime + kPointTimeNames.size()> names = {"x", "y", "z", "intensity"};
@@ -29,22 +26,6 @@ ScanBuilder::ScanBuilder(std::size_t points, bool timed) : timed_(timed) {
   scan_.points.position.reserve(points);
   scan_.points.intensity.reserve(points);
   if (timed_) scan_.points.time.reserve(points);
-}
-
-void ScanBuilder::add(const Eigen::Vector3f& position, float intensity, double time) {
-  // Written so that NaN fails, too.
-  const bool usable = std::abs(position.x()) <= kMaxCoordinate &&
-                      std::abs(position.y()) <= kMaxCoordinate &&
-                      std::abs(position.z()) <= kMaxCoordinate && std::isfinite(intensity) &&
-                      std::abs(time) <= kMaxOffset &&
-                      !position.isZero(0);  // what drivers write where nothing came back
-  if (!usable) {
-    ++scan_.dropped;
-    return;
-  }
-  scan_.points.position.push_back(position);
-  scan_.points.intensity.push_back(intensity);
-  if (timed_) scan_.points.time.push_back(static_cast<float>(time));
 }
 
 LidarScan ScanBuilder::take(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -27,12 +28,29 @@ class ScanBuilder {
   ScanBuilder(std::size_t points, bool timed);
 
   /// @param time  s from the scan's stamp
-  void add(const Eigen::Vector3f& position, float intensity, double time = 0);
+  void add(const Eigen::Vector3f& position, float intensity, double time = 0) {
+    if (!is_usable(position, intensity, time)) {
+      ++scan_.dropped;
+      return;
+    }
+    scan_.points.position.push_back(position);
+    scan_.points.intensity.push_back(intensity);
+    if (timed_) scan_.points.time.push_back(static_cast<float>(time));
+  }
 
   /// InputError if none of the points was usable.
   LidarScan take(const std::filesystem::path& file);
 
  private:
+  static constexpr float kMaxCoordinate = 1000;  // m; no LiDAR reaches it
+  static constexpr double kMaxOffset = 1;        // s; no sweep lasts as long
+  static bool is_usable(const Eigen::Vector3f& position, float intensity, double time) {
+    // Written so that NaN fails, too.
+    const float far = position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+    return far <= kMaxCoordinate && std::isfinite(intensity) && std::abs(time) <= kMaxOffset &&
+           far > 0;  // zeros are what drivers write where nothing came back
+  }
+
   LidarScan scan_;
   bool timed_;
 };
