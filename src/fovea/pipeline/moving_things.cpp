@@ -26,6 +26,12 @@ int voxels_per_edge(const TileMap& map) {
   return std::max(1, static_cast<int>(std::lround(map.tile_size() / kVoxel)));
 }
 
+/// Edge of a voxel, m. Whoever looks for a point's voxel takes the quotient of one by this, or a
+/// point on a border would be in another one for another.
+float voxel_size(const TileMap& map) {
+  return static_cast<float>(map.tile_size() / voxels_per_edge(map));
+}
+
 /// Calls f(point, cell) for points of a tile that follow each other.
 template <class F>
 void for_each_cell(const TilePoints& points, std::size_t begin, std::size_t end,
@@ -195,7 +201,7 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
   const Scan& scan = scans_.back();
   Block& block = *tile.block;
   const int edge = voxels_per_edge(map);
-  const auto size = static_cast<float>(map.tile_size() / edge);
+  const float size = voxel_size(map);
   const int age = frame - block.frame;
   block.frame = frame;
   for (Voxel& voxel : block.voxels) {
@@ -248,7 +254,7 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   for (const Voxel& voxel : block.voxels) {
     if (gone(voxel)) bounds.add(voxel.cell, kFoot);
   }
-  const auto cells_per_metre = static_cast<float>(edge / map.tile_size());
+  const float cells_per_metre = 1 / voxel_size(map);
   const auto layer = static_cast<std::uint32_t>(edge * edge);
   const auto frame_bit = [&](std::size_t i) {
     return aged(1, block.frame - tile.points->frame[i]);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "fovea/base/errors.h"
 
@@ -65,6 +66,22 @@ TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
   EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, 4), face);
   EXPECT_EQ(map.size(), all - face);
   EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, 5), 0u);
+}
+
+// In tiles of such sizes a voxel's border has different numbers as a product and as a quotient.
+TEST(MovingThings, WhatStoodOnTheBorderOfAVoxelIsRemoved) {
+  for (const auto& [tile_size, x] : {std::pair(10.1, 9.696f), {5.9, 2.95f}, {17.5, 8.75f}}) {
+    MovingThings things({});
+    TileMap map(tile_size);
+    map.add_submap(kHere);
+    map.add(face_points(x, 0));
+    const std::size_t all = map.size();
+    std::size_t removed = 0;
+    for (int frame = 1; frame <= 5; ++frame) {
+      removed += things.observe(map, seen(0), kHere, kHere, frame);
+    }
+    EXPECT_EQ(removed, all) << tile_size;
+  }
 }
 
 // A road 1 m below the LiDAR: rays graze it, so that the lowest decimetres above it are never seen
