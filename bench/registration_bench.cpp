@@ -25,7 +25,7 @@ RegistrationCloud prepared(const std::vector<Eigen::Vector3f>& scan) {
 
 /// A local map of all scans but the last, and the pose that the last one is expected at.
 struct Street {
-  LocalMap map{LocalMapOptions()};
+  LocalMap map{LocalMapOptions{.max_keyframes = 20}};
   RigidMotion guess = RigidMotion::Identity();
 
   explicit Street(const BenchData& data) {

@@ -35,8 +35,8 @@ struct MapKeeperOptions {
   /// Told what a checkpoint is going to write, by whoever asks for it, when the one before is
   /// committed.
   std::function<void(const TileChanges&, const MapRows&)> on_checkpoint = {};
-  /// Called by the thread that writes before each tile. It may wait for a better moment, but not
-  /// beyond `latest` nor once `hurry` is asked for.
+  /// Called by the thread that writes before each tile, until `hurry` is asked for. It may wait for
+  /// a better moment, but not beyond `latest` nor once that is.
   using Pause = std::function<void(WallClock::time_point latest, const std::stop_token& hurry)>;
   Pause pause = [](WallClock::time_point, const std::stop_token&) {};
 };

@@ -58,7 +58,8 @@ class Mapper {
   double reach() const { return reach_; }
 
   /// Takes up a map where an earlier run left it: its tiles, and the frames' records in order.
-  /// `load` reads the latest frames again, which registration needs as targets.
+  /// @param source  reads the last keyframes again, which registration needs as targets, and the
+  ///                latest scans, which tell what moves
   void resume(TileMap map, const std::vector<FrameRecord>& records, const FrameSource& source);
 
  private:

@@ -151,8 +151,10 @@ RegistrationResult align(const RegistrationCloud& target, const PointIndex& targ
     result.converged = narrow && pairs.size() == source.points.size() && moves_less_than(1);
     if (narrows && narrow) {
       const double steps = creeping.take(step);
-      if (steps > 1 && !moves_less_than(kCreeps)) {
+      // Not the last time: nobody would look whether it fits there.
+      if (steps > 1 && !moves_less_than(kCreeps) && result.iterations < options.max_iterations) {
         T = result.T_target_source * exp_se3(steps * step);
+        T.linear() = nearest_rotation(T.linear());
       }
     }
     result.T_target_source = T;
