@@ -36,14 +36,18 @@ class CreepingSteps {
   /// (Aitken's extrapolation), and one where it has another direction than the one before.
   double take(const Twist& step) {
     const Eigen::Vector3d now = step.tail<3>(), before = std::exchange(last_, now);
-    if (now.dot(before) <= kSameDirection * now.norm() * before.norm()) return 1;
+    const double along = now.dot(before);
+    // Back again: it went too far, and must not do so for ever.
+    if (along < 0) most_ = std::max(1.0, most_ * kFewer);
+    if (along <= kSameDirection * now.norm() * before.norm()) return 1;
     const double ratio = now.norm() / before.norm();
-    return ratio < 1 ? std::min(kMost, 1 / (1 - ratio)) : kMost;
+    return ratio < 1 ? std::min(most_, 1 / (1 - ratio)) : most_;
   }
 
  private:
   static constexpr double kSameDirection = 0.9;  // cosine
-  static constexpr double kMost = 4;
+  static constexpr double kFewer = 0.75;
+  double most_ = 4;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
 };
 
