@@ -53,9 +53,14 @@ void for_each_cell(const TilePoints& points, std::size_t begin, std::size_t end,
   }
 }
 
-Eigen::Vector3f center_of(std::uint32_t cell, float size, int edge) {
+/// Along x, y and z.
+std::array<std::uint32_t, 3> place_of(std::uint32_t cell, int edge) {
   const auto n = static_cast<std::uint32_t>(edge);
-  const std::uint32_t x = cell % n, y = cell / n % n, z = cell / n / n;
+  return {cell % n, cell / n % n, cell / n / n};
+}
+
+Eigen::Vector3f center_of(std::uint32_t cell, float size, int edge) {
+  const auto [x, y, z] = place_of(cell, edge);
   return Eigen::Vector3f(float(x), float(y), float(z)) * size + Eigen::Vector3f::Constant(size / 2);
 }
 
@@ -71,14 +76,14 @@ int free_since_filled(std::uint32_t filled, std::uint32_t free) {
 /// Of some cells of a tile and those beneath them: what lies elsewhere is told by its box.
 class CellBounds {
  public:
-  CellBounds(int edge, double tile_size)
-      : edge_(static_cast<std::uint32_t>(edge)), steps_(tile_size / edge / double(kPositionStep)) {}
+  /// @param size  of a cell, m; `edge` of them are a tile's
+  CellBounds(float size, int edge) : edge_(edge), steps_(double(size) / double(kPositionStep)) {}
 
   /// @param beneath  so many cells beneath it count, too
   void add(std::uint32_t cell, std::uint32_t beneath) {
-    const std::uint32_t z = cell / edge_ / edge_;
-    const std::array<std::uint32_t, 3> high{cell % edge_, cell / edge_ % edge_, z};
-    const std::array<std::uint32_t, 3> low{high[0], high[1], z - std::min(z, beneath)};
+    const std::array<std::uint32_t, 3> high = place_of(cell, edge_);
+    std::array<std::uint32_t, 3> low = high;
+    low[2] -= std::min(low[2], beneath);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low_[axis] = std::min(low_[axis], low[axis] * steps_ - kHair);
       high_[axis] = std::max(high_[axis], (high[axis] + 1) * steps_ + kHair);
@@ -96,7 +101,7 @@ class CellBounds {
 
  private:
   static constexpr double kHair = 1;  // steps: single precision tells which cell a point is in
-  std::uint32_t edge_;
+  int edge_;
   double steps_;  // of a cell's edge
   std::array<double, 3> low_{1e9, 1e9, 1e9}, high_{-1e9, -1e9, -1e9};
 };
@@ -250,7 +255,7 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   tile.shrinks = std::any_of(block.voxels.begin(), block.voxels.end(), gone);
   if (!tile.shrinks) return;
   const int edge = voxels_per_edge(map);
-  CellBounds bounds(edge, map.tile_size());
+  CellBounds bounds(voxel_size(map), edge);
   for (const Voxel& voxel : block.voxels) {
     if (gone(voxel)) bounds.add(voxel.cell, kFoot);
   }

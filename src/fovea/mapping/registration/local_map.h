@@ -12,7 +12,8 @@ namespace fovea {
 
 struct LocalMapOptions {
   int max_keyframes = 10;  ///< scans in the map
-  /// A scan is added if its sensor has moved or turned so far since the one added before.
+  /// Whoever adds scans adds those whose sensor has moved or turned so far since the one added
+  /// before (Keyframes).
   double keyframe_distance = 1.5;                  ///< m; 0: all scans are
   double keyframe_rotation = 0.04363323129985824;  ///< rad
   double max_range = 120.0;  ///< m from a scan's sensor; its points further away are left out
