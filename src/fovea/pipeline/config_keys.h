@@ -93,6 +93,7 @@ inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
   visit("local_map.max_keyframes", r.local_map.max_keyframes);
   visit("local_map.keyframe_distance", r.local_map.keyframe_distance);
   visit("local_map.keyframe_rotation", Degrees{r.local_map.keyframe_rotation});
+  visit("local_map.keyframe_overlap", r.local_map.keyframe_overlap);
   visit("local_map.max_range", r.local_map.max_range);
   visit("local_map.voxel", r.local_map.voxel);
 

@@ -400,17 +400,33 @@ TEST(Mapper, TrackingAheadChangesNothing) {
   expect_same_maps(stepwise.map(), ahead.map());
 }
 
+TEST(Mapper, AScanOfWhatIsNotInTheTargetBecomesPartOfIt) {
+  const auto last_pose = [](double distance, double overlap) {
+    MapperOptions options;
+    options.refinement.local_map.keyframe_distance = distance;
+    options.refinement.local_map.keyframe_overlap = overlap;
+    Mapper mapper(street().info(), options, PoseSource::kRefine);
+    return map_frames(mapper, street(), 0, 5).back().T_odom_lidar.matrix();
+  };
+  const auto first_alone = last_pose(1000, 0), all = last_pose(0, 0);
+  EXPECT_NE(first_alone, all);
+  EXPECT_EQ(last_pose(1000, 1), all);
+  EXPECT_EQ(last_pose(1000, 0.1), first_alone);
+}
+
 TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
   // Targets are all scans, some, or the first alone; of a local map, or of the last few.
-  for (const auto& [target, keyframe_distance, max_keyframes] :
-       {std::tuple(RegistrationTarget::kLocalMap, 0.0, 20),
-        {RegistrationTarget::kLocalMap, 1.5, 20},
-        {RegistrationTarget::kLocalMap, 1.5, 1},
-        {RegistrationTarget::kLocalMap, 1000.0, 20},
-        {RegistrationTarget::kPreviousScan, 1.5, 20}}) {
+  for (const auto& [target, keyframe_distance, keyframe_overlap, max_keyframes] :
+       {std::tuple(RegistrationTarget::kLocalMap, 0.0, 0.8, 20),
+        {RegistrationTarget::kLocalMap, 1.5, 0.8, 20},
+        {RegistrationTarget::kLocalMap, 1.5, 0.8, 1},
+        {RegistrationTarget::kLocalMap, 1000.0, 0.8, 20},
+        {RegistrationTarget::kLocalMap, 1000.0, 0.99, 20},
+        {RegistrationTarget::kPreviousScan, 1.5, 0.8, 20}}) {
     MapperOptions options;
     options.refinement.target = target;
     options.refinement.local_map.keyframe_distance = keyframe_distance;
+    options.refinement.local_map.keyframe_overlap = keyframe_overlap;
     options.refinement.local_map.max_keyframes = max_keyframes;
     options.fusion.submap_duration = 0.25;  // several submaps
     Mapper whole(street().info(), options, PoseSource::kRefine);

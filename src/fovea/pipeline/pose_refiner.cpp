@@ -19,8 +19,9 @@ PoseRefiner::PoseRefiner(const RefinementOptions& options, std::vector<Camera> c
     : options_(options), cameras_(std::move(cameras)), local_map_(options.local_map) {}
 
 Keyframes PoseRefiner::keyframes() const {
-  if (options_.target == RegistrationTarget::kPreviousScan) return {0, 0};
-  return {options_.local_map.keyframe_distance, options_.local_map.keyframe_rotation};
+  if (options_.target == RegistrationTarget::kPreviousScan) return Keyframes({});
+  const LocalMapOptions& map = options_.local_map;
+  return Keyframes({map.keyframe_distance, map.keyframe_rotation, map.keyframe_overlap});
 }
 
 int PoseRefiner::memory() const {

@@ -20,6 +20,17 @@ FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_sourc
   return fusion;
 }
 
+/// Whether a scan that is mapped is a target of those after it. All that says so is in its record:
+/// a run that resumes chooses the same.
+bool takes(Keyframes& keyframes, const FrameRecord& record) {
+  const auto figure = [&](const char* name) -> std::optional<double> {
+    const auto found = record.figures.find(name);
+    return found != record.figures.end() ? std::optional(found->second) : std::nullopt;
+  };
+  const auto pairs = figure("registration_pairs"), points = figure("registration_points");
+  return keyframes.takes(record.T_odom_lidar, pairs && *points > 0 ? *pairs / *points : 1);
+}
+
 }  // namespace
 
 Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
@@ -62,7 +73,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
     fusion_.track(record);
     if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
   });
-  if (!held_out && registers() && keyframes_.takes(record.T_odom_lidar)) {
+  if (!held_out && registers() && takes(keyframes_, record)) {
     next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
   }
 
@@ -134,15 +145,14 @@ void Tracker::follow(const FrameRecord& record) {
   motion_model_.update(record.stamp.value(), record.T_odom_lidar);
   FrameRecord tracked = record;
   fusion_.track(tracked);
-  is_target_ =
-      record.status == FrameStatus::kMapped && registers() && keyframes_.takes(record.T_odom_lidar);
+  is_target_ = record.status == FrameStatus::kMapped && registers() && takes(keyframes_, record);
 }
 
 int Tracker::first_target(const std::vector<FrameRecord>& records) const {
   Keyframes keyframes = refiner_.keyframes();
   std::vector<int> targets;
   for (const FrameRecord& record : records) {
-    if (record.status == FrameStatus::kMapped && keyframes.takes(record.T_odom_lidar)) {
+    if (record.status == FrameStatus::kMapped && takes(keyframes, record)) {
       targets.push_back(record.index);
     }
   }

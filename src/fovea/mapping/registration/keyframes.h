@@ -7,28 +7,36 @@
 
 namespace fovea {
 
+struct KeyframeOptions {
+  /// m, and rad, from the keyframe before, of which one suffices; 0: all scans are keyframes
+  double distance = 0, rotation = 0;
+  double overlap = 0;  ///< a scan of which less than this share is in the target is one anywhere
+};
+
 /// Chooses keyframes among scans that follow each other: the first, and each whose sensor is far
-/// enough from the one chosen before. What lies between tells the target little, and a vehicle that
-/// stands keeps what it saw on its way.
+/// enough from the one chosen before, or which sees what those before do not. What lies between
+/// tells the target little, and a vehicle that stands keeps what it saw on its way.
 class Keyframes {
  public:
-  /// @param distance  m, and
-  /// @param rotation  rad, of which one suffices; 0: all scans are keyframes
-  Keyframes(double distance, double rotation) : distance_(distance), rotation_(rotation) {}
+  explicit Keyframes(const KeyframeOptions& options) : options_(options) {}
 
   /// Whether the next scan is one.
-  bool takes(const RigidMotion& T_odom_lidar) {
-    if (last_ && !is_far(last_->inverse() * T_odom_lidar)) return false;
+  /// @param overlap  the share of its points that have a counterpart in the target
+  bool takes(const RigidMotion& T_odom_lidar, double overlap) {
+    if (last_ && overlap >= options_.overlap && !is_far(last_->inverse() * T_odom_lidar)) {
+      return false;
+    }
     last_ = T_odom_lidar;
     return true;
   }
 
  private:
   bool is_far(const RigidMotion& moved) const {
-    return moved.translation().norm() >= distance_ || rotation_angle(moved.linear()) >= rotation_;
+    return moved.translation().norm() >= options_.distance ||
+           rotation_angle(moved.linear()) >= options_.rotation;
   }
 
-  double distance_, rotation_;
+  KeyframeOptions options_;
   std::optional<RigidMotion> last_;
 };
 

@@ -13,26 +13,36 @@ RigidMotion at(double x, double yaw = 0) {
 std::vector<double> chosen(Keyframes keyframes, const std::vector<double>& places) {
   std::vector<double> result;
   for (const double x : places) {
-    if (keyframes.takes(at(x))) result.push_back(x);
+    if (keyframes.takes(at(x), 1)) result.push_back(x);
   }
   return result;
 }
 
 TEST(Keyframes, AreFarFromTheOneBefore) {
-  const Keyframes keyframes(1.5, 0.04);
+  const Keyframes keyframes({1.5, 0.04});
   EXPECT_EQ(chosen(keyframes, {0, 1, 2, 3, 4, 5}), (std::vector<double>{0, 2, 4}));
   EXPECT_EQ(chosen(keyframes, {7, 7, 7, 7}), std::vector<double>{7});
   // There and back: how long the way was does not count.
   EXPECT_EQ(chosen(keyframes, {0, 1, 0, -1, 0, 1, 2}), (std::vector<double>{0, 2}));
-  EXPECT_EQ(chosen(Keyframes(0, 0.04), {7, 7, 7}), (std::vector<double>{7, 7, 7}));
+  EXPECT_EQ(chosen(Keyframes({0, 0.04}), {7, 7, 7}), (std::vector<double>{7, 7, 7}));
 }
 
 TEST(Keyframes, AreTurnedFromTheOneBefore) {
-  Keyframes keyframes(1.5, 0.04);
-  EXPECT_TRUE(keyframes.takes(at(0)));
-  EXPECT_FALSE(keyframes.takes(at(0.1, 0.03)));
-  EXPECT_TRUE(keyframes.takes(at(0.2, -0.05)));
-  EXPECT_FALSE(keyframes.takes(at(0.2, -0.02)));
+  Keyframes keyframes({1.5, 0.04});
+  EXPECT_TRUE(keyframes.takes(at(0), 1));
+  EXPECT_FALSE(keyframes.takes(at(0.1, 0.03), 1));
+  EXPECT_TRUE(keyframes.takes(at(0.2, -0.05), 1));
+  EXPECT_FALSE(keyframes.takes(at(0.2, -0.02), 1));
+}
+
+TEST(Keyframes, SeeWhatTheTargetDoesNot) {
+  Keyframes keyframes({1.5, 0.04, 0.9});
+  EXPECT_TRUE(keyframes.takes(at(0), 1));
+  EXPECT_FALSE(keyframes.takes(at(1), 0.9));
+  EXPECT_TRUE(keyframes.takes(at(1), 0.8));
+  // From there on.
+  EXPECT_FALSE(keyframes.takes(at(2), 1));
+  EXPECT_TRUE(keyframes.takes(at(2.5), 1));
 }
 
 }  // namespace fovea::keyframes_test

@@ -35,6 +35,9 @@ void LocalMapOptions::validate() const {
     reject("an angle is out of range", "local_map.keyframe_rotation",
            "give degrees above 0 and up to 180");
   }
+  if (!(keyframe_overlap >= 0 && keyframe_overlap <= 1)) {
+    reject("a share is out of range", "local_map.keyframe_overlap", "give 0 (off) to 1");
+  }
   if (!(max_range > 0 && max_range <= 1000)) {
     reject("a range is out of range", "local_map.max_range", "give metres above 0 and up to 1000");
   }

@@ -13,9 +13,10 @@ namespace fovea {
 struct LocalMapOptions {
   int max_keyframes = 10;  ///< scans in the map
   /// Whoever adds scans adds those whose sensor has moved or turned so far since the one added
-  /// before (Keyframes).
+  /// before, and those of which less than a share is in the map (Keyframes).
   double keyframe_distance = 1.5;                  ///< m; 0: all scans are
   double keyframe_rotation = 0.04363323129985824;  ///< rad
+  double keyframe_overlap = 0.8;                   ///< 0 to 1
   double max_range = 120.0;  ///< m from a scan's sensor; its points further away are left out
   double voxel = 0.25;       ///< m, at most one point a voxel; 0 keeps all
   void validate() const;     ///< ConfigError that names the field

@@ -135,6 +135,8 @@ TEST(LocalMapOptions, ValidateNamesTheField) {
                   "local_map.keyframe_distance");
   expect_rejected([](LocalMapOptions& o) { o.keyframe_rotation = 0; },
                   "local_map.keyframe_rotation");
+  expect_rejected([](LocalMapOptions& o) { o.keyframe_overlap = 1.1; },
+                  "local_map.keyframe_overlap");
   expect_rejected([](LocalMapOptions& o) { o.max_range = 0; }, "local_map.max_range");
   expect_rejected([&](LocalMapOptions& o) { o.voxel = nan; }, "local_map.voxel");
 }
