@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include "fovea/base/give_way.h"
 #include "fovea/base/parallel.h"
@@ -29,18 +30,17 @@ bool is_ready(const std::future<T>& result) {
   return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-void put(MapWriter& writer, const MapRows& rows, const TileChanges& tiles) {
+void put(MapWriter& writer, const MapRows& rows, const std::vector<TileId>& removed) {
   for (const auto& [key, value] : rows.meta) writer.put_meta(key, value);
   for (const FrameRecord& frame : rows.frames) writer.put_frame(frame);
   for (const auto& [frame, T_local_lidar] : rows.poses) writer.put_pose(frame, T_local_lidar);
   for (const auto& [id, T_local_submap] : rows.submaps) writer.put_submap(id, T_local_submap);
-  for (const TileId& id : tiles.removed) writer.remove_tile(id);
+  for (const TileId& id : removed) writer.remove_tile(id);
 }
 
 /// Packs the tiles that have changed lately, whose handles are dropped: what the next frame changes
 /// would have to be copied if the writer shared it.
-std::vector<PackedTile> pack_lately_changed(TileChanges& changes) {
-  auto& tiles = changes.changed;
+std::vector<PackedTile> pack_lately_changed(std::vector<TileChanges::Changed>& tiles) {
   const auto first = std::stable_partition(
       tiles.begin(), tiles.end(), [](const TileChanges::Changed& tile) { return !tile.lately; });
   std::vector<PackedTile> packed(std::size_t(tiles.end() - first));
@@ -53,6 +53,26 @@ std::vector<PackedTile> pack_lately_changed(TileChanges& changes) {
 }
 
 }  // namespace
+
+PackedTile MapKeeper::Tiles::take(std::size_t i) {
+  if (i < packed.size()) return std::move(packed[i]);
+  TileChanges::Changed& tile = shared[i - packed.size()];
+  PackedTile result = pack_tile(tile.id, *tile.points);
+  tile.points = {};
+  return result;
+}
+
+void MapKeeper::Tiles::drop(const std::set<TileId>& ids) {
+  const auto is_one = [&](const auto& tile) { return ids.contains(tile.id); };
+  std::erase_if(packed, is_one);
+  std::erase_if(shared, is_one);
+}
+
+void MapKeeper::Tiles::drop_first(std::size_t count) {
+  const std::size_t of_packed = std::min(count, packed.size());
+  packed.erase(packed.begin(), packed.begin() + std::ptrdiff_t(of_packed));
+  shared.erase(shared.begin(), shared.begin() + std::ptrdiff_t(count - of_packed));
+}
 
 TileMap stored_map(const MapReader& reader, double tile_size) {
   TileMap map(tile_size);
@@ -107,44 +127,50 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
 
 bool MapKeeper::is_writing() const { return written_.valid() && !is_ready(written_); }
 
+MapKeeper::Tiles MapKeeper::take_over_checkpoint() {
+  taken_over_.request_stop();
+  hurry_.request_stop();
+  return written_.valid() ? written_.get() : Tiles();
+}
+
 TileChanges MapKeeper::take_changes(TileMap& map, const MapRows& rows) {
-  end_checkpoint();
   TileChanges changes = map.take_changes();
   if (on_checkpoint_) on_checkpoint_(changes, rows);
   return changes;
 }
 
-void MapKeeper::write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared) {
+void MapKeeper::write(MapRows rows, std::vector<TileId> removed, Tiles tiles) {
   hurry_ = std::stop_source();
-  written_ = worker_.post([this, rows = std::move(rows), packed = std::move(packed),
-                           shared = std::move(shared), hurry = hurry_.get_token()]() mutable {
+  taken_over_ = std::stop_source();
+  written_ = worker_.post([this, rows = std::move(rows), removed = std::move(removed),
+                           tiles = std::move(tiles), hurry = hurry_.get_token(),
+                           taken_over = taken_over_.get_token()]() mutable {
     const WallClock::time_point latest = WallClock::now() + kPatience;
-    put(*writer_, rows, shared);
-    const std::size_t count = packed.size() + shared.changed.size();
-    const auto take = [&](std::size_t i) {
-      if (i < packed.size()) return std::move(packed[i]);
-      TileChanges::Changed& tile = shared.changed[i - packed.size()];
-      PackedTile result = pack_tile(tile.id, *tile.points);
-      tile.points = {};  // the map need not copy it any more when it changes it
-      return result;
-    };
+    put(*writer_, rows, removed);
     std::size_t next = 0;
-    while (next < count && !hurry.stop_requested()) {
+    while (next < tiles.size() && !hurry.stop_requested()) {
       pause_(latest, hurry);
-      writer_->put_tile(take(next++));
+      writer_->put_tile(tiles.take(next++));
+    }
+    if (taken_over.stop_requested()) {
+      tiles.drop_first(next);
+      return std::move(tiles);
     }
     // Who waits lets the rest have all processors.
-    writer_->put_tiles(count - next, [&](std::size_t i) { return take(next + i); });
+    writer_->put_tiles(tiles.size() - next, [&](std::size_t i) { return tiles.take(next + i); });
     if (!commit_at_end_) writer_->commit();
     if (resident_memory() > memory_ - memory_ / 4) release_free_memory();
+    return Tiles();
   });
 }
 
 void MapKeeper::checkpoint(TileMap& map, MapRows rows, const Eigen::Vector3d& center_local,
                            double radius) {
+  end_checkpoint();
   TileChanges changes = take_changes(map, rows);
-  std::vector<PackedTile> packed = pack_lately_changed(changes);
-  write(std::move(rows), std::move(packed), std::move(changes));
+  std::vector<PackedTile> packed = pack_lately_changed(changes.changed);
+  write(std::move(rows), std::move(changes.removed),
+        {std::move(packed), std::move(changes.changed)});
   map.drop_beyond(center_local, radius + (needs_memory(map) ? kAhead : kBeyond));
   undroppable_ = map.size_in_memory();
 }
@@ -160,15 +186,22 @@ void MapKeeper::finish() {
 }
 
 void MapKeeper::finish(TileMap& map, MapRows rows) {
-  const TileChanges changes = take_changes(map, rows);
+  Tiles tiles;
+  if (on_checkpoint_) {
+    end_checkpoint();
+  } else {
+    tiles = take_over_checkpoint();
+  }
+  TileChanges changes = take_changes(map, rows);
+  std::set<TileId> newer(changes.removed.begin(), changes.removed.end());
+  for (const TileChanges::Changed& tile : changes.changed) newer.insert(tile.id);
+  tiles.drop(newer);
+  std::move(changes.changed.begin(), changes.changed.end(), std::back_inserter(tiles.shared));
   // No frame is to come any more: all processors are the writer's.
   worker_
       .post([&] {
-        put(*writer_, rows, changes);
-        writer_->put_tiles(changes.changed.size(), [&](std::size_t i) {
-          const TileChanges::Changed& tile = changes.changed[i];
-          return pack_tile(tile.id, *tile.points);
-        });
+        put(*writer_, rows, changes.removed);
+        writer_->put_tiles(tiles.size(), [&](std::size_t i) { return tiles.take(i); });
         writer_->commit();
       })
       .get();

@@ -6,6 +6,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <set>
 #include <stop_token>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "fovea/base/worker.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/packed_tile.h"
 #include "fovea/map/tile_map.h"
 
 namespace fovea {
@@ -73,14 +75,28 @@ class MapKeeper {
 
   /// Waits until all checkpoints are written and committed.
   void finish();
-  /// The last checkpoint, of a map that changes no more: finish() with what has changed.
+  /// The last checkpoint, of a map that changes no more: finish() with what has changed. One that
+  /// is still being written becomes part of it, unless somebody is told of each.
   void finish(TileMap& map, MapRows rows);
 
  private:
+  /// Tiles to be written: those that may change meanwhile are packed.
+  struct Tiles {
+    std::vector<PackedTile> packed;
+    std::vector<TileChanges::Changed> shared;
+    std::size_t size() const { return packed.size() + shared.size(); }
+    /// Of all, packed. The map need not copy it any more when it changes it.
+    PackedTile take(std::size_t i);
+    void drop(const std::set<TileId>& ids);
+    void drop_first(std::size_t count);
+  };
   /// Waits for the latest checkpoint, which need not be patient any more. Its error comes out here.
   void end_checkpoint();
+  /// As end_checkpoint(), but what the checkpoint has not yet begun to write is left to the caller,
+  /// and so is its commit.
+  Tiles take_over_checkpoint();
   TileChanges take_changes(TileMap& map, const MapRows& rows);
-  void write(MapRows rows, std::vector<PackedTile> packed, TileChanges shared);
+  void write(MapRows rows, std::vector<TileId> removed, Tiles tiles);
 
   std::size_t memory_;       // bytes that the process should keep to
   std::size_t most_points_;  // in memory
@@ -89,8 +105,9 @@ class MapKeeper {
   MapKeeperOptions::Pause pause_;
   std::size_t undroppable_ = 0;        // points that stayed there at the last checkpoint
   std::unique_ptr<MapWriter> writer_;  // the worker's, once there is one
-  std::future<void> written_;          // of the latest checkpoint
+  std::future<Tiles> written_;         // what the latest checkpoint has left to others
   std::stop_source hurry_;             // for it
+  std::stop_source taken_over_;        // it is to leave what it has not begun
   std::map<TileId, std::future<TilePoints>> requested_;
   Worker worker_;
 };

@@ -129,49 +129,116 @@ TEST_P(Keeper, ACheckpointIsWrittenAsItWasWhateverChangesAfter) {
   expect_stored(path_, map);
 }
 
-// A writer that would wait for ever is told to hurry by whoever needs what it writes, or a tile
-// that it is to read after that.
-TEST(PatientKeeper, HurriesWhenItIsWaitedFor) {
-  const TemporaryFolder folder;
-  const std::filesystem::path path = folder / "a.fovea";
-  Random random(4);
-  std::atomic<int> pauses = 0;
-  MapKeeperOptions options;
-  options.pause = [&](WallClock::time_point latest, const std::stop_token& hurry) {
-    EXPECT_LE(latest, WallClock::now() + std::chrono::seconds(1));
-    ++pauses;
-    std::mutex guard;
-    std::unique_lock lock(guard);
-    std::condition_variable_any nobody;
-    nobody.wait(lock, hurry, [] { return false; });
-  };
-  std::optional<MapKeeper> keeper(std::in_place, MapWriter::create(path, true), options);
+/// Counts what is written.
+class CountingWriter : public MapWriter {
+ public:
+  explicit CountingWriter(const std::filesystem::path& path)
+      : file_(MapWriter::create(path, true)) {}
+  int tiles = 0, commits = 0;
+
+  void put_meta(const std::string& key, const std::string& value) override {
+    file_->put_meta(key, value);
+  }
+  void put_frame(const FrameRecord& record) override { file_->put_frame(record); }
+  void put_submap(std::size_t id, const RigidMotion& T) override { file_->put_submap(id, T); }
+  void put_pose(int frame, const RigidMotion& T) override { file_->put_pose(frame, T); }
+  void put_tile(const PackedTile& tile) override { ++tiles, file_->put_tile(tile); }
+  void put_tiles(std::size_t count, const std::function<PackedTile(std::size_t)>& tile) override {
+    tiles += int(count), file_->put_tiles(count, tile);
+  }
+  void remove_tile(const TileId& id) override { file_->remove_tile(id); }
+  TilePoints read_tile(const TileId& id) override { return file_->read_tile(id); }
+  void commit() override { ++commits, file_->commit(); }
+
+ private:
+  std::unique_ptr<MapWriter> file_;
+};
+
+/// A writer that would wait for ever, unless it is told to hurry.
+class PatientKeeper : public testing::Test {
+ protected:
+  void until_it_waits(int times) {
+    while (pauses_ < times) std::this_thread::yield();
+  }
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "a.fovea";
+  Random random_{4};
+  std::atomic<int> pauses_ = 0;
+  MapKeeperOptions options_{
+      .pause = [this](WallClock::time_point latest, const std::stop_token& hurry) {
+        EXPECT_LE(latest, WallClock::now() + std::chrono::seconds(1));
+        ++pauses_;
+        std::mutex guard;
+        std::unique_lock lock(guard);
+        std::condition_variable_any nobody;
+        nobody.wait(lock, hurry, [] { return false; });
+      }};
+};
+
+// By whoever needs what it writes, or a tile that it is to read after that.
+TEST_F(PatientKeeper, HurriesWhenItIsWaitedFor) {
+  std::optional<MapKeeper> keeper(std::in_place, MapWriter::create(path_, true), options_);
   TileMap map(2.0);
   map.add_submap(RigidMotion::Identity());
-  map.add(points_at(0, random));
+  map.add(points_at(0, random_));
   map.add_submap(RigidMotion(Eigen::Translation3d(100, 0, 0)));
-  map.add(points_at(100, random));
+  map.add(points_at(100, random_));
   const Eigen::Vector3d here(0, 0, 0), there(100, 0, 0);
-  const auto until_it_waits = [&](int times) {
-    while (pauses < times) std::this_thread::yield();
-  };
   keeper->checkpoint(map, rows_of(map), there, kNear);
   until_it_waits(1);
   keeper->checkpoint(map, {}, there, kNear);  // waits for the first, drops what lies behind
   ASSERT_LT(map.size_in_memory(), map.size());
-  map.add(points_at(100, random));
+  map.add(points_at(100, random_));
   keeper->checkpoint(map, {}, there, kNear);
   until_it_waits(2);
   keeper->bring_near(map, here, kNear);
   EXPECT_EQ(map.size_in_memory(), map.size());
-  map.add(points_at(100, random));
+  map.add(points_at(100, random_));
   keeper->finish(map, {});
-  expect_stored(path, map);
-  map.add(points_at(100, random));
+  expect_stored(path_, map);
+  map.add(points_at(100, random_));
   keeper->checkpoint(map, {}, there, kNear);
   until_it_waits(3);
   keeper.reset();
-  EXPECT_EQ(pauses, 3);  // who is waited for waits no more
+  EXPECT_EQ(pauses_, 3);  // who is waited for waits no more
+}
+
+// Nobody needs the state before the last one: what of it is still to be written goes with that, and
+// what has changed since is written once.
+TEST_F(PatientKeeper, TheLastCheckpointTakesOverTheOneBefore) {
+  for (const bool observed : {false, true}) {
+    pauses_ = 0;
+    int told = 0;
+    if (observed) options_.on_checkpoint = [&](const TileChanges&, const MapRows&) { ++told; };
+    auto counting = std::make_unique<CountingWriter>(path_);
+    const CountingWriter& writer = *counting;
+    MapKeeper keeper(std::move(counting), options_);
+    TileMap map(2.0);
+    map.add_submap(RigidMotion::Identity());
+    for (const double x : {0, 50, 100}) {
+      keeper.bring_near(map, {x, 0, 0}, kNear);
+      map.add(points_at(x, random_));
+    }
+    map.begin_step(), map.begin_step(), map.begin_step();
+    map.add(points_at(100, random_));  // packed at once, all else is shared
+    const int tiles = int(map.submaps()[0].tiles.size());
+    keeper.checkpoint(map, rows_of(map), {100, 0, 0}, 1000);
+    until_it_waits(1);
+    map.add(points_at(50, random_));
+    const TileId gone{0, map.submaps()[0].tiles.begin()->first};
+    map.keep_points(gone, {});
+    keeper.finish(map, {});
+    expect_stored(path_, map);
+    EXPECT_EQ(told, observed ? 2 : 0);
+    EXPECT_EQ(pauses_, 1);
+    EXPECT_EQ(writer.commits, observed ? 2 : 1);
+    const int now = int(map.submaps()[0].tiles.size());
+    if (observed) {
+      EXPECT_GT(writer.tiles, tiles);
+    } else {
+      EXPECT_LE(writer.tiles, now + 1);  // the one that it had begun
+    }
+  }
 }
 
 TEST_P(Keeper, WantsACheckpointWhenMemoryRunsOut) {
