@@ -19,7 +19,7 @@ namespace fovea::crash_test {
 
 using Clock = std::chrono::steady_clock;
 
-/// Many small frames: eight commits.
+/// Many small frames: some five commits.
 std::filesystem::path write_long_drive(const std::filesystem::path& folder) {
   SyntheticDrive drive(street_scene(), 160, 0.12);
   drive.beams = 20;

@@ -48,7 +48,7 @@ struct MapJob {
   /// alone.
   std::size_t memory = std::size_t{1} << 30;
   /// Frames from one commit to the next, at least: what a crash can cost.
-  std::size_t checkpoint_frames = 20;
+  std::size_t checkpoint_frames = 30;
   MapObserver* observer = nullptr;  ///< or none; outlives the run
   std::stop_token stop;             ///< ends after the frames at hand; what was mapped is committed
 };
