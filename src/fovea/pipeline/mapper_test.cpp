@@ -443,4 +443,14 @@ TEST(Mapper, ResumedRunEqualsAnUninterruptedOne) {
   }
 }
 
+// A file may come from anybody.
+TEST(Mapper, ResumesFromRecordsThatLackAFigure) {
+  Mapper first(street().info(), {}, PoseSource::kRefine);
+  auto records = map_frames(first, street(), 0, 3);
+  ASSERT_EQ(records[2].figures.erase("registration_points"), 1u);
+  Mapper second(street().info(), {}, PoseSource::kRefine);
+  second.resume(first.map(), records, street());
+  EXPECT_EQ(map_frames(second, street(), 3, 4)[0].status, FrameStatus::kMapped);
+}
+
 }  // namespace fovea::mapper_test

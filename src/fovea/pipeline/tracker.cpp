@@ -23,12 +23,10 @@ FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_sourc
 /// Whether a scan that is mapped is a target of those after it. All that says so is in its record:
 /// a run that resumes chooses the same.
 bool takes(Keyframes& keyframes, const FrameRecord& record) {
-  const auto figure = [&](const char* name) -> std::optional<double> {
-    const auto found = record.figures.find(name);
-    return found != record.figures.end() ? std::optional(found->second) : std::nullopt;
-  };
-  const auto pairs = figure("registration_pairs"), points = figure("registration_points");
-  return keyframes.takes(record.T_odom_lidar, pairs && *points > 0 ? *pairs / *points : 1);
+  const auto pairs = record.figures.find("registration_pairs");
+  const bool registered = pairs != record.figures.end() && record.has("registration_points");
+  const double overlap = registered ? pairs->second / record.figures.at("registration_points") : 1;
+  return keyframes.takes(record.T_odom_lidar, overlap);
 }
 
 }  // namespace
