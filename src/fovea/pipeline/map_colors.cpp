@@ -37,7 +37,7 @@ void put(const TileColors& colors, std::size_t i, const FusedColors& fused, std:
 }
 
 /// Every how many points in view are asked for the exposure.
-constexpr std::size_t kExposureStep = 32;
+constexpr std::size_t kExposureStep = 64;
 /// Share of a gain that is undone.
 constexpr float kUndone = 0.9f;
 

@@ -12,24 +12,21 @@ namespace {
 // colour.
 constexpr double kFloor = 0.003;
 
-}  // namespace
+/// What one edge adds to a score, without the products of its derivative.
+struct EdgeTerms {
+  CalibrationVector J;  ///< of its place along the profile
+  double value, slope, curvature, bound;
 
-const CalibrationVector& calibration_unit() {
-  static const CalibrationVector unit =
-      (CalibrationVector() << 0.0014, 0.0014, 0.01, 0.01, 1, 1).finished();
-  return unit;
-}
+  void add_to(EdgeScore& score) const {
+    const CalibrationMatrix JJ = J * J.transpose();
+    score.value += value;
+    score.gradient += J * slope;
+    score.curvature += JJ * curvature;
+    score.bound += JJ * bound;
+  }
+};
 
-EdgeScore& EdgeScore::operator+=(const EdgeScore& other) {
-  value += other.value;
-  gradient += other.gradient;
-  curvature += other.curvature;
-  bound += other.bound;
-  return *this;
-}
-
-EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correction,
-                     double width) {
+EdgeTerms terms_of(const EdgeProfile& profile, const CalibrationVector& correction, double width) {
   const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
   const double place = J.dot(correction);
   // The thing ends anywhere in the gap: a uniform distribution's variance.
@@ -59,13 +56,31 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
     square += seen * away * away;
   }
   const double likelihood = mass + kFloor, slope = moment / variance / likelihood;
-  const CalibrationMatrix JJ = J * J.transpose();
+  return {J, std::log(likelihood), slope,
+          (mass / variance - square / (variance * variance)) / likelihood + slope * slope,
+          mass / variance / likelihood};
+}
+
+}  // namespace
+
+const CalibrationVector& calibration_unit() {
+  static const CalibrationVector unit =
+      (CalibrationVector() << 0.0014, 0.0014, 0.01, 0.01, 1, 1).finished();
+  return unit;
+}
+
+EdgeScore& EdgeScore::operator+=(const EdgeScore& other) {
+  value += other.value;
+  gradient += other.gradient;
+  curvature += other.curvature;
+  bound += other.bound;
+  return *this;
+}
+
+EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correction,
+                     double width) {
   EdgeScore score;
-  score.value = std::log(likelihood);
-  score.gradient = J * slope;
-  score.curvature =
-      JJ * ((mass / variance - square / (variance * variance)) / likelihood + slope * slope);
-  score.bound = JJ * (mass / variance / likelihood);
+  terms_of(profile, correction, width).add_to(score);
   return score;
 }
 
@@ -74,7 +89,7 @@ EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const Calibration
   return parallel_sum<EdgeScore>(profiles.size(), 512, {}, [&](std::size_t begin, std::size_t end) {
     EdgeScore score;
     for (std::size_t i = begin; i < end; ++i) {
-      score += edge_score(profiles[i], correction, width);
+      terms_of(profiles[i], correction, width).add_to(score);
     }
     return score;
   });

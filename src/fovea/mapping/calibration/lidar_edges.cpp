@@ -77,9 +77,13 @@ void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, Li
     by_column[std::min(column, columns - 1)].push_back(i);
   }
   for (std::vector<std::uint32_t>& above : by_column) {
-    std::stable_sort(above.begin(), above.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const auto is_above = [&](std::uint32_t a, std::uint32_t b) {
       return beams[a].direction.z() > beams[b].direction.z();
-    });
+    };
+    // Most scans come ring by ring, from the upmost down.
+    if (!std::is_sorted(above.begin(), above.end(), is_above)) {
+      std::stable_sort(above.begin(), above.end(), is_above);
+    }
     for (std::size_t k = 1; k < above.size(); ++k) {
       const Beam &a = beams[above[k - 1]], &b = beams[above[k]];
       // Two firings of one ring may share a column.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <ranges>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
@@ -59,41 +60,43 @@ struct DirectionBlock {
   }
 };
 
-/// Whatever is far enough and finite.
-std::vector<Return> returns_of(std::span<const Eigen::Vector3f> scan_lidar) {
-  constexpr std::size_t kGrain = DirectionBlock::kSize;
+/// Whatever is far enough and finite, a chunk behind the other.
+std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> scan_lidar) {
+  constexpr std::size_t kGrain = 32 * DirectionBlock::kSize;
   std::vector<std::vector<Return>> chunks((scan_lidar.size() + kGrain - 1) / kGrain);
   parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     DirectionBlock block;
-    block.compute(scan_lidar.subspan(begin, end - begin));
     std::vector<Return>& returns = chunks[begin / kGrain];
     returns.reserve(end - begin);
-    for (std::size_t i = 0; i < end - begin; ++i) {
-      if (!(block.range[i] > kMinRange) || !std::isfinite(block.range[i])) continue;
-      returns.push_back(
-          {static_cast<int>(block.row[i]), whole_column(block.column[i]), block.range[i]});
+    for (; begin < end; begin += DirectionBlock::kSize) {
+      const std::size_t count = std::min(DirectionBlock::kSize, end - begin);
+      block.compute(scan_lidar.subspan(begin, count));
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!(block.range[i] > kMinRange) || !std::isfinite(block.range[i])) continue;
+        returns.push_back(
+            {static_cast<int>(block.row[i]), whole_column(block.column[i]), block.range[i]});
+      }
     }
   });
-  std::vector<Return> all;
-  all.reserve(scan_lidar.size());
-  for (const std::vector<Return>& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
-  return all;
+  return chunks;
 }
 
 }  // namespace
 
 RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
-  const std::vector<Return> returns = returns_of(scan_lidar);
-  if (returns.empty()) return;
-  const auto [lowest, highest] =
-      std::minmax_element(returns.begin(), returns.end(),
-                          [](const Return& a, const Return& b) { return a.row < b.row; });
-  first_row_ = lowest->row;
-  rows_ = highest->row - first_row_ + 1;
+  const std::vector<std::vector<Return>> returns = returns_of(scan_lidar);
+  int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
+  for (const Return& r : std::views::join(returns)) {
+    lowest = std::min(lowest, r.row);
+    highest = std::max(highest, r.row);
+  }
+  if (lowest > highest) return;
+  first_row_ = lowest;
+  rows_ = highest - lowest + 1;
 
   Level cells;
   cells.nearest.assign(static_cast<std::size_t>(rows_) * kColumns, kNothing);
-  for (const Return& r : returns) {
+  for (const Return& r : std::views::join(returns)) {
     float& nearest =
         cells.nearest[static_cast<std::size_t>(r.row - first_row_) * kColumns + r.column];
     nearest = std::min(nearest, r.range);
