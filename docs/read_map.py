@@ -23,15 +23,22 @@ def plane(data, n, k):
     return [number % 65536 for number in itertools.accumulate(differences)]
 
 
+def byte_runs(data):
+    """The values of runs of single bytes."""
+    values, lengths = data[:len(data) // 2], data[len(data) // 2:]
+    return [value for value, length in zip(values, lengths) for _ in range(length + 1)]
+
+
 database = sqlite3.connect(f"file:{sys.argv[1]}?mode=ro", uri=True)
-if database.execute("PRAGMA user_version").fetchone() != (5,):
-    sys.exit("read_map: not a Fovea map of format version 5")
+if database.execute("PRAGMA user_version").fetchone() != (6,):
+    sys.exit("read_map: not a Fovea map of format version 6")
 pose = {number: [float(word) for word in text.split()]
         for number, text in database.execute("SELECT id, pose FROM submaps")}
 for submap, n, ox, oy, oz, position, color, camera in database.execute(
         "SELECT submap, points, origin_x, origin_y, origin_z, position, color, camera"
         " FROM tiles ORDER BY submap, x, y, z"):
-    T, position, color, camera = pose[submap], unpack(position), unpack(color), unpack(camera)
+    T, position, color = pose[submap], unpack(position), unpack(color)
+    camera = byte_runs(unpack(camera))
     axes = [[o + mm / 1000 for mm in plane(position, n, k)] for k, o in enumerate((ox, oy, oz))]
     for i, (x, y, z) in enumerate(zip(*axes)):
         if camera[i] == 255:  # -1: no camera saw it

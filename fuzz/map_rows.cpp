@@ -128,8 +128,11 @@ std::string any_blob(FuzzedDataProvider& input, std::size_t column, std::int64_t
     case 2:
       return {};
     default:
-      const auto size = packed_size(
+      const PackedSizes sizes = packed_sizes(
           column, static_cast<std::size_t>(std::clamp<std::int64_t>(points, 0, kLargest)));
+      const std::size_t size =
+          sizes.least + sizes.step * input.ConsumeIntegralInRange<std::size_t>(
+                                         0, (sizes.most - sizes.least) / sizes.step);
       std::string bytes = input.ConsumeBytesAsString(size);
       bytes.resize(size);
       return compressed(bytes);
@@ -143,10 +146,14 @@ std::int64_t any_small(FuzzedDataProvider& input, std::int64_t most) {
 }
 
 /// Coloured points of a tile, where its column of cameras can be read.
-std::int64_t count_colored(const std::string& cameras, std::int64_t points) {
-  std::string bytes(static_cast<std::size_t>(std::clamp<std::int64_t>(points, 0, 1 << 12)), '\0');
-  ZSTD_decompress(bytes.data(), bytes.size(), cameras.data(), cameras.size());
-  return std::ssize(bytes) - std::count(bytes.begin(), bytes.end(), char{kNoCamera});
+std::int64_t colored_by(std::size_t column, const std::string& cameras) {
+  std::vector<std::byte> bytes(1 << 13);
+  const std::size_t size =
+      ZSTD_decompress(bytes.data(), bytes.size(), cameras.data(), cameras.size());
+  if (ZSTD_isError(size)) return 0;
+  TilePoints tile;
+  unpack_column(column, std::span(bytes).first(size), 0, tile);
+  return count_colored(tile);
 }
 
 void put_tile(FuzzedDataProvider& input, Sql& sql) {
@@ -163,7 +170,7 @@ void put_tile(FuzzedDataProvider& input, Sql& sql) {
     blobs[i] = any_blob(input, i, row.points);
     row.blobs[i] = std::as_bytes(std::span(blobs[i]));
   }
-  const std::int64_t colored = count_colored(blobs[kCameraColumn], row.points);
+  const std::int64_t colored = colored_by(kCameraColumn, blobs[kCameraColumn]);
   row.colored = input.ConsumeIntegralInRange(0, 7) == 0 ? any_small(input, 40) : colored;
   row.checksum = checksum(row);
   sql.run(

@@ -19,7 +19,7 @@
 namespace fovea {
 
 /// Version of the schema; a file of another version is refused.
-inline constexpr int kMapSchemaVersion = 5;
+inline constexpr int kMapSchemaVersion = 6;
 
 /// Keys of meta: the store's own, and what crop_map() has kept of another map.
 inline constexpr const char* kSchemaVersionKey = "schema_version";

@@ -344,11 +344,11 @@ TEST(MapReader, RefusesWhatIsNoMap) {
 TEST(MapReader, RefusesOtherVersions) {
   const TemporaryFolder folder;
   write_sample_map(folder / "a.fovea");
-  run_sql(folder / "a.fovea", "PRAGMA user_version=6");
+  run_sql(folder / "a.fovea", "PRAGMA user_version=7");
   EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
-              AllOf(HasSubstr("format version 6"), HasSubstr("newer Fovea")));
+              AllOf(HasSubstr("format version 7"), HasSubstr("newer Fovea")));
   EXPECT_THROW(MapWriter::open(folder / "a.fovea"), InputError);
-  for (const char* old : {"0", "4"}) {  // 4: positions as floats
+  for (const char* old : {"0", "5"}) {  // 5: no runs
     run_sql(folder / "a.fovea", std::string("PRAGMA user_version=") + old);
     EXPECT_THAT(
         message<InputError>([&] { MapReader(folder / "a.fovea"); }),

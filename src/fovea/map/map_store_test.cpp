@@ -7,6 +7,8 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -50,7 +52,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   const MapReader reader(folder / "a.fovea");
   const MapMeta meta = reader.meta();
   EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
-  EXPECT_EQ(meta.at("schema_version"), "5");
+  EXPECT_EQ(meta.at("schema_version"), "6");
   EXPECT_EQ(meta.size(), 7u);
   const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
   ASSERT_EQ(frames.size(), expected.size());
@@ -335,6 +337,23 @@ std::vector<T> inflate(sqlite3_stmt* row, int column, std::size_t count) {
   return values;
 }
 
+/// Values from runs of equal ones.
+template <class T>
+std::vector<T> inflate_runs(sqlite3_stmt* row, int column) {
+  const std::size_t size =
+      ZSTD_getFrameContentSize(sqlite3_column_blob(row, column),
+                               static_cast<std::size_t>(sqlite3_column_bytes(row, column)));
+  const auto bytes = inflate<std::uint8_t>(row, column, size);
+  const std::size_t runs = size / (sizeof(T) + 1);
+  std::vector<T> values;
+  for (std::size_t i = 0; i < runs; ++i) {
+    std::array<std::uint8_t, sizeof(T)> of_value;
+    for (std::size_t k = 0; k < sizeof(T); ++k) of_value[k] = bytes[k * runs + i];
+    values.insert(values.end(), bytes[sizeof(T) * runs + i] + 1u, std::bit_cast<T>(of_value));
+  }
+  return values;
+}
+
 /// Whole numbers from a plane of differences that begins at a byte.
 std::vector<unsigned> plane(const std::vector<std::uint8_t>& bytes, std::size_t begin,
                             std::size_t count) {
@@ -383,14 +402,14 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
     }
     const auto color = inflate<std::uint8_t>(row, 10, 3 * count);
     EXPECT_EQ(color[1], tile.color[0].g);
-    EXPECT_TRUE(same_bits(inflate<std::int8_t>(row, 11, count), tile.camera));
-    EXPECT_TRUE(same_bits(inflate<std::int32_t>(row, 12, count), tile.frame));
-    EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 15, count), tile.interpolated));
+    EXPECT_TRUE(same_bits(inflate_runs<std::int8_t>(row, 11), tile.camera));
+    EXPECT_TRUE(same_bits(inflate_runs<std::int32_t>(row, 12), tile.frame));
+    EXPECT_TRUE(same_bits(inflate_runs<std::uint8_t>(row, 15), tile.interpolated));
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 16, count), tile.views));
     EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 17, count), tile.spread));
     EXPECT_TRUE(same_bits(inflate<std::uint16_t>(row, 18, count), tile.weight));
-    EXPECT_TRUE(same_bits(inflate<std::uint8_t>(row, 19, count), tile.reason));
-    EXPECT_TRUE(same_bits(inflate<float>(row, 20, count), tile.intensity));
+    EXPECT_TRUE(same_bits(inflate_runs<std::uint8_t>(row, 19), tile.reason));
+    EXPECT_TRUE(same_bits(inflate_runs<float>(row, 20), tile.intensity));
 
     std::vector<char> bytes;
     const auto add_bytes = [&](const void* data, std::size_t size) {

@@ -130,17 +130,17 @@ TilePoints TileDecoder::decode(const TileRow& row, const std::string& map_path) 
   for (std::size_t i = 0; i < kStoredColumns; ++i) {
     const std::span<const std::byte> blob = row.blobs[i];
     if (i == kIntensityColumn && blob.empty()) continue;
-    const std::size_t size = packed_size(i, points);
     const auto unpacked = [&] {
-      if (ZSTD_getFrameContentSize(blob.data(), blob.size()) != size) return false;
+      const std::size_t size = ZSTD_getFrameContentSize(blob.data(), blob.size());
+      if (!packed_sizes(i, points).allow(size)) return false;
       // Before memory is taken: a forged row must not ask for what its blobs cannot fill.
       if (size / kMostOfBlock > blob.size() / kLeastBlock) return false;
       memory_.resize(size);
       return ZSTD_decompressDCtx(context_.get(), memory_.data(), size, blob.data(), blob.size()) ==
-             size;
+                 size &&
+             unpack_column(i, memory_, points, tile);
     };
     if (!unpacked()) fail("a column of a tile cannot be decoded");
-    unpack_column(i, memory_, points, tile);
   }
   tile.widen_boxes(0);
   if (count_colored(tile) != row.colored) fail("a tile has another number of coloured points");

@@ -14,7 +14,7 @@ TEST(TileDecoder, AForgedSizeTakesNoMemory) {
   row.points = kMaxTilePoints;
   // zstd: a frame whose header has its size in 8 bytes, and one block that repeats a byte.
   std::vector<std::uint8_t> frame{0x28, 0xb5, 0x2f, 0xfd, 0xe0};
-  const std::uint64_t size = packed_size(0, static_cast<std::size_t>(row.points));
+  const std::uint64_t size = packed_sizes(0, static_cast<std::size_t>(row.points)).most;
   for (int i = 0; i < 8; ++i) frame.push_back(static_cast<std::uint8_t>(size >> (8 * i)));
   frame.insert(frame.end(), {0x03, 0x00, 0x10, 0});
   row.blobs[0] = std::as_bytes(std::span(frame));
@@ -32,6 +32,17 @@ TEST(TileDecoder, LargeTilesOfOneValueComeBack) {
   TileDecoder decoder;
   const TileRow row = encoder.encode(pack_tile({}, TilePoints::of(tile)));
   expect_same_columns(decoder.decode(row, "map").cloud(), tile);
+}
+
+TEST(TileDecoder, RunsThatDoNotAddUpAreRefused) {
+  constexpr std::size_t kCamera = 2;
+  TileEncoder encoder;
+  TileDecoder decoder;
+  PackedTile tile = pack_tile({}, TilePoints::of(one_point_each({{1, 1, 1}, {1, 2, 1}})));
+  ASSERT_EQ(tile.columns[kCamera].size(), 2u);
+  EXPECT_EQ(decoder.decode(encoder.encode(tile), "map").size(), 2u);
+  tile.columns[kCamera][1] = std::byte{2};
+  EXPECT_THROW(decoder.decode(encoder.encode(tile), "map"), InputError);
 }
 
 // A tile that is read again is looked for by its box.

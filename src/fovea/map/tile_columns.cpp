@@ -1,6 +1,7 @@
 #include "fovea/map/tile_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
@@ -71,38 +72,71 @@ void copy(std::span<const std::byte> bytes, std::vector<Value>& values) {
   values.resize(bytes.size() / sizeof(Value));
   if (!bytes.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
 }
+/// Bytes of a run: its value, and one less than its length.
 template <class Value>
-void copy(const RunColumn<Value>& column, std::vector<std::byte>& bytes) {
-  bytes.resize(column.size() * sizeof(Value));
-  std::byte* to = bytes.data();
+constexpr std::size_t kRunBytes = sizeof(Value) + 1;
+constexpr std::uint32_t kLongestRun = 256;
+
+/// Calls f(length, value) for each run; longer ones than a byte can tell come in several.
+template <class Value, class F>
+void for_each_short_run(const RunColumn<Value>& column, F&& f) {
   column.for_each_run([&](std::uint32_t begin, std::uint32_t end, Value value) {
-    for (const std::byte* stop = to + (end - begin) * sizeof(Value); to < stop;
-         to += sizeof(Value)) {
-      std::memcpy(to, &value, sizeof(Value));
-    }
+    for (; begin < end; begin += kLongestRun) f(std::min(kLongestRun, end - begin), value);
+  });
+}
+
+/// The first bytes of all values, and so on, then all lengths.
+template <class Value>
+void pack_runs(const RunColumn<Value>& column, std::vector<std::byte>& bytes) {
+  std::size_t runs = 0, next = 0;
+  for_each_short_run(column, [&](std::uint32_t, Value) { ++runs; });
+  bytes.resize(runs * kRunBytes<Value>);
+  for_each_short_run(column, [&](std::uint32_t length, Value value) {
+    const auto of_value = std::bit_cast<std::array<std::byte, sizeof(Value)>>(value);
+    for (std::size_t k = 0; k < sizeof(Value); ++k) bytes[k * runs + next] = of_value[k];
+    bytes[sizeof(Value) * runs + next++] = static_cast<std::byte>(length - 1);
   });
 }
 template <class Value>
-void copy(std::span<const std::byte> bytes, RunColumn<Value>& column) {
+bool unpack_runs(std::size_t n, std::span<const std::byte> bytes, RunColumn<Value>& column) {
   column = {};
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Value)) {
-    Value value;
-    std::memcpy(&value, &bytes[at], sizeof(Value));
-    column.push_back(value);
+  const std::size_t runs = bytes.size() / kRunBytes<Value>;
+  std::array<std::byte, sizeof(Value)> of_value;
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < runs; ++i) {
+    for (std::size_t k = 0; k < sizeof(Value); ++k) of_value[k] = bytes[k * runs + i];
+    const auto length = std::to_integer<std::uint32_t>(bytes[sizeof(Value) * runs + i]) + 1;
+    values += length;
+    if (values > n) return false;
+    column.push_back(std::bit_cast<Value>(of_value), length);
   }
+  return values == n;
 }
 
-/// Calls `planes` with the columns that are planes of differences, a span of them, and `as_it_is`
-/// with the others. Which they are is told by the tile's column itself.
-template <class Tile, class Column, class Planes, class AsItIs>
-void by_packing(Tile& tile, Column& column, Planes&& planes, AsItIs&& as_it_is) {
-  if constexpr (std::is_same_v<std::remove_const_t<Column>, decltype(TilePoints::position)>) {
+/// Calls `planes` with the columns that are planes of differences, a span of them, `runs` with
+/// those that are runs of equal values, and `as_it_is` with the others. Which they are is told by
+/// the tile's column itself.
+template <class Tile, class Column, class Planes, class Runs, class AsItIs>
+void by_packing(Tile& tile, Column& column, Planes&& planes, Runs&& runs, AsItIs&& as_it_is) {
+  using Values = std::remove_const_t<Column>;
+  if constexpr (std::is_same_v<Values, decltype(TilePoints::position)>) {
     planes(std::span(column));
-  } else if constexpr (std::is_same_v<std::remove_const_t<Column>, decltype(TilePoints::range)>) {
+  } else if constexpr (std::is_same_v<Values, decltype(TilePoints::range)>) {
     &column == &tile.range ? planes(std::span(&column, 1)) : as_it_is(column);
+  } else if constexpr (std::is_same_v<Values, RunColumn<typename Values::value_type>>) {
+    runs(column);
   } else {
     as_it_is(column);
   }
+}
+
+/// Calls f with column i of a tile.
+template <class Tile, class F>
+void with_column(Tile& tile, std::size_t i, F&& f) {
+  std::size_t next = 0;
+  for_each_stored_column(tile, [&](auto& column) {
+    if (next++ == i) f(column);
+  });
 }
 
 }  // namespace
@@ -123,6 +157,7 @@ PackedColumns pack_columns(const TilePoints& tile) {
             to += kPlaneBytes * n;
           }
         },
+        [&](const auto& runs) { pack_runs(runs, bytes); },
         [&](const auto& values) { copy(values, bytes); });
   });
   return columns;
@@ -130,10 +165,8 @@ PackedColumns pack_columns(const TilePoints& tile) {
 
 ColumnKind kind_of(std::size_t column) {
   const TilePoints tile;
-  std::size_t next = 0;
   ColumnKind kind;
-  for_each_stored_column(tile, [&](const auto& of_tile) {
-    if (next++ != column) return;
+  with_column(tile, column, [&](const auto& of_tile) {
     const void* const it = &of_tile;
     kind.is_noisy = it == &tile.color || it == &tile.spread;
     by_packing(
@@ -141,28 +174,37 @@ ColumnKind kind_of(std::size_t column) {
         [&](const auto& planes) {
           kind = {planes.size() * kPlaneBytes, true};
         },
+        [&]<class Value>(const RunColumn<Value>&) { kind.parts = kRunBytes<Value>; },
         [](const auto&) {});
   });
   return kind;
 }
 
-std::size_t packed_size(std::size_t column, std::size_t points) {
+PackedSizes packed_sizes(std::size_t column, std::size_t points) {
   const TilePoints tile;
-  std::size_t next = 0, size = 0;
-  for_each_stored_column(tile, [&](const auto& of_tile) {
-    if (next++ != column) return;
+  PackedSizes sizes;
+  with_column(tile, column, [&](const auto& of_tile) {
     by_packing(
-        tile, of_tile, [&](const auto& planes) { size = points * planes.size() * kPlaneBytes; },
-        [&]<class Values>(const Values&) { size = points * sizeof(typename Values::value_type); });
+        tile, of_tile,
+        [&](const auto& planes) {
+          sizes.least = sizes.most = points * planes.size() * kPlaneBytes;
+        },
+        [&]<class Value>(const RunColumn<Value>&) {
+          sizes.step = kRunBytes<Value>;
+          sizes.least = (points + kLongestRun - 1) / kLongestRun * sizes.step;
+          sizes.most = points * sizes.step;
+        },
+        [&]<class Value>(const std::vector<Value>&) {
+          sizes.least = sizes.most = points * sizeof(Value);
+        });
   });
-  return size;
+  return sizes;
 }
 
-void unpack_column(std::size_t column, std::span<const std::byte> bytes, std::size_t points,
+bool unpack_column(std::size_t column, std::span<const std::byte> bytes, std::size_t points,
                    TilePoints& tile) {
-  std::size_t next = 0;
-  for_each_stored_column(tile, [&](auto& of_tile) {
-    if (next++ != column) return;
+  bool is_whole = true;
+  with_column(tile, column, [&](auto& of_tile) {
     by_packing(
         tile, of_tile,
         [&](const auto& planes) {
@@ -172,8 +214,10 @@ void unpack_column(std::size_t column, std::span<const std::byte> bytes, std::si
             from += kPlaneBytes * points;
           }
         },
+        [&](auto& runs) { is_whole = unpack_runs(points, bytes, runs); },
         [&](auto& values) { copy(bytes, values); });
   });
+  return is_whole;
 }
 
 }  // namespace fovea

@@ -23,10 +23,19 @@ struct ColumnKind {
 };
 ColumnKind kind_of(std::size_t column);
 
-/// Bytes that column i of so many points takes.
-std::size_t packed_size(std::size_t column, std::size_t points);
-/// Puts the packed bytes of column i, of the right size, into a tile of so many points.
-void unpack_column(std::size_t column, std::span<const std::byte> bytes, std::size_t points,
+/// Bytes that a column may take: from the least to the most, by steps.
+struct PackedSizes {
+  std::size_t least = 0, most = 0, step = 1;
+
+  bool allow(std::size_t size) const {
+    return size >= least && size <= most && (size - least) % step == 0;
+  }
+};
+/// Of column i of so many points.
+PackedSizes packed_sizes(std::size_t column, std::size_t points);
+/// Puts the packed bytes of column i, of an allowed size, into a tile of so many points.
+/// @return whether they are of so many
+bool unpack_column(std::size_t column, std::span<const std::byte> bytes, std::size_t points,
                    TilePoints& tile);
 
 }  // namespace fovea
