@@ -75,7 +75,7 @@ TEST_P(Keeper, TheMapIsTheSameAsInMemory) {
     both([&](TileMap& m) {
       m.add(points);
       for (std::size_t i = 0; i < near.size(); ++i) {
-        if (i % 3 == 0) m.colors(near[i]).spread[0] ^= 5;
+        if (i % 3 == 0) m.colors(near[i])[0].spread ^= 5;
         if (i % 3 == 1) m.keep_points(near[i], {});
       }
     });
@@ -122,7 +122,7 @@ TEST_P(Keeper, ACheckpointIsWrittenAsItWasWhateverChangesAfter) {
   const TileMap before = map;
   keeper->checkpoint(map, rows_of(map), {12, 0, 0}, kNear);
   for (const double x : {0, 4, 8, 12}) map.add(points_at(x, random_));
-  for (const auto& [key, tile] : before.submaps()[0].tiles) map.colors({0, key}).views[0] ^= 3;
+  for (const auto& [key, tile] : before.submaps()[0].tiles) map.colors({0, key})[0].views ^= 3;
   keeper->finish();
   expect_stored(path_, before);
   keeper->finish(map, {});

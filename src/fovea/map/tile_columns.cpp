@@ -13,6 +13,11 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(Rgb) == 3);
 
+template <class Column>
+inline constexpr bool kIsRuns = false;
+template <class Value>
+inline constexpr bool kIsRuns<RunColumn<Value>> = true;
+
 /// Neighbours in a tile are neighbours in space: their differences are small and compress well. An
 /// even number is a difference of half of it, an odd one of minus half of the next.
 std::uint16_t difference(std::uint16_t from, std::uint16_t to) {
@@ -72,6 +77,27 @@ void copy(std::span<const std::byte> bytes, std::vector<Value>& values) {
   values.resize(bytes.size() / sizeof(Value));
   if (!bytes.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
 }
+template <class Colors, auto kPart>
+void copy(const ColorColumn<Colors, kPart>& column, std::vector<std::byte>& bytes) {
+  constexpr std::size_t kSize = sizeof(typename ColorColumn<Colors, kPart>::value_type);
+  bytes.resize(column.colors.size() * kSize);
+  std::byte* to = bytes.data();
+  for (const FusedColor& color : column.colors) {
+    std::memcpy(to, &(color.*kPart), kSize);
+    to += kSize;
+  }
+}
+template <class Colors, auto kPart>
+void copy(std::span<const std::byte> bytes, const ColorColumn<Colors, kPart>& column) {
+  constexpr std::size_t kSize = sizeof(typename ColorColumn<Colors, kPart>::value_type);
+  column.colors.resize(bytes.size() / kSize);
+  const std::byte* from = bytes.data();
+  for (FusedColor& color : column.colors) {
+    std::memcpy(&(color.*kPart), from, kSize);
+    from += kSize;
+  }
+}
+
 /// Bytes of a run: its value, and one less than its length.
 template <class Value>
 constexpr std::size_t kRunBytes = sizeof(Value) + 1;
@@ -123,7 +149,7 @@ void by_packing(Tile& tile, Column& column, Planes&& planes, Runs&& runs, AsItIs
     planes(std::span(column));
   } else if constexpr (std::is_same_v<Values, decltype(TilePoints::range)>) {
     &column == &tile.range ? planes(std::span(&column, 1)) : as_it_is(column);
-  } else if constexpr (std::is_same_v<Values, RunColumn<typename Values::value_type>>) {
+  } else if constexpr (kIsRuns<Values>) {
     runs(column);
   } else {
     as_it_is(column);
@@ -134,7 +160,7 @@ void by_packing(Tile& tile, Column& column, Planes&& planes, Runs&& runs, AsItIs
 template <class Tile, class F>
 void with_column(Tile& tile, std::size_t i, F&& f) {
   std::size_t next = 0;
-  for_each_stored_column(tile, [&](auto& column) {
+  for_each_stored_column(tile, [&](auto&& column) {
     if (next++ == i) f(column);
   });
 }
@@ -167,15 +193,17 @@ ColumnKind kind_of(std::size_t column) {
   const TilePoints tile;
   ColumnKind kind;
   with_column(tile, column, [&](const auto& of_tile) {
-    const void* const it = &of_tile;
-    kind.is_noisy = it == &tile.color || it == &tile.spread;
     by_packing(
         tile, of_tile,
         [&](const auto& planes) {
           kind = {planes.size() * kPlaneBytes, true};
         },
         [&]<class Value>(const RunColumn<Value>&) { kind.parts = kRunBytes<Value>; },
-        [](const auto&) {});
+        [&]<class Values>(const Values&) {
+          using Colors = const std::vector<FusedColor>;
+          kind.is_noisy = std::is_same_v<Values, ColorColumn<Colors, &FusedColor::color>> ||
+                          std::is_same_v<Values, ColorColumn<Colors, &FusedColor::spread>>;
+        });
   });
   return kind;
 }
@@ -194,8 +222,8 @@ PackedSizes packed_sizes(std::size_t column, std::size_t points) {
           sizes.least = (points + kLongestRun - 1) / kLongestRun * sizes.step;
           sizes.most = points * sizes.step;
         },
-        [&]<class Value>(const std::vector<Value>&) {
-          sizes.least = sizes.most = points * sizeof(Value);
+        [&]<class Values>(const Values&) {
+          sizes.least = sizes.most = points * sizeof(typename Values::value_type);
         });
   });
   return sizes;

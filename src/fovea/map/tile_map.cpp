@@ -130,11 +130,10 @@ void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& in
   }
 }
 
-TileColors TileMap::colors(const TileId& id) {
+std::span<FusedColor> TileMap::colors(const TileId& id) {
   Tile& tile = existing_tile(id);
   tile.changed_at = step_;
-  TilePoints& points = tile.points.write();
-  return {points.color, points.views, points.spread, points.weight};
+  return tile.points.write().colors;
 }
 
 void TileMap::put_camera(const TileId& id, std::span<const std::uint32_t> indices,

@@ -56,13 +56,6 @@ struct TileChanges {
   std::vector<TileId> removed;
 };
 
-/// What tells of the points' colours in a tile, to be changed in place.
-struct TileColors {
-  std::span<Rgb> color;
-  std::span<std::uint8_t> views, spread;
-  std::span<std::uint16_t> weight;
-};
-
 /// Points are added to the last submap. Tiles that are far away may be given to a store and taken
 /// back when they are near: whoever adds, removes, colours or looks for points sees only those in
 /// memory.
@@ -97,9 +90,9 @@ class TileMap {
   /// std::logic_error if the tile is not in memory.
   void keep_points(const TileId& id, const std::vector<std::uint32_t>& indices);
 
-  /// The colours of a tile; std::logic_error if it is not in memory. For two tiles at a time from
-  /// two threads.
-  TileColors colors(const TileId& id);
+  /// The colours of a tile, to be changed in place; std::logic_error if it is not in memory. For
+  /// two tiles at a time from two threads.
+  std::span<FusedColor> colors(const TileId& id);
   /// Says which camera gave some points of a tile their first colour; std::logic_error if the tile
   /// is not in memory.
   /// @param indices  of the points, ascending

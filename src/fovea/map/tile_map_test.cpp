@@ -87,11 +87,11 @@ TEST(TileMap, ChangesToldOfStayAsTheyWere) {
   map.add_submap(RigidMotion::Identity());
   map.add(one_point_each({{0.5f, 0.5f, 0.5f}}));
   const TileChanges changes = map.take_changes();
-  map.colors({0, {0, 0, 0}}).views[0] = 99;
+  map.colors({0, {0, 0, 0}})[0].views = 99;
   map.add(one_point_each({{0.25f, 0.5f, 0.5f}}));
   EXPECT_EQ(changes.changed[0].points->size(), 1u);
-  EXPECT_NE(changes.changed[0].points->views[0], 99);
-  EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).points->views[0], 99);
+  EXPECT_NE(changes.changed[0].points->colors[0].views, 99);
+  EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).points->colors[0].views, 99);
 }
 
 TEST(TileMap, TellsWhichTilesChangedLately) {
@@ -109,7 +109,7 @@ TEST(TileMap, TellsWhichTilesChangedLately) {
     return at;
   };
   EXPECT_EQ(lately(), (std::vector<int>{1, 2}));
-  map.colors({0, {0, 0, 0}}).spread[0] = 1;
+  map.colors({0, {0, 0, 0}})[0].spread = 1;
   map.begin_step();
   EXPECT_EQ(lately(), (std::vector<int>{0}));
 }
@@ -231,7 +231,7 @@ TEST(TileMap, FarTilesLeaveTheMemoryAndComeBack) {
   for (const TileChanges::Changed& tile : map.take_changes().changed) {
     store.emplace(tile.id, tile.points);
   }
-  map.colors({0, whole.submaps()[0].tiles.begin()->first}).views[0] ^= 1;  // not in the store
+  map.colors({0, whole.submaps()[0].tiles.begin()->first})[0].views ^= 1;  // not in the store
   const Eigen::Vector3d center(1, 2, 3);
   map.drop_beyond(center, 4);
   EXPECT_EQ(map.size(), whole.size());
@@ -346,17 +346,14 @@ TEST(TileMap, ColoursAreChangedInPlaceAndNothingElse) {
   const TileId id{1, {-1, 0, -1}};
   const PointCloud before = map.submaps()[1].tiles.at(id.key).points->cloud();
   const PointCloud other = map.submaps()[1].tiles.at({0, 0, 0}).points->cloud();
-  const TileColors colors = map.colors(id);
+  const std::span<FusedColor> colors = map.colors(id);
   ASSERT_GT(before.size(), 5u);
-  ASSERT_EQ(colors.color.size(), before.size());
-  ASSERT_EQ(colors.views.size(), before.size());
-  ASSERT_EQ(colors.spread.size(), before.size());
-  ASSERT_EQ(colors.weight.size(), before.size());
+  ASSERT_EQ(colors.size(), before.size());
   PointCloud expected = before;
-  expected.color[4] = colors.color[4] = {9, 8, 7};
-  expected.views[3] = colors.views[3] = 77;
-  expected.spread[2] = colors.spread[2] = 66;
-  expected.weight[1] = colors.weight[1] = 55'555;
+  expected.color[4] = colors[4].color = {9, 8, 7};
+  expected.views[3] = colors[3].views = 77;
+  expected.spread[2] = colors[2].spread = 66;
+  expected.weight[1] = colors[1].weight = 55'555;
   expected.camera[0] = expected.camera[4] = 7;
   map.put_camera(id, std::vector<std::uint32_t>{0, 4}, 7);
   expect_same_columns(map.submaps()[1].tiles.at(id.key).points->cloud(), expected);

@@ -21,16 +21,7 @@ std::uint8_t incidence_steps(float incidence) {
   return steps<std::uint8_t>(incidence, double(kIncidenceStep), TilePoints::kUnknownIncidence - 1);
 }
 
-/// Calls `f(column_a, column_b)` for each column that tiles and clouds keep alike.
-template <class A, class B, class F>
-void for_each_alike_column(A& a, B& b, F&& f) {
-  f(a.color, b.color);
-  f(a.views, b.views);
-  f(a.spread, b.spread);
-  f(a.weight, b.weight);
-}
-
-/// For each that tiles keep as runs.
+/// Calls `f(column_a, column_b)` for each column that tiles keep as runs and clouds as it is.
 template <class A, class B, class F>
 void for_each_run_column(A& a, B& b, F&& f) {
   f(a.camera, b.camera);
@@ -68,7 +59,7 @@ void TilePoints::check() const {
   for (const std::vector<std::uint16_t>& axis : position) require(axis);
   require(range);
   require(incidence);
-  for_each_alike_column(*this, *this, [&](const auto& column, const auto&) { require(column); });
+  require(colors);
   for_each_run_column(*this, *this, [&](const auto& column, const auto&) {
     require(column, /*may_be_empty=*/static_cast<const void*>(&column) == &intensity);
   });
@@ -95,7 +86,8 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   for (const float incidence : tile.incidence) {
     points.incidence.push_back(incidence_steps(incidence));
   }
-  for_each_alike_column(points, tile, [](auto& to, const auto& from) { to = from; });
+  points.colors.reserve(tile.size());
+  for (std::size_t i = 0; i < tile.size(); ++i) points.colors.push_back(color_of(tile, i));
   for_each_run_column(points, tile, [](auto& to, const auto& from) { to.append(from); });
   points.widen_boxes(0);
   return points;
@@ -107,12 +99,19 @@ PointCloud TilePoints::cloud() const {
   tile.position.reserve(size());
   tile.range.reserve(size());
   tile.incidence.reserve(size());
+  tile.color.reserve(size());
+  tile.views.reserve(size());
+  tile.spread.reserve(size());
+  tile.weight.reserve(size());
   for (std::size_t i = 0; i < size(); ++i) {
     tile.position.push_back(position_at(i));
     tile.range.push_back(range_at(i));
     tile.incidence.push_back(incidence_at(i));
+    tile.color.push_back(colors[i].color);
+    tile.views.push_back(colors[i].views);
+    tile.spread.push_back(colors[i].spread);
+    tile.weight.push_back(colors[i].weight);
   }
-  for_each_alike_column(tile, *this, [](auto& to, const auto& from) { to = from; });
   for_each_run_column(tile, *this, [](auto& to, const auto& from) {
     to.resize(from.size());
     from.copy_to(to);
@@ -133,14 +132,13 @@ void TilePoints::append(const PointCloud& points, const TilePlaces& places,
   };
   append_each(range, [&](std::uint32_t i) { return range_steps(points.range[i]); });
   append_each(incidence, [&](std::uint32_t i) { return incidence_steps(points.incidence[i]); });
-  const auto append_as_is = [&](auto& to, const auto& from) {
-    auto* at = grow(to, count);
+  append_each(colors, [&](std::uint32_t i) { return color_of(points, i); });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::uint16_t* at = grow(position[axis], count);
     for (const auto& [begin, end] : ranges) {
-      at = std::copy(from.begin() + begin, from.begin() + end, at);
+      at = std::copy(places[axis].begin() + begin, places[axis].begin() + end, at);
     }
-  };
-  for (std::size_t axis = 0; axis < 3; ++axis) append_as_is(position[axis], places[axis]);
-  for_each_alike_column(*this, points, append_as_is);
+  }
   for_each_run_column(*this, points, [&](auto& to, const auto& from) {
     if (from.empty()) return;
     for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));
@@ -173,7 +171,7 @@ void TilePoints::keep(std::span<const std::uint32_t> indices) {
   for (std::vector<std::uint16_t>& axis : position) kept.close_up(axis);
   kept.close_up(range);
   kept.close_up(incidence);
-  for_each_alike_column(*this, *this, [&](auto& column, auto&) { kept.close_up(column); });
+  kept.close_up(colors);
   for_each_run_column(*this, *this, [&](auto& column, auto&) { column.keep(indices); });
   box = {};
   boxes.clear();

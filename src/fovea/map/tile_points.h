@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "fovea/base/fused_color.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/run_column.h"
 
@@ -45,16 +48,13 @@ struct TilePoints {
 
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the tile's lowest corner, submap frame, m
   TilePlaces position;
-  std::vector<Rgb> color;
+  std::vector<FusedColor> colors;  // read and written as one
   // Points come frame by frame and triangle by triangle: what these say of one it says of the next.
   RunColumn<std::int8_t> camera;
   RunColumn<std::int32_t> frame;
   std::vector<std::uint16_t> range;     ///< steps
   std::vector<std::uint8_t> incidence;  ///< steps, or kUnknownIncidence
   RunColumn<std::uint8_t> interpolated;
-  std::vector<std::uint8_t> views;
-  std::vector<std::uint8_t> spread;
-  std::vector<std::uint16_t> weight;
   RunColumn<std::uint8_t> reason;
   RunColumn<float> intensity;
   /// Around some points, in steps, both ends included; without points it holds none.
@@ -102,19 +102,30 @@ struct TilePoints {
 /// column of a wrong length.
 void check_tile_columns(const PointCloud& cloud);
 
+/// A part of the colours, as a column.
+template <class Colors, auto kPart>
+struct ColorColumn {
+  Colors& colors;
+  using value_type = std::remove_cvref_t<decltype(std::declval<FusedColor>().*kPart)>;
+};
+template <auto kPart, class Colors>
+ColorColumn<Colors, kPart> part_of(Colors& colors) {
+  return {colors};
+}
+
 /// Calls `f(column)` for each column in the order of the file, of which position is the first.
 template <class Tile, class F>
 void for_each_stored_column(Tile& tile, F&& f) {
   f(tile.position);
-  f(tile.color);
+  f(part_of<&FusedColor::color>(tile.colors));
   f(tile.camera);
   f(tile.frame);
   f(tile.range);
   f(tile.incidence);
   f(tile.interpolated);
-  f(tile.views);
-  f(tile.spread);
-  f(tile.weight);
+  f(part_of<&FusedColor::views>(tile.colors));
+  f(part_of<&FusedColor::spread>(tile.colors));
+  f(part_of<&FusedColor::weight>(tile.colors));
   f(tile.reason);
   f(tile.intensity);
 }

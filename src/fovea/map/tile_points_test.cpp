@@ -115,7 +115,7 @@ TEST(TilePoints, ColumnsOfDifferentLengthsAreRefused) {
   const TilePoints whole = TilePoints::of(one_point_each({{1, 2, 3}, {3, 2, 1}}));
   EXPECT_NO_THROW(whole.check());  // it has no intensities
   TilePoints points = whole;
-  points.views.pop_back();
+  points.colors.pop_back();
   EXPECT_THROW(points.check(), std::logic_error);
   points = whole;
   points.position[2].pop_back();

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 
 #include "fovea/base/color_block.h"
-#include "fovea/base/image.h"
+#include "fovea/base/fused_color.h"
 
 namespace fovea {
 
@@ -16,14 +18,19 @@ inline std::uint16_t view_weight(float distance) {
   return static_cast<std::uint16_t>(std::clamp(kWeightAtOneMetre / distance, 1.0f, 100.0f) + 0.5f);
 }
 
-/// What is known of the colours of some points; eight bits a channel are all that is kept.
+/// What is known of the colours of some points, a row for each part of a FusedColor; eight bits a
+/// channel are all that is kept.
 struct FusedColors {
   template <class T>
   using Row = std::array<T, ColorBlock::kSize>;
   Row<std::uint8_t> red, green, blue;
-  Row<std::uint8_t> views;    ///< 0: the rest means nothing; 255: or more
-  Row<std::uint8_t> spread;   ///< RMS of the views' differences from the colour, grey values
-  Row<std::uint16_t> weight;  ///< sum of the views' weights
+  Row<std::uint8_t> views;  ///< 0: the rest means nothing
+  Row<std::uint8_t> spread;
+  Row<std::uint16_t> weight;
+
+  /// @param colors  of the first points
+  void take(std::span<const FusedColor> colors);
+  void give(std::span<FusedColor> colors) const;
 };
 
 /// One view of some points.
@@ -38,13 +45,6 @@ struct SeenColors {
 /// Takes in one more view of the first `count` points: weighted running mean and deviation (West
 /// 1979). The first view of a point is its colour, rounded to the nearest.
 void fuse(FusedColors& points, const SeenColors& seen, std::size_t count);
-
-/// What is known of one point's colour; see FusedColors.
-struct FusedColor {
-  Rgb color;
-  std::uint8_t views = 0, spread = 0;
-  std::uint16_t weight = 0;
-};
 
 /// What two accounts of one point's colour say together, as if all their views had been fused
 /// (Chan, Golub and LeVeque 1979).

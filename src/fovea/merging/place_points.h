@@ -7,7 +7,6 @@
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/tile_map.h"
-#include "fovea/mapping/color_fusion.h"
 
 namespace fovea {
 
@@ -57,11 +56,5 @@ class PlacePoints {
   std::vector<Eigen::Vector3f> position_;
   std::vector<From> from_;
 };
-
-/// @param tile  PointCloud or TilePoints
-template <class Tile>
-FusedColor color_of(const Tile& tile, std::size_t i) {
-  return {tile.color[i], tile.views[i], tile.spread[i], tile.weight[i]};
-}
 
 }  // namespace fovea

@@ -98,17 +98,11 @@ class CubeMerger {
       if (seen_by[i] == kNone) continue;
       const PlacePoints::From to = a_.from(i), from = b_.from(seen_by[i]);
       const TilePoints& tile_b = *tiles_[from.tile].points;
-      TileColors& colors = colors_of(to.tile);
-      const FusedColor before{colors.color[to.point], colors.views[to.point],
-                              colors.spread[to.point], colors.weight[to.point]};
-      const FusedColor both = fused(before, color_of(tile_b, from.point));
-      colors.color[to.point] = both.color;
-      colors.views[to.point] = both.views;
-      colors.spread[to.point] = both.spread;
-      colors.weight[to.point] = both.weight;
-      if (before.views == 0) {
+      FusedColor& color = colors_of(to.tile)[to.point];
+      if (color.views == 0) {
         first_colored[{to.tile, tile_b.camera[from.point]}].push_back(to.point);
       }
+      color = fused(color, tile_b.colors[from.point]);
       ++figures.fused;
     }
     for (auto& [of, points] : first_colored) {
@@ -139,10 +133,10 @@ class CubeMerger {
 
   std::uint8_t views(const PlacePoints& points, std::size_t i) const {
     const PlacePoints::From from = points.from(i);
-    return tiles_[from.tile].points->views[from.point];
+    return tiles_[from.tile].points->colors[from.point].views;
   }
 
-  TileColors& colors_of(std::uint32_t tile) {
+  std::span<FusedColor> colors_of(std::uint32_t tile) {
     if (tile != changed_tile_) {
       changed_ = map_.colors(tiles_[tile].id);
       changed_tile_ = tile;
@@ -163,7 +157,7 @@ class CubeMerger {
   PlacePoints a_, b_;
   std::vector<TileHere> tiles_;
   std::uint32_t changed_tile_ = kNone;
-  TileColors changed_;
+  std::span<FusedColor> changed_;
 };
 
 /// The cubes that B's tiles reach into, along B's way.

@@ -20,22 +20,6 @@ constexpr float kDiscRadius = 0.75f;
 /// Seed of the rounding of colours.
 constexpr std::uint64_t kRounding = 0x636f6c6f7572ull;
 
-/// Between rows of one point each and the columns of a tile or cloud.
-void get(const TileColors& colors, std::size_t i, FusedColors& fused, std::size_t j) {
-  fused.red[j] = colors.color[i].r;
-  fused.green[j] = colors.color[i].g;
-  fused.blue[j] = colors.color[i].b;
-  fused.views[j] = colors.views[i];
-  fused.spread[j] = colors.spread[i];
-  fused.weight[j] = colors.weight[i];
-}
-void put(const TileColors& colors, std::size_t i, const FusedColors& fused, std::size_t j) {
-  colors.color[i] = {fused.red[j], fused.green[j], fused.blue[j]};
-  colors.views[i] = fused.views[j];
-  colors.spread[i] = fused.spread[j];
-  colors.weight[i] = fused.weight[j];
-}
-
 /// Every how many points in view are asked for the exposure.
 constexpr std::size_t kExposureStep = 64;
 /// Share of a gain that is undone.
@@ -96,7 +80,6 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   if (view.is_exposure_matched()) {
     for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
   }
-  const TileColors colors{points_cam.color, points_cam.views, points_cam.spread, points_cam.weight};
   const PatchColors patches(view);
   parallel_chunks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     PatchPlaces places;
@@ -109,7 +92,13 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
     patches.at(places, end - begin, seen.color);
     FusedColors fused{};
     fuse(fused, seen, end - begin);
-    for (std::size_t i = begin; i < end; ++i) put(colors, i, fused, i - begin);
+    const auto first = static_cast<std::ptrdiff_t>(begin);
+    std::copy_n(fused.views.begin(), end - begin, points_cam.views.begin() + first);
+    std::copy_n(fused.spread.begin(), end - begin, points_cam.spread.begin() + first);
+    std::copy_n(fused.weight.begin(), end - begin, points_cam.weight.begin() + first);
+    for (std::size_t j = 0; j < end - begin; ++j) {
+      points_cam.color[begin + j] = {fused.red[j], fused.green[j], fused.blue[j]};
+    }
   });
 }
 
@@ -245,9 +234,10 @@ SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColo
   for (std::size_t i = 0; i < points.size(); i += kExposureStep) {
     const Point& point = points[i];
     const std::uint32_t index = piece.begin + point.place;
-    if (tile.views[index] < 2) continue;
+    const FusedColor& color = tile.colors[index];
+    if (color.views < 2) continue;
     if (front_.hides(point.pixel(), point.depth)) continue;
-    known[n] = to_float(tile.color[index]).array();
+    known[n] = to_float(color.color).array();
     places.put(n++, point.pixel(), point.depth);
   }
   ColorBlock here;
@@ -281,38 +271,37 @@ SeenMap::Comparison SeenMap::compare(const ColorView& view) const {
 }
 
 std::size_t SeenMap::recolour_block(std::span<const Point> points, std::uint32_t piece_begin,
-                                    const TileColors& colors, const PatchColors& patches,
+                                    std::span<FusedColor> colors, const PatchColors& patches,
                                     const NoiseKinds& noise,
                                     std::vector<std::uint32_t>& first_seen) const {
-  std::array<const Point*, kBlock> visible;
-  std::size_t n = 0;
-  for (const Point& point : points) {
-    visible[n] = &point;
-    n += !front_.hides(point.pixel(), point.depth);
-  }
+  std::array<std::uint32_t, kBlock> visible;
+  const std::size_t n = front_.find_visible(points, visible);
   PatchPlaces places;
-  FusedColors fused;
   SeenColors seen;
   std::array<std::uint32_t, kBlock> index;
+  std::array<FusedColor, kBlock> known;
   for (std::size_t j = 0; j < n; ++j) {
-    const Point& point = *visible[j];
+    const Point& point = points[visible[j]];
     places.put(j, point.pixel(), point.depth);
     index[j] = piece_begin + point.place;
-    get(colors, index[j], fused, j);
-    if (fused.views[j] == 0) first_seen.push_back(index[j]);
+    known[j] = colors[index[j]];
+    if (known[j].views == 0) first_seen.push_back(index[j]);
     seen.weight[j] = point.weight;
   }
   for (std::size_t word = 0; word < noise.size(); ++word) {
     for (std::size_t j = 0; j < n; ++j) seen.noise[word][j] = quick_bits(index[j], noise[word]);
   }
   patches.at(places, n, seen.color);
+  FusedColors fused;
+  fused.take(std::span(known).first(n));
   fuse(fused, seen, n);
-  for (std::size_t j = 0; j < n; ++j) put(colors, index[j], fused, j);
+  fused.give(std::span(known).first(n));
+  for (std::size_t j = 0; j < n; ++j) colors[index[j]] = known[j];
   return n;
 }
 
-std::vector<TileColors> SeenMap::colors_of_pieces(TileMap& map) const {
-  std::vector<TileColors> colors(pieces_.size());
+std::vector<std::span<FusedColor>> SeenMap::colors_of_pieces(TileMap& map) const {
+  std::vector<std::span<FusedColor>> colors(pieces_.size());
   parallel_for(pieces_.size(), 1, [&](std::size_t first) {
     if (pieces_[first].begin != 0) return;
     // All of a tile in one thread, and only if there is something to change: the map may have to
@@ -324,7 +313,7 @@ std::vector<TileColors> SeenMap::colors_of_pieces(TileMap& map) const {
     std::size_t seen = 0;
     for (std::size_t k = first; k < last; ++k) seen += pieces_[k].seen;
     if (seen == 0) return;
-    const TileColors of_tile = map.colors(pieces_[first].tile);
+    const std::span<FusedColor> of_tile = map.colors(pieces_[first].tile);
     std::fill(colors.begin() + static_cast<std::ptrdiff_t>(first),
               colors.begin() + static_cast<std::ptrdiff_t>(last), of_tile);
   });
@@ -338,7 +327,7 @@ std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
   const NoiseKinds noise{static_cast<std::uint32_t>(random.next()),
                          static_cast<std::uint32_t>(random.next())};
   const PatchColors patches(view);
-  const std::vector<TileColors> colors = colors_of_pieces(map);
+  const std::vector<std::span<FusedColor>> colors = colors_of_pieces(map);
   std::vector<std::vector<std::uint32_t>> first_seen(pieces_.size());
   const auto count_seen = [&](std::size_t k, std::size_t) {
     const std::span<const Point> points = seen(pieces_[k]);

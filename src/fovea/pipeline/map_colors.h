@@ -97,12 +97,12 @@ class SeenMap {
   using NoiseKinds = std::array<std::uint32_t, 2>;
   Differences differences_at(const Piece& piece, const PatchColors& patches) const;
   /// The colours of each piece's tile, empty where nothing of the tile was seen.
-  std::vector<TileColors> colors_of_pieces(TileMap& map) const;
+  std::vector<std::span<FusedColor>> colors_of_pieces(TileMap& map) const;
   /// @param piece_begin  of the points' piece
   /// @param first_seen   gets the points that had no colour
   /// @return how many of the points were in view
   std::size_t recolour_block(std::span<const Point> points, std::uint32_t piece_begin,
-                             const TileColors& colors, const PatchColors& patches,
+                             std::span<FusedColor> colors, const PatchColors& patches,
                              const NoiseKinds& noise, std::vector<std::uint32_t>& first_seen) const;
   std::span<const Point> seen(const Piece& piece) const {
     return {shares_[piece.share].points.data() + piece.first, piece.seen};

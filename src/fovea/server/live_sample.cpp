@@ -64,12 +64,13 @@ void append_section(std::string& message, const TileId& id, const TilePoints* ti
   }
   to += padding;
   for (const std::uint32_t i : points) {
-    const Rgb color = tile->color[i];
+    const Rgb color = tile->colors[i].color;
     put(std::array{color.r, color.g, color.b, static_cast<std::uint8_t>(tile->camera[i])});
   }
   for (const std::uint32_t i : points) {
-    put(std::array{rule_byte(tile->reason[i], tile->interpolated[i]), tile->views[i],
-                   tile->spread[i], std::uint8_t{0}});
+    const FusedColor& color = tile->colors[i];
+    put(std::array{rule_byte(tile->reason[i], tile->interpolated[i]), color.views, color.spread,
+                   std::uint8_t{0}});
   }
   for (const std::uint32_t i : points) put(std::array{static_cast<float>(tile->frame[i])});
   for (const std::uint32_t i : points) {

@@ -151,7 +151,9 @@ class LiveRun : public testing::Test {
     map_.for_each_tile_near({double(index), 0, 0}, 5,
                             [&](const TileId& id, const TilePoints&) { near.push_back(id); });
     for (const TileId& id : near) {
-      for (Rgb& color : map_.colors(id).color) color.g = static_cast<std::uint8_t>(index);
+      for (FusedColor& of_point : map_.colors(id)) {
+        of_point.color.g = static_cast<std::uint8_t>(index);
+      }
     }
     if (index % 7 == 3 && !near.empty()) {
       const PointCloud tile = map_.submaps()[near[0].submap].tiles.at(near[0].key).points->cloud();
