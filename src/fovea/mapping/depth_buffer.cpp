@@ -60,6 +60,19 @@ void DepthBuffer::add(const Samples& samples, std::size_t count, float radius) {
   }
 }
 
+std::size_t DepthBuffer::find_visible(const Samples& points, std::size_t count,
+                                      std::span<std::uint32_t, Samples::kSize> visible) const {
+  // Where to look first, on which the compiler works eight wide.
+  std::array<std::uint32_t, Samples::kSize> place;
+  for (std::size_t i = 0; i < count; ++i) place[i] = place_of({points.u[i], points.v[i]});
+  std::size_t found = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    visible[found] = i;
+    found += !is_behind(points.depth[i], depth_[place[i]]);
+  }
+  return found;
+}
+
 void DepthBuffer::add(const DepthBuffer& other) {
   for (std::size_t i = 0; i < depth_.size(); ++i) depth_[i] = std::min(depth_[i], other.depth_[i]);
 }

@@ -50,23 +50,11 @@ class DepthBuffer {
   bool hides(const Eigen::Vector2f& pixel, float depth) const {
     return is_behind(depth, depth_[place_of(pixel)]);
   }
-  /// Of those of some points that nothing hides, where they are among them.
-  /// @param points   up to Samples::kSize, each with a pixel() and a depth
+  /// Which of the first `count` points nothing hides.
   /// @param visible  gets them, ascending
   /// @return how many
-  template <class Point>
-  std::size_t find_visible(std::span<const Point> points,
-                           std::span<std::uint32_t, Samples::kSize> visible) const {
-    // Where to look first, on which the compiler works eight wide.
-    std::array<std::uint32_t, Samples::kSize> place;
-    for (std::size_t i = 0; i < points.size(); ++i) place[i] = place_of(points[i].pixel());
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      visible[count] = i;
-      count += !is_behind(points[i].depth, depth_[place[i]]);
-    }
-    return count;
-  }
+  std::size_t find_visible(const Samples& points, std::size_t count,
+                           std::span<std::uint32_t, Samples::kSize> visible) const;
 
   /// Whether a point there would stand before all that was added: no part of its surface.
   bool stands_before(const Eigen::Vector2f& pixel, float depth) const {

@@ -131,30 +131,23 @@ TEST(DepthBuffer, ABlockOfSamplesAndAJoinedBufferAreAsAllOneByOne) {
 }
 
 TEST(DepthBuffer, VisiblePointsAreThoseThatNothingHides) {
-  struct Point {
-    Eigen::Vector2f place;
-    float depth;
-    Eigen::Vector2f pixel() const { return place; }
-  };
   DepthBuffer buffer(camera_of(101, 51));
   Random random(2);
-  const auto any_point = [&] {
-    return Point{{float(random.uniform(0, 100)), float(random.uniform(0, 50))},
-                 float(random.uniform(1, 9))};
+  const auto any_pixel = [&] {
+    return Eigen::Vector2f(float(random.uniform(0, 100)), float(random.uniform(0, 50)));
   };
-  for (int i = 0; i < 300; ++i) {
-    const Point sample = any_point();
-    add(buffer, sample.place, sample.depth, 1);
-  }
+  const auto any_depth = [&] { return float(random.uniform(1, 9)); };
+  for (int i = 0; i < 300; ++i) add(buffer, any_pixel(), any_depth(), 1);
   for (const std::size_t count : {0, 1, 37, 256}) {
-    std::vector<Point> points;
+    DepthBuffer::Samples points;
     std::vector<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < count; ++i) {
-      points.push_back(any_point());
-      if (!buffer.hides(points[i].pixel(), points[i].depth)) expected.push_back(i);
+      const Eigen::Vector2f pixel = any_pixel();
+      points.put(i, pixel, any_depth());
+      if (!buffer.hides(pixel, points.depth[i])) expected.push_back(i);
     }
     std::array<std::uint32_t, DepthBuffer::Samples::kSize> visible;
-    const std::size_t found = buffer.find_visible(std::span<const Point>(points), visible);
+    const std::size_t found = buffer.find_visible(points, count, visible);
     EXPECT_EQ(std::vector(visible.begin(), visible.begin() + std::ptrdiff_t(found)), expected);
   }
 }

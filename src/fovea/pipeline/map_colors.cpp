@@ -122,6 +122,7 @@ void SeenMap::gather(const TileMap& map, const FovealRegion& region,
 void SeenMap::look(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
                    double spacing) {
   camera_ = region.camera();
+  steps_ = ViewSteps(camera_, region.far_range() + camera_.T_cam_lidar.translation().norm());
   disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
   gather(map, region, T_cam_local);
   parallel_for(kShares, 1, [&](std::size_t share) {
@@ -142,12 +143,14 @@ void SeenMap::look_at(const FovealRegion& region, Piece& piece) {
   const Eigen::Vector3f t = piece.T_cam_tile.translation().cast<float>();
   const ViewBounds bounds(camera_, piece.T_cam_tile);
   ProjectedBlock block(camera_);
-  std::array<std::uint16_t, ProjectedBlock::kSize> weight;
+  std::array<std::int32_t, ProjectedBlock::kSize> in_zone;
+  std::array<PointInView, ProjectedBlock::kSize> points;
+  const ViewSteps view_steps = steps_;
   DepthBuffer::Samples samples;
   Share& share = shares_[piece.share];
   const std::size_t most = piece.first + (piece.end - piece.begin);
   if (share.points.size() < most) share.points.resize(most + most / 8);
-  Point* out = share.points.data() + piece.first;
+  PointInView* out = share.points.data() + piece.first;
   constexpr auto kBoxed = static_cast<std::uint32_t>(TilePoints::kBoxed);
   for (std::uint32_t begin = piece.begin; begin < piece.end; begin += kBoxed) {
     if (!bounds.may_hold(piece.points->boxes[begin / kBoxed])) continue;
@@ -156,27 +159,40 @@ void SeenMap::look_at(const FovealRegion& region, Piece& piece) {
       return std::span(piece.points->position[axis]).subspan(begin, n);
     };
     block.project({steps(0), steps(1), steps(2)}, kPositionStep, R, t);
-    for (std::size_t i = 0; i < weight.size(); ++i) {
-      const int in_zone = region.in_white_zone(block.p_cam(i));
-      weight[i] = static_cast<std::uint16_t>(in_zone * view_weight(block.distance(i)));
+    for (std::size_t i = 0; i < in_zone.size(); ++i) {
+      in_zone[i] = region.in_white_zone(block.p_cam(i));
     }
     if (region.has_slices()) {
       for (std::uint32_t i = 0; i < n; ++i) {
-        if (weight[i] != 0 && !region.in_slices(block.p_cam(i))) weight[i] = 0;
+        if (in_zone[i] != 0 && !region.in_slices(block.p_cam(i))) in_zone[i] = 0;
       }
+    }
+    const std::uint32_t first = begin - piece.begin;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      points[i] =
+          view_steps.seen(block.pixel(i), block.depth(i), static_cast<std::uint16_t>(first + i));
     }
     std::size_t in_view = 0, in_region = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       // Written always, and kept by a step on: no branch, which nobody could foresee.
-      out[in_region] = {block.pixel(i).x(), block.pixel(i).y(), block.depth(i),
-                        static_cast<std::uint16_t>(begin - piece.begin + i), weight[i]};
+      out[in_region] = points[i];
       samples.put(in_view, block.pixel(i), block.depth(i));
       in_view += block.in_view(i);
-      in_region += block.in_view(i) & (weight[i] != 0);
+      in_region += block.in_view(i) & (in_zone[i] != 0);
     }
     share.front.add(samples, in_view, disc_radius_);
     out += in_region;
     piece.seen += in_region;
+  }
+}
+
+void SeenMap::weigh(const PatchPlaces& places, std::size_t count,
+                    std::span<std::uint16_t, kBlock> weight) const {
+  const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy),
+             cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float right = (places.u[i] - cx) * (1 / fx), down = (places.v[i] - cy) * (1 / fy);
+    weight[i] = view_weight(places.depth[i] * std::sqrt(1 + right * right + down * down));
   }
 }
 
@@ -227,18 +243,19 @@ std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) co
 
 SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColors& patches) const {
   const TilePoints& tile = *piece.points;
-  const std::span<const Point> points = seen(piece);
+  const std::span<const PointInView> points = seen(piece);
   PatchPlaces places;
   std::array<Eigen::Array3f, kBlock> known;
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); i += kExposureStep) {
-    const Point& point = points[i];
+    const PointInView& point = points[i];
     const std::uint32_t index = piece.begin + point.place;
     const FusedColor& color = tile.colors[index];
     if (color.views < 2) continue;
-    if (front_.hides(point.pixel(), point.depth)) continue;
+    const Eigen::Vector2f pixel = steps_.pixel(point);
+    if (front_.hides(pixel, steps_.depth(point))) continue;
     known[n] = to_float(color.color).array();
-    places.put(n++, point.pixel(), point.depth);
+    places.put(n++, pixel, steps_.depth(point));
   }
   ColorBlock here;
   patches.at(places, n, here);
@@ -270,24 +287,29 @@ SeenMap::Comparison SeenMap::compare(const ColorView& view) const {
   return comparison;
 }
 
-std::size_t SeenMap::recolour_block(std::span<const Point> points, std::uint32_t piece_begin,
+std::size_t SeenMap::recolour_block(std::span<const PointInView> points, std::uint32_t piece_begin,
                                     std::span<FusedColor> colors, const PatchColors& patches,
                                     const NoiseKinds& noise,
                                     std::vector<std::uint32_t>& first_seen) const {
+  DepthBuffer::Samples all;
+  const ViewSteps view_steps = steps_;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    all.put(i, view_steps.pixel(points[i]), view_steps.depth(points[i]));
+  }
   std::array<std::uint32_t, kBlock> visible;
-  const std::size_t n = front_.find_visible(points, visible);
+  const std::size_t n = front_.find_visible(all, points.size(), visible);
   PatchPlaces places;
   SeenColors seen;
   std::array<std::uint32_t, kBlock> index;
   std::array<FusedColor, kBlock> known;
   for (std::size_t j = 0; j < n; ++j) {
-    const Point& point = points[visible[j]];
-    places.put(j, point.pixel(), point.depth);
-    index[j] = piece_begin + point.place;
+    const std::uint32_t i = visible[j];
+    places.put(j, {all.u[i], all.v[i]}, all.depth[i]);
+    index[j] = piece_begin + points[i].place;
     known[j] = colors[index[j]];
     if (known[j].views == 0) first_seen.push_back(index[j]);
-    seen.weight[j] = point.weight;
   }
+  weigh(places, n, seen.weight);
   for (std::size_t word = 0; word < noise.size(); ++word) {
     for (std::size_t j = 0; j < n; ++j) seen.noise[word][j] = quick_bits(index[j], noise[word]);
   }
@@ -330,7 +352,7 @@ std::size_t SeenMap::recolour(TileMap& map, const ColorView& view) const {
   const std::vector<std::span<FusedColor>> colors = colors_of_pieces(map);
   std::vector<std::vector<std::uint32_t>> first_seen(pieces_.size());
   const auto count_seen = [&](std::size_t k, std::size_t) {
-    const std::span<const Point> points = seen(pieces_[k]);
+    const std::span<const PointInView> points = seen(pieces_[k]);
     std::size_t count = 0;
     for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
       count += recolour_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),

@@ -10,6 +10,7 @@
 #include "fovea/mapping/exposure.h"
 #include "fovea/mapping/foveal_region.h"
 #include "fovea/pipeline/patch_colors.h"
+#include "fovea/pipeline/point_in_view.h"
 
 namespace fovea {
 
@@ -59,12 +60,6 @@ class SeenMap {
   std::size_t recolour(TileMap& map, const ColorView& view) const;
 
  private:
-  struct Point {
-    float u, v, depth;
-    std::uint16_t place;   // in its piece
-    std::uint16_t weight;  // of this view
-    Eigen::Vector2f pixel() const { return {u, v}; }
-  };
   /// Points of a tile; of one length, so that threads share the work evenly.
   struct Piece {
     TileId tile;
@@ -72,12 +67,12 @@ class SeenMap {
     RigidMotion T_cam_tile;
     std::uint32_t begin, end;  // in the tile
     std::size_t share;
-    std::size_t first, seen;  // of those in the region, among the share's
+    std::size_t first, seen;  // of those in the region, among the share's; they know their places
   };
   /// What threads fill at the same time.
   struct Share {
-    std::vector<Point> points;  // in the region
-    DepthBuffer front;          // of all in view
+    std::vector<PointInView> points;  // in the region
+    DepthBuffer front;                // of all in view
   };
   static constexpr std::size_t kShares = 4;
 
@@ -101,14 +96,18 @@ class SeenMap {
   /// @param piece_begin  of the points' piece
   /// @param first_seen   gets the points that had no colour
   /// @return how many of the points were in view
-  std::size_t recolour_block(std::span<const Point> points, std::uint32_t piece_begin,
+  std::size_t recolour_block(std::span<const PointInView> points, std::uint32_t piece_begin,
                              std::span<FusedColor> colors, const PatchColors& patches,
                              const NoiseKinds& noise, std::vector<std::uint32_t>& first_seen) const;
-  std::span<const Point> seen(const Piece& piece) const {
+  /// Weights of views of the first places.
+  void weigh(const PatchPlaces& places, std::size_t count,
+             std::span<std::uint16_t, ColorBlock::kSize> weight) const;
+  std::span<const PointInView> seen(const Piece& piece) const {
     return {shares_[piece.share].points.data() + piece.first, piece.seen};
   }
 
   Camera camera_;
+  ViewSteps steps_;
   float disc_radius_ = 0;  // that a point stands for, pixels at a depth of 1 m
   std::vector<Piece> pieces_;
   std::array<Share, kShares> shares_;
