@@ -1,12 +1,13 @@
 #include "fovea/sensor/png_plain_decode.h"
 
+#include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <memory>
-#include <new>
 #include <vector>
 
 #include "fovea/sensor/image_decode.h"
@@ -113,17 +114,21 @@ std::optional<Header> read_chunks(Bytes file, std::vector<std::uint8_t>& zlib) {
 }
 
 /// Decompresses exactly `out.size()` bytes, with their checksum.
-bool inflate(Bytes zlib, std::span<std::uint8_t> out) {
-  // libdeflate takes every distance; zlib, and so libpng, none beyond the window declared.
+bool inflate(std::vector<std::uint8_t>& zlib, std::span<std::uint8_t> out) {
+  // A window that is declared smaller than the image is left to libpng, which knows what is wrong.
   const std::size_t window = zlib.empty() ? 0 : std::size_t{256} << (zlib[0] >> 4);
   if (window < std::min<std::size_t>(out.size(), 1 << 15)) return false;
-  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>
-      decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-  if (decompressor == nullptr) throw std::bad_alloc();
-  std::size_t read = 0;
-  return libdeflate_zlib_decompress_ex(decompressor.get(), zlib.data(), zlib.size(), out.data(),
-                                       out.size(), &read, nullptr) == LIBDEFLATE_SUCCESS &&
-         read == zlib.size();
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (zlib.size() > kMost || out.size() > kMost) return false;
+  const auto state = std::make_unique_for_overwrite<inflate_state>();  // of 90 kB
+  isal_inflate_init(state.get());
+  state->crc_flag = ISAL_ZLIB;
+  state->next_in = zlib.data();
+  state->avail_in = static_cast<std::uint32_t>(zlib.size());
+  state->next_out = out.data();
+  state->avail_out = static_cast<std::uint32_t>(out.size());
+  return isal_inflate_stateless(state.get()) == ISAL_DECOMP_OK &&
+         state->block_state == ISAL_BLOCK_FINISH && state->avail_out == 0 && state->avail_in == 0;
 }
 
 /// Copies a row without its alpha.
