@@ -16,7 +16,10 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kColumns = 720;                   // half a degree
 constexpr float kRowHeight = 0.6f * kPi / 180;  // more than the spacing of a spinning LiDAR's rings
 constexpr float kMinRange = 0.5f;               // m; nearer is the vehicle, or no return at all
-constexpr float kNothing = std::numeric_limits<float>::infinity();
+/// Ranges are kept in steps, finer than what is asked of them: half the memory that floats take.
+constexpr float kStep = 0.005f;             // m
+constexpr std::uint16_t kFarthest = 65534;  // or beyond
+constexpr std::uint16_t kNothing = 65535;
 
 /// Cells to either side that a ball of about 0.15 m covers, from each range on.
 struct Window {
@@ -34,9 +37,13 @@ float row_of(float z, float flat) { return std::floor(quick_atan2(z, flat) / kRo
 int whole_column(float column) { return std::clamp(static_cast<int>(column), 0, kColumns - 1); }
 
 struct Return {
-  int row, column;
-  float range;
+  std::int16_t row, column;
+  std::uint16_t range;  // steps
 };
+
+std::uint16_t steps_of(float range) {
+  return static_cast<std::uint16_t>(std::min(range * (1 / kStep) + 0.5f, float(kFarthest)));
+}
 
 /// Directions and ranges of some points, a row for each, on which the compiler works eight wide.
 struct DirectionBlock {
@@ -73,8 +80,9 @@ std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> sca
       block.compute(scan_lidar.subspan(begin, count));
       for (std::size_t i = 0; i < count; ++i) {
         if (!(block.range[i] > kMinRange) || !std::isfinite(block.range[i])) continue;
-        returns.push_back(
-            {static_cast<int>(block.row[i]), whole_column(block.column[i]), block.range[i]});
+        returns.push_back({static_cast<std::int16_t>(block.row[i]),
+                           static_cast<std::int16_t>(whole_column(block.column[i])),
+                           steps_of(block.range[i])});
       }
     }
   });
@@ -87,8 +95,8 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
   const std::vector<std::vector<Return>> returns = returns_of(scan_lidar);
   int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
   for (const Return& r : std::views::join(returns)) {
-    lowest = std::min(lowest, r.row);
-    highest = std::max(highest, r.row);
+    lowest = std::min(lowest, int{r.row});
+    highest = std::max(highest, int{r.row});
   }
   if (lowest > highest) return;
   first_row_ = lowest;
@@ -97,7 +105,7 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
   Level cells;
   cells.nearest.assign(static_cast<std::size_t>(rows_) * kColumns, kNothing);
   for (const Return& r : std::views::join(returns)) {
-    float& nearest =
+    std::uint16_t& nearest =
         cells.nearest[static_cast<std::size_t>(r.row - first_row_) * kColumns + r.column];
     nearest = std::min(nearest, r.range);
   }
@@ -110,9 +118,9 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
 
 void RangeImage::take_in(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
                          std::size_t count) {
-  const float* const nearest = from.nearest.data() + from_cell;
+  const std::uint16_t* const nearest = from.nearest.data() + from_cell;
   const std::uint8_t* const filled = from.filled.data() + from_cell;
-  float* const to_nearest = to.nearest.data() + to_cell;
+  std::uint16_t* const to_nearest = to.nearest.data() + to_cell;
   std::uint8_t* const to_filled = to.filled.data() + to_cell;
   for (std::size_t i = 0; i < count; ++i) to_nearest[i] = std::min(to_nearest[i], nearest[i]);
   for (std::size_t i = 0; i < count; ++i) {
@@ -169,7 +177,9 @@ Sight RangeImage::sight_at(float range, float row_of_place, float column_of_plac
   const int row = static_cast<int>(row_of_place) - first_row_;
   if (row < 0 || row >= rows_) return Sight::kUnknown;
   const std::size_t cell = static_cast<std::size_t>(row) * kColumns + whole_column(column_of_place);
-  const float nearest = levels_[window].nearest[cell];
+  const std::uint16_t steps = levels_[window].nearest[cell];
+  const float nearest =
+      steps == kNothing ? std::numeric_limits<float>::infinity() : float(steps) * kStep;
   if (nearest < range - kMargin) return Sight::kUnknown;  // something stands before it
   if (nearest <= range + kMargin) return Sight::kSurface;
   const bool above_and_below = row >= half && row + half < rows_;

@@ -38,7 +38,7 @@ class RangeImage {
   Sight sight_at(float range, float row, float column) const;
   /// Nearest range and number of cells with a return in a window around each cell.
   struct Level {
-    std::vector<float> nearest;
+    std::vector<std::uint16_t> nearest;  // steps
     std::vector<std::uint8_t> filled;
   };
   static constexpr std::size_t kLevels = 3;
