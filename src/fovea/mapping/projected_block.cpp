@@ -1,7 +1,5 @@
 #include "fovea/mapping/projected_block.h"
 
-#include <cmath>
-
 namespace fovea {
 
 ProjectedBlock::ProjectedBlock(const Camera& camera)
@@ -52,7 +50,6 @@ void ProjectedBlock::place(std::size_t n, F&& coordinates, const Eigen::Matrix3f
   for (std::size_t i = 0; i < n; ++i) {
     u_[i] = fx * x_[i] / z_[i] + cx;
     v_[i] = fy * y_[i] / z_[i] + cy;
-    distance_[i] = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
     // Bits, not conditions: no branch.
     in_view_[i] = (z_[i] > float(Camera::kMinDepth)) & (u_[i] >= 0) & (v_[i] >= 0) &
                   (u_[i] <= right) & (v_[i] <= bottom);

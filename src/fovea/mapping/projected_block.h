@@ -32,8 +32,7 @@ class ProjectedBlock {
   bool in_view(std::size_t i) const { return in_view_[i] != 0; }
   Eigen::Vector2f pixel(std::size_t i) const { return {u_[i], v_[i]}; }
   Eigen::Vector3f p_cam(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }  ///< m
-  float depth(std::size_t i) const { return z_[i]; }            ///< m along the optical axis
-  float distance(std::size_t i) const { return distance_[i]; }  ///< m from the camera
+  float depth(std::size_t i) const { return z_[i]; }  ///< m along the optical axis
 
  private:
   /// @param coordinates  of point i, as an array
@@ -43,7 +42,7 @@ class ProjectedBlock {
 
   using Row = std::array<float, kSize>;
   float fx_, fy_, cx_, cy_, right_, bottom_;
-  alignas(64) Row x_{}, y_{}, z_{}, u_{}, v_{}, distance_{};
+  alignas(64) Row x_{}, y_{}, z_{}, u_{}, v_{};
   alignas(64) std::array<std::int32_t, kSize> in_view_{};
 };
 
