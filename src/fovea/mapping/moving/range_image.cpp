@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <ranges>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
@@ -94,9 +93,11 @@ std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> sca
 RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
   const std::vector<std::vector<Return>> returns = returns_of(scan_lidar);
   int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
-  for (const Return& r : std::views::join(returns)) {
-    lowest = std::min(lowest, int{r.row});
-    highest = std::max(highest, int{r.row});
+  for (const std::vector<Return>& chunk : returns) {
+    for (const Return& r : chunk) {
+      lowest = std::min(lowest, int{r.row});
+      highest = std::max(highest, int{r.row});
+    }
   }
   if (lowest > highest) return;
   first_row_ = lowest;
@@ -104,10 +105,12 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
 
   Level cells;
   cells.nearest.assign(static_cast<std::size_t>(rows_) * kColumns, kNothing);
-  for (const Return& r : std::views::join(returns)) {
-    std::uint16_t& nearest =
-        cells.nearest[static_cast<std::size_t>(r.row - first_row_) * kColumns + r.column];
-    nearest = std::min(nearest, r.range);
+  for (const std::vector<Return>& chunk : returns) {
+    for (const Return& r : chunk) {
+      std::uint16_t& nearest =
+          cells.nearest[static_cast<std::size_t>(r.row - first_row_) * kColumns + r.column];
+      nearest = std::min(nearest, r.range);
+    }
   }
   cells.filled.resize(cells.nearest.size());
   for (std::size_t i = 0; i < cells.filled.size(); ++i)
