@@ -18,10 +18,11 @@ std::uint16_t range_steps(float range) {
 }
 std::uint8_t incidence_steps(float incidence) {
   if (std::isnan(incidence)) return TilePoints::kUnknownIncidence;
-  return steps<std::uint8_t>(incidence, double(kIncidenceStep), TilePoints::kUnknownIncidence - 1);
+  return steps<std::uint8_t>(double(incidence), double(kIncidenceStep),
+                             TilePoints::kUnknownIncidence - 1);
 }
 
-/// Calls `f(column_a, column_b)` for each column that tiles keep as runs and clouds as it is.
+/// Calls `f(column_a, column_b)` for each column that tiles keep as runs and clouds as they are.
 template <class A, class B, class F>
 void for_each_run_column(A& a, B& b, F&& f) {
   f(a.camera, b.camera);

@@ -15,6 +15,7 @@
 #include "fovea/base/fused_color.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/run_column.h"
+#include "fovea/base/steps.h"
 
 namespace fovea {
 
@@ -24,15 +25,6 @@ inline constexpr float kIncidenceStep = 0.008726646f;  // rad: half a degree
 /// Largest edge of a tile whose points the steps reach, m.
 inline constexpr double kMaxTileSize = 65.5;
 
-/// Whole number of steps nearest to a value, of those that `Number` holds; 0 of NaN.
-template <class Number>
-Number steps(double value, double step, Number most = std::numeric_limits<Number>::max()) {
-  // std::round would be a call; a step is known to the compiler, which divides once by it. Choices
-  // in this order are one instruction each.
-  const double count = std::floor(value * (1 / step) + 0.5);
-  return static_cast<Number>(
-      static_cast<std::int32_t>(std::min(double(most), std::max(0.0, count))));
-}
 inline std::uint16_t position_steps(double p) {
   return steps<std::uint16_t>(p, double(kPositionStep));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "fovea/base/steps.h"
 #include "fovea/geometry/camera.h"
 
 namespace fovea {
@@ -29,8 +30,8 @@ class ViewSteps {
 
   /// What is out of reach becomes the nearest that is not.
   PointInView seen(const Eigen::Vector2f& pixel, float depth, std::uint16_t place) const {
-    return {steps(pixel.x() * (1 / pixel_)), steps(pixel.y() * (1 / pixel_)),
-            steps(depth * (1 / depth_)), place};
+    return {steps<std::uint16_t>(pixel.x(), pixel_), steps<std::uint16_t>(pixel.y(), pixel_),
+            steps<std::uint16_t>(depth, depth_), place};
   }
   Eigen::Vector2f pixel(const PointInView& point) const {
     return {float(point.u) * pixel_, float(point.v) * pixel_};
@@ -39,10 +40,6 @@ class ViewSteps {
 
  private:
   static constexpr float kMost = 65535;
-  static std::uint16_t steps(float count) {
-    return static_cast<std::uint16_t>(
-        static_cast<std::int32_t>(std::min(kMost, std::max(0.0f, count + 0.5f))));
-  }
   float pixel_ = 1, depth_ = 1;  // a step: pixels, m
 };
 

@@ -7,6 +7,7 @@
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
+#include "fovea/base/steps.h"
 
 namespace fovea {
 namespace {
@@ -39,10 +40,6 @@ struct Return {
   std::int16_t row, column;
   std::uint16_t range;  // steps
 };
-
-std::uint16_t steps_of(float range) {
-  return static_cast<std::uint16_t>(std::min(range * (1 / kStep) + 0.5f, float(kFarthest)));
-}
 
 /// Directions and ranges of some points, a row for each, on which the compiler works eight wide.
 struct DirectionBlock {
@@ -81,7 +78,7 @@ std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> sca
         if (!(block.range[i] > kMinRange) || !std::isfinite(block.range[i])) continue;
         returns.push_back({static_cast<std::int16_t>(block.row[i]),
                            static_cast<std::int16_t>(whole_column(block.column[i])),
-                           steps_of(block.range[i])});
+                           steps(block.range[i], kStep, kFarthest)});
       }
     }
   });
@@ -180,9 +177,9 @@ Sight RangeImage::sight_at(float range, float row_of_place, float column_of_plac
   const int row = static_cast<int>(row_of_place) - first_row_;
   if (row < 0 || row >= rows_) return Sight::kUnknown;
   const std::size_t cell = static_cast<std::size_t>(row) * kColumns + whole_column(column_of_place);
-  const std::uint16_t steps = levels_[window].nearest[cell];
+  const std::uint16_t kept = levels_[window].nearest[cell];
   const float nearest =
-      steps == kNothing ? std::numeric_limits<float>::infinity() : float(steps) * kStep;
+      kept == kNothing ? std::numeric_limits<float>::infinity() : float(kept) * kStep;
   if (nearest < range - kMargin) return Sight::kUnknown;  // something stands before it
   if (nearest <= range + kMargin) return Sight::kSurface;
   const bool above_and_below = row >= half && row + half < rows_;
