@@ -13,8 +13,8 @@ constexpr float kMinRadius = 0.5f, kMaxRadius = 4.0f;
 
 /// The pixels that samples cover, from the first to the last, along one axis.
 struct Covered {
-  using Row = std::array<float, DepthBuffer::Samples::kSize>;
-  std::array<std::int32_t, DepthBuffer::Samples::kSize> first, last;
+  using Row = std::array<float, ViewPlaces::kSize>;
+  std::array<std::int32_t, ViewPlaces::kSize> first, last;
   void compute(const Row& place, const Row& depth, std::size_t count, float radius, int end) {
     for (std::size_t i = 0; i < count; ++i) {
       const float center = place[i] / 2;
@@ -33,7 +33,7 @@ void DepthBuffer::clear(const Camera& camera) {
   depth_.assign(static_cast<std::size_t>(width_) * height_, std::numeric_limits<float>::infinity());
 }
 
-void DepthBuffer::add(const Samples& samples, std::size_t count, float radius) {
+void DepthBuffer::add(const ViewPlaces& samples, std::size_t count, float radius) {
   Covered columns, rows;
   columns.compute(samples.u, samples.depth, count, radius, width_);
   rows.compute(samples.v, samples.depth, count, radius, height_);
@@ -60,10 +60,10 @@ void DepthBuffer::add(const Samples& samples, std::size_t count, float radius) {
   }
 }
 
-std::size_t DepthBuffer::find_visible(const Samples& points, std::size_t count,
-                                      std::span<std::uint32_t, Samples::kSize> visible) const {
+std::size_t DepthBuffer::find_visible(const ViewPlaces& points, std::size_t count,
+                                      std::span<std::uint32_t, ViewPlaces::kSize> visible) const {
   // Where to look first, on which the compiler works eight wide.
-  std::array<std::uint32_t, Samples::kSize> place;
+  std::array<std::uint32_t, ViewPlaces::kSize> place;
   for (std::size_t i = 0; i < count; ++i) place[i] = place_of({points.u[i], points.v[i]});
   std::size_t found = 0;
   for (std::uint32_t i = 0; i < count; ++i) {

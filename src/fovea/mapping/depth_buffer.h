@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/geometry/camera.h"
+#include "fovea/mapping/view_places.h"
 
 namespace fovea {
 
@@ -27,21 +28,9 @@ class DepthBuffer {
   /// Forgets all samples; the memory stays.
   void clear(const Camera& camera);
 
-  /// Samples of surfaces, a row for each coordinate.
-  struct Samples {
-    static constexpr std::size_t kSize = 256;
-    std::array<float, kSize> u, v;   ///< projection, inside the image, pixels
-    std::array<float, kSize> depth;  ///< m along the optical axis
-    void put(std::size_t i, const Eigen::Vector2f& pixel, float depth_of_sample) {
-      u[i] = pixel.x();
-      v[i] = pixel.y();
-      depth[i] = depth_of_sample;
-    }
-  };
-
-  /// Puts the first `count` samples into the buffer.
+  /// Puts the first `count` samples of surfaces, inside the image, into the buffer.
   /// @param radius  of the surface that a sample stands for: pixels of the image, at a depth of 1 m
-  void add(const Samples& samples, std::size_t count, float radius);
+  void add(const ViewPlaces& samples, std::size_t count, float radius);
 
   /// Puts all samples of a buffer of the same camera into this one.
   void add(const DepthBuffer& other);
@@ -53,8 +42,8 @@ class DepthBuffer {
   /// Which of the first `count` points nothing hides.
   /// @param visible  gets them, ascending
   /// @return how many
-  std::size_t find_visible(const Samples& points, std::size_t count,
-                           std::span<std::uint32_t, Samples::kSize> visible) const;
+  std::size_t find_visible(const ViewPlaces& points, std::size_t count,
+                           std::span<std::uint32_t, ViewPlaces::kSize> visible) const;
 
   /// Whether a point there would stand before all that was added: no part of its surface.
   bool stands_before(const Eigen::Vector2f& pixel, float depth) const {

@@ -82,7 +82,7 @@ void colour_new_points(PointCloud& points_cam, const ColorView& view) {
   }
   const PatchColors patches(view);
   parallel_chunks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-    PatchPlaces places;
+    ViewPlaces places;
     SeenColors seen{};
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f& p = points_cam.position[i];
@@ -146,7 +146,7 @@ void SeenMap::look_at(const FovealRegion& region, Piece& piece) {
   std::array<std::int32_t, ProjectedBlock::kSize> in_zone;
   std::array<PointInView, ProjectedBlock::kSize> points;
   const ViewSteps view_steps = steps_;
-  DepthBuffer::Samples samples;
+  ViewPlaces samples;
   Share& share = shares_[piece.share];
   const std::size_t most = piece.first + (piece.end - piece.begin);
   if (share.points.size() < most) share.points.resize(most + most / 8);
@@ -186,7 +186,7 @@ void SeenMap::look_at(const FovealRegion& region, Piece& piece) {
   }
 }
 
-void SeenMap::weigh(const PatchPlaces& places, std::size_t count,
+void SeenMap::weigh(const ViewPlaces& places, std::size_t count,
                     std::span<std::uint16_t, kBlock> weight) const {
   const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy),
              cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
@@ -214,7 +214,7 @@ void SeenMap::put_in_front(const PointCloud& points_cam) {
     DepthBuffer& front = shares_[share].front;
     front.clear(camera_);
     const std::size_t end = std::min(points_cam.size(), (share + 1) * of_share);
-    DepthBuffer::Samples samples;
+    ViewPlaces samples;
     for_each_block(points_cam, share * of_share, end,
                    [&](std::size_t begin, std::size_t block_end, const ProjectedBlock& block) {
                      std::size_t count = 0;
@@ -244,7 +244,7 @@ std::vector<std::uint8_t> SeenMap::marks_before(const PointCloud& points_cam) co
 SeenMap::Differences SeenMap::differences_at(const Piece& piece, const PatchColors& patches) const {
   const TilePoints& tile = *piece.points;
   const std::span<const PointInView> points = seen(piece);
-  PatchPlaces places;
+  ViewPlaces places;
   std::array<Eigen::Array3f, kBlock> known;
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); i += kExposureStep) {
@@ -291,14 +291,14 @@ std::size_t SeenMap::recolour_block(std::span<const PointInView> points, std::ui
                                     std::span<FusedColor> colors, const PatchColors& patches,
                                     const NoiseKinds& noise,
                                     std::vector<std::uint32_t>& first_seen) const {
-  DepthBuffer::Samples all;
+  ViewPlaces all;
   const ViewSteps view_steps = steps_;
   for (std::size_t i = 0; i < points.size(); ++i) {
     all.put(i, view_steps.pixel(points[i]), view_steps.depth(points[i]));
   }
   std::array<std::uint32_t, kBlock> visible;
   const std::size_t n = front_.find_visible(all, points.size(), visible);
-  PatchPlaces places;
+  ViewPlaces places;
   SeenColors seen;
   std::array<std::uint32_t, kBlock> index;
   std::array<FusedColor, kBlock> known;

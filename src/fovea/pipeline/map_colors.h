@@ -100,7 +100,7 @@ class SeenMap {
                              std::span<FusedColor> colors, const PatchColors& patches,
                              const NoiseKinds& noise, std::vector<std::uint32_t>& first_seen) const;
   /// Weights of views of the first places.
-  void weigh(const PatchPlaces& places, std::size_t count,
+  void weigh(const ViewPlaces& places, std::size_t count,
              std::span<std::uint16_t, ColorBlock::kSize> weight) const;
   std::span<const PointInView> seen(const Piece& piece) const {
     return {shares_[piece.share].points.data() + piece.first, piece.seen};

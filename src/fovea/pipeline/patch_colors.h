@@ -3,6 +3,7 @@
 
 #include "fovea/geometry/camera.h"
 #include "fovea/mapping/image_pyramid.h"
+#include "fovea/mapping/view_places.h"
 
 namespace fovea {
 
@@ -17,17 +18,6 @@ struct ColorView {
   bool is_exposure_matched() const { return (gain != 1).any(); }
 };
 
-/// Where some points are in a view.
-struct PatchPlaces {
-  std::array<float, ColorBlock::kSize> u, v;   ///< pixels
-  std::array<float, ColorBlock::kSize> depth;  ///< m along the optical axis
-  void put(std::size_t i, const Eigen::Vector2f& pixel, float depth_of_point) {
-    u[i] = pixel.x();
-    v[i] = pixel.y();
-    depth[i] = depth_of_point;
-  }
-};
-
 class PatchColors {
  public:
   explicit PatchColors(const ColorView& view)
@@ -36,7 +26,7 @@ class PatchColors {
         footprint_(static_cast<float>(view.footprint * view.camera.fx)) {}
 
   /// At the first `count` places.
-  void at(const PatchPlaces& places, std::size_t count, ColorBlock& colors) const {
+  void at(const ViewPlaces& places, std::size_t count, ColorBlock& colors) const {
     std::array<float, ColorBlock::kSize> footprint;
     for (std::size_t i = 0; i < count; ++i) footprint[i] = footprint_ / places.depth[i];
     image_.colors_at({places.u.data(), count}, {places.v.data(), count}, {footprint.data(), count},
