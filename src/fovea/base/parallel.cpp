@@ -4,11 +4,13 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #if defined(__SANITIZE_THREAD__)
 #include <atomic>
 #include <exception>
+#include <future>
 #include <mutex>
 #include <thread>
 #endif
@@ -42,10 +44,25 @@ void run_chunks(std::size_t chunks, const Run& run) {
   for (std::thread& worker : workers) worker.join();
   if (error) std::rethrow_exception(error);
 }
+
+/// As tbb::task_group, in a thread of its own.
+class TaskGroup {
+ public:
+  void run(std::function<void()> work) { done_ = std::async(std::launch::async, std::move(work)); }
+  void wait() {
+    if (done_.valid()) done_.get();
+  }
+
+ private:
+  std::future<void> done_;
+};
 #else
+using TaskGroup = tbb::task_group;
+
 template <class Run>
 void run_chunks(std::size_t chunks, const Run& run) {
-  tbb::parallel_for(std::size_t{0}, chunks, run);
+  // Who waits for the last chunk takes part in this loop alone: other work may take long.
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, chunks, run); });
 }
 #endif
 
@@ -82,16 +99,33 @@ void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>
     return i;
   };
   using Mode = tbb::filter_mode;
-  tbb::parallel_pipeline(kAhead * static_cast<std::size_t>(available_threads()),
-                         tbb::make_filter<void, std::size_t>(Mode::serial_in_order, number) &
-                             tbb::make_filter<std::size_t, std::size_t>(Mode::parallel, made) &
-                             tbb::make_filter<std::size_t, void>(Mode::serial_in_order, take));
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_pipeline(kAhead * static_cast<std::size_t>(available_threads()),
+                           tbb::make_filter<void, std::size_t>(Mode::serial_in_order, number) &
+                               tbb::make_filter<std::size_t, std::size_t>(Mode::parallel, made) &
+                               tbb::make_filter<std::size_t, void>(Mode::serial_in_order, take));
+  });
 #endif
 }
 
 void run_both(const std::function<void()>& a, const std::function<void()>& b) {
   parallel_chunks(2, 1, [&](std::size_t begin, std::size_t) { begin == 0 ? a() : b(); });
 }
+
+struct Background::Group : TaskGroup {};
+
+Background::Background() : group_(std::make_unique<Group>()) {}
+
+Background::~Background() {
+  try {
+    group_->wait();
+  } catch (...) {  // nobody asks any more
+  }
+}
+
+void Background::run(std::function<void()> work) { group_->run(std::move(work)); }
+
+void Background::wait() { group_->wait(); }
 
 void run_alone(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 

@@ -1,5 +1,5 @@
-// A stage of a pipeline: items made one after the other on a thread of its own, a few ahead of the
-// one who takes them.
+// A stage of a pipeline that has to wait, as for a clock: items made one after the other on a
+// thread of its own, a few ahead of the one who takes them.
 #pragma once
 
 #include <condition_variable>

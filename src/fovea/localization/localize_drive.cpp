@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/base/prefetch.h"
 #include "fovea/base/process_memory.h"
-#include "fovea/base/producer.h"
 #include "fovea/base/wall_clock.h"
 #include "fovea/map/map_meta.h"
 
@@ -48,20 +47,19 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
   const std::vector<int> wanted = wanted_frames(drive.info(), job.only);
   Localizer localizer(map, drive.info(), job.guess, job.options);
   std::size_t next = 0;
-  Producer<LoadedFrame> loader(
-      available_threads() > 1 ? 1 : 0, [&](const std::stop_token&) -> std::optional<LoadedFrame> {
-        if (next == wanted.size()) return std::nullopt;
-        const auto start = WallClock::now();
-        const int index = wanted[next++];
-        FrameResult result = drive.load(index);
-        return LoadedFrame{index, std::move(result), milliseconds_since(start)};
-      });
+  Prefetch<LoadedFrame> loader(true, [&]() -> std::optional<LoadedFrame> {
+    if (next == wanted.size()) return std::nullopt;
+    const auto start = WallClock::now();
+    const int index = wanted[next++];
+    FrameResult result = drive.load(index);
+    return LoadedFrame{index, std::move(result), milliseconds_since(start)};
+  });
   LocalizedDrive localized;
   std::map<std::string, std::vector<float>> times;
   std::optional<SkippedFrame> skipped;
   const auto start = WallClock::now();
   while (!job.stop.stop_requested()) {
-    const std::optional<LoadedFrame> loaded = loader.next(job.stop);
+    const std::optional<LoadedFrame> loaded = loader.next();
     if (!loaded) break;
     if (const auto* frame = std::get_if<Frame>(&loaded->result)) {
       const auto began = WallClock::now();

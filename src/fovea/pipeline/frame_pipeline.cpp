@@ -6,8 +6,7 @@
 namespace fovea {
 namespace {
 
-/// Frames that a stage is ahead of the next one, the one at hand included: what overlap needs. More
-/// would only wait.
+/// Frames that a sensor's thread is ahead, the one at hand included: more would only wait.
 constexpr std::size_t kAhead = 1;
 /// So many frames before its turn the disk is told of a frame: a second at 10 Hz, which a disk that
 /// sleeps or serves others may take.
@@ -37,11 +36,11 @@ FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
       end_(end),
       track_(std::move(track)),
       options_(options),
-      arrived_(options.overlap ? kAhead : 0,
-               [this](const std::stop_token& stop) { return arrive(stop); }),
-      stop_arrivals_(options.stop, [this] { arrived_.stop(); }),
-      located_(options.overlap && options.rate == 0 ? kAhead : 0,
-               [this](const std::stop_token& stop) { return locate(stop); }) {}
+      sensed_(options.overlap && options.rate != 0 ? kAhead : 0,
+              [this](const std::stop_token& stop) { return arrive(stop); }),
+      stop_sensing_(options.stop, [this] { sensed_.stop(); }),
+      decoded_(options.overlap && options.rate == 0, [this] { return arrive({}); }),
+      located_(options.overlap && options.rate == 0, [this] { return locate(); }) {}
 
 WallClock::duration FramePipeline::periods(double count) const {
   return std::chrono::duration_cast<WallClock::duration>(
@@ -78,9 +77,9 @@ std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_toke
   return Arrived{std::move(result), milliseconds(loaded - start), due};
 }
 
-std::optional<LocatedFrame> FramePipeline::locate(const std::stop_token& stop) {
+std::optional<LocatedFrame> FramePipeline::locate() {
   options_.settle();
-  std::optional<Arrived> arrived = arrived_.next(stop);
+  std::optional<Arrived> arrived = options_.rate != 0 ? sensed_.next() : decoded_.next();
   if (!arrived || options_.stop.stop_requested()) return std::nullopt;
   LocatedFrame located;
   located.decode_ms = arrived->decode_ms;

@@ -1,6 +1,7 @@
 // Frames on their way to the map: decoding of the next one, tracking of this one and, by whoever
-// takes them here, mapping of the one before, side by side (docs/performance.md). At a rate, where
-// it counts how long a frame takes and not how many there are, who takes them tracks them too.
+// takes them here, mapping of the one before, side by side on the threads of the parallel loops
+// (docs/performance.md). At a rate, where it counts how long a frame takes and not how many there
+// are, who takes them tracks them too, and a sensor's thread waits for the next one.
 #pragma once
 
 #include <functional>
@@ -9,6 +10,7 @@
 #include <stop_token>
 
 #include "fovea/base/idle_gate.h"
+#include "fovea/base/prefetch.h"
 #include "fovea/base/producer.h"
 #include "fovea/base/wall_clock.h"
 #include "fovea/pipeline/tracker.h"
@@ -21,7 +23,7 @@ struct FramePipelineOptions {
   double rate = 0;
   bool overlap = true;        ///< false: one after the other, all in the thread that takes them
   std::stop_token stop = {};  ///< ends after the frames that tracking has begun
-  /// Called by the thread that tracks before it waits for a frame: what nobody waits for.
+  /// Called by whoever tracks before the next frame is there: what nobody waits for.
   std::function<void()> settle = [] {};
   /// Knows of each frame from its arrival until its taker has done with it. At a rate decoding
   /// leaves the processors to such frames while there is time.
@@ -62,7 +64,7 @@ class FramePipeline {
   };
   void expect_until(int index);
   std::optional<Arrived> arrive(const std::stop_token& stop);
-  std::optional<LocatedFrame> locate(const std::stop_token& stop);
+  std::optional<LocatedFrame> locate();
   WallClock::duration periods(double count) const;
 
   const FrameSource& source_;
@@ -72,10 +74,11 @@ class FramePipeline {
   std::function<TrackedFrame(const Frame&)> track_;
   FramePipelineOptions options_;
   TimePoint first_arrival_;
-  bool taken_ = false;  // whether the taker has a frame
-  Producer<Arrived> arrived_;
-  std::stop_callback<std::function<void()>> stop_arrivals_;  // nobody waits for a frame not due yet
-  Producer<LocatedFrame> located_;
+  bool taken_ = false;                                      // whether the taker has a frame
+  Producer<Arrived> sensed_;                                // at a rate
+  std::stop_callback<std::function<void()>> stop_sensing_;  // nobody waits for a frame not due yet
+  Prefetch<Arrived> decoded_;                               // without
+  Prefetch<LocatedFrame> located_;
 };
 
 }  // namespace fovea

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/parallel.h"
 
 namespace fovea::frame_pipeline_test {
 
@@ -96,6 +97,7 @@ TEST(FramePipeline, ErrorsOfAnyStageComeAfterTheFramesBefore) {
 }
 
 TEST(FramePipeline, ReadsFewFramesAhead) {
+  if (available_threads() < 2) GTEST_SKIP() << "one processor";
   const Numbers source;
   FramePipeline frames(source, 10, 100, number_of, {});
   for (int taken = 0; taken < 10; ++taken) {
@@ -175,6 +177,7 @@ TEST(FramePipeline, AStopEndsTheWaitForAFrameNotDue) {
 }
 
 TEST(FramePipeline, AStopLosesNoFrameThatWasTracked) {
+  if (available_threads() < 2) GTEST_SKIP() << "one processor";
   const Numbers source;
   std::stop_source stop;
   std::atomic<int> tracked{0};
