@@ -1,5 +1,6 @@
 // fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage.
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -8,6 +9,7 @@
 #include "app/commands.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/printable.h"
+#include "fovea/base/process_memory.h"
 #include "fovea/base/version.h"
 
 namespace {
@@ -25,7 +27,11 @@ void print_error(const char* message, const char* where_and_remedy = "") noexcep
   std::fputc('\n', stderr);
 }
 
+/// Of addresses: about what a map of a short drive takes while it is made (docs/performance.md).
+constexpr std::size_t kReserved = std::size_t{256} << 20;
+
 int run(int argc, char** argv) {
+  fovea::reserve_memory(kReserved);
   CLI::App app(
       "Real-time incremental foveal texture mapping: a drive in, a coloured 3D point map out.",
       "fovea");

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -27,6 +28,12 @@ std::size_t peak_resident_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+void reserve_memory(std::size_t bytes) {
+  if (mallctl == nullptr) return;
+  void* volatile memory = std::malloc(bytes);  // volatile: the compiler must not leave both out
+  std::free(memory);
 }
 
 void warm_memory(std::size_t bytes) {

@@ -1,8 +1,11 @@
 #include "fovea/base/process_memory.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <fstream>
 #include <memory>
+#include <string>
 #include <vector>
 
 /// There in allocator_tests, which have the program's allocator.
@@ -34,6 +37,31 @@ TEST(ProcessMemory, WhatIsFreedAmongWhatStaysIsGivenBack) {
   if (!kOwnAllocator) {
     EXPECT_LT(resident_memory(), before + kBlock * kBlocks / 2);
   }
+}
+
+bool has_huge_pages() {
+  std::string modes;
+  std::getline(std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"), modes);
+  return modes.find("[always]") != std::string::npos ||
+         modes.find("[madvise]") != std::string::npos;
+}
+
+long page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_minflt;
+}
+
+TEST(ProcessMemory, ReservedMemoryIsTakenInHugePages) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20, kBlock = std::size_t{1} << 18;
+  const std::size_t before = resident_memory();
+  reserve_memory(kBytes);
+  EXPECT_LT(resident_memory(), before + kBytes / 8);
+  if (kOwnAllocator || mallctl == nullptr || !has_huge_pages()) return;
+  const long faults = page_faults();
+  std::vector<std::vector<char>> blocks;
+  while (blocks.size() * kBlock < kBytes / 4) blocks.emplace_back(kBlock, 'x');
+  EXPECT_LT(page_faults(), faults + long(kBytes / 4 / 4096) / 8);
 }
 
 TEST(ProcessMemory, WarmMemoryIsTakenAgain) {
