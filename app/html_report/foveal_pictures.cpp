@@ -94,8 +94,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   const FovealOptions foveal = foveal_options_of(options, camera.index);
   const FovealRegion region(foveal, camera);
 
-  const PointCloud all_cam = transform_cloud(loaded->scan_lidar, camera.T_cam_lidar);
-  const PointCloud measured_cam = all_cam.select(foveal_points(all_cam, region));
+  const PointCloud measured_cam = foveal_points(loaded->scan_lidar, region);
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
   PointCloud dense_cam = densified(measured_cam, camera, options);
   limit_incidence(dense_cam, foveal.max_incidence);

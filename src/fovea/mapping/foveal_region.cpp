@@ -7,6 +7,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
+#include "fovea/geometry/transform_cloud.h"
 
 namespace fovea {
 namespace {
@@ -73,17 +74,20 @@ bool FovealRegion::in_slices(const Eigen::Vector3f& p_cam) const {
   return false;
 }
 
-std::vector<std::uint32_t> foveal_points(const PointCloud& points_cam, const FovealRegion& region) {
-  std::vector<std::uint8_t> is_inside(points_cam.size());
+PointCloud foveal_points(const PointCloud& scan_lidar, const FovealRegion& region) {
+  const RigidMotion& T_cam_lidar = region.camera().T_cam_lidar;
+  const Eigen::Matrix3f R = T_cam_lidar.linear().cast<float>();
+  const Eigen::Vector3f t = (T_cam_lidar * scan_lidar.origin).cast<float>();
+  std::vector<std::uint8_t> is_inside(scan_lidar.size());
   parallel_for(is_inside.size(), kGrain, [&](std::size_t i) {
     Eigen::Vector2f pixel;
-    is_inside[i] = region.contains(points_cam.position[i], pixel);
+    is_inside[i] = region.contains(R * scan_lidar.position[i] + t, pixel);
   });
   std::vector<std::uint32_t> inside;
   for (std::uint32_t i = 0; i < is_inside.size(); ++i) {
     if (is_inside[i] != 0) inside.push_back(i);
   }
-  return inside;
+  return transform_cloud(scan_lidar.select(inside), T_cam_lidar);
 }
 
 std::size_t limit_incidence(PointCloud& points_cam, double max_incidence) {

@@ -63,9 +63,9 @@ class FovealRegion {
   std::vector<SlopeBounds> slices_;
 };
 
-/// Indices of the points in the region.
-/// @param points_cam  camera frame, origin 0
-std::vector<std::uint32_t> foveal_points(const PointCloud& points_cam, const FovealRegion& region);
+/// The points of a scan that are in the region, in the frame of its camera, origin 0.
+/// @param scan_lidar  LiDAR frame
+PointCloud foveal_points(const PointCloud& scan_lidar, const FovealRegion& region);
 
 /// Fills range (m from the camera) and incidence (rad between view ray and normal; NaN where the
 /// normal is unknown), and drops the points that look away by more than `max_incidence` (rad).

@@ -81,6 +81,19 @@ TEST(FovealRegion, SlicesAreAUnion) {
   EXPECT_FALSE(contains(options, {3, 3, 8}));
 }
 
+TEST(FovealPoints, AreTheScansInTheCamerasFrame) {
+  PointCloud scan_lidar;
+  scan_lidar.origin = {10, 0, 0};
+  scan_lidar.position = {{-5, 1, 0}, {-5, 9, 0}, {-20, 0, 0}, {2, 0, -1}};
+  scan_lidar.intensity = {1, 2, 3, 4};
+  const PointCloud foveal_cam = foveal_points(scan_lidar, FovealRegion({}, forward_camera()));
+  EXPECT_EQ(foveal_cam.origin, Eigen::Vector3d::Zero());
+  EXPECT_EQ(foveal_cam.intensity, (std::vector<float>{1, 4}));
+  ASSERT_EQ(foveal_cam.size(), 2u);
+  EXPECT_EQ(foveal_cam.position[0], Eigen::Vector3f(-1, 0, 5));
+  EXPECT_EQ(foveal_cam.position[1], Eigen::Vector3f(0, 1, 12));
+}
+
 TEST(LimitIncidence, DropsSurfacesSeenEdgeOn) {
   PointCloud cloud;
   for (const double degrees : {0.0, 30.0, 69.0, 71.0, 89.0}) {

@@ -1,7 +1,6 @@
 #include "fovea/pipeline/scan_views.h"
 
 #include "fovea/base/parallel.h"
-#include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/foveal_region.h"
 #include "fovea/mapping/scan_projection.h"
@@ -15,9 +14,8 @@ constexpr std::size_t kGrain = 1024;  // points
 PointCloud foveal_part(const PointCloud& scan_lidar, const Camera& camera,
                        const MapperOptions& options, ScanViews& views) {
   PointCloud foveal_cam = views.clock.time("fovea", [&] {
-    const FovealRegion region(foveal_options_of(options, camera.index), camera);
-    const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
-    return points_cam.select(foveal_points(points_cam, region));
+    return foveal_points(scan_lidar,
+                         FovealRegion(foveal_options_of(options, camera.index), camera));
   });
   views.figures["points_foveal"] += as_figure(foveal_cam.size());
   if (options.ray_filter.mode != RayFilterMode::kScan) return foveal_cam;
