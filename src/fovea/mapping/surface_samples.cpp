@@ -27,6 +27,14 @@ class CellNumber {
     return static_cast<std::int32_t>(std::floor(
         (std::floor(coordinate * steps_per_metre_ + half_) + beyond_) * cells_per_step_));
   }
+  /// Of several at once.
+  template <int kCount>
+  Eigen::Array<std::int32_t, kCount, 1> operator()(
+      const Eigen::Array<double, kCount, 1>& coordinates) const {
+    const Eigen::Array<double, kCount, 1> number =
+        (((coordinates * steps_per_metre_ + half_).floor() + beyond_) * cells_per_step_).floor();
+    return number.template cast<std::int32_t>();  // apart: with it all would be done one by one
+  }
 
  private:
   double steps_per_metre_, cells_per_step_, half_, beyond_;
@@ -46,27 +54,14 @@ struct Cells {
 
 /// Where a column of the grid's cells along `axis` meets a triangle.
 struct Sample {
-  double height;             // m along the axis
-  std::int32_t layer;        // its cell along the axis
-  std::int32_t column, row;  // and along axis + 1 and axis + 2 (modulo 3), where it is the centre
+  double height;        // m along the axis
+  Eigen::Array3i cell;  // of which it is the centre along the other two
   std::uint32_t triangle, axis;
 
-  Eigen::Vector3d position(double cell) const {
-    return along_axes((column + 0.5) * cell, (row + 0.5) * cell, height);
-  }
-  Eigen::Array3i cell() const { return along_axes(column, row, layer); }
-
- private:
-  template <class T>
-  Eigen::Matrix<T, 3, 1> along_axes(T u, T v, T along) const {
-    switch (axis) {
-      case 0:
-        return {along, u, v};
-      case 1:
-        return {v, along, u};
-      default:
-        return {u, v, along};
-    }
+  Eigen::Vector3d position(double edge) const {
+    Eigen::Vector3d p = (cell.cast<double>() + 0.5) * edge;
+    p[axis] = height;
+    return p;
   }
 };
 
@@ -132,8 +127,8 @@ class TakenCells {
 };
 
 /// The samples of some triangles whose cells have no point yet. Triangles have a few cells each,
-/// of which nobody could foresee which are free: all of a triangle take a step together, and what
-/// goes is written over, so that few branches are left to guess.
+/// of which nobody could foresee which are free: some hundred of many triangles take a step
+/// together, and what goes is written over, so that few branches are left to guess.
 class FreeSamples {
  public:
   FreeSamples(const SampleGrid& grid, const Cells& cells)
@@ -154,7 +149,10 @@ class FreeSamples {
     }
   }
 
-  std::vector<Sample> take() && { return std::move(samples_); }
+  std::vector<Sample> take() && {
+    keep_free();
+    return std::move(samples_);
+  }
 
  private:
   static constexpr std::size_t kUsual = 4096;  // samples that there will be room for
@@ -200,15 +198,18 @@ class FreeSamples {
       std::int32_t left = sampled.columns_between(column, columns);
       for (;; column += kWide * step, left -= kWide) {
         const Wide<double> at_u = ((column + 0.5) + offsets) * cell;
-        put(at_row + slope_u * at_u, height_);
-        put(column + whole_offsets, column_);
-        put(Wide<std::int32_t>::Constant(row), row_);
+        const Wide<double> height = at_row + slope_u * at_u;
+        put(height, height_);
+        put(cells_.number(height), cell_[kAxis]);
+        put(column + whole_offsets, cell_[kU]);
+        put(Wide<std::int32_t>::Constant(row), cell_[kV]);
+        put(Wide<std::uint32_t>::Constant(triangle), triangle_);
+        put(Wide<std::uint32_t>::Constant(kAxis), axis_);
         count_ += static_cast<std::size_t>(std::clamp(left, 0, kWide));
-        if (count_ >= kSize) keep_free<kAxis>(triangle);
+        if (count_ >= kSize) keep_free();
         if (left <= kWide) break;
       }
     }
-    keep_free<kAxis>(triangle);
   }
 
   /// Writes values behind those of the block.
@@ -218,20 +219,17 @@ class FreeSamples {
     place = values;
   }
 
-  /// Takes over what is free of the block, all of one triangle, and empties it.
-  template <std::uint32_t kAxis>
-  void keep_free(std::uint32_t triangle) {
-    for (std::size_t i = 0; i < count_; ++i) layer_[i] = cells_.number(height_[i]);
+  /// Takes over what is free of the block, and empties it.
+  void keep_free() {
     std::size_t free = 0;
-    const auto sample_at = [&](std::size_t i) {
-      return Sample{height_[i], layer_[i], column_[i], row_[i], triangle, kAxis};
-    };
     for (std::size_t i = 0; i < count_; ++i) {
       free_[free] = static_cast<std::uint16_t>(i);
-      free += !taken_.is_marked(sample_at(i).cell());
+      free += !taken_.is_marked({cell_[0][i], cell_[1][i], cell_[2][i]});
     }
     for (std::size_t k = 0; k < free; ++k) {
-      const Sample sample = sample_at(free_[k]);
+      const std::size_t i = free_[k];
+      const Sample sample{
+          height_[i], {cell_[0][i], cell_[1][i], cell_[2][i]}, triangle_[i], axis_[i]};
       if (!grid_.taken(sample.position(grid_.cell))) samples_.push_back(sample);
     }
     count_ = 0;
@@ -241,7 +239,8 @@ class FreeSamples {
   const Cells& cells_;
   TakenCells taken_;
   Row<double> height_;
-  Row<std::int32_t> column_, row_, layer_;
+  std::array<Row<std::int32_t>, 3> cell_;
+  Row<std::uint32_t> triangle_, axis_;
   std::size_t count_ = 0;
   Row<std::uint16_t> free_;  // places in the block
   std::vector<Sample> samples_;
@@ -351,7 +350,7 @@ PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
       chunks.size(), [&](std::size_t i) { chunks[i] = sampler.samples(i); },
       [&](std::size_t i) {
         for (const Sample& sample : chunks[i]) {
-          if (cells.mark(sample.cell())) samples.push_back(&sample);
+          if (cells.mark(sample.cell)) samples.push_back(&sample);
         }
       });
 
