@@ -23,6 +23,7 @@ struct Run {
 
 std::vector<Run> runs_in_voxels(std::span<const Eigen::Vector3f> points, VoxelTable& table) {
   std::vector<Run> runs;
+  runs.reserve(points.size() / 2);
   for (std::uint32_t begin = 0, end = 0; begin < points.size(); begin = end) {
     const VoxelTable::Voxel own = table.voxel_of(points[begin]);
     for (end = begin + 1; end < points.size() && table.voxel_of(points[end]) == own;) ++end;
@@ -37,6 +38,7 @@ std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points,
   if (!(size > 0)) throw std::invalid_argument("the voxel size must be positive");
   VoxelTable table(size);
   std::vector<VoxelMean> means;
+  means.reserve(points.size() / 4);
   const std::vector<Run> runs = runs_in_voxels(points, table);
   for (const Run& run : runs) {
     if (run.voxel == means.size()) means.push_back({.anchor = points[run.begin]});
@@ -65,11 +67,14 @@ std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points,
   }
   std::vector<std::uint8_t> is_chosen(points.size(), 0);
   for (const VoxelMean& mean : means) is_chosen[mean.nearest] = 1;
-  std::vector<std::uint32_t> chosen;
-  chosen.reserve(means.size());
+  // Written always and kept if it is one: nobody could foresee which are.
+  std::vector<std::uint32_t> chosen(means.size() + 1);
+  std::size_t count = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (is_chosen[i] != 0) chosen.push_back(i);
+    chosen[count] = i;
+    count += is_chosen[i];
   }
+  chosen.resize(count);
   return chosen;
 }
 
