@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "fovea/base/flat_map.h"
@@ -58,22 +59,26 @@ class CellSet {
   /// @return whether it was not marked before
   bool mark(const Eigen::Array3i& cell) {
     const Eigen::Array3i brick = CellBrick::number_of(cell);
-    const std::uint64_t key = cell_key(brick);
-    if (bricks_.empty() || key != last_key_) {
-      const auto [brick_number, is_new] =
-          number_of_brick_.try_emplace(key, static_cast<std::uint32_t>(bricks_.size()));
-      if (is_new) bricks_.emplace_back();
-      last_ = *brick_number;
-      last_key_ = key;
+    if (((brick.x() ^ last_brick_.x()) | (brick.y() ^ last_brick_.y()) |
+         (brick.z() ^ last_brick_.z())) != 0) {
+      go_to(brick);
     }
     return bricks_[last_].mark(cell);
   }
 
  private:
+  void go_to(const Eigen::Array3i& brick) {
+    const auto [number, is_new] =
+        number_of_brick_.try_emplace(cell_key(brick), static_cast<std::uint32_t>(bricks_.size()));
+    if (is_new) bricks_.emplace_back();
+    last_ = *number;
+    last_brick_ = brick;
+  }
+
   FlatMap<std::uint32_t> number_of_brick_;
   std::vector<CellBrick> bricks_;
-  std::uint32_t last_ = 0;  // the brick of last_key_
-  std::uint64_t last_key_ = 0;
+  std::uint32_t last_ = 0;  // number of the brick last asked for; at first one that no cell has
+  Eigen::Array3i last_brick_ = Eigen::Array3i::Constant(std::numeric_limits<int>::min());
 };
 
 }  // namespace fovea
