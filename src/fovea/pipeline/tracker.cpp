@@ -33,6 +33,7 @@ bool takes(Keyframes& keyframes, const FrameRecord& record) {
 
 Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
     : drive_(drive),
+      maps_whole_scans_(!options.foveal_enabled),
       compensate_motion_(options.compensate_motion),
       pose_source_(pose_source),
       motion_model_(drive.navigation ? &*drive.navigation : nullptr,
@@ -76,7 +77,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   }
 
   tracked.views = std::move(placed.views);
-  tracked.scan_lidar = std::move(placed.scan_lidar);
+  if (maps_whole_scans_) tracked.scan_lidar = std::move(placed.scan_lidar);
   tracked.motion = placed.motion;
   tracked.submaps = fusion_.submaps();
   tracked.T_local_odom = fusion_.T_local_odom();

@@ -29,7 +29,8 @@ enum class PoseSource {
 /// All that mapping a frame needs to know of its tracking. Later frames do not change it.
 struct TrackedFrame {
   FrameRecord record;
-  PointCloud scan_lidar;              ///< motion compensated
+  /// Motion compensated; empty where but a foveal region is mapped, of which `views` tell all.
+  PointCloud scan_lidar;
   std::optional<SweepMotion> motion;  ///< of the LiDAR
   ScanViews views;                    ///< of the scan, unless it is held out
   /// T_local_submap of all submaps, and the motion that puts the latest into local, as of this
@@ -95,7 +96,7 @@ class Tracker {
   bool registers() const;
 
   const DriveInfo& drive_;
-  bool compensate_motion_;
+  bool maps_whole_scans_, compensate_motion_;
   PoseSource pose_source_;
   MotionModel motion_model_;
   PoseRefiner refiner_;
