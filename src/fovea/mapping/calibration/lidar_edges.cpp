@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "fovea/base/angle.h"
-#include "fovea/base/quick_angle.h"
-#include "fovea/geometry/voxel_members.h"
 
 namespace fovea {
 namespace {
@@ -73,20 +70,20 @@ void add_edges_along_rings(const std::vector<Beam>& beams, float max_range, Lida
 
 void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, LidarEdges& edges) {
   const auto columns = static_cast<std::size_t>(std::ceil(2 * std::numbers::pi_v<float> / kColumn));
-  std::vector<std::uint32_t> column_of_beam(beams.size());
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const Eigen::Vector3f& way = beams[i].direction;
-    const float azimuth = quick_atan2(way.y(), way.x()) + std::numbers::pi_v<float>;
-    const auto column = static_cast<std::size_t>(azimuth / kColumn);
-    column_of_beam[i] = static_cast<std::uint32_t>(std::min(column, columns - 1));
+  std::vector<std::vector<std::uint32_t>> by_column(columns);
+  for (std::uint32_t i = 0; i < beams.size(); ++i) {
+    const float azimuth = std::atan2(beams[i].direction.y(), beams[i].direction.x());
+    const auto column = static_cast<std::size_t>((azimuth + std::numbers::pi_v<float>) / kColumn);
+    by_column[std::min(column, columns - 1)].push_back(i);
   }
-  const VoxelMembers by_column(column_of_beam, columns);
-  std::vector<std::uint32_t> above;  // each other
-  for (std::size_t column = 0; column < columns; ++column) {
-    above.assign(by_column.of(column).begin(), by_column.of(column).end());
+  for (std::vector<std::uint32_t>& above : by_column) {
+    const auto is_above = [&](std::uint32_t a, std::uint32_t b) {
+      return beams[a].direction.z() > beams[b].direction.z();
+    };
     // Most scans come ring by ring, from the upmost down.
-    std::ranges::sort(above, {},
-                      [&](std::uint32_t i) { return std::pair(-beams[i].direction.z(), i); });
+    if (!std::is_sorted(above.begin(), above.end(), is_above)) {
+      std::stable_sort(above.begin(), above.end(), is_above);
+    }
     for (std::size_t k = 1; k < above.size(); ++k) {
       const Beam &a = beams[above[k - 1]], &b = beams[above[k]];
       // Two firings of one ring may share a column.
