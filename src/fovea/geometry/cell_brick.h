@@ -27,6 +27,16 @@ class CellBrick {
  public:
   static constexpr int kEdge = 8;  ///< cells
 
+  /// A number that no brick of any cell has.
+  static Eigen::Array3i no_number() {
+    return Eigen::Array3i::Constant(std::numeric_limits<int>::min());
+  }
+  /// Whether two bricks' numbers are the same, with one branch: for who mostly asks for the brick
+  /// of the cell before.
+  static bool same(const Eigen::Array3i& a, const Eigen::Array3i& b) {
+    return ((a.x() ^ b.x()) | (a.y() ^ b.y()) | (a.z() ^ b.z())) == 0;
+  }
+
   /// Number of a cell's brick: that of the cell over kEdge, rounded down along each axis.
   static Eigen::Array3i number_of(const Eigen::Array3i& cell) {
     return cell.unaryExpr([](int i) { return i >> 3; });  // a division would round towards zero
@@ -59,10 +69,7 @@ class CellSet {
   /// @return whether it was not marked before
   bool mark(const Eigen::Array3i& cell) {
     const Eigen::Array3i brick = CellBrick::number_of(cell);
-    if (((brick.x() ^ last_brick_.x()) | (brick.y() ^ last_brick_.y()) |
-         (brick.z() ^ last_brick_.z())) != 0) {
-      go_to(brick);
-    }
+    if (!CellBrick::same(brick, last_brick_)) go_to(brick);
     return bricks_[last_].mark(cell);
   }
 
@@ -77,8 +84,8 @@ class CellSet {
 
   FlatMap<std::uint32_t> number_of_brick_;
   std::vector<CellBrick> bricks_;
-  std::uint32_t last_ = 0;  // number of the brick last asked for; at first one that no cell has
-  Eigen::Array3i last_brick_ = Eigen::Array3i::Constant(std::numeric_limits<int>::min());
+  std::uint32_t last_ = 0;  // place of the brick last asked for
+  Eigen::Array3i last_brick_ = CellBrick::no_number();
 };
 
 }  // namespace fovea

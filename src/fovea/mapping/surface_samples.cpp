@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/cell_brick.h"
@@ -22,12 +21,8 @@ class CellNumber {
         cells_per_step_(grid.step > 0 ? grid.step / grid.cell : 1),
         half_(grid.step > 0 ? 0.5 : 0),
         beyond_(grid.step > 0 ? kStepsOn : 0) {}
-  // Products, since this is asked for every sample and quotients take longer.
-  std::int32_t operator()(double coordinate) const {
-    return static_cast<std::int32_t>(std::floor(
-        (std::floor(coordinate * steps_per_metre_ + half_) + beyond_) * cells_per_step_));
-  }
-  /// Of several at once.
+  /// Of several at once; by products, since this is asked for every sample and quotients take
+  /// longer.
   template <int kCount>
   Eigen::Array<std::int32_t, kCount, 1> operator()(
       const Eigen::Array<double, kCount, 1>& coordinates) const {
@@ -109,8 +104,7 @@ class TakenCells {
   /// Whether it is marked in a brick of the grid.
   bool is_marked(const Eigen::Array3i& cell) {
     const Eigen::Array3i number = CellBrick::number_of(cell);
-    if (((number.x() ^ number_.x()) | (number.y() ^ number_.y()) | (number.z() ^ number_.z())) !=
-        0) {
+    if (!CellBrick::same(number, number_)) {
       static constexpr CellBrick kEmpty{};
       number_ = number;
       brick_ = grid_.taken_brick(number);
@@ -121,8 +115,7 @@ class TakenCells {
 
  private:
   const SampleGrid& grid_;
-  // The brick last asked for; at first a number that no cell's brick has.
-  Eigen::Array3i number_ = Eigen::Array3i::Constant(std::numeric_limits<int>::min());
+  Eigen::Array3i number_ = CellBrick::no_number();  // of the brick last asked for
   const CellBrick* brick_ = nullptr;
 };
 
@@ -291,8 +284,7 @@ PointCloud measured_points(const PointCloud& points_cam, const Surface& surface,
   const CellNumber cell_number(grid);
   for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
     const Eigen::Vector3d p_grid = grid.T_grid_cam * points_cam.position[i].cast<double>();
-    const Eigen::Array3i cell(cell_number(p_grid.x()), cell_number(p_grid.y()),
-                              cell_number(p_grid.z()));
+    const Eigen::Array3i cell = cell_number(Eigen::Array3d(p_grid));
     if (!taken(cell, p_grid) && cells.mark(cell)) kept.push_back(i);
   }
   PointCloud points = points_cam.select(kept);

@@ -29,7 +29,7 @@ enum class PoseSource {
 /// All that mapping a frame needs to know of its tracking. Later frames do not change it.
 struct TrackedFrame {
   FrameRecord record;
-  /// Motion compensated; empty where but a foveal region is mapped, of which `views` tell all.
+  /// Motion compensated; empty where only foveal regions are mapped: `views` has those.
   PointCloud scan_lidar;
   std::optional<SweepMotion> motion;  ///< of the LiDAR
   ScanViews views;                    ///< of the scan, unless it is held out
