@@ -42,15 +42,37 @@ inline Lanes sqrt_of(Lanes v) {
   return v;
 }
 
+using HalfLanes = float __attribute__((vector_size(16)));
+
+inline HalfLanes low_half(const Lanes& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+inline HalfLanes high_half(const Lanes& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+
 inline float min_of_lanes(const Lanes& v) {
-  float least = v[0];
-  for (int i = 1; i < kLanes; ++i) least = v[i] < least ? v[i] : least;
-  return least;
+  const HalfLanes low = low_half(v), high = high_half(v), four = low < high ? low : high;
+  const HalfLanes crossed = __builtin_shufflevector(four, four, 2, 3, 0, 1);
+  const HalfLanes two = four < crossed ? four : crossed;
+  return two[0] < two[1] ? two[0] : two[1];
 }
 
-/// Pairs first: the same on every processor.
-inline float sum_of_lanes(const Lanes& v) {
-  return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7]));
+/// Of four at once, as they come. Lanes i and i + 4 are added first, then neighbours: the same on
+/// every processor.
+inline HalfLanes sums_of_lanes(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
+  const auto add_pairs = [](const HalfLanes& x, const HalfLanes& y) {
+    return __builtin_shufflevector(x, y, 0, 2, 4, 6) + __builtin_shufflevector(x, y, 1, 3, 5, 7);
+  };
+  const auto halves = [](const Lanes& v) { return low_half(v) + high_half(v); };
+  return add_pairs(add_pairs(halves(a), halves(b)), add_pairs(halves(c), halves(d)));
+}
+inline float sum_of_lanes(const Lanes& v) { return sums_of_lanes(v, v, v, v)[0]; }
+
+/// A bit for each lane, the first one's lowest.
+inline unsigned bits_of(const LaneMask& mask) {
+  constexpr LaneMask kBit{1, 2, 4, 8, 16, 32, 64, 128};
+  const LaneMask bits = mask & kBit;
+  const auto four = __builtin_shufflevector(bits, bits, 0, 1, 2, 3) |
+                    __builtin_shufflevector(bits, bits, 4, 5, 6, 7);
+  const auto two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1);
+  return static_cast<unsigned>(two[0] | two[1]);
 }
 
 }  // namespace fovea

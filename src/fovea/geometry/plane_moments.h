@@ -24,18 +24,7 @@ struct PlaneMoments {
   }
 
   /// Of at least one point.
-  Eigen::Matrix3f covariance() const {
-    const Eigen::Vector3f mean = sum / count;
-    const Eigen::Vector3f beside =
-        products / count -
-        Eigen::Vector3f(mean.y() * mean.z(), mean.x() * mean.z(), mean.x() * mean.y());
-    Eigen::Matrix3f covariance;
-    covariance.diagonal() = squares / count - mean.cwiseProduct(mean);
-    covariance(1, 2) = covariance(2, 1) = beside[0];
-    covariance(0, 2) = covariance(2, 0) = beside[1];
-    covariance(0, 1) = covariance(1, 0) = beside[2];
-    return covariance;
-  }
+  Eigen::Matrix3f covariance() const;
 };
 
 /// Symmetric matrices, eight side by side.
@@ -49,6 +38,11 @@ struct SymmetricLanes {
     yz[lane] = m(1, 2);
     xz[lane] = m(0, 2);
     xy[lane] = m(0, 1);
+  }
+  Eigen::Matrix3f matrix(int lane) const {
+    Eigen::Matrix3f m;
+    m << xx[lane], xy[lane], xz[lane], xy[lane], yy[lane], yz[lane], xz[lane], yz[lane], zz[lane];
+    return m;
   }
   Lanes trace() const { return xx + yy + zz; }
   SymmetricLanes operator*(const Lanes& factor) const {
@@ -64,6 +58,34 @@ struct SymmetricLanes {
             xz * xy - xx * yz, xy * yz - xz * yy, xz * yz - xy * zz};
   }
 };
+
+/// Sums over points around eight places, side by side.
+struct MomentLanes {
+  Lanes count{};
+  std::array<Lanes, 3> sum{}, squares{}, products{};  // as in PlaneMoments
+
+  void put(int lane, const PlaneMoments& moments) {
+    count[lane] = moments.count;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum[i][lane] = moments.sum[Eigen::Index(i)];
+      squares[i][lane] = moments.squares[Eigen::Index(i)];
+      products[i][lane] = moments.products[Eigen::Index(i)];
+    }
+  }
+
+  /// Of those that have a point.
+  SymmetricLanes covariance() const {
+    const Lanes x = sum[0] / count, y = sum[1] / count, z = sum[2] / count;
+    return {squares[0] / count - x * x,  squares[1] / count - y * y,  squares[2] / count - z * z,
+            products[0] / count - y * z, products[1] / count - x * z, products[2] / count - x * y};
+  }
+};
+
+inline Eigen::Matrix3f PlaneMoments::covariance() const {
+  MomentLanes lanes;
+  lanes.put(0, *this);
+  return lanes.covariance().matrix(0);
+}
 
 /// Of eight covariances, a row for each coordinate: unit, of either sign; zero where the points are
 /// one, or lie on one line: there is no plane then.

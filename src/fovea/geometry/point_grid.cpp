@@ -1,6 +1,7 @@
 #include "fovea/geometry/point_grid.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -85,11 +86,11 @@ void PointGrid::look_into(const VoxelTable::Voxel& cell, const Eigen::Vector3f& 
     // Which point it is, is asked last: most blocks have none.
     const float nearest = min_of_lanes(least);
     if (!(nearest <= best.squared_distance)) continue;
-    for (std::size_t i = 0; i < count * kLanes; ++i) {
-      if (squared[i / kLanes][i % kLanes] == nearest) {
-        take({nearest, blocks[first + i / kLanes].point(i % kLanes),
-              blocks[first + i / kLanes].index[i % kLanes]},
-             best);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Block& block = blocks[first + k];
+      for (unsigned bits = bits_of(squared[k] == nearest); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        take({nearest, block.point(lane), block.index[lane]}, best);
       }
     }
   }

@@ -25,14 +25,14 @@ class PlaneNormals {
   /// @param point, center  whose normal it is; zero where there is no plane
   void put(std::size_t point, const PlaneMoments& moments, const Eigen::Vector3f& center) {
     if (moments.count < 3) return;
-    covariance_.put(count_, moments.covariance());
+    moments_.put(count_, moments);
     for (std::size_t i = 0; i < 3; ++i) center_[i][count_] = center[Eigen::Index(i)];
     point_[static_cast<std::size_t>(count_)] = point;
     if (++count_ == kLanes) finish();
   }
 
   void finish() {
-    std::array<Lanes, 3> normal = directions_of_least_variance(covariance_);
+    std::array<Lanes, 3> normal = directions_of_least_variance(moments_.covariance());
     const Lanes away = normal[0] * center_[0] + normal[1] * center_[1] + normal[2] * center_[2];
     for (Lanes& coordinate : normal) coordinate = away > 0 ? -coordinate : coordinate;
     for (int lane = 0; lane < count_; ++lane) {
@@ -44,7 +44,7 @@ class PlaneNormals {
 
  private:
   std::vector<Eigen::Vector3f>& normals_;
-  SymmetricLanes covariance_;
+  MomentLanes moments_;
   std::array<Lanes, 3> center_{};
   std::array<std::size_t, kLanes> point_{};
   int count_ = 0;
@@ -76,10 +76,13 @@ PlaneMoments moments_around(const Eigen::Vector3f& center, float radius, const P
       sxy += in_x * y;
     }
   }
-  return {sum_of_lanes(count),
-          {sum_of_lanes(sx), sum_of_lanes(sy), sum_of_lanes(sz)},
-          {sum_of_lanes(sxx), sum_of_lanes(syy), sum_of_lanes(szz)},
-          {sum_of_lanes(syz), sum_of_lanes(sxz), sum_of_lanes(sxy)}};
+  const HalfLanes first = sums_of_lanes(count, sx, sy, sz),
+                  second = sums_of_lanes(sxx, syy, szz, syz),
+                  third = sums_of_lanes(sxz, sxy, sxz, sxy);
+  return {first[0],
+          {first[1], first[2], first[3]},
+          {second[0], second[1], second[2]},
+          {second[3], third[0], third[1]}};
 }
 
 /// Radii over the points' spacing: where points are far apart, wider ones are tried.
