@@ -6,7 +6,9 @@
 
 namespace fovea::app {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}  // namespace
 
 double figure(const Json& row, const std::string& path) {
   const Json::json_pointer pointer(path);

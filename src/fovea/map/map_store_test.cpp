@@ -257,7 +257,7 @@ TEST(MapDigest, ChangesWithAnyBitOfATile) {
                         });
   const PointCloud tile = largest.points->cloud();
   std::set<std::string> digests = {digest_with([](MapWriter&) {})};
-  const auto expect_new = [&, key = key](const PointCloud& changed) {
+  const auto expect_new = [&](const PointCloud& changed) {
     EXPECT_TRUE(digests.insert(digest_with([&](MapWriter& w) {
                          w.put_tile({1, key}, changed);
                        }))
