@@ -1,7 +1,10 @@
 #include "fovea/sensor/kitti_scan.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <string>
 
 #include "fovea/base/errors.h"
@@ -12,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files are little endian");
 
-constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
+constexpr std::size_t kBytesPerPoint = sizeof(ScanBuilder::Row);
 constexpr const char* kRemedy = "restore the file from the drive's archive";
 
 }  // namespace
@@ -27,10 +30,11 @@ LidarScan read_kitti_scan(const std::filesystem::path& file) {
   }
   const std::size_t count = bytes.size() / kBytesPerPoint;
   ScanBuilder scan(count, /*timed=*/false);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::array<float, 4> p;
-    std::memcpy(p.data(), bytes.data() + i * kBytesPerPoint, kBytesPerPoint);
-    scan.add({p[0], p[1], p[2]}, p[3]);
+  std::array<ScanBuilder::Row, 256> rows;
+  for (std::size_t begin = 0; begin < count; begin += rows.size()) {
+    const std::size_t n = std::min(rows.size(), count - begin);
+    std::memcpy(rows.data(), bytes.data() + begin * kBytesPerPoint, n * kBytesPerPoint);
+    scan.add(std::span(rows).first(n));
   }
   return scan.take(file);
 }

@@ -44,6 +44,23 @@ TEST(KittiScan, DropsAndCountsWhatNoLidarMeasures) {
   EXPECT_EQ(scan.points.intensity.size(), 1u);
 }
 
+TEST(KittiScan, OnesThatAreDroppedTakeNoneOfTheirNeighboursAlong) {
+  const TemporaryFolder folder;
+  std::vector<std::array<float, 4>> points;
+  for (int i = 0; i < 1000; ++i) points.push_back({float(i + 1), 0, 0, float(i) / 1000});
+  points[300][1] = kNan;
+  points[999] = {0, 0, 0, 0.5f};  // nothing came back
+  write_scan(folder.path() / "a.bin", points);
+  const LidarScan scan = read_kitti_scan(folder.path() / "a.bin");
+  EXPECT_EQ(scan.dropped, 2u);
+  ASSERT_EQ(scan.points.size(), 998u);
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const std::array<float, 4>& point = points[i < 300 ? i : i + 1];
+    EXPECT_EQ(scan.points.position[i], Eigen::Vector3f(point[0], 0, 0));
+    EXPECT_EQ(scan.points.intensity[i], point[3]);
+  }
+}
+
 TEST(KittiScan, DamagedFilesAreErrorsThatNameThem) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.bin";

@@ -28,6 +28,26 @@ ScanBuilder::ScanBuilder(std::size_t points, bool timed) : timed_(timed) {
   if (timed_) scan_.points.time.reserve(points);
 }
 
+void ScanBuilder::add(std::span<const Row> rows) {
+  const auto position = [](const Row& row) { return Eigen::Vector3f(row[0], row[1], row[2]); };
+  int usable = 1;
+  for (const Row& row : rows) usable &= int{is_usable(position(row), row[3], 0)};
+  if (usable == 0) {
+    for (const Row& row : rows) add(position(row), row[3]);
+    return;
+  }
+  // Nearly always.
+  const std::size_t before = scan_.points.size();
+  scan_.points.position.resize(before + rows.size());
+  scan_.points.intensity.resize(before + rows.size());
+  Eigen::Vector3f* const to = &scan_.points.position[before];
+  float* const intensity = &scan_.points.intensity[before];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    to[i] = position(rows[i]);
+    intensity[i] = rows[i][3];
+  }
+}
+
 LidarScan ScanBuilder::take(const std::filesystem::path& file) {
   if (!scan_.points.empty()) return std::move(scan_);
   throw InputError("the scan has no usable point (" + std::to_string(scan_.dropped) +

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <optional>
+#include <span>
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/time.h"
@@ -27,6 +29,9 @@ class ScanBuilder {
   /// @param timed   whether they have times
   ScanBuilder(std::size_t points, bool timed);
 
+  /// A point without time: x, y, z (m) and intensity.
+  using Row = std::array<float, 4>;
+
   /// @param time  s from the scan's stamp
   void add(const Eigen::Vector3f& position, float intensity, double time = 0) {
     if (!is_usable(position, intensity, time)) {
@@ -38,6 +43,9 @@ class ScanBuilder {
     if (timed_) scan_.points.time.push_back(static_cast<float>(time));
   }
 
+  /// Many at once, of a scan that has no times.
+  void add(std::span<const Row> rows);
+
   /// InputError if none of the points was usable.
   LidarScan take(const std::filesystem::path& file);
 
@@ -45,10 +53,12 @@ class ScanBuilder {
   static constexpr float kMaxCoordinate = 1000;  // m; no LiDAR reaches it
   static constexpr double kMaxOffset = 1;        // s; no sweep lasts as long
   static bool is_usable(const Eigen::Vector3f& position, float intensity, double time) {
-    // Written so that NaN fails, too.
-    const float far = position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-    return far <= kMaxCoordinate && std::isfinite(intensity) && std::abs(time) <= kMaxOffset &&
-           far > 0;  // zeros are what drivers write where nothing came back
+    // Written so that NaN fails, too, and without a branch.
+    const float x = std::abs(position.x()), y = std::abs(position.y()), z = std::abs(position.z());
+    return ((x <= kMaxCoordinate) & (y <= kMaxCoordinate) & (z <= kMaxCoordinate) &
+            (std::abs(intensity) <= std::numeric_limits<float>::max()) &
+            (std::abs(time) <= kMaxOffset) & (x + y + z > 0)) !=
+           0;  // zeros are what drivers write where nothing came back
   }
 
   LidarScan scan_;
