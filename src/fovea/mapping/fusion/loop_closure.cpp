@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/fusion/place_match.h"
@@ -68,13 +69,17 @@ std::optional<LoopClosure> LoopCloser::find(const std::vector<Eigen::Vector3f>& 
     return !has(c.submap) || c.path < kMinPath || distance(c) > kReach + drift_of(c);
   });
   if (candidates.empty()) return std::nullopt;
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [&](const LoopCandidate& a, const LoopCandidate& b) { return distance(a) < distance(b); });
-  candidates.resize(std::min(candidates.size(), kMaxAttempts));
+  // By distance and, of equally near ones, as they came. Not std::stable_sort: the room it takes
+  // for what it moves is not aligned as motions have to be (libstdc++ 12).
+  std::vector<std::pair<double, std::size_t>> nearest;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    nearest.emplace_back(distance(candidates[i]), i);
+  }
+  std::sort(nearest.begin(), nearest.end());
+  nearest.resize(std::min(nearest.size(), kMaxAttempts));
   const RegistrationCloud cloud = thin(points_lidar, registration_);
-  for (const LoopCandidate& candidate : candidates) {
-    if (auto closure = verify(cloud, candidate)) return closure;
+  for (const auto& [away, i] : nearest) {
+    if (auto closure = verify(cloud, candidates[i])) return closure;
   }
   return std::nullopt;
 }
