@@ -53,12 +53,12 @@ class ScanBuilder {
   static constexpr float kMaxCoordinate = 1000;  // m; no LiDAR reaches it
   static constexpr double kMaxOffset = 1;        // s; no sweep lasts as long
   static bool is_usable(const Eigen::Vector3f& position, float intensity, double time) {
-    // Written so that NaN fails, too, and without a branch.
+    // Written so that NaN fails, too, and without a branch. Zeros are what drivers write where
+    // nothing came back.
     const float x = std::abs(position.x()), y = std::abs(position.y()), z = std::abs(position.z());
     return ((x <= kMaxCoordinate) & (y <= kMaxCoordinate) & (z <= kMaxCoordinate) &
-            (std::abs(intensity) <= std::numeric_limits<float>::max()) &
-            (std::abs(time) <= kMaxOffset) & (x + y + z > 0)) !=
-           0;  // zeros are what drivers write where nothing came back
+            (x + y + z > 0) & (std::abs(intensity) <= std::numeric_limits<float>::max()) &
+            (std::abs(time) <= kMaxOffset)) != 0;
   }
 
   LidarScan scan_;
