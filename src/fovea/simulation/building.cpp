@@ -26,8 +26,8 @@ class BuildingMaker {
     window_height_ = random_.uniform(1.45, 1.75);
     top_ = kGroundFloor + kFloor * (plan_.floors - 1) + 0.4;
     // Bricks and stains of one house are not those of the next.
-    shift_ = Vector3f(float(random_.uniform(0, 50)), float(random_.uniform(0, 3)),
-                      float(random_.uniform(0, 90)));
+    const double along = random_.uniform(0, 90), up = random_.uniform(0, 3);
+    shift_ = Vector3f(float(random_.uniform(0, 50)), float(up), float(along));
   }
 
   void build() {

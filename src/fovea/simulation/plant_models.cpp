@@ -21,8 +21,8 @@ Vector3d random_direction(Random& random) {
 void add_leaves(MeshBuilder& make, Random& random, const Vector3d& center, double radius, int count,
                 double size, int& leaf) {
   for (int i = 0; i < count; ++i, ++leaf) {
-    const Vector3d place =
-        center + radius * std::cbrt(random.uniform(0.25, 1)) * random_direction(random);
+    const Vector3d away = random_direction(random);
+    const Vector3d place = center + radius * std::cbrt(random.uniform(0.25, 1)) * away;
     const Vector3d u = random_direction(random), v = u.unitOrthogonal();
     const double s = size * random.uniform(0.7, 1.3);
     const auto id = static_cast<float>(leaf) + 0.5f;
@@ -39,7 +39,8 @@ Model make_tree(const Palette& palette, int variant) {
   MeshBuilder make;
   make.material = palette.bark;
   const double trunk = random.uniform(2.3, 3.0), radius = random.uniform(0.12, 0.18);
-  const Vector3d fork(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), trunk);
+  const double fork_y = random.uniform(-0.1, 0.1);
+  const Vector3d fork(random.uniform(-0.1, 0.1), fork_y, trunk);
   make.bar(Vector3d::Zero(), fork, 1.25 * radius, radius, 12);
   std::vector<std::pair<Vector3d, double>> balls{{fork + Vector3d(0, 0, 1.6), 1.15}};
   const int branches = 6;
@@ -70,7 +71,8 @@ Model make_bush(const Palette& palette, int variant) {
   make.material = palette.leaves[static_cast<std::size_t>(variant) % palette.leaves.size()];
   int leaf = 0;
   for (int k = 0; k < 3; ++k) {
-    const Vector3d center(random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), 0.45);
+    const double y = random.uniform(-0.25, 0.25);
+    const Vector3d center(random.uniform(-0.25, 0.25), y, 0.45);
     add_leaves(make, random, center, 0.45, 150, 0.06, leaf);
   }
   return {"bush", make.take(), 1.6, {}};

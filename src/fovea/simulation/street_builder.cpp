@@ -131,7 +131,8 @@ class StreetMaker {
     begin_surface("distant house");
     make_.material = pick(p_.distant);
     make_.frame = front_frame(0, kChunkLength, side, std::max(style_.front + 22, 32.0));
-    make_.box({1, -10, 0}, {random_.uniform(14, 22), 0, random_.uniform(6, 13)});
+    const double length = random_.uniform(14, 22);
+    make_.box({1, -10, 0}, {length, 0, random_.uniform(6, 13)});
     make_.frame.setIdentity();
   }
 
@@ -155,12 +156,12 @@ class StreetMaker {
       stand(models_.fence, s + at, side * (style_.front + 0.1), ground(), 0);
     }
     for (double at = 0.6; at < width; at += random_.uniform(0.9, 1.6)) {
-      stand(pick(models_.bushes), s + at, side * (style_.front + random_.uniform(0.8, 1.4)),
-            ground(), random_.uniform(0, 6));
+      const double turn = random_.uniform(0, 6), behind = random_.uniform(0.8, 1.4);
+      stand(pick(models_.bushes), s + at, side * (style_.front + behind), ground(), turn);
     }
     if (width > 4) {
-      stand(pick(models_.trees), s + 0.5 * width, side * (style_.front + 4), ground(),
-            random_.uniform(0, 6));
+      const double turn = random_.uniform(0, 6);
+      stand(pick(models_.trees), s + 0.5 * width, side * (style_.front + 4), ground(), turn);
     }
   }
 
@@ -169,8 +170,9 @@ class StreetMaker {
     for (double s = 0.5 * kPlace; s < kChunkLength; s += kPlace) {
       if (!chance(style_.parked)) continue;
       const double turn = (side > 0 ? kHalfTurn : 0.0) + random_.uniform(-0.03, 0.03);
-      stand(pick(models_.cars), s + random_.uniform(-0.4, 0.4),
-            side * (style_.kerb - 1.12 + random_.uniform(-0.1, 0.08)), 0, turn, pick(p_.car_paints),
+      const std::uint16_t paint = pick(p_.car_paints);
+      const double off_kerb = random_.uniform(-0.1, 0.08), ahead = random_.uniform(-0.4, 0.4);
+      stand(pick(models_.cars), s + ahead, side * (style_.kerb - 1.12 + off_kerb), 0, turn, paint,
             "parked car");
     }
   }
@@ -184,7 +186,8 @@ class StreetMaker {
       make_.frame = axis_.frame(begin_ + s, d, ground() + 0.004, 0);
       make_.quad({-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0});
       make_.frame.setIdentity();
-      stand(pick(models_.trees), s, d, ground(), random_.uniform(0, 6));
+      const double turn = random_.uniform(0, 6);
+      stand(pick(models_.trees), s, d, ground(), turn);
     }
   }
 
@@ -198,8 +201,9 @@ class StreetMaker {
       stand(pick(models_.signs), 4.2, near_kerb, ground(), side > 0 ? 0.0 : kHalfTurn);
     }
     if (chance(style_.furniture)) {
-      stand(models_.bin, random_.uniform(3, 9), near_wall, ground(), random_.uniform(-0.1, 0.1),
-            pick(p_.clothes));
+      const std::uint16_t color = pick(p_.clothes);
+      const double turn = random_.uniform(-0.1, 0.1);
+      stand(models_.bin, random_.uniform(3, 9), near_wall, ground(), turn, color);
     }
     if (chance(style_.furniture))
       stand(models_.bench, random_.uniform(10, 14), side * (style_.front - 0.9), ground(),
@@ -222,14 +226,17 @@ class StreetMaker {
       if (chance(style_.railings))
         stand(models_.fence, s, side * (style_.kerb + 0.28), ground(), 0);
       if (chance(2 * style_.bushes)) {
-        stand(pick(models_.bushes), s + random_.uniform(0, 2),
-              side * random_.uniform(style_.kerb + 0.9, style_.front - 0.6), ground(),
-              random_.uniform(0, 6));
+        const double turn = random_.uniform(0, 6);
+        const double d = random_.uniform(style_.kerb + 0.9, style_.front - 0.6);
+        const double ahead = random_.uniform(0, 2);
+        stand(pick(models_.bushes), s + ahead, side * d, ground(), turn);
       }
       if (chance(2 * style_.bystanders)) {
-        stand(models_.pedestrians.front(), s + random_.uniform(0, 2),
-              side * random_.uniform(style_.kerb + 0.7, style_.front - 0.6), ground(),
-              random_.uniform(0, 6), pick(p_.clothes), "bystander");
+        const std::uint16_t clothes = pick(p_.clothes);
+        const double turn = random_.uniform(0, 6);
+        const double d = random_.uniform(style_.kerb + 0.7, style_.front - 0.6);
+        stand(models_.pedestrians.front(), s + random_.uniform(0, 2), side * d, ground(), turn,
+              clothes, "bystander");
       }
     }
   }

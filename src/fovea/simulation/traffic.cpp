@@ -42,7 +42,8 @@ Traffic::Traffic(const ModelSet& models, const Palette& palette, const VehicleOp
   }
   for (int k = 0; k < 24; ++k) {
     const bool left = random.uniform() < 0.5;
-    const double pace = random.uniform(1.0, 1.6) * (random.uniform() < 0.5 ? 1 : -1);
+    const double speed = random.uniform(1.0, 1.6);
+    const double pace = random.uniform() < 0.5 ? speed : -speed;
     const double lane = random.uniform(6.6, 8.0);
     movers_.push_back({models.pedestrians.back(), pick(palette.clothes),
                        9.0 * k + random.uniform(0, 9), pace, left ? lane : -lane, 216});
