@@ -75,6 +75,11 @@ void expect_planted(const nlohmann::json& camera) {
   EXPECT_NEAR(camera.at("rotation_deg").at(1), kRotationY, 0.05);
   // Half of KITTI's pixels over a few frames: roll is the least certain.
   EXPECT_NEAR(camera.at("rotation_deg").at(2), 0, 0.1);
+  for (int k = 0; k < 3; ++k) {
+    const double planted[] = {kRotationX, kRotationY, 0};
+    const double sigma = camera.at("rotation_sigma_deg").at(k);
+    EXPECT_NEAR(camera.at("rotation_deg").at(k), planted[k], 3 * sigma) << k;
+  }
   EXPECT_NEAR(camera.at("time_offset_ms"), kDelayMs, 3);
   EXPECT_GT(camera.at("pixels"), 1.5);
   EXPECT_EQ(camera.at("off_by_a_pixel"), true);
