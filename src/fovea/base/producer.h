@@ -15,8 +15,8 @@
 
 namespace fovea {
 
-/// Stages are chained by a `make` that takes from the stage before. Items come in the order in
-/// which they were made, so that the result does not depend on who waits for whom.
+/// Items come in the order in which they were made, so that the result does not depend on who waits
+/// for whom.
 template <class T>
 class Producer {
  public:
@@ -35,12 +35,12 @@ class Producer {
   Producer(const Producer&) = delete;
   Producer& operator=(const Producer&) = delete;
 
-  /// The next item; nothing after the last one, or once `stop` or stop() asks to wait no longer.
-  /// What `make` throws is thrown here, after the items made before it.
-  std::optional<T> next(const std::stop_token& stop = {}) {
+  /// The next item; nothing after the last one, or after stop() once those made are taken. What
+  /// `make` throws is thrown here, after the items made before it.
+  std::optional<T> next() {
     if (ahead_ == 0) return made_on_demand();
     std::unique_lock lock(guard_);
-    changed_.wait(lock, stop, [&] { return !items_.empty() || ended_; });
+    changed_.wait(lock, [&] { return !items_.empty() || ended_; });
     if (items_.empty()) {
       if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
       return std::nullopt;

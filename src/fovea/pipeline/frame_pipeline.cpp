@@ -24,6 +24,9 @@ bool wait_until(WallClock::time_point due, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
+/// Whether stages are tasks of the loops' threads: at a rate a sensor's thread is beside the taker.
+bool are_tasks(const FramePipelineOptions& options) { return options.overlap && options.rate == 0; }
+
 }  // namespace
 
 FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
@@ -39,8 +42,8 @@ FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
       sensed_(options.overlap && options.rate != 0 ? kAhead : 0,
               [this](const std::stop_token& stop) { return arrive(stop); }),
       stop_sensing_(options.stop, [this] { sensed_.stop(); }),
-      decoded_(options.overlap && options.rate == 0, [this] { return arrive({}); }),
-      located_(options.overlap && options.rate == 0, [this] { return locate(); }) {}
+      decoded_(are_tasks(options), [this] { return arrive({}); }),
+      located_(are_tasks(options), [this] { return locate(); }) {}
 
 WallClock::duration FramePipeline::periods(double count) const {
   return std::chrono::duration_cast<WallClock::duration>(
