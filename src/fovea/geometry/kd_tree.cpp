@@ -1,5 +1,6 @@
 #include "fovea/geometry/kd_tree.h"
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <nanoflann.hpp>
@@ -17,9 +18,19 @@ struct PointsAdaptor {
   }
 };
 
+/// Squared distances. Which child is looked into first shall be a branch, which the processor
+/// foresees and reads ahead of. Clang makes a selection of it, which waits for the node: the
+/// registration of variant E6 took 1.2 times as long.
+struct SquaredDistance : nanoflann::L2_Simple_Adaptor<float, PointsAdaptor> {
+  using L2_Simple_Adaptor::L2_Simple_Adaptor;
+  float accum_dist(float a, float b, std::size_t) const {
+    asm volatile("" : : "r"(std::bit_cast<std::uint32_t>(b)));
+    return (a - b) * (a - b);
+  }
+};
+
 using NanoflannTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointsAdaptor>,
-                                        PointsAdaptor, 3, std::uint32_t>;
+    nanoflann::KDTreeSingleIndexAdaptor<SquaredDistance, PointsAdaptor, 3, std::uint32_t>;
 constexpr std::size_t kLeafSize = 16;
 
 /// nanoflann result set that keeps one point within a bound; of equally near ones the lowest index.
@@ -46,7 +57,10 @@ class NearestResult {
   /// nanoflann drops whatever is not below worstDist(), so that must lie just above the bound, or
   /// which of two equally near points is found would depend on the leaves they are in.
   void set_bound(float squared) {
-    limit_ = std::nextafter(squared, std::numeric_limits<float>::infinity());
+    // As std::nextafter(), whose call takes 4 % of that registration.
+    limit_ = std::isfinite(squared)
+                 ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(squared) + 1)
+                 : squared;
   }
 
   KdTree::Neighbor best_{0, std::numeric_limits<float>::infinity()};
