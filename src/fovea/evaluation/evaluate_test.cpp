@@ -125,7 +125,7 @@ TEST(Evaluate, UncolouredPointsCountInThePaperLikeFiguresOnly) {
   EXPECT_NEAR(report.figures.me_mean, 0.1, 0.02);
   EXPECT_EQ(report.paper_like.me_mean, 0);
   EXPECT_GT(report.paper_like.te_mean, 200);
-  EXPECT_NEAR(report.paper_like.te_mean, report.paper_like.te_gain_mean, 1e-5);
+  EXPECT_NEAR(report.paper_like.te_mean, report.paper_like.te_gain_mean, 1e-6);
   EXPECT_EQ(report.figures.coverage_5cm < 0.5, true);
   EXPECT_EQ(report.map_points, 2 * report.map_points_coloured);
   EXPECT_EQ(report.map_points_coloured, coloured.map_points_coloured);
