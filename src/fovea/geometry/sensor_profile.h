@@ -1,0 +1,42 @@
+// How one LiDAR scans: its rings, its sweep, its noise and its height.
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fovea {
+
+/// Direction of rotation, seen from above.
+enum class SweepDirection { kClockwise, kCounterclockwise };
+
+/// When the points of a sweep were measured, for scans whose points have no times.
+///
+/// The sensor turns once a period. It starts at `start_azimuth`; at the scan's stamp it has
+/// completed the share `stamp_phase` of the sweep. The defaults are KITTI's: clockwise from behind,
+/// so that the sensor faces forward at the stamp.
+struct SweepTiming {
+  double period = 0.1;  ///< s
+  SweepDirection direction = SweepDirection::kClockwise;
+  double start_azimuth = std::numbers::pi;  ///< rad, atan2(y, x) in the LiDAR frame
+  double stamp_phase = 0.5;                 ///< 0: stamped at the start of the sweep; 1: at its end
+
+  bool operator==(const SweepTiming&) const = default;
+};
+
+/// A LiDAR of a drive. Every constant that depends on the sensor is derived from it.
+struct SensorProfile {
+  std::string name = "lidar";
+  /// Elevations of the rings (rad), highest first; empty for a pattern without rings (Livox).
+  std::vector<double> ring_elevations;
+  double ring_spacing = 0;   ///< rad, across: median angle between neighboring rings
+  double point_spacing = 0;  ///< rad, along: median angle between neighboring points of a ring
+  SweepTiming sweep;
+  double range_noise = 0.02;     ///< m, standard deviation
+  std::optional<double> height;  ///< m above the ground; absent where no ground is in view
+
+  bool operator==(const SensorProfile&) const = default;
+};
+
+}  // namespace fovea
