@@ -38,7 +38,7 @@ struct Street {
         step = pose.inverse() * found.T_target_source;
         pose = found.T_target_source;
       }
-      map.add(std::move(scan), pose);
+      map.add(std::move(scan.points), pose);
     }
     guess = pose * step;
   }
@@ -58,8 +58,8 @@ void bench_normals(benchmark::State& state, const BenchData& data) {
   const std::vector<Eigen::Vector3f> points =
       voxel_thinned(data.frames.back().scan.position, float{kVoxel});
   constexpr int kNeighbors = 10;
-  const auto ours = [&] { return estimate_normals(points, kNeighbors, kVoxel); };
-  const auto by_tree = [&] { return estimate_normals(points, kNeighbors); };
+  const auto ours = [&] { return estimate_normals(points, {kNeighbors, kVoxel}); };
+  const auto by_tree = [&] { return estimate_normals(points, {kNeighbors}); };
   std::size_t known = 0, alike = 0;
   const std::vector<Eigen::Vector3f> a = ours(), b = by_tree();
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -104,7 +104,7 @@ void bench_local_map(benchmark::State& state, const BenchData& data) {
     pose = pose * step;
   };
   solo(state, drive_on, [&] {
-    street.map.add(std::move(next), pose);
+    street.map.add(std::move(next.points), pose);
     return street.map.size();
   });
   check(street.map.size() >= scan.points.size() / 2, "a map without points");

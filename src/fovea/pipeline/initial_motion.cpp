@@ -57,6 +57,8 @@ class ScanPair {
         elapsed_(seconds(second.stamp - first.stamp)),
         compensate_(compensate && !drive.sweep_compensated) {
     options_.max_correction_translation = kFastest * elapsed_;
+    // Of two scans, each has its own planes.
+    options_.registration.method = RegistrationMethod::kGicp;
   }
 
   /// T_first_second, the sweeps as they are, to some decimetres: by what stands, since the rings of

@@ -37,7 +37,8 @@ struct RefinementOptions {
   GroundOptions ground;
   /// With a robust kernel, so that what moves does not pull (the paper has none), and a limit to
   /// the points: what more of them would add is less than what their errors have in common.
-  RegistrationOptions registration{.max_points = 12000, .robust_width = 0.1};
+  RegistrationOptions registration{
+      .method = RegistrationMethod::kPointToPlane, .max_points = 12000, .robust_width = 0.1};
   LocalMapOptions local_map;
   void validate() const;  ///< ConfigError that names the field
 };

@@ -15,8 +15,19 @@ double fit_of(const RegistrationResult& result, const RegistrationOptions& optio
   return static_cast<double>(result.pairs) * std::max(0.0, 1 - away * away);
 }
 
+namespace {
+
+std::optional<NormalOptions> target_normals(const RegistrationOptions& options) {
+  if (options.method == RegistrationMethod::kPointToPoint) return std::nullopt;
+  return NormalOptions{.neighbors = options.neighbors};
+}
+
+}  // namespace
+
 PoseRefiner::PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras)
-    : options_(options), cameras_(std::move(cameras)), local_map_(options.local_map) {}
+    : options_(options),
+      cameras_(std::move(cameras)),
+      local_map_(options.local_map, target_normals(options.registration)) {}
 
 Keyframes PoseRefiner::keyframes() const {
   if (options_.target == RegistrationTarget::kPreviousScan) return Keyframes({});
@@ -25,8 +36,9 @@ Keyframes PoseRefiner::keyframes() const {
 }
 
 int PoseRefiner::memory() const {
-  return options_.target == RegistrationTarget::kPreviousScan ? 1
-                                                              : options_.local_map.max_keyframes;
+  return options_.target == RegistrationTarget::kPreviousScan
+             ? 1
+             : LocalMap::memory(options_.local_map);
 }
 
 PointCloud PoseRefiner::visible_upsampled(const PointCloud& scan_lidar) const {
@@ -62,9 +74,13 @@ RegistrationCloud PoseRefiner::prepare(const PointCloud& scan_lidar, StageClock&
   PointCloud dense;
   if (!whole) dense = clock.time("upsample", [&] { return visible_upsampled(scan_lidar); });
   const std::vector<Eigen::Vector3f>& points = whole ? scan_lidar.position : dense.position;
+  // The local map has planes of its own.
+  const bool needs_normals = options_.target == RegistrationTarget::kPreviousScan ||
+                             options_.registration.method == RegistrationMethod::kGicp;
   return clock.time("register", [&] {
-    return prepare_cloud(voxel_thinned(points, static_cast<float>(options_.voxel)),
-                         options_.registration, options_.voxel);
+    auto thinned = voxel_thinned(points, static_cast<float>(options_.voxel));
+    return needs_normals ? prepare_cloud(std::move(thinned), options_.registration, options_.voxel)
+                         : select_points(std::move(thinned), options_.registration.max_points);
   });
 }
 
@@ -120,7 +136,7 @@ void PoseRefiner::keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_
                        StageClock& clock) {
   clock.time("register", [&] {
     if (options_.target == RegistrationTarget::kLocalMap) {
-      local_map_.add(std::move(cloud_lidar), T_odom_lidar);
+      local_map_.add(std::move(cloud_lidar.points), T_odom_lidar);
     } else {
       previous_ = PreviousScan{std::move(cloud_lidar), T_odom_lidar};
     }

@@ -24,7 +24,7 @@ constexpr std::size_t kPointsPerTask = 1024;
 std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& position) {
   const std::vector<Eigen::Vector3f> thinned = voxel_thinned(position, kNormalSpacing);
   const std::vector<Eigen::Vector3f> normals =
-      estimate_normals(thinned, kNormalNeighbors, kNormalSpacing);
+      estimate_normals(thinned, {kNormalNeighbors, kNormalSpacing});
   const PointIndex index(thinned, kNormalSpacing);
   std::vector<Eigen::Vector3f> result(position.size(), Eigen::Vector3f::Zero());
   parallel_for(position.size(), kPointsPerTask, [&](std::size_t i) {

@@ -12,6 +12,7 @@ namespace fovea {
 /// plane epsilon.
 struct GicpFactor {
   static constexpr bool kNeedsNormals = true;
+  static constexpr bool kNeedsSourceNormals = true;
   /// Along a wall no pair tells anything, so that it may be of points a little off the nearest.
   static constexpr double kKeepsPairFor = 0.01;  // m
 

@@ -47,11 +47,13 @@ void LocalMapOptions::validate() const {
   }
 }
 
-LocalMap::LocalMap(const LocalMapOptions& options)
+LocalMap::LocalMap(const LocalMapOptions& options, std::optional<NormalOptions> normals)
     : options_(options),
+      normals_(normals),
       voxels_(static_cast<float>(options.voxel)),
       target_{{}, {}, PointIndex({})} {
   options_.validate();
+  if (normals_) normals_->spacing = options_.voxel;
 }
 
 auto LocalMap::next_of() {
@@ -60,9 +62,9 @@ auto LocalMap::next_of() {
   };
 }
 
-void LocalMap::add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar) {
+void LocalMap::add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_local_lidar) {
   if (keyframes_.size() == static_cast<std::size_t>(options_.max_keyframes)) forget_oldest();
-  keyframes_.push_back({next_number_++, std::move(cloud_lidar), T_local_lidar, {}, {}, {}});
+  keyframes_.push_back({next_number_++, std::move(points_lidar), T_local_lidar, {}, {}, {}});
   const Eigen::Vector3d origin = origin_near(T_local_lidar.translation());
   // Without voxels nothing tells which points to keep up to date.
   if (origin != target_.origin_local || keyframes_.size() == 1 || options_.voxel == 0) {
@@ -70,22 +72,23 @@ void LocalMap::add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lid
   } else {
     place(keyframes_.back());
   }
+  if (normals_) find_planes();
 }
 
 void LocalMap::place(Keyframe& keyframe) {
-  const RegistrationCloud& source = keyframe.cloud_lidar;
+  const std::vector<Eigen::Vector3f>& source = keyframe.points_lidar;
   const Eigen::Matrix3f R = keyframe.T_local_lidar.linear().cast<float>();
   const Eigen::Vector3f t =
       (keyframe.T_local_lidar.translation() - target_.origin_local).cast<float>();
-  const std::size_t n = source.points.size();
+  const std::size_t n = source.size();
   keyframe.points.resize(n);
-  for (std::size_t i = 0; i < n; ++i) keyframe.points[i] = R * source.points[i] + t;
+  for (std::size_t i = 0; i < n; ++i) keyframe.points[i] = R * source[i] + t;
   keyframe.next.resize(n);
   keyframe.place.assign(n, kNoPlace);
   const auto max_range2 = static_cast<float>(options_.max_range * options_.max_range);
   for (std::uint32_t i = 0; i < n; ++i) {
     if (i + kAhead < n) voxels_.prefetch(keyframe.points[i + kAhead]);
-    if (source.points[i].squaredNorm() > max_range2) continue;
+    if (source[i].squaredNorm() > max_range2) continue;
     const bool is_first =
         options_.voxel == 0 || voxels_.push(keyframe.points[i], {keyframe.number, i}, next_of());
     if (is_first) stand(keyframe, i);
@@ -94,18 +97,15 @@ void LocalMap::place(Keyframe& keyframe) {
 
 void LocalMap::stand(Keyframe& keyframe, std::uint32_t index) {
   RegistrationCloud& cloud = target_.cloud;
-  const std::vector<Eigen::Vector3f>& normals_lidar = keyframe.cloud_lidar.normals;
   if (empty_.empty()) {
     empty_.push_back(static_cast<std::uint32_t>(cloud.points.size()));
     cloud.points.emplace_back();
-    if (!normals_lidar.empty()) cloud.normals.emplace_back();
+    if (normals_) cloud.normals.emplace_back();
   }
   const std::uint32_t place = keyframe.place[index] = empty_.back();
   empty_.pop_back();
   cloud.points[place] = keyframe.points[index];
-  if (!normals_lidar.empty()) {
-    cloud.normals[place] = keyframe.T_local_lidar.linear().cast<float>() * normals_lidar[index];
-  }
+  if (normals_) cloud.normals[place].setZero();
   if (options_.voxel > 0) target_.index.insert(place, cloud.points[place]);
 }
 
@@ -123,6 +123,29 @@ void LocalMap::forget_oldest() {
     stand(keyframes_[heir.owner - oldest.number], heir.index);
   }
   keyframes_.pop_front();
+}
+
+void LocalMap::find_planes() {
+  // In the order of scans: the order of places depends on scans that are gone.
+  std::vector<Eigen::Vector3f> points;
+  std::vector<std::uint32_t> places, without_plane;
+  points.reserve(size());
+  places.reserve(size());
+  for (const Keyframe& keyframe : keyframes_) {
+    for (std::size_t i = 0; i < keyframe.place.size(); ++i) {
+      const std::uint32_t place = keyframe.place[i];
+      if (place == kNoPlace) continue;
+      if (target_.cloud.normals[place].isZero(0)) {
+        without_plane.push_back(static_cast<std::uint32_t>(points.size()));
+      }
+      points.push_back(keyframe.points[i]);
+      places.push_back(place);
+    }
+  }
+  const std::vector<Eigen::Vector3f> normals = estimate_normals(points, without_plane, *normals_);
+  for (std::size_t k = 0; k < normals.size(); ++k) {
+    target_.cloud.normals[places[without_plane[k]]] = normals[k];
+  }
 }
 
 void LocalMap::start_at(const Eigen::Vector3d& origin_local) {

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <deque>
+#include <optional>
+#include <vector>
 
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/rigid_motion.h"
+#include "fovea/mapping/registration/normals.h"
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/mapping/registration/voxel_queues.h"
 
@@ -25,8 +28,12 @@ struct LocalMapOptions {
 /// The last scans of known pose, thinned to one point a voxel: that of the oldest scan that has one
 /// there, so that the target changes least from scan to scan, and drifts least.
 ///
-/// A pure function of the last max_keyframes scans and poses added (and the options): a run that
-/// resumes and adds those again gets the same target, bit by bit.
+/// Planes belong to the map. A plane is fitted to the points of all scans around a target point, as
+/// soon as these determine it. One scan of a sparse LiDAR cannot: its points near a place lie on
+/// one ring, and the rings of later scans fill the gaps.
+///
+/// A pure function of the last memory() scans and poses added (and the options): a run that resumes
+/// and adds those again gets the same target, bit by bit.
 class LocalMap {
  public:
   /// A cloud to register against, in `local` axes relative to a point near the vehicle, so that
@@ -37,12 +44,17 @@ class LocalMap {
     PointIndex index;         ///< over cloud.points
   };
 
-  explicit LocalMap(const LocalMapOptions& options);
+  /// @param normals  of the target; its spacing is `voxel` in any case. Absent: point to point
+  explicit LocalMap(const LocalMapOptions& options,
+                    std::optional<NormalOptions> normals = NormalOptions());
 
   /// Adds a scan and forgets the one max_keyframes before it.
-  /// @param cloud_lidar  prepared (with normals if the method needs them: all scans alike); LiDAR
-  /// frame
-  void add(RegistrationCloud cloud_lidar, const RigidMotion& T_local_lidar);
+  /// @param points_lidar  thinned
+  void add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_local_lidar);
+
+  /// Number of added scans that the target depends on: a plane of a present scan was fitted when
+  /// the scans before it were present.
+  static int memory(const LocalMapOptions& options) { return 2 * options.max_keyframes - 1; }
 
   bool empty() const { return keyframes_.empty(); }
   /// How many points the target has.
@@ -55,7 +67,7 @@ class LocalMap {
   static constexpr std::uint32_t kNoPlace = 0xffffffffu;
   struct Keyframe {
     std::uint32_t number = 0;
-    RegistrationCloud cloud_lidar;
+    std::vector<Eigen::Vector3f> points_lidar;
     RigidMotion T_local_lidar;
     std::vector<Eigen::Vector3f> points;  // placed: about the target's origin
     std::vector<std::uint32_t> place;     // in the target, of those that stand for their voxels
@@ -65,9 +77,12 @@ class LocalMap {
   void stand(Keyframe& keyframe, std::uint32_t index);
   void forget_oldest();
   void start_at(const Eigen::Vector3d& origin_local);
+  /// Fits planes to target points that have none yet.
+  void find_planes();
   auto next_of();
 
   LocalMapOptions options_;
+  std::optional<NormalOptions> normals_;
   std::deque<Keyframe> keyframes_;  // oldest first
   std::uint32_t next_number_ = 0;
   VoxelQueues voxels_;

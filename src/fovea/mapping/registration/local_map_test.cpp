@@ -6,20 +6,26 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <tuple>
 
 #include "fovea/base/errors.h"
+#include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
 namespace fovea::local_map_test {
 
 using test::motion;
 
-RegistrationCloud scan(std::uint64_t seed, const RigidMotion& T_local_lidar) {
-  return prepare_cloud(test::transformed(T_local_lidar.inverse(),
-                                         test::sample(test::room_corner(), 20, seed, 0.005)),
-                       RegistrationOptions());
+std::vector<Eigen::Vector3f> scan(std::uint64_t seed, const RigidMotion& T_local_lidar) {
+  return test::transformed(T_local_lidar.inverse(),
+                           test::sample(test::room_corner(), 20, seed, 0.005));
+}
+
+/// Ready to be registered.
+RegistrationCloud source(std::uint64_t seed, const RigidMotion& T_local_lidar) {
+  return prepare_cloud(scan(seed, T_local_lidar), RegistrationOptions());
 }
 
 RigidMotion pose(int i) { return motion(0, 0, 0.02 * i, 0.2 * i, -0.1 * i, 0); }
@@ -34,7 +40,8 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
     return local_map_test::scan(static_cast<std::uint64_t>(i), pose(9).inverse() * T);
   };
   for (int i = 0; i < 10; ++i) whole.add(scan(i, pose(i)), pose(i));
-  for (int i = 6; i < 10; ++i) resumed.add(scan(i, pose(i)), pose(i));
+  ASSERT_EQ(LocalMap::memory(options), 7);
+  for (int i = 3; i < 10; ++i) resumed.add(scan(i, pose(i)), pose(i));
   EXPECT_GT(whole.target().origin_local.norm(), 50);
   EXPECT_GT(whole.size(), 300u);
   EXPECT_EQ(whole.size(), resumed.size());
@@ -49,7 +56,7 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
     EXPECT_EQ(a.cloud.normals[in_a.index], b.cloud.normals[in_b.index]);
   }
 
-  const RegistrationCloud source = scan(99, pose(9));
+  const RegistrationCloud source = local_map_test::source(99, pose(9));
   const RigidMotion guess = pose(9) * motion(0, 0, 0, 0.1, 0.1, 0);
   EXPECT_EQ(register_to(whole, source, guess, {}).T_target_source.matrix(),
             register_to(resumed, source, guess, {}).T_target_source.matrix());
@@ -60,7 +67,7 @@ TEST(LocalMap, ForgetsOldScans) {
   options.max_keyframes = 1;
   LocalMap map(options);
   map.add(scan(1, pose(1)), pose(1));
-  map.add({{{5, 0, 0}}, {{-1, 0, 0}}}, RigidMotion::Identity());
+  map.add({{5, 0, 0}}, RigidMotion::Identity());
   EXPECT_EQ(map.size(), 1u);
 }
 
@@ -81,16 +88,57 @@ TEST(LocalMap, HoldsOnePointAVoxelWithinReach) {
   EXPECT_GT(voxels.size(), 300u);
 }
 
-TEST(LocalMap, TurnsNormalsWithTheScan) {
+TEST(LocalMap, PlanesComeFromAllScansAroundAPoint) {
+  // A ring meets a wall higher up with each step away from it.
+  const std::vector<test::Rectangle> wall = {{{30, -12, -3}, {0, 24, 0}, {0, 0, 12}}};
+  const auto ring = [&](const RigidMotion& T) {
+    return voxel_thinned(test::ring_scan(wall, T, {4 * std::numbers::pi / 180}, 1, 0.02), 0.25f);
+  };
+  const auto known = [](const LocalMap& map) {
+    std::size_t known = 0;
+    for (const Eigen::Vector3f& normal : map.target().cloud.normals) {
+      if (normal.isZero()) continue;
+      EXPECT_GT(std::abs(normal.x()), std::cos(0.28f));  // four deviations
+      ++known;
+    }
+    return double(known) / double(map.size());
+  };
   LocalMap map{LocalMapOptions()};
-  const RigidMotion T = motion(0, 0, 1.0, 3, 4, 5);
-  map.add({{{5, 0, 0}}, {{-1, 0, 0}}}, T);
-  const LocalMap::Target& target = map.target();
-  EXPECT_LT(
-      (target.cloud.points[0].cast<double>() + target.origin_local - T * Eigen::Vector3d(5, 0, 0))
-          .norm(),
-      1e-6);
-  EXPECT_LT((target.cloud.normals[0].cast<double>() + T.linear().col(0)).norm(), 1e-6);
+  map.add(ring(motion(0, 0, 0, 0, 0, 0)), motion(0, 0, 0, 0, 0, 0));
+  EXPECT_GT(map.size(), 50u);
+  EXPECT_EQ(known(map), 0);
+  for (const double x : {-3.0, -6.0, -9.0}) {
+    map.add(ring(motion(0, 0, 0, x, 0, 0)), motion(0, 0, 0, x, 0, 0));
+  }
+  EXPECT_GT(known(map), 0.9);
+}
+
+// The rings on the ground are the same wherever the sensor is. They must not hold a scan back.
+TEST(LocalMap, SparseRingsInAnOpenPlaceDoNotPull) {
+  RegistrationOptions options;
+  options.method = RegistrationMethod::kPointToPlane;
+  options.robust_width = 0.1;
+  const auto rings = [](int i, const RigidMotion& T) {
+    return voxel_thinned(
+        test::ring_scan(test::open_place(), T, test::sixteen_rings(), std::uint64_t(i), 0.03),
+        0.25f);
+  };
+  const auto truth = [](int i) { return motion(0, 0, 0.01 * i, 0.9 * i, 0.05 * i, 0); };
+  LocalMap map{LocalMapOptions()};
+  map.add(rings(0, truth(0)), truth(0));
+  RigidMotion last = truth(0), step = truth(0).inverse() * truth(1);
+  for (int i = 1; i < 10; ++i) {
+    std::vector<Eigen::Vector3f> points = rings(i, truth(i));
+    const RegistrationResult result =
+        register_to(map, select_points(points, 0), last * step, options);
+    ASSERT_TRUE(result.converged) << i;
+    const Twist error = log_se3(truth(i).inverse() * result.T_target_source);
+    EXPECT_LT(error.tail<3>().norm(), 0.03) << i;
+    EXPECT_LT(error.head<3>().norm(), 0.003) << i;
+    step = last.inverse() * result.T_target_source;
+    last = result.T_target_source;
+    map.add(std::move(points), last);
+  }
 }
 
 TEST(LocalMap, RegistersFarFromTheOriginOfItsFrame) {
@@ -99,7 +147,7 @@ TEST(LocalMap, RegistersFarFromTheOriginOfItsFrame) {
   LocalMap map{LocalMapOptions()};
   for (int i = 0; i < 4; ++i) map.add(scan(i, pose(i)), far * pose(i));
   const RigidMotion truth = far * pose(4);
-  const RegistrationResult result = register_to(map, scan(44, pose(4)), far * pose(3), {});
+  const RegistrationResult result = register_to(map, source(44, pose(4)), far * pose(3), {});
   EXPECT_TRUE(result.converged);
   const Twist error = log_se3(truth.inverse() * result.T_target_source);
   EXPECT_LT(error.tail<3>().norm(), 0.003);
@@ -112,7 +160,8 @@ TEST(LocalMap, EmptyMapHasNoTarget) {
   EXPECT_THROW(map.target(), std::logic_error);
   map.add({}, RigidMotion::Identity());
   EXPECT_FALSE(map.empty());
-  const RegistrationResult result = register_to(map, scan(1, pose(0)), RigidMotion::Identity(), {});
+  const RegistrationResult result =
+      register_to(map, source(1, pose(0)), RigidMotion::Identity(), {});
   EXPECT_FALSE(result.converged);
 }
 

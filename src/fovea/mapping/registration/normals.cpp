@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "fovea/base/angle.h"
 #include "fovea/base/lanes.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/kd_tree.h"
@@ -49,6 +50,26 @@ class PlaneNormals {
   std::array<std::size_t, kLanes> point_{};
   int count_ = 0;
 };
+
+/// Largest tilt of a normal by range noise (rad).
+constexpr float kMaxTilt = 4 * static_cast<float>(kDegree);
+
+/// Range noise s tilts the plane of n points by s / sqrt(n v), where v is the middle eigenvalue of
+/// their covariance.
+/// @return n v (m^2), for points near a plane
+float middle_moment(const PlaneMoments& moments) {
+  const Eigen::Vector3f mean = moments.sum / moments.count;
+  const Eigen::Vector3f squares = moments.squares / moments.count - mean.cwiseAbs2();
+  const Eigen::Vector3f products =
+      moments.products / moments.count -
+      Eigen::Vector3f(mean.y() * mean.z(), mean.x() * mean.z(), mean.x() * mean.y());
+  // The least eigenvalue counts as zero: the others then have this sum and this product.
+  const float sum = squares.sum();
+  const float product = squares.x() * squares.y() + squares.x() * squares.z() +
+                        squares.y() * squares.z() - products.squaredNorm();
+  const float difference = std::sqrt(std::max(0.0f, sum * sum - 4 * product));
+  return moments.count * (sum - difference) / 2;
+}
 
 /// Of the points within a radius.
 PlaneMoments moments_around(const Eigen::Vector3f& center, float radius, const PointRows& points,
@@ -96,9 +117,14 @@ constexpr std::size_t kShared = 3;
 constexpr float kFewest = 0.6f;
 constexpr std::size_t kRowGrain = 64;
 
-/// Normals of the points not yet done that have neighbours enough within the radius.
+/// What a plane needs: points, and their middle_moment().
+struct PlaneLimits {
+  float count = 0, moment = 0;
+};
+
+/// Normals of the points not yet done whose neighbors within the radius determine a plane.
 void look_around(std::span<const Eigen::Vector3f> points, const PointRows& sorted, float radius,
-                 float enough, std::vector<std::uint8_t>& done,
+                 const PlaneLimits& least, std::vector<std::uint8_t>& done,
                  std::vector<Eigen::Vector3f>& normals) {
   // A little less, as quotients round; what lies so far out is at the edge of the ball anyway.
   const int reach = static_cast<int>(std::ceil(radius / sorted.edge() - 1e-4f));
@@ -120,11 +146,11 @@ void look_around(std::span<const Eigen::Vector3f> points, const PointRows& sorte
                             end_point = cells[cell + 1].first_point;
         if (!open(first_point, end_point)) continue;
         surroundings.move_to(cells[cell].x);
-        if (static_cast<float>(surroundings.size()) < enough) continue;
+        if (static_cast<float>(surroundings.size()) < least.count) continue;
         for (const std::uint32_t i : sorted.order().subspan(first_point, end_point - first_point)) {
           if (done[i] != 0) continue;
           const PlaneMoments moments = moments_around(points[i], radius, sorted, surroundings);
-          if (moments.count < enough) continue;
+          if (moments.count < least.count || middle_moment(moments) < least.moment) continue;
           planes.put(i, moments, points[i]);
           done[i] = 1;
         }
@@ -134,23 +160,25 @@ void look_around(std::span<const Eigen::Vector3f> points, const PointRows& sorte
   });
 }
 
-/// By point; of those not asked for they are zero.
+/// By point; zero for points that are not in `of`.
 std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> points,
-                                               std::span<const std::uint32_t> of, int neighbors,
-                                               double spacing) {
+                                               std::span<const std::uint32_t> of,
+                                               const NormalOptions& options) {
   std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::Zero());
   std::vector<std::uint8_t> done(points.size(), 1);
   for (const std::uint32_t i : of) done[i] = 0;
   std::array<float, kRadii> radius;
-  radius[0] = kFirstRadius * static_cast<float>(spacing);
+  radius[0] = kFirstRadius * static_cast<float>(options.spacing);
   for (std::size_t i = 1; i < kRadii; ++i) radius[i] = radius[i - 1] * kWider;
   // All of them first: each is one thread's work.
   const std::array<float, 3> edges{radius[0], radius[1], radius[kShared]};
   std::array<std::optional<PointRows>, edges.size()> grids;
   parallel_for(grids.size(), 1, [&](std::size_t k) { grids[k].emplace(points, edges[k]); });
+  const float tilt_moment = static_cast<float>(options.range_noise) / kMaxTilt;
+  const PlaneLimits least{kFewest * static_cast<float>(options.neighbors),
+                          tilt_moment * tilt_moment};
   for (std::size_t i = 0; i < kRadii; ++i) {
-    look_around(points, *grids[std::min(i, grids.size() - 1)], radius[i],
-                kFewest * static_cast<float>(neighbors), done, normals);
+    look_around(points, *grids[std::min(i, grids.size() - 1)], radius[i], least, done, normals);
   }
   return normals;
 }
@@ -176,11 +204,11 @@ std::vector<Eigen::Vector3f> normals_by_tree(std::span<const Eigen::Vector3f> po
 }  // namespace
 
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
-                                              std::span<const std::uint32_t> of, int neighbors,
-                                              double spacing) {
+                                              std::span<const std::uint32_t> of,
+                                              const NormalOptions& options) {
   const std::vector<Eigen::Vector3f> by_point =
-      spacing > 0 ? normals_by_radius(points, of, neighbors, spacing)
-                  : normals_by_tree(points, of, neighbors);
+      options.spacing > 0 ? normals_by_radius(points, of, options)
+                          : normals_by_tree(points, of, options.neighbors);
   std::vector<Eigen::Vector3f> normals;
   normals.reserve(of.size());
   for (const std::uint32_t i : of) normals.push_back(by_point[i]);
@@ -188,10 +216,10 @@ std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> p
 }
 
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
-                                              int neighbors, double spacing) {
+                                              const NormalOptions& options) {
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0u);
-  return estimate_normals(points, all, neighbors, spacing);
+  return estimate_normals(points, all, options);
 }
 
 }  // namespace fovea

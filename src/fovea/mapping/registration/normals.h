@@ -1,4 +1,4 @@
-// Surface normals of an unorganised cloud.
+// Surface normals of an unorganized cloud.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,26 +8,32 @@
 
 namespace fovea {
 
+struct NormalOptions {
+  int neighbors = 10;  ///< k, at least 3: about how many points a plane is fitted to
+  /// m, the least distance between points of a thinned cloud; 0: the cloud is not thinned. With a
+  /// spacing the search is several times as fast.
+  double spacing = 0;
+  double range_noise = 0.02;  ///< m, standard deviation of a measured range; used with a spacing
+};
+
 /// Normal of each point: the direction of least variance among the points around it, itself
 /// included.
 ///
-/// @param points     N points (m) in the sensor's frame, the sensor at the origin
-/// @param neighbors  k, at least 3: how many points around it, about
-/// @param spacing    about which the points lie apart at least (m), as thinned ones do; 0 if some
-///                   lie much closer than others. Where it is known, all points count within the
-///                   smallest of the radii of 2, 3, 4.5, ... 34 spacings that has 0.6 k points,
-///                   else the k nearest, which takes several times as long
-/// @return N unit normals towards the sensor; zero where there are not 0.6 k (three without a
-/// spacing),
-///         or where they lie on one line and leave the plane undetermined
+/// Without a spacing, the plane is fitted to the k nearest points. With a spacing, it is fitted to
+/// all points within the smallest radius of 2, 3, 4.5, ... 34 spacings that holds 0.6 k points and
+/// determines the plane: range noise tilts the normal by less than 4 degrees. Points on a single
+/// ring of a LiDAR lie nearly on one line, which leaves the tilt about this line open.
+///
+/// @param points  N points (m) in the sensor's frame, the sensor at the origin
+/// @return N unit normals towards the sensor; zero where the plane is not determined
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
-                                              int neighbors, double spacing = 0);
+                                              const NormalOptions& options);
 
-/// Those of some points, among all.
-/// @param of  indices of the points whose normals are wanted
-/// @return one for each of `of`
+/// Normals of some points, fitted to all points.
+/// @param of  indices of these points
+/// @return one normal for each of `of`
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
-                                              std::span<const std::uint32_t> of, int neighbors,
-                                              double spacing);
+                                              std::span<const std::uint32_t> of,
+                                              const NormalOptions& options);
 
 }  // namespace fovea

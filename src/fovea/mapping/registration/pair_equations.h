@@ -24,7 +24,8 @@ inline Symmetric3 pack_symmetric(const Eigen::Matrix3f& m) {
 
 /// A source point, its nearest target point, and what a factor says of them. A factor is a struct
 /// with
-///   static constexpr bool kNeedsNormals
+///   static constexpr bool kNeedsNormals        // of target points
+///   static constexpr bool kNeedsSourceNormals  // of source points, too
 ///   static constexpr double kKeepsPairFor  // while its source point moves less (m)
 ///   static Symmetric3 information(target_normal, source_normal_in_target, options)
 /// the matrix M (target axes) of the pair's squared error d^T M d, d = T * source - target. M is

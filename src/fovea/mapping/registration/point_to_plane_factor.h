@@ -6,10 +6,11 @@
 
 namespace fovea {
 
-/// Only the distance to the target's plane counts: the error is (n^T d)^2. A target point of
-/// unknown normal says nothing.
+/// Only the distance to the target's plane counts: the error is (n^T d)^2. A target point without
+/// a normal gives no pair.
 struct PointToPlaneFactor {
   static constexpr bool kNeedsNormals = true;
+  static constexpr bool kNeedsSourceNormals = false;
   /// Along a wall no pair tells anything, so that it may be of points a little off the nearest.
   static constexpr double kKeepsPairFor = 0.01;  // m
 

@@ -10,6 +10,7 @@ namespace fovea {
 /// where along itself it lies (wrongly: by its sampling), and no direction ever looks degenerate.
 struct PointToPointFactor {
   static constexpr bool kNeedsNormals = false;
+  static constexpr bool kNeedsSourceNormals = false;
   /// Every pair tells of all directions: it must be of the nearest.
   static constexpr double kKeepsPairFor = 0;  // m
 

@@ -62,6 +62,17 @@ std::size_t at_even_step(std::size_t i, std::size_t some, std::size_t all) {
   return i * all / some;
 }
 
+/// Indices of at most max_points of so many points (0: all of them), at even steps.
+std::vector<std::uint32_t> chosen_of(std::size_t points, int max_points) {
+  const std::size_t most =
+      max_points > 0 ? std::min(static_cast<std::size_t>(max_points), points) : points;
+  std::vector<std::uint32_t> chosen(most);
+  for (std::size_t i = 0; i < most; ++i) {
+    chosen[i] = static_cast<std::uint32_t>(at_even_step(i, most, points));
+  }
+  return chosen;
+}
+
 /// Gives each source point its nearest target point and the factor's weight of the two. A pair is
 /// kept while its source point moves by less than `keep_within` (m); otherwise it bounds the
 /// search, which then ends early.
@@ -89,7 +100,9 @@ void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
     Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
     if constexpr (Factor::kNeedsNormals) {
       n = target.normals[nearest.index];
-      m = R * source.normals[at_even_step(i, pairs.size(), source.points.size())];
+      if constexpr (Factor::kNeedsSourceNormals) {
+        m = R * source.normals[at_even_step(i, pairs.size(), source.points.size())];
+      }
       if (n.isZero() && m.isZero()) return;
     }
     pair.target_index = nearest.index;
@@ -215,19 +228,24 @@ void RegistrationOptions::validate() const {
   }
 }
 
+RegistrationCloud select_points(std::vector<Eigen::Vector3f> points, int max_points) {
+  std::erase_if(points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
+  RegistrationCloud cloud;
+  for (const std::uint32_t i : chosen_of(points.size(), max_points)) {
+    cloud.points.push_back(points[i]);
+  }
+  return cloud;
+}
+
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
                                 const RegistrationOptions& options, double spacing) {
+  if (options.method == RegistrationMethod::kPointToPoint) {
+    return select_points(std::move(points), options.max_points);
+  }
   std::erase_if(points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
-  const std::size_t most = options.max_points > 0 ? static_cast<std::size_t>(options.max_points)
-                                                  : std::numeric_limits<std::size_t>::max();
-  std::vector<std::uint32_t> chosen(std::min(most, points.size()));
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    chosen[i] = static_cast<std::uint32_t>(at_even_step(i, chosen.size(), points.size()));
-  }
+  const std::vector<std::uint32_t> chosen = chosen_of(points.size(), options.max_points);
   RegistrationCloud cloud;
-  if (options.method != RegistrationMethod::kPointToPoint) {
-    cloud.normals = estimate_normals(points, chosen, options.neighbors, spacing);
-  }
+  cloud.normals = estimate_normals(points, chosen, {options.neighbors, spacing});
   cloud.points.reserve(chosen.size());
   for (const std::uint32_t i : chosen) cloud.points.push_back(points[i]);
   return cloud;

@@ -33,16 +33,22 @@ struct RegistrationOptions {
   void validate() const;  ///< ConfigError that names the field
 };
 
-/// A cloud ready to be registered: points with what the method needs beside them.
+/// A cloud ready to be registered.
+///
+/// The methods with planes need the normals of the target. GICP also needs those of the source.
 struct RegistrationCloud {
   std::vector<Eigen::Vector3f> points;   ///< m
-  std::vector<Eigen::Vector3f> normals;  ///< unit, zero where unknown; empty for point to point
+  std::vector<Eigen::Vector3f> normals;  ///< unit, zero where unknown; empty where not needed
 };
 
-/// At most max_points of the finite points, and unless the method is point to point their normals
-/// (plane of least variance through the k nearest neighbours, of all points; see normals.h).
+/// At most max_points of the finite points, taken at even steps.
+/// @param points  m
+RegistrationCloud select_points(std::vector<Eigen::Vector3f> points, int max_points);
+
+/// The points that select_points() takes. Unless the method is point to point, with their normals,
+/// which are fitted to all points (normals.h).
 /// @param points   m, in the sensor's frame
-/// @param spacing  that they have been thinned to (m); 0: they have not
+/// @param spacing  that the points have been thinned to (m); 0: they are not thinned
 RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
                                 const RegistrationOptions& options, double spacing = 0);
 
@@ -65,7 +71,7 @@ struct RegistrationResult {
 /// than 50 pairs are no evidence (not converged, T_target_source = guess, six degenerate
 /// directions). Point to point takes small steps: from a poor guess give it 100 iterations.
 /// @param target       with normals unless point to point; the index is of its points
-/// @param source       in the sensor's frame, the sensor at the origin
+/// @param source       in the sensor's frame, the sensor at the origin; with normals for GICP
 RegistrationResult register_clouds(const RegistrationCloud& target, const PointIndex& target_index,
                                    const RegistrationCloud& source, const RigidMotion& guess,
                                    const RegistrationOptions& options);

@@ -90,7 +90,7 @@ TEST(RegistrationKitti, LocalMapCarriesTheDrive) {
       EXPECT_GT(last_step.translation().x(), 1.0) << "frame " << frame;
       EXPECT_LT(last_step.translation().x(), 1.2) << "frame " << frame;
     }
-    map.add(std::move(cloud), T_local_lidar);
+    map.add(std::move(cloud.points), T_local_lidar);
   }
   EXPECT_LT(iterations, 10u * kFrames);
 }
@@ -107,14 +107,14 @@ TEST(RegistrationKitti, AScanFarAheadDoesNotCreep) {
   };
   LocalMap map{LocalMapOptions()};
   RigidMotion T_local_lidar = RigidMotion::Identity(), step = RigidMotion::Identity();
-  map.add(cloud(0), T_local_lidar);
+  map.add(cloud(0).points, T_local_lidar);
   for (int frame = 1; frame < 10; ++frame) {
     RegistrationCloud source = cloud(frame);
     const RigidMotion found =
         register_to(map, source, T_local_lidar * step, options).T_target_source;
     step = T_local_lidar.inverse() * found;
     T_local_lidar = found;
-    map.add(std::move(source), T_local_lidar);
+    map.add(std::move(source.points), T_local_lidar);
   }
   // From places some centimetres apart: it must not only happen to get there.
   for (const int frame : {12, 13, 14}) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -68,6 +70,57 @@ inline std::vector<Rectangle> corridor(double half_length) {
   return {{{-half_length, -2, -1.7}, along, {0, 4, 0}},
           {{-half_length, -2, -1.7}, along, {0, 0, 4}},
           {{-half_length, 2, -1.7}, along, {0, 0, 4}}};
+}
+
+/// An open place: floor 1.7 m under the origin, and a few boxes far apart.
+inline std::vector<Rectangle> open_place() {
+  std::vector<Rectangle> scene = {{{-60, -60, -1.7}, {120, 0, 0}, {0, 120, 0}}};
+  add_box(scene, {14, 5, -1.7}, {2, 2, 3});
+  add_box(scene, {-18, -9, -1.7}, {3, 2, 4});
+  add_box(scene, {6, -16, -1.7}, {2, 3, 3});
+  add_box(scene, {-8, 20, -1.7}, {4, 2, 4});
+  return scene;
+}
+
+/// Sixteen rings, 2 degrees apart.
+inline std::vector<double> sixteen_rings() {
+  std::vector<double> elevations;
+  for (int ring = 0; ring < 16; ++ring) {
+    elevations.push_back((15 - 2 * ring) * std::numbers::pi / 180);
+  }
+  return elevations;
+}
+
+/// What a LiDAR sees of a scene: the nearest point of each ray, in the LiDAR's frame.
+/// @param elevations  of the rings, rad
+/// @param sigma       noise of a range, m
+inline std::vector<Eigen::Vector3f> ring_scan(const std::vector<Rectangle>& scene,
+                                              const RigidMotion& T_scene_lidar,
+                                              const std::vector<double>& elevations,
+                                              std::uint64_t seed, double sigma) {
+  constexpr int kColumns = 900;
+  Random random(seed);
+  std::vector<Eigen::Vector3f> points;
+  for (const double elevation : elevations) {
+    for (int column = 0; column < kColumns; ++column) {
+      const double azimuth = 2 * std::numbers::pi * column / kColumns;
+      const Eigen::Vector3d beam(std::cos(elevation) * std::cos(azimuth),
+                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const Eigen::Vector3d from = T_scene_lidar.translation();
+      const Eigen::Vector3d along = T_scene_lidar.linear() * beam;
+      double nearest = 100;
+      for (const Rectangle& r : scene) {
+        Eigen::Matrix3d M;  // from + range * along = corner + u * edge_u + v * edge_v
+        M << along, -r.edge_u, -r.edge_v;
+        const Eigen::Vector3d hit = M.fullPivLu().solve(r.corner - from);
+        const bool inside = hit[1] >= 0 && hit[1] <= 1 && hit[2] >= 0 && hit[2] <= 1;
+        if (inside && hit[0] > 0.5) nearest = std::min(nearest, hit[0]);
+      }
+      if (nearest == 100) continue;
+      points.push_back(((nearest + sigma * gaussian(random)) * beam).cast<float>());
+    }
+  }
+  return points;
 }
 
 inline std::vector<Eigen::Vector3f> transformed(const RigidMotion& T,
