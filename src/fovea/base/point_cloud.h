@@ -22,6 +22,7 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> position;
 
   std::vector<float> intensity;            ///< LiDAR reflectance, 0-1
+  std::vector<std::uint16_t> ring;         ///< of the LiDAR, as the scan's file numbers it
   std::vector<float> time;                 ///< s from the scan's stamp; none once compensated
   std::vector<Eigen::Vector3f> normal;     ///< unit, towards the sensor; zero where unknown
   std::vector<float> range;                ///< m, from the sensor that measured or saw the point
@@ -58,6 +59,7 @@ struct PointCloud {
 template <class Cloud, class F>
 void for_each_optional_column(Cloud& cloud, F&& f) {
   f("intensity", cloud.intensity);
+  f("ring", cloud.ring);
   f("time", cloud.time);
   f("normal", cloud.normal);
   f("range", cloud.range);
@@ -76,6 +78,7 @@ void for_each_optional_column(Cloud& cloud, F&& f) {
 template <class CloudA, class CloudB, class F>
 void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("intensity", a.intensity, b.intensity);
+  f("ring", a.ring, b.ring);
   f("time", a.time, b.time);
   f("normal", a.normal, b.normal);
   f("range", a.range, b.range);

@@ -39,4 +39,13 @@ struct SensorProfile {
   bool operator==(const SensorProfile&) const = default;
 };
 
+/// Height of a LiDAR on the roof of a car (m), for profiles that do not know theirs.
+inline constexpr double kUsualSensorHeight = 1.73;
+
+/// Angle between the two rings around an elevation (rad); between the outermost two beyond them.
+double ring_spacing_at(const SensorProfile& profile, double elevation);
+
+/// How far apart two neighboring rings meet flat ground at a range (m from the sensor's foot).
+double ring_gap_on_ground(const SensorProfile& profile, double range);
+
 }  // namespace fovea

@@ -131,6 +131,28 @@ std::optional<Plane> find_ground_plane(std::span<const Eigen::Vector3f> points,
 
 }  // namespace
 
+std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lidar) {
+  constexpr double kStep = 0.6;         // m, between heights that are tried; each reaches 0.5 m
+  constexpr float kLeastHeight = 0.4f;  // m
+  constexpr double kLeastShare = 0.1;   // of all points
+  GroundOptions options{.method = GroundMethod::kRansac, .ransac_iterations = 50};
+  std::optional<double> best;
+  double most = kLeastShare * static_cast<double>(points_lidar.size());
+  for (options.sensor_height = kStep; options.sensor_height < 4.5; options.sensor_height += kStep) {
+    const auto plane = find_ground_plane(points_lidar, options);
+    if (!plane || plane->offset < kLeastHeight) continue;
+    const auto on_plane =
+        std::count_if(points_lidar.begin(), points_lidar.end(), [&](const Eigen::Vector3f& p) {
+          return p.head<2>().norm() < kMaxGroundRange &&
+                 std::abs(plane->height(p)) < static_cast<float>(options.tolerance) / 2;
+        });
+    if (static_cast<double>(on_plane) <= most) continue;
+    most = static_cast<double>(on_plane);
+    best = plane->offset;
+  }
+  return best;
+}
+
 void GroundOptions::validate() const {
   const auto reject = [](const char* what, const char* field, const char* remedy) {
     throw ConfigError(what, field, remedy);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,5 +25,9 @@ struct GroundOptions {
 /// to the height threshold where no plane within ransac_max_tilt is found.
 std::vector<std::uint8_t> segment_ground(std::span<const Eigen::Vector3f> points_lidar,
                                          const GroundOptions& options);
+
+/// Height of the LiDAR above the plane under it that most points lie on (m): 0.3 to 4.5 m, tilted
+/// by at most 10 degrees. Nothing where no such plane is in view.
+std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lidar);
 
 }  // namespace fovea

@@ -13,9 +13,10 @@
 namespace fovea {
 namespace {
 
-enum Column : std::size_t { kX, kY, kZ, kIntensity, kFirstTime };
+enum Column : std::size_t { kX, kY, kZ, kIntensity, kRing, kChannel, kFirstTime };
 constexpr auto kColumns = [] {
-  std::array<const char*, kFirstTime + kPointTimeNames.size()> names = {"x", "y", "z", "intensity"};
+  std::array<const char*, kFirstTime + kPointTimeNames.size()> names = {
+      "x", "y", "z", "intensity", "ring", "channel"};
   std::copy(kPointTimeNames.begin(), kPointTimeNames.end(), names.begin() + kFirstTime);
   return names;
 }();
@@ -48,6 +49,12 @@ void ScanBuilder::add(std::span<const Row> rows) {
   }
 }
 
+void ScanBuilder::add_ring(double number) {
+  // Written so that NaN fails, too.
+  const bool is_ring = number >= 0 && number <= std::numeric_limits<std::uint16_t>::max();
+  scan_.points.ring.push_back(is_ring ? static_cast<std::uint16_t>(number) : 0);
+}
+
 LidarScan ScanBuilder::take(const std::filesystem::path& file) {
   if (!scan_.points.empty()) return std::move(scan_);
   throw InputError("the scan has no usable point (" + std::to_string(scan_.dropped) +
@@ -64,13 +71,18 @@ void ScanRows::begin(std::size_t points, std::span<const std::optional<Scalar>> 
     }
   }
   if (time_) unit_ = format_.time_unit.value_or(is_real(*types[*time_]) ? 1 : 1e-9);
+  for (const Column column : {kChannel, kRing}) {
+    if (types[column]) ring_ = column;
+  }
   scan_.emplace(points, time_.has_value());
 }
 
 void ScanRows::add(std::span<const double> row, std::size_t) {
   const Eigen::Vector3d position(row[kX], row[kY], row[kZ]);
-  scan_->add(position.cast<float>(), static_cast<float>(row[kIntensity] / format_.intensity_max),
-             time_ ? seconds_from_stamp(row[*time_]) : 0);
+  const bool is_usable = scan_->add(position.cast<float>(),
+                                    static_cast<float>(row[kIntensity] / format_.intensity_max),
+                                    time_ ? seconds_from_stamp(row[*time_]) : 0);
+  if (is_usable && ring_) scan_->add_ring(row[*ring_]);
 }
 
 double ScanRows::seconds_from_stamp(double time) const {

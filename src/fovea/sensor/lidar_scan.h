@@ -33,15 +33,20 @@ class ScanBuilder {
   using Row = std::array<float, 4>;
 
   /// @param time  s from the scan's stamp
-  void add(const Eigen::Vector3f& position, float intensity, double time = 0) {
+  /// @return whether the point is usable
+  bool add(const Eigen::Vector3f& position, float intensity, double time = 0) {
     if (!is_usable(position, intensity, time)) {
       ++scan_.dropped;
-      return;
+      return false;
     }
     scan_.points.position.push_back(position);
     scan_.points.intensity.push_back(intensity);
     if (timed_) scan_.points.time.push_back(static_cast<float>(time));
+    return true;
   }
+
+  /// The ring of the point just added: of every usable point, or of none.
+  void add_ring(double number);
 
   /// Many at once, of a scan that has no times.
   void add(std::span<const Row> rows);
@@ -84,14 +89,14 @@ struct ScanFormat {
 inline constexpr std::array<const char*, 4> kPointTimeNames = {"t", "time", "timestamp",
                                                                "offset_time"};
 
-/// Makes a scan of rows: x y z, perhaps intensity, perhaps one of kPointTimeNames.
+/// Makes a scan of rows: x y z, perhaps intensity, ring (or channel) and one of kPointTimeNames.
 class ScanRows : public CloudRows {
  public:
   /// @param stamp  of the scan
   ScanRows(const ScanFormat& format, TimeNs stamp) : format_(format), stamp_(stamp) {}
 
   std::span<const char* const> columns() const override;
-  const char* description() const override { return "x y z, intensity and time"; }
+  const char* description() const override { return "x y z, intensity, ring and time"; }
   void begin(std::size_t points, std::span<const std::optional<Scalar>> types) override;
   void add(std::span<const double> row, std::size_t number) override;
 
@@ -103,8 +108,8 @@ class ScanRows : public CloudRows {
 
   ScanFormat format_;
   TimeNs stamp_;
-  std::optional<std::size_t> time_;  // column
-  double unit_ = 1;                  // s
+  std::optional<std::size_t> time_, ring_;  // columns
+  double unit_ = 1;                         // s
   std::optional<ScanBuilder> scan_;
 };
 

@@ -1,0 +1,126 @@
+// Profiles of real LiDARs, each by one scan or a few.
+#include "fovea/pipeline/drive_sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "../../../tests/kitti_sample.h"
+#include "fovea/base/angle.h"
+#include "fovea/mapping/sensor_profile_estimate.h"
+#include "fovea/sensor/lidar_scan.h"
+
+namespace fovea::drive_sensors_test {
+
+/// Scans of other sensors lie next to those of KITTI; without both, tests are skipped.
+#define FOVEA_OTHER_SENSORS_OR_SKIP(variable)                                  \
+  FOVEA_KITTI_SAMPLE_OR_SKIP(variable##_sample);                               \
+  const std::filesystem::path variable =                                       \
+      std::filesystem::weakly_canonical(variable##_sample / "../../../other"); \
+  if (!std::filesystem::is_directory(variable)) GTEST_SKIP() << "no scans of other sensors"
+
+SensorProfile of_file(const std::filesystem::path& file) {
+  const LidarScan scan = read_lidar_scan(file, {}, 0);
+  return estimate_sensor_profile({&scan.points, 1}, {});
+}
+
+SensorProfile of_drive(const std::filesystem::path& drive) {
+  DriveOptions options;
+  options.use_images = false;
+  return lidar_profile(*open_drive(drive, options));
+}
+
+/// Every elevation found is one of the data sheet.
+void expect_rings(const SensorProfile& profile, const std::vector<double>& degrees,
+                  double tolerance_degrees) {
+  for (const double elevation : profile.ring_elevations) {
+    const double found = elevation / kDegree;
+    const double nearest = *std::min_element(
+        degrees.begin(), degrees.end(),
+        [&](double a, double b) { return std::abs(a - found) < std::abs(b - found); });
+    EXPECT_NEAR(found, nearest, tolerance_degrees);
+  }
+}
+
+/// Evenly spaced elevations (degrees), highest first.
+std::vector<double> even(double highest, double step, int count) {
+  std::vector<double> degrees;
+  for (int i = 0; i < count; ++i) degrees.push_back(highest - i * step);
+  return degrees;
+}
+
+TEST(DriveSensors, VelodyneVlp16) {
+  FOVEA_OTHER_SENSORS_OR_SKIP(other);
+  const SensorProfile profile = of_file(other / "vlp16.pcd");
+  // The lowest ring meets nothing but the vehicle.
+  EXPECT_EQ(profile.ring_elevations.size(), 15u);
+  expect_rings(profile, even(15, 2, 16), 0.02);
+  EXPECT_NEAR(profile.ring_spacing, 2 * kDegree, 0.01 * kDegree);
+  EXPECT_NEAR(profile.point_spacing, 0.2 * kDegree, 0.01 * kDegree);
+}
+
+TEST(DriveSensors, VelodyneVlp32) {
+  FOVEA_OTHER_SENSORS_OR_SKIP(other);
+  const SensorProfile profile = of_file(other / "vlp32.pcd");
+  EXPECT_EQ(profile.ring_elevations.size(), 32u);
+  expect_rings(profile, {15,     10.333, 7,      4.667,  3.333,  2.333,  1.667,   1.333,
+                         1,      0.667,  0.333,  0,      -0.333, -0.667, -1,      -1.333,
+                         -1.667, -2,     -2.333, -2.667, -3,     -3.333, -3.667,  -4,
+                         -4.667, -5.333, -6.148, -7.254, -8.843, -11.31, -15.639, -25},
+               0.02);
+  EXPECT_NEAR(profile.ring_spacing, 0.333 * kDegree, 0.01 * kDegree);
+}
+
+TEST(DriveSensors, HesaiXt32) {
+  FOVEA_OTHER_SENSORS_OR_SKIP(other);
+  const SensorProfile profile = of_file(other / "xt32.pcd");
+  EXPECT_EQ(profile.ring_elevations.size(), 32u);
+  expect_rings(profile, even(15, 1, 32), 0.1);  // calibrated angles
+  EXPECT_NEAR(profile.ring_spacing, 1 * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(profile.point_spacing, 0.18 * kDegree, 0.01 * kDegree);
+}
+
+TEST(DriveSensors, HesaiOt128) {
+  FOVEA_OTHER_SENSORS_OR_SKIP(other);
+  const SensorProfile profile = of_file(other / "ot128.pcd");
+  // The upper rings of this scan meet nothing.
+  EXPECT_GE(profile.ring_elevations.size(), 100u);
+  EXPECT_LE(profile.ring_elevations.size(), 128u);
+  EXPECT_NEAR(profile.ring_spacing, 0.125 * kDegree, 0.02 * kDegree);
+}
+
+TEST(DriveSensors, HesaiAt128HasAFieldOfViewOf120Degrees) {
+  FOVEA_OTHER_SENSORS_OR_SKIP(other);
+  const SensorProfile profile = of_file(other / "at128.pcd");
+  EXPECT_GE(profile.ring_elevations.size(), 70u);
+  EXPECT_LE(profile.ring_elevations.size(), 128u);
+  EXPECT_NEAR(profile.ring_spacing, 0.2 * kDegree, 0.01 * kDegree);
+}
+
+TEST(DriveSensors, ADriveThatStatesItsRings) {
+  FOVEA_OTHER_SENSORS_OR_SKIP(other);
+  const SensorProfile hdl32 = of_drive(other / "six-cameras-and-32-rings");
+  EXPECT_EQ(hdl32.ring_elevations.size(), 32u);
+  expect_rings(hdl32, even(10.667, 1.333, 32), 0.25);  // the sweep's motion is undone
+  EXPECT_NEAR(hdl32.ring_spacing, 1.333 * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(hdl32.height.value_or(0), 1.84, 0.1);  // of the calibration
+  const SensorProfile pandar64 = of_drive(other / "camera-and-64-rings");
+  EXPECT_EQ(pandar64.ring_elevations.size(), 64u);
+  EXPECT_NEAR(pandar64.ring_elevations.front(), 14.88 * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(pandar64.ring_elevations.back(), -24.9 * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(pandar64.ring_spacing, 0.167 * kDegree, 0.01 * kDegree);
+}
+
+TEST(DriveSensors, KittisHdl64) {
+  FOVEA_KITTI_SAMPLE_OR_SKIP(drive);
+  const SensorProfile profile = of_drive(drive);
+  EXPECT_EQ(profile.ring_elevations.size(), 64u);
+  EXPECT_NEAR(profile.ring_spacing, 0.4 * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(profile.height.value_or(0), 1.73, 0.03);
+  EXPECT_GT(profile.range_noise, 0.005);
+  EXPECT_LT(profile.range_noise, 0.03);
+}
+
+}  // namespace fovea::drive_sensors_test
