@@ -8,6 +8,7 @@
 
 #include "fovea/base/angle.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/simulation/lidar_options.h"
 
 namespace fovea {
 
@@ -40,18 +41,6 @@ struct VehicleOptions {
   double stop_at = -1;        ///< s from frame 0's stamp when it begins to brake; negative: never
   double stop_braking = 2.5;  ///< s until it stands, and as long to speed up again
   double stop_duration = 5;   ///< s that it stands
-};
-
-/// HDL-64E S2: 32 beams from +2 to -8.33 degrees and 32 from -8.83 to -24.33, turning clockwise.
-struct LidarOptions {
-  double period = 0.1034;                   ///< s a sweep, KITTI's
-  int columns = 2083;                       ///< firings a sweep
-  double min_range = 0.9, max_range = 120;  ///< m
-  double range_noise = 0.015;               ///< m, standard deviation
-  double range_resolution = 0.002;          ///< m; 0: exact
-  double dropouts = 1;      ///< factor on the chance that a weak return is lost; 0: none is
-  double height = 1.73;     ///< m above the road
-  bool point_times = true;  ///< scans say when each point was measured, where their format can
 };
 
 /// Lenses that can be simulated; coefficients in rig.cpp.
