@@ -149,11 +149,6 @@ std::vector<LidarDataSheet> make_data_sheets() {
   };
 }
 
-const std::vector<LidarDataSheet>& data_sheets() {
-  static const std::vector<LidarDataSheet> sheets = make_data_sheets();
-  return sheets;
-}
-
 }  // namespace
 
 Eigen::Vector2d rosette_angles(const Rosette& rosette, double time) {
@@ -165,14 +160,19 @@ Eigen::Vector2d rosette_angles(const Rosette& rosette, double time) {
           0.25 * rosette.height * (std::sin(first) + std::sin(second))};
 }
 
+const std::vector<LidarDataSheet>& lidar_data_sheets() {
+  static const std::vector<LidarDataSheet> sheets = make_data_sheets();
+  return sheets;
+}
+
 std::vector<std::string> lidar_model_names() {
   std::vector<std::string> names;
-  for (const LidarDataSheet& sheet : data_sheets()) names.emplace_back(sheet.name);
+  for (const LidarDataSheet& sheet : lidar_data_sheets()) names.emplace_back(sheet.name);
   return names;
 }
 
 LidarModel parse_lidar_model(std::string_view name) {
-  for (const LidarDataSheet& sheet : data_sheets()) {
+  for (const LidarDataSheet& sheet : lidar_data_sheets()) {
     if (sheet.name == name) return sheet.model;
   }
   throw ConfigError(fmt::format("unknown LiDAR '{}'", name), "lidar.model",
@@ -180,7 +180,7 @@ LidarModel parse_lidar_model(std::string_view name) {
 }
 
 const LidarDataSheet& lidar_data_sheet(LidarModel model) {
-  return data_sheets().at(static_cast<std::size_t>(model));
+  return lidar_data_sheets().at(static_cast<std::size_t>(model));
 }
 
 }  // namespace fovea

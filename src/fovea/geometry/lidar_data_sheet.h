@@ -47,7 +47,9 @@ struct LidarDataSheet {
   double dark_range = 0;
 };
 
-/// Names of all models, in the order of LidarModel.
+/// Of all models, in the order of LidarModel.
+const std::vector<LidarDataSheet>& lidar_data_sheets();
+/// Names of all models.
 std::vector<std::string> lidar_model_names();
 /// The model of that name; ConfigError that lists all for any other.
 LidarModel parse_lidar_model(std::string_view name);

@@ -1,12 +1,19 @@
 // The simulated LiDAR: its beams, its sweep, its errors and how it is mounted.
 #pragma once
 
+#include <vector>
+
+#include "fovea/geometry/lidar_data_sheet.h"
+
 namespace fovea {
 
-/// HDL-64E S2: 32 beams from +2 to -8.33 degrees and 32 from -8.83 to -24.33, turning clockwise.
+/// Defaults are those of KITTI's HDL-64E S2.
 struct LidarOptions {
+  LidarModel model = LidarModel::kHdl64;
+  /// Elevations of the rings (rad), highest first; empty: those of the model.
+  std::vector<double> elevations;
   double period = 0.1034;                   ///< s a sweep, KITTI's
-  int columns = 2083;                       ///< firings a sweep
+  int columns = 2083;                       ///< firings a sweep; 0: by the model's firing rate
   double min_range = 0.9, max_range = 120;  ///< m
   double range_noise = 0.015;               ///< m, standard deviation
   double range_resolution = 0.002;          ///< m; 0: exact
@@ -15,7 +22,18 @@ struct LidarOptions {
   bool point_times = true;  ///< scans say when each point was measured, where their format can
 };
 
+/// Makes the LiDAR one of another model: rings, period, firings, ranges. Its noise and resolution
+/// are those of the data sheet, scaled as `lidar` scales those of its own model (0 stays 0).
+void set_model(LidarOptions& lidar, LidarModel model);
+
+/// Elevations of the rings (rad), highest first.
+const std::vector<double>& ring_elevations(const LidarOptions& lidar);
+/// Firings a sweep.
+int sweep_columns(const LidarOptions& lidar);
+
 /// ConfigError that names the key.
 void check(const LidarOptions& lidar);
+/// ConfigError for a LiDAR that KITTI's format cannot describe: its scans have no point times.
+void check_kitti_format(const LidarOptions& lidar);
 
 }  // namespace fovea

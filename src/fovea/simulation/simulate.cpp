@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "fovea/base/parallel.h"
@@ -17,15 +18,19 @@
 namespace fovea {
 namespace {
 
-constexpr double kSeen = 260;   // m: chunks whose middle is nearer are there for rays
-constexpr double kTruth = 140;  // m: ... and are part of the truth's world; what the LiDAR reaches
+constexpr double kSeen = 260;  // m: chunks whose middle is nearer are there for rays
+
+/// m: ... and are part of the truth's world: what the LiDAR reaches.
+double truth_reach(const LidarOptions& lidar) {
+  return std::clamp(lidar.max_range + 20, 140.0, kSeen);
+}
 
 /// What a drive takes on disk, about: scans and their truth, images with perfect image and depth.
 std::uintmax_t expected_size(const SimulationOptions& options) {
   constexpr double kReturn = 44, kPixel = 4, kWorld = 60e6;  // bytes
-  const double frame = kReturn * kRings * options.lidar.columns +
-                       kPixel * options.camera.width * options.camera.height *
-                           static_cast<double>(options.camera.cameras.size());
+  const double beams = double(ring_elevations(options.lidar).size()) * sweep_columns(options.lidar);
+  const double frame = kReturn * beams + kPixel * options.camera.width * options.camera.height *
+                                             static_cast<double>(options.camera.cameras.size());
   return static_cast<std::uintmax_t>(kWorld + frame * options.frames);
 }
 
@@ -63,7 +68,8 @@ class Simulation {
     const double time = seconds(stamp_of(frame, options_) - stamp_of(0, options_));
     const Eigen::Vector2d place = T_world_lidar(time).translation().head<2>();
     caster_.move_to(place, kSeen);
-    for (const ChunkPlace& chunk : scenery_->chunks_near(place, kTruth)) chunks_.insert(chunk.id);
+    for (const ChunkPlace& chunk : scenery_->chunks_near(place, truth_reach(options_.lidar)))
+      chunks_.insert(chunk.id);
     lidar_poses_ += pose_line(T_world_local_.inverse() * T_world_lidar(time));
 
     const SimulatedScan scan =

@@ -194,7 +194,10 @@ void SimulationOptions::validate() const {
   check_range("street.curvature", curvature, -0.05, 0.05, "per m");
   check(lidar);
   check(camera);
-  if (format == DriveFormat::kKitti) check_format(camera);
+  if (format == DriveFormat::kKitti) {
+    check_format(camera);
+    check_kitti_format(lidar);
+  }
   check_lenses(camera);
   check(navigation, lidar.period);
 }
