@@ -59,7 +59,7 @@ class Sweep {
   /// All beams of one firing.
   void fire(int column, std::span<Return> returns) const {
     const double turned = kTurn * (column + 0.5) / columns_;
-    const double since = -(kTurn * 0.5 - turned) / kTurn * options_.period;
+    const double since = -(kTurn * options_.stamp_phase - turned) / kTurn * options_.period;
     const RigidMotion T_world_lidar =
         motion_.T_world_vehicle(stamp_ + since) * rig_.T_vehicle_lidar;
     const RayCaster::Moment moment = caster_.moment(stamp_ + since, motion_.way(stamp_ + since));
@@ -75,7 +75,9 @@ class Sweep {
       const Eigen::Vector2d angles = rosette_angles(*sheet_.rosette, stamp_ + since);
       return fire_beam(0, direction(angles.x(), std::cos(angles.y()), std::sin(angles.y())));
     }
-    const double azimuth = std::numbers::pi - turned;
+    const double azimuth = options_.direction == SweepDirection::kClockwise
+                               ? options_.start_azimuth - turned
+                               : options_.start_azimuth + turned;
     for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
       fire_beam(ring, direction(azimuth, rings_[ring].first, rings_[ring].second));
     }

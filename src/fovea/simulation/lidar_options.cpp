@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <string_view>
 
 #include "fovea/base/angle.h"
 #include "fovea/simulation/option_checks.h"
@@ -36,6 +38,24 @@ void check_elevations(const LidarOptions& lidar) {
   }
 }
 
+/// A key of the sweep that has another value than KITTI's; nothing if there is none.
+std::optional<std::string_view> unusual_sweep_key(const LidarOptions& lidar) {
+  const SweepTiming kitti;
+  if (lidar.direction != kitti.direction) return "lidar.direction";
+  if (lidar.start_azimuth != kitti.start_azimuth) return "lidar.start_azimuth";
+  if (lidar.stamp_phase != kitti.stamp_phase) return "lidar.stamp_phase";
+  return std::nullopt;
+}
+
+void check_sweep(const LidarOptions& lidar) {
+  check_degrees("lidar.start_azimuth", lidar.start_azimuth, -360, 360);
+  check_range("lidar.stamp_phase", lidar.stamp_phase, 0, 1);
+  const auto key = unusual_sweep_key(lidar);
+  if (!lidar_data_sheet(lidar.model).rosette || !key || key == "lidar.stamp_phase") return;
+  reject(fmt::format("a {} does not rotate", lidar_data_sheet(lidar.model).name), *key,
+         "leave it out, or choose a lidar.model that rotates");
+}
+
 }  // namespace
 
 void set_model(LidarOptions& lidar, LidarModel model) {
@@ -60,6 +80,8 @@ int sweep_columns(const LidarOptions& lidar) {
   return static_cast<int>(std::lround(lidar_data_sheet(lidar.model).firing_rate * lidar.period));
 }
 
+double sweep_middle(const LidarOptions& lidar) { return (0.5 - lidar.stamp_phase) * lidar.period; }
+
 void check(const LidarOptions& lidar) {
   check_range("lidar.period", lidar.period, 0.04, 0.25, "s");
   if (lidar.columns != 0) check_range("lidar.columns", lidar.columns, 8, kMaxColumns);
@@ -74,16 +96,24 @@ void check(const LidarOptions& lidar) {
   check_range("lidar.range_resolution", lidar.range_resolution, 0, 1, "m");
   check_range("lidar.dropouts", lidar.dropouts, 0, 100);
   check_range("lidar.height", lidar.height, 0.3, 5, "m");
+  check_degrees("lidar.roll", lidar.roll, -360, 360);
+  check_degrees("lidar.pitch", lidar.pitch, -360, 360);
+  check_degrees("lidar.yaw", lidar.yaw, -360, 360);
+  check_sweep(lidar);
 }
 
 void check_kitti_format(const LidarOptions& lidar) {
   const LidarDataSheet& sheet = lidar_data_sheet(lidar.model);
-  if (!sheet.rosette) return;
-  reject(
-      fmt::format("the scans of a {} need the times of their points, for which KITTI's format has "
-                  "no place",
-                  sheet.name),
-      "lidar.model", "use --format generic");
+  if (sheet.rosette) {
+    reject(fmt::format("the scans of a {} need the times of their points, for which KITTI's format "
+                       "has no place",
+                       sheet.name),
+           "lidar.model", "use --format generic");
+  }
+  if (const auto key = unusual_sweep_key(lidar)) {
+    reject("KITTI's sweeps turn clockwise from behind and are stamped in the middle", *key,
+           "use --format generic");
+  }
 }
 
 }  // namespace fovea

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fovea/geometry/lidar_data_sheet.h"
+#include "fovea/geometry/sensor_profile.h"
 
 namespace fovea {
 
@@ -20,6 +21,12 @@ struct LidarOptions {
   double dropouts = 1;      ///< factor on the chance that a weak return is lost; 0: none is
   double height = 1.73;     ///< m above the road
   bool point_times = true;  ///< scans say when each point was measured, where their format can
+  /// rad: Rz(yaw) Ry(pitch) Rx(roll) turns the LiDAR against the vehicle, about its own origin.
+  double roll = 0, pitch = 0, yaw = 0;
+  /// When each azimuth is measured, in the LiDAR's own frame: see SweepTiming.
+  SweepDirection direction = SweepTiming().direction;
+  double start_azimuth = SweepTiming().start_azimuth;  ///< rad
+  double stamp_phase = SweepTiming().stamp_phase;      ///< 0: start of the sweep; 1: its end
 };
 
 /// Makes the LiDAR one of another model: rings, period, firings, ranges. Its noise and resolution
@@ -31,9 +38,12 @@ const std::vector<double>& ring_elevations(const LidarOptions& lidar);
 /// Firings a sweep.
 int sweep_columns(const LidarOptions& lidar);
 
+/// Time from the stamp to the middle of the sweep (s).
+double sweep_middle(const LidarOptions& lidar);
+
 /// ConfigError that names the key.
 void check(const LidarOptions& lidar);
-/// ConfigError for a LiDAR that KITTI's format cannot describe: its scans have no point times.
+/// ConfigError for a sweep that KITTI's format cannot describe: its scans have no point times.
 void check_kitti_format(const LidarOptions& lidar);
 
 }  // namespace fovea

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "fovea/base/parallel.h"
@@ -74,17 +75,19 @@ class Simulation {
 
     const SimulatedScan scan =
         simulate_scan(caster_, motion_, rig_, options_.lidar, options_.pass_seed(), frame, time);
-    labels_.add(frame, time, scan, caster_);
+    if (has_tracklets()) labels_.add(frame, time, scan, caster_);
     std::vector<Picture> pictures;
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k)
-      pictures.push_back(picture(k, frame, time));
+      pictures.push_back(picture(k, frame, seconds(image_stamp(frame) - stamp_of(0, options_))));
     write(frame, scan, pictures);
   }
 
   std::filesystem::path finish() {
     writer_->write_texts(rig_, simulate_navigation(motion_, rig_, T_world_local_, options_),
                          options_);
-    writer_->write_file("tracklet_labels.xml", tracklets_text(labels_.tracks()));
+    if (has_tracklets()) {
+      writer_->write_file("tracklet_labels.xml", tracklets_text(labels_.tracks()));
+    }
     write_truth_texts();
     write_world(export_world(*scenery_, chunks_, T_world_local_.inverse()),
                 writer_->truth_folder());
@@ -96,6 +99,17 @@ class Simulation {
     Image image, perfect;
     std::vector<float> depth;
   };
+
+  /// KITTI's boxes turn about the LiDAR's z axis alone, which must be upright for that.
+  bool has_tracklets() const {
+    constexpr double kMaxTilt = 5 * kDegree;
+    return rig_.T_vehicle_lidar.linear()(2, 2) > std::cos(kMaxTilt);
+  }
+
+  /// Images are taken in the middle of the sweep.
+  TimeNs image_stamp(int frame) const {
+    return stamp_of(frame, options_) + from_seconds(sweep_middle(options_.lidar));
+  }
 
   RigidMotion T_world_lidar(double time) const {
     return motion_.T_world_vehicle(time) * rig_.T_vehicle_lidar;
@@ -136,7 +150,7 @@ class Simulation {
       const Camera& camera = rig_.cameras[k];
       switch ((task - 2) % 3) {
         case 0:
-          return writer_->write_image(camera.index, frame, pictures[k].image);
+          return writer_->write_image(camera.index, frame, image_stamp(frame), pictures[k].image);
         case 1:
           return writer_->write_perfect_image(camera.index, frame, pictures[k].perfect);
         default:

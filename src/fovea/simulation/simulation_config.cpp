@@ -33,6 +33,12 @@ std::vector<EnumName<LidarModel>> names_of(LidarModel) {
   return names;
 }
 
+constexpr auto names_of(SweepDirection) {
+  return std::array{
+      EnumName<SweepDirection>{SweepDirection::kClockwise, "clockwise"},
+      EnumName<SweepDirection>{SweepDirection::kCounterclockwise, "counterclockwise"}};
+}
+
 namespace {
 
 constexpr int kMaxCameras = 10;
@@ -128,6 +134,12 @@ void visit_lidar(SettingVisitor& visit, LidarOptions& lidar) {
   visit("lidar.dropouts", lidar.dropouts);
   visit("lidar.height", lidar.height);
   visit("lidar.point_times", lidar.point_times);
+  visit("lidar.roll", Degrees{lidar.roll});
+  visit("lidar.pitch", Degrees{lidar.pitch});
+  visit("lidar.yaw", Degrees{lidar.yaw});
+  visit("lidar.direction", lidar.direction);
+  visit("lidar.start_azimuth", Degrees{lidar.start_azimuth});
+  visit("lidar.stamp_phase", lidar.stamp_phase);
 }
 
 /// Calls `visit(key, reference)` for every key but those of `cameras`' list.

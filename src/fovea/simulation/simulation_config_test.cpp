@@ -127,6 +127,36 @@ TEST(SimulationOptions, ARosetteNeedsPointTimes) {
   EXPECT_NO_THROW(options.validate());
 }
 
+TEST(SimulationOptions, KittisFormatHasOneSweepAndAnyMount) {
+  const auto error = [](auto&& change) {
+    SimulationOptions options;
+    change(options.lidar);
+    const std::string kitti = config_error([&] { options.validate(); });
+    options.format = DriveFormat::kGeneric;
+    EXPECT_NO_THROW(options.validate());
+    return kitti;
+  };
+  EXPECT_THAT(error([](auto& lidar) { lidar.direction = SweepDirection::kCounterclockwise; }),
+              AllOf(HasSubstr("lidar.direction"), HasSubstr("--format generic")));
+  EXPECT_THAT(error([](auto& lidar) { lidar.start_azimuth = 0; }),
+              AllOf(HasSubstr("lidar.start_azimuth"), HasSubstr("--format generic")));
+  EXPECT_THAT(error([](auto& lidar) { lidar.stamp_phase = 1; }),
+              AllOf(HasSubstr("lidar.stamp_phase"), HasSubstr("--format generic")));
+  // The calibration has the mount.
+  EXPECT_EQ(error([](auto& lidar) { lidar.roll = 180 * kDegree; }), "no ConfigError");
+}
+
+TEST(SimulationOptions, ARosetteDoesNotRotate) {
+  SimulationOptions options;
+  options.format = DriveFormat::kGeneric;
+  set_model(options.lidar, LidarModel::kLivoxAvia);
+  options.lidar.stamp_phase = 0;
+  EXPECT_NO_THROW(options.validate());
+  options.lidar.direction = SweepDirection::kCounterclockwise;
+  EXPECT_THAT(config_error([&] { options.validate(); }),
+              AllOf(HasSubstr("lidar.direction"), HasSubstr("does not rotate")));
+}
+
 TEST(SimulationConfig, AModelSetsTheLidarAndOtherKeysChangeIt) {
   SimulationOptions options = simulation_options(Scene::kStreet, "default");
   apply_setting("lidar.model=vlp16", options);
@@ -171,7 +201,13 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     options.curvature = -0.0123;
     options.camera.rotation_error = {0.3 * kDegree, -0.2 * kDegree, 0.1 * kDegree};
     options.camera.trigger_delay = 0.02;
+    options.lidar.roll = 180 * kDegree;
+    options.lidar.direction = SweepDirection::kCounterclockwise;
+    options.lidar.start_azimuth = 12.5 * kDegree;
+    options.lidar.stamp_phase = 0.75;
+    options.format = DriveFormat::kGeneric;
     SimulationOptions back;
+    back.format = DriveFormat::kGeneric;
     apply_config_text(to_toml(options), "x.toml", back);
     EXPECT_EQ(to_toml(back), to_toml(options));
     // To the last bit: the same options make the same bytes.
@@ -181,6 +217,8 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     EXPECT_EQ(back.curvature, options.curvature);
     EXPECT_EQ(back.camera.rotation_error, options.camera.rotation_error);
     EXPECT_EQ(back.camera.trigger_delay, options.camera.trigger_delay);
+    EXPECT_EQ(back.lidar.roll, options.lidar.roll);
+    EXPECT_EQ(back.lidar.start_azimuth, options.lidar.start_azimuth);
     EXPECT_EQ(back.navigation.angle_noise, options.navigation.angle_noise);
     EXPECT_EQ(back.navigation.angle_walk, options.navigation.angle_walk);
     EXPECT_EQ(back.navigation.rate_noise, options.navigation.rate_noise);
