@@ -179,6 +179,9 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("camera.rotation_error_y", Degrees{o.camera.rotation_error.y()});
   visit("camera.rotation_error_z", Degrees{o.camera.rotation_error.z()});
   visit("camera.trigger_delay", o.camera.trigger_delay);
+  visit("camera.rate", o.camera.rate);
+  visit("camera.phase", o.camera.phase);
+  visit("camera.rolling_shutter", o.camera.rolling_shutter);
 
   NavigationOptions& n = o.navigation;
   visit("navigation.latitude", n.origin.latitude);  // degrees, as in the records

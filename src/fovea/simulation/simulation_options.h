@@ -83,7 +83,10 @@ struct CameraOptions {
   /// What the calibration files leave out: the cameras are turned, all as one round camera 0, by
   /// this rotation vector in camera 0's rectified axes (rad).
   Eigen::Vector3d rotation_error = Eigen::Vector3d::Zero();
-  double trigger_delay = 0;  ///< s, images are taken this long after the stamps say
+  double trigger_delay = 0;    ///< s, images are taken this long after the stamps say
+  double rate = 0;             ///< images a second; 0: one in the middle of each sweep
+  double phase = 0;            ///< s, of the images after the middle of (the first) sweep
+  double rolling_shutter = 0;  ///< s, from the first row of an image to the last; 0: all at once
 };
 
 struct NavigationOptions {
