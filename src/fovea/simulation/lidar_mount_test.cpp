@@ -182,6 +182,18 @@ TEST(LidarMount, AGenericDriveHasItsMountTimesAndImages) {
   EXPECT_FALSE(std::filesystem::exists(drive / "tracklet_labels.xml"));
 }
 
+TEST(LidarMount, ADriveOfEveryModelIsRead) {
+  for (const LidarDataSheet& sheet : lidar_data_sheets()) {
+    SCOPED_TRACE(sheet.name);
+    const TemporaryFolder folder;
+    SimulationOptions options = small_street();
+    options.format = DriveFormat::kGeneric;
+    set_model(options.lidar, sheet.model);
+    options.lidar.columns = sheet.rosette ? 3000 : 60;
+    expect_points_on_the_world(simulate(options, folder / "d"), options);
+  }
+}
+
 TEST(LidarMount, AKittiDriveHasItsMount) {
   const TemporaryFolder folder;
   SimulationOptions options = small_street();

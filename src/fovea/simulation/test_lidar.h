@@ -61,7 +61,7 @@ inline Eigen::Vector3d place(const std::array<float, 4>& point) {
 
 /// Distance of a place from the room that box(low, high) is, seen from within.
 inline double off_walls(const Eigen::Vector3d& p, const Eigen::Vector3d& low,
-                       const Eigen::Vector3d& high) {
+                        const Eigen::Vector3d& high) {
   return std::min((p - low).cwiseAbs().minCoeff(), (high - p).cwiseAbs().minCoeff());
 }
 
