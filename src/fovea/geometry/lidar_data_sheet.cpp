@@ -15,23 +15,30 @@ namespace {
 
 /// `count` rings from the highest down, `step` degrees apart.
 std::vector<double> even_rings(int count, double highest, double step) {
-  std::vector<double> elevations;
-  for (int ring = 0; ring < count; ++ring) elevations.push_back((highest - ring * step) * kDegree);
+  std::vector<double> elevations(static_cast<std::size_t>(count));
+  for (int ring = 0; ring < count; ++ring) {
+    elevations[static_cast<std::size_t>(ring)] = (highest - ring * step) * kDegree;
+  }
   return elevations;
 }
 
 /// HDL-64E S2: the upper block from +2 degrees by a third, the lower one from -8.83 by a half.
 std::vector<double> hdl64_rings() {
-  std::vector<double> elevations;
-  for (int ring = 0; ring < 32; ++ring) elevations.push_back((2.0 - ring / 3.0) * kDegree);
-  for (int ring = 0; ring < 32; ++ring) elevations.push_back((-8.83 - 0.5 * ring) * kDegree);
+  std::vector<double> elevations(64);
+  for (std::size_t ring = 0; ring < 32; ++ring) {
+    const auto k = static_cast<double>(ring);
+    elevations[ring] = (2.0 - k / 3.0) * kDegree;
+    elevations[32 + ring] = (-8.83 - 0.5 * k) * kDegree;
+  }
   return elevations;
 }
 
 /// HDL-32E: steps of 4/3 degrees; the ninth ring is level.
 std::vector<double> hdl32_rings() {
-  std::vector<double> elevations;
-  for (int ring = 0; ring < 32; ++ring) elevations.push_back((32 - 4 * ring) / 3.0 * kDegree);
+  std::vector<double> elevations(32);
+  for (std::size_t ring = 0; ring < 32; ++ring) {
+    elevations[ring] = (32 - 4 * static_cast<double>(ring)) / 3.0 * kDegree;
+  }
   return elevations;
 }
 
@@ -45,8 +52,8 @@ std::vector<double> pandar64_rings() {
       -4.558, -4.72,  -4.892, -5.057,  -5.229,  -5.391,  -5.565, -5.726,  -5.898, -6.061, -7.063,
       -8.059, -9.06,  -9.885, -11.032, -12.006, -12.974, -13.93, -18.889, -24.897};
   static_assert(kDegrees.size() == 64);
-  std::vector<double> elevations;
-  for (const double degrees : kDegrees) elevations.push_back(degrees * kDegree);
+  std::vector<double> elevations(kDegrees.begin(), kDegrees.end());
+  for (double& elevation : elevations) elevation *= kDegree;
   return elevations;
 }
 

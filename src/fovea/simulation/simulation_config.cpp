@@ -110,6 +110,7 @@ class CameraKeys {
 /// Angles in radians as a key in degrees.
 void visit_degrees(SettingVisitor& visit, std::string_view key, std::vector<double>& radians) {
   std::vector<double> degrees;
+  degrees.reserve(radians.size());
   for (const double angle : radians) {
     degrees.push_back(std::stod(fmt::format("{:.12g}", angle / kDegree)));
   }
