@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Simulates a street with every LiDAR, mount, sweep and camera timing, maps each drive with the default preset and prints
-# a table of the scores against the truth:
+# Simulates a street with every LiDAR, mount, sweep and camera timing. Maps each drive with the default preset and
+# prints a table of the scores against the truth:
 #   scripts/lidars.sh OUT_DIR [FRAMES] [REGEX]
 # REGEX chooses drives by their names. A drive, map or score that is in OUT_DIR already is not made again.
 set -euo pipefail
@@ -40,7 +40,7 @@ drives=(
 )
 mkdir -p "$out"
 
-echo "| drive | keys | pose, aligned cm | accuracy mm | 95 % mm | precision 5 cm | completeness 5 cm | colors within 20 |"
+echo "| drive | keys | pose, cm | accuracy, mm | 95 %, mm | precision 5 cm | completeness 5 cm | colors within 20 |"
 echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
 for drive in "${drives[@]}"; do
   read -r name keys <<<"$drive"
