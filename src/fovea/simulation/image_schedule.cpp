@@ -1,11 +1,15 @@
 #include "fovea/simulation/image_schedule.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <string>
 
 #include "fovea/simulation/drive_texts.h"
+#include "fovea/simulation/option_checks.h"
 
 namespace fovea {
 namespace {
@@ -22,13 +26,14 @@ Times sweep_middles(const SimulationOptions& options) {
 
 /// Stamps of a camera that runs at its own rate, from the start of the first sweep to the end of
 /// the last.
-Times free_running_stamps(const CameraOptions& camera, const Times& middles, double period) {
-  const double interval = 1 / camera.rate;
-  const double first = -0.5 * period - camera.phase;  // s, from the image of number 0
-  const double last = seconds(middles.back() - middles.front()) + 0.5 * period - camera.phase;
+/// @param phase  s, of one of the images after the middle of the first sweep
+Times free_running_stamps(double rate, double phase, const Times& middles, double period) {
+  const double interval = 1 / rate;
+  const double first = -0.5 * period - phase;  // s, from that image
+  const double last = seconds(middles.back() - middles.front()) + 0.5 * period - phase;
   Times stamps;
   for (double k = std::ceil(first / interval); k * interval <= last; ++k) {
-    stamps.push_back(middles.front() + from_seconds(camera.phase + k * interval));
+    stamps.push_back(middles.front() + from_seconds(phase + k * interval));
   }
   return stamps;
 }
@@ -70,17 +75,51 @@ std::map<std::size_t, std::size_t> frames_of_images(const Times& images, const T
 
 }  // namespace
 
-std::vector<std::vector<Shot>> image_schedule(const SimulationOptions& options) {
+double image_rate(const CameraOptions& options, const SimulatedCamera& camera) {
+  return camera.rate != 0 ? camera.rate : options.rate;
+}
+
+void check_image_times(const CameraOptions& options) {
+  const auto check_rate = [](const std::string& key, double rate) {
+    if (rate != 0) check_range(key, rate, 1, 200, "Hz");
+  };
+  check_rate("camera.rate", options.rate);
+  for (const SimulatedCamera& camera : options.cameras) {
+    check_rate(fmt::format("camera.rate_{}", camera.number), camera.rate);
+    const double largest = image_rate(options, camera) == 0 ? 0.05 : 1;
+    check_range(camera.phase == 0 ? "camera.phase" : fmt::format("camera.phase_{}", camera.number),
+                options.phase + camera.phase, -largest, largest, "s");
+  }
+}
+
+void check_kitti_image_times(const CameraOptions& options) {
+  const auto require_zero = [](const std::string& key, double value) {
+    if (value == 0) return;
+    reject("KITTI's cameras are triggered in the middle of each sweep", key,
+           "use --format generic");
+  };
+  require_zero("camera.rate", options.rate);
+  require_zero("camera.phase", options.phase);
+  for (const SimulatedCamera& camera : options.cameras) {
+    require_zero(fmt::format("camera.rate_{}", camera.number), camera.rate);
+    require_zero(fmt::format("camera.phase_{}", camera.number), camera.phase);
+  }
+}
+
+std::vector<std::vector<Shot>> image_schedule(const SimulationOptions& options,
+                                              const SimulatedCamera& camera) {
+  const double rate = image_rate(options.camera, camera);
+  const double phase = options.camera.phase + camera.phase;
   const Times middles = sweep_middles(options);
   std::vector<std::vector<Shot>> shots(middles.size());
-  if (options.camera.rate == 0) {
+  if (rate == 0) {
     for (std::size_t frame = 0; frame < middles.size(); ++frame) {
-      const TimeNs stamp = middles[frame] + from_seconds(options.camera.phase);
+      const TimeNs stamp = middles[frame] + from_seconds(phase);
       shots[frame] = {{stamp, static_cast<int>(frame), true}};
     }
     return shots;
   }
-  const Times images = free_running_stamps(options.camera, middles, options.lidar.period);
+  const Times images = free_running_stamps(rate, phase, middles, options.lidar.period);
   const auto frame_of = frames_of_images(images, middles);
   std::vector<bool> has_image(middles.size(), false);
   for (std::size_t image = 0; image < images.size(); ++image) {

@@ -32,6 +32,11 @@ SimulationOptions camera_of(double rate, double phase, int frames = 40) {
   return options;
 }
 
+/// Of the first camera.
+std::vector<std::vector<Shot>> schedule_of(const SimulationOptions& options) {
+  return image_schedule(options, options.camera.cameras.front());
+}
+
 /// Stamps of the images by their number; every frame has one shot of its own.
 std::map<int, TimeNs> stamps_of(const std::vector<std::vector<Shot>>& schedule) {
   std::map<int, TimeNs> stamps;
@@ -51,7 +56,7 @@ TEST(ImageSchedule, AnImageASweepIsTakenInItsMiddle) {
   for (const double stamp_phase : {0.0, 0.5, 1.0}) {
     SimulationOptions options = camera_of(0, 0.01, 5);
     options.lidar.stamp_phase = stamp_phase;
-    const auto schedule = image_schedule(options);
+    const auto schedule = schedule_of(options);
     ASSERT_EQ(schedule.size(), 5u);
     for (int frame = 0; frame < 5; ++frame) {
       ASSERT_EQ(schedule[std::size_t(frame)].size(), 1u);
@@ -67,7 +72,7 @@ TEST(ImageSchedule, AnImageASweepIsTakenInItsMiddle) {
 TEST(ImageSchedule, AFreeRunningCameraTakesImagesAtItsRate) {
   for (const double rate : {4.0, 9.0, 20.0, 30.0}) {
     const SimulationOptions options = camera_of(rate, 0.013);
-    const auto stamps = stamps_of(image_schedule(options));
+    const auto stamps = stamps_of(schedule_of(options));
     const double length = 40 * options.lidar.period;
     EXPECT_NEAR(double(stamps.size()), rate * length, 1);
     const TimeNs first = stamps.begin()->second;
@@ -81,13 +86,28 @@ TEST(ImageSchedule, AFreeRunningCameraTakesImagesAtItsRate) {
   }
 }
 
+TEST(ImageSchedule, CamerasCanDiffer) {
+  SimulationOptions options = camera_of(20, 0.01);
+  options.camera.cameras[1].rate = 5;
+  options.camera.cameras[1].phase = 0.02;
+  for (const std::size_t k : {0u, 1u}) {
+    const SimulatedCamera& camera = options.camera.cameras[k];
+    const double rate = k == 0 ? 20 : 5, phase = k == 0 ? 0.01 : 0.03;
+    EXPECT_EQ(image_rate(options.camera, camera), rate);
+    for (const auto& [number, stamp] : stamps_of(image_schedule(options, camera))) {
+      const double from_phase = seconds(stamp - stamp_of(0, options)) - phase;
+      EXPECT_NEAR(std::remainder(from_phase, 1 / rate), 0, 2e-9);
+    }
+  }
+}
+
 TEST(ImageSchedule, ImagesBelongToTheFramesThatTheReaderGivesThem) {
   for (const double rate : {3.0, 9.0, 9.8, 10.0, 20.0, 31.0}) {
     for (const double phase : {0.0, 0.03, 0.052, -0.4}) {
       for (const double stamp_phase : {0.0, 0.5}) {
         SimulationOptions options = camera_of(rate, phase, 60);
         options.lidar.stamp_phase = stamp_phase;
-        const auto schedule = image_schedule(options);
+        const auto schedule = schedule_of(options);
         NumberedTimes scans, images;
         for (int frame = 0; frame < 60; ++frame) scans[frame] = stamp_of(frame, options);
         for (const auto& [number, stamp] : stamps_of(schedule)) images[number] = stamp;
@@ -125,6 +145,13 @@ TEST(ImageSchedule, KittisCamerasAreTriggeredByTheLidar) {
   EXPECT_THAT(error(0, 0.06), HasSubstr("-0.05 to 0.05"));
   EXPECT_THAT(error(NAN, 0), HasSubstr("camera.rate"));
   EXPECT_THAT(error(0.5, 0), HasSubstr("1 to 200 Hz"));
+  SimulationOptions options;
+  options.camera.cameras[1].phase = 0.01;
+  EXPECT_THROW(options.validate(), ConfigError);
+  options.format = DriveFormat::kGeneric;
+  EXPECT_NO_THROW(options.validate());
+  options.camera.phase = 0.045;  // too far together
+  EXPECT_THROW(options.validate(), ConfigError);
 }
 
 /// A drive of small images on which every error is off.

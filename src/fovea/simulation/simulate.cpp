@@ -32,11 +32,13 @@ double truth_reach(const LidarOptions& lidar) {
 /// What a drive takes on disk, about: scans and their truth, images with perfect image and depth.
 std::uintmax_t expected_size(const SimulationOptions& options) {
   constexpr double kReturn = 44, kPixel = 4, kWorld = 60e6;  // bytes
-  const double images = std::max(1.0, options.camera.rate * options.lidar.period);
+  double images = 0;                                         // a frame
+  for (const SimulatedCamera& camera : options.camera.cameras) {
+    images += std::max(1.0, image_rate(options.camera, camera) * options.lidar.period);
+  }
   const double beams = double(ring_elevations(options.lidar).size()) * sweep_columns(options.lidar);
-  const double frame = kReturn * beams + kPixel * images * options.camera.width *
-                                             options.camera.height *
-                                             static_cast<double>(options.camera.cameras.size());
+  const double frame =
+      kReturn * beams + kPixel * images * options.camera.width * options.camera.height;
   return static_cast<std::uintmax_t>(kWorld + frame * options.frames);
 }
 
@@ -61,16 +63,17 @@ class Simulation {
         rig_(make_rig(options)),
         caster_(*scenery_),
         shader_(caster_, options.light),
-        labels_(*scenery_, motion_, rig_),
-        schedule_(image_schedule(options)) {
+        labels_(*scenery_, motion_, rig_) {
     // All passes share one frame `local`: that of the first.
     const VehicleMotion first(scenery_->path(), scenery_->lane_offset(), options.vehicle,
                               options.seed);
     T_world_local_.translation() = (first.T_world_vehicle(0) * rig_.T_vehicle_lidar).translation();
     truth_.resize(rig_.cameras.size());
-    if (image_count(schedule_) == 0) {
-      throw ConfigError("no camera takes an image during the drive", "camera.rate",
-                        "give a higher rate or more frames");
+    for (const SimulatedCamera& camera : options.camera.cameras) {
+      schedules_.push_back(image_schedule(options, camera));
+      if (image_count(schedules_.back()) > 0) continue;
+      throw ConfigError(fmt::format("camera {} takes no image during the drive", camera.number),
+                        "camera.rate", "give a higher rate or more frames");
     }
   }
 
@@ -87,7 +90,7 @@ class Simulation {
     if (has_tracklets()) labels_.add(frame, time, scan, caster_);
     std::vector<Picture> pictures;
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
-      for (const Shot& shot : schedule_[static_cast<std::size_t>(frame)]) {
+      for (const Shot& shot : schedules_[k][static_cast<std::size_t>(frame)]) {
         pictures.push_back(picture(k, frame, shot));
       }
     }
@@ -221,7 +224,8 @@ class Simulation {
     const std::string folder = fmt::format("truth/image_{:02d}/", rig_.cameras[k].index);
     writer_->write_file(folder + "poses.txt", truth_[k].poses);
     writer_->write_file(folder + "exposure.txt", truth_[k].exposures);
-    if (options_.camera.rate == 0) return;  // each frame has the image of its number
+    // Else each frame has the image of its number.
+    if (image_rate(options_.camera, options_.camera.cameras[k]) == 0) return;
     std::string images = "index,time_ns,frame,exposure,r11,r12,r13,x,r21,r22,r23,y,r31,r32,r33,z\n";
     for (const auto& [number, line] : truth_[k].images) images += line;
     writer_->write_file(folder + "images.csv", images);
@@ -260,8 +264,8 @@ class Simulation {
   RigidMotion T_world_local_ = RigidMotion::Identity();
   std::set<std::uint32_t> chunks_;  // seen so far
   std::string lidar_poses_;
-  std::vector<std::vector<Shot>> schedule_;  // by frame
-  std::vector<CameraTruth> truth_;           // by place in the rig
+  std::vector<std::vector<std::vector<Shot>>> schedules_;  // by place in the rig and frame
+  std::vector<CameraTruth> truth_;                         // by place in the rig
 };
 
 }  // namespace

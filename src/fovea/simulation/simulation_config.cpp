@@ -58,6 +58,8 @@ class CameraKeys {
     visit_each(visit, "yaw", [](SimulatedCamera& c) { return Degrees{c.yaw}; });
     visit_each(visit, "grey", [](SimulatedCamera& c) -> bool& { return c.grey; });
     visit_each(visit, "lens", [](SimulatedCamera& c) -> SimulatedLens& { return c.lens; });
+    visit_each(visit, "rate", [](SimulatedCamera& c) -> double& { return c.rate; });
+    visit_each(visit, "phase", [](SimulatedCamera& c) -> double& { return c.phase; });
   }
 
   /// The cameras named by their numbers. ConfigError for a key of another one.

@@ -11,6 +11,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/random.h"
+#include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/option_checks.h"
 #include "fovea/simulation/rig.h"
 
@@ -68,19 +69,12 @@ void check(const CameraOptions& camera) {
   check_degrees("camera.rotation_error_y", camera.rotation_error.y(), -5, 5);
   check_degrees("camera.rotation_error_z", camera.rotation_error.z(), -5, 5);
   check_range("camera.trigger_delay", camera.trigger_delay, -0.05, 0.05, "s");
-  if (camera.rate != 0) check_range("camera.rate", camera.rate, 1, 200, "Hz");
-  const double largest_phase = camera.rate == 0 ? 0.05 : 1;
-  check_range("camera.phase", camera.phase, -largest_phase, largest_phase, "s");
+  check_image_times(camera);
   check_range("camera.rolling_shutter", camera.rolling_shutter, 0, 0.1, "s");
 }
 
-/// KITTI's format has rectified cameras only, which look the same way and are triggered by the
-/// LiDAR.
+/// KITTI's format has rectified cameras only, which look the same way.
 void check_format(const CameraOptions& camera) {
-  if (camera.rate != 0 || camera.phase != 0) {
-    reject("KITTI's cameras are triggered in the middle of each sweep",
-           camera.rate != 0 ? "camera.rate" : "camera.phase", "use --format generic");
-  }
   for (const SimulatedCamera& one : camera.cameras) {
     if (one.yaw == 0 && one.forward == 0 && one.lens == SimulatedLens::kNone) continue;
     reject(
@@ -205,6 +199,7 @@ void SimulationOptions::validate() const {
   check(camera);
   if (format == DriveFormat::kKitti) {
     check_format(camera);
+    check_kitti_image_times(camera);
     check_kitti_format(lidar);
   }
   check_lenses(camera);

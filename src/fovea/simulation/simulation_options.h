@@ -58,6 +58,8 @@ struct SimulatedCamera {
   double forward = 0;  ///< m, from camera 0 along the rectified z axis
   double yaw = 0;      ///< rad, counter-clockwise seen from above
   SimulatedLens lens = SimulatedLens::kNone;
+  double rate = 0;   ///< images a second; 0: CameraOptions::rate
+  double phase = 0;  ///< s, in addition to CameraOptions::phase
 };
 
 /// The place of KITTI's camera of that number (0 to 3), or one beside camera 0.
