@@ -79,6 +79,8 @@ TEST(KittiDriveWriter, TheProductsReaderOpensTheDrive) {
   options.frames = 12;
   options.camera.width = 90;
   options.camera.height = 40;
+  options.camera.cx = 44.5;
+  options.camera.cy = 19.5;
   options.camera.cameras = {{0, 0, true}, {2, -0.06, false}, {7, 0.2, false}};
   const fs::path drive = write_drive(folder / "drive", options);
   EXPECT_EQ(drive, folder.path() / "drive/2026_01_01/2026_01_01_drive_0001_sync");
