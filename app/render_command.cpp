@@ -1,5 +1,6 @@
 // fovea render: a picture of a map, or a whole drive through it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -17,6 +18,7 @@
 #include "fovea/base/path_name.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
+#include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/recording/png_encode.h"
 
@@ -155,7 +157,10 @@ void add_render_command(CLI::App& app) {
   command->add_option(
       "--cameras", path.cameras,
       "Which of the cameras there (default: those that map takes; all of a calibration folder)");
-  command->add_option("--lidar", path.lidar, "hdl64: scans, too")->check(CLI::IsMember({"hdl64"}));
+  command
+      ->add_option("--lidar", path.lidar,
+                   fmt::format("Scans, too, of one of {}", fmt::join(lidar_model_names(), ", ")))
+      ->check(CLI::IsMember(lidar_model_names()));
   command->add_option("--rate", path.rate, "Frames a second")
       ->capture_default_str()
       ->check(finite_range(0.1, 1000));

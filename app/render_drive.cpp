@@ -118,7 +118,7 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   job.output = arguments.output;
   job.force = arguments.force;
   job.cameras = find_cameras(arguments);
-  if (!arguments.lidar.empty()) job.lidar = hdl64();
+  if (!arguments.lidar.empty()) job.lidar = lidar_pattern(parse_lidar_model(arguments.lidar));
   if (job.cameras.empty() && !job.lidar) {
     throw CLI::ValidationError("--poses", "needs --camera, --lidar, or both");
   }

@@ -108,7 +108,7 @@ class DriveRenderer {
   }
 
   void scan(const MapSurfels& surfels, const RigidMotion& T_local_lidar, int frame) {
-    const PointCloud scan_lidar = cast_lidar(surfels, T_local_lidar, lidar_);
+    const PointCloud scan_lidar = cast_lidar(surfels, T_local_lidar, lidar_, seconds(stamp(frame)));
     figures_.points += double(scan_lidar.size());
     if (scan_lidar.empty()) {
       ++figures_.empty;

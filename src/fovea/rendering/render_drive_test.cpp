@@ -39,7 +39,7 @@ class RenderDrive : public testing::Test {
       job.T_local_lidar.emplace_back(Eigen::Translation3d(3.3 + i, 0.3, 0.1));
     }
     job.cameras = {{"left", driven().info().calibration.cameras.front()}};
-    job.lidar = hdl64();
+    job.lidar = lidar_pattern(LidarModel::kHdl64);
     return job;
   }
   static RenderFigures render(const RenderJob& job) {

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numbers>
 
-#include "fovea/base/angle.h"
 #include "fovea/base/parallel.h"
+#include "fovea/rendering/lidar_beams.h"
 
 namespace fovea {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kDiscsPerTask = 16384;
 /// A beam that meets a disc at less than this (sine) is as good as parallel to it.
 constexpr float kGrazing = 0.03f;
@@ -23,52 +20,6 @@ struct Hit {
   std::uint32_t beam, disc;
   float range;   // m
   float weight;  // 1 at the disc's middle, 0 at its rim
-};
-
-/// The beams of a pattern, by number: ring * columns + column.
-class Beams {
- public:
-  explicit Beams(const LidarPattern& pattern) : pattern_(pattern) {}
-
-  std::size_t size() const { return pattern_.elevation.size() * std::size_t(pattern_.columns); }
-
-  Eigen::Vector3f direction(std::uint32_t beam) const {
-    const double elevation = pattern_.elevation[beam / std::uint32_t(pattern_.columns)];
-    const double azimuth = azimuth_of(int(beam % std::uint32_t(pattern_.columns)));
-    return Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
-                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation))
-        .cast<float>();
-  }
-
-  /// Calls f(beam) for the beams within an angle of a point's direction.
-  template <class F>
-  void for_each_near(const Eigen::Vector3f& p, float range, double angle, F&& f) const {
-    const double elevation = std::asin(std::clamp(double(p.z() / range), -1.0, 1.0));
-    const auto& rings = pattern_.elevation;
-    const auto first =
-        std::lower_bound(rings.begin(), rings.end(), elevation + angle, std::greater<double>());
-    if (first == rings.end() || *first < elevation - angle) return;
-    const double azimuth = std::atan2(p.y(), p.x());
-    for (auto ring = first; ring != rings.end() && *ring >= elevation - angle; ++ring) {
-      const double spread = angle / std::max(0.05, std::cos(*ring));
-      const int begin = int(std::ceil(column_of(azimuth + spread)));
-      const int end = int(std::floor(column_of(azimuth - spread)));
-      const auto row = std::uint32_t(ring - rings.begin()) * std::uint32_t(pattern_.columns);
-      for (int c = begin; c <= std::min(end, begin + pattern_.columns - 1); ++c) {
-        f(row + std::uint32_t((c % pattern_.columns + pattern_.columns) % pattern_.columns));
-      }
-    }
-  }
-
- private:
-  double azimuth_of(int column) const {
-    return std::numbers::pi - kTurn * (column + 0.5) / pattern_.columns;
-  }
-  double column_of(double azimuth) const {
-    return (std::numbers::pi - azimuth) / kTurn * pattern_.columns - 0.5;
-  }
-
-  const LidarPattern& pattern_;
 };
 
 /// Where a beam meets a disc, if it does.
@@ -83,7 +34,7 @@ bool meet(const Eigen::Vector3f& beam, const Eigen::Vector3f& p, const Eigen::Ve
 }
 
 std::vector<Hit> find_hits(const MapSurfels& map, const RigidMotion& T_local_lidar,
-                           const LidarPattern& pattern, const Beams& beams) {
+                           const LidarPattern& pattern, const LidarBeams& beams) {
   const Eigen::Isometry3f T_lidar_map =
       (T_local_lidar.inverse() * Eigen::Translation3d(map.origin)).cast<float>();
   std::vector<std::vector<Hit>> chunks((map.size() + kDiscsPerTask - 1) / kDiscsPerTask);
@@ -108,19 +59,19 @@ std::vector<Hit> find_hits(const MapSurfels& map, const RigidMotion& T_local_lid
 
 }  // namespace
 
-LidarPattern hdl64() {
-  LidarPattern pattern;
-  for (int i = 0; i < 32; ++i) pattern.elevation.push_back((2 - i / 3.0) * kDegree);
-  for (int i = 0; i < 32; ++i) pattern.elevation.push_back((-8.83 - i / 2.0) * kDegree);
-  pattern.columns = 2083;
-  pattern.min_range = 0.9;
-  pattern.max_range = 120;
-  return pattern;
+LidarPattern lidar_pattern(LidarModel model) {
+  const LidarDataSheet& sheet = lidar_data_sheet(model);
+  return {.elevation = sheet.elevations,
+          .rosette = sheet.rosette,
+          .columns = static_cast<int>(std::lround(sheet.firing_rate * sheet.period)),
+          .period = sheet.period,
+          .min_range = sheet.min_range,
+          .max_range = sheet.max_range};
 }
 
 PointCloud cast_lidar(const MapSurfels& map, const RigidMotion& T_local_lidar,
-                      const LidarPattern& pattern) {
-  const Beams beams(pattern);
+                      const LidarPattern& pattern, double time) {
+  const LidarBeams beams(pattern, time);
   const std::vector<Hit> hits = find_hits(map, T_local_lidar, pattern, beams);
   struct Mean {
     float front = std::numeric_limits<float>::infinity();

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "fovea/base/angle.h"
 #include "fovea/base/parallel.h"
+#include "fovea/rendering/lidar_beams.h"
 #include "fovea/simulation/lidar_model.h"
 
 namespace fovea::virtual_lidar_test {
@@ -37,17 +40,77 @@ MapSurfels ground_and_wall() {
 
 const RigidMotion kPose(Eigen::Translation3d(100, 200, 0));
 
-TEST(Hdl64, HasTheBeamsOfTheSimulatedOne) {
-  const LidarPattern pattern = hdl64();
-  ASSERT_EQ(pattern.elevation.size(), std::size_t{kRings});
-  for (int ring = 0; ring < kRings; ++ring) {
-    EXPECT_NEAR(pattern.elevation[std::size_t(ring)], beam_elevation(ring), 1e-4) << ring;
+const LidarPattern kHdl64 = lidar_pattern(LidarModel::kHdl64);
+
+TEST(VirtualLidar, BeamsOfEveryModelAreThoseOfTheSimulatedOne) {
+  for (const LidarDataSheet& sheet : lidar_data_sheets()) {
+    const LidarPattern pattern = lidar_pattern(sheet.model);
+    LidarOptions simulated;
+    set_model(simulated, sheet.model);
+    EXPECT_EQ(pattern.elevation, ring_elevations(simulated)) << sheet.name;
+    EXPECT_EQ(pattern.columns, sweep_columns(simulated)) << sheet.name;
+    EXPECT_EQ(pattern.period, simulated.period) << sheet.name;
+    EXPECT_EQ(pattern.rosette.has_value(), sheet.rosette.has_value()) << sheet.name;
   }
-  EXPECT_EQ(pattern.columns, LidarOptions().columns);
+}
+
+/// A plane across the view, 10 m ahead.
+MapSurfels wall_ahead() {
+  MapSurfels surfels;
+  surfels.origin = {100, 200, 0};
+  add_rectangle({10, -9, -9}, {0, 18, 0}, {0, 0, 18}, 0.04f, 0.5f, surfels);
+  return surfels;
+}
+
+TEST(VirtualLidar, EveryModelMeetsAWallAlongItsBeams) {
+  for (const LidarDataSheet& sheet : lidar_data_sheets()) {
+    LidarPattern pattern = lidar_pattern(sheet.model);
+    const PointCloud scan = cast_lidar(wall_ahead(), kPose, pattern, 3);
+    std::size_t expected = 0;
+    const LidarBeams beams(pattern, 3);
+    for (std::uint32_t beam = 0; beam < beams.size(); ++beam) {
+      const Eigen::Vector3f d = beams.direction(beam);
+      if (d.x() > 0.1f && std::abs(d.y() / d.x()) < 0.89f && std::abs(d.z() / d.x()) < 0.89f) {
+        ++expected;
+      }
+    }
+    ASSERT_GT(expected, 1000u) << sheet.name;
+    EXPECT_NEAR(double(scan.size()), double(expected), 0.03 * double(expected)) << sheet.name;
+    for (const Eigen::Vector3f& p : scan.position) ASSERT_NEAR(p.x(), 10, 1e-3) << sheet.name;
+  }
+}
+
+TEST(VirtualLidar, ARosetteIsFoundNearAnyDirection) {
+  const LidarPattern pattern = lidar_pattern(LidarModel::kLivoxHap);
+  const LidarBeams beams(pattern, 1.5);
+  for (const double azimuth : {-1.0, -0.2, 0.0, 0.5}) {
+    for (const double elevation : {-0.15, 0.0, 0.07}) {
+      const Eigen::Vector3f d =
+          Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
+                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation))
+              .cast<float>();
+      std::set<std::uint32_t> near, found;
+      for (std::uint32_t beam = 0; beam < beams.size(); ++beam) {
+        if (beams.direction(beam).dot(d) > std::cos(0.04)) near.insert(beam);
+      }
+      beams.for_each_near(5 * d, 5, 0.0401, [&](std::uint32_t beam) { found.insert(beam); });
+      EXPECT_TRUE(std::includes(found.begin(), found.end(), near.begin(), near.end()));
+      EXPECT_LE(found.size(), 3 * near.size() + 100);
+    }
+  }
+}
+
+TEST(VirtualLidar, ARosetteIsElsewhereInTheNextSweep) {
+  const LidarPattern pattern = lidar_pattern(LidarModel::kLivoxAvia);
+  const MapSurfels wall = wall_ahead();
+  EXPECT_EQ(cast_lidar(wall, kPose, pattern, 1).position,
+            cast_lidar(wall, kPose, pattern, 1).position);
+  EXPECT_NE(cast_lidar(wall, kPose, pattern, 1).position,
+            cast_lidar(wall, kPose, pattern, 1.1).position);
 }
 
 TEST(VirtualLidar, PointsLieOnTheFirstSurfaceThatABeamMeets) {
-  const PointCloud scan = cast_lidar(ground_and_wall(), kPose, hdl64());
+  const PointCloud scan = cast_lidar(ground_and_wall(), kPose, kHdl64);
   std::size_t on_ground = 0, on_wall = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3f& p = scan.position[i];
@@ -66,7 +129,7 @@ TEST(VirtualLidar, PointsLieOnTheFirstSurfaceThatABeamMeets) {
   }
   // Every beam that should meet the wall does: none slips through between its samples.
   std::size_t beams = 0;
-  const LidarPattern pattern = hdl64();
+  const LidarPattern pattern = kHdl64;
   for (const double elevation : pattern.elevation) {
     for (int c = 0; c < pattern.columns; ++c) {
       const double azimuth = (0.5 - (c + 0.5) / pattern.columns) * 360 * kDegree;
@@ -84,14 +147,14 @@ TEST(VirtualLidar, TurnsWithItsPose) {
   const MapSurfels surfels = ground_and_wall();
   RigidMotion turned = kPose;
   turned.rotate(Eigen::AngleAxisd(90 * kDegree, Eigen::Vector3d::UnitZ()));
-  for (const Eigen::Vector3f& p : cast_lidar(surfels, turned, hdl64()).position) {
+  for (const Eigen::Vector3f& p : cast_lidar(surfels, turned, kHdl64).position) {
     EXPECT_LT(p.y(), -3.9f);  // what was ahead is to the right
   }
 }
 
 TEST(VirtualLidar, SeesNothingWhereNothingIsOrTooNear) {
-  EXPECT_TRUE(cast_lidar({}, kPose, hdl64()).empty());
-  LidarPattern near = hdl64();
+  EXPECT_TRUE(cast_lidar({}, kPose, kHdl64).empty());
+  LidarPattern near = kHdl64;
   near.max_range = 3;
   EXPECT_TRUE(cast_lidar(ground_and_wall(), kPose, near).empty());
 }
@@ -101,7 +164,7 @@ TEST(VirtualLidar, IsTheSameAtAnyNumberOfThreads) {
   PointCloud once;
   for (const int threads : {1, 2, 4}) {
     const ThreadLimit limit(threads);
-    const PointCloud scan = cast_lidar(surfels, kPose, hdl64());
+    const PointCloud scan = cast_lidar(surfels, kPose, kHdl64);
     if (once.empty()) once = scan;
     EXPECT_EQ(scan.position, once.position) << threads;
     EXPECT_EQ(scan.intensity, once.intensity) << threads;

@@ -161,13 +161,15 @@ double CameraModel::depth_of_plane(const RayHit& on_plane, double u, double v,
   return ray.z() * normal.dot(T_world_cam.inverse() * on_plane.position) / normal.dot(ray);
 }
 
-Rendering CameraModel::render(const RigidMotion& T_world_cam,
-                              const RayCaster::Moment& moment) const {
+template <class ViewOfRow>
+Rendering CameraModel::render_each_row(const ViewOfRow& view_of_row) const {
   const auto width = static_cast<std::size_t>(camera_.width),
              height = static_cast<std::size_t>(camera_.height);
   Rendering rendering{camera_.width, camera_.height, std::vector<Vector3f>(width * height),
                       std::vector<float>(width * height)};
-  const auto finish_pixel = [&](std::size_t u, std::size_t v, const PixelSum& coarse) {
+  const auto finish_pixel = [&](std::size_t u, std::size_t v, const PixelSum& coarse,
+                                const View& view) {
+    const auto& [T_world_cam, moment] = view;
     const auto x = static_cast<double>(u), y = static_cast<double>(v);
     rendering.light[v * width + u] =
         coarse.edge() ? sample_finely(x, y, T_world_cam, moment) : coarse.mean();
@@ -176,13 +178,25 @@ Rendering CameraModel::render(const RigidMotion& T_world_cam,
                                           : depth_at(x, y, T_world_cam, moment));
   };
   parallel_for(height, 4, [&](std::size_t v) {
+    const View& view = view_of_row(v);
     for (std::size_t u = 0; u < width; u += 2) {
-      const auto pair =
-          sample_pair(static_cast<double>(u), static_cast<double>(v), T_world_cam, moment);
-      for (std::size_t k = 0; k < 2 && u + k < width; ++k) finish_pixel(u + k, v, pair[k]);
+      const auto pair = sample_pair(static_cast<double>(u), static_cast<double>(v),
+                                    view.T_world_cam, view.moment);
+      for (std::size_t k = 0; k < 2 && u + k < width; ++k) finish_pixel(u + k, v, pair[k], view);
     }
   });
   return rendering;
+}
+
+Rendering CameraModel::render(const RigidMotion& T_world_cam,
+                              const RayCaster::Moment& moment) const {
+  const View view{T_world_cam, moment};
+  return render_each_row([&](std::size_t) -> const View& { return view; });
+}
+
+Rendering CameraModel::render_rows(const std::function<View(double)>& view_of) const {
+  const double last = std::max(1, camera_.height - 1);
+  return render_each_row([&](std::size_t row) { return view_of(static_cast<double>(row) / last); });
 }
 
 Image develop(const Rendering& rendering, const Development& development) {

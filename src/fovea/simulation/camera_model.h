@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "fovea/base/image.h"
@@ -27,6 +28,16 @@ class CameraModel {
 
   Rendering render(const RigidMotion& T_world_cam, const RayCaster::Moment& moment) const;
 
+  /// Where the camera is and what moves at one time.
+  struct View {
+    RigidMotion T_world_cam = RigidMotion::Identity();
+    RayCaster::Moment moment;
+  };
+  /// A rolling shutter: each row is taken at its own time.
+  /// @param view_of  of a row, by its place: 0 is the first row, 1 the last. Called from several
+  ///                 threads
+  Rendering render_rows(const std::function<View(double)>& view_of) const;
+
   /// Mean light over the square of one pixel's size round (u, v), anywhere in the image.
   Eigen::Vector3f light_at(double u, double v, const RigidMotion& T_world_cam,
                            const RayCaster::Moment& moment) const;
@@ -37,6 +48,9 @@ class CameraModel {
  private:
   class PixelSum;
 
+  /// @param view_of_row  of the row of that number
+  template <class ViewOfRow>
+  Rendering render_each_row(const ViewOfRow& view_of_row) const;
   /// Casts and shades rays through `pixel`, of which n lie along a pixel's side; add(k, hit,
   /// light).
   template <class Add>

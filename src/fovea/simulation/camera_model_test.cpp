@@ -84,6 +84,36 @@ TriangleMesh wall(std::uint16_t material, double left, double right, double low,
 
 std::size_t at(const Camera& camera, int u, int v) { return std::size_t(v * camera.width + u); }
 
+// A camera that looks out of the side window, at an upright edge 10 m away.
+TEST(CameraModel, ARollingShutterShearsUprightEdges) {
+  View view;
+  MeshBuilder make;
+  make.material = view.plain(Vector3f::Ones());
+  make.quad({10, 40, -30}, {10, 0, -30}, {10, 0, 30}, {10, 40, 30});
+  make.material = view.plain(Vector3f::Zero());
+  make.quad({10, 0, -30}, {10, -40, -30}, {10, -40, 30}, {10, 0, 30});
+  view.open(make.take(), only_sky());
+  const Camera camera = test_camera();
+  constexpr double kSpeed = 25, kReadout = 0.04;  // m/s to the left, s
+  const auto place = [&](double row) { return Vector3d(0, kSpeed * kReadout * (row - 0.5), 0); };
+  const Rendering image = view.model->render_rows([&](double row) {
+    return CameraModel::View{looking_ahead(place(row)), view.still};
+  });
+  const Rendering still = view.model->render(looking_ahead(place(0.5)), view.still);
+  // The light left of the edge is as wide as the edge is far to the right.
+  const auto edge_of = [&](const Rendering& rendering, int v) {
+    double sum = 0;
+    for (int u = 0; u < camera.width; ++u) sum += rendering.light[at(camera, u, v)].x();
+    return sum / rendering.light[at(camera, 0, v)].x() - 0.5;
+  };
+  for (int v = 0; v < camera.height; ++v) {
+    const double y = place(double(v) / (camera.height - 1)).y();
+    EXPECT_NEAR(edge_of(image, v), camera.cx + camera.fx * y / 10, 0.13) << v;
+    EXPECT_NEAR(edge_of(still, v), camera.cx, 0.13) << v;
+  }
+  EXPECT_NEAR(edge_of(image, camera.height - 1) - edge_of(image, 0), 6, 0.26);
+}
+
 TEST(CameraModel, DepthIsThatOfThePlaneAtEachPixelsCentre) {
   View view;
   view.open(wall(view.plain(Vector3f::Ones()), 40, -40, -30, 30), only_sky());

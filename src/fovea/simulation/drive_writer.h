@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/base/image.h"
+#include "fovea/base/time.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/navigation_model.h"
 #include "fovea/simulation/simulation_options.h"
@@ -23,7 +24,8 @@ class DriveWriter {
   virtual ~DriveWriter() = default;
 
   virtual void write_scan(int frame, const SimulatedScan& scan) = 0;
-  virtual void write_image(int camera, int frame, const Image& image) = 0;
+  /// @param stamp  of the image; KITTI's drives have that of its scan
+  virtual void write_image(int camera, int number, TimeNs stamp, const Image& image) = 0;
   /// The calibration, all time stamps and the records of GPS/INS.
   virtual void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
                            const SimulationOptions& options) = 0;

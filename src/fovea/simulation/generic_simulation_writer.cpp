@@ -27,8 +27,9 @@ void GenericSimulationWriter::write_scan(int frame, const SimulatedScan& scan) {
   writer_.write_scan(frame, stamp_of(frame, options_), cloud);
 }
 
-void GenericSimulationWriter::write_image(int camera, int frame, const Image& image) {
-  writer_.write_image(camera_name(camera), frame, stamp_of(frame, options_), image);
+void GenericSimulationWriter::write_image(int camera, int number, TimeNs stamp,
+                                          const Image& image) {
+  writer_.write_image(camera_name(camera), number, stamp, image);
 }
 
 void GenericSimulationWriter::write_texts(const Rig& rig,

@@ -32,9 +32,9 @@ void KittiDriveWriter::write_scan(int frame, const SimulatedScan& scan) {
               scan.points.size() * sizeof(scan.points[0])});
 }
 
-void KittiDriveWriter::write_image(int camera, int frame, const Image& image) {
+void KittiDriveWriter::write_image(int camera, int number, TimeNs /*stamp*/, const Image& image) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
-  write_file(fs::path(image_folder(camera)) / "data" / numbered(frame, ".png"),
+  write_file(fs::path(image_folder(camera)) / "data" / numbered(number, ".png"),
              {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -16,6 +16,7 @@
 #include "fovea/base/random.h"
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/image_decode.h"
+#include "fovea/simulation/drive_texts.h"
 
 namespace fovea::kitti_drive_writer_test {
 
@@ -65,7 +66,7 @@ fs::path write_drive(const fs::path& root, const SimulationOptions& options) {
     writer.write_scan(frame, {{{1, 2, 3, 0.5f}, {4, 5, 6, 0.25f}, {float(frame), 0, 0, 1}}, {}});
     for (const SimulatedCamera& camera : options.camera.cameras) {
       writer.write_image(
-          camera.number, frame,
+          camera.number, frame, stamp_of(frame, options),
           test_image(options.camera.width, options.camera.height, camera.grey ? 1 : 3));
     }
   });
@@ -78,6 +79,8 @@ TEST(KittiDriveWriter, TheProductsReaderOpensTheDrive) {
   options.frames = 12;
   options.camera.width = 90;
   options.camera.height = 40;
+  options.camera.cx = 44.5;
+  options.camera.cy = 19.5;
   options.camera.cameras = {{0, 0, true}, {2, -0.06, false}, {7, 0.2, false}};
   const fs::path drive = write_drive(folder / "drive", options);
   EXPECT_EQ(drive, folder.path() / "drive/2026_01_01/2026_01_01_drive_0001_sync");
@@ -235,7 +238,7 @@ TEST(KittiDriveWriter, KittisImagesArePackedFast) {
   const Image image = test_image(1242, 375, 3);
   KittiDriveWriter writer(folder / "d");
   const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < 5; ++i) writer.write_image(2, i, image);
+  for (int i = 0; i < 5; ++i) writer.write_image(2, i, 0, image);
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   RecordProperty("ms_an_image", std::to_string(took.count() / 5));
   const fs::path file = writer.finish() / "image_02/data/0000000004.png";

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
@@ -23,11 +25,11 @@ struct Return {
 };
 
 /// Chance that a return is lost. A matte surface of a tenth reflectance, met squarely, is seen half
-/// the time at 50 m (HDL-64E data sheet); glass throws the light elsewhere.
-double loss_chance(const Material& material, double facing, double range) {
+/// the time at `dark_range` (m); glass throws the light elsewhere.
+double loss_chance(const Material& material, double facing, double range, double dark_range) {
   if (material.glass) return 0.85;
   const double signal =
-      material.reflectance / 0.1 * std::sqrt(facing) * (50 * 50) / (range * range);
+      material.reflectance / 0.1 * std::sqrt(facing) * (dark_range * dark_range) / (range * range);
   return 1 / (1 + signal * signal);
 }
 
@@ -39,34 +41,53 @@ class Sweep {
         motion_(motion),
         rig_(rig),
         options_(options),
+        sheet_(lidar_data_sheet(options.model)),
+        columns_(sweep_columns(options)),
         seed_(Random::of_item(static_cast<std::uint64_t>(seed), kSweeps,
                               static_cast<std::uint64_t>(frame))
                   .next()),
         stamp_(stamp),
-        T_stamp_world_((motion.T_world_vehicle(stamp) * rig.T_vehicle_lidar).inverse()) {}
+        T_stamp_world_((motion.T_world_vehicle(stamp) * rig.T_vehicle_lidar).inverse()) {
+    for (const double elevation : ring_elevations(options)) {
+      rings_.emplace_back(std::cos(elevation), std::sin(elevation));
+    }
+  }
+
+  std::size_t columns() const { return static_cast<std::size_t>(columns_); }
+  std::size_t rings() const { return rings_.size(); }
 
   /// All beams of one firing.
-  void fire(int column, std::array<Return, kRings>& returns) const {
-    const double azimuth =
-        std::numbers::pi - 2 * std::numbers::pi * (column + 0.5) / options_.columns;
-    const double since = -azimuth / (2 * std::numbers::pi) * options_.period;
+  void fire(int column, std::span<Return> returns) const {
+    const double turned = kTurn * (column + 0.5) / columns_;
+    const double since = -(kTurn * options_.stamp_phase - turned) / kTurn * options_.period;
     const RigidMotion T_world_lidar =
         motion_.T_world_vehicle(stamp_ + since) * rig_.T_vehicle_lidar;
     const RayCaster::Moment moment = caster_.moment(stamp_ + since, motion_.way(stamp_ + since));
     Random random = Random::of_item(seed_, kFirings, static_cast<std::uint64_t>(column));
-    for (int ring = 0; ring < kRings; ++ring) {
+    const auto fire_beam = [&](std::size_t ring, const Vector3d& beam) {
       Random own(random.next());  // whatever the other beams draw
-      const double elevation = beam_elevation(ring);
-      const Vector3d beam(std::cos(elevation) * std::cos(azimuth),
-                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      Return& r = returns[static_cast<std::size_t>(ring)];
+      Return& r = returns[ring];
       r = measure(T_world_lidar, beam, moment, own);
       r.truth.time = static_cast<float>(since);
       r.truth.ring = static_cast<std::uint8_t>(ring);
+    };
+    if (sheet_.rosette) {
+      const Eigen::Vector2d angles = rosette_angles(*sheet_.rosette, stamp_ + since);
+      return fire_beam(0, direction(angles.x(), std::cos(angles.y()), std::sin(angles.y())));
+    }
+    const double azimuth = options_.direction == SweepDirection::kClockwise
+                               ? options_.start_azimuth - turned
+                               : options_.start_azimuth + turned;
+    for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
+      fire_beam(ring, direction(azimuth, rings_[ring].first, rings_[ring].second));
     }
   }
 
  private:
+  static Vector3d direction(double azimuth, double cos_elevation, double sin_elevation) {
+    return {cos_elevation * std::cos(azimuth), cos_elevation * std::sin(azimuth), sin_elevation};
+  }
+
   Return measure(const RigidMotion& T_world_lidar, const Vector3d& beam,
                  const RayCaster::Moment& moment, Random& random) const {
     const Vector3d along = T_world_lidar.linear() * beam;
@@ -75,7 +96,8 @@ class Sweep {
     if (!hit) return {};
     const Material& material = caster_.scenery().palette().materials[hit->material];
     const double facing = std::clamp(-along.dot(hit->normal), 0.01, 1.0);
-    const double lost = options_.dropouts * loss_chance(material, facing, hit->distance);
+    const double lost =
+        options_.dropouts * loss_chance(material, facing, hit->distance, sheet_.dark_range);
     const double range_error = options_.range_noise * random.normal();
     if (random.uniform() < lost) return {};
     double range = hit->distance + range_error;
@@ -95,12 +117,16 @@ class Sweep {
     return r;
   }
 
+  static constexpr double kTurn = 2 * std::numbers::pi;
   static constexpr float kSpot = 0.01f;  // m, over which the truth's albedo is averaged
 
   const RayCaster& caster_;
   const VehicleMotion& motion_;
   const Rig& rig_;
   const LidarOptions& options_;
+  const LidarDataSheet& sheet_;
+  int columns_;
+  std::vector<std::pair<double, double>> rings_;  // cosine and sine of the elevations
   std::uint64_t seed_;
   double stamp_;
   RigidMotion T_stamp_world_;
@@ -108,22 +134,21 @@ class Sweep {
 
 }  // namespace
 
-double beam_elevation(int ring) {
-  return ring < 32 ? (2.0 - ring / 3.0) * kDegree : (-8.83 - 0.5 * (ring - 32)) * kDegree;
-}
-
 SimulatedScan simulate_scan(const RayCaster& caster, const VehicleMotion& motion, const Rig& rig,
                             const LidarOptions& options, int seed, int frame, double stamp) {
   const Sweep sweep(caster, motion, rig, options, seed, frame, stamp);
-  const auto columns = static_cast<std::size_t>(options.columns);
-  std::vector<std::array<Return, kRings>> firings(columns);
-  parallel_for(columns, 16, [&](std::size_t c) { sweep.fire(static_cast<int>(c), firings[c]); });
+  const std::size_t columns = sweep.columns(), rings = sweep.rings();
+  std::vector<Return> returns(columns * rings);
+  parallel_for(columns, 16, [&](std::size_t column) {
+    sweep.fire(static_cast<int>(column), std::span(returns).subspan(column * rings, rings));
+  });
   SimulatedScan scan;
-  for (std::size_t ring = 0; ring < kRings; ++ring) {
-    for (const auto& firing : firings) {
-      if (!firing[ring].valid) continue;
-      scan.points.push_back(firing[ring].point);
-      scan.truth.push_back(firing[ring].truth);
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Return& r = returns[column * rings + ring];
+      if (!r.valid) continue;
+      scan.points.push_back(r.point);
+      scan.truth.push_back(r.truth);
     }
   }
   return scan;

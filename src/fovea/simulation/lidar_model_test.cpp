@@ -10,7 +10,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/motion_compensation.h"
 #include "fovea/simulation/mesh_builder.h"
-#include "fovea/simulation/test_scenery.h"
+#include "fovea/simulation/test_lidar.h"
 
 namespace fovea::lidar_model_test {
 
@@ -19,77 +19,14 @@ using Eigen::Vector3f;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-VehicleOptions steady(double speed) {
-  VehicleOptions options;
-  options.speed = speed;
-  options.speed_variation = options.weave = options.sway = options.heave = 0;
-  return options;
-}
-
-LidarOptions exact(int columns) {
-  LidarOptions options;
-  options.columns = columns;
-  options.range_noise = options.range_resolution = options.dropouts = 0;
-  return options;
-}
-
-/// A vehicle that drives along x through a scenery, at the origin at time 0.
-struct Drive {
-  TestScenery scenery;
-  Rig rig = make_rig({});
-  std::unique_ptr<RayCaster> caster;
-  std::unique_ptr<VehicleMotion> motion;
-
-  std::uint16_t material(float reflectance, bool glass = false) {
-    Material m;
-    m.reflectance = reflectance;
-    m.glass = glass;
-    m.color = {0.2f, 0.5f, 0.9f};
-    return scenery.add(m);
-  }
-  void open(TriangleMesh mesh, const VehicleOptions& vehicle = steady(0)) {
-    scenery.add(Eigen::Vector2d(0, 0), std::move(mesh));
-    caster = std::make_unique<RayCaster>(scenery);
-    caster->move_to({0, 0}, 100);
-    motion = std::make_unique<VehicleMotion>(scenery.path(), 0, vehicle, 3);
-  }
-  RigidMotion T_world_lidar(double time) const {
-    return motion->T_world_vehicle(time) * rig.T_vehicle_lidar;
-  }
-  SimulatedScan scan(const LidarOptions& options, int seed = 1, int frame = 0,
-                     double stamp = 0) const {
-    return simulate_scan(*caster, *motion, rig, options, seed, frame, stamp);
-  }
-};
-
-Vector3d place(const std::array<float, 4>& point) {
-  return Vector3f(point[0], point[1], point[2]).cast<double>();
-}
-
-/// Distance of a place from the room that box(low, high) is, seen from within.
-double off_walls(const Vector3d& p, const Vector3d& low, const Vector3d& high) {
-  return std::min((p - low).cwiseAbs().minCoeff(), (high - p).cwiseAbs().minCoeff());
-}
-
-const Vector3d kLow(-30, -25, -0.5), kHigh(34, 22, 9);
-
-TriangleMesh room(std::uint16_t material) {
-  MeshBuilder make;
-  make.material = material;
-  make.surface = 17;
-  make.box(kLow, kHigh);
-  return make.take();
-}
-
-TEST(LidarModel, BeamsAreTheDataSheets) {
-  EXPECT_NEAR(beam_elevation(0), 2 * kDegree, 1e-15);
-  EXPECT_NEAR(beam_elevation(31), (2 - 31 / 3.0) * kDegree, 1e-15);  // -8.33
-  EXPECT_NEAR(beam_elevation(32), -8.83 * kDegree, 1e-15);
-  EXPECT_NEAR(beam_elevation(63), -24.33 * kDegree, 1e-12);
-  for (int ring = 0; ring + 1 < kRings; ++ring) {
-    EXPECT_GT(beam_elevation(ring), beam_elevation(ring + 1) + 0.3 * kDegree);
-  }
-}
+using test::exact;
+using test::kHigh;
+using test::kLow;
+using test::off_walls;
+using test::place;
+using test::room;
+using test::steady;
+using Drive = test::LidarDrive;
 
 TEST(LidarModel, EveryBeamMeetsTheRoomWhereItIs) {
   Drive drive;
@@ -100,13 +37,14 @@ TEST(LidarModel, EveryBeamMeetsTheRoomWhereItIs) {
   ASSERT_EQ(scan.points.size(), 64u * 300);
   ASSERT_EQ(scan.truth.size(), scan.points.size());
   const RigidMotion T_world_stamp = drive.T_world_lidar(stamp);
+  const std::vector<double>& rings = lidar_data_sheet(LidarModel::kHdl64).elevations;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const TruthPoint& truth = scan.truth[i];
     const Vector3d p = place(scan.points[i]);
     const Vector3d p_world = drive.T_world_lidar(stamp + truth.time) * p;
     ASSERT_LT(off_walls(p_world, kLow, kHigh), 1e-5);
     ASSERT_LT((T_world_stamp * truth.hit_lidar.cast<double>() - p_world).norm(), 1e-5);
-    ASSERT_NEAR(std::asin(p.z() / p.norm()), beam_elevation(truth.ring), 1e-6);
+    ASSERT_NEAR(std::asin(p.z() / p.norm()), rings.at(truth.ring), 1e-6);
     const double azimuth = std::atan2(p.y(), p.x());
     ASSERT_NEAR(truth.time, -azimuth / kTurn * options.period, 1e-7);
     ASSERT_EQ(truth.surface, 17u);

@@ -58,13 +58,19 @@ LensCamera lens_camera(const SimulatedCamera& camera, const CameraOptions& optio
 
 Rig make_rig(const SimulationOptions& options) {
   Rig rig;
-  rig.T_vehicle_lidar = motion(rotation(0.15, 0.25, -0.2), {0, 0, options.lidar.height});
+  // The other sensors keep their places where the LiDAR is turned.
+  const LidarOptions& lidar = options.lidar;
+  const RigidMotion T_upright_lidar =
+      motion(rotation(lidar.roll / kDegree, lidar.pitch / kDegree, lidar.yaw / kDegree),
+             Eigen::Vector3d::Zero());
+  rig.T_vehicle_lidar = motion(rotation(0.15, 0.25, -0.2), {0, 0, lidar.height}) * T_upright_lidar;
   // The IMU sits behind, to the left of and below the LiDAR.
-  const RigidMotion T_lidar_imu = motion(rotation(-0.8, -0.1, 0.05), {-0.8, 0.32, -0.81});
-  rig.T_imu_lidar = T_lidar_imu.inverse();
+  const RigidMotion T_upright_imu = motion(rotation(-0.8, -0.1, 0.05), {-0.8, 0.32, -0.81});
+  rig.T_imu_lidar = T_upright_imu.inverse() * T_upright_lidar;
   Eigen::Matrix3d R_axes;  // forward, left, up -> right, down, forward
   R_axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  rig.T_cam0_lidar = motion(rotation(0.6, 0.4, -0.5) * R_axes, {-0.005, -0.075, -0.27});
+  rig.T_cam0_lidar =
+      motion(rotation(0.6, 0.4, -0.5) * R_axes, {-0.005, -0.075, -0.27}) * T_upright_lidar;
   rig.R_rect = rotation(-0.25, -0.3, 0.35);
 
   const Eigen::Matrix3d R_error =

@@ -13,7 +13,7 @@ namespace fovea {
 
 /// KITTI's arrangement with angles that are small and not zero, so that a forgotten rotation shows.
 struct Rig {
-  /// Vehicle: forward, left, up, on the road below the LiDAR.
+  /// Vehicle: forward, left, up, on the road below the LiDAR. With the LiDAR's mount.
   RigidMotion T_vehicle_lidar = RigidMotion::Identity();
   RigidMotion T_imu_lidar = RigidMotion::Identity();
   /// Camera 0 before rectification (calib_velo_to_cam.txt).

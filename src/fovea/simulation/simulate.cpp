@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/random.h"
 #include "fovea/simulation/camera_model.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/drive_writer.h"
+#include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/simulation_config.h"
 #include "fovea/simulation/tracklet_labels.h"
@@ -17,15 +22,23 @@
 namespace fovea {
 namespace {
 
-constexpr double kSeen = 260;   // m: chunks whose middle is nearer are there for rays
-constexpr double kTruth = 140;  // m: ... and are part of the truth's world; what the LiDAR reaches
+constexpr double kSeen = 260;  // m: chunks whose middle is nearer are there for rays
+
+/// m: ... and are part of the truth's world: what the LiDAR reaches.
+double truth_reach(const LidarOptions& lidar) {
+  return std::clamp(lidar.max_range + 20, 140.0, kSeen);
+}
 
 /// What a drive takes on disk, about: scans and their truth, images with perfect image and depth.
 std::uintmax_t expected_size(const SimulationOptions& options) {
   constexpr double kReturn = 44, kPixel = 4, kWorld = 60e6;  // bytes
-  const double frame = kReturn * kRings * options.lidar.columns +
-                       kPixel * options.camera.width * options.camera.height *
-                           static_cast<double>(options.camera.cameras.size());
+  double images = 0;                                         // a frame
+  for (const SimulatedCamera& camera : options.camera.cameras) {
+    images += std::max(1.0, image_rate(options.camera, camera) * options.lidar.period);
+  }
+  const double beams = double(ring_elevations(options.lidar).size()) * sweep_columns(options.lidar);
+  const double frame =
+      kReturn * beams + kPixel * images * options.camera.width * options.camera.height;
   return static_cast<std::uintmax_t>(kWorld + frame * options.frames);
 }
 
@@ -55,30 +68,41 @@ class Simulation {
     const VehicleMotion first(scenery_->path(), scenery_->lane_offset(), options.vehicle,
                               options.seed);
     T_world_local_.translation() = (first.T_world_vehicle(0) * rig_.T_vehicle_lidar).translation();
-    camera_poses_.resize(rig_.cameras.size());
-    exposures_.resize(rig_.cameras.size());
+    truth_.resize(rig_.cameras.size());
+    for (const SimulatedCamera& camera : options.camera.cameras) {
+      schedules_.push_back(image_schedule(options, camera));
+      if (image_count(schedules_.back()) > 0) continue;
+      throw ConfigError(fmt::format("camera {} takes no image during the drive", camera.number),
+                        "camera.rate", "give a higher rate or more frames");
+    }
   }
 
   void simulate_frame(int frame) {
     const double time = seconds(stamp_of(frame, options_) - stamp_of(0, options_));
     const Eigen::Vector2d place = T_world_lidar(time).translation().head<2>();
     caster_.move_to(place, kSeen);
-    for (const ChunkPlace& chunk : scenery_->chunks_near(place, kTruth)) chunks_.insert(chunk.id);
+    for (const ChunkPlace& chunk : scenery_->chunks_near(place, truth_reach(options_.lidar)))
+      chunks_.insert(chunk.id);
     lidar_poses_ += pose_line(T_world_local_.inverse() * T_world_lidar(time));
 
     const SimulatedScan scan =
         simulate_scan(caster_, motion_, rig_, options_.lidar, options_.pass_seed(), frame, time);
-    labels_.add(frame, time, scan, caster_);
+    if (has_tracklets()) labels_.add(frame, time, scan, caster_);
     std::vector<Picture> pictures;
-    for (std::size_t k = 0; k < rig_.cameras.size(); ++k)
-      pictures.push_back(picture(k, frame, time));
+    for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
+      for (const Shot& shot : schedules_[k][static_cast<std::size_t>(frame)]) {
+        pictures.push_back(picture(k, frame, shot));
+      }
+    }
     write(frame, scan, pictures);
   }
 
   std::filesystem::path finish() {
     writer_->write_texts(rig_, simulate_navigation(motion_, rig_, T_world_local_, options_),
                          options_);
-    writer_->write_file("tracklet_labels.xml", tracklets_text(labels_.tracks()));
+    if (has_tracklets()) {
+      writer_->write_file("tracklet_labels.xml", tracklets_text(labels_.tracks()));
+    }
     write_truth_texts();
     write_world(export_world(*scenery_, chunks_, T_world_local_.inverse()),
                 writer_->truth_folder());
@@ -86,39 +110,95 @@ class Simulation {
   }
 
  private:
+  /// What one camera makes of a shot: an image, the truth of a frame, or both.
   struct Picture {
+    std::size_t camera;
+    Shot shot;
     Image image, perfect;
     std::vector<float> depth;
   };
+  /// The truth of a camera that grows with the drive.
+  struct CameraTruth {
+    std::string poses, exposures;       // by frame
+    std::map<int, std::string> images;  // by number
+  };
+
+  /// KITTI's boxes turn about the LiDAR's z axis alone, which must be upright for that.
+  bool has_tracklets() const {
+    constexpr double kMaxTilt = 5 * kDegree;
+    return rig_.T_vehicle_lidar.linear()(2, 2) > std::cos(kMaxTilt);
+  }
 
   RigidMotion T_world_lidar(double time) const {
     return motion_.T_world_vehicle(time) * rig_.T_vehicle_lidar;
   }
 
-  Picture picture(std::size_t k, int frame, double stamp) {
-    const Camera& camera = rig_.cameras[k];
-    const double time = stamp + options_.camera.trigger_delay;
-    const RigidMotion T_world_cam = T_world_lidar(time) * camera.T_cam_lidar.inverse();
-    const RayCaster::Moment moment = caster_.moment(time, motion_.way(time));
-    Rendering taken = CameraModel(caster_, shader_, rig_.optics[k]).render(T_world_cam, moment);
-    // The truth is that of the rectified camera.
-    const bool distorted = rig_.optics[k].lens.model() != LensModel::kNone;
-    Rendering rectified =
-        distorted ? CameraModel(caster_, shader_, camera).render(T_world_cam, moment) : taken;
-    const double exposure = exposure_at(options_.camera, camera.index, time, options_.pass_seed());
-    camera_poses_[k] += pose_line(T_world_local_.inverse() * T_world_cam);
-    exposures_[k] += fmt::format("{:.9g}\n", exposure);
+  CameraModel::View view(const Camera& camera, double time) const {
+    return {T_world_lidar(time) * camera.T_cam_lidar.inverse(),
+            caster_.moment(time, motion_.way(time))};
+  }
 
-    Development perfect, real;
-    perfect.grey = real.grey = options_.camera.cameras[k].grey;
+  /// What the camera's optics and shutter make of the light.
+  Rendering taken(std::size_t k, const CameraModel::View& middle, double time) const {
+    const CameraModel model(caster_, shader_, rig_.optics[k]);
+    const double readout = options_.camera.rolling_shutter;
+    if (readout == 0) return model.render(middle.T_world_cam, middle.moment);
+    return model.render_rows(
+        [&](double row) { return view(rig_.cameras[k], time + readout * (row - 0.5)); });
+  }
+
+  Picture picture(std::size_t k, int frame, const Shot& shot) {
+    const Camera& camera = rig_.cameras[k];
+    const double time = seconds(shot.stamp - stamp_of(0, options_)) + options_.camera.trigger_delay;
+    const CameraModel::View middle = view(camera, time);
+    const double exposure = exposure_at(options_.camera, camera.index, time, options_.pass_seed());
+    note_truth(k, frame, shot, T_world_local_.inverse() * middle.T_world_cam, exposure);
+    Picture picture{k, shot, {}, {}, {}};
+    Rendering seen;
+    if (shot.image) {
+      seen = taken(k, middle, time);
+      picture.image = develop(seen, development(k, *shot.image, exposure));
+    }
+    if (!shot.is_of_frame) return picture;
+    // The truth is that of the rectified camera, all of it at one time.
+    const bool perfect = rig_.optics[k].lens.model() == LensModel::kNone &&
+                         options_.camera.rolling_shutter == 0 && shot.image;
+    if (!perfect) {
+      seen = CameraModel(caster_, shader_, camera).render(middle.T_world_cam, middle.moment);
+    }
+    Development plain;
+    plain.grey = options_.camera.cameras[k].grey;
+    picture.perfect = develop(seen, plain);
+    picture.depth = std::move(seen.depth);
+    return picture;
+  }
+
+  Development development(std::size_t k, int image, double exposure) const {
+    Development real;
+    real.grey = options_.camera.cameras[k].grey;
     real.exposure = exposure;
     real.vignetting = options_.camera.vignetting;
     real.noise = options_.camera.noise;
-    real.seed =
-        Random::of_item(static_cast<std::uint64_t>(options_.pass_seed()),
-                        static_cast<std::uint64_t>(camera.index), static_cast<std::uint64_t>(frame))
-            .next();
-    return {develop(taken, real), develop(rectified, perfect), std::move(rectified.depth)};
+    real.seed = Random::of_item(static_cast<std::uint64_t>(options_.pass_seed()),
+                                static_cast<std::uint64_t>(rig_.cameras[k].index),
+                                static_cast<std::uint64_t>(image))
+                    .next();
+    return real;
+  }
+
+  void note_truth(std::size_t k, int frame, const Shot& shot, const RigidMotion& T_local_cam,
+                  double exposure) {
+    CameraTruth& truth = truth_[k];
+    if (shot.is_of_frame) {
+      truth.poses += pose_line(T_local_cam);
+      truth.exposures += fmt::format("{:.9g}\n", exposure);
+    }
+    if (!shot.image) return;
+    std::string pose = pose_line(T_local_cam);
+    std::replace(pose.begin(), pose.end(), ' ', ',');
+    truth.images[*shot.image] =
+        fmt::format("{},{},{},{:.9g},{}", *shot.image, shot.stamp,
+                    shot.is_of_frame ? std::to_string(frame) : "", exposure, pose);
   }
 
   /// Compressing the images costs as much as drawing them: all files of a frame at once.
@@ -126,27 +206,36 @@ class Simulation {
     parallel_for(2 + 3 * pictures.size(), 1, [&](std::size_t task) {
       if (task == 0) return writer_->write_scan(frame, scan);
       if (task == 1) return writer_->write_truth(frame, scan.truth);
-      const std::size_t k = (task - 2) / 3;
-      const Camera& camera = rig_.cameras[k];
-      switch ((task - 2) % 3) {
-        case 0:
-          return writer_->write_image(camera.index, frame, pictures[k].image);
-        case 1:
-          return writer_->write_perfect_image(camera.index, frame, pictures[k].perfect);
-        default:
-          return writer_->write_depth(camera.index, frame, camera.width, camera.height,
-                                      pictures[k].depth);
+      const Picture& picture = pictures[(task - 2) / 3];
+      const Camera& camera = rig_.cameras[picture.camera];
+      const Shot& shot = picture.shot;
+      const std::size_t file = (task - 2) % 3;
+      if (file == 0 && shot.image) {
+        writer_->write_image(camera.index, *shot.image, shot.stamp, picture.image);
+      } else if (file == 1 && shot.is_of_frame) {
+        writer_->write_perfect_image(camera.index, frame, picture.perfect);
+      } else if (file == 2 && shot.is_of_frame) {
+        writer_->write_depth(camera.index, frame, camera.width, camera.height, picture.depth);
       }
     });
+  }
+
+  void write_camera_truth(std::size_t k) {
+    const std::string folder = fmt::format("truth/image_{:02d}/", rig_.cameras[k].index);
+    writer_->write_file(folder + "poses.txt", truth_[k].poses);
+    writer_->write_file(folder + "exposure.txt", truth_[k].exposures);
+    // Else each frame has the image of its number.
+    if (image_rate(options_.camera, options_.camera.cameras[k]) == 0) return;
+    std::string images = "index,time_ns,frame,exposure,r11,r12,r13,x,r21,r22,r23,y,r31,r32,r33,z\n";
+    for (const auto& [number, line] : truth_[k].images) images += line;
+    writer_->write_file(folder + "images.csv", images);
   }
 
   void write_truth_texts() {
     writer_->write_file("truth/poses.txt", lidar_poses_);
     nlohmann::json cameras = nlohmann::json::array();
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
-      const std::string folder = fmt::format("truth/image_{:02d}/", rig_.cameras[k].index);
-      writer_->write_file(folder + "poses.txt", camera_poses_[k]);
-      writer_->write_file(folder + "exposure.txt", exposures_[k]);
+      write_camera_truth(k);
       cameras.push_back(rig_.cameras[k].index);
     }
     const GeodeticPoint& origin = options_.navigation.origin;
@@ -175,7 +264,8 @@ class Simulation {
   RigidMotion T_world_local_ = RigidMotion::Identity();
   std::set<std::uint32_t> chunks_;  // seen so far
   std::string lidar_poses_;
-  std::vector<std::string> camera_poses_, exposures_;
+  std::vector<std::vector<std::vector<Shot>>> schedules_;  // by place in the rig and frame
+  std::vector<CameraTruth> truth_;                         // by place in the rig
 };
 
 }  // namespace

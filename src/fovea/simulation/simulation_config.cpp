@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/settings.h"
 
@@ -22,6 +24,19 @@ constexpr auto names_of(SimulatedLens) {
                     EnumName<SimulatedLens>{SimulatedLens::kPlumbBob, "plumb_bob"},
                     EnumName<SimulatedLens>{SimulatedLens::kRational, "rational_polynomial"},
                     EnumName<SimulatedLens>{SimulatedLens::kFisheye, "equidistant"}};
+}
+
+std::vector<EnumName<LidarModel>> names_of(LidarModel) {
+  std::vector<EnumName<LidarModel>> names;
+  for (const LidarDataSheet& sheet : lidar_data_sheets())
+    names.push_back({sheet.model, sheet.name});
+  return names;
+}
+
+constexpr auto names_of(SweepDirection) {
+  return std::array{
+      EnumName<SweepDirection>{SweepDirection::kClockwise, "clockwise"},
+      EnumName<SweepDirection>{SweepDirection::kCounterclockwise, "counterclockwise"}};
 }
 
 namespace {
@@ -43,6 +58,8 @@ class CameraKeys {
     visit_each(visit, "yaw", [](SimulatedCamera& c) { return Degrees{c.yaw}; });
     visit_each(visit, "grey", [](SimulatedCamera& c) -> bool& { return c.grey; });
     visit_each(visit, "lens", [](SimulatedCamera& c) -> SimulatedLens& { return c.lens; });
+    visit_each(visit, "rate", [](SimulatedCamera& c) -> double& { return c.rate; });
+    visit_each(visit, "phase", [](SimulatedCamera& c) -> double& { return c.phase; });
   }
 
   /// The cameras named by their numbers. ConfigError for a key of another one.
@@ -92,6 +109,42 @@ class CameraKeys {
   std::string key_of_none_;
 };
 
+/// Angles in radians as a key in degrees.
+void visit_degrees(SettingVisitor& visit, std::string_view key, std::vector<double>& radians) {
+  std::vector<double> degrees;
+  degrees.reserve(radians.size());
+  for (const double angle : radians) {
+    degrees.push_back(std::stod(fmt::format("{:.12g}", angle / kDegree)));
+  }
+  const std::vector<double> before = degrees;
+  visit(key, degrees);
+  if (degrees == before) return;
+  radians.clear();
+  for (const double angle : degrees) radians.push_back(angle * kDegree);
+}
+
+void visit_lidar(SettingVisitor& visit, LidarOptions& lidar) {
+  LidarModel model = lidar.model;
+  visit("lidar.model", model);
+  if (model != lidar.model) set_model(lidar, model);
+  visit_degrees(visit, "lidar.elevations", lidar.elevations);
+  visit("lidar.period", lidar.period);
+  visit("lidar.columns", lidar.columns);
+  visit("lidar.min_range", lidar.min_range);
+  visit("lidar.max_range", lidar.max_range);
+  visit("lidar.range_noise", lidar.range_noise);
+  visit("lidar.range_resolution", lidar.range_resolution);
+  visit("lidar.dropouts", lidar.dropouts);
+  visit("lidar.height", lidar.height);
+  visit("lidar.point_times", lidar.point_times);
+  visit("lidar.roll", Degrees{lidar.roll});
+  visit("lidar.pitch", Degrees{lidar.pitch});
+  visit("lidar.yaw", Degrees{lidar.yaw});
+  visit("lidar.direction", lidar.direction);
+  visit("lidar.start_azimuth", Degrees{lidar.start_azimuth});
+  visit("lidar.stamp_phase", lidar.stamp_phase);
+}
+
 /// Calls `visit(key, reference)` for every key but those of `cameras`' list.
 void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& cameras) {
   visit("drive.pass", o.pass);
@@ -113,15 +166,7 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("street.bends", Degrees{o.bends});
   visit("street.curvature", o.curvature);
 
-  visit("lidar.period", o.lidar.period);
-  visit("lidar.columns", o.lidar.columns);
-  visit("lidar.min_range", o.lidar.min_range);
-  visit("lidar.max_range", o.lidar.max_range);
-  visit("lidar.range_noise", o.lidar.range_noise);
-  visit("lidar.range_resolution", o.lidar.range_resolution);
-  visit("lidar.dropouts", o.lidar.dropouts);
-  visit("lidar.height", o.lidar.height);
-  visit("lidar.point_times", o.lidar.point_times);
+  visit_lidar(visit, o.lidar);
 
   cameras.visit(visit);
   visit("camera.width", o.camera.width);
@@ -137,6 +182,9 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("camera.rotation_error_y", Degrees{o.camera.rotation_error.y()});
   visit("camera.rotation_error_z", Degrees{o.camera.rotation_error.z()});
   visit("camera.trigger_delay", o.camera.trigger_delay);
+  visit("camera.rate", o.camera.rate);
+  visit("camera.phase", o.camera.phase);
+  visit("camera.rolling_shutter", o.camera.rolling_shutter);
 
   NavigationOptions& n = o.navigation;
   visit("navigation.latitude", n.origin.latitude);  // degrees, as in the records

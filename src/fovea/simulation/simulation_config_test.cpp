@@ -101,6 +101,99 @@ TEST(SimulationOptions, RejectsByKey) {
               HasSubstr("navigation.latitude"));
 }
 
+TEST(SimulationOptions, RejectsRingsByTheirKey) {
+  const auto error = [](std::vector<double> elevations, LidarModel model = LidarModel::kHdl64) {
+    SimulationOptions options;
+    options.format = DriveFormat::kGeneric;
+    set_model(options.lidar, model);
+    options.lidar.elevations = std::move(elevations);
+    return config_error([&] { options.validate(); });
+  };
+  EXPECT_EQ(error({0.2, 0.1, 0}), "no ConfigError");
+  EXPECT_THAT(error({0.1, 0.1}), AllOf(HasSubstr("lidar.elevations"), HasSubstr("twice")));
+  EXPECT_THAT(error({0.1, 0.2}), HasSubstr("highest first"));
+  EXPECT_THAT(error({2}), AllOf(HasSubstr("lidar.elevations"), HasSubstr("-90 to 90")));
+  EXPECT_THAT(error({NAN}), HasSubstr("lidar.elevations"));
+  EXPECT_THAT(error(std::vector<double>(257)), HasSubstr("at most 256"));
+  EXPECT_THAT(error({0.1}, LidarModel::kLivoxAvia), HasSubstr("no rings"));
+}
+
+TEST(SimulationOptions, ARosetteNeedsPointTimes) {
+  SimulationOptions options;
+  set_model(options.lidar, LidarModel::kLivoxHap);
+  EXPECT_THAT(config_error([&] { options.validate(); }),
+              AllOf(HasSubstr("lidar.model"), HasSubstr("--format generic")));
+  options.format = DriveFormat::kGeneric;
+  EXPECT_NO_THROW(options.validate());
+}
+
+TEST(SimulationOptions, KittisFormatHasOneSweepAndAnyMount) {
+  const auto error = [](auto&& change) {
+    SimulationOptions options;
+    change(options.lidar);
+    const std::string kitti = config_error([&] { options.validate(); });
+    options.format = DriveFormat::kGeneric;
+    EXPECT_NO_THROW(options.validate());
+    return kitti;
+  };
+  EXPECT_THAT(error([](auto& lidar) { lidar.direction = SweepDirection::kCounterclockwise; }),
+              AllOf(HasSubstr("lidar.direction"), HasSubstr("--format generic")));
+  EXPECT_THAT(error([](auto& lidar) { lidar.start_azimuth = 0; }),
+              AllOf(HasSubstr("lidar.start_azimuth"), HasSubstr("--format generic")));
+  EXPECT_THAT(error([](auto& lidar) { lidar.stamp_phase = 1; }),
+              AllOf(HasSubstr("lidar.stamp_phase"), HasSubstr("--format generic")));
+  // The calibration has the mount.
+  EXPECT_EQ(error([](auto& lidar) { lidar.roll = 180 * kDegree; }), "no ConfigError");
+}
+
+TEST(SimulationOptions, ARosetteDoesNotRotate) {
+  SimulationOptions options;
+  options.format = DriveFormat::kGeneric;
+  set_model(options.lidar, LidarModel::kLivoxAvia);
+  options.lidar.stamp_phase = 0;
+  EXPECT_NO_THROW(options.validate());
+  options.lidar.direction = SweepDirection::kCounterclockwise;
+  EXPECT_THAT(config_error([&] { options.validate(); }),
+              AllOf(HasSubstr("lidar.direction"), HasSubstr("does not rotate")));
+}
+
+TEST(SimulationConfig, AModelSetsTheLidarAndOtherKeysChangeIt) {
+  SimulationOptions options = simulation_options(Scene::kStreet, "default");
+  apply_setting("lidar.model=vlp16", options);
+  EXPECT_EQ(ring_elevations(options.lidar).size(), 16u);
+  EXPECT_EQ(options.lidar.period, 0.1);
+  EXPECT_EQ(sweep_columns(options.lidar), 1808);
+  EXPECT_EQ(options.lidar.max_range, 100);
+  EXPECT_NEAR(options.lidar.range_noise, 0.03, 1e-15);
+  // Other keys of the document change the model, wherever they stand.
+  apply_config_text("[lidar]\nperiod = 0.05\nelevations = [10, 0.5, -20]\nmodel = \"xt32\"\n",
+                    "x.toml", options);
+  EXPECT_EQ(options.lidar.period, 0.05);
+  EXPECT_NEAR(options.lidar.range_noise, 0.005, 1e-15);
+  EXPECT_THAT(ring_elevations(options.lidar),
+              ElementsAre(10 * kDegree, 0.5 * kDegree, -20 * kDegree));
+  SimulationOptions back;
+  apply_config_text(to_toml(options), "x.toml", back);
+  EXPECT_EQ(to_toml(back), to_toml(options));
+  EXPECT_EQ(back.lidar.elevations, options.lidar.elevations);
+  EXPECT_EQ(back.lidar.range_noise, options.lidar.range_noise);
+
+  apply_setting("lidar.model=hdl64", options);
+  EXPECT_EQ(sweep_columns(options.lidar), 2083);
+  EXPECT_EQ(options.lidar.period, LidarOptions().period);
+  EXPECT_THAT(config_error([&] { apply_setting("lidar.model=radar", options); }),
+              AllOf(HasSubstr("lidar.model"), HasSubstr("os1-64")));
+}
+
+TEST(SimulationConfig, AModelKeepsTheLevelOfNoise) {
+  SimulationOptions none = simulation_options(Scene::kStreet, "none"),
+                    harsh = simulation_options(Scene::kStreet, "harsh");
+  for (SimulationOptions* options : {&none, &harsh}) apply_setting("lidar.model=vlp16", *options);
+  EXPECT_EQ(none.lidar.range_noise, 0);
+  EXPECT_EQ(none.lidar.range_resolution, 0);
+  EXPECT_NEAR(harsh.lidar.range_noise, 0.04 / 0.015 * 0.03, 1e-15);
+}
+
 TEST(SimulationConfig, ReadsBackTheSame) {
   for (const std::string& noise : noise_names()) {
     SimulationOptions options = simulation_options(Scene::kCanyon, noise);
@@ -108,7 +201,13 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     options.curvature = -0.0123;
     options.camera.rotation_error = {0.3 * kDegree, -0.2 * kDegree, 0.1 * kDegree};
     options.camera.trigger_delay = 0.02;
+    options.lidar.roll = 180 * kDegree;
+    options.lidar.direction = SweepDirection::kCounterclockwise;
+    options.lidar.start_azimuth = 12.5 * kDegree;
+    options.lidar.stamp_phase = 0.75;
+    options.format = DriveFormat::kGeneric;
     SimulationOptions back;
+    back.format = DriveFormat::kGeneric;
     apply_config_text(to_toml(options), "x.toml", back);
     EXPECT_EQ(to_toml(back), to_toml(options));
     // To the last bit: the same options make the same bytes.
@@ -118,6 +217,8 @@ TEST(SimulationConfig, ReadsBackTheSame) {
     EXPECT_EQ(back.curvature, options.curvature);
     EXPECT_EQ(back.camera.rotation_error, options.camera.rotation_error);
     EXPECT_EQ(back.camera.trigger_delay, options.camera.trigger_delay);
+    EXPECT_EQ(back.lidar.roll, options.lidar.roll);
+    EXPECT_EQ(back.lidar.start_azimuth, options.lidar.start_azimuth);
     EXPECT_EQ(back.navigation.angle_noise, options.navigation.angle_noise);
     EXPECT_EQ(back.navigation.angle_walk, options.navigation.angle_walk);
     EXPECT_EQ(back.navigation.rate_noise, options.navigation.rate_noise);

@@ -11,6 +11,8 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/random.h"
+#include "fovea/simulation/image_schedule.h"
+#include "fovea/simulation/option_checks.h"
 #include "fovea/simulation/rig.h"
 
 namespace fovea {
@@ -23,82 +25,52 @@ constexpr std::array<std::pair<Scene, std::string_view>, 6> kScenes{{{Scene::kSt
                                                                      {Scene::kPlaza, "plaza"},
                                                                      {Scene::kStress, "stress"}}};
 
-[[noreturn]] void reject(std::string_view what, std::string_view key, std::string_view remedy) {
-  throw ConfigError(what, key, remedy);
-}
-
-/// ConfigError unless low <= value <= high; NaN is outside of everything.
-void check(std::string_view key, double value, double low, double high,
-           std::string_view unit = "") {
-  if (value >= low && value <= high) return;
-  const std::string_view space = unit.empty() ? "" : " ";
-  reject(fmt::format("{:.6g}{}{} is out of range", value, space, unit), key,
-         fmt::format("give {:g} to {:g}{}{}", low, high, space, unit));
-}
-
-void check_degrees(std::string_view key, double radians, double low, double high) {
-  check(key, radians / kDegree, low, high, "degrees");
-}
-
 void check(const LightOptions& light) {
   check_degrees("light.sun_azimuth", light.sun_azimuth, -360, 360);
   check_degrees("light.sun_elevation", light.sun_elevation, 0, 90);
-  check("light.sun", light.sun, 0, 100);
-  check("light.sky", light.sky, 0, 100);
+  check_range("light.sun", light.sun, 0, 100);
+  check_range("light.sky", light.sky, 0, 100);
 }
 
 void check(const VehicleOptions& vehicle) {
-  check("vehicle.speed", vehicle.speed, 0, 50, "m/s");
-  check("vehicle.speed_variation", vehicle.speed_variation, 0, 0.99);
-  check("vehicle.weave", vehicle.weave, 0, 1, "m");
+  check_range("vehicle.speed", vehicle.speed, 0, 50, "m/s");
+  check_range("vehicle.speed_variation", vehicle.speed_variation, 0, 0.99);
+  check_range("vehicle.weave", vehicle.weave, 0, 1, "m");
   check_degrees("vehicle.sway", vehicle.sway, 0, 10);
-  check("vehicle.heave", vehicle.heave, 0, 0.5, "m");
-  check("vehicle.stop_at", vehicle.stop_at, -1, 1e5, "s");
-  check("vehicle.stop_braking", vehicle.stop_braking, 0.5, 60, "s");
-  check("vehicle.stop_duration", vehicle.stop_duration, 0, 3600, "s");
-}
-
-void check(const LidarOptions& lidar) {
-  check("lidar.period", lidar.period, 0.04, 0.25, "s");
-  check("lidar.columns", lidar.columns, 8, 20'000);
-  check("lidar.min_range", lidar.min_range, 0, 100, "m");
-  check("lidar.max_range", lidar.max_range, 1, 1000, "m");
-  if (lidar.max_range <= lidar.min_range) {
-    reject("the longest range is not beyond the shortest", "lidar.max_range",
-           "give more than lidar.min_range");
-  }
-  check("lidar.range_noise", lidar.range_noise, 0, 1, "m");
-  check("lidar.range_resolution", lidar.range_resolution, 0, 1, "m");
-  check("lidar.dropouts", lidar.dropouts, 0, 100);
-  check("lidar.height", lidar.height, 0.3, 5, "m");
+  check_range("vehicle.heave", vehicle.heave, 0, 0.5, "m");
+  check_range("vehicle.stop_at", vehicle.stop_at, -1, 1e5, "s");
+  check_range("vehicle.stop_braking", vehicle.stop_braking, 0.5, 60, "s");
+  check_range("vehicle.stop_duration", vehicle.stop_duration, 0, 3600, "s");
 }
 
 void check(const CameraOptions& camera) {
   if (camera.cameras.empty()) reject("there is no camera", "camera.numbers", "give one or more");
   std::set<int> numbers;
   for (const SimulatedCamera& one : camera.cameras) {
-    check("camera.numbers", one.number, 0, 9);
-    check(fmt::format("camera.right_{}", one.number), one.right, -10, 10, "m");
-    check(fmt::format("camera.forward_{}", one.number), one.forward, -10, 10, "m");
+    check_range("camera.numbers", one.number, 0, 9);
+    check_range(fmt::format("camera.right_{}", one.number), one.right, -10, 10, "m");
+    check_range(fmt::format("camera.forward_{}", one.number), one.forward, -10, 10, "m");
     check_degrees(fmt::format("camera.yaw_{}", one.number), one.yaw, -360, 360);
     if (!numbers.insert(one.number).second) {
       reject(fmt::format("camera {} is named twice", one.number), "camera.numbers",
              "name each camera once");
     }
   }
-  check("camera.width", camera.width, 8, 8192, "pixels");
-  check("camera.height", camera.height, 8, 8192, "pixels");
-  check("camera.focal", camera.focal, 1, 1e5, "pixels");
-  check("camera.cx", camera.cx, -1e5, 1e5, "pixels");
-  check("camera.cy", camera.cy, -1e5, 1e5, "pixels");
-  check("camera.exposure", camera.exposure, 0.01, 100);
-  check("camera.exposure_variation", camera.exposure_variation, 0, 3);
-  check("camera.vignetting", camera.vignetting, 0, 1);
-  check("camera.noise", camera.noise, 0, 100, "grey levels");
+  check_range("camera.width", camera.width, 8, 8192, "pixels");
+  check_range("camera.height", camera.height, 8, 8192, "pixels");
+  check_range("camera.focal", camera.focal, 1, 1e5, "pixels");
+  check_range("camera.cx", camera.cx, -1e5, 1e5, "pixels");
+  check_range("camera.cy", camera.cy, -1e5, 1e5, "pixels");
+  check_range("camera.exposure", camera.exposure, 0.01, 100);
+  check_range("camera.exposure_variation", camera.exposure_variation, 0, 3);
+  check_range("camera.vignetting", camera.vignetting, 0, 1);
+  check_range("camera.noise", camera.noise, 0, 100, "grey levels");
   check_degrees("camera.rotation_error_x", camera.rotation_error.x(), -5, 5);
   check_degrees("camera.rotation_error_y", camera.rotation_error.y(), -5, 5);
   check_degrees("camera.rotation_error_z", camera.rotation_error.z(), -5, 5);
-  check("camera.trigger_delay", camera.trigger_delay, -0.05, 0.05, "s");
+  check_range("camera.trigger_delay", camera.trigger_delay, -0.05, 0.05, "s");
+  check_image_times(camera);
+  check_range("camera.rolling_shutter", camera.rolling_shutter, 0, 0.1, "s");
 }
 
 /// KITTI's format has rectified cameras only, which look the same way.
@@ -130,11 +102,11 @@ void check_lenses(const CameraOptions& camera) {
 
 void check(const NavigationOptions& navigation, double period) {
   // East and north are not defined at the poles.
-  check("navigation.latitude", navigation.origin.latitude, -89, 89, "degrees");
-  check("navigation.longitude", navigation.origin.longitude, -180, 180, "degrees");
-  check("navigation.altitude", navigation.origin.altitude, -1000, 10'000, "m");
-  check("navigation.min_delay", navigation.min_delay, 0, 0.2, "s");
-  check("navigation.max_delay", navigation.max_delay, 0, 0.2, "s");
+  check_range("navigation.latitude", navigation.origin.latitude, -89, 89, "degrees");
+  check_range("navigation.longitude", navigation.origin.longitude, -180, 180, "degrees");
+  check_range("navigation.altitude", navigation.origin.altitude, -1000, 10'000, "m");
+  check_range("navigation.min_delay", navigation.min_delay, 0, 0.2, "s");
+  check_range("navigation.max_delay", navigation.max_delay, 0, 0.2, "s");
   const double spread = navigation.max_delay - navigation.min_delay;
   if (spread < 0) {
     reject("the longest delay is below the shortest", "navigation.max_delay",
@@ -144,15 +116,15 @@ void check(const NavigationOptions& navigation, double period) {
     reject("the delays would put records out of order", "navigation.max_delay",
            "give less than navigation.min_delay and lidar.period together");
   }
-  check("navigation.position_noise", navigation.position_noise, 0, 100, "m");
-  check("navigation.position_walk", navigation.position_walk, 0, 100, "m per root second");
-  check("navigation.position_bias", navigation.position_bias, 0, 100, "m");
+  check_range("navigation.position_noise", navigation.position_noise, 0, 100, "m");
+  check_range("navigation.position_walk", navigation.position_walk, 0, 100, "m per root second");
+  check_range("navigation.position_bias", navigation.position_bias, 0, 100, "m");
   check_degrees("navigation.angle_noise", navigation.angle_noise, 0, 10);
   check_degrees("navigation.angle_walk", navigation.angle_walk, 0, 10);
-  check("navigation.velocity_noise", navigation.velocity_noise, 0, 100, "m/s");
+  check_range("navigation.velocity_noise", navigation.velocity_noise, 0, 100, "m/s");
   check_degrees("navigation.rate_noise", navigation.rate_noise, 0, 100);
-  check("navigation.jump_rate", navigation.jump_rate, 0, 10, "a second");
-  check("navigation.jump_size", navigation.jump_size, 0, 100, "m");
+  check_range("navigation.jump_rate", navigation.jump_rate, 0, 10, "a second");
+  check_range("navigation.jump_size", navigation.jump_size, 0, 100, "m");
 }
 
 /// What a scene has of its own; errors as by default.
@@ -216,16 +188,20 @@ void make_harsh(SimulationOptions& options) {
 }  // namespace
 
 void SimulationOptions::validate() const {
-  check("--seed", seed, 0, 2'147'483'647);
-  check("drive.pass", pass, 0, 1'000'000);
-  check("--frames", frames, 1, kMaxFrames);
+  check_range("--seed", seed, 0, 2'147'483'647);
+  check_range("drive.pass", pass, 0, 1'000'000);
+  check_range("--frames", frames, 1, kMaxFrames);
   check(light);
   check(vehicle);
   check_degrees("street.bends", bends, 0, 60);
-  check("street.curvature", curvature, -0.05, 0.05, "per m");
+  check_range("street.curvature", curvature, -0.05, 0.05, "per m");
   check(lidar);
   check(camera);
-  if (format == DriveFormat::kKitti) check_format(camera);
+  if (format == DriveFormat::kKitti) {
+    check_format(camera);
+    check_kitti_image_times(camera);
+    check_kitti_format(lidar);
+  }
   check_lenses(camera);
   check(navigation, lidar.period);
 }

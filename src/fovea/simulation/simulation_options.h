@@ -8,6 +8,7 @@
 
 #include "fovea/base/angle.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/simulation/lidar_options.h"
 
 namespace fovea {
 
@@ -42,18 +43,6 @@ struct VehicleOptions {
   double stop_duration = 5;   ///< s that it stands
 };
 
-/// HDL-64E S2: 32 beams from +2 to -8.33 degrees and 32 from -8.83 to -24.33, turning clockwise.
-struct LidarOptions {
-  double period = 0.1034;                   ///< s a sweep, KITTI's
-  int columns = 2083;                       ///< firings a sweep
-  double min_range = 0.9, max_range = 120;  ///< m
-  double range_noise = 0.015;               ///< m, standard deviation
-  double range_resolution = 0.002;          ///< m; 0: exact
-  double dropouts = 1;      ///< factor on the chance that a weak return is lost; 0: none is
-  double height = 1.73;     ///< m above the road
-  bool point_times = true;  ///< scans say when each point was measured, where their format can
-};
-
 /// Lenses that can be simulated; coefficients in rig.cpp.
 enum class SimulatedLens {
   kNone,      ///< pinhole
@@ -69,6 +58,8 @@ struct SimulatedCamera {
   double forward = 0;  ///< m, from camera 0 along the rectified z axis
   double yaw = 0;      ///< rad, counter-clockwise seen from above
   SimulatedLens lens = SimulatedLens::kNone;
+  double rate = 0;   ///< images a second; 0: CameraOptions::rate
+  double phase = 0;  ///< s, in addition to CameraOptions::phase
 };
 
 /// The place of KITTI's camera of that number (0 to 3), or one beside camera 0.
@@ -94,7 +85,10 @@ struct CameraOptions {
   /// What the calibration files leave out: the cameras are turned, all as one round camera 0, by
   /// this rotation vector in camera 0's rectified axes (rad).
   Eigen::Vector3d rotation_error = Eigen::Vector3d::Zero();
-  double trigger_delay = 0;  ///< s, images are taken this long after the stamps say
+  double trigger_delay = 0;    ///< s, images are taken this long after the stamps say
+  double rate = 0;             ///< images a second; 0: one in the middle of each sweep
+  double phase = 0;            ///< s, of the images after the middle of (the first) sweep
+  double rolling_shutter = 0;  ///< s, from the first row of an image to the last; 0: all at once
 };
 
 struct NavigationOptions {
