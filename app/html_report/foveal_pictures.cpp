@@ -14,6 +14,7 @@
 #include "fovea/mapping/surface_samples.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
+#include "fovea/pipeline/drive_sensors.h"
 
 namespace fovea::app {
 namespace {
@@ -90,7 +91,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   if (shot == images.end()) return excuse("The frame has no image.");
   const auto place = static_cast<std::size_t>(shot - images.begin());
   const Camera camera = drive.info().calibration.cameras.at(place).at_image(placed.motion);
-  const MapperOptions options = options_of(map);
+  const MapperOptions options = suited_to(lidar_profile(drive), options_of(map));
   const FovealOptions foveal = foveal_options_of(options, camera.index);
   const FovealRegion region(foveal, camera);
 

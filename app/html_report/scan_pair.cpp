@@ -13,8 +13,10 @@
 #include "fovea/evaluation/scan_matching.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/mapping/sensor_profile_estimate.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/config.h"
+#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/pose_refiner.h"
 
@@ -173,7 +175,8 @@ std::string rate_figure(const Pair& pair, const Scans& scans, const std::vector<
                         int rate) {
   MapperOptions options = load_preset("default");
   apply_variant(fmt::format("E{}", rate), options);
-  PoseRefiner refiner(options.refinement, cameras);
+  const SensorProfile lidar = estimate_sensor_profile({&scans.target.scan_lidar, 1}, {});
+  PoseRefiner refiner(suited_to(lidar, options).refinement, cameras);
   StageClock unused;
   refiner.keep(refiner.prepare(scans.target.scan_lidar, unused), pair.target.T_local_lidar, unused);
   const RefinedPose refined =

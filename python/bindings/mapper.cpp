@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
@@ -45,8 +46,9 @@ class DriveMapper {
  private:
   DriveMapper(Drive drive, const MapperOptions& options)
       : drive_(std::move(drive)),
+        info_(info_with_lidars(*drive_.source)),
         compensate_(options.compensate_motion),
-        mapper_(drive_.source->info(), options, PoseSource::kRefine) {}
+        mapper_(info_, options, PoseSource::kRefine) {}
 
   void begin_at(int index) {
     const auto velocity = initial_velocity(*drive_.source, {}, index, compensate_);
@@ -54,6 +56,7 @@ class DriveMapper {
   }
 
   Drive drive_;
+  DriveInfo info_;
   bool compensate_;
   Mapper mapper_;
   std::optional<int> last_;

@@ -16,9 +16,13 @@ double ring_spacing_at(const SensorProfile& profile, double elevation) {
   return rings[std::size_t(lower - 1)] - rings[std::size_t(lower)];
 }
 
+double elevation_on_ground(const SensorProfile& profile, double range) {
+  return -std::atan2(profile.height.value_or(kUsualSensorHeight), range);
+}
+
 double ring_gap_on_ground(const SensorProfile& profile, double range) {
   const double height = profile.height.value_or(kUsualSensorHeight);
-  const double elevation = -std::atan2(height, range);
+  const double elevation = elevation_on_ground(profile, range);
   // The derivative of height / tan(elevation).
   return ring_spacing_at(profile, elevation) * (height + range * range / height);
 }

@@ -45,6 +45,9 @@ inline constexpr double kUsualSensorHeight = 1.73;
 /// Angle between the two rings around an elevation (rad); between the outermost two beyond them.
 double ring_spacing_at(const SensorProfile& profile, double elevation);
 
+/// Elevation of a ray that meets flat ground at a range (m from the sensor's foot), rad.
+double elevation_on_ground(const SensorProfile& profile, double range);
+
 /// How far apart two neighboring rings meet flat ground at a range (m from the sensor's foot).
 double ring_gap_on_ground(const SensorProfile& profile, double range);
 

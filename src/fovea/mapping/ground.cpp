@@ -157,8 +157,9 @@ void GroundOptions::validate() const {
   const auto reject = [](const char* what, const char* field, const char* remedy) {
     throw ConfigError(what, field, remedy);
   };
-  if (!(sensor_height > 0 && sensor_height <= 10)) {
-    reject("a height is out of range", "ground.sensor_height", "give metres above 0 and up to 10");
+  if (!(sensor_height >= 0 && sensor_height <= 10)) {
+    reject("a height is out of range", "ground.sensor_height",
+           "give meters above 0 and up to 10, or 0 for the height of the LiDAR's profile");
   }
   if (!(tolerance > 0 && tolerance <= 5)) {
     reject("a tolerance is out of range", "ground.tolerance", "give metres above 0 and up to 5");

@@ -13,7 +13,7 @@ enum class GroundMethod { kHeight, kRansac };
 
 struct GroundOptions {
   GroundMethod method = GroundMethod::kHeight;
-  double sensor_height = 1.73;  ///< m, LiDAR above the road (KITTI: 1.73)
+  double sensor_height = 1.73;  ///< m, LiDAR above the road; KITTI's
   double tolerance = 0.25;      ///< m, points up to this above the plane are ground
   int ransac_iterations = 200;
   double ransac_max_tilt = 10;  ///< degrees between the plane's normal and the LiDAR's z axis

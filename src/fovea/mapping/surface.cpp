@@ -127,9 +127,10 @@ void SurfaceOptions::validate() const {
   }
   for (const auto& [edge, key] :
        {std::pair(max_edge, "surface.max_edge"), std::pair(planar_edge, "surface.planar_edge")}) {
-    if (!(edge > 0 && edge <= 100)) {
-      throw ConfigError("the longest edge of a triangle is out of range", key,
-                        "give metres above 0 and up to 100");
+    if (!(edge >= 0 && edge <= 100)) {
+      throw ConfigError(
+          "the longest edge of a triangle is out of range", key,
+          "give meters above 0 and up to 100, or 0 to derive it from the LiDAR's rings");
     }
   }
   if (!(max_per_pixel == 0 || (max_per_pixel >= 0.1 && max_per_pixel <= 1000))) {

@@ -1,5 +1,6 @@
 #include "fovea/pipeline/drive_sensors.h"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -17,6 +18,43 @@ SensorProfile lidar_profile(const FrameSource& source) {
     if (auto* frame = std::get_if<Frame>(&result)) scans.push_back(std::move(frame->scan));
   }
   return estimate_sensor_profile(scans, {});
+}
+
+DriveInfo info_with_lidars(const FrameSource& source) {
+  DriveInfo drive = source.info();
+  drive.lidars = {lidar_profile(source)};
+  return drive;
+}
+
+MapperOptions suited_to(const SensorProfile& profile, MapperOptions options) {
+  // Range at which surfaces have to be closed between rings: the end of the white zone.
+  constexpr double kRange = 15;  // m
+  // Of a LiDAR of 64 rings (HDL-64E), and where the surface between rings is a guess.
+  constexpr double kLeastPlanarEdge = 1, kMostPlanarEdge = 4;  // m
+  constexpr double kLeastEdge = 0.4, kMostEdge = 1;            // m
+  constexpr double kLeastRangeNoise = 0.02;                    // m
+  const double gap_on_wall = profile.ring_spacing * kRange;
+  SurfaceOptions& surface = options.surface;
+  if (surface.max_edge == 0) {
+    surface.max_edge = std::clamp(1.2 * gap_on_wall, kLeastEdge, kMostEdge);
+  }
+  if (surface.planar_edge == 0) {
+    surface.planar_edge =
+        std::clamp(ring_gap_on_ground(profile, kRange), kLeastPlanarEdge, kMostPlanarEdge);
+  }
+  GroundOptions& ground = options.refinement.ground;
+  if (ground.sensor_height == 0) {
+    ground.sensor_height = profile.height.value_or(kUsualSensorHeight);
+  }
+  // A margin: rings scatter about their elevations once the sweep's motion is undone.
+  const double spacing = ring_spacing_at(profile, elevation_on_ground(profile, kRange));
+  options.moving.row_height = std::max(RangeImage::kLeastRowHeight, 1.1 * spacing);
+  options.refinement.range_noise = std::max(kLeastRangeNoise, profile.range_noise);
+  return options;
+}
+
+MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options) {
+  return suited_to(drive.lidars.empty() ? SensorProfile() : drive.lidars.front(), options);
 }
 
 }  // namespace fovea

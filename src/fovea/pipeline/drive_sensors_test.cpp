@@ -123,4 +123,54 @@ TEST(DriveSensors, KittisHdl64) {
   EXPECT_LT(profile.range_noise, 0.03);
 }
 
+SensorProfile rings(double spacing_degrees) {
+  SensorProfile profile;
+  profile.height = 1.73;
+  for (double degrees = 2; degrees > -24; degrees -= spacing_degrees) {
+    profile.ring_elevations.push_back(degrees * kDegree);
+  }
+  profile.ring_spacing = spacing_degrees * kDegree;
+  return profile;
+}
+
+TEST(DriveSensors, SettingsFollowFromTheRings) {
+  // Of 64 rings: the settings that were found on KITTI.
+  const MapperOptions dense = suited_to(rings(0.4), MapperOptions());
+  EXPECT_EQ(dense.surface.max_edge, 0.4);
+  EXPECT_EQ(dense.surface.planar_edge, 1.0);
+  EXPECT_EQ(dense.moving.row_height, RangeImage::kLeastRowHeight);
+  // Rings 1.5 degrees apart meet the ground at 15 m 3.5 m apart, and a wall there 0.39 m apart.
+  const MapperOptions sparse = suited_to(rings(1.5), MapperOptions());
+  EXPECT_NEAR(sparse.surface.planar_edge, 1.5 * kDegree * (1.73 + 15 * 15 / 1.73), 1e-9);
+  EXPECT_NEAR(sparse.surface.max_edge, 1.2 * 15 * 1.5 * kDegree, 1e-9);
+  EXPECT_NEAR(sparse.moving.row_height, 1.1 * 1.5 * kDegree, 1e-9);
+  // No edge grows without limit.
+  const MapperOptions sparsest = suited_to(rings(6), MapperOptions());
+  EXPECT_EQ(sparsest.surface.planar_edge, 4);
+  EXPECT_EQ(sparsest.surface.max_edge, 1);
+}
+
+TEST(DriveSensors, SettingsThatAreGivenStay) {
+  MapperOptions given;
+  given.surface.max_edge = 0.3;
+  given.surface.planar_edge = 0.7;
+  given.refinement.ground.sensor_height = 2.5;
+  const MapperOptions options = suited_to(rings(2), given);
+  EXPECT_EQ(options.surface.max_edge, 0.3);
+  EXPECT_EQ(options.surface.planar_edge, 0.7);
+  EXPECT_EQ(options.refinement.ground.sensor_height, 2.5);
+}
+
+TEST(DriveSensors, HeightAndNoiseComeFromTheProfile) {
+  SensorProfile profile = rings(0.4);
+  profile.height = 2.2;
+  profile.range_noise = 0.05;
+  const MapperOptions options = suited_to(profile, MapperOptions());
+  EXPECT_EQ(options.refinement.ground.sensor_height, 2.2);
+  EXPECT_EQ(options.refinement.range_noise, 0.05);
+  // A drive whose LiDAR is not known.
+  EXPECT_EQ(suited_to(DriveInfo(), MapperOptions()).refinement.ground.sensor_height,
+            kUsualSensorHeight);
+}
+
 }  // namespace fovea::drive_sensors_test

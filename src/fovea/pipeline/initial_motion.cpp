@@ -55,6 +55,7 @@ class ScanPair {
         first_(first.scan),
         second_(second.scan),
         elapsed_(seconds(second.stamp - first.stamp)),
+        height_(sensor_height(first.scan.position).value_or(kUsualSensorHeight)),
         compensate_(compensate && !drive.sweep_compensated) {
     options_.max_correction_translation = kFastest * elapsed_;
     // Of two scans, each has its own planes.
@@ -108,7 +109,7 @@ class ScanPair {
 
   RegistrationCloud standing(const PointCloud& scan) const {
     const std::vector<std::uint8_t> ground =
-        segment_ground(scan.position, {.method = GroundMethod::kRansac});
+        segment_ground(scan.position, {.method = GroundMethod::kRansac, .sensor_height = height_});
     std::vector<Eigen::Vector3f> points;
     for (std::size_t i = 0; i < ground.size(); ++i) {
       if (ground[i] == 0) points.push_back(scan.position[i]);
@@ -120,6 +121,7 @@ class ScanPair {
   const DriveInfo& drive_;
   const PointCloud &first_, &second_;
   double elapsed_;  // s
+  double height_;   // m, of the LiDAR above the ground
   bool compensate_;
   /// What the mapper registers by unless told otherwise, whatever it is told: this finds the first
   /// guess, which is not what options compare.

@@ -13,6 +13,7 @@
 #include "fovea/map/map_meta.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
+#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/self_calibration.h"
@@ -317,7 +318,7 @@ void require_motion(const DriveInfo& drive, const MapJob& job) {
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress) {
   const WallClock::time_point start = WallClock::now();
-  DriveInfo drive = source.info();
+  DriveInfo drive = info_with_lidars(source);
   require_motion(drive, job);
   MapMeta meta = describe(drive, job);
   const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);

@@ -6,6 +6,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/surface_samples.h"
+#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/foveal_query.h"
 
 namespace fovea {
@@ -58,10 +59,10 @@ double reach_of(const DriveInfo& drive, const MapperOptions& options) {
 Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
                BringNear bring_near)
     : drive_(drive),
-      options_(options),
+      options_(suited_to(drive, options)),
       bring_near_(std::move(bring_near)),
       reach_(reach_of(drive, options)),
-      tracker_(drive, options, pose_source),
+      tracker_(drive, options_, pose_source),
       moving_things_(options.moving),
       map_(options.tile_size) {
   options.validate();
@@ -313,8 +314,8 @@ void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool look
   follow_submaps(tracker_.submaps());
   if (looked_at) {
     bring_near_(map_, (tracker_.T_local_odom() * record.T_odom_lidar).translation(), reach_);
-    moving_things_.replay(map_, RangeImage(scan_lidar.position), record.T_odom_lidar,
-                          tracker_.T_local_odom().inverse(), record.index);
+    moving_things_.replay(map_, RangeImage(scan_lidar.position, options_.moving.row_height),
+                          record.T_odom_lidar, tracker_.T_local_odom().inverse(), record.index);
   }
 }
 

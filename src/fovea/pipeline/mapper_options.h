@@ -34,7 +34,8 @@ struct RefinementOptions {
   /// A result further than this from the first guess has failed: the guess is kept and said so.
   double max_correction_translation = 2.0;               ///< m
   double max_correction_rotation = 0.08726646259971647;  ///< rad
-  GroundOptions ground;
+  GroundOptions ground{.sensor_height = 0};              ///< height 0: that of the LiDAR's profile
+  double range_noise = 0.02;                             ///< m, of the LiDAR; no key
   /// With a robust kernel, so that what moves does not pull (the paper has none), and a limit to
   /// the points: what more of them would add is less than what their errors have in common.
   RegistrationOptions registration{
@@ -54,7 +55,8 @@ struct MapperOptions {
   FovealOptions foveal;
   /// Slices of single cameras by number, in place of foveal.slices.
   std::map<int, std::vector<AngularSlice>> camera_slices;
-  SurfaceOptions surface;
+  /// Edges of 0 follow from the LiDAR's rings (pipeline/drive_sensors.h).
+  SurfaceOptions surface{.max_edge = 0, .planar_edge = 0};
   UpsampleOptions upsample;  ///< where surface.spacing is 0, as in the paper
   RayFilterOptions ray_filter{.mode = RayFilterMode::kScan};
   TextureOptions texture{.views = TextureViews::kMean};

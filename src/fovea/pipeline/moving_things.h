@@ -14,10 +14,11 @@
 namespace fovea {
 
 struct MovingOptions {
-  bool remove = true;     ///< false: what moves stays, as in the paper
-  double range = 25.0;    ///< m from the LiDAR: nearer map points are looked at in every scan
-  int free_scans = 4;     ///< see through a place after it was last seen filled, and its points go
-  void validate() const;  ///< ConfigError that names the field
+  bool remove = true;   ///< false: what moves stays, as in the paper
+  double range = 25.0;  ///< m from the LiDAR: nearer map points are looked at in every scan
+  int free_scans = 4;   ///< see through a place after it was last seen filled, and its points go
+  double row_height = RangeImage::kLeastRowHeight;  ///< rad, by the LiDAR's rings; no key
+  void validate() const;                            ///< ConfigError that names the field
 };
 
 /// Evidence of free space for the voxels of a map. All evidence is of the last kMemory frame

@@ -17,9 +17,10 @@ double fit_of(const RegistrationResult& result, const RegistrationOptions& optio
 
 namespace {
 
-std::optional<NormalOptions> target_normals(const RegistrationOptions& options) {
-  if (options.method == RegistrationMethod::kPointToPoint) return std::nullopt;
-  return NormalOptions{.neighbors = options.neighbors};
+std::optional<NormalOptions> target_normals(const RefinementOptions& options) {
+  if (options.registration.method == RegistrationMethod::kPointToPoint) return std::nullopt;
+  return NormalOptions{.neighbors = options.registration.neighbors,
+                       .range_noise = options.range_noise};
 }
 
 }  // namespace
@@ -27,7 +28,7 @@ std::optional<NormalOptions> target_normals(const RegistrationOptions& options) 
 PoseRefiner::PoseRefiner(const RefinementOptions& options, std::vector<Camera> cameras)
     : options_(options),
       cameras_(std::move(cameras)),
-      local_map_(options.local_map, target_normals(options.registration)) {}
+      local_map_(options.local_map, target_normals(options)) {}
 
 Keyframes PoseRefiner::keyframes() const {
   if (options_.target == RegistrationTarget::kPreviousScan) return Keyframes({});

@@ -44,7 +44,8 @@ ScanViews view_scan(const PointCloud& scan_lidar, const Frame& frame,
                     const std::vector<Camera>& cameras, const MapperOptions& options) {
   ScanViews views;
   if (options.moving.remove) {
-    views.clock.time("filter", [&] { views.ranges.emplace(scan_lidar.position); });
+    views.clock.time("filter",
+                     [&] { views.ranges.emplace(scan_lidar.position, options.moving.row_height); });
   }
   if (!options.foveal_enabled) return views;
   views.of_camera.resize(cameras.size());

@@ -13,6 +13,7 @@
 #include "fovea/base/time.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/sensor_profile.h"
 #include "fovea/geometry/trajectory.h"
 
 namespace fovea {
@@ -75,6 +76,8 @@ struct DriveInfo {
   double sweep_period = 0.1;       ///< s
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
+  /// Profiles of the LiDARs; empty until they are estimated (pipeline/drive_sensors.h).
+  std::vector<SensorProfile> lidars;
   /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR (or, with
   /// poses.csv, in the axes of its world); absent
   /// where the drive has no (usable) navigation.

@@ -13,15 +13,15 @@ namespace fovea {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kColumns = 720;                   // half a degree
-constexpr float kRowHeight = 0.6f * kPi / 180;  // more than the spacing of a spinning LiDAR's rings
-constexpr float kMinRange = 0.5f;               // m; nearer is the vehicle, or no return at all
+constexpr int kColumns = 720;      // half a degree
+constexpr float kMinRange = 0.5f;  // m; nearer is the vehicle, or no return at all
 /// Ranges are kept in steps, finer than what is asked of them: half the memory that floats take.
 constexpr float kStep = 0.005f;             // m
 constexpr std::uint16_t kFarthest = 65534;  // or beyond
 constexpr std::uint16_t kNothing = 65535;
 
-/// Cells to either side that a ball of about 0.15 m covers, from each range on.
+/// Cells to either side that a ball of about 0.15 m covers, from each range on; of rows as high as
+/// kLeastRowHeight.
 struct Window {
   float range;  // m
   int half_width;
@@ -33,7 +33,9 @@ constexpr float kFilledShare = 0.4f;
 float column_of(float x, float y) {  // with a fraction
   return (quick_atan2(y, x) + kPi) * (kColumns / (2 * kPi));
 }
-float row_of(float z, float flat) { return std::floor(quick_atan2(z, flat) / kRowHeight); }
+float row_of(float z, float flat, float row_height) {
+  return std::floor(quick_atan2(z, flat) / row_height);
+}
 int whole_column(float column) { return std::clamp(static_cast<int>(column), 0, kColumns - 1); }
 
 struct Return {
@@ -47,7 +49,7 @@ struct DirectionBlock {
   using Row = std::array<float, kSize>;
   alignas(64) Row x{}, y{}, z{}, flat{}, range{}, row{}, column{};
 
-  void compute(std::span<const Eigen::Vector3f> points) {
+  void compute(std::span<const Eigen::Vector3f> points, float row_height) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       x[i] = points[i].x();
       y[i] = points[i].y();
@@ -58,13 +60,14 @@ struct DirectionBlock {
       flat[i] = std::sqrt(flat2);
       range[i] = std::sqrt(flat2 + z[i] * z[i]);
     }
-    for (std::size_t i = 0; i < kSize; ++i) row[i] = row_of(z[i], flat[i]);
+    for (std::size_t i = 0; i < kSize; ++i) row[i] = row_of(z[i], flat[i], row_height);
     for (std::size_t i = 0; i < kSize; ++i) column[i] = column_of(x[i], y[i]);
   }
 };
 
 /// Whatever is far enough and finite, a chunk behind the other.
-std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> scan_lidar) {
+std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> scan_lidar,
+                                            float row_height) {
   constexpr std::size_t kGrain = 32 * DirectionBlock::kSize;
   std::vector<std::vector<Return>> chunks((scan_lidar.size() + kGrain - 1) / kGrain);
   parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -73,7 +76,7 @@ std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> sca
     returns.reserve(end - begin);
     for (; begin < end; begin += DirectionBlock::kSize) {
       const std::size_t count = std::min(DirectionBlock::kSize, end - begin);
-      block.compute(scan_lidar.subspan(begin, count));
+      block.compute(scan_lidar.subspan(begin, count), row_height);
       for (std::size_t i = 0; i < count; ++i) {
         if (!(block.range[i] > kMinRange) || !std::isfinite(block.range[i])) continue;
         returns.push_back({static_cast<std::int16_t>(block.row[i]),
@@ -87,8 +90,9 @@ std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> sca
 
 }  // namespace
 
-RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
-  const std::vector<std::vector<Return>> returns = returns_of(scan_lidar);
+RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar, double row_height)
+    : row_height_(static_cast<float>(row_height)) {
+  const std::vector<std::vector<Return>> returns = returns_of(scan_lidar, row_height_);
   int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
   for (const std::vector<Return>& chunk : returns) {
     for (const Return& r : chunk) {
@@ -116,6 +120,11 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar) {
                [&](std::size_t k) { levels_[k] = widened(cells, kWindows[k].half_width); });
 }
 
+int RangeImage::half_height(int half_width) const {
+  const double rows = half_width * kLeastRowHeight / double(row_height_);
+  return std::max(1, static_cast<int>(std::lround(rows)));
+}
+
 void RangeImage::take_in(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
                          std::size_t count) {
   const std::uint16_t* const nearest = from.nearest.data() + from_cell;
@@ -129,6 +138,7 @@ void RangeImage::take_in(const Level& from, std::size_t from_cell, Level& to, st
 }
 
 RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
+  const int half_rows = half_height(half);
   // Along rows, which close to a ring, and then along columns.
   Level wide = cells;
   for (int row = 0; row < rows_; ++row) {
@@ -143,7 +153,7 @@ RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
   }
   Level result = wide;
   for (int row = 0; row < rows_; ++row) {
-    for (int k = std::max(0, row - half); k <= std::min(rows_ - 1, row + half); ++k) {
+    for (int k = std::max(0, row - half_rows); k <= std::min(rows_ - 1, row + half_rows); ++k) {
       if (k == row) continue;
       take_in(wide, static_cast<std::size_t>(k) * kColumns, result,
               static_cast<std::size_t>(row) * kColumns, kColumns);
@@ -153,14 +163,15 @@ RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
 }
 
 Sight RangeImage::sight(const Eigen::Vector3f& p) const {
-  return sight_at(p.norm(), row_of(p.z(), p.head<2>().norm()), column_of(p.x(), p.y()));
+  return sight_at(p.norm(), row_of(p.z(), p.head<2>().norm(), row_height_),
+                  column_of(p.x(), p.y()));
 }
 
 void RangeImage::look(std::span<const Eigen::Vector3f> p_lidar, std::span<Sight> sights) const {
   DirectionBlock block;
   for (std::size_t begin = 0; begin < p_lidar.size(); begin += DirectionBlock::kSize) {
     const std::size_t count = std::min(DirectionBlock::kSize, p_lidar.size() - begin);
-    block.compute(p_lidar.subspan(begin, count));
+    block.compute(p_lidar.subspan(begin, count), row_height_);
     for (std::size_t i = 0; i < count; ++i) {
       sights[begin + i] = sight_at(block.range[i], block.row[i], block.column[i]);
     }
@@ -182,9 +193,10 @@ Sight RangeImage::sight_at(float range, float row_of_place, float column_of_plac
       kept == kNothing ? std::numeric_limits<float>::infinity() : float(kept) * kStep;
   if (nearest < range - kMargin) return Sight::kUnknown;  // something stands before it
   if (nearest <= range + kMargin) return Sight::kSurface;
-  const bool above_and_below = row >= half && row + half < rows_;
-  const auto width = static_cast<float>(2 * half + 1);
-  const bool enough = levels_[window].filled[cell] >= kFilledShare * width * width;
+  const int half_rows = half_height(half);
+  const bool above_and_below = row >= half_rows && row + half_rows < rows_;
+  const auto cells = static_cast<float>((2 * half + 1) * (2 * half_rows + 1));
+  const bool enough = levels_[window].filled[cell] >= kFilledShare * cells;
   return above_and_below && enough ? Sight::kFree : Sight::kUnknown;
 }
 

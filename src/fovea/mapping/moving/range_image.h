@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,14 @@ class RangeImage {
  public:
   static constexpr float kMargin = 0.3f;  ///< m: a return this near in range is the place itself
 
+  /// Height of a row for LiDARs whose rings lie closer (rad). Rows have to be higher than the
+  /// spacing of rings: a row without a ring never holds a return.
+  static constexpr double kLeastRowHeight = 0.6 * std::numbers::pi / 180;
+
   /// @param scan_lidar  m, LiDAR frame, motion compensated
-  explicit RangeImage(std::span<const Eigen::Vector3f> scan_lidar);
+  /// @param row_height  rad, at least kLeastRowHeight
+  explicit RangeImage(std::span<const Eigen::Vector3f> scan_lidar,
+                      double row_height = kLeastRowHeight);
 
   /// @param p_lidar  m, frame of the scan's LiDAR
   Sight sight(const Eigen::Vector3f& p_lidar) const;
@@ -46,7 +53,10 @@ class RangeImage {
   static void take_in(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
                       std::size_t count);
   Level widened(const Level& cells, int half_width) const;
+  /// Rows to either side that reach as far as columns do.
+  int half_height(int half_width) const;
 
+  float row_height_;   // rad
   int first_row_ = 0;  // of the lowest return
   int rows_ = 0;
   std::array<Level, kLevels> levels_;

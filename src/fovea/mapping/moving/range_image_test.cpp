@@ -7,12 +7,12 @@
 
 namespace fovea::range_image_test {
 
-/// A scan of 64 rings in a round room of `radius` m with its floor 1.7 m below the sensor, and
-/// nearer returns where `nearer` has them (m; 0: none).
+/// A scan of 64 rings, or fewer as far apart, in a round room of `radius` m with its floor 1.7 m
+/// below the sensor, and nearer returns where `nearer` has them (m; 0: none).
 template <class Nearer>
-std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer) {
+std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer, int every = 1) {
   std::vector<Eigen::Vector3f> scan;
-  for (int ring = 0; ring < 64; ++ring) {
+  for (int ring = 0; ring < 64; ring += every) {
     const float elevation = (2.0f - 0.42f * float(ring)) * std::numbers::pi_v<float> / 180;
     for (int k = 0; k < 2000; ++k) {
       const float azimuth = (float(k) - 1000) * std::numbers::pi_v<float> / 1000;
@@ -38,6 +38,25 @@ TEST(RangeImage, SaysFreeSurfaceAndUnknown) {
   EXPECT_EQ(image.sight({25, 0, -0.5f}), Sight::kUnknown) << "behind the wall";
   EXPECT_EQ(image.sight({5, 0, 3}), Sight::kUnknown) << "above the highest beam";
   EXPECT_EQ(image.sight({0.1f, 0, 0}), Sight::kUnknown);
+}
+
+TEST(RangeImage, RowsAsHighAsTheRingsAreApartSeeWhatSparseRingsSee) {
+  // Sixteen rings, 1.7 degrees apart. In rows of 0.6 degrees, two of three hold no return.
+  const std::vector<Eigen::Vector3f> scan = room_scan(20, nothing, 4);
+  const RangeImage narrow(scan), image(scan, 1.85 * std::numbers::pi / 180);
+  std::size_t places = 0, free_in_narrow = 0;
+  for (float y = -6; y < 6; y += 0.5f) {
+    const Eigen::Vector3f place(13, y, -0.5f);
+    EXPECT_EQ(image.sight(place), Sight::kFree) << y;
+    free_in_narrow += narrow.sight(place) == Sight::kFree ? 1 : 0;
+    ++places;
+  }
+  EXPECT_LT(free_in_narrow, places / 2);
+  EXPECT_EQ(image.sight({20, 0, -0.5f}), Sight::kSurface);
+  EXPECT_EQ(image.sight({25, 0, -0.5f}), Sight::kUnknown) << "behind the wall";
+  for (float x = 3; x < 25; x += 0.37f) {
+    EXPECT_NE(image.sight({x, 1, -1.7f}), Sight::kFree) << "the floor at " << x;
+  }
 }
 
 TEST(RangeImage, TheFloorIsNeverFree) {
