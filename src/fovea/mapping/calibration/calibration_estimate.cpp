@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "fovea/base/angle.h"
+#include "fovea/mapping/calibration/edge_agreement.h"
 #include "fovea/mapping/calibration/edge_score.h"
 
 namespace fovea {
@@ -40,6 +41,7 @@ constexpr double kLikelyDelay = 0.02;
 // edges out of the profiles' reach (docs/calibration.md).
 constexpr double kMinContrast = 0.5;
 constexpr double kElsewhere = 8;  // pixels
+constexpr double kConfirmed = 2;  // standard deviations, of what one half gains by the other's
 
 /// Rows and columns of parameters that are held are taken out of a system of equations.
 Matrix only(const Free& free, Matrix m) {
@@ -189,6 +191,27 @@ Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
   return Outcome::kFound;
 }
 
+/// Whether the correction of either half of the frames makes the edges of the other half meet
+/// better, beyond chance: a maximum that clutter makes in one half is none in the other.
+bool halves_confirm(const std::vector<EdgeProfile>& profiles, const Free& free) {
+  auto middle = profiles.begin() + static_cast<std::ptrdiff_t>(profiles.size() / 2);
+  while (middle != profiles.end() && middle->frame == (middle - 1)->frame) ++middle;
+  const std::array<std::vector<EdgeProfile>, 2> halves{
+      std::vector<EdgeProfile>(profiles.begin(), middle),
+      std::vector<EdgeProfile>(middle, profiles.end())};
+  double gain = 0, variance = 0;
+  for (const std::size_t half : {0u, 1u}) {
+    const Vector correction = climb(halves[half], free);
+    Vector none = correction;  // but for the shifts that are no calibration
+    none.head<4>().setZero();
+    const EdgeMean mean = edge_gain(halves[1 - half], correction, none);
+    if (mean.mean <= 0) return false;
+    gain += mean.mean;
+    variance += mean.sigma * mean.sigma;
+  }
+  return gain > kConfirmed * std::sqrt(variance);
+}
+
 /// What moves edges at all.
 Free movable(const std::vector<EdgeProfile>& profiles) {
   const Matrix bound = edge_score(profiles, Vector::Zero(), kWidths.front()).bound;
@@ -217,12 +240,19 @@ CalibrationEstimate estimate_calibration(const std::vector<EdgeProfile>& profile
   CalibrationEstimate estimate;
   estimate.frames = count_frames(profiles);
   estimate.edges = profiles.size();
-  if (estimate.frames < kMinFrames || estimate.edges < kMinEdges) return estimate;
-  Free free = movable(profiles);
-  if (try_estimate(profiles, free, estimate) == Outcome::kDelayUnobservable) {
-    free[kDelay] = false;
-    try_estimate(profiles, free, estimate);
+  if (estimate.frames < kMinFrames) return estimate;
+  if (estimate.edges >= kMinEdges) {
+    CalibrationEstimate found = estimate;
+    Free free = movable(profiles);
+    Outcome outcome = try_estimate(profiles, free, found);
+    if (outcome == Outcome::kDelayUnobservable) {
+      free[kDelay] = false;
+      outcome = try_estimate(profiles, free, found);
+    }
+    const bool is_found = outcome == Outcome::kFound;
+    if (is_found && (!found.off_by_a_pixel() || halves_confirm(profiles, free))) return found;
   }
+  estimate.disagrees = edges_disagree(profiles);
   return estimate;
 }
 
