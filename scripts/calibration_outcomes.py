@@ -3,7 +3,7 @@
 
 usage: calibration_outcomes.py FOVEA DRIVE
 
-DRIVE is a KITTI raw drive. Each row has some of its rings, each column a camera turned about one of
+DRIVE is a KITTI raw drive. Each column has some of its rings, each row a camera turned about one of
 its axes. Cells: "ok", "N px" (a warning with --calibrate), "disagree" (a warning) or "-" (not
 observable, no warning)."""
 import json
@@ -73,22 +73,30 @@ def outcome(fovea, drive, scratch):
     return f"{camera['pixels']:.0f} px" if camera["off_by_a_pixel"] else "ok"
 
 
+def outcomes(fovea, drive, divisor, rest, turns):
+    """One cell a turn, for a copy of the drive with some of its rings."""
+    given = open(os.path.dirname(drive) + "/calib_velo_to_cam.txt").read()
+    cells = []
+    with tempfile.TemporaryDirectory() as root:
+        copy = copy_with_rings(drive, root + "/drive", divisor, rest)
+        file = os.path.dirname(copy) + "/calib_velo_to_cam.txt"
+        os.remove(file)
+        for axis, degrees in turns:
+            with open(file, "w") as stream:
+                stream.write(turn(given, axis, degrees))
+            cells.append(outcome(fovea, copy, root))
+    return cells
+
+
 def main():
     fovea, drive = os.path.realpath(sys.argv[1]), os.path.realpath(sys.argv[2])
-    given = open(os.path.dirname(drive) + "/calib_velo_to_cam.txt").read()
-    turns = [(axis, degrees) for degrees in DEGREES for axis in range(3)]
-    print("| rings | as given | " + " | ".join(f"{d:g} {'xyz'[a]}" for a, d in turns) + " |")
-    print("| --- " * (2 + len(turns)) + "|")
-    for rings, (divisor, rest) in RINGS.items():
-        with tempfile.TemporaryDirectory() as root:
-            copy = copy_with_rings(drive, root + "/drive", divisor, rest)
-            file = os.path.dirname(copy) + "/calib_velo_to_cam.txt"
-            os.remove(file)
-            cells = []
-            for axis, degrees in [(0, 0)] + turns:
-                open(file, "w").write(turn(given, axis, degrees))
-                cells.append(outcome(fovea, copy, root))
-            print(f"| {rings} | " + " | ".join(cells) + " |", flush=True)
+    turns = [(0, 0)] + [(axis, degrees) for degrees in DEGREES for axis in range(3)]
+    columns = [outcomes(fovea, drive, *rings, turns) for rings in RINGS.values()]
+    print("| turned by | " + " | ".join(f"{rings} rings" for rings in RINGS) + " |")
+    print("| --- " * (1 + len(RINGS)) + "|")
+    for (axis, degrees), *cells in zip(turns, *columns):
+        name = f"{degrees:g} about {'xyz'[axis]}" if degrees else "nothing"
+        print(f"| {name} | " + " | ".join(cells) + " |")
 
 
 if __name__ == "__main__":

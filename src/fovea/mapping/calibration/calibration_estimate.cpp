@@ -28,7 +28,7 @@ constexpr int kDelay = 3;
 // A parameter with less than this share of the best one's curvature moves no edge.
 constexpr double kLeastCurvature = 1e-4;
 
-constexpr int kMinFrames = 5;
+constexpr int kMinFrames = 5, kMinFramesJudged = 3;
 constexpr std::size_t kMinEdges = 200;
 constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxDelaySigma = 0.004;
 // A vehicle that hardly moves shows no delay: pixels a second that edges move, RMS.
@@ -240,8 +240,7 @@ CalibrationEstimate estimate_calibration(const std::vector<EdgeProfile>& profile
   CalibrationEstimate estimate;
   estimate.frames = count_frames(profiles);
   estimate.edges = profiles.size();
-  if (estimate.frames < kMinFrames) return estimate;
-  if (estimate.edges >= kMinEdges) {
+  if (estimate.frames >= kMinFrames && estimate.edges >= kMinEdges) {
     CalibrationEstimate found = estimate;
     Free free = movable(profiles);
     Outcome outcome = try_estimate(profiles, free, found);
@@ -252,7 +251,7 @@ CalibrationEstimate estimate_calibration(const std::vector<EdgeProfile>& profile
     const bool is_found = outcome == Outcome::kFound;
     if (is_found && (!found.off_by_a_pixel() || halves_confirm(profiles, free))) return found;
   }
-  estimate.disagrees = edges_disagree(profiles);
+  estimate.disagrees = estimate.frames >= kMinFramesJudged && edges_disagree(profiles);
   return estimate;
 }
 

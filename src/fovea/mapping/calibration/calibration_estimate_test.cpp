@@ -215,6 +215,18 @@ TEST(CalibrationEstimate, ATurnBeyondReachDisagrees) {
   EXPECT_FALSE(estimate_calibration(profiles_of({}, planted(0.3, 0, 0, 0))).disagrees);
 }
 
+// Three frames are too few for a correction, and enough for that.
+TEST(CalibrationEstimate, ThreeFramesAreEnoughToDisagree) {
+  Drive drive;
+  for (const int frames : {2, 3}) {
+    drive.frames = frames;
+    const CalibrationEstimate wrong = estimate_calibration(profiles_of(drive, planted(0, 5, 0, 0)));
+    EXPECT_FALSE(wrong.rotation_observable);
+    EXPECT_EQ(wrong.disagrees, frames == 3);
+    EXPECT_FALSE(estimate_calibration(profiles_of(drive, planted(0, 0, 0, 0))).disagrees);
+  }
+}
+
 // One half of the frames turned, the other one not: no calibration is right for both.
 TEST(CalibrationEstimate, HalvesThatContradictEachOtherConfirmNothing) {
   auto profiles = profiles_of({}, planted(0, 0.8, 0, 0));
