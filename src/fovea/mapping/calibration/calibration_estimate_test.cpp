@@ -227,6 +227,20 @@ TEST(CalibrationEstimate, ThreeFramesAreEnoughToDisagree) {
   }
 }
 
+// Sparse rings leave a pitch open that all their edges share, and nothing else.
+TEST(CalibrationEstimate, SparseRingsMakePitchLessSure) {
+  auto dense = profiles_of({}, planted(0.1, 0, 0, 0));
+  for (EdgeProfile& profile : dense) profile.ring_spacing = float(0.4 * kDegree);
+  auto sparse = dense;
+  for (EdgeProfile& profile : sparse) profile.ring_spacing = float(1.7 * kDegree);
+  const CalibrationEstimate a = estimate_calibration(dense), b = estimate_calibration(sparse);
+  EXPECT_EQ(a.rotation, b.rotation);
+  EXPECT_GT(b.rotation_sigma.x(), 0.15 * kDegree);
+  EXPECT_EQ(a.rotation_sigma.tail<2>(), b.rotation_sigma.tail<2>());
+  EXPECT_TRUE(a.off_by_a_pixel());
+  EXPECT_FALSE(b.off_by_a_pixel());
+}
+
 // One half of the frames turned, the other one not: no calibration is right for both.
 TEST(CalibrationEstimate, HalvesThatContradictEachOtherConfirmNothing) {
   auto profiles = profiles_of({}, planted(0, 0.8, 0, 0));

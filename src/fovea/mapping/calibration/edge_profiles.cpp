@@ -155,6 +155,7 @@ std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Imag
     if (!camera.in_view(edge.middle - reach) || !camera.in_view(edge.middle + reach)) continue;
     EdgeProfile profile;
     profile.frame = view.frame;
+    profile.ring_spacing = static_cast<float>(edges_lidar.ring_spacing);
     profile.place = place_of(view.T_local_lidar * edge.p_lidar);
     profile.half_gap = static_cast<float>(edge.gap.dot(*along) / 2);
     profile.strength = strengths(image, edge.middle, *along);
