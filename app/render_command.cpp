@@ -66,7 +66,7 @@ Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
   if (has_stored_calibration(map.meta)) {
     drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
   }
-  const Camera camera = drive->info().calibration.cameras.at(0).at_image(frame.motion);
+  const Camera camera = drive->info().camera_at(0, frame.index).at_image(frame.motion);
   const FrameResult loaded = drive->load(frame.index);
   if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
     throw InputError(fmt::format("frame {} cannot be read ({})", skipped->index, skipped->detail),

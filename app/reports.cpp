@@ -21,6 +21,12 @@ std::string figures_of(const CalibrationEstimate& e) {
 }
 
 std::string calibration_line(int camera, const CalibrationEstimate& e, bool applied) {
+  if (e.disagrees) {
+    return fmt::format(
+        "warning: camera {}: camera and LiDAR do not agree ({} edges in {} frames): check its "
+        "T_cam_lidar, its K and the stamps of its images",
+        camera, e.edges, e.frames);
+  }
   if (!e.rotation_observable) {
     return fmt::format(
         "camera {}: calibration not observable ({} edges in {} frames), it stays as given", camera,
@@ -30,8 +36,9 @@ std::string calibration_line(int camera, const CalibrationEstimate& e, bool appl
       fmt::format("edges {} {:.1f} pixels off the LiDAR's", applied ? "lay" : "lie", e.pixels);
   if (applied) return fmt::format("camera {}: corrected, {}: {}", camera, edges, figures_of(e));
   if (!e.off_by_a_pixel()) return fmt::format("camera {}: {}: {}", camera, edges, figures_of(e));
-  return fmt::format("warning: camera {}: {}: {}; --calibrate corrects this", camera, edges,
-                     figures_of(e));
+  return fmt::format(
+      "warning: camera {}: {}: {}; camera and LiDAR do not agree, --calibrate corrects this",
+      camera, edges, figures_of(e));
 }
 
 }  // namespace

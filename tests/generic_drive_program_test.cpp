@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -76,6 +77,70 @@ TEST_F(GenericDriveProgram, TheSameDriveInEitherFormatGivesTheSameMap) {
               0)
         << name;
   });
+}
+
+/// Which image of a camera at 20 Hz belongs to a scan of a LiDAR at 10 Hz.
+enum class Trigger {
+  kSynchronized,  ///< the one at the scan's stamp
+  kFreeRunning,   ///< that one, or of every third scan the one 50 ms before
+  kMisdated,      ///< as kFreeRunning, but all stamped as the scans
+};
+
+/// Every second scan of a drive at 20 Hz, with the images that a trigger gives them.
+void thin_to_10_hz(const std::filesystem::path& fast, const std::filesystem::path& drive, int scans,
+                   Trigger trigger) {
+  namespace fs = std::filesystem;
+  fs::copy(fast, drive, fs::copy_options::recursive);
+  std::vector<std::string> times;
+  std::ifstream stamps(fast / "lidar/stamps.csv");
+  for (std::string line; std::getline(stamps, line);) {
+    times.push_back(line.substr(line.find(',') + 1));
+  }
+  times.erase(times.begin());  // the names of the columns
+  fs::remove_all(drive / "lidar");
+  fs::remove_all(drive / "images/camera_2");
+  fs::create_directories(drive / "lidar");
+  fs::create_directories(drive / "images/camera_2");
+  std::ofstream scan_stamps(drive / "lidar/stamps.csv"),
+      image_stamps(drive / "images/camera_2/stamps.csv");
+  scan_stamps << "index,time_ns\n";
+  image_stamps << "index,time_ns\n";
+  for (int j = 0; j < scans; ++j) {
+    const int scan = 2 * j,
+              image = trigger != Trigger::kSynchronized && j % 3 == 1 ? scan - 1 : scan;
+    const int stamped = trigger == Trigger::kMisdated ? scan : image;
+    fs::copy(fast / fmt::format("lidar/{:06}.pcd", scan),
+             drive / fmt::format("lidar/{:06}.pcd", j));
+    fs::copy(fast / fmt::format("images/camera_2/{:06}.png", image),
+             drive / fmt::format("images/camera_2/{:06}.png", j));
+    scan_stamps << fmt::format("{},{}\n", j, times.at(std::size_t(scan)));
+    image_stamps << fmt::format("{},{}\n", j, times.at(std::size_t(stamped)));
+  }
+}
+
+TEST_F(GenericDriveProgram, AFreeRunningCameraColorsAsWellAsASynchronizedOne) {
+  constexpr int kScans = 14;
+  SimulationOptions options = small_street(2 * kScans);
+  options.format = DriveFormat::kGeneric;
+  options.lidar.period = 0.05;
+  options.camera.cameras = {kitti_camera(2)};
+  simulate(options, folder_ / "fast");
+  const auto score = [&](const std::string& name, Trigger trigger) {
+    thin_to_10_hz(folder_ / "fast", folder_ / name, kScans, trigger);
+    map(name, name + ".fovea", "--hold-out 4:2");
+    const ProgramRun run = run_fovea("evaluate " + quoted(name + ".fovea") + " " + quoted(name) +
+                                     " --json " + quoted(name + ".json"));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(read_text(folder_ / (name + ".json")));
+  };
+  const auto synchronized = score("synchronized", Trigger::kSynchronized);
+  const auto free_running = score("free-running", Trigger::kFreeRunning);
+  const auto misdated = score("misdated", Trigger::kMisdated);
+  const double right = synchronized.at("te_mean"), within = synchronized.at("te_within_20");
+  EXPECT_LT(free_running.at("te_mean"), 1.1 * right);
+  EXPECT_GT(free_running.at("te_within_20"), within - 0.02);
+  // Without the right stamps the same images do not.
+  EXPECT_GT(misdated.at("te_mean"), 1.2 * right);
 }
 
 TEST_F(GenericDriveProgram, FiveCamerasAllRoundMakeOneMap) {

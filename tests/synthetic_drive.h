@@ -115,7 +115,12 @@ class SyntheticDrive : public FrameSource {
         frame.scan.intensity.push_back(0.5f);
       }
     }
-    for (const Camera& camera : info_.calibration.cameras) frame.images.push_back(photo(camera, T));
+    for (std::size_t k = 0; k < info_.calibration.cameras.size(); ++k) {
+      const Camera camera = info_.camera_at(k, index);
+      const TimeNs taken = frame.stamp + from_seconds(camera.image_delay);
+      frame.images.push_back(
+          photo(camera, taken == frame.stamp ? T : info_.navigation->at(taken).value()));
+    }
     return frame;
   }
 

@@ -90,7 +90,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
       std::find_if(images.begin(), images.end(), [](const Image& image) { return !image.empty(); });
   if (shot == images.end()) return excuse("The frame has no image.");
   const auto place = static_cast<std::size_t>(shot - images.begin());
-  const Camera camera = drive.info().calibration.cameras.at(place).at_image(placed.motion);
+  const Camera camera = drive.info().camera_at(place, placed.index).at_image(placed.motion);
   const MapperOptions options = suited_to(lidar_profile(drive), options_of(map));
   const FovealOptions foveal = foveal_options_of(options, camera.index);
   const FovealRegion region(foveal, camera);

@@ -137,7 +137,8 @@ void bind_camera(py::module_& module) {
       .def_readonly("index", &Camera::index, "The drive's number for it.")
       .def_readonly("width", &Camera::width)
       .def_readonly("height", &Camera::height)
-      .def_readonly("image_delay", &Camera::image_delay, "s, from a scan's stamp to its image.")
+      .def_readonly("image_delay", &Camera::image_delay,
+                    "s, from a scan's stamp to its image; the drive's median.")
       .def_property_readonly(
           "K",
           [](const Camera& c) {

@@ -71,7 +71,7 @@ std::vector<HeldOutView> load_held_out(const Comparison& c) {
     for (const std::size_t place : c.places) {
       if (frame.images.at(place).empty()) continue;
       HeldOutView held_out;
-      const Camera camera = info.calibration.cameras[place].at_image(placed.motion);
+      const Camera camera = info.camera_at(place, placed.index).at_image(placed.motion);
       held_out.view =
           evaluated_view(frame.scan, scan, placed, camera, frame.images.at(place), c.points.origin);
       for (const Eigen::Vector3f& p : held_out.view.position) {
@@ -229,7 +229,7 @@ std::map<ColorRule, GradientSums> compare_sharpness(const Comparison& c, RuleCol
         for (const std::size_t place : c.places) {
           if (images[i].empty() || images[i].at(place).empty()) continue;
           const Camera camera =
-              info.calibration.cameras[place].at_image(c.scored[begin + i].motion);
+              info.camera_at(place, c.scored[begin + i].index).at_image(c.scored[begin + i].motion);
           const RigidMotion T_cam_local =
               camera.T_cam_lidar * c.scored[begin + i].T_local_lidar.inverse();
           parts[i] += compare_gradients(splat(colors.points, spacing, camera, T_cam_local, options),

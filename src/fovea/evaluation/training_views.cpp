@@ -43,7 +43,7 @@ std::vector<TrainingView> load_training_views(const FrameSource& drive, const Fr
   for (const std::size_t place : cameras) {
     if (frame.images.at(place).empty()) continue;
     TrainingView view;
-    view.camera = drive.info().calibration.cameras.at(place).at_image(record.motion);
+    view.camera = drive.info().camera_at(place, record.index).at_image(record.motion);
     view.T_cam_local = view.camera.T_cam_lidar * record.T_local_lidar.inverse();
     view.image = std::move(frame.images.at(place));
     view.depth = splat(points, spacing, view.camera, view.T_cam_local, options).depth;

@@ -39,7 +39,8 @@ struct FrameRecord {
   RigidMotion T_odom_lidar = RigidMotion::Identity();
   int submap = -1;
   std::optional<Revisit> revisit;
-  /// Of the LiDAR, as its sweep was compensated by; absent where nothing did.
+  /// Of the LiDAR at the stamp: undoes the sweep, and moves the cameras to their images. Absent
+  /// where the drive needs neither.
   std::optional<SweepMotion> motion;
   /// Per-stage figures by name ("points_scan", "registration_iterations", "filter_occluded", ...),
   /// part of the digest.

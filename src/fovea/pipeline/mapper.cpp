@@ -79,7 +79,7 @@ TrackedFrame Mapper::track(const Frame& frame, bool held_out,
   return tracker_.track(
       frame, held_out, given_pose,
       [&](const PointCloud& scan_lidar, const std::optional<SweepMotion>& motion) {
-        return view_scan(scan_lidar, frame, cameras_at_images(motion), options_);
+        return view_scan(scan_lidar, frame, cameras_at_images(frame.index, motion), options_);
       });
 }
 
@@ -108,8 +108,8 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
         if (view) map_view(*std::move(view), frame.images[k], record, clock);
       }
     } else {
-      map_whole_scan(scan_lidar, frame, cameras_at_images(tracked.motion), record.T_local_lidar,
-                     record, clock);
+      map_whole_scan(scan_lidar, frame, cameras_at_images(frame.index, tracked.motion),
+                     record.T_local_lidar, record, clock);
     }
   }
   record.milliseconds = clock.milliseconds();
@@ -133,10 +133,11 @@ void Mapper::follow_submaps(const std::vector<RigidMotion>& poses) {
   }
 }
 
-std::vector<Camera> Mapper::cameras_at_images(const std::optional<SweepMotion>& motion) const {
+std::vector<Camera> Mapper::cameras_at_images(int index,
+                                              const std::optional<SweepMotion>& motion) const {
   std::vector<Camera> cameras;
-  for (const Camera& camera : drive_.calibration.cameras) {
-    cameras.push_back(camera.at_image(motion));
+  for (std::size_t slot = 0; slot < drive_.calibration.cameras.size(); ++slot) {
+    cameras.push_back(drive_.camera_at(slot, index).at_image(motion));
   }
   return cameras;
 }

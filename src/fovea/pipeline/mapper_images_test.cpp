@@ -6,6 +6,33 @@
 
 namespace fovea::mapper_images_test {
 
+/// Mean color error of the map of a drive whose images are taken up to 50 ms before or after their
+/// scans, at 12 m/s.
+/// @param own_times  whether the mapper has the time of each image
+double color_error_of_free_running_camera(bool own_times) {
+  constexpr int kFrames = 6;
+  SyntheticDrive drive(street_scene(), kFrames, 1.2);
+  DriveInfo& info = drive.editable_info();
+  info.image_stamps_are_capture_times = true;
+  info.image_offsets = {{{1, -0.05}, {2, 0.05}, {4, -0.05}}};
+  std::vector<Frame> frames;
+  for (int i = 0; i < kFrames; ++i) frames.push_back(std::get<Frame>(drive.load(i)));
+  info.image_stamps_are_capture_times = own_times;
+  Mapper mapper(info, {}, PoseSource::kNavigation);
+  for (const Frame& frame : frames) mapper.process(frame, false);
+  double error = 0;
+  const auto points = points_of(mapper.map());
+  for (const MapPoint& point : points) {
+    error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+  }
+  return error / double(points.size());
+}
+
+TEST(Mapper, EachImageIsProjectedAtItsOwnTime) {
+  EXPECT_LT(color_error_of_free_running_camera(true), 4.0);
+  EXPECT_GT(color_error_of_free_running_camera(false), 8.0);
+}
+
 // A lens that is covered for three frames: no point turns black, and the drive goes on.
 TEST(Mapper, BlankImagesColourNothing) {
   Mapper mapper(street().info(), {}, PoseSource::kNavigation);

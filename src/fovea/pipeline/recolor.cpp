@@ -61,7 +61,7 @@ class Recolorer {
     for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
       const Image& image = frame.images[slot];
       if (image.empty()) continue;
-      const Camera camera = drive_.calibration.cameras[slot].at_image(record.motion);
+      const Camera camera = drive_.camera_at(slot, record.index).at_image(record.motion);
       const FovealRegion region(foveal_options_of(options_, camera.index), camera);
       seen_map_.look(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(), spacing_);
       const ImagePyramid pyramid(image);

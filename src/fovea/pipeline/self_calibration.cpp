@@ -51,7 +51,9 @@ std::vector<std::vector<EdgeProfile>> gather(const FrameSource& source, const Ca
     if (!std::holds_alternative<Frame>(loaded)) return;
     const Frame& frame = std::get<Frame>(loaded);
     for (std::size_t k = 0; k < cameras.size(); ++k) {
-      by_frame[i][k] = profiles_of(frame, k, cameras[k], source.info(), job.compensate, *motion);
+      Camera camera = cameras[k];
+      camera.image_delay += source.info().image_offset(k, frame.index);
+      by_frame[i][k] = profiles_of(frame, k, camera, source.info(), job.compensate, *motion);
     }
   });
   ByCamera all(cameras.size());
@@ -88,7 +90,7 @@ void CalibrationCheck::add(const Frame& frame, const FrameMotion& motion) {
   next_ = frame.index + stride_;
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
     const auto profiles =
-        profiles_of(frame, k, drive_.calibration.cameras[k], drive_, compensate_, motion);
+        profiles_of(frame, k, drive_.camera_at(k, frame.index), drive_, compensate_, motion);
     profiles_[k].insert(profiles_[k].end(), profiles.begin(), profiles.end());
   }
 }

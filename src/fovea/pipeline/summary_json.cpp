@@ -20,7 +20,8 @@ nlohmann::ordered_json to_json(const std::vector<CameraCalibration>& cameras, bo
                                   {"time_offset_sigma_ms", nullptr},
                                   {"pixels", nullptr},
                                   {"pixels_sigma", nullptr},
-                                  {"off_by_a_pixel", e.off_by_a_pixel()}};
+                                  {"off_by_a_pixel", e.off_by_a_pixel()},
+                                  {"disagrees", e.disagrees}};
     if (e.rotation_observable) {
       const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;
       camera["rotation_deg"] = {r.x(), r.y(), r.z()};

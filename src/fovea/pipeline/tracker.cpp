@@ -63,7 +63,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
 
   // Pose refinement, and what needs no pose.
   Placed placed = place(frame, motion, given_pose, clock, held_out ? View() : view);
-  if (compensates()) record.motion = placed.motion;
+  if (compensates() || drive_.has_image_delays()) record.motion = placed.motion;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
   record.T_odom_lidar = placed.refined.T_odom_lidar;
@@ -94,7 +94,7 @@ void Tracker::settle() {
 PointCloud Tracker::compensated(const PointCloud& scan,
                                 const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = scan;
-  if (motion) compensate_sweep(scan_lidar, *motion, drive_.sweep_period);
+  if (motion && compensates()) compensate_sweep(scan_lidar, *motion, drive_.sweep_period);
   scan_lidar.time.clear();  // of no use to any stage
   return scan_lidar;
 }
@@ -106,9 +106,8 @@ Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motio
   for (const MotionGuess& guess : motion.guesses) {
     Placed placed;
     placed.motion = guess.motion;
-    placed.scan_lidar = clock.time("register", [&] {
-      return compensated(frame.scan, compensates() ? guess.motion : std::nullopt);
-    });
+    placed.scan_lidar =
+        clock.time("register", [&] { return compensated(frame.scan, guess.motion); });
     // Where it is doubted which of two scans it will be, both are looked at.
     run_both([&] { placed.refined = locate(placed.scan_lidar, motion, guess, given_pose, clock); },
              [&] {

@@ -1,5 +1,7 @@
 #include "fovea/sensor/frame_source.h"
 
+#include <algorithm>
+
 namespace fovea {
 
 const char* to_string(SkipReason reason) {
@@ -16,6 +18,27 @@ const char* to_string(SkipReason reason) {
       return "missing time stamp";
   }
   return "unknown";
+}
+
+double DriveInfo::image_offset(std::size_t slot, int index) const {
+  if (!image_stamps_are_capture_times || slot >= image_offsets.size()) return 0;
+  const auto found = image_offsets[slot].find(index);
+  return found == image_offsets[slot].end() ? 0 : found->second;
+}
+
+bool DriveInfo::has_image_delays() const {
+  const auto is_delayed = [](const Camera& camera) { return camera.image_delay != 0; };
+  const auto differs = [](const std::map<int, double>& offsets) {
+    return std::any_of(offsets.begin(), offsets.end(), [](const auto& o) { return o.second != 0; });
+  };
+  return std::any_of(calibration.cameras.begin(), calibration.cameras.end(), is_delayed) ||
+         std::any_of(image_offsets.begin(), image_offsets.end(), differs);
+}
+
+Camera DriveInfo::camera_at(std::size_t slot, int index) const {
+  Camera camera = calibration.cameras.at(slot);
+  camera.image_delay += image_offset(slot, index);
+  return camera;
 }
 
 }  // namespace fovea

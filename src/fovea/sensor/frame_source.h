@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,7 +38,7 @@ struct MissingImage {
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
   int index = 0;                   ///< the number in the file's name
-  TimeNs stamp = 0;                ///< scan time; see Camera::image_delay for the images
+  TimeNs stamp = 0;                ///< scan time; see DriveInfo::camera_at() for the images
   PointCloud scan;                 ///< lidar frame, as measured, with intensity
   std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
   /// One a camera of the calibration, in its order; empty where the camera has none that can be
@@ -78,6 +79,12 @@ struct DriveInfo {
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
   /// Profiles of the LiDARs; empty until they are estimated (pipeline/drive_sensors.h).
   std::vector<SensorProfile> lidars;
+  /// Whether the stamps of images are capture times. False (KITTI): an image counts as taken at its
+  /// scan's stamp, plus Camera::image_delay.
+  bool image_stamps_are_capture_times = false;
+  /// Where they are: seconds from Camera::image_delay, the camera's median, to the delay of a
+  /// frame's own image. By camera of the calibration, then by frame index; absent: 0.
+  std::vector<std::map<int, double>> image_offsets;
   /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR (or, with
   /// poses.csv, in the axes of its world); absent
   /// where the drive has no (usable) navigation.
@@ -91,6 +98,15 @@ struct DriveInfo {
   std::vector<RigidMotion> reference_poses;
   /// What a user must be told: no time stamps, 4 bad records, ...
   std::vector<std::string> notes;
+
+  /// Seconds from Camera::image_delay to the delay of the camera's image of one frame.
+  /// @param slot  place of the camera in the calibration
+  double image_offset(std::size_t slot, int index) const;
+  /// A camera with the delay of its own image of one frame. Camera::at_image() then moves the
+  /// camera to the place where it took that image.
+  Camera camera_at(std::size_t slot, int index) const;
+  /// Whether any image is taken at another time than its scan's stamp.
+  bool has_image_delays() const;
 };
 
 class FrameSource {

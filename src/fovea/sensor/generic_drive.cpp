@@ -190,11 +190,13 @@ class GenericDrive {
     camera.index = described.index;
     camera.T_cam_lidar = described.T_cam_lidar;
     camera.image_delay = described.delay;
+    info_.image_offsets.emplace_back();
     files_.images.push_back(images_of_scans(described, images, camera));
     info_.calibration.cameras.push_back(camera);
   }
 
-  /// The images by the numbers of the scans they belong to; sets the camera's delay.
+  /// The images by the numbers of the scans they belong to; sets the camera's median delay and
+  /// the offsets of its images from that median.
   NumberedFiles images_of_scans(const CameraDescription& described, const NumberedFiles& images,
                                 Camera& camera) {
     const fs::path file = info_.path / described.folder / "stamps.csv";
@@ -213,8 +215,13 @@ class GenericDrive {
         match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size());
+    info_.image_stamps_are_capture_times = true;
     NumberedFiles result;
-    for (const auto& [scan, image] : matches.image_of_scan) result[scan] = images.at(image);
+    for (const auto& [scan, image] : matches.image_of_scan) {
+      result[scan] = images.at(image);
+      const double delay = seconds(times.at(image) - scans.at(scan));
+      info_.image_offsets.back()[scan] = delay - matches.median_delay;
+    }
     return result;
   }
 
@@ -227,9 +234,9 @@ class GenericDrive {
     }
     if (matches.max_delay - matches.min_delay > kNotableSpread) {
       info_.notes.push_back(fmt::format(
-          "camera {} ({}) takes images {:.1f} to {:.1f} ms after the scans; all count as {:.1f} ms",
-          camera.index, camera.name, 1e3 * matches.min_delay, 1e3 * matches.max_delay,
-          1e3 * matches.median_delay));
+          "camera {} ({}) takes images {:.1f} to {:.1f} ms after the scans; each is projected at "
+          "its own time",
+          camera.index, camera.name, 1e3 * matches.min_delay, 1e3 * matches.max_delay));
     }
   }
 

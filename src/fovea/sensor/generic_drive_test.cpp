@@ -90,6 +90,8 @@ TEST_F(GenericDrive, OpensAndLoads) {
   ASSERT_EQ(info.calibration.cameras.size(), 2u);
   EXPECT_EQ(info.calibration.cameras[0].index, 4);
   EXPECT_EQ(info.calibration.cameras[0].image_delay, 0);
+  EXPECT_FALSE(info.image_stamps_are_capture_times);
+  EXPECT_FALSE(info.has_image_delays());
   const Frame frame = std::get<Frame>(drive->load(2));
   EXPECT_EQ(frame.stamp, kStart + 2 * kStep);
   EXPECT_EQ(frame.scan.position[0], Eigen::Vector3f(3, 2, 3));
@@ -181,7 +183,7 @@ TEST_F(GenericDrive, ImagesBelongToTheSweepThatTheyLieIn) {
   EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.05, 1e-9);
 }
 
-TEST_F(GenericDrive, ASpreadOfDelaysIsTold) {
+TEST_F(GenericDrive, EachImageHasItsOwnDelay) {
   std::string text = "index,time_ns\n";
   for (int i = 0; i < kFrames; ++i) {
     text += fmt::format("{},{}\n", i, kStart + i * kStep + i * 2'000'000);
@@ -191,8 +193,14 @@ TEST_F(GenericDrive, ASpreadOfDelaysIsTold) {
   const auto drive = open();
   EXPECT_THAT(
       drive->info().notes,
-      ElementsAre(HasSubstr("takes images 0.0 to 10.0 ms after the scans; all count as 6.0")));
-  EXPECT_NEAR(drive->info().calibration.cameras[0].image_delay, 0.007, 1e-9);
+      ElementsAre(HasSubstr("takes images 0.0 to 10.0 ms after the scans; each is projected at")));
+  const DriveInfo& info = drive->info();
+  EXPECT_TRUE(info.image_stamps_are_capture_times);
+  EXPECT_TRUE(info.has_image_delays());
+  EXPECT_NEAR(info.calibration.cameras[0].image_delay, 0.007, 1e-9);  // the median and the key
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_NEAR(info.camera_at(0, i).image_delay, 0.001 + i * 0.002, 1e-9) << i;
+  }
 }
 
 TEST_F(GenericDrive, DistortedImagesComeOutAsAPinholeCameras) {

@@ -60,6 +60,9 @@ TEST_F(KittiRaw, LoadsWhatTheFilesHold) {
   const auto drive = open();
   const DriveInfo& info = drive->info();
   EXPECT_EQ(info.kind, "kitti-raw");
+  // Images count as taken at their scan's stamp, although KITTI stamps them later.
+  EXPECT_FALSE(info.image_stamps_are_capture_times);
+  EXPECT_FALSE(info.has_image_delays());
   EXPECT_EQ(info.path, drive_);
   EXPECT_EQ(info.begin, 0);
   EXPECT_EQ(info.end, kFrames);

@@ -20,6 +20,9 @@ struct CalibrationEstimate {
   bool rotation_observable = false, delay_observable = false;
   /// Median way of the edges in the image by rotation and delay, and its standard deviation.
   double pixels = 0, pixels_sigma = 0;
+  /// There are many edges, but nothing within reach brings those of the images and those of the
+  /// LiDAR together. Then nothing is observable.
+  bool disagrees = false;
   int frames = 0;  ///< with edges
   std::size_t edges = 0;
 
@@ -28,7 +31,8 @@ struct CalibrationEstimate {
 };
 
 /// Estimates from the profiles of several frames, one frame's after the other's. Too few of them,
-/// or images that do not show them, leave both unobservable, a vehicle that stands the delay.
+/// or images that do not show them, leave both unobservable, a vehicle that stands the delay. A
+/// correction of over a pixel counts only if either half of the frames confirms that of the other.
 CalibrationEstimate estimate_calibration(const std::vector<EdgeProfile>& profiles);
 
 /// The camera with the estimate's rotation and delay added to its own.

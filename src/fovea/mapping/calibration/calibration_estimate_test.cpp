@@ -193,14 +193,65 @@ TEST(CalibrationEstimate, TooLittleShowsNothing) {
   }
 }
 
-// Nothing but clutter: whatever its maximum is, it is not told as a fault.
-TEST(CalibrationEstimate, ClutterAloneIsNoFault) {
+// Nothing but clutter: its maximum is no correction, and camera and LiDAR do not agree.
+TEST(CalibrationEstimate, ClutterAloneDisagrees) {
   Drive drive;
   drive.present = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    EXPECT_FALSE(
-        estimate_calibration(profiles_of(drive, planted(0, 0, 0, 0), seed)).off_by_a_pixel());
+    const CalibrationEstimate e =
+        estimate_calibration(profiles_of(drive, planted(0, 0, 0, 0), seed));
+    EXPECT_FALSE(e.rotation_observable || e.off_by_a_pixel());
+    EXPECT_TRUE(e.disagrees);
   }
+}
+
+// Beyond the reach of the profiles, which is 2 degrees here.
+TEST(CalibrationEstimate, ATurnBeyondReachDisagrees) {
+  for (const auto& truth : {planted(4, 0, 0, 0), planted(0, -5, 0, 0), planted(0, 0, 20, 0)}) {
+    const CalibrationEstimate e = estimate_calibration(profiles_of({}, truth));
+    EXPECT_FALSE(e.rotation_observable) << truth.transpose();
+    EXPECT_TRUE(e.disagrees) << truth.transpose();
+  }
+  EXPECT_FALSE(estimate_calibration(profiles_of({}, planted(0.3, 0, 0, 0))).disagrees);
+}
+
+// Three frames are too few for a correction, and enough for that.
+TEST(CalibrationEstimate, ThreeFramesAreEnoughToDisagree) {
+  Drive drive;
+  for (const int frames : {2, 3}) {
+    drive.frames = frames;
+    const CalibrationEstimate wrong = estimate_calibration(profiles_of(drive, planted(0, 5, 0, 0)));
+    EXPECT_FALSE(wrong.rotation_observable);
+    EXPECT_EQ(wrong.disagrees, frames == 3);
+    EXPECT_FALSE(estimate_calibration(profiles_of(drive, planted(0, 0, 0, 0))).disagrees);
+  }
+}
+
+// Sparse rings leave a pitch open that all their edges share, and nothing else.
+TEST(CalibrationEstimate, SparseRingsMakePitchLessSure) {
+  auto dense = profiles_of({}, planted(0.1, 0, 0, 0));
+  for (EdgeProfile& profile : dense) profile.ring_spacing = float(0.4 * kDegree);
+  auto sparse = dense;
+  for (EdgeProfile& profile : sparse) profile.ring_spacing = float(1.7 * kDegree);
+  const CalibrationEstimate a = estimate_calibration(dense), b = estimate_calibration(sparse);
+  EXPECT_EQ(a.rotation, b.rotation);
+  EXPECT_GT(b.rotation_sigma.x(), 0.15 * kDegree);
+  EXPECT_EQ(a.rotation_sigma.tail<2>(), b.rotation_sigma.tail<2>());
+  EXPECT_TRUE(a.off_by_a_pixel());
+  EXPECT_FALSE(b.off_by_a_pixel());
+}
+
+// One half of the frames turned, the other one not: no calibration is right for both.
+TEST(CalibrationEstimate, HalvesThatContradictEachOtherConfirmNothing) {
+  auto profiles = profiles_of({}, planted(0, 0.8, 0, 0));
+  const auto others = profiles_of({}, planted(0, -0.8, 0, 0), 2);
+  for (std::size_t i = profiles.size() / 2; i < profiles.size(); ++i) {
+    const int frame = profiles[i].frame;
+    profiles[i] = others[i];
+    profiles[i].frame = frame;
+  }
+  const CalibrationEstimate e = estimate_calibration(profiles);
+  EXPECT_FALSE(e.off_by_a_pixel());
 }
 
 TEST(CalibrationEstimate, SameAtAnyNumberOfThreads) {

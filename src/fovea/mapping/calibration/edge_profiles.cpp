@@ -17,7 +17,8 @@ constexpr float kContrast = 60;  // RGB: profiles whose steps sum up to less cou
 constexpr double kMinGap = 0.2;  // pixels
 // Neighbours along one line: this near in the image (rad) and alike in range (share).
 constexpr double kNeighborhood = 0.028, kSameRange = 0.03;
-constexpr int kMinNeighbors = 3;       // the edge itself included
+constexpr int kMinNeighbors = 3;  // the edge itself included
+constexpr double kNeighborRings = 1.3;
 constexpr double kMinSpread = 3;       // pixels, along the line
 constexpr double kMaxThickness = 0.3;  // of the spread along the line
 constexpr double kMinFacing = 0.25;    // cosine between the way outwards and the line's normal
@@ -142,15 +143,19 @@ std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Imag
                                        const EdgeView& view) {
   const Camera camera = view.camera.at_image(SweepMotion{view.velocity});
   const std::vector<ImageEdge> edges = edges_in_view(edges_lidar, camera);
+  // Edges along a ring lie one a ring on a line: the neighbors are those of the next rings.
+  const double near_along_ring = std::max(kNeighborhood, kNeighborRings * edges_lidar.ring_spacing);
   std::vector<EdgeProfile> profiles;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const ImageEdge& edge = edges[i];
-    const auto along = line_normal(edges, i, kNeighborhood * camera.fx);
+    const double near = edge.between_rings ? kNeighborhood : near_along_ring;
+    const auto along = line_normal(edges, i, near * camera.fx);
     if (!along) continue;
     const Vector2d reach = EdgeProfile::kReach * along->cwiseAbs() + Vector2d::Constant(kBorder);
     if (!camera.in_view(edge.middle - reach) || !camera.in_view(edge.middle + reach)) continue;
     EdgeProfile profile;
     profile.frame = view.frame;
+    profile.ring_spacing = static_cast<float>(edges_lidar.ring_spacing);
     profile.place = place_of(view.T_local_lidar * edge.p_lidar);
     profile.half_gap = static_cast<float>(edge.gap.dot(*along) / 2);
     profile.strength = strengths(image, edge.middle, *along);

@@ -25,7 +25,8 @@ struct EdgeProfile {
   /// Strength of the image's edge at -kReach ... kReach pixels from where the edge is expected,
   /// along the way from inside to outside; all of them add up to less than 1.
   std::array<float, kSize> strength{};
-  float half_gap = 0;  ///< pixels: the thing ends this far to either side of the expected place
+  float half_gap = 0;      ///< pixels: the thing ends this far to either side of the expected place
+  float ring_spacing = 0;  ///< rad: of the LiDAR's rings in view
   int frame = 0;
   std::array<int, 3> place{};  ///< cell of 2 m in the local frame: the thing that it belongs to
   /// Way of the expected place in u and v (pixels) by rotation and delay: exp(r) * T_cam_lidar,

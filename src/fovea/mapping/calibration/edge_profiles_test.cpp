@@ -71,6 +71,24 @@ TEST(EdgeProfiles, ShowHowFarOffTheImagesEdgeLies) {
   }
 }
 
+// Along a line that each ring meets once, neighbors are as far apart as the rings.
+TEST(EdgeProfiles, RingsMayBeSparse) {
+  const Camera camera = forward_camera();
+  LidarEdges edges;
+  constexpr double kSpacing = 0.04;  // rad: 20 pixels, and 14 pixels reach of dense rings
+  for (int ring = -3; ring <= 3; ++ring) {
+    const double v = 150 + ring * kSpacing * camera.fy;
+    edges.inside.position.push_back(at_pixel(camera, 179, v, 10).cast<float>());
+    edges.outside.position.push_back(at_pixel(camera, 181, v, 10).cast<float>());
+    edges.between_rings.push_back(0);
+  }
+  EXPECT_TRUE(edge_profiles(edges, half_bright(185.5, 0), {.camera = camera}).empty());
+  edges.ring_spacing = kSpacing;
+  const auto profiles = edge_profiles(edges, half_bright(185.5, 0), {.camera = camera});
+  ASSERT_EQ(profiles.size(), 5u);  // those with a ring above and one below
+  for (const EdgeProfile& profile : profiles) EXPECT_NEAR(centre_of(profile), 5.5, 0.15);
+}
+
 TEST(EdgeProfiles, KnowHowTheyMoveWithTheCalibration) {
   Camera camera = forward_camera();
   camera.image_delay = 0.01;

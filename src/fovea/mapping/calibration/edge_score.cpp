@@ -84,6 +84,10 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
   return score;
 }
 
+double edge_value(const EdgeProfile& profile, const CalibrationVector& correction, double width) {
+  return terms_of(profile, correction, width).value;
+}
+
 EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                      double width) {
   return parallel_sum<EdgeScore>(profiles.size(), 512, {}, [&](std::size_t begin, std::size_t end) {

@@ -33,4 +33,7 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
 EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                      double width);
 
+/// The value alone.
+double edge_value(const EdgeProfile& profile, const CalibrationVector& correction, double width);
+
 }  // namespace fovea

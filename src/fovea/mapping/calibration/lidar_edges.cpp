@@ -18,6 +18,10 @@ constexpr float kColumn = 0.2f * float(kDegree);
 // own spacing grows with the square of the range: r^2 * 0.0058 / 1.73 m, 13 % at 40 m.
 constexpr float kMinJump = 0.5f, kRelativeJump = 0.1f, kRelativeJumpAbove = 0.2f;
 
+// Of the range at which a plane would continue: less is no jump.
+constexpr float kPlaneTolerance = 0.2f;
+constexpr float kHdl64Spacing = 0.42f * float(kDegree);
+
 struct Beam {
   Eigen::Vector3f direction;
   float range = 0;
@@ -68,9 +72,37 @@ void add_edges_along_rings(const std::vector<Beam>& beams, float max_range, Lida
   }
 }
 
+/// Whether the far beam of two neighbors in a column, k - 1 and k, may lie on the same plane as the
+/// near beam and the next ring on the near beam's other side. The ground does, however wide the
+/// rings lie apart and however high the sensor sits. Inverse ranges of a plane are linear in the
+/// angle.
+bool continues_a_plane(const std::vector<Beam>& beams, const std::vector<std::uint32_t>& column,
+                       std::size_t k) {
+  const bool near_is_below = beams[column[k]].range < beams[column[k - 1]].range;
+  const Beam &near = beams[column[near_is_below ? k : k - 1]],
+             &far = beams[column[near_is_below ? k - 1 : k]];
+  const auto angle = [](const Beam& a, const Beam& b) {
+    return std::abs(a.direction.z() - b.direction.z());
+  };
+  const Beam* before = nullptr;
+  const auto take_if_other_ring = [&](std::size_t i) {
+    if (angle(beams[column[i]], near) >= kMinElevationStep) before = &beams[column[i]];
+  };
+  if (near_is_below) {
+    for (std::size_t i = k + 1; i < column.size() && before == nullptr; ++i) take_if_other_ring(i);
+  } else {
+    for (std::size_t i = k - 1; i > 0 && before == nullptr; --i) take_if_other_ring(i - 1);
+  }
+  if (before == nullptr) return false;
+  const float inverse = 1 / near.range + (1 / near.range - 1 / before->range) * angle(near, far) /
+                                             angle(*before, near);
+  return far.range * inverse < 1 + kPlaneTolerance;
+}
+
 void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, LidarEdges& edges) {
   const auto columns = static_cast<std::size_t>(std::ceil(2 * std::numbers::pi_v<float> / kColumn));
   std::vector<std::vector<std::uint32_t>> by_column(columns);
+  std::vector<float> steps;  // between rings
   for (std::uint32_t i = 0; i < beams.size(); ++i) {
     const float azimuth = std::atan2(beams[i].direction.y(), beams[i].direction.x());
     const auto column = static_cast<std::size_t>((azimuth + std::numbers::pi_v<float>) / kColumn);
@@ -86,11 +118,19 @@ void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, Li
     }
     for (std::size_t k = 1; k < above.size(); ++k) {
       const Beam &a = beams[above[k - 1]], &b = beams[above[k]];
+      const float step = a.direction.z() - b.direction.z();
       // Two firings of one ring may share a column.
-      if (a.direction.z() - b.direction.z() < kMinElevationStep) continue;
-      add_if_edge(a, b, kMaxElevationStep, kRelativeJumpAbove, max_range, true, edges);
+      if (step < kMinElevationStep) continue;
+      steps.push_back(step);
+      if (continues_a_plane(beams, above, k)) continue;
+      const float jump = kRelativeJumpAbove * std::max(1.0f, step / kHdl64Spacing);
+      add_if_edge(a, b, kMaxElevationStep, jump, max_range, true, edges);
     }
   }
+  if (steps.empty()) return;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  edges.ring_spacing = double(*middle);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace fovea {
 struct LidarEdges {
   PointCloud inside, outside;  ///< with the times of their beams where the scan has them
   std::vector<std::uint8_t> between_rings;  ///< 1: the beams are of neighbouring rings, 0: of one
+  double ring_spacing = 0;  ///< rad: median angle between neighboring rings in view; 0: of one ring
   std::size_t size() const { return inside.size(); }
 };
 

@@ -108,4 +108,23 @@ TEST(LidarEdges, TheGroundHasNone) {
   EXPECT_EQ(find_lidar_edges(scan, forward_camera(), 40).size(), 0u);
 }
 
+// Neither has that of sparse rings, nor that below a sensor near the ground.
+TEST(LidarEdges, TheGroundOfSparseRingsHasNone) {
+  for (const double height : {0.4, 1.73}) {
+    for (const double spacing : {0.5, 0.7}) {
+      PointCloud scan;
+      for (double elevation = -0.8; elevation > -20; elevation -= spacing) {
+        for (int k = 0; k < 100; ++k) {
+          const double azimuth = 8 * kDegree - k * kStep,
+                       range = -height / std::tan(elevation * kDegree);
+          scan.position.emplace_back(range * std::cos(azimuth), range * std::sin(azimuth), -height);
+        }
+      }
+      const LidarEdges edges = find_lidar_edges(scan, forward_camera(), 40);
+      EXPECT_EQ(edges.size(), 0u) << height << ", " << spacing;
+      EXPECT_NEAR(edges.ring_spacing, spacing * kDegree, 0.05 * spacing * kDegree);
+    }
+  }
+}
+
 }  // namespace fovea::lidar_edges_test

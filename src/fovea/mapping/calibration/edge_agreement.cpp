@@ -1,0 +1,103 @@
+#include "fovea/mapping/calibration/edge_agreement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "fovea/mapping/calibration/edge_score.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kWidth = 1;  // pixels: standard deviation of the Gaussian
+// Turned cameras that show what chance gives, in calibration_unit()s: about a pixel each. The
+// nearest is beyond any error that the estimate leaves, the farthest within the profiles' reach.
+constexpr std::array<double, 6> kTurns{-16, -12, -8, 8, 12, 16};
+constexpr float kMinAcross = 0.5f;  // share of an edge's way that is across the edge
+constexpr float kClearStep = 0.1f;  // of the strength of a profile
+constexpr std::size_t kManyEdges = 60;
+// Right calibrations have a contrast of 1.1 to 3.6, wrong ones of -1 to 0.4 about the axis of the
+// error (docs/calibration.md).
+constexpr double kLeastContrast = 0.8;
+constexpr double kSignificant = 2;  // standard deviations
+
+/// Sum of the squares of the sums over groups of edges, as the variance of a mean of few is.
+template <class Key>
+double scatter_by(const std::vector<const EdgeProfile*>& profiles,
+                  const std::vector<double>& deviations, Key&& key) {
+  std::map<std::decay_t<decltype(key(*profiles.front()))>, double> sums;
+  for (std::size_t i = 0; i < profiles.size(); ++i) sums[key(*profiles[i])] += deviations[i];
+  double scatter = 0;
+  for (const auto& [group, sum] : sums) scatter += sum * sum;
+  const double n = static_cast<double>(sums.size());
+  return n / std::max(n - 1, 1.0) * scatter;
+}
+
+/// Whether a turn about an axis moves the edge across itself, not along itself.
+bool moves_across(const EdgeProfile& profile, int axis) {
+  return std::abs(profile.J_along[axis]) > kMinAcross * profile.J.col(axis).norm();
+}
+
+bool shows_a_step(const EdgeProfile& profile) {
+  return *std::max_element(profile.strength.begin(), profile.strength.end()) > kClearStep;
+}
+
+}  // namespace
+
+EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
+                         const std::vector<double>& values) {
+  EdgeMean result;
+  result.edges = profiles.size();
+  if (profiles.empty()) return result;
+  const double n = static_cast<double>(profiles.size());
+  for (const double value : values) result.mean += value / n;
+  std::vector<double> deviations;
+  deviations.reserve(values.size());
+  for (const double value : values) deviations.push_back(value - result.mean);
+  const double scatter =
+      scatter_by(profiles, deviations, [](const EdgeProfile& p) { return p.frame; }) +
+      scatter_by(profiles, deviations, [](const EdgeProfile& p) { return p.place; });
+  result.sigma = std::sqrt(scatter) / n;
+  return result;
+}
+
+EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis) {
+  std::vector<const EdgeProfile*> used;
+  std::vector<double> contrasts;
+  for (const EdgeProfile& profile : profiles) {
+    if (!moves_across(profile, axis) || !shows_a_step(profile)) continue;
+    double turned = 0;
+    for (const double turn : kTurns) {
+      turned += edge_value(profile, turn * CalibrationVector::Unit(axis), kWidth);
+    }
+    used.push_back(&profile);
+    contrasts.push_back(edge_value(profile, CalibrationVector::Zero(), kWidth) -
+                        turned / double(kTurns.size()));
+  }
+  return mean_over_edges(used, contrasts);
+}
+
+bool edges_disagree(const std::vector<EdgeProfile>& profiles) {
+  for (const int axis : {0, 1}) {
+    const EdgeMean contrast = edge_contrast(profiles, axis);
+    if (contrast.edges >= kManyEdges &&
+        contrast.mean + kSignificant * contrast.sigma < kLeastContrast) {
+      return true;
+    }
+  }
+  return false;
+}
+
+EdgeMean edge_gain(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
+                   const CalibrationVector& other) {
+  std::vector<const EdgeProfile*> used;
+  std::vector<double> gains;
+  for (const EdgeProfile& profile : profiles) {
+    used.push_back(&profile);
+    gains.push_back(edge_value(profile, correction, kWidth) - edge_value(profile, other, kWidth));
+  }
+  return mean_over_edges(used, gains);
+}
+
+}  // namespace fovea

@@ -1,0 +1,33 @@
+// Whether an image's edges and a LiDAR's meet at all: tests for significance.
+#pragma once
+
+#include <vector>
+
+#include "fovea/mapping/calibration/edge_profiles.h"
+
+namespace fovea {
+
+/// A mean over edges and its standard deviation. Edges of one frame err together, and so do edges
+/// of one thing in all frames: the deviation is from the scatter over both.
+struct EdgeMean {
+  std::size_t edges = 0;
+  double mean = 0, sigma = 0;
+};
+EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
+                         const std::vector<double>& values);
+
+/// By how much edges are seen better (logarithm of their strength) under the calibration at hand
+/// than by a camera turned by 8 to 16 pixels about one of its axes. Only edges count that such a
+/// turn moves across themselves, and whose image shows a clear step anywhere on their profile.
+/// @param axis  0: right (pitch), 1: down (yaw)
+EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis);
+
+/// Whether camera and LiDAR do not agree: about one axis there are many edges, and their contrast
+/// lies significantly below the least contrast of a right calibration.
+bool edges_disagree(const std::vector<EdgeProfile>& profiles);
+
+/// By how much edges are seen better under one correction than under another one.
+EdgeMean edge_gain(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
+                   const CalibrationVector& other);
+
+}  // namespace fovea
