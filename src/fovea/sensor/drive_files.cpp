@@ -130,14 +130,14 @@ void find_stamps(const std::filesystem::path& file,
 
 void find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info) {
-  const double period = median_period(stamps).value_or(info.sweep_period);
+  const double period = median_period(stamps).value_or(info.sweep.period);
   if (period >= kMinPeriod && period <= kMaxPeriod) {
-    info.sweep_period = period;
+    info.sweep.period = period;
   } else {
     info.notes.push_back(
         fmt::format("{} steps by {:.3f} s, no LiDAR's turn: a sweep is taken as "
                     "{} s",
-                    file.string(), period, info.sweep_period));
+                    file.string(), period, info.sweep.period));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "fovea/base/time.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/sensor_profile.h"
 #include "fovea/geometry/trajectory.h"
 
 namespace fovea {
@@ -72,7 +73,7 @@ struct DriveInfo {
   std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
   Calibration calibration;
   int begin = 0, end = 0;          ///< frame indices, half-open; some may turn out to be skipped
-  double sweep_period = 0.1;       ///< s
+  SweepTiming sweep;               ///< of scans whose points have no times
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
   /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR (or, with

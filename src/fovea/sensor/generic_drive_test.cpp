@@ -85,7 +85,7 @@ TEST_F(GenericDrive, OpensAndLoads) {
   EXPECT_EQ(info.kind, "generic");
   EXPECT_EQ(info.begin, 0);
   EXPECT_EQ(info.end, kFrames);
-  EXPECT_NEAR(info.sweep_period, 0.1, 1e-9);
+  EXPECT_NEAR(info.sweep.period, 0.1, 1e-9);
   EXPECT_THAT(info.notes, IsEmpty());
   ASSERT_EQ(info.calibration.cameras.size(), 2u);
   EXPECT_EQ(info.calibration.cameras[0].index, 4);

@@ -64,7 +64,7 @@ TEST_F(KittiRaw, LoadsWhatTheFilesHold) {
   EXPECT_EQ(info.begin, 0);
   EXPECT_EQ(info.end, kFrames);
   EXPECT_TRUE(info.has_time_stamps);
-  EXPECT_NEAR(info.sweep_period, 0.1, 1e-9);
+  EXPECT_NEAR(info.sweep.period, 0.1, 1e-9);
   EXPECT_FALSE(info.sweep_compensated);
   EXPECT_TRUE(info.reference_poses.empty());
   // Stamps and records reach beyond the last scan: that is normal.
@@ -309,7 +309,7 @@ TEST_F(KittiRaw, WithoutStampsTenHertz) {
     const auto drive = open();
     EXPECT_FALSE(drive->info().has_time_stamps);
     EXPECT_EQ(drive->stamp(7), 7 * kNsPerSecond / 10);
-    EXPECT_EQ(drive->info().sweep_period, 0.1);
+    EXPECT_EQ(drive->info().sweep.period, 0.1);
     EXPECT_THAT(drive->info().notes, ElementsAre(HasSubstr("10 Hz")));
     // A record belongs to the scan of its number.
     EXPECT_NEAR(drive->info().navigation->at(*drive->stamp(7))->translation().y(), 7, 1e-3);
@@ -321,7 +321,7 @@ TEST_F(KittiRaw, SparseStampsAreNoSweepPeriod) {
   std::string text;
   for (int i = 0; i < kFrames; ++i) text += fmt::format("2011-09-26 13:00:{:02}.0\n", i);
   write_text(stamps(), text);
-  EXPECT_EQ(open()->info().sweep_period, 0.1);
+  EXPECT_EQ(open()->info().sweep.period, 0.1);
   EXPECT_THAT(open()->info().notes, testing::Contains(HasSubstr("no LiDAR's turn")));
 }
 

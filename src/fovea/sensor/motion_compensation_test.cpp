@@ -11,6 +11,7 @@
 namespace fovea::motion_compensation_test {
 
 constexpr double kPeriod = 0.1;
+const SweepTiming kKitti{.period = kPeriod};
 
 Twist twist(std::initializer_list<double> values) {
   Twist result;
@@ -21,7 +22,7 @@ Twist twist(std::initializer_list<double> values) {
 Eigen::Vector3f compensated(const Eigen::Vector3f& p, const Twist& velocity) {
   PointCloud scan;
   scan.position = {p};
-  compensate_sweep(scan, {velocity}, kPeriod);
+  compensate_sweep(scan, {velocity}, kKitti);
   return scan.position[0];
 }
 
@@ -81,8 +82,8 @@ TEST(MotionCompensation, FollowsABendThatBegins) {
     one.normal = {Eigen::Vector3f::UnitY()};
     one.time = {float(dt)};
     PointCloud steady = one;
-    compensate_sweep(one, motion, kPeriod);
-    compensate_sweep(steady, {motion.velocity}, kPeriod);
+    compensate_sweep(one, motion, kKitti);
+    compensate_sweep(steady, {motion.velocity}, kKitti);
     const RigidMotion T = integrated(motion, dt);
     EXPECT_LT((one.position[0].cast<double>() - T * p).norm(), 5e-4);
     EXPECT_LT((one.normal[0] - (T.linear() * Eigen::Vector3d::UnitY()).cast<float>()).norm(),
@@ -103,7 +104,7 @@ TEST(MotionCompensation, TimesOfThePointsCountWhereThereAreAny) {
     scan.time.push_back(static_cast<float>(random.uniform(0, 0.1)));
   }
   const PointCloud measured = scan;
-  compensate_sweep(scan, {velocity}, kPeriod);
+  compensate_sweep(scan, {velocity}, kKitti);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3d expected =
         exp_se3(double(measured.time[i]) * velocity) * measured.position[i].cast<double>();
@@ -141,7 +142,7 @@ TEST(MotionCompensation, StraightensAWallSeenFromACarInACurve) {
     return result;
   };
   EXPECT_GT(worst(), 0.2);
-  compensate_sweep(wall, {velocity}, kPeriod);
+  compensate_sweep(wall, {velocity}, kKitti);
   EXPECT_LT(worst(), 1e-4);
   for (const auto& normal : wall.normal) EXPECT_LT((normal + n.cast<float>()).norm(), 1e-6f);
 }
@@ -156,18 +157,18 @@ TEST(MotionCompensation, SameAtAnyNumberOfThreads) {
   const Twist velocity = twist({0.1, 0, 0.5, 10, 0, 0});
   {
     const ThreadLimit limit(1);
-    compensate_sweep(one, {velocity}, kPeriod);
+    compensate_sweep(one, {velocity}, kKitti);
   }
-  compensate_sweep(many, {velocity}, kPeriod);
+  compensate_sweep(many, {velocity}, kKitti);
   EXPECT_EQ(one.position, many.position);
 }
 
 TEST(MotionCompensation, EmptyScanAndForeignOrigin) {
   PointCloud scan;
-  compensate_sweep(scan, {twist({0, 0, 1, 10, 0, 0})}, kPeriod);
+  compensate_sweep(scan, {twist({0, 0, 1, 10, 0, 0})}, kKitti);
   EXPECT_TRUE(scan.empty());
   scan.origin.x() = 1;
-  EXPECT_THROW(compensate_sweep(scan, SweepMotion(), kPeriod), std::invalid_argument);
+  EXPECT_THROW(compensate_sweep(scan, SweepMotion(), kKitti), std::invalid_argument);
 }
 
 }  // namespace fovea::motion_compensation_test
