@@ -146,8 +146,20 @@ TEST_F(KittiRaw, CamerasThatAreNotThere) {
   options_.cameras = {};
   test::fs::remove_all(drive_ / "image_02");
   EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 3);
+  for (int i = 0; i < kFrames; ++i) test::fs::remove(image(3, i));
+  EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("--cameras none"));
+}
+
+TEST_F(KittiRaw, ADriveWithoutFoldersOfImagesHasNoCamera) {
+  test::fs::remove_all(drive_ / "image_02");
   test::fs::remove_all(drive_ / "image_03");
-  EXPECT_THROW(open(), InputError);
+  const auto drive = open();
+  EXPECT_TRUE(drive->info().calibration.cameras.empty());
+  EXPECT_TRUE(drive->info().navigation);
+  EXPECT_THAT(drive->info().notes, testing::ElementsAre(HasSubstr("the drive has no camera")));
+  EXPECT_TRUE(std::get<Frame>(drive->load(3)).images.empty());
+  options_.cameras = {2};
+  EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("no camera"));
 }
 
 TEST_F(KittiRaw, JpegImagesCountLikePng) {

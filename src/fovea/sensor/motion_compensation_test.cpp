@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
 #include <numbers>
 #include <stdexcept>
 
@@ -37,6 +39,52 @@ TEST(MotionCompensation, SweepTurnsClockwiseAndFacesForwardAtTheStamp) {
   EXPECT_NEAR(compensated({-5, -1e-6f, 0}, forward).x(), -4.5, 1e-5);
   // Straight above there is no azimuth.
   EXPECT_EQ(compensated({0, 0, 3}, forward), Eigen::Vector3f(0, 0, 3));
+}
+
+/// Seconds from the stamp at which the sweep measured a point ahead, left, behind (just left of it)
+/// and right, by how far the vehicle was from its place at the stamp.
+std::array<double, 4> times_of(const SweepTiming& sweep) {
+  std::array<double, 4> times{};
+  const std::array<Eigen::Vector3f, 4> points{
+      {{5, 1e-6f, 0}, {-1e-6f, 5, 0}, {-5, 1e-6f, 0}, {1e-6f, -5, 0}}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    PointCloud scan;
+    scan.position = {points[i]};
+    compensate_sweep(scan, {twist({0, 0, 0, 0, 0, 10})}, sweep);
+    times[i] = double(scan.position[0].z()) / 10;
+  }
+  return times;
+}
+
+void expect_times(const SweepTiming& sweep, const std::array<double, 4>& expected) {
+  const std::array<double, 4> times = times_of(sweep);
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-5) << i;
+}
+
+TEST(MotionCompensation, EveryPartOfTheTimingCounts) {
+  using enum SweepDirection;
+  const double pi = std::numbers::pi;
+  expect_times({0.1}, {0, -0.025, -0.05, 0.025});
+  expect_times({0.2}, {0, -0.05, -0.1, 0.05});
+  // The same sensor, seen against its axis: the sweep begins just right of behind.
+  expect_times({0.1, kCounterclockwise, pi}, {0, 0.025, 0.05, -0.025});
+  // Stamped at its start, or at its end.
+  expect_times({0.1, kClockwise, pi, 0}, {0.05, 0.025, 0, 0.075});
+  expect_times({0.1, kClockwise, pi, 1}, {-0.05, -0.075, -0.1, -0.025});
+  // From the left: ahead after a quarter.
+  expect_times({0.1, kClockwise, pi / 2 + 1e-4, 0}, {0.025, 0, 0.075, 0.05});
+  expect_times({0.1, kCounterclockwise, pi / 2 - 1e-4, 0}, {0.075, 0, 0.025, 0.05});
+  expect_times({0.1, kCounterclockwise, -3 * pi / 2 - 1e-4, 0}, {0.075, 0, 0.025, 0.05});
+}
+
+TEST(MotionCompensation, AnUpsideDownSensorNeedsNoOtherTiming) {
+  // The sensor hangs upside down, turned about its x axis: its points and its motion are given in
+  // its own axes, in which it turns as ever.
+  const Eigen::AngleAxisf turned(std::numbers::pi_v<float>, Eigen::Vector3f::UnitX());
+  const Twist forward = twist({0, 0, 0, 10, 0, 0});
+  const Eigen::Vector3f left_of_the_vehicle = turned * Eigen::Vector3f(0, 5, 1);
+  EXPECT_LT((compensated(left_of_the_vehicle, forward) - Eigen::Vector3f(0.25f, -5, -1)).norm(),
+            1e-5f);
 }
 
 TEST(MotionCompensation, EqualsTheExponentialOfTheTwist) {
