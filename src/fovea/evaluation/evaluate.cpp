@@ -5,6 +5,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
+#include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/evaluation_setup.h"
 #include "fovea/evaluation/warnings.h"
 
@@ -72,6 +73,7 @@ class BlockCollector {
 
 EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                           const ProtocolOptions& options, const EvaluationProgress& progress) {
+  if (!has_colors(map)) return evaluate_uncolored(map, drive, options, progress);
   const EvaluationSetup setup = prepare_evaluation(map, drive, options);
   const std::vector<PlacedFrame>& frames = setup.frames;
   Scorer scorer(map, drive, setup.scoring);

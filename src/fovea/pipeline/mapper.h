@@ -84,7 +84,7 @@ class Mapper {
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
                       const std::vector<Camera>& cameras, const RigidMotion& T_local_lidar,
                       FrameRecord& record, StageClock& clock);
-  /// The drive's, where they were when the images of a frame were taken.
+  /// Those of the drive at the times of a frame's images; without any, lidar_views().
   std::vector<Camera> cameras_at_images(const std::optional<SweepMotion>& motion) const;
 
   const DriveInfo& drive_;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -110,5 +111,9 @@ class FrameSource {
 /// what drive.toml says wrongly.
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                         const DriveOptions& options);
+
+/// InputError if the drive has no camera.
+/// @param purpose  what needs one: "recoloring"
+void require_cameras(const DriveInfo& drive, std::string_view purpose);
 
 }  // namespace fovea
