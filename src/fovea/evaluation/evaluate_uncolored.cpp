@@ -25,7 +25,9 @@ struct ScanScore {
 class UncoloredScorer {
  public:
   UncoloredScorer(const ScoredMap& map, const FrameSource& drive)
-      : drive_(drive), points_(all_points(map.points_local)), tree_(points_.position),
+      : drive_(drive),
+        points_(all_points(map.points_local)),
+        tree_(points_.position),
         free_space_(points_) {}
 
   ScanScore score(const PlacedFrame& placed) {
@@ -146,11 +148,12 @@ EvaluationReport evaluate_uncolored(const ScoredMap& map, const FrameSource& dri
 
 std::string uncolored_text(const EvaluationReport& report) {
   const ErrorFigures& f = report.figures;
-  std::string text =
-      fmt::format("{}, positions alone (the map has no colors): {} points of {} frames ({} "
-                  "skipped)\n",
-                  to_string(report.protocol), f.points, report.frames, report.skipped.size());
-  const auto row = [&](std::string_view name, double value, int digits, std::string_view more = "") {
+  std::string text = fmt::format(
+      "{}, positions alone (the map has no colors): {} points of {} frames ({} "
+      "skipped)\n",
+      to_string(report.protocol), f.points, report.frames, report.skipped.size());
+  const auto row = [&](std::string_view name, double value, int digits,
+                       std::string_view more = "") {
     text += fmt::format("  {:<22}{:>10.{}f}  {}\n", name, value, digits, more);
   };
   row("ME mean", f.me_mean, 4,

@@ -14,7 +14,7 @@ std::vector<Camera> lidar_views() {
   constexpr double kFocal = 360;
   const double half_width = kFocal * std::tan(48 * kDegree);
   const double half_height = kFocal * std::tan(55 * kDegree);  // 45 degrees up at the borders
-  Eigen::Matrix3d R_cam_lidar;  // forward
+  Eigen::Matrix3d R_cam_lidar;                                 // forward
   R_cam_lidar << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   std::vector<Camera> views(kViews);
   for (int i = 0; i < kViews; ++i) {

@@ -41,6 +41,33 @@ class MapDrive : public testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(MapDrive, CamerasThatSeeNoPointAreAnErrorAndLeaveNoMap) {
+  Camera& camera = drive_.editable_info().calibration.cameras.at(0);
+  // Upward: z of the camera is z of the LiDAR.
+  camera.T_cam_lidar.linear().setIdentity();
+  MapJob job = this->job();
+  job.checkpoint_frames = 1;
+  try {
+    map_drive(drive_, job, {});
+    ADD_FAILURE() << "mapped";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no camera sees a point of 8 scans"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(job.output));
+}
+
+TEST_F(MapDrive, WhatNeedsACameraIsRefusedWithoutOne) {
+  drive_.editable_info().calibration = {};
+  MapJob job = this->job();
+  job.options.refinement.visible_only = true;
+  EXPECT_THROW(map_drive(drive_, job, {}), InputError);
+  job.options.refinement.visible_only = false;
+  job.calibrate = true;
+  EXPECT_THROW(map_drive(drive_, job, {}), InputError);
+  job.calibrate = false;
+  EXPECT_GT(map_drive(drive_, job, {}).points, 0u);
+}
+
 TEST_F(MapDrive, OverlapChangesNothing) {
   std::vector<std::string> digests;
   for (const auto& [threads, overlap] :

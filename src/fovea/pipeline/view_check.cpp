@@ -33,10 +33,9 @@ void ViewCheck::add(const PointCloud& scan_lidar) {
 
 void ViewCheck::require_view() const {
   if (passed()) return;
-  throw InputError(fmt::format("no camera sees a point of {} scan{}", scans_,
-                               scans_ == 1 ? "" : "s"),
-                   drive_.path.string(),
-                   "correct the cameras' places: T_cam_lidar may be given as T_lidar_cam");
+  throw InputError(
+      fmt::format("no camera sees a point of {} scan{}", scans_, scans_ == 1 ? "" : "s"),
+      drive_.path.string(), "correct the cameras' places: T_cam_lidar may be given as T_lidar_cam");
 }
 
 bool ViewCheck::passed() const {
@@ -52,8 +51,9 @@ std::vector<std::string> ViewCheck::notes() const {
   std::vector<std::string> notes;
   for (std::size_t k = 0; k < sees_.size(); ++k) {
     if (sees_[k]) continue;
-    notes.push_back(fmt::format("camera {} sees no point of {} scans: check its place (T_cam_lidar)",
-                                drive_.calibration.cameras[k].index, scans_));
+    notes.push_back(
+        fmt::format("camera {} sees no point of {} scans: check its place (T_cam_lidar)",
+                    drive_.calibration.cameras[k].index, scans_));
   }
   return notes;
 }

@@ -136,7 +136,9 @@ void find_stamps(const std::filesystem::path& file,
 
 bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info) {
-  const double period = median_period(stamps).value_or(info.sweep.period);
+  const std::optional<double> step = median_period(stamps);
+  if (!step) return false;
+  const double period = *step;
   if (period >= kMinPeriod && period <= kMaxPeriod) {
     info.sweep.period = period;
     return true;

@@ -65,8 +65,8 @@ void find_stamps(const std::filesystem::path& file,
                  TimeStamps (*read)(const std::filesystem::path&), DriveInfo& info,
                  DriveFiles& files);
 
-/// Takes the sweep's period from the stamps into `info`. Returns false, with a note, if the step of
-/// the stamps cannot be a period.
+/// Takes the sweep's period from the stamps into `info`. Returns false if they have no step, or,
+/// with a note, if it cannot be a period.
 bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info);
 
