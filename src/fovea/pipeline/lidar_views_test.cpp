@@ -12,9 +12,9 @@ namespace fovea::lidar_views_test {
 /// How many views contain a point 10 m away.
 int views_of(double azimuth_deg, double elevation_deg) {
   const double azimuth = azimuth_deg * kDegree, elevation = elevation_deg * kDegree;
-  const Eigen::Vector3d p_lidar = 10 * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
-                                                       std::cos(elevation) * std::sin(azimuth),
-                                                       std::sin(elevation));
+  const Eigen::Vector3d p_lidar =
+      10 * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
+                           std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
   int count = 0;
   for (const Camera& view : lidar_views()) {
     const auto pixel = view.project(view.T_cam_lidar * p_lidar);
@@ -37,9 +37,9 @@ TEST(LidarViews, StandAtTheLidarUprightAndHaveNoNumber) {
   for (const Camera& view : lidar_views()) {
     EXPECT_EQ(view.index, kNoCamera);
     EXPECT_EQ(view.center_lidar().norm(), 0);
-    EXPECT_LT((view.T_cam_lidar.linear() * Eigen::Vector3d::UnitZ() + Eigen::Vector3d::UnitY())
-                  .norm(),
-              1e-12);
+    EXPECT_LT(
+        (view.T_cam_lidar.linear() * Eigen::Vector3d::UnitZ() + Eigen::Vector3d::UnitY()).norm(),
+        1e-12);
   }
 }
 
