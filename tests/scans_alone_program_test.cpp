@@ -8,9 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "fovea/evaluation/truth_poses.h"
+#include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/pose_file.h"
+#include "fovea/geometry/transform_cloud.h"
 #include "fovea/map/map_store.h"
 #include "fovea/simulation/simulate.h"
+#include "fovea/world/surface_index.h"
+#include "fovea/world/world_file.h"
 #include "tests/program.h"
 #include "tests/synthetic_drive.h"
 
@@ -102,7 +107,8 @@ TEST_F(ScansAloneProgram, EveryCommandTakesAMapWithoutColors) {
   const std::string map = quoted("yard.fovea"), drive = quoted("yard");
   succeed("map " + drive + " -o " + map + " --hold-out 3:1 --quiet");
   EXPECT_THAT(succeed("info " + map).out, HasSubstr("2 mapped, 1 held out"));
-  const ProgramRun scores = succeed("evaluate " + map + " " + drive + " --json " + quoted("e.json"));
+  const ProgramRun scores =
+      succeed("evaluate " + map + " " + drive + " --json " + quoted("e.json"));
   EXPECT_THAT(scores.out, HasSubstr("the map has no colors"));
   const auto json = nlohmann::json::parse(read_text(folder_ / "e.json"));
   EXPECT_LT(json.at("me_mean").get<double>(), 0.03);
@@ -178,7 +184,8 @@ class SweepsWithoutTimes : public ScansAloneProgram {
   }
   /// Rewrites the table of stamps: new index and nanoseconds later, of the lines that stay.
   void rewrite_stamps(const std::string& table,
-                      const std::function<std::optional<int>(int)>& renumbered, TimeNs later) const {
+                      const std::function<std::optional<int>(int)>& renumbered,
+                      TimeNs later) const {
     std::stringstream lines(read_text(folder_ / table));
     std::string text, line;
     std::getline(lines, line);
@@ -221,54 +228,85 @@ class SweepsWithoutTimes : public ScansAloneProgram {
     EXPECT_EQ(count, 1) << run.out;
     return notes;
   }
-  /// Mean error of the steps between neighboring frames, m, whose true numbers are `stride` apart.
-  double mean_step_error(int stride) const {
-    const std::vector<FrameRecord> frames = frames_of("street.fovea");
-    double sum = 0;
-    for (std::size_t i = 1; i < frames.size(); ++i) {
-      const RigidMotion step = frames[i - 1].T_local_lidar.inverse() * frames[i].T_local_lidar;
-      const std::size_t to = i * std::size_t(stride), from = to - std::size_t(stride);
-      const RigidMotion true_step = truth_.at(from).inverse() * truth_.at(to);
-      sum += (step.translation() - true_step.translation()).norm();
+  /// The map's points in the truth's frame.
+  /// @param T_true_lidar  at the stamps of the map's frames
+  PointCloud points_true(const std::vector<RigidMotion>& T_true_lidar) const {
+    const MapReader map(folder_ / "street.fovea");
+    std::vector<PosePair> pairs;
+    for (const FrameRecord& frame : map.frames()) {
+      pairs.push_back(
+          {frame.index, T_true_lidar.at(std::size_t(frame.index)), frame.T_local_lidar});
     }
-    return sum / double(frames.size() - 1);
+    return transform_cloud(map.all_points_local(), align_trajectories(pairs));
   }
-  double colors_within_20() const {
-    succeed("evaluate " + quoted("street.fovea") + " " + quoted("street") +
-            " --protocol in-sample --json " + quoted("e.json"));
-    const auto json = nlohmann::json::parse(read_text(folder_ / "e.json"));
-    fs::remove(folder_ / "e.json");
-    return json.at("te_gain_within_20").get<double>();
+  /// Share of the points within 2 cm of a true surface.
+  double precision(const PointCloud& points) const {
+    const World world = read_world(folder_ / "street/truth");
+    const SurfaceIndex surfaces(world.mesh_local);
+    std::size_t near = 0, all = 0;
+    for (std::size_t i = 0; i < points.size(); i += kStride) {
+      const Eigen::Vector3d p = points.position[i].cast<double>();
+      near += (surfaces.nearest(p).position - p).norm() < 0.02;
+      ++all;
+    }
+    return double(near) / double(all);
+  }
+  /// Mean difference of colors between points of two maps that are at most 1 cm apart.
+  static double color_difference(const PointCloud& a, const PointCloud& b) {
+    const KdTree tree(b.position);
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); i += kStride) {
+      const KdTree::Neighbor nearest = tree.nearest(a.position[i]);
+      if (nearest.squared_distance > 1e-4f) continue;
+      sum += double((to_float(a.color[i]) - to_float(b.color[nearest.index])).norm());
+      ++count;
+    }
+    EXPECT_GT(count, 1000u);
+    return sum / double(count);
   }
 
+  static constexpr std::size_t kStride = 20;  // of the points that are looked at
   static constexpr int kFrames = 12;
   std::vector<RigidMotion> truth_;
 };
 
 TEST_F(SweepsWithoutTimes, AThinnedDriveNamesTheAssumedPeriodAndAKeyCorrectsIt) {
   thin();
-  EXPECT_THAT(map_note(), AllOf(HasSubstr("takes 0.2068 s (step of the stamps)"),
-                                HasSubstr("sweep_period_s")));
-  const double assumed = mean_step_error(2);
+  std::vector<RigidMotion> T_true_lidar;
+  for (std::size_t i = 0; i < truth_.size(); i += 2) T_true_lidar.push_back(truth_[i]);
+  EXPECT_THAT(map_note(),
+              AllOf(HasSubstr("takes 0.2068 s (step of the stamps)"), HasSubstr("sweep_period_s")));
+  const double assumed = precision(points_true(T_true_lidar));
   state("sweep_period_s = 0.1034\n");
   EXPECT_THAT(map_note(), HasSubstr("takes 0.1034 s (drive.toml)"));
-  const double stated = mean_step_error(2);
-  EXPECT_LT(stated, 0.003);
-  EXPECT_GT(assumed, 1.5 * stated);
+  const double stated = precision(points_true(T_true_lidar));
+  EXPECT_GT(stated, 0.95);
+  EXPECT_LT(assumed, stated - 0.04);
 }
 
 TEST_F(SweepsWithoutTimes, AStampAtTheSweepsEndIsStatedByAKey) {
   map_note();
-  const double middle = colors_within_20();
-  rewrite_stamps("street/lidar/stamps.csv", [](int i) { return std::optional(i); }, 51'700'000);
-  EXPECT_THAT(map_note(), AllOf(HasSubstr("stamp at 0.5 of the sweep (default)"),
-                                HasSubstr("stamp_phase")));
-  const double assumed = colors_within_20();
+  const PointCloud middle = points_true(truth_);
+  rewrite_stamps(
+      "street/lidar/stamps.csv", [](int i) { return std::optional(i); }, 51'700'000);
+  EXPECT_THAT(map_note(),
+              AllOf(HasSubstr("stamp at 0.5 of the sweep (default)"), HasSubstr("stamp_phase")));
+  const PointCloud assumed = points_true(truth_);
   state("stamp_phase = 1\n");
   EXPECT_THAT(map_note(), HasSubstr("stamp at 1 of the sweep (drive.toml)"));
-  const double stated = colors_within_20();
-  EXPECT_LT(assumed, middle - 0.02);
-  EXPECT_GT(stated, middle - 0.01);
+  // Half a sweep later the LiDAR was half-way to the next frame.
+  std::vector<RigidMotion> T_true_lidar;
+  for (std::size_t i = 0; i < truth_.size(); ++i) {
+    const std::size_t from = std::min(i, truth_.size() - 2);
+    const Twist step = log_se3(truth_[from].inverse() * truth_[from + 1]);
+    T_true_lidar.push_back(truth_[i] * exp_se3(0.5 * step));
+  }
+  const PointCloud stated = points_true(T_true_lidar);
+  EXPECT_GT(precision(stated), precision(middle) - 0.02);
+  const double difference = color_difference(stated, middle);
+  EXPECT_LT(difference, 5);
+  EXPECT_GT(color_difference(assumed, middle), 2 * difference);
 }
 
 }  // namespace fovea::scans_alone_program_test
