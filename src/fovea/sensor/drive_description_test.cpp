@@ -200,8 +200,8 @@ TEST(DriveDescription, LensesOfNoCameraAreRefused) {
   EXPECT_THAT(error(with("[400, 0, 320, 0, 410", "[90000, 0, 320, 0, 90000")),
               HasSubstr("field of view of 0.4"));
   EXPECT_THAT(error(with("[400, 0, 320, 0, 410", "[400, 0, 320, 0, 41")), HasSubstr("differ"));
-  EXPECT_THAT(error(with("0, 320, 0", "0, 1300, 0")), HasSubstr("principal point at 1300"));
-  EXPECT_NO_THROW(parse(with("0, 320, 0", "0, 650, 0")));  // a part of a larger image
+  EXPECT_THAT(error(with("0, 320, 0", "0, 6500, 0")), HasSubstr("principal point at 6500"));
+  EXPECT_NO_THROW(parse(with("0, 320, 0", "0, 1300, 0")));  // a part of a larger image
   const auto distorted = [](const std::string& model, const std::string& D) {
     return kSmallest + "distortion_model = \"" + model + "\"\nD = [" + D + "]\n";
   };

@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kNarrowest = 1 * kDegree, kWidest = 179 * kDegree;  // of a pinhole camera
 constexpr double kWidestFisheye = 360 * kDegree;
-constexpr double kMaxAspect = 3;             // anamorphic lenses have 2
-constexpr double kMinSeen = 0.5;             // share of the image that has rays
+constexpr double kMostOblique =
+    70 * kDegree;                 // from the axis to the nearest pixel: a part of an image
+constexpr double kMaxAspect = 3;  // anamorphic lenses have 2
+constexpr double kMinSeen = 0.5;  // share of the image that has rays
 constexpr double kLeastAngleRatio = 1. / 3;  // of a ray's angle to that of the pinhole model
 
 constexpr const char* kFocalRemedy =
@@ -44,11 +46,12 @@ std::optional<LensProblem> focal_problem(const LensCamera& c) {
 }
 
 std::optional<LensProblem> principal_point_problem(const LensCamera& c) {
-  for (const auto& [name, side, center] :
-       {std::tuple("width", c.width, c.cx), std::tuple("height", c.height, c.cy)}) {
-    if (center >= -side && center <= 2 * side) continue;
+  for (const auto& [name, side, focal, center] :
+       {std::tuple("width", c.width, c.fx, c.cx), std::tuple("height", c.height, c.fy, c.cy)}) {
+    const double outside = std::max({-center, center - (side - 1), 0.0});
+    if (plain_angle(c, outside / focal) <= kMostOblique) continue;
     return LensProblem{"K",
-                       fmt::format("a principal point at {:.4g} lies far outside of a {} of {} "
+                       fmt::format("a principal point at {:.6g} lies far outside of a {} of {} "
                                    "pixels",
                                    center, name, side),
                        "give cx and cy in pixels of the images as they are"};
