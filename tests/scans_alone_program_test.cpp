@@ -16,6 +16,7 @@
 #include "fovea/simulation/simulate.h"
 #include "fovea/world/surface_index.h"
 #include "fovea/world/world_file.h"
+#include "tests/kitti_writer.h"
 #include "tests/program.h"
 #include "tests/synthetic_drive.h"
 
@@ -100,6 +101,39 @@ TEST_F(ScansAloneProgram, ADriveWithoutCamerasBecomesAMapWithoutColors) {
     off += yard().distance(points.origin + points.position[i].cast<double>()) > 0.05;
   }
   EXPECT_LT(double(off), 0.02 * double(points.size()));
+}
+
+TEST_F(ScansAloneProgram, TheSmallestDriveIsScansAlone) {
+  write_yard("yard", "version = 1\n");
+  const ProgramRun mapped = succeed("map " + quoted("yard") + " -o " + quoted("yard.fovea"));
+  EXPECT_THAT(mapped.out, AllOf(HasSubstr("stamps.csv is missing: scans are counted as 10 Hz"),
+                                HasSubstr("the points have no times; assumed: a sweep takes 0.1 s "
+                                          "(default)")));
+  const std::vector<FrameRecord> frames = frames_of("yard.fovea");
+  for (int i = 0; i < kYardFrames; ++i) {
+    const Eigen::Vector3d place = frames.at(std::size_t(i)).T_local_lidar.translation();
+    EXPECT_LT((place - Eigen::Vector3d(0.3 * i, 0, 0)).norm(), 0.02);
+  }
+  const ProgramRun localized =
+      succeed("localize " + quoted("yard") + " " + quoted("yard.fovea") + " -o " + quoted("p.csv"));
+  EXPECT_THAT(localized.out, HasSubstr("of 3 frames"));
+}
+
+TEST_F(ScansAloneProgram, CamerasThatSeeNoPointAreAnErrorAndLeaveNoMap) {
+  // The camera looks up, where the yard has no roof within the LiDAR's elevations.
+  write_yard("yard",
+             "version = 1\n[camera.up]\nindex = 0\nwidth = 32\nheight = 24\n"
+             "K = [32, 0, 15.5, 0, 32, 11.5, 0, 0, 1]\n"
+             "T_cam_lidar = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]\n");
+  for (int i = 0; i < kYardFrames; ++i) {
+    write_png(folder_ / fmt::format("yard/images/up/{}.png", i), Image(32, 24, 3));
+  }
+  const ProgramRun run = run_fovea("map " + quoted("yard") + " -o " + quoted("x.fovea"));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, AllOf(StartsWith("fovea: error: no camera sees a point of 3 scans"),
+                             HasSubstr("T_cam_lidar")));
+  EXPECT_FALSE(fs::exists(folder_ / "x.fovea"));
+  succeed("map " + quoted("yard") + " --cameras none -o " + quoted("x.fovea"));
 }
 
 TEST_F(ScansAloneProgram, EveryCommandTakesAMapWithoutColors) {

@@ -107,6 +107,30 @@ TEST_F(MapDrive, AnInterruptedRunGoesOnToTheSameMap) {
 }
 
 // Without navigation too, and with a vehicle that is under way.
+TEST_F(MapDrive, WithoutCamerasTheMapIsTheSameAtAnyThreadsAndWhenResumed) {
+  drive_.editable_info().calibration = {};
+  MapJob job = this->job();
+  job.checkpoint_frames = 1;
+  std::vector<std::string> digests;
+  for (const int threads : {1, 4}) {
+    const ThreadLimit limit(threads);
+    map_drive(drive_, job, {});
+    digests.push_back(digest());
+  }
+  std::stop_source stop;
+  MapJob part = job;
+  part.overlap = false;
+  part.stop = stop.get_token();
+  map_drive(drive_, part, [&](const MapProgress& progress) {
+    if (progress.done == 3) stop.request_stop();
+  });
+  part.stop = {};
+  part.resume = true;
+  map_drive(drive_, part, {});
+  digests.push_back(digest());
+  EXPECT_THAT(digests, testing::Each(digests.front()));
+}
+
 TEST_F(MapDrive, ADriveThatBeginsAtSpeedIsMappedAndResumed) {
   const Twist velocity = (Twist() << 0, 0, 0.1, 28, 0, 0).finished();
   for (const bool compensated : {false, true}) {
