@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
+#include "fovea/evaluation/scored_frames.h"
 #include "fovea/evaluation/warnings.h"
 #include "fovea/geometry/kd_tree.h"
 
@@ -32,19 +31,13 @@ class UncoloredScorer {
 
   ScanScore score(const PlacedFrame& placed) {
     ScanScore score;
-    const DriveInfo& info = drive_.info();
-    if (placed.index < info.begin || placed.index >= info.end) {
-      score.unscored = {placed.index, "not in the drive"};
-      return score;
-    }
-    const FrameResult loaded = drive_.load(placed.index);
-    if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
-      score.unscored = {placed.index,
-                        std::string(to_string(skipped->reason)) + ": " + skipped->detail};
+    const auto loaded = load_scored_frame(drive_, placed.index);
+    if (const auto* unscored = std::get_if<UnscoredFrame>(&loaded)) {
+      score.unscored = *unscored;
       return score;
     }
     const PointCloud& measured = std::get<Frame>(loaded).scan;
-    const PointCloud scan = compensated_scan(measured, placed, info);
+    const PointCloud scan = compensated_scan(measured, placed, drive_.info());
     for (std::size_t i = 0; i < scan.size(); ++i) {
       const float range = measured.position[i].norm();
       if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
@@ -86,20 +79,6 @@ void require_points(const ScoredMap& map, const ProtocolOptions& options) {
   }
 }
 
-std::vector<ScanScore> score_scans(UncoloredScorer& scorer, const std::vector<PlacedFrame>& frames,
-                                   const EvaluationProgress& progress) {
-  std::vector<ScanScore> scores(frames.size());
-  std::mutex progress_mutex;
-  std::size_t done = 0;
-  parallel_for(frames.size(), 1, [&](std::size_t i) {
-    scores[i] = scorer.score(frames[i]);
-    if (!progress) return;
-    const std::lock_guard lock(progress_mutex);
-    progress(++done, frames.size());
-  });
-  return scores;
-}
-
 }  // namespace
 
 bool has_colors(const ScoredMap& map) {
@@ -118,7 +97,9 @@ EvaluationReport evaluate_uncolored(const ScoredMap& map, const FrameSource& dri
   report.colored = false;
   SetCollector all;
   std::vector<Eigen::Vector3f> positions;
-  for (ScanScore& score : score_scans(scorer, frames, progress)) {
+  const std::vector<ScanScore> scores =
+      score_frames(frames, progress, [&](const PlacedFrame& frame) { return scorer.score(frame); });
+  for (const ScanScore& score : scores) {
     if (score.unscored) {
       report.skipped.push_back(*score.unscored);
       continue;
