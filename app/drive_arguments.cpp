@@ -24,7 +24,7 @@ std::vector<int> parse_cameras(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
     cameras.push_back(parse_number(std::string_view(text).substr(begin, comma - begin), "--cameras",
-                                   "camera numbers joined by commas, e.g. 2,3"));
+                                   "camera numbers joined by commas, e.g. 2,3, or none"));
     begin = comma + 1;
   }
   return cameras;
@@ -42,7 +42,8 @@ HoldOut parse_hold_out(const std::string& spec) { return parse_frame_set(spec, "
 
 DriveOptions DriveArguments::options() const {
   DriveOptions options;
-  if (!cameras.empty()) options.cameras = parse_cameras(cameras);
+  options.use_images = cameras != kNoCameras;
+  if (options.use_images && !cameras.empty()) options.cameras = parse_cameras(cameras);
   if (!frames.empty()) {
     const char* form = "a half-open range A:B, either end may be left out";
     const std::size_t colon = frames.find(':');

@@ -12,6 +12,9 @@
 
 namespace fovea::app {
 
+/// Value of --cameras for the scans alone.
+inline constexpr const char* kNoCameras = "none";
+
 /// The drive and what of it is wanted, as typed.
 struct DriveArguments {
   std::string drive, frames, cameras;

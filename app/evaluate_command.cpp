@@ -11,12 +11,14 @@
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
 #include "app/html_report/truth_page.h"
+#include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/path_name.h"
 #include "fovea/evaluation/compare_color_rules.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
+#include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/stored_calibration.h"
 
@@ -79,7 +81,17 @@ void run(EvaluateArguments arguments) {
   loading.first_frame = arguments.first_frame;
   loading.drive = name_of(arguments.drive.drive);
   const ScoredMap map = load_scored_map(arguments.map, loading);
-  if (!arguments.drive.cameras.empty()) {
+  if (!has_colors(map) && !arguments.html.empty()) {
+    throw InputError("the map has no colors, of which the page makes pictures", arguments.map,
+                     "evaluate it without --html");
+  }
+  if (arguments.drive.cameras.empty() && !has_colors(map)) arguments.drive.cameras = kNoCameras;
+  if (arguments.drive.cameras == kNoCameras) {
+    if (has_colors(map)) {
+      throw ConfigError("scores of a map with colors need a camera", "--cameras",
+                        "name the cameras to score, or leave it out");
+    }
+  } else if (!arguments.drive.cameras.empty()) {
     options.cameras = parse_cameras(arguments.drive.cameras);
   } else {
     arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));

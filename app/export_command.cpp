@@ -127,6 +127,10 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
     return;
   }
+  if (map.size() > 0 && map.colored_size() == 0 && !arguments.points.include_uncolored) {
+    arguments.points.include_uncolored = true;
+    if (!arguments.quiet) fmt::print("the map has no colors: its points are gray\n");
+  }
   if (!arguments.where.empty()) arguments.points.where = PointFilter::parse(arguments.where);
   arguments.points.crs = *crs_of(arguments.crs);
   const auto report = [&](const ExportFigures& figures) {

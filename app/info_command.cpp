@@ -67,9 +67,9 @@ void print_text(const Contents& c, const std::string& path) {
     return found != c.meta.end() ? found->second : std::string();
   };
   fmt::print("{}{}\n", path, meta("complete") == "1" ? "" : " (unfinished: --resume goes on)");
-  fmt::print("  drive      {} ({}), frames {} to {}, cameras {}\n", meta("drive.name"),
-             meta("drive.kind"), meta("frames.begin"), std::stoi("0" + meta("frames.end")) - 1,
-             meta("cameras"));
+  const std::string cameras = meta("cameras").empty() ? "no camera" : "cameras " + meta("cameras");
+  fmt::print("  drive      {} ({}), frames {} to {}, {}\n", meta("drive.name"), meta("drive.kind"),
+             meta("frames.begin"), std::stoi("0" + meta("frames.end")) - 1, cameras);
   for (const MergedDrive& d : c.drives) {
     fmt::print("  merged     {}: frames {} to {}, in the drive {} to {}\n", d.name, d.first_frame,
                d.end_frame - 1, d.first_frame - d.frame_shift, d.end_frame - 1 - d.frame_shift);

@@ -181,7 +181,9 @@ void add_map_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--frames", arguments->drive.frames, "Half-open range of frame indices")
       ->type_name("A:B");
-  command->add_option("--cameras", arguments->drive.cameras, "Cameras, in turn (default: 2)")
+  command
+      ->add_option("--cameras", arguments->drive.cameras,
+                   "Cameras, in turn (default: 2), or none: the scans alone")
       ->type_name("K,...");
   command
       ->add_option("--hold-out", arguments->hold_out,

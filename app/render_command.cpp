@@ -16,6 +16,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/path_name.h"
+#include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
 #include "fovea/geometry/lidar_data_sheet.h"
@@ -52,7 +53,8 @@ const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string
 }
 
 SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam) {
-  const ColouredPoints points = coloured_points(map.points_local);
+  const ColouredPoints points =
+      has_colors(map) ? coloured_points(map.points_local) : all_points(map.points_local);
   SplatOptions options;
   options.max_radius = 20;
   return splat(points, sample_spacing(points.position), camera, T_local_cam.inverse(), options);
@@ -66,6 +68,7 @@ Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
   if (has_stored_calibration(map.meta)) {
     drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
   }
+  require_cameras(drive->info(), "a picture beside a photograph");
   const Camera camera = drive->info().camera_at(0, frame.index).at_image(frame.motion);
   const FrameResult loaded = drive->load(frame.index);
   if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {

@@ -86,6 +86,7 @@ void run(const ReproduceArguments& arguments) {
       sources;  // all opened first: a bad path must not cost a run
   for (const std::string& drive : arguments.drives) {
     sources.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
+    require_cameras(sources.back()->info(), "the paper's method");
   }
   // All rows, wanted or not: a bad one must show at once, not after an hour.
   for (const std::string& row : reproduced_rows()) check_row(row);

@@ -189,8 +189,6 @@ TEST_F(GenericDriveProgram, BadDrivesAreRefusedInOneLine) {
   expect_refused("d", "--cameras 5", "no camera 5");
   rewrite(right + "colour = 3\n");
   expect_refused("d", "", "unknown key");
-  rewrite("version = 1\n");
-  expect_refused("d", "", "there is no camera");
   rewrite("[");
   expect_refused("d", "", "not valid TOML");
   rewrite(right);

@@ -20,7 +20,7 @@ class RawDrive : public SyntheticDrive {
     DriveInfo& info = editable_info();
     info.navigation.reset();
     info.sweep_compensated = false;
-    info.sweep_period = 0.1;
+    info.sweep.period = 0.1;
   }
 
   FrameResult load(int index) const override {

@@ -53,7 +53,7 @@ Chart latency(const ScoredMap& map, const DriveInfo& drive) {
   chart.y_label = "ms";
   chart.x_name = "frame";
   chart.unit = " ms";
-  chart.line_at = 1000 * drive.sweep_period;
+  chart.line_at = 1000 * drive.sweep.period;
   chart.line_name = fmt::format("{:.0f} ms: the next scan is here", chart.line_at);
   for (const char* stage : kStages) chart.series.push_back({stage, {}});
   for (const FrameRecord& frame : map.frames) {

@@ -57,6 +57,7 @@ const std::map<std::string, const char*>& explanations() {
       {"sharpness_pixels", "pixels where both are taken"},
       {"density_per_m2", "map points a square metre of surface"},
       {"map_points", "points of the map"},
+      {"colored", "whether the map has colors; if not, positions alone are scored"},
       {"map_points_coloured", "those that a camera coloured"},
       {"map_share_interpolated", "share of them that upsampling made"},
       {"left_out", "evaluated points that are not in this set"},

@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 /// By the whole place of a figure, by what follows its first dot, or by how it begins ("..._").
 const std::map<std::string, const char*>& explanations() {
   static const std::map<std::string, const char*> all{
+      {"colored", "whether the map has colors; if not, all points are scored"},
       {"aligned", "whether the map's trajectory was laid over the true one first"},
       {"georeferenced", "whether the map says where on earth it lies"},
       {"map_points", "points of the map"},

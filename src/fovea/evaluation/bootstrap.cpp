@@ -22,7 +22,8 @@ FrameSums frame_sums(const PointErrors& errors) {
   FrameSums sums;
   sums.points = errors.position.size();
   for (std::size_t i = 0; i < sums.points; ++i) {
-    const double me = errors.position[i], te = errors.color[i];
+    const double me = errors.position[i],
+                 te = errors.color.empty() ? ErrorFigures::kNone : errors.color[i];
     sums.me += me;
     sums.te += te;
     sums.mtme += me * te;

@@ -23,13 +23,13 @@ VoxelMembers sort_into(const VoxelTable& table, const std::vector<Eigen::Vector3
   return {voxel, table.size()};
 }
 
-}  // namespace
-
-ColouredPoints coloured_points(const PointCloud& map_local) {
+/// The points for which is_wanted(i) holds.
+template <class IsWanted>
+ColouredPoints chosen_points(const PointCloud& map_local, IsWanted&& is_wanted) {
   ColouredPoints coloured;
   coloured.origin = map_local.origin;
   for (std::size_t i = 0; i < map_local.size(); ++i) {
-    if (map_local.camera[i] == kNoCamera) continue;
+    if (!is_wanted(i)) continue;
     coloured.position.push_back(map_local.position[i]);
     coloured.color.push_back(map_local.color[i]);
     if (!map_local.interpolated.empty()) {
@@ -40,6 +40,16 @@ ColouredPoints coloured_points(const PointCloud& map_local) {
   }
   coloured.runs = make_runs(coloured.position, kRunLength);
   return coloured;
+}
+
+}  // namespace
+
+ColouredPoints coloured_points(const PointCloud& map_local) {
+  return chosen_points(map_local, [&](std::size_t i) { return map_local.camera[i] != kNoCamera; });
+}
+
+ColouredPoints all_points(const PointCloud& map_local) {
+  return chosen_points(map_local, [](std::size_t) { return true; });
 }
 
 std::vector<PointRun> make_runs(const std::vector<Eigen::Vector3f>& position, std::size_t length) {

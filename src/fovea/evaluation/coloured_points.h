@@ -34,6 +34,9 @@ struct ColouredPoints {
 /// The points of a map (local frame, columns color and camera) that some camera has coloured.
 ColouredPoints coloured_points(const PointCloud& map_local);
 
+/// All points of a map, colored or not.
+ColouredPoints all_points(const PointCloud& map_local);
+
 /// Runs of at most `length` points.
 std::vector<PointRun> make_runs(const std::vector<Eigen::Vector3f>& position, std::size_t length);
 

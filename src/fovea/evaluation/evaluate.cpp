@@ -1,11 +1,10 @@
 #include "fovea/evaluation/evaluate.h"
 
-#include <mutex>
-
 #include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
 #include "fovea/evaluation/distribution.h"
+#include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/evaluation_setup.h"
+#include "fovea/evaluation/scored_frames.h"
 #include "fovea/evaluation/warnings.h"
 
 namespace fovea {
@@ -15,20 +14,6 @@ double share_interpolated(const ColouredPoints& map) {
   if (map.interpolated.empty()) return ErrorFigures::kNone;
   const auto made = std::count(map.interpolated.begin(), map.interpolated.end(), 1);
   return static_cast<double>(made) / static_cast<double>(map.interpolated.size());
-}
-
-std::vector<FrameScore> score_frames(Scorer& scorer, const std::vector<PlacedFrame>& frames,
-                                     const EvaluationProgress& progress) {
-  std::vector<FrameScore> scores(frames.size());
-  std::mutex progress_mutex;
-  std::size_t done = 0;
-  parallel_for(frames.size(), 1, [&](std::size_t i) {
-    scores[i] = scorer.score(frames[i]);
-    if (!progress) return;
-    const std::lock_guard lock(progress_mutex);
-    progress(++done, frames.size());
-  });
-  return scores;
 }
 
 /// The marks of points that are not hidden.
@@ -72,10 +57,12 @@ class BlockCollector {
 
 EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                           const ProtocolOptions& options, const EvaluationProgress& progress) {
+  if (!has_colors(map)) return evaluate_uncolored(map, drive, options, progress);
   const EvaluationSetup setup = prepare_evaluation(map, drive, options);
   const std::vector<PlacedFrame>& frames = setup.frames;
   Scorer scorer(map, drive, setup.scoring);
-  std::vector<FrameScore> scores = score_frames(scorer, frames, progress);
+  std::vector<FrameScore> scores =
+      score_frames(frames, progress, [&](const PlacedFrame& frame) { return scorer.score(frame); });
 
   EvaluationReport report;
   report.protocol = options.protocol;

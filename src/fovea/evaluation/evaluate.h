@@ -12,8 +12,9 @@ namespace fovea {
 using EvaluationProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Frames are scored in parallel; the report does not depend on the number of threads. Frames that
-/// the drive cannot load are skipped and listed. InputError if nothing can be scored (no coloured
-/// map point, no frame, no evaluated point) or the protocol does not fit the map (see
+/// the drive cannot load are skipped and listed. A map without colors is scored by positions alone
+/// (evaluate_uncolored). InputError if nothing can be scored (no map point, no frame, no evaluated
+/// point) or the protocol does not fit the map (see
 /// select_frames); ConfigError for a camera that the drive was not opened with.
 EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
                           const ProtocolOptions& options, const EvaluationProgress& progress = {});

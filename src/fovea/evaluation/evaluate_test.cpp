@@ -273,9 +273,7 @@ TEST(Evaluate, NothingToScoreIsAnError) {
   WallDrive drive;
   drive.lose(4);
   EXPECT_THROW(evaluate_held_out(WallScene::map(0.1), drive), InputError);
-  PointCloud uncoloured = WallScene::map(0.1);
-  uncoloured.camera.assign(uncoloured.size(), kNoCamera);
-  EXPECT_THROW(evaluate_held_out(uncoloured), InputError);
+  EXPECT_THROW(evaluate_held_out(PointCloud()), InputError);
 }
 
 TEST(Evaluate, TheReportDoesNotDependOnTheNumberOfThreads) {

@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "fovea/base/errors.h"
+#include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/metrics.h"
 #include "fovea/evaluation/truth_colors.h"
 #include "fovea/evaluation/truth_ghosts.h"
@@ -14,16 +15,14 @@ namespace {
 
 constexpr double kDriftLength = 10;  // m
 
-PointCloud coloured_only(const PointCloud& points) {
+/// The points with colors; of a map without colors all points.
+PointCloud scored_points(const PointCloud& points) {
   std::vector<std::uint32_t> coloured;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (points.camera[i] != kNoCamera) coloured.push_back(i);
   }
-  if (coloured.empty()) {
-    throw InputError("the map has no coloured point", "evaluation",
-                     "score a map whose points have colours");
-  }
-  return points.select(coloured);
+  if (points.empty()) throw InputError("the map is empty", "evaluation", "map a drive first");
+  return coloured.empty() ? points : points.select(coloured);
 }
 
 PoseFigures figures(const PoseErrors& errors) {
@@ -81,6 +80,18 @@ void put_accuracy(const SurfaceMatches& matches, const std::vector<std::uint8_t>
   report.accuracy_interpolated = distribution(std::move(parts[1]));
 }
 
+void put_colors(const ColouredTruth& coloured, const ScoredMap& map, const DriveTruth& truth,
+                const FrameSource& drive, const std::vector<PosePair>& pairs, TruthReport& report) {
+  const ColorErrorSets albedo =
+      albedo_errors(coloured, grey_cameras(truth, map.cameras, pairs.front().frame));
+  report.color_albedo = figures(albedo.all);
+  report.color_albedo_matte = figures(albedo.matte);
+  if (coloured.points_true.frame.empty() || map.cameras.empty()) return;
+  const ColorErrorSets view = view_errors(coloured, truth, drive.info().calibration.cameras);
+  report.color_view = figures(view.all);
+  report.color_view_matte = figures(view.matte);
+}
+
 void put_upsampling(UpsamplingErrors errors, TruthReport& report) {
   report.upsampling.frames = errors.frames;
   report.upsampling.hidden = errors.hidden;
@@ -98,7 +109,7 @@ TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& d
   map.points_local.check();
   const DriveTruth truth(drive.info().path);
   const std::vector<PosePair> pairs = pose_pairs(map.frames, truth);
-  PointCloud points = coloured_only(map.points_local);
+  PointCloud points = scored_points(map.points_local);
   const std::vector<Camera>& cameras = drive.info().calibration.cameras;
 
   TruthReport report;
@@ -106,7 +117,8 @@ TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& d
   for (const Camera& camera : cameras) report.cameras.push_back(camera.index);
   report.aligned = options.align;
   report.map_points = map.points_local.size();
-  report.map_points_coloured = points.size();
+  report.colored = has_colors(map);
+  report.map_points_coloured = report.colored ? points.size() : 0;
 
   const std::optional<RigidMotion> T_true_map_earth = georeference(map.meta, truth.origin());
   report.georeferenced = T_true_map_earth.has_value();
@@ -136,16 +148,7 @@ TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& d
   report.shares = surface_shares(matches.distance, points.position,
                                  seen_surface(truth, pairs, cameras, origin_true));
 
-  const ColouredTruth coloured{points, matches, is_ghost};
-  const ColorErrorSets albedo =
-      albedo_errors(coloured, grey_cameras(truth, map.cameras, pairs.front().frame));
-  report.color_albedo = figures(albedo.all);
-  report.color_albedo_matte = figures(albedo.matte);
-  if (!points.frame.empty() && !map.cameras.empty()) {
-    const ColorErrorSets view = view_errors(coloured, truth, cameras);
-    report.color_view = figures(view.all);
-    report.color_view_matte = figures(view.matte);
-  }
+  if (report.colored) put_colors({points, matches, is_ghost}, map, truth, drive, pairs, report);
   put_upsampling(upsampling_errors(truth, pairs, cameras, surfaces), report);
   return {
       std::move(report), std::move(points), std::move(matches.distance), std::move(is_ghost), pairs,

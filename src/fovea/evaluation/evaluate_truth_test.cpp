@@ -267,6 +267,22 @@ TEST_F(EvaluateTruth, TheReportIsJsonAndATable) {
   EXPECT_THAT(to_text(report), testing::HasSubstr("completeness"));
 }
 
+TEST(EvaluateTruthScene, AMapWithoutColorsIsScoredByAllItsPoints) {
+  const TruthScene scene(2);
+  const ScoredMap colored = scene.map(WallScene::map(0.1));
+  ScoredMap uncolored = colored;
+  uncolored.points_local.camera.assign(uncolored.points_local.size(), kNoCamera);
+  uncolored.cameras.clear();
+  const TruthReport report = evaluate_truth(uncolored, scene.drive(), {});
+  const TruthReport with_colors = evaluate_truth(colored, scene.drive(), {});
+  EXPECT_FALSE(report.colored);
+  EXPECT_EQ(report.accuracy.count, colored.points_local.size());
+  EXPECT_EQ(report.accuracy.mean, with_colors.accuracy.mean);
+  EXPECT_EQ(report.color_albedo.raw.count, 0u);
+  EXPECT_THAT(to_text(report), testing::HasSubstr("points (the map has no colors)"));
+  EXPECT_THAT(to_text(report), testing::Not(testing::HasSubstr("albedo")));
+}
+
 TEST(EvaluateTruthScene, WhatIsMissingIsNamed) {
   const auto error = [](const ScoredMap& map, const FrameSource& drive) {
     try {
@@ -278,9 +294,7 @@ TEST(EvaluateTruthScene, WhatIsMissingIsNamed) {
   };
   const TruthScene scene(2);
   EXPECT_THAT(error(scene.map(WallScene::map(0.5)), WallDrive(2)), testing::HasSubstr("no truth"));
-  PointCloud uncoloured = WallScene::map(0.5);
-  uncoloured.camera.assign(uncoloured.size(), kNoCamera);
-  EXPECT_THAT(error(scene.map(uncoloured), scene.drive()), testing::HasSubstr("no coloured point"));
+  EXPECT_THAT(error(scene.map(PointCloud()), scene.drive()), testing::HasSubstr("map is empty"));
   write_world({}, scene.truth());
   EXPECT_THAT(error(scene.map(WallScene::map(0.5)), scene.drive()),
               testing::HasSubstr("no surface"));

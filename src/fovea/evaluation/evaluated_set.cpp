@@ -33,7 +33,7 @@ PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& pla
   compensated.position = scan_lidar.position;
   if (placed.motion && !drive.sweep_compensated) {
     compensated.time = scan_lidar.time;
-    compensate_sweep(compensated, *placed.motion, drive.sweep_period);
+    compensate_sweep(compensated, *placed.motion, drive.sweep);
   }
   return compensated;
 }

@@ -3,16 +3,14 @@
 #include <algorithm>
 
 #include "fovea/base/errors.h"
+#include "fovea/evaluation/evaluate_uncolored.h"
 
 namespace fovea {
 namespace {
 
 void require_coloured(const ScoredMap& map) {
   map.points_local.check();
-  const auto& camera = map.points_local.camera;
-  if (std::any_of(camera.begin(), camera.end(), [](std::int8_t c) { return c != kNoCamera; })) {
-    return;
-  }
+  if (has_colors(map)) return;
   throw InputError("the map has no coloured point", "evaluation",
                    "score a map whose points have colours");
 }

@@ -135,7 +135,7 @@ bool in_any_view(const Eigen::Vector3f& p_lidar, const std::vector<Camera>& came
   for (const Camera& camera : cameras) {
     if (scored_pixel(camera, camera.T_cam_lidar * p_lidar.cast<double>())) return true;
   }
-  return false;
+  return cameras.empty();
 }
 
 }  // namespace

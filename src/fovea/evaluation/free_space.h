@@ -24,8 +24,8 @@ class FreeSpaceTest {
   explicit FreeSpaceTest(const ColouredPoints& map);
 
   /// Tests the map points that lie 3-15 m from the scan's LiDAR, in the view of one of the
-  /// `cameras` and within the cone of at least one return. Thread-safe; the result does not depend
-  /// on the order of scans.
+  /// `cameras` (without cameras: in any direction) and within the cone of at least one return.
+  /// Thread-safe; the result does not depend on the order of scans.
   /// @param scan_lidar  the whole scan, motion compensated: returns at any range count
   void add_scan(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
                 const std::vector<Camera>& cameras);

@@ -120,6 +120,9 @@ ErrorFigures summarize(const PointErrors& errors) {
   ErrorFigures figures;
   figures.points = errors.position.size();
   std::tie(figures.me_mean, figures.me_std) = mean_and_deviation(errors.position);
+  figures.coverage_5cm = share_up_to(errors.position, kCoverageFine);
+  figures.coverage_20cm = share_up_to(errors.position, kCoverageCoarse);
+  if (errors.color.empty()) return figures;
   std::tie(figures.te_mean, figures.te_std) = mean_and_deviation(errors.color);
   figures.te_median = median(errors.color);
   figures.te_within_20 = share_up_to(errors.color, kColorWithin);
@@ -140,8 +143,6 @@ ErrorFigures summarize(const PointErrors& errors) {
     product += static_cast<double>(errors.position[i]) * errors.color[i];
   }
   figures.mtme = product / static_cast<double>(figures.points);
-  figures.coverage_5cm = share_up_to(errors.position, kCoverageFine);
-  figures.coverage_20cm = share_up_to(errors.position, kCoverageCoarse);
   return figures;
 }
 

@@ -46,7 +46,7 @@ NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, co
 Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
                           const std::vector<Eigen::Vector3f>& map, bool grey);
 
-/// Errors of evaluated points, one entry a point each.
+/// Errors of evaluated points, one entry a point each; of a map without colors `position` alone.
 struct PointErrors {
   std::vector<float> position;                  ///< ME of the point: |P - P_n|, m
   std::vector<float> color;                     ///< TE of the point

@@ -27,11 +27,11 @@ std::optional<SweepMotion> sweep_motion(const FrameRecord& record, const FrameSo
   if (record.motion) return record.motion;
   const std::optional<TimeNs> stamp = record.stamp ? record.stamp : drive.stamp(record.index);
   if (!refined || !stamp) return std::nullopt;
-  const double period = drive.info().sweep_period;
-  const auto begin = refined->at(*stamp - from_seconds(period / 2));
-  const auto end = refined->at(*stamp + from_seconds(period / 2));
+  const SweepTiming& sweep = drive.info().sweep;
+  const auto begin = refined->at(*stamp + from_seconds(sweep.start_time()));
+  const auto end = refined->at(*stamp + from_seconds(sweep.end_time()));
   if (!begin || !end) return std::nullopt;
-  return SweepMotion{velocity_between(*begin, *end, period)};
+  return SweepMotion{velocity_between(*begin, *end, sweep.period)};
 }
 
 /// Whether the protocol scores this frame. InputError if it was mapped and must not have been.

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fovea/evaluation/evaluate_uncolored.h"
+
 namespace fovea {
 namespace {
 
@@ -143,6 +145,7 @@ std::string to_json(const EvaluationReport& report) {
   json["protocol"] = to_string(report.protocol);
   json["explanation"] = explanation(report.protocol);
   json["cameras"] = report.cameras;
+  json["colored"] = report.colored;
   json["calibration"] = report.calibration;
   put_figures(json, report.figures);
   put_intervals(json, report.intervals);
@@ -187,6 +190,7 @@ std::string to_json(const EvaluationReport& report) {
 }
 
 std::string to_text(const EvaluationReport& report) {
+  if (!report.colored) return uncolored_text(report);
   const ErrorFigures& f = report.figures;
   const ErrorFigures& p = report.paper_like;
   std::string text = fmt::format("{}, camera {}: {} points of {} frames ({} skipped)\n",

@@ -69,7 +69,8 @@ inline constexpr float kTeBin = 4;
 
 struct EvaluationReport {
   Protocol protocol = Protocol::kHeldOut;
-  std::vector<int> cameras;
+  std::vector<int> cameras;  ///< scored; empty where the map has no colors
+  bool colored = true;       ///< false: the map has no colors, and figures of colors are absent
   /// Whose calibration the points were projected by: "drive", or a map that corrected it.
   std::string calibration = "drive";
   ErrorFigures figures;     ///< of all evaluated points, against coloured map points only

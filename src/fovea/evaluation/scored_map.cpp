@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -61,6 +62,16 @@ void choose_drive(const std::vector<MergedDrive>& drives, const std::string& nam
   }
 }
 
+/// Gives points without color their intensity as gray, for pictures. Scores of colors leave these
+/// points out.
+void show_intensity(const PointCloud& tile, std::vector<Rgb>& color) {
+  for (std::size_t i = 0; i < tile.size(); ++i) {
+    if (tile.camera[i] == kNoCamera) {
+      color[i] = to_rgb(Eigen::Vector3f::Constant(255 * std::clamp(tile.intensity[i], 0.0f, 1.0f)));
+    }
+  }
+}
+
 ScoredMap load_fovea_map(const std::filesystem::path& path, const std::string& drive) {
   const MapReader reader(path);
   ScoredMap map;
@@ -73,6 +84,7 @@ ScoredMap load_fovea_map(const std::filesystem::path& path, const std::string& d
     part.origin = tile.origin;
     part.position = tile.position;
     part.color = tile.color;
+    if (!tile.intensity.empty()) show_intensity(tile, part.color);
     part.camera = tile.camera;
     part.frame = tile.frame;
     part.interpolated = tile.interpolated;

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "fovea/base/errors.h"
+#include "fovea/evaluation/scored_frames.h"
 #include "fovea/mapping/scan_projection.h"
 
 namespace fovea {
@@ -70,19 +71,13 @@ void Scorer::leave_out_moving(const std::vector<FrameRecord>& frames) {
 
 FrameScore Scorer::score(const PlacedFrame& placed) {
   FrameScore score;
-  const DriveInfo& info = drive_.info();
-  if (placed.index < info.begin || placed.index >= info.end) {
-    score.unscored = {placed.index, "not in the drive"};
-    return score;
-  }
-  const FrameResult loaded = drive_.load(placed.index);
-  if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
-    score.unscored = {placed.index,
-                      std::string(to_string(skipped->reason)) + ": " + skipped->detail};
+  const auto loaded = load_scored_frame(drive_, placed.index);
+  if (const auto* unscored = std::get_if<UnscoredFrame>(&loaded)) {
+    score.unscored = *unscored;
     return score;
   }
   const Frame& frame = std::get<Frame>(loaded);
-  const PointCloud scan = compensated_scan(frame.scan, placed, info);
+  const PointCloud scan = compensated_scan(frame.scan, placed, drive_.info());
   std::vector<Camera> cameras;
   for (const std::size_t place : options_.cameras) {
     cameras.push_back(info.camera_at(place, placed.index).at_image(placed.motion));
@@ -132,12 +127,10 @@ SplatView Scorer::draw(const PlacedFrame& placed, const Camera& camera,
 
 std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
   std::vector<ViewPicture> pictures;
-  const DriveInfo& info = drive_.info();
-  if (placed.index < info.begin || placed.index >= info.end) return pictures;
-  FrameResult loaded = drive_.load(placed.index);
-  if (std::holds_alternative<SkippedFrame>(loaded)) return pictures;
+  auto loaded = load_scored_frame(drive_, placed.index);
+  if (std::holds_alternative<UnscoredFrame>(loaded)) return pictures;
   Frame& frame = std::get<Frame>(loaded);
-  const PointCloud scan = compensated_scan(frame.scan, placed, info);
+  const PointCloud scan = compensated_scan(frame.scan, placed, drive_.info());
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     const Camera camera = info.camera_at(options_.cameras[k], placed.index).at_image(placed.motion);
     Image& image = frame.images.at(options_.cameras[k]);

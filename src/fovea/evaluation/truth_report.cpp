@@ -74,9 +74,9 @@ Json frame_json(const TruthFrame& f) {
 }  // namespace
 
 double ghost_share(const TruthReport& report) {
-  return report.ghosts
-             ? static_cast<double>(*report.ghosts) / static_cast<double>(report.map_points_coloured)
-             : Distribution::kNone;
+  if (!report.ghosts) return Distribution::kNone;
+  const std::size_t scored = report.colored ? report.map_points_coloured : report.map_points;
+  return static_cast<double>(*report.ghosts) / static_cast<double>(scored);
 }
 
 const TruthFrame* worst_frame(const TruthReport& report) {
@@ -92,6 +92,7 @@ std::string to_json(const TruthReport& report) {
   json["explanation"] = kExplanation;
   json["scene"] = report.scene;
   json["cameras"] = report.cameras;
+  json["colored"] = report.colored;
   json["aligned"] = report.aligned;
   json["georeferenced"] = report.georeferenced;
   json["map_points"] = report.map_points;
@@ -120,10 +121,13 @@ std::string to_json(const TruthReport& report) {
 }
 
 std::string to_text(const TruthReport& report) {
-  std::string text =
-      fmt::format("truth, scene {}, camera {}: {} coloured points of {}, {} frames{}\n",
-                  report.scene, fmt::join(report.cameras, ", "), report.map_points_coloured,
-                  report.map_points, report.frames.size(), report.aligned ? "" : ", not aligned");
+  const std::string points =
+      report.colored
+          ? fmt::format("camera {}: {} coloured points of {}", fmt::join(report.cameras, ", "),
+                        report.map_points_coloured, report.map_points)
+          : fmt::format("{} points (the map has no colors)", report.map_points);
+  std::string text = fmt::format("truth, scene {}, {}, {} frames{}\n", report.scene, points,
+                                 report.frames.size(), report.aligned ? "" : ", not aligned");
   const auto row = [&](std::string_view name, const std::string& value) {
     text += fmt::format("  {:<24}{}\n", name, value);
   };
@@ -162,13 +166,16 @@ std::string to_text(const TruthReport& report) {
                     f.raw.mean, f.raw.median, f.within_20, f.gain.mean, f.gain.median,
                     f.gain_within_20, f.raw.count));
   };
-  colors("colour, albedo", report.color_albedo);
-  colors("  matte only", report.color_albedo_matte);
-  colors("colour, perfect image", report.color_view);
-  colors("  matte only", report.color_view_matte);
+  if (report.colored) {
+    colors("colour, albedo", report.color_albedo);
+    colors("  matte only", report.color_albedo_matte);
+    colors("colour, perfect image", report.color_view);
+    colors("  matte only", report.color_view_matte);
+  }
   row("ghosts", report.ghosts
                     ? fmt::format("{} ({:.3f}%)", *report.ghosts, 100 * ghost_share(report))
                     : "unknown: the points name no frame");
+  if (report.cameras.empty()) return text + kExplanation + "\n";  // upsampling needs a camera
   distances("upsampling", report.upsampling.error);
   row("  hidden hits recovered",
       fmt::format("{:.3f} of {} within 5 cm", report.upsampling.recovered,

@@ -41,6 +41,7 @@ struct TruthFrame {
 struct TruthReport {
   std::string scene;
   std::vector<int> cameras;
+  bool colored = true;         ///< false: the map has no colors, and all points are scored
   bool aligned = true;         ///< trajectories laid over each other before all but `pose_absolute`
   bool georeferenced = false;  ///< the map's place on earth is known
   std::size_t map_points = 0, map_points_coloured = 0;
@@ -57,7 +58,7 @@ struct TruthReport {
   std::vector<TruthFrame> frames;
 };
 
-/// Share of the coloured map points that are ghosts; NaN where that is not known.
+/// Share of the scored map points that are ghosts; NaN where that is not known.
 double ghost_share(const TruthReport& report);
 /// The frame whose position is farthest off, the first of equal ones; null if there is no frame.
 const TruthFrame* worst_frame(const TruthReport& report);

@@ -15,6 +15,7 @@ constexpr float kFootprint = 0.01f;  // m; a pixel of KITTI's cameras at 7 m
 constexpr float kSeenVoxel = 0.05f;  // m
 
 bool in_any_view(const std::vector<Camera>& cameras, const Eigen::Vector3d& p_lidar) {
+  if (cameras.empty()) return true;
   return std::any_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {
     return scored_pixel(camera, Eigen::Vector3d(camera.T_cam_lidar * p_lidar)).has_value();
   });

@@ -24,7 +24,7 @@ SurfaceMatches match_surfaces(const PointCloud& points_true, const World& world,
                               const SurfaceIndex& surfaces);
 
 /// Static true hits of a scan that a map could have: 3-15 m from the LiDAR and in view of one of
-/// the cameras, as in the evaluated set.
+/// the cameras, as in the evaluated set; without cameras in any direction.
 std::vector<TrueReturn> visible_static(const std::vector<TrueReturn>& returns,
                                        const std::vector<Camera>& cameras);
 

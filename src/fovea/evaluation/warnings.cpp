@@ -44,7 +44,7 @@ std::vector<std::string> warnings(const EvaluationReport& report) {
        fmt::format("TE is {:.1f} at edges of depth and {:.1f} elsewhere: colours bleed over edges",
                    bleeding.te_edges, bleeding.te_elsewhere));
   const Eigen::Vector2i shift = report.shift.best();
-  warn(shift.cast<double>().norm() >= kShiftPixels,
+  warn(report.colored && shift.cast<double>().norm() >= kShiftPixels,
        fmt::format("the texture lies ({}, {}) pixels beside the photographs", -shift.x(),
                    -shift.y()));
   warn(report.thickness.thickness > kThickness,

@@ -22,6 +22,11 @@ struct SweepTiming {
   double start_azimuth = std::numbers::pi;  ///< rad, atan2(y, x) in the LiDAR frame
   double stamp_phase = 0.5;                 ///< 0: stamped at the start of the sweep; 1: at its end
 
+  /// From the stamp to the start, the middle and the end of the sweep (s).
+  double start_time() const { return -stamp_phase * period; }
+  double middle_time() const { return (0.5 - stamp_phase) * period; }
+  double end_time() const { return (1 - stamp_phase) * period; }
+
   bool operator==(const SweepTiming&) const = default;
 };
 

@@ -12,6 +12,15 @@ namespace {
 constexpr double kMaxAcceleration = 20;                 // m/s^2
 constexpr double kMaxTurnAcceleration = 200 * kDegree;  // rad/s^2
 
+/// Half a sweep of a LiDAR at 20 Hz: velocities need such a span, even where the sweep ends at its
+/// stamp.
+constexpr TimeNs kLeastReach = kNsPerSecond / 40;
+
+/// The span of measurements and poses that give the motion at `time`.
+TimeNs reach_of(TimeNs time, TimeNs known_until) {
+  return std::max(known_until - time, kLeastReach);
+}
+
 }  // namespace
 
 Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
@@ -69,7 +78,7 @@ std::optional<Trajectory::MeanVelocity> Trajectory::mean_velocity(TimeNs begin, 
 }
 
 std::optional<SweepMotion> Trajectory::measured_motion(TimeNs time, TimeNs known_until) const {
-  const TimeNs reach = known_until - time;
+  const TimeNs reach = reach_of(time, known_until);
   const auto now = mean_velocity(time - reach, known_until + 1, time);
   if (!now) return std::nullopt;
   const auto before = mean_velocity(time - 3 * reach, time - reach, time);
@@ -82,7 +91,7 @@ std::optional<SweepMotion> Trajectory::measured_motion(TimeNs time, TimeNs known
 }
 
 std::optional<SweepMotion> Trajectory::motion(TimeNs time, TimeNs known_until) const {
-  const TimeNs reach = known_until - time;
+  const TimeNs reach = reach_of(time, known_until);
   if (auto measured = measured_motion(time, known_until)) return measured;
   if (poses_.size() < 2) return std::nullopt;
   const auto unknown = std::upper_bound(poses_.begin() + 2, poses_.end(), known_until,

@@ -37,13 +37,14 @@ class Trajectory {
   std::optional<RigidMotion> nearest(TimeNs time) const;
 
   /// How the body moves at `time`, from what is known by `known_until` (the poses at or before it;
-  /// a live program has no later ones). Where velocities were measured no farther from `time` than
-  /// that: their mean, and its change since those up to three times as far back, which takes the
-  /// mean from their time to `time`; a change too large for a vehicle is left out as a fault. Where
-  /// none was: the motion between the last pose known and the next that lies before it by 3/4 of
-  /// that span or more, without change: poses a span apart, whose times jitter, are enough, and the
-  /// noise of closer ones would be divided by a moment. Where fewer than two poses are that early,
-  /// the first two of the trajectory. Empty for a single pose and in an outage.
+  /// a live program has no later ones). That span is 25 ms at least. Where velocities were measured
+  /// no farther from `time` than it: their mean, and its change since those up to three times as
+  /// far back, which takes the mean from their time to `time`; a change too large for a vehicle is
+  /// left out as a fault. Where none was: the motion between the last pose known and the next that
+  /// lies before it by 3/4 of that span or more, without change: poses a span apart, whose times
+  /// jitter, are enough, and the noise of closer ones would be divided by a moment. Where fewer
+  /// than two poses are that early, the first two of the trajectory. Empty for a single pose and in
+  /// an outage.
   std::optional<SweepMotion> motion(TimeNs time, TimeNs known_until) const;
 
  private:

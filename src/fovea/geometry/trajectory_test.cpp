@@ -102,6 +102,21 @@ TEST(Trajectory, FrequentPosesDoNotDivideTheirNoiseByAMoment) {
   EXPECT_NEAR(speed(trajectory, 0.5, 0.5), 10, 2.001);
 }
 
+TEST(Trajectory, AMotionThatEndsNowHasASpanToo) {
+  // 10 m/s at 100 Hz, each position a centimeter off, to one side and the other.
+  std::vector<StampedPose> poses, measured;
+  for (int i = 0; i <= 100; ++i) {
+    const RigidMotion T = at_x(0.1 * i + (i % 2 == 0 ? 0.01 : -0.01));
+    poses.push_back({i * kNsPerSecond / 100, T});
+    Twist velocity = Twist::Zero();
+    velocity[3] = i % 2 == 0 ? 9.9 : 10.1;
+    measured.push_back({i * kNsPerSecond / 100, T, velocity});
+  }
+  // Between neighbors it would be 8 or 12 m/s.
+  EXPECT_NEAR(speed(Trajectory(poses), 0.5, 0.5), 10, 1);
+  EXPECT_NEAR(speed(Trajectory(measured), 0.5, 0.5), 10, 0.1);
+}
+
 TEST(Trajectory, AMeasuredVelocityIsBetterThanDifferences) {
   Twist fast = Twist::Zero(), faster = Twist::Zero();
   fast[3] = 8;

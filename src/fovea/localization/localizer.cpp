@@ -120,7 +120,7 @@ Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationG
 
 MotionModel Localizer::new_motion_model() const {
   return MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr,
-                     {.sweep_rest = from_seconds(drive_.sweep_period / 2)});
+                     {.sweep_rest = from_seconds(drive_.sweep.end_time())});
 }
 
 Localization Localizer::localize(const Frame& frame) {
@@ -164,7 +164,7 @@ Localizer::Scan Localizer::prepare(const Frame& frame,
                                    const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = frame.scan;
   const bool moves = options_.compensate_motion && !drive_.sweep_compensated;
-  if (motion && moves) compensate_sweep(scan_lidar, *motion, drive_.sweep_period);
+  if (motion && moves) compensate_sweep(scan_lidar, *motion, drive_.sweep);
   std::vector<Eigen::Vector3f> near;
   std::copy_if(scan_lidar.position.begin(), scan_lidar.position.end(), std::back_inserter(near),
                [](const Eigen::Vector3f& p) { return p.norm() < float(kLocalizationRange); });

@@ -126,7 +126,7 @@ TEST_F(Localize, AJumpIsFoundAndSaysNothingOfTheMotionAfterIt) {
   // The scans' sweeps would be smeared over metres by the speed of such a jump.
   Visit visit(town_scene(), 0.5, 0.6, 10);
   visit.editable_info().sweep_compensated = false;
-  visit.editable_info().sweep_period = 0.001;  // these have none
+  visit.editable_info().sweep.period = 0.001;  // these have none
   for (std::size_t i = 4; i < 10; ++i) {
     visit.T_local_lidar[i] = RigidMotion(Eigen::Translation3d(6, 0, 0)) * visit.T_local_lidar[i];
   }

@@ -17,7 +17,9 @@ SensorProfile lidar_profile(const FrameSource& source) {
     FrameResult result = source.load(index);
     if (auto* frame = std::get_if<Frame>(&result)) scans.push_back(std::move(frame->scan));
   }
-  return estimate_sensor_profile(scans, {});
+  SensorProfile stated;
+  stated.sweep = drive.sweep;
+  return estimate_sensor_profile(scans, stated);
 }
 
 DriveInfo info_with_lidars(const FrameSource& source) {

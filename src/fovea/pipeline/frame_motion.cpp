@@ -19,7 +19,7 @@ std::optional<FrameMotion> known_motion(const FrameSource& source,
   if (drive.navigation) {
     const auto pose = drive.navigation->at(*stamp);
     const auto motion =
-        drive.navigation->motion(*stamp, *stamp + from_seconds(drive.sweep_period / 2));
+        drive.navigation->motion(*stamp, *stamp + from_seconds(drive.sweep.end_time()));
     if (!pose || !motion) return std::nullopt;
     return FrameMotion{*pose, *motion};
   }

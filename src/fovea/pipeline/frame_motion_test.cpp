@@ -15,7 +15,7 @@ class Stamps : public FrameSource {
   explicit Stamps(bool with_navigation) {
     info_.begin = 10;
     info_.end = 20;
-    info_.sweep_period = 0.1;
+    info_.sweep.period = 0.1;
     if (!with_navigation) return;
     std::vector<StampedPose> poses;
     for (int k = 0; k < 30; ++k)

@@ -103,7 +103,7 @@ class ScanPair {
 
  private:
   PointCloud undone(PointCloud scan, const Twist& velocity) const {
-    if (compensate_) compensate_sweep(scan, {velocity}, drive_.sweep_period);
+    if (compensate_) compensate_sweep(scan, {velocity}, drive_.sweep);
     return scan;
   }
 

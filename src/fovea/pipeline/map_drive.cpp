@@ -18,6 +18,7 @@
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/pipeline/stored_calibration.h"
+#include "fovea/pipeline/view_check.h"
 
 namespace fovea {
 namespace {
@@ -153,8 +154,10 @@ class MapRun {
                 [this](TileMap& map, const Eigen::Vector3d& center_local, double radius) {
                   keeper_.bring_near(map, center_local, radius);
                 }),
-        figures_(drive, job.rate) {
-    if (job.options.check_calibration && !job.calibrate) {
+        figures_(drive, job.rate),
+        views_(drive) {
+    const bool has_cameras = !drive.calibration.cameras.empty();
+    if (has_cameras && job.options.check_calibration && !job.calibrate) {
       check_.emplace(drive, has_sweep_motion(drive, job));
     }
     if (const auto velocity =
@@ -187,6 +190,7 @@ class MapRun {
   Mapper mapper_;
   DriveLog log_;
   DriveFigures figures_;
+  ViewCheck views_;
   std::optional<CalibrationCheck> check_;
   std::vector<CameraCalibration> calibration_;  // what it has found
   std::optional<FrameRecord> latest_;
@@ -218,6 +222,7 @@ void MapRun::take_up_earlier_run() {
   }
   mapper_.resume(stored_map(reader, job_.options.tile_size), records, source_);
   if (!records.empty()) latest_ = records.back();
+  if (log_.has_mapped()) views_.skip();
 }
 
 void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record) {
@@ -249,6 +254,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
       source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle_tracking(); }, gate_});
   while (std::optional<LocatedFrame> located = frames.next()) {
+    if (const auto* frame = std::get_if<Frame>(&located->result)) views_.add(frame->scan);
     FrameRecord record = map_frame(mapper_, source_, *located);
     check_calibration(*located, record);
     figures_.add(record, /*is_new=*/true);
@@ -260,7 +266,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     latest_ = std::move(record);
     mapper_.settle_map();
     const bool due = log_.fresh() >= job_.checkpoint_frames && !keeper_.is_writing();
-    if (log_.has_mapped() && (due || keeper_.needs_memory(mapper_.map()))) {
+    if (log_.has_mapped() && views_.passed() && (due || keeper_.needs_memory(mapper_.map()))) {
       keeper_.checkpoint(mapper_.map(), fresh_rows(/*last=*/false),
                          latest_->T_local_lidar.translation(), mapper_.reach());
     }
@@ -272,6 +278,7 @@ void MapRun::finish() {
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
                      "check that the drive has scans and images for the frames asked for");
   }
+  views_.require_view();
   // Beside the writer, which waits for the disk now and then.
   auto calibration = std::async(threaded_ ? std::launch::async : std::launch::deferred, [this] {
     return check_ ? check_->estimates() : std::vector<CameraCalibration>();
@@ -287,6 +294,7 @@ MapSummary MapRun::summary() const {
         fmt::format("{} poses for {} frames: the frames after them are registered",
                     job_.given_poses.size(), drive_.end - drive_.begin));
   }
+  for (std::string& note : views_.notes()) summary.notes.push_back(std::move(note));
   const double limit_mb = double(job_.memory) / (1024 * 1024);
   if (summary.peak_rss_mb > limit_mb) {
     summary.notes.push_back(fmt::format(
@@ -301,12 +309,14 @@ MapSummary MapRun::summary() const {
   return summary;
 }
 
-/// InputError if the drive does not say of its motion what the job has to know.
-void require_motion(const DriveInfo& drive, const MapJob& job) {
+/// InputError if the drive lacks a motion or a camera that the job needs.
+void require_sources(const DriveInfo& drive, const MapJob& job) {
   if (job.pose_source == PoseSource::kNavigation && !drive.navigation) {
     throw InputError("the drive has no navigation to take poses from", drive.path.string(),
                      "let registration find them (--poses refine)");
   }
+  if (job.calibrate) require_cameras(drive, "calibration");
+  if (job.options.refinement.visible_only) require_cameras(drive, "refinement.visible_only");
   if (job.calibrate && !drive.navigation && job.given_poses.empty()) {
     throw InputError("nothing says how the vehicle moves, which a calibration needs",
                      drive.path.string(), "give poses (--poses FILE) or map without --calibrate");
@@ -319,7 +329,7 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress) {
   const WallClock::time_point start = WallClock::now();
   DriveInfo drive = info_with_lidars(source);
-  require_motion(drive, job);
+  require_sources(drive, job);
   MapMeta meta = describe(drive, job);
   const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
   MapRun run(source, drive, job, std::move(meta));

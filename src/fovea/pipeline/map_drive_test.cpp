@@ -41,6 +41,33 @@ class MapDrive : public testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(MapDrive, CamerasThatSeeNoPointAreAnErrorAndLeaveNoMap) {
+  Camera& camera = drive_.editable_info().calibration.cameras.at(0);
+  // Upward: z of the camera is z of the LiDAR.
+  camera.T_cam_lidar.linear().setIdentity();
+  MapJob job = this->job();
+  job.checkpoint_frames = 1;
+  try {
+    map_drive(drive_, job, {});
+    ADD_FAILURE() << "mapped";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no camera sees a point of 8 scans"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(job.output));
+}
+
+TEST_F(MapDrive, WhatNeedsACameraIsRefusedWithoutOne) {
+  drive_.editable_info().calibration = {};
+  MapJob job = this->job();
+  job.options.refinement.visible_only = true;
+  EXPECT_THROW(map_drive(drive_, job, {}), InputError);
+  job.options.refinement.visible_only = false;
+  job.calibrate = true;
+  EXPECT_THROW(map_drive(drive_, job, {}), InputError);
+  job.calibrate = false;
+  EXPECT_GT(map_drive(drive_, job, {}).points, 0u);
+}
+
 TEST_F(MapDrive, OverlapChangesNothing) {
   std::vector<std::string> digests;
   for (const auto& [threads, overlap] :
@@ -80,6 +107,30 @@ TEST_F(MapDrive, AnInterruptedRunGoesOnToTheSameMap) {
 }
 
 // Without navigation too, and with a vehicle that is under way.
+TEST_F(MapDrive, WithoutCamerasTheMapIsTheSameAtAnyThreadsAndWhenResumed) {
+  drive_.editable_info().calibration = {};
+  MapJob job = this->job();
+  job.checkpoint_frames = 1;
+  std::vector<std::string> digests;
+  for (const int threads : {1, 4}) {
+    const ThreadLimit limit(threads);
+    map_drive(drive_, job, {});
+    digests.push_back(digest());
+  }
+  std::stop_source stop;
+  MapJob part = job;
+  part.overlap = false;
+  part.stop = stop.get_token();
+  map_drive(drive_, part, [&](const MapProgress& progress) {
+    if (progress.done == 3) stop.request_stop();
+  });
+  part.stop = {};
+  part.resume = true;
+  map_drive(drive_, part, {});
+  digests.push_back(digest());
+  EXPECT_THAT(digests, testing::Each(digests.front()));
+}
+
 TEST_F(MapDrive, ADriveThatBeginsAtSpeedIsMappedAndResumed) {
   const Twist velocity = (Twist() << 0, 0, 0.1, 28, 0, 0).finished();
   for (const bool compensated : {false, true}) {

@@ -8,9 +8,12 @@
 #include "fovea/mapping/surface_samples.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/foveal_query.h"
+#include "fovea/pipeline/lidar_views.h"
 
 namespace fovea {
 namespace {
+
+const Image kNoImage;
 
 /// Samples lie at most this far beyond the foveal region (m).
 constexpr double kMargin = 1.0;
@@ -105,7 +108,8 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
     if (options_.foveal_enabled) {
       for (std::size_t k = 0; k < tracked.views.of_camera.size(); ++k) {
         std::optional<ScanView>& view = tracked.views.of_camera[k];
-        if (view) map_view(*std::move(view), frame.images[k], record, clock);
+        const Image& image = frame.images.empty() ? kNoImage : frame.images[k];
+        if (view) map_view(*std::move(view), image, record, clock);
       }
     } else {
       map_whole_scan(scan_lidar, frame, cameras_at_images(frame.index, tracked.motion),
@@ -135,6 +139,7 @@ void Mapper::follow_submaps(const std::vector<RigidMotion>& poses) {
 
 std::vector<Camera> Mapper::cameras_at_images(int index,
                                               const std::optional<SweepMotion>& motion) const {
+  if (drive_.calibration.cameras.empty()) return lidar_views();
   std::vector<Camera> cameras;
   for (std::size_t slot = 0; slot < drive_.calibration.cameras.size(); ++slot) {
     cameras.push_back(drive_.camera_at(slot, index).at_image(motion));

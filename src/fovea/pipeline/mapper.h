@@ -84,7 +84,8 @@ class Mapper {
   void map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
                       const std::vector<Camera>& cameras, const RigidMotion& T_local_lidar,
                       FrameRecord& record, StageClock& clock);
-  /// The drive's cameras, each at the place where it took its image of a frame.
+  /// The drive's cameras, each at the place where it took its image of a frame. lidar_views() where
+  /// the drive has no camera.
   std::vector<Camera> cameras_at_images(int index, const std::optional<SweepMotion>& motion) const;
 
   const DriveInfo& drive_;

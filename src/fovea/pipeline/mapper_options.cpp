@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/point_cloud.h"
 
 namespace fovea {
 namespace {
@@ -69,6 +70,7 @@ FovealOptions foveal_options_of(const MapperOptions& options, int camera) {
   FovealOptions foveal = options.foveal;
   const auto own = options.camera_slices.find(camera);
   if (own != options.camera_slices.end()) foveal.slices = own->second;
+  if (camera == kNoCamera) foveal.slices.clear();
   return foveal;
 }
 

@@ -67,7 +67,8 @@ struct MapperOptions {
   void validate() const;          ///< ConfigError that names the field
 };
 
-/// The foveal region of a camera, with slices of its own where it has any.
+/// The foveal region of a camera, with slices of its own where it has any; of lidar_views()
+/// (kNoCamera) without slices.
 FovealOptions foveal_options_of(const MapperOptions& options, int camera);
 
 /// The rows of the paper's Table II: "baseline-gicp", "baseline-icp", "baseline-plane",

@@ -92,6 +92,7 @@ class Recolorer {
 RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, const RecolorJob& job,
                            const std::function<void(int, int)>& progress) {
   job.options.validate();
+  require_cameras(source.info(), "recoloring");
   std::vector<FrameRecord> records = map.frames();
   std::erase_if(records, [](const FrameRecord& r) { return r.status != FrameStatus::kMapped; });
   // Before anything is written.

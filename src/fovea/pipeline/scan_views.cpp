@@ -50,8 +50,8 @@ ScanViews view_scan(const PointCloud& scan_lidar, const Frame& frame,
   if (!options.foveal_enabled) return views;
   views.of_camera.resize(cameras.size());
   for (std::size_t k = 0; k < cameras.size(); ++k) {
-    const Image& image = frame.images[k];
-    if (!shows_something(image, views.figures)) continue;
+    const Image* image = frame.images.empty() ? nullptr : &frame.images[k];
+    if (image != nullptr && !shows_something(*image, views.figures)) continue;
     ScanView& view = views.of_camera[k].emplace();
     view.camera = cameras[k];
     view.foveal_cam = foveal_part(scan_lidar, view.camera, options, views);
@@ -62,8 +62,8 @@ ScanViews view_scan(const PointCloud& scan_lidar, const Frame& frame,
         view.upsampled = upsample(view.foveal_cam, view.camera, options.upsample);
       }
     });
-    if (options.texture.views == TextureViews::kMean) {
-      views.clock.time("texture", [&] { view.pyramid.emplace(image); });
+    if (image != nullptr && options.texture.views == TextureViews::kMean) {
+      views.clock.time("texture", [&] { view.pyramid.emplace(*image); });
     }
   }
   return views;

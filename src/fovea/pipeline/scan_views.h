@@ -40,7 +40,8 @@ struct ScanViews {
 bool shows_something(const Image& image, std::map<std::string, double>& figures);
 
 /// @param scan_lidar  motion compensated
-/// @param cameras     of the drive, where they were when the frame's images were taken
+/// @param cameras     of the drive, where they were when the frame's images were taken; of a drive
+///                    without cameras, lidar_views()
 ScanViews view_scan(const PointCloud& scan_lidar, const Frame& frame,
                     const std::vector<Camera>& cameras, const MapperOptions& options);
 

@@ -17,8 +17,8 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
   if (frame.images.at(slot).empty()) return {};
   LidarEdges edges_lidar = find_lidar_edges(frame.scan, camera, kMaxRange);
   if (compensate) {
-    compensate_sweep(edges_lidar.inside, motion.sweep, drive.sweep_period);
-    compensate_sweep(edges_lidar.outside, motion.sweep, drive.sweep_period);
+    compensate_sweep(edges_lidar.inside, motion.sweep, drive.sweep);
+    compensate_sweep(edges_lidar.outside, motion.sweep, drive.sweep);
   }
   return edge_profiles(edges_lidar, frame.images.at(slot),
                        {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});

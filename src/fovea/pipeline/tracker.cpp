@@ -39,7 +39,7 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
       motion_model_(drive.navigation ? &*drive.navigation : nullptr,
                     {.interpolate = options.interpolate_navigation,
                      .doubt = fuses(options, pose_source),
-                     .sweep_rest = from_seconds(drive.sweep_period / 2)}),
+                     .sweep_rest = from_seconds(drive.sweep.end_time())}),
       refiner_(options.refinement, drive.calibration.cameras),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
       keyframes_(refiner_.keyframes()) {}
@@ -94,7 +94,7 @@ void Tracker::settle() {
 PointCloud Tracker::compensated(const PointCloud& scan,
                                 const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = scan;
-  if (motion && compensates()) compensate_sweep(scan_lidar, *motion, drive_.sweep_period);
+  if (motion && compensates()) compensate_sweep(scan_lidar, *motion, drive_.sweep);
   scan_lidar.time.clear();  // of no use to any stage
   return scan_lidar;
 }

@@ -235,8 +235,7 @@ std::vector<PlannedCamera> plan_cameras(const BagSurvey& survey, const ConvertOp
                                            ? plan_all(survey, lidar_frame, notes)
                                            : plan_named(survey, options, lidar_frame);
   if (cameras.empty()) {
-    throw InputError("the recording has no images", "sensor_msgs/msg/Image, CompressedImage",
-                     "record a camera, too");
+    notes.push_back("the recording has no images: the drive has no camera, and maps no colors");
   }
   if (cameras.size() > kMaxCameras) {
     throw InputError(fmt::format("there are {} cameras, and a drive has at most {}", cameras.size(),

@@ -22,7 +22,8 @@ LensCamera optics_of(const ros::CameraInfo& info, bool rectified, const std::str
 
 /// The cameras: those of the options, or every topic of images that has calibration and place; of
 /// two topics of the same name the plain one before the compressed, the raw one before the
-/// rectified. InputError if one of the options, or all, have none; or if there are over ten.
+/// rectified. Empty, with a note, if the recording has no images. InputError if one of the options,
+/// or all topics, have no calibration or place; or if there are over ten.
 /// @param lidar_frame  of the scans
 /// @param notes        which topics are left out, and why
 std::vector<PlannedCamera> plan_cameras(const BagSurvey& survey, const ConvertOptions& options,

@@ -61,8 +61,7 @@ void Recorder::finish(RecordedDrive& drive, ConvertFigures& figures) const {
         "{} points are left out: not finite, at the origin, beyond 1 km or 1 s off the stamp",
         dropped_));
   }
-  // One in a thousand may be a mistake.
-  drive.intensity_max = above_255_ * 1000 > points_ ? 65535 : above_1_ * 1000 > points_ ? 255 : 1;
+  drive.intensity_max = scale_.max();
 }
 
 Recorder::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
@@ -102,10 +101,7 @@ void Recorder::write_scan(const ros::PointCloud2& cloud) {
     read_cloud_rows(cloud, lidar_.topic, rows);
     const LidarScan scan = rows.take(lidar_.topic);
     dropped_ += scan.dropped;
-    points_ += scan.points.size();
-    for (const float intensity : scan.points.intensity) {
-      above_1_ += intensity > 1, above_255_ += intensity > 255;
-    }
+    scale_.add(scan.points.intensity);
     writer_.write_scan(number, stamp, scan.points);
   });
 }

@@ -12,6 +12,7 @@
 #include "fovea/recording/generic_drive_writer.h"
 #include "fovea/rosbag/conversion_plan.h"
 #include "fovea/rosbag/convert_bags.h"
+#include "fovea/sensor/intensity_scale.h"
 
 namespace fovea {
 
@@ -59,7 +60,8 @@ class Recorder : public BagSink {
   GenericDriveWriter& writer_;
   const std::function<bool(int, int)>& progress_;
   std::size_t done_ = 0, total_ = 0;
-  std::size_t points_ = 0, above_1_ = 0, above_255_ = 0, dropped_ = 0;
+  std::size_t dropped_ = 0;
+  IntensityScale scale_;
   bool stopped_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include "fovea/base/settings.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/plausible.h"
+#include "fovea/sensor/plausible_lens.h"
 
 namespace fovea {
 
@@ -27,6 +28,12 @@ constexpr auto names_of(TimeReference) {
   return std::array{EnumName<TimeReference>{TimeReference::kStamp, "stamp"},
                     EnumName<TimeReference>{TimeReference::kAbsolute, "absolute"},
                     EnumName<TimeReference>{TimeReference::kNone, "none"}};
+}
+
+constexpr auto names_of(SweepDirection) {
+  return std::array{
+      EnumName<SweepDirection>{SweepDirection::kClockwise, "clockwise"},
+      EnumName<SweepDirection>{SweepDirection::kCounterclockwise, "counterclockwise"}};
 }
 
 inline auto names_of(LensModel) {
@@ -48,6 +55,13 @@ void check(const std::string& key, double value, double low, double high) {
   if (value >= low && value <= high) return;  // NaN is outside of everything
   reject(fmt::format("{:.6g} is out of range", value), key,
          fmt::format("give {:g} to {:g}", low, high));
+}
+
+/// Rejects a distance that no vehicle has, and NaN.
+void check_lever(const std::string& key, const Eigen::Vector3d& t) {
+  if (t.norm() <= kMaxLever) return;
+  reject(fmt::format("the distance is {:.6g} m, over {:g} m", t.norm(), kMaxLever), key,
+         "give it in meters: these are likely millimeters");
 }
 
 /// A rigid motion as a matrix or as translation and quaternion.
@@ -75,9 +89,7 @@ struct MotionText {
     if (!is_rotation(R, kRotationTolerance)) {
       reject("the matrix is not a rotation", key, "give a rotation beside the translation");
     }
-    if (!(t.norm() <= kMaxLever)) {
-      reject("the translation is over 1 km", key, "give it in metres");
-    }
+    check_lever(key, t);
     RigidMotion T = RigidMotion::Identity();
     T.linear() = nearest_rotation(R);
     T.translation() = t;
@@ -169,6 +181,9 @@ class CameraKeys {
     check(key("height"), camera_.optics.height, 8, kMaxImageSide);
     read_intrinsics();
     read_distortion();
+    if (const auto problem = lens_problem(camera_.optics)) {
+      reject(problem->what, key(problem->key), problem->remedy);
+    }
     constexpr double kNarrowest = 10 * kDegree, kWidest = 170 * kDegree;
     if (!(camera_.max_field_of_view >= kNarrowest && camera_.max_field_of_view <= kWidest)) {
       reject("the field of view is out of range", key("field_of_view"), "give 10 to 170 degrees");
@@ -232,7 +247,11 @@ class DriveKeys {
     visit("version", version_);
     visit("lidar.folder", scans_);
     visit("lidar.compensated", drive_.sweep_compensated);
-    visit("lidar.intensity_max", drive_.scan_format.intensity_max);
+    visit("lidar.sweep_period_s", drive_.sweep.period);
+    visit("lidar.rotation", drive_.sweep.direction);
+    visit("lidar.sweep_start_deg", sweep_start_deg_);
+    visit("lidar.stamp_phase", drive_.sweep.stamp_phase);
+    visit("lidar.intensity_max", drive_.intensity_max);
     visit("lidar.time_unit", time_unit_);
     visit("lidar.time_reference", drive_.scan_format.time_reference);
     visit("images.tolerance", drive_.image_tolerance);
@@ -250,27 +269,38 @@ class DriveKeys {
              "version", "use a newer Fovea");
     }
     drive_.scans = scans_;
-    check("lidar.intensity_max", drive_.scan_format.intensity_max, 1e-6, 1e9);
+    double& intensity_max = drive_.scan_format.intensity_max;
+    intensity_max = drive_.intensity_max.value_or(intensity_max);
+    check("lidar.intensity_max", intensity_max, 1e-6, 1e9);
     constexpr std::array<double, 5> kUnits = {0, 1, 1e-3, 1e-6, 1e-9};
     if (time_unit_ != TimeUnit::kAuto) {
       drive_.scan_format.time_unit = kUnits.at(static_cast<std::size_t>(time_unit_));
     }
+    finish_sweep();
     check("images.tolerance", drive_.image_tolerance, 0, 1);
     drive_.T_body_lidar = T_body_lidar_.motion().value_or(drive_.T_body_lidar);
     drive_.T_body_imu = T_body_imu_.motion().value_or(drive_.T_body_imu);
-    const Eigen::Map<const Eigen::Vector3d> antenna(antenna_.data());
-    if (antenna_.size() != 3 || !(antenna.norm() <= kMaxLever)) {
-      reject("this is no place on the vehicle", "body.antenna", "give x, y, z in metres");
+    if (antenna_.size() != 3) {
+      reject(fmt::format("there are {} numbers, not 3", antenna_.size()), "body.antenna",
+             "give x, y, z in meters");
     }
-    drive_.antenna_body = antenna;
+    drive_.antenna_body = Eigen::Map<const Eigen::Vector3d>(antenna_.data());
+    check_lever("body.antenna", drive_.antenna_body);
     read_cameras();
   }
 
   DriveDescription take() { return std::move(drive_); }
 
  private:
+  void finish_sweep() {
+    SweepDescription& sweep = drive_.sweep;
+    check("lidar.sweep_period_s", sweep.period.value_or(0.1), 0.01, 1);
+    check("lidar.sweep_start_deg", sweep_start_deg_.value_or(0), -360, 360);
+    check("lidar.stamp_phase", sweep.stamp_phase.value_or(0), 0, 1);
+    if (sweep_start_deg_) sweep.start_azimuth = *sweep_start_deg_ * kDegree;
+  }
+
   void read_cameras() {
-    if (cameras_.empty()) reject("there is no camera", "camera", "describe one as [camera.NAME]");
     for (CameraKeys& keys : cameras_) {
       CameraDescription camera = keys.camera();
       for (const CameraDescription& other : drive_.cameras) {
@@ -287,6 +317,7 @@ class DriveKeys {
   DriveDescription drive_;
   std::optional<int> version_;
   std::string scans_ = "lidar";
+  std::optional<double> sweep_start_deg_;
   TimeUnit time_unit_ = TimeUnit::kAuto;
   EitherMotion T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
   std::vector<double> antenna_{0, 0, 0};

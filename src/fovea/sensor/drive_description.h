@@ -3,12 +3,14 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fovea/base/angle.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sensor_profile.h"
 #include "fovea/sensor/lidar_scan.h"
 
 namespace fovea {
@@ -24,16 +26,26 @@ struct CameraDescription {
   double delay = 0;   ///< s from an image's stamp (or its scan's, if it has none) to its exposure
 };
 
+/// What drive.toml states of SweepTiming.
+struct SweepDescription {
+  std::optional<double> period;  ///< s
+  std::optional<SweepDirection> direction;
+  std::optional<double> start_azimuth;  ///< rad
+  std::optional<double> stamp_phase;
+};
+
 struct DriveDescription {
   std::filesystem::path scans;  ///< folder, below the drive's
   ScanFormat scan_format;
+  std::optional<double> intensity_max;  ///< also in scan_format; absent: not stated
   bool sweep_compensated = false;
+  SweepDescription sweep;
   double image_tolerance = 0.06;  ///< s, between an image and its sweep's middle
   /// Body: what poses.csv and the attitudes of gnss.csv are of.
   RigidMotion T_body_lidar = RigidMotion::Identity();
   RigidMotion T_body_imu = RigidMotion::Identity();        ///< of imu.csv's orientations
   Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();  ///< of gnss.csv's positions
-  std::vector<CameraDescription> cameras;                  ///< by index; at least one
+  std::vector<CameraDescription> cameras;                  ///< by index; may be empty
 };
 
 /// Reads drive.toml. InputError if it cannot be read; ConfigError that names file and key (and

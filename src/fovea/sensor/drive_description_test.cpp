@@ -49,6 +49,26 @@ TEST(DriveDescription, TheSmallest) {
       1e-12);
 }
 
+TEST(DriveDescription, ADriveMayHaveNoCamera) { EXPECT_TRUE(parse("version = 1").cameras.empty()); }
+
+TEST(DriveDescription, SweepKeysAreAbsentUnlessStated) {
+  const SweepDescription absent = parse(kSmallest).sweep;
+  EXPECT_FALSE(absent.period || absent.direction || absent.start_azimuth || absent.stamp_phase);
+  const auto sweep = [](const std::string& lines) { return kSmallest + "[lidar]\n" + lines; };
+  const SweepDescription stated = parse(sweep("sweep_period_s = 0.2\nrotation = "
+                                              "\"counterclockwise\"\nsweep_start_deg = -90\n"
+                                              "stamp_phase = 1\n"))
+                                      .sweep;
+  EXPECT_EQ(stated.period, 0.2);
+  EXPECT_EQ(stated.direction, SweepDirection::kCounterclockwise);
+  EXPECT_NEAR(stated.start_azimuth.value(), -std::numbers::pi / 2, 1e-15);
+  EXPECT_EQ(stated.stamp_phase, 1);
+  EXPECT_THAT(error(sweep("sweep_period_s = 100\n")), HasSubstr("give 0.01 to 1"));
+  EXPECT_THAT(error(sweep("rotation = \"left\"\n")), HasSubstr("'clockwise'"));
+  EXPECT_THAT(error(sweep("sweep_start_deg = nan\n")), HasSubstr("lidar.sweep_start_deg"));
+  EXPECT_THAT(error(sweep("stamp_phase = 1.5\n")), HasSubstr("give 0 to 1"));
+}
+
 TEST(DriveDescription, EveryKey) {
   const DriveDescription drive = parse(R"(
 version = 1
@@ -81,7 +101,7 @@ width = 64
 height = 48
 K = [40, 0, 32, 0, 41, 24, 0, 0, 1]
 distortion_model = "rational_polynomial"
-D = [1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0]
+D = [0.3, 0.1, 0.001, 0.002, 0.01, 0.5, 0.2, 0.008, 0, 0, 0, 0]
 T_cam_lidar = {translation = [0, 0, 0.1]}
 )");
   EXPECT_EQ(drive.scans, "scans");
@@ -98,7 +118,7 @@ T_cam_lidar = {translation = [0, 0, 0.1]}
   ASSERT_EQ(drive.cameras.size(), 2u);
   EXPECT_EQ(drive.cameras[0].name, "0");  // by index
   EXPECT_EQ(drive.cameras[0].optics.lens.model(), LensModel::kRationalPolynomial);
-  EXPECT_EQ(drive.cameras[0].optics.lens.coefficients()[7], 8);
+  EXPECT_EQ(drive.cameras[0].optics.lens.coefficients()[7], 0.008);
   const CameraDescription& b = drive.cameras[1];
   EXPECT_EQ(b.folder, "b");
   EXPECT_EQ(b.optics.fy, 41);
@@ -119,7 +139,6 @@ TEST(DriveDescription, ErrorsNameFileLineAndKey) {
                     HasSubstr("camera.left.T_cam_lidar")));
   EXPECT_THAT(error(kCamera + kPlace), HasSubstr("version"));
   EXPECT_THAT(error("version = 2" + kCamera + kPlace), HasSubstr("has version 2"));
-  EXPECT_THAT(error("version = 1"), HasSubstr("there is no camera"));
   EXPECT_THAT(error("version = 1\n[[camera]]\n"), HasSubstr("write [camera.NAME]"));
   EXPECT_THAT(error("version = \n"), HasSubstr("d.toml:1"));
 }
@@ -141,19 +160,60 @@ TEST(DriveDescription, WhatIsNoCalibrationIsRefused) {
   EXPECT_THAT(error(with("[400, 0,", "[400,")), HasSubstr("8 numbers, not 9"));
   EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -2, 0, 0.5")), HasSubstr("not a rotation"));
   EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, nan, 0.5")), HasSubstr("not a rotation"));
-  EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, 0, 5e3")), HasSubstr("over 1 km"));
+  EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, 0, 5e3")), HasSubstr("over 20 m"));
   EXPECT_THAT(error(with("[0, -1, 0, 0.5", "[0, -1, 0")), HasSubstr("11 numbers, not 12 or 16"));
   EXPECT_THAT(error(kSmallest + "T_lidar_cam = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]\n"),
               HasSubstr("both ways"));
   EXPECT_THAT(error(kSmallest + "[body]\nT_body_imu = {rotation = [0, 0, 0, 2]}\n"),
               HasSubstr("not of length 1"));
   EXPECT_THAT(error(kSmallest + "[body]\nantenna = [1, 2]\n"), HasSubstr("body.antenna"));
+  EXPECT_THAT(error(kSmallest + "[body]\nantenna = [0, 0, nan]\n"), HasSubstr("body.antenna"));
   EXPECT_THAT(error(kSmallest + "[images]\ntolerance = -1\n"), HasSubstr("give 0 to 1"));
   EXPECT_THAT(error(kSmallest + "[lidar]\nintensity_max = 0\n"), HasSubstr("intensity_max"));
   EXPECT_THAT(error(kSmallest + "[lidar]\ntime_unit = \"h\"\n"), HasSubstr("'auto', 's', 'ms'"));
   std::string twice = kSmallest + kCamera + kPlace;
   twice.replace(twice.rfind("[camera.left]"), 13, "[camera.right]");
   EXPECT_THAT(error(twice), HasSubstr("the same index"));
+}
+
+TEST(DriveDescription, LeverArmsOver20MetersAreRefused) {
+  const auto has_length = [](const std::string& key, const std::string& length) {
+    return AllOf(HasSubstr(key), HasSubstr("the distance is " + length + " m, over 20 m"),
+                 HasSubstr("millimeters"));
+  };
+  EXPECT_THAT(error(with("[0, -1, 0, 0.5, 0, 0, -1, 0.25, 1, 0, 0, -0.125]",
+                         "[0, -1, 0, 57.5, 0, 0, -1, -78.2, 1, 0, 0, 266.1]")),
+              has_length("camera.left.T_cam_lidar", "283.25"));
+  const auto body = [](const std::string& line) { return kSmallest + "[body]\n" + line + "\n"; };
+  EXPECT_THAT(error(body("T_lidar_body = {translation = [0, 30, 0]}")),
+              has_length("body.T_lidar_body", "30"));
+  EXPECT_THAT(error(body("T_body_imu = {translation = [0, 0, -21]}")),
+              has_length("body.T_body_imu", "21"));
+  EXPECT_THAT(error(body("antenna = [-300, 0, 400]")), has_length("body.antenna", "500"));
+  EXPECT_NO_THROW(parse(body("antenna = [12, 0, 16]")));
+}
+
+TEST(DriveDescription, LensesOfNoCameraAreRefused) {
+  // In millimeters; of a sensor in meters; of another image's size.
+  EXPECT_THAT(error(with("[400, 0, 320, 0, 410", "[2.5, 0, 320, 0, 2.5")),
+              AllOf(HasSubstr("camera.left.K"), HasSubstr("field of view of 179.")));
+  EXPECT_THAT(error(with("[400, 0, 320, 0, 410", "[90000, 0, 320, 0, 90000")),
+              HasSubstr("field of view of 0.4"));
+  EXPECT_THAT(error(with("[400, 0, 320, 0, 410", "[400, 0, 320, 0, 41")), HasSubstr("differ"));
+  EXPECT_THAT(error(with("0, 320, 0", "0, 6500, 0")), HasSubstr("principal point at 6500"));
+  EXPECT_NO_THROW(parse(with("0, 320, 0", "0, 1300, 0")));  // a part of a larger image
+  const auto distorted = [](const std::string& model, const std::string& D) {
+    return kSmallest + "distortion_model = \"" + model + "\"\nD = [" + D + "]\n";
+  };
+  EXPECT_THAT(error(distorted("plumb_bob", "-312, 150, 0, 0, 0")),
+              AllOf(HasSubstr("camera.left.D"), HasSubstr("no inverse on")));
+  EXPECT_THAT(error(distorted("plumb_bob", "312, 0, 0, 0, 0")), HasSubstr("narrows the view"));
+  EXPECT_THAT(error(distorted("plumb_bob", "0, 0, 1e6, 1e6, 0")), HasSubstr("no inverse on"));
+  // Corners without an inverse are usual.
+  EXPECT_NO_THROW(parse(distorted("plumb_bob", "-0.4, 0, 0, 0, 0")));
+  // A fisheye of 220 degrees across.
+  EXPECT_NO_THROW(parse(with("[400, 0, 320, 0, 410", "[166, 0, 320, 0, 166") +
+                        "distortion_model = \"equidistant\"\nD = [0, 0, 0, 0]\n"));
 }
 
 TEST(DriveDescription, DistortionIsChecked) {

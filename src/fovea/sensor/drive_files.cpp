@@ -62,7 +62,7 @@ std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOpti
   };
   if (present.empty()) {
     throw InputError("the drive has no camera with both images and calibration", drive.string(),
-                     "restore its image folders");
+                     "restore its image folders, or use its scans alone (--cameras none)");
   }
   if (options.cameras.empty()) {
     for (const int camera : {2, 3, 0, 1}) {
@@ -89,12 +89,18 @@ void find_images(const KittiCalibration& calibration, const DriveOptions& option
                  DriveFiles& files) {
   std::map<int, NumberedFiles> found;
   std::vector<int> present;
+  bool has_folder = false;
   for (const auto& [index, camera] : calibration.cameras) {
-    const auto folder = info.path / (folder_prefix + std::to_string(index)) / subfolder;
-    NumberedFiles images = list_numbered_files(folder, {".png", ".jpg", ".jpeg"});
+    const auto folder = info.path / (folder_prefix + std::to_string(index));
+    has_folder = has_folder || std::filesystem::exists(folder);
+    NumberedFiles images = list_numbered_files(folder / subfolder, {".png", ".jpg", ".jpeg"});
     if (images.empty()) continue;
     present.push_back(index);
     found.emplace(index, std::move(images));
+  }
+  if (!has_folder && options.cameras.empty()) {
+    info.notes.push_back(kNoCameraNote);
+    return;
   }
   for (const int index : choose_cameras(present, options, info.path)) {
     info.calibration.cameras.push_back(calibration.cameras.at(index));
@@ -128,17 +134,20 @@ void find_stamps(const std::filesystem::path& file,
   find_sweep_period(file, stamps, info);
 }
 
-void find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
+bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info) {
-  const double period = median_period(stamps).value_or(info.sweep_period);
+  const std::optional<double> step = median_period(stamps);
+  if (!step) return false;
+  const double period = *step;
   if (period >= kMinPeriod && period <= kMaxPeriod) {
-    info.sweep_period = period;
-  } else {
-    info.notes.push_back(
-        fmt::format("{} steps by {:.3f} s, no LiDAR's turn: a sweep is taken as "
-                    "{} s",
-                    file.string(), period, info.sweep_period));
+    info.sweep.period = period;
+    return true;
   }
+  info.notes.push_back(
+      fmt::format("{} steps by {:.3f} s, no LiDAR's turn: a sweep is taken as "
+                  "{} s",
+                  file.string(), period, info.sweep.period));
+  return false;
 }
 
 }  // namespace fovea

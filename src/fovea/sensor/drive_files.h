@@ -26,6 +26,10 @@ struct DriveFiles {
   std::vector<std::optional<ImageRectifier>> rectifiers;
 };
 
+/// Of a drive that has scans only.
+inline constexpr const char* kNoCameraNote =
+    "the drive has no camera: its scans are used alone, and a map has no colors";
+
 /// Scan time of a frame; empty if the drive has stamps and this one is missing, malformed or out of
 /// order. A drive without stamps counts as 10 Hz.
 std::optional<TimeNs> frame_stamp(const DriveInfo& info, const TimeStamps& stamps, int index);
@@ -46,7 +50,8 @@ std::pair<int, int> frame_range(const NumberedFiles& scans, const DriveOptions& 
 std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOptions& options,
                                 const std::filesystem::path& drive);
 
-/// Fills `files.images`, info.calibration.cameras with the chosen cameras.
+/// Fills `files.images`, info.calibration.cameras with the chosen cameras. A drive without any
+/// folder of images has no camera, which a note says.
 /// @param folder_prefix  "image_0" or "image_", before the camera's number
 /// @param subfolder      "data" or ""
 void find_images(const KittiCalibration& calibration, const DriveOptions& options,
@@ -60,8 +65,9 @@ void find_stamps(const std::filesystem::path& file,
                  TimeStamps (*read)(const std::filesystem::path&), DriveInfo& info,
                  DriveFiles& files);
 
-/// Takes the sweep's period from the stamps into `info`, with a note if it can be none.
-void find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
+/// Takes the sweep's period from the stamps into `info`. Returns false if they have no step, or,
+/// with a note, if it cannot be a period.
+bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info);
 
 std::unique_ptr<FrameSource> make_frame_source(DriveInfo info, DriveFiles files);

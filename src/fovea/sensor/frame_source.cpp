@@ -1,6 +1,10 @@
 #include "fovea/sensor/frame_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "fovea/base/errors.h"
 
 namespace fovea {
 
@@ -39,6 +43,12 @@ Camera DriveInfo::camera_at(std::size_t slot, int index) const {
   Camera camera = calibration.cameras.at(slot);
   camera.image_delay += image_offset(slot, index);
   return camera;
+}
+
+void require_cameras(const DriveInfo& drive, std::string_view purpose) {
+  if (!drive.calibration.cameras.empty()) return;
+  throw InputError(fmt::format("the drive has no camera, which {} needs", purpose),
+                   drive.path.string(), "give a drive with images and their calibration");
 }
 
 }  // namespace fovea

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -74,7 +75,7 @@ struct DriveInfo {
   std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
   Calibration calibration;
   int begin = 0, end = 0;          ///< frame indices, half-open; some may turn out to be skipped
-  double sweep_period = 0.1;       ///< s
+  SweepTiming sweep;               ///< of scans whose points have no times
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
   /// Profiles of the LiDARs; empty until they are estimated (pipeline/drive_sensors.h).
@@ -128,5 +129,9 @@ class FrameSource {
 /// what drive.toml says wrongly.
 std::unique_ptr<FrameSource> open_drive(const std::filesystem::path& path,
                                         const DriveOptions& options);
+
+/// InputError if the drive has no camera.
+/// @param purpose  what needs one: "recoloring"
+void require_cameras(const DriveInfo& drive, std::string_view purpose);
 
 }  // namespace fovea

@@ -9,8 +9,10 @@
 #include "fovea/base/errors.h"
 #include "fovea/geometry/rectified_camera.h"
 #include "fovea/sensor/csv_rows.h"
+#include "fovea/sensor/described_sweep.h"
 #include "fovea/sensor/drive_description.h"
 #include "fovea/sensor/drive_files.h"
+#include "fovea/sensor/first_scans.h"
 #include "fovea/sensor/generic_navigation.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/nearest_images.h"
@@ -22,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxNumber = 1'000'000;     // of scans and images: a day at 10 Hz
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
+constexpr int kFirstScans = 5;            // whose intensities give the scale
 
 /// Stamps of numbered files. Lines without a usable number are noted.
 NumberedTimes read_stamps(const fs::path& file, std::vector<std::string>& notes) {
@@ -56,6 +59,7 @@ class GenericDrive {
   std::unique_ptr<FrameSource> open() {
     find_scans();
     find_scan_stamps();
+    find_scan_format();
     if (options_.use_images) find_cameras();
     if (options_.use_navigation) find_navigation();
     return make_frame_source(std::move(info_), std::move(files_));
@@ -99,26 +103,29 @@ class GenericDrive {
                       "these scans are skipped",
                       count, file.string(), files_.stamps.out_of_order.front()));
     }
-    find_sweep_period(file, files_.stamps, info_);
-    find_sweep_middle();
+    if (!description_.sweep.period && find_sweep_period(file, files_.stamps, info_)) {
+      stamp_step_ = info_.sweep.period;
+    }
   }
 
-  /// Where the sweeps lie round their stamps, by the points' times of the first scan that can be
-  /// read; where it has none, stamps are taken as the sweeps' middles.
-  void find_sweep_middle() {
-    for (const auto& [scan, file] : files_.scans) {
-      const auto stamp = frame_stamp(info_, files_.stamps, scan);
-      if (!stamp) continue;
-      try {
-        const std::vector<float> time =
-            read_lidar_scan(file, description_.scan_format, *stamp).points.time;
-        if (time.empty() || info_.sweep_compensated) return;
-        const auto [first, last] = std::minmax_element(time.begin(), time.end());
-        sweep_middle_ = 0.5 * (double(*first) + double(*last));
-        return;
-      } catch (const InputError&) {
-        continue;  // load() reports it when its turn comes
-      }
+  /// Timing of the sweeps and scale of the intensities, by drive.toml and the first scans.
+  void find_scan_format() {
+    const bool scale_given = description_.intensity_max.has_value();
+    const FirstScans first =
+        read_first_scans(files_.scans, files_.scan_format, scale_given ? 1 : kFirstScans,
+                         [&](int scan) { return frame_stamp(info_, files_.stamps, scan); });
+    if (const double scale = first.scale.max(); !scale_given && scale > 1) {
+      files_.scan_format.intensity_max = scale;
+      info_.notes.push_back(fmt::format(
+          "intensities exceed 1; assumed: {} stands for a reflectance of 1; to change: [lidar] "
+          "intensity_max in drive.toml",
+          scale));
+    }
+    info_.sweep = sweep_timing(description_.sweep, stamp_step_);
+    if (info_.sweep_compensated) return;
+    sweep_middle_ = first.sweep_middle.value_or(info_.sweep.middle_time());
+    if (first.any && !first.sweep_middle) {
+      info_.notes.push_back(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
     }
   }
 
@@ -139,6 +146,10 @@ class GenericDrive {
   }
 
   void find_cameras() {
+    if (description_.cameras.empty() && options_.cameras.empty()) {
+      info_.notes.push_back(kNoCameraNote);
+      return;
+    }
     std::map<int, NumberedFiles> images = list_images();
     std::vector<int> present;
     present.reserve(images.size());
@@ -273,7 +284,8 @@ class GenericDrive {
   DriveDescription description_;
   DriveInfo info_;
   DriveFiles files_;
-  double sweep_middle_ = 0;  // s after a scan's stamp
+  std::optional<double> stamp_step_;  // s, where it can be a sweep's period
+  double sweep_middle_ = 0;           // s after a scan's stamp
 };
 
 }  // namespace

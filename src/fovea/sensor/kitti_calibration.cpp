@@ -9,6 +9,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/plausible.h"
+#include "fovea/sensor/plausible_lens.h"
 #include "fovea/sensor/read_file.h"
 
 namespace fovea {
@@ -92,7 +93,9 @@ class CalibrationFile {
     return camera;
   }
 
-  void read_size(const std::string& key, Camera& camera) const {
+  /// @param key         of the size
+  /// @param projection  key of the camera's projection
+  void read_size(const std::string& key, const std::string& projection, Camera& camera) const {
     const std::array<double, 2> size = numbers<2>(key);
     for (const double side : size) {
       if (side < 1 || side > kMaxImageSide || side != std::floor(side))
@@ -100,6 +103,7 @@ class CalibrationFile {
     }
     camera.width = static_cast<int>(size[0]);
     camera.height = static_cast<int>(size[1]);
+    if (const auto problem = lens_problem(camera)) fail(projection, "is wrong: " + problem->what);
   }
 
  private:
@@ -122,7 +126,10 @@ class CalibrationFile {
 
   /// Written so that NaN fails, too: the inverse of a tiny focal length has it.
   Eigen::Vector3d checked_translation(const std::string& key, const Eigen::Vector3d& t) const {
-    if (!(t.norm() <= kMaxLever)) fail(key, "has a translation of over 1 km");
+    if (!(t.norm() <= kMaxLever)) {
+      fail(key, fmt::format("has a translation of {:.6g} m, over {:g} m (millimeters?)", t.norm(),
+                            kMaxLever));
+    }
     return t;
   }
 
@@ -143,7 +150,7 @@ KittiCalibration read_kitti_raw_calibration(const std::filesystem::path& date_fo
     const std::string suffix = fmt::format("_0{}", k);
     if (!cameras.has("P_rect" + suffix)) continue;
     Camera camera = cameras.projection("P_rect" + suffix, k);
-    cameras.read_size("S_rect" + suffix, camera);
+    cameras.read_size("S_rect" + suffix, "P_rect" + suffix, camera);
     camera.T_cam_lidar = camera.T_cam_lidar * calibration.T_cam0_lidar;
     calibration.cameras.emplace(k, camera);
   }

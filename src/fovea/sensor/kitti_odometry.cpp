@@ -6,6 +6,7 @@
 #include "fovea/sensor/drive_files.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/kitti_drives.h"
+#include "fovea/sensor/plausible_lens.h"
 
 namespace fovea {
 namespace {
@@ -17,10 +18,14 @@ void read_image_size(const NumberedFiles& images, Camera& camera) {
       const Image image = read_image(file);
       camera.width = image.width;
       camera.height = image.height;
-      return;
     } catch (const InputError&) {
       continue;  // load() reports it when its turn comes
     }
+    if (const auto problem = lens_problem(camera)) {
+      throw InputError(fmt::format("P{} of calib.txt is wrong: {}", camera.index, problem->what),
+                       file.string(), problem->remedy);
+    }
+    return;
   }
   throw InputError(fmt::format("no image of camera {} can be read", camera.index),
                    images.begin()->second.parent_path().string(),

@@ -67,7 +67,7 @@ TEST_F(KittiRaw, LoadsWhatTheFilesHold) {
   EXPECT_EQ(info.begin, 0);
   EXPECT_EQ(info.end, kFrames);
   EXPECT_TRUE(info.has_time_stamps);
-  EXPECT_NEAR(info.sweep_period, 0.1, 1e-9);
+  EXPECT_NEAR(info.sweep.period, 0.1, 1e-9);
   EXPECT_FALSE(info.sweep_compensated);
   EXPECT_TRUE(info.reference_poses.empty());
   // Stamps and records reach beyond the last scan: that is normal.
@@ -149,8 +149,20 @@ TEST_F(KittiRaw, CamerasThatAreNotThere) {
   options_.cameras = {};
   test::fs::remove_all(drive_ / "image_02");
   EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 3);
+  for (int i = 0; i < kFrames; ++i) test::fs::remove(image(3, i));
+  EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("--cameras none"));
+}
+
+TEST_F(KittiRaw, ADriveWithoutFoldersOfImagesHasNoCamera) {
+  test::fs::remove_all(drive_ / "image_02");
   test::fs::remove_all(drive_ / "image_03");
-  EXPECT_THROW(open(), InputError);
+  const auto drive = open();
+  EXPECT_TRUE(drive->info().calibration.cameras.empty());
+  EXPECT_TRUE(drive->info().navigation);
+  EXPECT_THAT(drive->info().notes, testing::ElementsAre(HasSubstr("the drive has no camera")));
+  EXPECT_TRUE(std::get<Frame>(drive->load(3)).images.empty());
+  options_.cameras = {2};
+  EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("no camera"));
 }
 
 TEST_F(KittiRaw, JpegImagesCountLikePng) {
@@ -312,7 +324,7 @@ TEST_F(KittiRaw, WithoutStampsTenHertz) {
     const auto drive = open();
     EXPECT_FALSE(drive->info().has_time_stamps);
     EXPECT_EQ(drive->stamp(7), 7 * kNsPerSecond / 10);
-    EXPECT_EQ(drive->info().sweep_period, 0.1);
+    EXPECT_EQ(drive->info().sweep.period, 0.1);
     EXPECT_THAT(drive->info().notes, ElementsAre(HasSubstr("10 Hz")));
     // A record belongs to the scan of its number.
     EXPECT_NEAR(drive->info().navigation->at(*drive->stamp(7))->translation().y(), 7, 1e-3);
@@ -324,7 +336,7 @@ TEST_F(KittiRaw, SparseStampsAreNoSweepPeriod) {
   std::string text;
   for (int i = 0; i < kFrames; ++i) text += fmt::format("2011-09-26 13:00:{:02}.0\n", i);
   write_text(stamps(), text);
-  EXPECT_EQ(open()->info().sweep_period, 0.1);
+  EXPECT_EQ(open()->info().sweep.period, 0.1);
   EXPECT_THAT(open()->info().notes, testing::Contains(HasSubstr("no LiDAR's turn")));
 }
 

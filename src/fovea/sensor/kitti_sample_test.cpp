@@ -27,7 +27,7 @@ TEST(KittiSample, AllFramesLoadWithBothColourCameras) {
   EXPECT_EQ(info.end, 51);
   EXPECT_TRUE(info.notes.empty()) << info.notes.front();
   EXPECT_FALSE(info.sweep_compensated);
-  EXPECT_NEAR(info.sweep_period, 0.1034, 0.0002);
+  EXPECT_NEAR(info.sweep.period, 0.1034, 0.0002);
   for (int index = info.begin; index < info.end; ++index) {
     const FrameResult result = drive->load(index);
     ASSERT_TRUE(std::holds_alternative<Frame>(result)) << std::get<SkippedFrame>(result).detail;
@@ -123,8 +123,8 @@ TEST(KittiSample, CompensationMovesPointsByTheWayDriven) {
   const auto motion = drive->info().navigation->motion(frame.stamp, frame.stamp);
   ASSERT_TRUE(motion);
   PointCloud scan = frame.scan;
-  compensate_sweep(scan, *motion, drive->info().sweep_period);
-  const double half_way = motion->velocity.tail<3>().norm() * drive->info().sweep_period / 2;
+  compensate_sweep(scan, *motion, drive->info().sweep);
+  const double half_way = motion->velocity.tail<3>().norm() * drive->info().sweep.period / 2;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3f& measured = frame.scan.position[i];
     const double share = std::abs(std::atan2(measured.y(), measured.x())) / std::numbers::pi;

@@ -116,15 +116,39 @@ class SweptMotion {
   Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  // axis x velocity, over the rate
 };
 
+/// The time of a point from the scan's stamp (s), by its azimuth.
+class AzimuthTime {
+ public:
+  explicit AzimuthTime(const SweepTiming& sweep)
+      : time_per_radian_((sweep.direction == SweepDirection::kClockwise ? -1 : 1) * sweep.period /
+                         kTurn),
+        middle_time_(sweep.middle_time()),
+        middle_azimuth_(std::remainder(sweep.start_azimuth + kTurn / 2, kTurn)) {}
+
+  double operator()(double azimuth) const {
+    double from_middle = azimuth - middle_azimuth_;
+    from_middle -= from_middle > kHalfTurn ? kTurn : 0;
+    from_middle += from_middle < -kHalfTurn ? kTurn : 0;
+    return time_per_radian_ * from_middle + middle_time_;
+  }
+
+ private:
+  static constexpr double kTurn = 2 * std::numbers::pi;
+  /// The margin keeps pi, rounded to a float, on its side of the turn.
+  static constexpr double kHalfTurn = std::numbers::pi + 1e-6;
+
+  double time_per_radian_, middle_time_, middle_azimuth_;
+};
+
 }  // namespace
 
-void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, double period) {
+void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, const SweepTiming& sweep) {
   if (!scan_lidar.origin.isZero()) {
     throw std::invalid_argument("a sweep's origin must be the LiDAR: azimuths are taken from it");
   }
   constexpr std::size_t kGrain = 32 * SweepBlock::kSize;
   const SweptMotion swept(motion);
-  const double time_per_radian = -period / (2 * std::numbers::pi);  // clockwise
+  const AzimuthTime azimuth_time(sweep);
   parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     SweepBlock block;
     for (; begin < end; begin += SweepBlock::kSize) {
@@ -134,7 +158,7 @@ void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, double 
       if (scan_lidar.time.empty()) {
         for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
           const auto x = static_cast<float>(block.x[i]), y = static_cast<float>(block.y[i]);
-          block.dt[i] = time_per_radian * double(quick_atan2(y, x));
+          block.dt[i] = azimuth_time(double(quick_atan2(y, x)));
         }
       } else {
         std::ranges::copy(of_block(scan_lidar.time), block.dt.begin());

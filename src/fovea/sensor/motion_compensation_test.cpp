@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
 #include <numbers>
 #include <stdexcept>
 
@@ -11,6 +13,7 @@
 namespace fovea::motion_compensation_test {
 
 constexpr double kPeriod = 0.1;
+const SweepTiming kKitti{.period = kPeriod};
 
 Twist twist(std::initializer_list<double> values) {
   Twist result;
@@ -21,7 +24,7 @@ Twist twist(std::initializer_list<double> values) {
 Eigen::Vector3f compensated(const Eigen::Vector3f& p, const Twist& velocity) {
   PointCloud scan;
   scan.position = {p};
-  compensate_sweep(scan, {velocity}, kPeriod);
+  compensate_sweep(scan, {velocity}, kKitti);
   return scan.position[0];
 }
 
@@ -36,6 +39,52 @@ TEST(MotionCompensation, SweepTurnsClockwiseAndFacesForwardAtTheStamp) {
   EXPECT_NEAR(compensated({-5, -1e-6f, 0}, forward).x(), -4.5, 1e-5);
   // Straight above there is no azimuth.
   EXPECT_EQ(compensated({0, 0, 3}, forward), Eigen::Vector3f(0, 0, 3));
+}
+
+/// Seconds from the stamp at which the sweep measured a point ahead, left, behind (just left of it)
+/// and right, by how far the vehicle was from its place at the stamp.
+std::array<double, 4> times_of(const SweepTiming& sweep) {
+  std::array<double, 4> times{};
+  const std::array<Eigen::Vector3f, 4> points{
+      {{5, 1e-6f, 0}, {-1e-6f, 5, 0}, {-5, 1e-6f, 0}, {1e-6f, -5, 0}}};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    PointCloud scan;
+    scan.position = {points[i]};
+    compensate_sweep(scan, {twist({0, 0, 0, 0, 0, 10})}, sweep);
+    times[i] = double(scan.position[0].z()) / 10;
+  }
+  return times;
+}
+
+void expect_times(const SweepTiming& sweep, const std::array<double, 4>& expected) {
+  const std::array<double, 4> times = times_of(sweep);
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-5) << i;
+}
+
+TEST(MotionCompensation, EveryPartOfTheTimingCounts) {
+  using enum SweepDirection;
+  const double pi = std::numbers::pi;
+  expect_times({0.1}, {0, -0.025, -0.05, 0.025});
+  expect_times({0.2}, {0, -0.05, -0.1, 0.05});
+  // The same sensor, seen against its axis: the sweep begins just right of behind.
+  expect_times({0.1, kCounterclockwise, pi}, {0, 0.025, 0.05, -0.025});
+  // Stamped at its start, or at its end.
+  expect_times({0.1, kClockwise, pi, 0}, {0.05, 0.025, 0, 0.075});
+  expect_times({0.1, kClockwise, pi, 1}, {-0.05, -0.075, -0.1, -0.025});
+  // From the left: ahead after a quarter.
+  expect_times({0.1, kClockwise, pi / 2 + 1e-4, 0}, {0.025, 0, 0.075, 0.05});
+  expect_times({0.1, kCounterclockwise, pi / 2 - 1e-4, 0}, {0.075, 0, 0.025, 0.05});
+  expect_times({0.1, kCounterclockwise, -3 * pi / 2 - 1e-4, 0}, {0.075, 0, 0.025, 0.05});
+}
+
+TEST(MotionCompensation, AnUpsideDownSensorNeedsNoOtherTiming) {
+  // The sensor hangs upside down, turned about its x axis: its points and its motion are given in
+  // its own axes, in which it turns as ever.
+  const Eigen::AngleAxisf turned(std::numbers::pi_v<float>, Eigen::Vector3f::UnitX());
+  const Twist forward = twist({0, 0, 0, 10, 0, 0});
+  const Eigen::Vector3f left_of_the_vehicle = turned * Eigen::Vector3f(0, 5, 1);
+  EXPECT_LT((compensated(left_of_the_vehicle, forward) - Eigen::Vector3f(0.25f, -5, -1)).norm(),
+            1e-5f);
 }
 
 TEST(MotionCompensation, EqualsTheExponentialOfTheTwist) {
@@ -81,8 +130,8 @@ TEST(MotionCompensation, FollowsABendThatBegins) {
     one.normal = {Eigen::Vector3f::UnitY()};
     one.time = {float(dt)};
     PointCloud steady = one;
-    compensate_sweep(one, motion, kPeriod);
-    compensate_sweep(steady, {motion.velocity}, kPeriod);
+    compensate_sweep(one, motion, kKitti);
+    compensate_sweep(steady, {motion.velocity}, kKitti);
     const RigidMotion T = integrated(motion, dt);
     EXPECT_LT((one.position[0].cast<double>() - T * p).norm(), 5e-4);
     EXPECT_LT((one.normal[0] - (T.linear() * Eigen::Vector3d::UnitY()).cast<float>()).norm(),
@@ -103,7 +152,7 @@ TEST(MotionCompensation, TimesOfThePointsCountWhereThereAreAny) {
     scan.time.push_back(static_cast<float>(random.uniform(0, 0.1)));
   }
   const PointCloud measured = scan;
-  compensate_sweep(scan, {velocity}, kPeriod);
+  compensate_sweep(scan, {velocity}, kKitti);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3d expected =
         exp_se3(double(measured.time[i]) * velocity) * measured.position[i].cast<double>();
@@ -141,7 +190,7 @@ TEST(MotionCompensation, StraightensAWallSeenFromACarInACurve) {
     return result;
   };
   EXPECT_GT(worst(), 0.2);
-  compensate_sweep(wall, {velocity}, kPeriod);
+  compensate_sweep(wall, {velocity}, kKitti);
   EXPECT_LT(worst(), 1e-4);
   for (const auto& normal : wall.normal) EXPECT_LT((normal + n.cast<float>()).norm(), 1e-6f);
 }
@@ -156,18 +205,18 @@ TEST(MotionCompensation, SameAtAnyNumberOfThreads) {
   const Twist velocity = twist({0.1, 0, 0.5, 10, 0, 0});
   {
     const ThreadLimit limit(1);
-    compensate_sweep(one, {velocity}, kPeriod);
+    compensate_sweep(one, {velocity}, kKitti);
   }
-  compensate_sweep(many, {velocity}, kPeriod);
+  compensate_sweep(many, {velocity}, kKitti);
   EXPECT_EQ(one.position, many.position);
 }
 
 TEST(MotionCompensation, EmptyScanAndForeignOrigin) {
   PointCloud scan;
-  compensate_sweep(scan, {twist({0, 0, 1, 10, 0, 0})}, kPeriod);
+  compensate_sweep(scan, {twist({0, 0, 1, 10, 0, 0})}, kKitti);
   EXPECT_TRUE(scan.empty());
   scan.origin.x() = 1;
-  EXPECT_THROW(compensate_sweep(scan, SweepMotion(), kPeriod), std::invalid_argument);
+  EXPECT_THROW(compensate_sweep(scan, SweepMotion(), kKitti), std::invalid_argument);
 }
 
 }  // namespace fovea::motion_compensation_test

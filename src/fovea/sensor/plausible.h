@@ -3,7 +3,8 @@
 
 namespace fovea {
 
-inline constexpr double kMaxLever = 1000;       ///< m, between sensors
+/// m, between two parts of a vehicle; a larger distance is likely in millimeters.
+inline constexpr double kMaxLever = 20;
 inline constexpr double kMaxAltitude = 20'000;  ///< m, either way
 inline constexpr double kMaxAngle = 7;          ///< rad: a full turn and some rounding
 /// Of a rotation's matrix, which files round.

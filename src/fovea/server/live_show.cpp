@@ -24,7 +24,7 @@ MapDescription describe_run(const DriveInfo& drive, const MapJob& job) {
   map.images = true;
   map.origin = drive.origin;
   map.tile_size = job.options.tile_size;
-  map.sensor_period = drive.sweep_period;
+  map.sensor_period = drive.sweep.period;
   map.cameras = drive.calibration.cameras;
   if (job.options.foveal_enabled) {
     map.foveal =

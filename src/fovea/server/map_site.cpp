@@ -105,7 +105,7 @@ MapSite::MapSite(const std::filesystem::path& map, std::span<const PageFile> pag
   if (images_) {
     description.images = true;
     description.cameras = images_->info().calibration.cameras;
-    description.sensor_period = images_->info().sweep_period;
+    description.sensor_period = images_->info().sweep.period;
   }
   map_json_ = bytes(to_json(description));
   frames_json_ = bytes(frames_json(reader.frames()).dump());

@@ -93,7 +93,7 @@ TEST(KittiDriveWriter, TheProductsReaderOpensTheDrive) {
   EXPECT_EQ(source->info().begin, 0);
   EXPECT_EQ(source->info().end, 12);
   EXPECT_THAT(source->info().notes, IsEmpty());
-  EXPECT_NEAR(source->info().sweep_period, options.lidar.period, 1e-9);
+  EXPECT_NEAR(source->info().sweep.period, options.lidar.period, 1e-9);
   ASSERT_TRUE(source->info().navigation);
   const Frame frame = std::get<Frame>(source->load(11));
   ASSERT_EQ(frame.scan.size(), 3u);

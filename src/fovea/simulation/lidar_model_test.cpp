@@ -219,7 +219,7 @@ TEST(LidarModel, CompensatedSweepsAreStraight) {
   const double dt = 0.01;
   const Twist velocity = log_se3(T_world_lidar.inverse() * drive.T_world_lidar(stamp + dt)) / dt;
   EXPECT_NEAR(velocity.tail<3>().norm(), 10, 1e-6);
-  compensate_sweep(cloud, {velocity}, options.period);
+  compensate_sweep(cloud, {velocity}, {.period = options.period});
   EXPECT_LT(worst(), 1e-4);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     ASSERT_LT((cloud.position[i] - scan.truth[i].hit_lidar).norm(), 1e-4);

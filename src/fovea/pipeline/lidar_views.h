@@ -1,0 +1,14 @@
+// Views of a scan for drives without cameras: pinhole cameras at the LiDAR, without images.
+#pragma once
+
+#include <vector>
+
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+/// Four views that cover all azimuths and elevations up to 45 degrees. Neighbors overlap, so that
+/// triangles across their borders exist. Their number is kNoCamera: points stay without color.
+std::vector<Camera> lidar_views();
+
+}  // namespace fovea
