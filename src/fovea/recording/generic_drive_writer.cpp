@@ -8,6 +8,7 @@
 #include <bit>
 #include <stdexcept>
 
+#include "fovea/base/angle.h"
 #include "fovea/recording/camera_name.h"
 #include "fovea/recording/png_encode.h"
 
@@ -80,13 +81,23 @@ std::string camera_text(const RecordedCamera& camera) {
   return text + fmt::format("T_lidar_cam = {}\n", motion_text(camera.T_lidar_cam));
 }
 
+std::string sweep_text(const SweepTiming& sweep) {
+  const bool clockwise = sweep.direction == SweepDirection::kClockwise;
+  return fmt::format(
+      "sweep_period_s = {}\nrotation = \"{}\"\nsweep_start_deg = {}\nstamp_phase = {}\n",
+      sweep.period, clockwise ? "clockwise" : "counterclockwise", sweep.start_azimuth / kDegree,
+      sweep.stamp_phase);
+}
+
 std::string drive_text(const RecordedDrive& drive) {
   const Eigen::Vector3d& antenna = drive.antenna_body;
   std::string text = fmt::format(
-      "version = 1\n\n[lidar]\ncompensated = {}\nintensity_max = {}\n\n[body]\nT_body_lidar = {}\n"
+      "version = 1\n\n[lidar]\ncompensated = {}\nintensity_max = {}\n{}\n[body]\nT_body_lidar = "
+      "{}\n"
       "T_body_imu = {}\nantenna = [{}, {}, {}]\n",
-      drive.sweep_compensated, drive.intensity_max, motion_text(drive.T_body_lidar),
-      motion_text(drive.T_body_imu), antenna.x(), antenna.y(), antenna.z());
+      drive.sweep_compensated, drive.intensity_max, drive.sweep ? sweep_text(*drive.sweep) : "",
+      motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(), antenna.y(),
+      antenna.z());
   for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
   return text;
 }

@@ -18,6 +18,7 @@
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/quaternion_motion.h"
 #include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sensor_profile.h"
 
 namespace fovea {
 
@@ -61,6 +62,7 @@ enum class ScanFile {
 struct RecordedDrive {
   std::vector<RecordedCamera> cameras;
   bool sweep_compensated = false;
+  std::optional<SweepTiming> sweep;  ///< of points without times; absent: drive.toml states none
   double intensity_max = 1;  ///< the intensity in the scans that stands for a reflectance of 1
   QuaternionMotion T_body_lidar, T_body_imu;
   Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();

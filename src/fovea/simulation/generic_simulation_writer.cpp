@@ -37,6 +37,8 @@ void GenericSimulationWriter::write_texts(const Rig& rig,
                                           const SimulationOptions&) {
   // The IMU is the body.
   drive_.T_body_lidar = rig.T_imu_lidar;
+  const LidarOptions& lidar = options_.lidar;
+  if (!lidar.point_times && !has_kittis_sweep(lidar)) drive_.sweep = sweep_timing_of(lidar);
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
     const int number = rig.cameras[k].index;
     drive_.cameras.push_back(

@@ -9,6 +9,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/sensor/drive_truth.h"
 #include "fovea/sensor/frame_source.h"
+#include "fovea/sensor/motion_compensation.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/simulate.h"
@@ -180,6 +181,36 @@ TEST(LidarMount, AGenericDriveHasItsMountTimesAndImages) {
       make_rig(options).T_cam_lidar_calibrated[0], 1e-12));
   // A tilted LiDAR's boxes are beyond KITTI's tracklets.
   EXPECT_FALSE(std::filesystem::exists(drive / "tracklet_labels.xml"));
+}
+
+TEST(LidarMount, ADriveWithoutPointTimesStatesItsSweep) {
+  const TemporaryFolder folder;
+  SimulationOptions options = small_street();
+  options.format = DriveFormat::kGeneric;
+  options.lidar.point_times = false;
+  options.lidar.period = 0.2;
+  options.lidar.direction = SweepDirection::kCounterclockwise;
+  options.lidar.start_azimuth = -0.4;
+  options.lidar.stamp_phase = 0.9;
+  const std::filesystem::path drive = simulate(options, folder / "d");
+  const SweepTiming sweep = open_drive(drive, {})->info().sweep;
+  EXPECT_EQ(sweep.period, 0.2);
+  EXPECT_EQ(sweep.direction, SweepDirection::kCounterclockwise);
+  EXPECT_NEAR(sweep.start_azimuth, -0.4, 1e-12);
+  EXPECT_EQ(sweep.stamp_phase, 0.9);
+  // The product's compensation takes each point to where the truth has it.
+  const WallDrive wall(options, 9);
+  SimulatedScan scan =
+      simulate_scan(*wall.caster, *wall.motion, wall.rig, options.lidar, 1, 0, 0.3);
+  PointCloud cloud;
+  for (const auto& point : scan.points) cloud.position.push_back(place(point).cast<float>());
+  const RigidMotion T_world_lidar = wall.motion->T_world_vehicle(0.3) * wall.rig.T_vehicle_lidar;
+  const RigidMotion T_world_later = wall.motion->T_world_vehicle(0.31) * wall.rig.T_vehicle_lidar;
+  compensate_sweep(cloud, {log_se3(T_world_lidar.inverse() * T_world_later) / 0.01}, sweep);
+  ASSERT_GT(cloud.size(), 1000u);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_LT((cloud.position[i] - scan.truth[i].hit_lidar).norm(), 1e-3);
+  }
 }
 
 TEST(LidarMount, ADriveOfEveryModelIsRead) {

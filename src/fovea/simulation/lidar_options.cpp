@@ -80,6 +80,12 @@ int sweep_columns(const LidarOptions& lidar) {
   return static_cast<int>(std::lround(lidar_data_sheet(lidar.model).firing_rate * lidar.period));
 }
 
+SweepTiming sweep_timing_of(const LidarOptions& lidar) {
+  return {lidar.period, lidar.direction, lidar.start_azimuth, lidar.stamp_phase};
+}
+
+bool has_kittis_sweep(const LidarOptions& lidar) { return !unusual_sweep_key(lidar); }
+
 double sweep_middle(const LidarOptions& lidar) { return (0.5 - lidar.stamp_phase) * lidar.period; }
 
 void check(const LidarOptions& lidar) {

@@ -38,6 +38,10 @@ const std::vector<double>& ring_elevations(const LidarOptions& lidar);
 /// Firings a sweep.
 int sweep_columns(const LidarOptions& lidar);
 
+/// The timing of its sweeps.
+SweepTiming sweep_timing_of(const LidarOptions& lidar);
+/// Whether the sweeps turn and are stamped as KITTI's, at any period.
+bool has_kittis_sweep(const LidarOptions& lidar);
 /// Time from the stamp to the middle of the sweep (s).
 double sweep_middle(const LidarOptions& lidar);
 
