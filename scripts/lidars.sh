@@ -29,6 +29,8 @@ drives=(
   "from-ahead lidar.model=hdl32 lidar.start_azimuth=0"
   "stamped-at-start lidar.model=hdl32 lidar.stamp_phase=0"
   "stamped-at-end lidar.model=hdl32 lidar.stamp_phase=1"
+  "no-point-times lidar.model=hdl32 lidar.point_times=false"
+  "no-times-backwards lidar.model=hdl32 lidar.point_times=false lidar.direction=counterclockwise lidar.stamp_phase=1"
   "hdl32-5-hz lidar.model=hdl32 lidar.period=0.2"
   "hdl32-20-hz lidar.model=hdl32 lidar.period=0.05"
   "vlp16-5-hz lidar.model=vlp16 lidar.period=0.2"

@@ -80,7 +80,7 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   const PointCloud scan = compensated_scan(frame.scan, placed, drive_.info());
   std::vector<Camera> cameras;
   for (const std::size_t place : options_.cameras) {
-    cameras.push_back(info.camera_at(place, placed.index).at_image(placed.motion));
+    cameras.push_back(drive_.info().camera_at(place, placed.index).at_image(placed.motion));
   }
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     const Image& image = frame.images.at(options_.cameras[k]);
@@ -132,7 +132,8 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
   Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, drive_.info());
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
-    const Camera camera = info.camera_at(options_.cameras[k], placed.index).at_image(placed.motion);
+    const Camera camera =
+        drive_.info().camera_at(options_.cameras[k], placed.index).at_image(placed.motion);
     Image& image = frame.images.at(options_.cameras[k]);
     if (image.empty()) continue;
     ScoredPoints scored = score_points(frame, scan, placed, camera, image);

@@ -133,7 +133,7 @@ Localization Localizer::localize(const Frame& frame) {
   result.stamp = frame.stamp;
   MotionPrediction motion = motion_model_.predict(frame.stamp);
   const bool begins = !last_ && !guess_.trajectory && guess_.first;
-  if (begins) motion.guesses.front() = {*guess_.first, {}, false};
+  if (begins) motion.guesses.front() = {*guess_.first, {}, false, {}};
   const bool placed = last_ || motion.T_local_lidar_navigation || begins;
 
   Attempt best;

@@ -18,6 +18,13 @@ constexpr double kFirstWay = 0.1, kFirstTurn = 0.5 * kDegree;  // m/s, rad/s
 constexpr double kMostWay = 1, kMostTurn = 5 * kDegree;        // m/s, rad/s
 constexpr int kRemembered = 10;                                // frames
 
+/// The least deviations of navigation's motion from frame to frame, however well it has done. That
+/// of positions is a quarter of their stated accuracy, within limits: errors of neighboring
+/// positions are alike.
+constexpr double kLeastTurnSigma = 0.3 * kDegree;          // rad
+constexpr double kMinWaySigma = 0.03, kMaxWaySigma = 0.1;  // m
+constexpr double kWaySigmaShare = 0.25;                    // of the stated accuracy
+
 Twist squares(double turn, double way) {
   Twist squares;
   squares.head<3>().setConstant(turn * turn);
@@ -68,21 +75,30 @@ std::optional<MotionGuess> MotionModel::by_navigation(TimeNs stamp) const {
   const auto now = navigation_at(stamp);
   if (!now) return std::nullopt;
   const auto motion = navigation_motion(stamp);
-  if (!last_) return MotionGuess{*now, motion, true};
+  if (!last_) return MotionGuess{*now, motion, true, std::nullopt};
   const auto then = navigation_at(last_->time);
   if (!then) return std::nullopt;
-  return MotionGuess{last_->T_local_body * (then->inverse() * *now), motion, true};
+  return MotionGuess{last_->T_local_body * (then->inverse() * *now), motion, true,
+                     navigation_sigma(seconds(stamp - last_->time))};
 }
 
 std::optional<MotionGuess> MotionModel::by_velocity(TimeNs stamp) const {
   const auto velocity = motion_velocity();
   if (!velocity) return std::nullopt;
-  MotionGuess guess{RigidMotion::Identity(), SweepMotion{*velocity}, false};
+  MotionGuess guess{RigidMotion::Identity(), SweepMotion{*velocity}, false, std::nullopt};
   if (!last_) return guess;
   guess.T_odom_lidar = last_->T_local_body * exp_se3(*velocity * seconds(stamp - last_->time));
   // Guesses made of guesses would double their rounding every frame.
   guess.T_odom_lidar.linear() = nearest_rotation(guess.T_odom_lidar.linear());
   return guess;
+}
+
+Twist MotionModel::navigation_sigma(double elapsed) const {
+  const double stated = options_.stated_accuracy;
+  const double way =
+      stated > 0 ? std::clamp(kWaySigmaShare * stated, kMinWaySigma, kMaxWaySigma) : kMaxWaySigma;
+  const Twist least = squares(kLeastTurnSigma, way);
+  return (least + navigation_error_.mean_square() * elapsed * elapsed).cwiseSqrt();
 }
 
 /// The best of two independent measurements.
@@ -104,6 +120,7 @@ MotionPrediction MotionModel::predict(TimeNs stamp) const {
   const auto by_motion = by_velocity(stamp);
   if (by_nav && by_motion && options_.doubt) {
     if (contradict(*by_nav, *by_motion, seconds(stamp - last_->time))) {
+      by_nav->sigma.reset();  // a guess, until the scan decides
       prediction.guesses = {*by_motion, *by_nav};
       return prediction;
     }
@@ -115,7 +132,7 @@ MotionPrediction MotionModel::predict(TimeNs stamp) const {
   } else if (by_motion) {
     prediction.guesses = {*by_motion};
   } else {
-    prediction.guesses = {{last_ ? last_->T_local_body : RigidMotion::Identity(), {}, false}};
+    prediction.guesses = {{last_ ? last_->T_local_body : RigidMotion::Identity(), {}, false, {}}};
   }
   return prediction;
 }

@@ -14,6 +14,9 @@ struct MotionGuess {
   /// Of the LiDAR during the sweep; absent where nothing is known.
   std::optional<SweepMotion> motion;
   bool by_navigation = false;
+  /// Standard deviations of the pose, given the last one (rad, m); absent where nothing states
+  /// them.
+  std::optional<Twist> sigma;
 };
 
 struct MotionPrediction {
@@ -29,6 +32,8 @@ struct MotionModelOptions {
   /// Navigation is held against the motion so far: both are weighed for the velocity, and a second
   /// guess is made where they contradict each other.
   bool doubt = true;
+  /// m, standard deviation of a position as navigation states it; 0: it states none.
+  double stated_accuracy = 0;
   /// From a frame's stamp to the end of its sweep; what navigation tells later is not used for the
   /// velocity, since a live program would not know it.
   TimeNs sweep_rest = 0;
@@ -73,6 +78,8 @@ class MotionModel {
   std::optional<Twist> motion_velocity() const;
   std::optional<MotionGuess> by_navigation(TimeNs stamp) const;
   std::optional<MotionGuess> by_velocity(TimeNs stamp) const;
+  /// Of navigation's motion over a time (s).
+  Twist navigation_sigma(double elapsed) const;
   SweepMotion weighed(const SweepMotion& by_navigation, const SweepMotion& by_motion) const;
 
   const Trajectory* navigation_;

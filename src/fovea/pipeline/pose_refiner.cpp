@@ -86,9 +86,12 @@ RegistrationCloud PoseRefiner::prepare(const PointCloud& scan_lidar, StageClock&
 }
 
 RegistrationResult PoseRefiner::register_scan(const RegistrationCloud& source,
-                                              const RigidMotion& guess) const {
+                                              const RigidMotion& guess,
+                                              const std::optional<Twist>& sigma) const {
   if (options_.target == RegistrationTarget::kLocalMap) {
-    return register_to(local_map_, source, guess, options_.registration);
+    std::optional<PosePrior> prior;
+    if (sigma) prior = PosePrior{guess, *sigma};
+    return register_to(local_map_, source, guess, options_.registration, prior);
   }
   const PointIndex index(previous_->cloud.points, options_.voxel);
   RegistrationResult result =
@@ -99,7 +102,7 @@ RegistrationResult PoseRefiner::register_scan(const RegistrationCloud& source,
 }
 
 RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion& guess,
-                                StageClock& clock) const {
+                                StageClock& clock, const std::optional<Twist>& sigma) const {
   RefinedPose refined;
   refined.T_odom_lidar = guess;
   refined.cloud = prepare(scan_lidar, clock);
@@ -109,7 +112,7 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
                                                                            : previous_.has_value();
   if (!has_target) return refined;
   const RegistrationResult result =
-      clock.time("register", [&] { return register_scan(refined.cloud, guess); });
+      clock.time("register", [&] { return register_scan(refined.cloud, guess, sigma); });
   const RigidMotion correction = guess.inverse() * result.T_target_source;
   const double moved = correction.translation().norm();
   const double turned = rotation_angle(correction.linear());

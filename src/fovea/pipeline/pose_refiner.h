@@ -40,8 +40,10 @@ class PoseRefiner {
   /// ends too far from the guess, keeps the guess. The first scan keeps it too: there is no target
   /// yet.
   /// @param scan_lidar  motion compensated
+  /// @param sigma       of the guess where it counts as a measurement: rad, m. Used with the local
+  /// map
   RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_odom_lidar,
-                     StageClock& clock) const;
+                     StageClock& clock, const std::optional<Twist>& sigma = std::nullopt) const;
 
   /// Lets later scans be registered against this one, where it is.
   void keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar, StageClock& clock);
@@ -54,7 +56,8 @@ class PoseRefiner {
  private:
   PointCloud visible_upsampled(const PointCloud& scan_lidar) const;
   RegistrationResult register_scan(const RegistrationCloud& source,
-                                   const RigidMotion& guess_T_odom_lidar) const;
+                                   const RigidMotion& guess_T_odom_lidar,
+                                   const std::optional<Twist>& sigma) const;
 
   struct PreviousScan {
     RegistrationCloud cloud;

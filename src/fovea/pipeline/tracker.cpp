@@ -1,6 +1,9 @@
 #include "fovea/pipeline/tracker.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/motion_compensation.h"
@@ -18,6 +21,18 @@ FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_sourc
   FusionOptions fusion = options.fusion;
   fusion.enabled = fuses(options, pose_source);
   return fusion;
+}
+
+/// Median of the accuracy that navigation states where it has a fix (m); 0 if it states none.
+double stated_accuracy(const DriveInfo& drive) {
+  std::vector<double> stated;
+  for (const double accuracy : drive.navigation_accuracy) {
+    if (accuracy > 0 && std::isfinite(accuracy)) stated.push_back(accuracy);
+  }
+  if (stated.empty()) return 0;
+  const auto middle = stated.begin() + std::ptrdiff_t(stated.size() / 2);
+  std::nth_element(stated.begin(), middle, stated.end());
+  return *middle;
 }
 
 /// Whether a scan that is mapped is a target of those after it. All that says so is in its record:
@@ -39,6 +54,7 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
       motion_model_(drive.navigation ? &*drive.navigation : nullptr,
                     {.interpolate = options.interpolate_navigation,
                      .doubt = fuses(options, pose_source),
+                     .stated_accuracy = stated_accuracy(drive),
                      .sweep_rest = from_seconds(drive.sweep.end_time())}),
       refiner_(options.refinement, drive.calibration.cameras),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
@@ -128,7 +144,7 @@ RefinedPose Tracker::locate(const PointCloud& scan_lidar, const MotionPrediction
     if (registers()) refined.cloud = refiner_.prepare(scan_lidar, clock);
     refined.T_odom_lidar = *given_pose;
   } else {
-    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, clock);
+    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, clock, guess.sigma);
   }
   return refined;
 }

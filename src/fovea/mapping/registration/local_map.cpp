@@ -163,11 +163,12 @@ const LocalMap::Target& LocalMap::target() const {
 
 RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,
                                const RigidMotion& guess_T_local_lidar,
-                               const RegistrationOptions& options) {
+                               const RegistrationOptions& options, std::optional<PosePrior> prior) {
   const LocalMap::Target& target = map.target();
   const Eigen::Translation3d T_origin_local(-target.origin_local);
+  if (prior) prior->T_target_source = T_origin_local * prior->T_target_source;
   RegistrationResult result = register_clouds(target.cloud, target.index, source_lidar,
-                                              T_origin_local * guess_T_local_lidar, options);
+                                              T_origin_local * guess_T_local_lidar, options, prior);
   result.T_target_source = T_origin_local.inverse() * result.T_target_source;
   return result;
 }

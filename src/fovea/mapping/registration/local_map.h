@@ -90,9 +90,11 @@ class LocalMap {
   std::vector<std::uint32_t> empty_;  // places in the target
 };
 
-/// Registers a scan to the map. T_target_source of the guess and of the result is T_local_lidar.
+/// Registers a scan to the map. T_target_source of the guess, the prior and the result is
+/// T_local_lidar.
 RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,
                                const RigidMotion& guess_T_local_lidar,
-                               const RegistrationOptions& options);
+                               const RegistrationOptions& options,
+                               std::optional<PosePrior> prior = std::nullopt);
 
 }  // namespace fovea

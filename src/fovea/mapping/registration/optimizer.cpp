@@ -1,6 +1,8 @@
 #include "fovea/mapping/registration/optimizer.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+
 namespace fovea {
 namespace {
 
@@ -40,8 +42,42 @@ Directions observed_directions(const PairEquations& equations, const OptimizerOp
   return directions;
 }
 
-/// Solves (H + damping) step = -b among the observed directions only.
-Twist solve(const PairEquations& equations, const Directions& directions, double damping) {
+/// The prior as normal equations in the units of pairs.
+class PriorTerm {
+ public:
+  /// @param equations  of the pairs at the first guess
+  PriorTerm(const std::optional<PosePrior>& prior, const PairEquations& equations) {
+    if (!prior || equations.weight == 0) return;
+    T_source_target_ = prior->T_target_source.inverse();
+    const double variance = std::max(equations.error / equations.weight, kLeastVariance);
+    weight_ =
+        variance * equations.weight / kIndependentPairs * prior->sigma.cwiseAbs2().cwiseInverse();
+  }
+
+  bool exists() const { return !weight_.isZero(0); }
+  /// The diagonal of H.
+  const Twist& weight() const { return weight_; }
+  Twist b(const RigidMotion& T_target_source) const {
+    return weight_.cwiseProduct(away(T_target_source));
+  }
+  double error(const RigidMotion& T_target_source) const {
+    return exists() ? away(T_target_source).dot(b(T_target_source)) : 0;
+  }
+
+ private:
+  Twist away(const RigidMotion& T_target_source) const {
+    return log_se3(T_source_target_ * T_target_source);
+  }
+
+  static constexpr double kIndependentPairs = 100;
+  static constexpr double kLeastVariance = 4e-4;  // m^2, of a pair's distance
+  RigidMotion T_source_target_ = RigidMotion::Identity();
+  Twist weight_ = Twist::Zero();
+};
+
+/// Solves (H + damping) step = -b. Pairs count in the observed directions only, the prior in all.
+Twist solve(const PairEquations& equations, const PriorTerm& prior, const RigidMotion& T,
+            const Directions& directions, double damping) {
   const Twist scale = unit_scale();
   const Eigen::Matrix<double, 6, 6>& V = directions.vectors;
   Eigen::Matrix<double, 6, 6> H =
@@ -52,8 +88,13 @@ Twist solve(const PairEquations& equations, const Directions& directions, double
       H.row(i).setZero();
       H.col(i).setZero();
       b[i] = 0;
-      H(i, i) = 1;
+      H(i, i) = prior.exists() ? 0 : 1;
     }
+  }
+  if (prior.exists()) {
+    const Twist weight = scale.cwiseAbs2().cwiseProduct(prior.weight());
+    H += V.transpose() * weight.asDiagonal() * V;
+    b += V.transpose() * (scale.asDiagonal() * prior.b(T));
   }
   H.diagonal().array() += damping * equations.weight;
   return scale.asDiagonal() * (V * H.ldlt().solve(-b));
@@ -69,24 +110,28 @@ bool is_small(const Twist& step, const OptimizerOptions& options) {
 OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
                          const OptimizerOptions& options) {
   OptimizerResult best{guess, 0, accumulate(pairs, guess, options.robust_width)};
+  const PriorTerm prior(options.prior, best.equations);
+  double best_error = best.equations.error + prior.error(guess);
   Directions directions = observed_directions(best.equations, options);
   best.degenerate_directions = directions.degenerate;
   double damping = 0;
   for (int step_count = 0; step_count < kMaxSteps && damping <= kMaxDamping;) {
-    const Twist step = solve(best.equations, directions, damping);
+    const Twist step = solve(best.equations, prior, best.T_target_source, directions, damping);
     if (!step.allFinite()) break;
     RigidMotion T = best.T_target_source * exp_se3(step);
     // A caller that extrapolates from poses doubles their rounding every frame, unless it is taken
     // out.
     T.linear() = nearest_rotation(T.linear());
     PairEquations equations = accumulate(pairs, T, options.robust_width);
-    if (!(equations.error <= best.equations.error)) {
+    const double error = equations.error + prior.error(T);
+    if (!(error <= best_error)) {
       if (is_small(step, options)) break;
       damping = std::max(kFirstDamping, damping * 10);
       continue;
     }
     best.T_target_source = T;
     best.equations = std::move(equations);
+    best_error = error;
     directions = observed_directions(best.equations, options);
     best.degenerate_directions = directions.degenerate;
     damping = damping > kFirstDamping ? damping / 10 : 0;

@@ -1,9 +1,18 @@
 // The optimiser of all registration methods: Gauss-Newton / Levenberg-Marquardt on SE(3).
 #pragma once
 
+#include <optional>
+
 #include "fovea/mapping/registration/pair_equations.h"
 
 namespace fovea {
+
+/// What is known of a pose without the scan.
+struct PosePrior {
+  RigidMotion T_target_source = RigidMotion::Identity();
+  /// Standard deviations of a twist of the source about its own origin: rad, m.
+  Twist sigma = Twist::Ones();
+};
 
 struct OptimizerOptions {
   double robust_width = 0;           ///< Geman-McClure width (m), 0: off
@@ -11,6 +20,7 @@ struct OptimizerOptions {
   bool judge_by_planes = false;      ///< that information is H_planes (pairs have normals), not H
   double converged_rotation = 1e-4;  ///< rad
   double converged_translation = 1e-3;  ///< m
+  std::optional<PosePrior> prior = std::nullopt;
 };
 
 /// Unit of rotations beside translations: one radian counts like this many metres, the distance at
@@ -23,9 +33,12 @@ struct OptimizerResult {
   PairEquations equations;  ///< at T_target_source
 };
 
-/// Minimises the error of fixed pairs. A step that raises the error is not taken but damped and
-/// tried again; directions of too little information are projected out of every step ("solution
-/// remapping", Zhang, Kaess, Singh, ICRA 2016), so that the pose keeps its first value along them.
+/// Minimizes the error of fixed pairs and of the prior.
+///
+/// A step that raises the error is not taken but damped and tried again. Pairs do not count in
+/// directions of too little information ("solution remapping", Zhang, Kaess, Singh, ICRA 2016):
+/// there the pose follows the prior, or keeps its first value without one. The errors of pairs have
+/// much in common: all pairs together count as a hundred independent ones beside the prior.
 OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
                          const OptimizerOptions& options);
 

@@ -69,6 +69,57 @@ TEST(Optimizer, StepsAreProjectedOffDegenerateDirections) {
   EXPECT_NEAR(T.translation().y(), 0.2, 0.05);
 }
 
+/// Pairs of a corridor along x: none tells how far along it the source is.
+std::vector<Pair> corridor_pairs(std::size_t count) {
+  std::vector<Pair> pairs(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3f p(float(i % 40) - 20, i % 2 == 0 ? 2 : -1 + 0.5f * float(i % 5),
+                            i % 2 == 0 ? float(i % 7) - 3 : -1.7f);
+    const Eigen::Vector3f normal = i % 2 == 0 ? Eigen::Vector3f::UnitY() : Eigen::Vector3f::UnitZ();
+    pairs[i].source = p;
+    pairs[i].target = p + Eigen::Vector3f(0, 0.2f, 0);
+    pairs[i].target_index = 0;
+    pairs[i].normal = normal;
+    pairs[i].information = pack_symmetric(normal * normal.transpose());
+  }
+  return pairs;
+}
+
+TEST(Optimizer, ThePriorDecidesWhatPairsDoNotTell) {
+  const PairBlocks pairs(corridor_pairs(4000));
+  OptimizerOptions options;
+  options.degenerate_eigenvalue = 0.01;
+  options.judge_by_planes = true;
+  PosePrior prior;
+  prior.T_target_source = test::motion(0, 0, 0, 0.7, 0, 0);
+  prior.sigma << Eigen::Vector3d::Constant(0.005), Eigen::Vector3d::Constant(0.1);
+  options.prior = prior;
+  RigidMotion T = RigidMotion::Identity();
+  for (int i = 0; i < 10; ++i) T = minimize(pairs, T, options).T_target_source;
+  EXPECT_EQ(minimize(pairs, T, options).degenerate_directions, 1);
+  EXPECT_NEAR(T.translation().x(), 0.7, 1e-6);  // by the prior alone
+  EXPECT_NEAR(T.translation().y(), 0.2, 0.01);  // by the pairs, whatever the prior says
+}
+
+TEST(Optimizer, APriorOfMoreCertaintyMovesThePoseFurther) {
+  const PairBlocks pairs(corridor_pairs(4000));
+  const auto y_with = [&](double sigma) {
+    OptimizerOptions options;
+    PosePrior prior;
+    prior.sigma << Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(sigma);
+    options.prior = prior;
+    RigidMotion T = RigidMotion::Identity();
+    for (int i = 0; i < 20; ++i) T = minimize(pairs, T, options).T_target_source;
+    return T.translation().y();
+  };
+  // Pairs say 0.2 m, the prior says 0. Half of a hundred independent pairs face y: with their least
+  // deviation of 2 cm, they tell y to 0.02 / sqrt(50) = 3 mm.
+  EXPECT_NEAR(y_with(0.1), 0.2, 0.001);
+  EXPECT_GT(y_with(0.02), y_with(0.005));
+  EXPECT_GT(y_with(0.005), y_with(0.001));
+  EXPECT_LT(y_with(0.001), 0.02);
+}
+
 TEST(Optimizer, NoPairsNoStep) {
   const RigidMotion guess = test::motion(0.1, 0, 0, 1, 2, 3);
   EXPECT_LT(log_se3(guess.inverse() * minimize(PairBlocks(), guess, {}).T_target_source).norm(),

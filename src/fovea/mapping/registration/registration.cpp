@@ -124,10 +124,11 @@ std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t most) {
 template <class Factor>
 RegistrationResult align(const RegistrationCloud& target, const PointIndex& target_index,
                          const RegistrationCloud& source, const RigidMotion& guess,
-                         const RegistrationOptions& options) {
-  OptimizerOptions optimizer{options.robust_width, options.degenerate_eigenvalue,
-                             Factor::kNeedsNormals, options.converged_rotation,
-                             options.converged_translation};
+                         const RegistrationOptions& options,
+                         const std::optional<PosePrior>& prior) {
+  OptimizerOptions optimizer{options.robust_width,          options.degenerate_eigenvalue,
+                             Factor::kNeedsNormals,         options.converged_rotation,
+                             options.converged_translation, prior};
   const bool narrows = options.robust_width > 0 && options.robust_width < options.max_distance;
   std::vector<Pair> pairs = pairs_of(source, narrows ? kCoarsePoints : source.points.size());
 
@@ -253,14 +254,15 @@ RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
 
 RegistrationResult register_clouds(const RegistrationCloud& target, const PointIndex& target_index,
                                    const RegistrationCloud& source, const RigidMotion& guess,
-                                   const RegistrationOptions& options) {
+                                   const RegistrationOptions& options,
+                                   const std::optional<PosePrior>& prior) {
   switch (options.method) {
     case RegistrationMethod::kGicp:
-      return align<GicpFactor>(target, target_index, source, guess, options);
+      return align<GicpFactor>(target, target_index, source, guess, options, prior);
     case RegistrationMethod::kPointToPoint:
-      return align<PointToPointFactor>(target, target_index, source, guess, options);
+      return align<PointToPointFactor>(target, target_index, source, guess, options, prior);
     case RegistrationMethod::kPointToPlane:
-      return align<PointToPlaneFactor>(target, target_index, source, guess, options);
+      return align<PointToPlaneFactor>(target, target_index, source, guess, options, prior);
   }
   throw std::invalid_argument("unknown registration method");
 }

@@ -8,6 +8,7 @@
 
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/rigid_motion.h"
+#include "fovea/mapping/registration/optimizer.h"
 
 namespace fovea {
 
@@ -72,8 +73,10 @@ struct RegistrationResult {
 /// directions). Point to point takes small steps: from a poor guess give it 100 iterations.
 /// @param target       with normals unless point to point; the index is of its points
 /// @param source       in the sensor's frame, the sensor at the origin; with normals for GICP
+/// @param prior        of the pose, such as navigation's
 RegistrationResult register_clouds(const RegistrationCloud& target, const PointIndex& target_index,
                                    const RegistrationCloud& source, const RigidMotion& guess,
-                                   const RegistrationOptions& options);
+                                   const RegistrationOptions& options,
+                                   const std::optional<PosePrior>& prior = std::nullopt);
 
 }  // namespace fovea
