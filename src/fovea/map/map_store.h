@@ -84,7 +84,8 @@ class MapReader {
   /// another format.
   explicit MapReader(const std::filesystem::path& path);
   /// Reads what is whole of a file that may be damaged. Each row that cannot be read is reported in
-  /// one line and left out; the tiles of a submap that cannot be read, too. Rows that the file has
+  /// one line and left out. A submap that cannot be read gets the pose of its first frame; without
+  /// one, its tiles are left out, too. Rows that the file has
   /// out of order come out of order. InputError if the file is no map.
   MapReader(const std::filesystem::path& path,
             std::function<void(const std::string& damage)> on_damage);

@@ -78,6 +78,34 @@ TEST_F(Repair, ALostSubmapTakesItsTilesAlong) {
   EXPECT_EQ(map.submaps()[1].matrix(), sample.submaps()[1].T_local_submap.matrix());
 }
 
+// The poses of submaps are one page: without them, all points would be lost.
+TEST_F(Repair, LostSubmapsGetThePosesOfTheirFirstFrames) {
+  const TileMap sample = sample_tile_map();
+  {
+    const auto writer = MapWriter::open(folder_ / "a.fovea");
+    for (int i = 0; i < 4; ++i) {
+      FrameRecord frame;
+      frame.index = 7 + i;
+      frame.submap = i / 2;
+      const RigidMotion moved(Eigen::Translation3d(i % 2, 0, 0));
+      frame.T_local_lidar = sample.submaps()[std::size_t(i) / 2].T_local_submap * moved;
+      writer->put_frame(frame);
+    }
+    writer->commit();
+  }
+  for (const char* loss : {"DELETE FROM submaps WHERE id=0", "DELETE FROM submaps WHERE id=1",
+                           "UPDATE submaps SET pose='1'", "DROP TABLE submaps"}) {
+    run_sql(loss);
+    EXPECT_GT(repair().damages, 0u);
+    const std::vector<RigidMotion> submaps = repaired().submaps();
+    ASSERT_EQ(submaps.size(), 2u) << loss;
+    for (std::size_t id = 0; id < 2; ++id) {
+      EXPECT_EQ(submaps[id].matrix(), sample.submaps()[id].T_local_submap.matrix()) << loss;
+    }
+    EXPECT_EQ(repaired().size(), sample.size()) << loss;
+  }
+}
+
 // The meta data are one page: it may be lost as a whole.
 TEST_F(Repair, RestoresMetaDataThatOtherRowsStateToo) {
   run_sql("DROP TABLE meta");

@@ -25,7 +25,7 @@ struct FileWords {
   const char* noun = "map";
   const char* not_one = "not a Fovea map";
   const char* what_to_give = "give a file that 'fovea map' wrote";
-  const char* if_damaged = "restore it from a copy or map the drive again";
+  const char* if_damaged = "restore it from a copy, or save what is whole with 'fovea repair'";
 };
 
 enum class Outcome { kDone, kBusy, kFailed };
