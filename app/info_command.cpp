@@ -8,9 +8,12 @@
 #include <string>
 
 #include "app/commands.h"
+#include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/meta_keys.h"
+#include "fovea/map/sensor_json.h"
 
 namespace fovea::app {
 namespace {
@@ -23,6 +26,7 @@ struct InfoArguments {
 struct Contents {
   MapMeta meta;
   std::vector<MergedDrive> drives;  // of a merged map
+  std::vector<SensorRecord> sensors;
   std::size_t points = 0, submaps = 0, tiles = 0;
   int mapped = 0, held_out = 0, skipped = 0;
   double path_length = 0;  // m, along the refined poses
@@ -35,7 +39,8 @@ Contents read_contents(const MapReader& reader) {
   contents.points = reader.size();
   const FrameRecord* before = nullptr;
   const std::vector<FrameRecord> frames = reader.frames();
-  contents.drives = merged_drives(contents.meta);
+  contents.drives = merged_drives(reader);
+  contents.sensors = reader.sensors();
   const auto begins_a_drive = [&](const FrameRecord& frame) {
     return std::any_of(contents.drives.begin(), contents.drives.end(),
                        [&](const MergedDrive& d) { return d.first_frame == frame.index; });
@@ -61,36 +66,64 @@ Contents read_contents(const MapReader& reader) {
   return contents;
 }
 
+/// One line: rings, spacing, sweep, noise and height of a LiDAR.
+std::string to_text(const SensorProfile& profile) {
+  const auto& rings = profile.ring_elevations;
+  std::string text = "no rings";
+  if (!rings.empty()) {
+    text = fmt::format("{} rings from {:+.1f} to {:+.1f} degrees, {:.2f} degrees apart",
+                       rings.size(), rings.front() / kDegree, rings.back() / kDegree,
+                       profile.ring_spacing / kDegree);
+  }
+  const bool clockwise = profile.sweep.direction == SweepDirection::kClockwise;
+  text += fmt::format(", points {:.2f} degrees apart, {} sweeps of {:.4g} s, range noise {:.0f} mm",
+                      profile.point_spacing / kDegree, clockwise ? "clockwise" : "counterclockwise",
+                      profile.sweep.period, 1000 * profile.range_noise);
+  if (profile.height) text += fmt::format(", {:.2f} m above the ground", *profile.height);
+  return text;
+}
+
 void print_text(const Contents& c, const std::string& path) {
   const auto meta = [&](const char* key) {
     const auto found = c.meta.find(key);
     return found != c.meta.end() ? found->second : std::string();
   };
-  fmt::print("{}{}\n", path, meta("complete") == "1" ? "" : " (unfinished: --resume goes on)");
-  const std::string cameras = meta("cameras").empty() ? "no camera" : "cameras " + meta("cameras");
-  fmt::print("  drive      {} ({}), frames {} to {}, {}\n", meta("drive.name"), meta("drive.kind"),
-             meta("frames.begin"), std::stoi("0" + meta("frames.end")) - 1, cameras);
+  fmt::print("{}{}\n", path,
+             meta(meta_key::kComplete) == "1" ? "" : " (unfinished: --resume goes on)");
+  const std::string cameras =
+      meta(meta_key::kCameras).empty() ? "no camera" : "cameras " + meta(meta_key::kCameras);
+  fmt::print("  drive      {} ({}), frames {} to {}, {}\n", meta(meta_key::kDriveName),
+             meta(meta_key::kDriveKind), meta(meta_key::kFramesBegin),
+             std::stoi("0" + meta(meta_key::kFramesEnd)) - 1, cameras);
   for (const MergedDrive& d : c.drives) {
     fmt::print("  merged     {}: frames {} to {}, in the drive {} to {}\n", d.name, d.first_frame,
                d.end_frame - 1, d.first_frame - d.frame_shift, d.end_frame - 1 - d.frame_shift);
   }
   fmt::print("  frames     {} mapped, {} held out{}, {} skipped\n", c.mapped, c.held_out,
-             meta("hold_out").empty() ? "" : " (" + meta("hold_out") + ")", c.skipped);
+             meta(meta_key::kHoldOut).empty() ? "" : " (" + meta(meta_key::kHoldOut) + ")",
+             c.skipped);
+  for (const SensorRecord& sensor : c.sensors) {
+    fmt::print("  LiDAR      {}: {}\n", sensor.profile.name, to_text(sensor.profile));
+  }
   fmt::print("  points     {} in {} tiles of {} submaps\n", c.points, c.tiles, c.submaps);
   if (!c.bounds_local.isEmpty()) {
     const Eigen::Vector3d size = c.bounds_local.sizes();
     fmt::print("  extent     {:.1f} x {:.1f} x {:.1f} m, path {:.1f} m\n", size.x(), size.y(),
                size.z(), c.path_length);
   }
-  if (meta("georeferenced") == "1") {
+  if (meta(meta_key::kGeoreferenced) == "1") {
     fmt::print("  origin     {} N, {} E, {} m (WGS84; axes east, north, up)\n",
-               meta("origin.latitude"), meta("origin.longitude"), meta("origin.altitude"));
+               meta(meta_key::kOriginLatitude), meta(meta_key::kOriginLongitude),
+               meta(meta_key::kOriginHeight));
   } else {
     fmt::print("  origin     not georeferenced: the first scan's own axes\n");
   }
-  if (!meta("variant").empty()) fmt::print("  variant    {}\n", meta("variant"));
-  if (!meta("notes").empty()) fmt::print("  notes      {}\n", meta("notes"));
-  fmt::print("\n{}", meta("config"));
+  for (const char* key : {meta_key::kCrop, meta_key::kRepair}) {
+    if (!meta(key).empty()) fmt::print("  {:<10} {}\n", key, meta(key));
+  }
+  if (!meta(meta_key::kVariant).empty()) fmt::print("  variant    {}\n", meta(meta_key::kVariant));
+  if (!meta(meta_key::kNotes).empty()) fmt::print("  notes      {}\n", meta(meta_key::kNotes));
+  fmt::print("\n{}", meta(meta_key::kConfig));
 }
 
 void print_json(const Contents& c) {
@@ -102,6 +135,9 @@ void print_json(const Contents& c) {
                               {"frames_held_out", c.held_out},
                               {"frames_skipped", c.skipped},
                               {"path_length_m", c.path_length}};
+  for (const SensorRecord& sensor : c.sensors) {
+    json["sensors"].push_back(nlohmann::ordered_json::parse(to_json(sensor.profile)));
+  }
   if (!c.bounds_local.isEmpty()) {
     const auto corner = [](const Eigen::Vector3d& v) { return std::vector{v.x(), v.y(), v.z()}; };
     json["bounds_local"] = {{"min", corner(c.bounds_local.min())},
@@ -110,20 +146,25 @@ void print_json(const Contents& c) {
   fmt::print("{}\n", json.dump(2));
 }
 
-/// Names what of a map cannot be read; InputError if there is anything.
+/// Names each part of a map that cannot be read; InputError if there is one.
 void check(const std::string& path) {
-  std::size_t damages = 0, tiles = 0;
+  std::size_t damages = 0;
   const MapReader reader(path, [&](const std::string& damage) {
     ++damages;
     fmt::print("{}\n", damage);
   });
-  reader.frames();
-  reader.for_each_tile([&](std::size_t, const TileKey&, const PointCloud&) { ++tiles; });
+  const std::size_t tiles = reader.check();
   if (damages > 0) {
     throw InputError(fmt::format("{} parts of the map cannot be read", damages), path,
                      "save the rest with 'fovea repair' or map the drive again");
   }
   fmt::print("{}: whole, {} tiles\n", path, tiles);
+  if (reader.format_version() != kMapFormatVersion) {
+    fmt::print(
+        "format {}: only the tiles have checksums; 'fovea repair' rewrites the map in "
+        "format {}\n",
+        reader.format_version(), kMapFormatVersion);
+  }
 }
 
 void run(const InfoArguments& arguments) {
@@ -149,8 +190,7 @@ void add_info_command(CLI::App& app) {
       ->add_flag("--digest", arguments->digest,
                  "Only a hash of everything but timings: equal for equal maps")
       ->excludes(json);
-  command->add_flag("--check", arguments->check,
-                    "Read everything and name what is damaged, tile by tile");
+  command->add_flag("--check", arguments->check, "Read everything and name each damaged row");
   command->callback([arguments] { run(*arguments); });
 }
 

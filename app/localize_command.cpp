@@ -88,7 +88,7 @@ struct Truth {
 
 Truth open_truth(const LocalizeArguments& arguments, const FrameSource& drive,
                  const MapReader& map) {
-  if (!merged_drives(map.meta()).empty()) {
+  if (!merged_drives(map).empty()) {
     throw InputError("the map is of several drives", arguments.map,
                      "compare with the truth in a map of one drive");
   }

@@ -13,6 +13,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/recolor.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -50,12 +51,12 @@ void run(RecolorArguments arguments) {
   job.options = options_of(arguments, meta);
   job.force = arguments.force;
   require_other_file(arguments.map, arguments.output);
-  if (!merged_drives(meta).empty()) {
+  if (!merged_drives(map).empty()) {
     throw InputError("the map is of several drives", arguments.map,
                      "recolour the maps of each, then merge them");
   }
-  if (arguments.drive.cameras.empty() && meta.contains("cameras")) {
-    arguments.drive.cameras = meta.at("cameras");
+  if (arguments.drive.cameras.empty() && meta.contains(meta_key::kCameras)) {
+    arguments.drive.cameras = meta.at(meta_key::kCameras);
   }
   auto drive = arguments.drive.open();
   if (has_stored_calibration(meta)) {

@@ -1,4 +1,4 @@
-// fovea repair: what is whole of a damaged map, as a map.
+// fovea repair: the whole rows of a damaged map, or a map of an older format, as a new map.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,8 @@
 #include <string>
 
 #include "app/commands.h"
-#include "fovea/map/crop.h"
+#include "app/map_arguments.h"
+#include "fovea/map/repair.h"
 
 namespace fovea::app {
 namespace {
@@ -17,25 +18,28 @@ struct RepairArguments {
 };
 
 void run(const RepairArguments& arguments) {
-  std::size_t damages = 0;
-  const MapReader map(arguments.map, [&](const std::string& damage) {
-    ++damages;
+  require_other_file(arguments.map, arguments.output);
+  // Before a file is made: whether this is a map at all.
+  const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
+  const auto writer = MapWriter::create(arguments.output, arguments.force);
+  const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
     if (!arguments.quiet) fmt::print("left out: {}\n", damage);
   });
-  const auto writer = MapWriter::create(arguments.output, arguments.force);
-  const CropFigures figures =
-      crop_map(map, CropRegion::everything("what was whole of a damaged map"), *writer);
   if (arguments.quiet) return;
   fmt::print("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
-             damages);
+             figures.damages);
+  if (format != kMapFormatVersion) {
+    fmt::print("rewritten from format {} in format {}\n", format, kMapFormatVersion);
+  }
 }
 
 }  // namespace
 
 void add_repair_command(CLI::App& app) {
   auto arguments = std::make_shared<RepairArguments>();
-  CLI::App* command =
-      app.add_subcommand("repair", "Save what is whole of a damaged map, and name what is not");
+  CLI::App* command = app.add_subcommand(
+      "repair",
+      "Rewrite a map: save the whole rows of a damaged one, or update the format of an old one");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
   command->add_option("-o,--output", arguments->output, "Map file to write")
       ->required()

@@ -15,6 +15,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/path_name.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/server/map_show.h"
 
@@ -30,9 +31,9 @@ struct ViewArguments {
 };
 
 /// Which of the map's frames are the drive's; InputError if the map is not of that drive.
-DriveImages::Frames frames_of_drive(const MapMeta& meta, const ViewArguments& arguments) {
+DriveImages::Frames frames_of_drive(const MapReader& map, const ViewArguments& arguments) {
   const std::string name = name_of(arguments.drive.drive);
-  const std::vector<MergedDrive> merged = merged_drives(meta);
+  const std::vector<MergedDrive> merged = merged_drives(map);
   if (!merged.empty()) {
     const auto found = std::find_if(merged.begin(), merged.end(),
                                     [&](const MergedDrive& drive) { return drive.name == name; });
@@ -40,7 +41,8 @@ DriveImages::Frames frames_of_drive(const MapMeta& meta, const ViewArguments& ar
       return {found->first_frame, found->end_frame, found->frame_shift};
     }
   } else {
-    const auto known = meta.find("drive.name");
+    const MapMeta meta = map.meta();
+    const auto known = meta.find(meta_key::kDriveName);
     if (known == meta.end() || known->second == name) return {};
   }
   throw InputError(fmt::format("the map was not made of the drive '{}'", name), arguments.map,
@@ -49,10 +51,12 @@ DriveImages::Frames frames_of_drive(const MapMeta& meta, const ViewArguments& ar
 
 std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
   if (arguments.drive.drive.empty()) return nullptr;
-  const MapMeta meta = MapReader(arguments.map).meta();
-  const DriveImages::Frames frames = frames_of_drive(meta, arguments);
+  const MapReader map(arguments.map);
+  const MapMeta meta = map.meta();
+  const DriveImages::Frames frames = frames_of_drive(map, arguments);
   DriveArguments drive = arguments.drive;
-  if (drive.cameras.empty() && meta.contains("cameras")) drive.cameras = meta.at("cameras");
+  if (drive.cameras.empty() && meta.contains(meta_key::kCameras))
+    drive.cameras = meta.at(meta_key::kCameras);
   std::unique_ptr<FrameSource> source = drive.open();
   if (has_stored_calibration(meta)) {
     source = with_stored_calibration(std::move(source), meta, arguments.map);

@@ -57,11 +57,11 @@ PointCloud street_tile(const TileKey& key, std::size_t count, Random& random) {
 
 void write_street(const fs::path& path, std::size_t points) {
   const auto writer = MapWriter::create(path, true);
-  writer->put_meta("map.tile_size", "4");
+  writer->put_meta("map.tile_size_m", "4");
   writer->put_meta("georeferenced", "1");
-  writer->put_meta("origin.latitude", "49.0093");
-  writer->put_meta("origin.longitude", "8.4371");
-  writer->put_meta("origin.altitude", "114.5");
+  writer->put_meta("origin.latitude_deg", "49.0093");
+  writer->put_meta("origin.longitude_deg", "8.4371");
+  writer->put_meta("origin.height_m", "114.5");
   Random random(1);
   for (int x = 0; points > 0; ++x) {
     FrameRecord frame;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""All coloured points of a Fovea map as text, `x y z red green blue` a line, m in the local frame.
+"""All colored points of a Fovea map as text, `x y z red green blue` a line, m in the local frame.
 
-Reads the file as docs/map-format.md describes it: with SQLite and zstd, and nothing of Fovea's.
+Reads the file as docs/map-format.md describes it: with SQLite and zstd, and without Fovea.
 Usage: read_map.py MAP.fovea > POINTS.txt
 """
 import itertools
@@ -29,19 +29,26 @@ def byte_runs(data):
     return [value for value, length in zip(values, lengths) for _ in range(length + 1)]
 
 
+def byte_of(code):
+    """The 8-bit value of a color code."""
+    return 0 if code == 0 else min(255, round(2 ** ((code - 1024) / 256)))
+
+
 database = sqlite3.connect(f"file:{sys.argv[1]}?mode=ro", uri=True)
-if database.execute("PRAGMA user_version").fetchone() != (6,):
-    sys.exit("read_map: not a Fovea map of format version 6")
+if database.execute("PRAGMA user_version").fetchone() != (7,):
+    sys.exit("read_map: not a Fovea map of format version 7")
 pose = {number: [float(word) for word in text.split()]
         for number, text in database.execute("SELECT id, pose FROM submaps")}
 for submap, n, ox, oy, oz, position, color, camera in database.execute(
-        "SELECT submap, points, origin_x, origin_y, origin_z, position, color, camera"
+        "SELECT submap, points, origin_x_m, origin_y_m, origin_z_m, position_mm, color, camera"
         " FROM tiles ORDER BY submap, x, y, z"):
     T, position, color = pose[submap], unpack(position), unpack(color)
     camera = byte_runs(unpack(camera))
     axes = [[o + mm / 1000 for mm in plane(position, n, k)] for k, o in enumerate((ox, oy, oz))]
+    green, red_green, blue_green = (plane(color, n, k) for k in range(3))
     for i, (x, y, z) in enumerate(zip(*axes)):
         if camera[i] == 255:  # -1: no camera saw it
             continue
         p = (T[r] * x + T[r + 1] * y + T[r + 2] * z + T[r + 3] for r in (0, 4, 8))
-        print(*(f"{value:.4f}" for value in p), *color[3 * i:3 * i + 3])
+        codes = ((green[i] + d) % 65536 for d in (red_green[i], 0, blue_green[i]))
+        print(*(f"{value:.4f}" for value in p), *(byte_of(code) for code in codes))

@@ -1,4 +1,4 @@
-// Everything that can be asked of a map file.
+// All ways to read a map file.
 #pragma once
 
 #include <filesystem>
@@ -38,8 +38,18 @@ inline void ask_all(const MapReader& map) {
     const MapMeta meta = map.meta();
     map_origin(meta);
     read_or_refuse([&] { map_tile_size(meta); });
-    read_or_refuse([&] { merged_drives(meta); });
   });
+  read_or_refuse([&] { merged_drives(map); });
+  read_or_refuse([&] { map.sensors(); });
+  read_or_refuse([&] { map.submap_records(); });
+  read_or_refuse([&] {
+    map.for_each_keyframe([](const KeyframeRecord& keyframe) {
+      require(keyframe.ranges.size() == keyframe.elevations.size() * keyframe.columns,
+              "a range image has all its pixels");
+    });
+  });
+  read_or_refuse([&] { map.checkpoint("tracker"); });
+  read_or_refuse([&] { map.check(); });
   read_or_refuse([&] { check_frames(map.frames()); });
   read_or_refuse([&] { map.submaps(); });
   read_or_refuse([&] { map.size(); });

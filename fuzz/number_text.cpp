@@ -1,7 +1,8 @@
-// Numbers as the map's text columns have them, and pose files.
+// Numbers and sensor profiles as the map's text columns have them, and pose files.
 #include "fovea/map/number_text.h"
 
 #include "fovea/geometry/pose_file.h"
+#include "fovea/map/sensor_json.h"
 #include "fuzz_input.h"
 
 using namespace fovea;
@@ -23,6 +24,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string json = to_json(*numbers);
     const auto again = numbers_from_json(json);
     require(again && to_json(*again) == json, "a JSON object comes back");
+  }
+  if (const auto profile = sensor_profile_from_json(text)) {
+    require(sensor_profile_from_json(to_json(*profile)) == profile, "a sensor profile comes back");
   }
   read_or_refuse([&] {
     for (const RigidMotion& pose : read_poses(file.hold(text))) {

@@ -437,7 +437,7 @@ TEST_F(Program, ADamagedMapIsToldOfAndTheRestSaved) {
   const ProgramRun resume =
       run_fovea(fmt::format("map '{}' -o '{}' --resume", drive_.string(), saved.string()));
   EXPECT_EQ(resume.exit_code, 1);
-  EXPECT_THAT(resume.err, HasSubstr("part of another"));
+  EXPECT_THAT(resume.err, HasSubstr("was repaired"));
 }
 
 TEST_F(Program, CropAndRecolor) {

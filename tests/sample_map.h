@@ -97,6 +97,8 @@ inline std::vector<FrameRecord> sample_frames() {
                                  (Twist() << 0, 1e-7, -0.1, 4, 0, 2.5).finished()};
   frames[0].figures = {{"points_scan", 19'329}, {"a \"quoted\\\" name\n", 0.1}, {"b", -1e-300}};
   frames[0].milliseconds = {{"decode", 12.5}, {"frame", 1.0 / 7}};
+  frames[0].views = {{2, frames[0].stamp, std::nullopt},
+                     {3, 1'317'046'453'082'943'357, Eigen::Vector3d(0.25, -1.0 / 3, 1e-12)}};
   frames[1].index = 8;
   frames[1].status = FrameStatus::kHeldOut;
   frames[1].stamp = -5;
@@ -106,17 +108,74 @@ inline std::vector<FrameRecord> sample_frames() {
   return frames;
 }
 
+/// A drive with everything that a map can state of it.
+inline DriveRecord sample_drive() {
+  DriveRecord drive;
+  drive.name = "a drive";
+  drive.kind = "generic";
+  drive.session = "2011-09-26";
+  drive.calibration_fingerprint = "2:0123456789abcdef";
+  drive.stamps_fingerprint = "0123456789abcdef0123456789abcdef";
+  drive.first_frame = 7;
+  drive.end_frame = 10;
+  drive.frame_shift = -3;
+  drive.T_local_drive = exp_se3((Twist() << 0, 0, 0.5, 1.0 / 3, 2, 3).finished());
+  drive.origin = GeodeticPoint{49.011212804408, 8.4228850417969, 112.83492279053};
+  drive.datum = kWgs84;
+  drive.epoch_year = 2011.737;
+  drive.height_type = HeightType::kOrthometric;
+  return drive;
+}
+
+inline SensorRecord sample_sensor() {
+  SensorRecord sensor;
+  sensor.T_lidar_sensor = exp_se3((Twist() << 0.1, 0, 0, 0, 1.0 / 7, 0).finished());
+  sensor.profile.name = "roof";
+  sensor.profile.ring_elevations = {0.1, 0.05, -1.0 / 3};
+  sensor.profile.ring_spacing = 1e-3;
+  sensor.profile.point_spacing = 2.0 / 3000;
+  sensor.profile.sweep = {0.05, SweepDirection::kCounterclockwise, -0.1, 1};
+  sensor.profile.range_noise = 0.013;
+  sensor.profile.height = 1.73;
+  return sensor;
+}
+
+inline KeyframeRecord sample_keyframe() {
+  return {7, 0, {0.1, -0.2}, 3, -3.1, 2.0 / 3, {0, 65535, 700, 701, 699, 1}};
+}
+
+inline CheckpointRecord sample_checkpoint() {
+  return {9, {std::byte{1}, std::byte{0}, std::byte{255}}};
+}
+
+/// Of a submap with everything.
+inline SubmapRecord sample_submap(const RigidMotion& T_local_submap) {
+  SubmapRecord submap;
+  submap.T_local_submap = T_local_submap;
+  submap.covariance.emplace();
+  for (int i = 0; i < 36; ++i) {
+    const int row = i / 6, column = i % 6;
+    (*submap.covariance)(row, column) = 1.0 / (1 + row + column);  // symmetric
+  }
+  submap.gains = {{2, {0.1, -1.0 / 3, 2}}, {3, {0, 0, 1e-9}}};
+  return submap;
+}
+
 /// Puts it all, without commit.
 inline void put_sample_map(MapWriter& writer, const TileMap& map) {
-  writer.put_meta("origin.latitude", "49.011212804408");
-  writer.put_meta("origin.longitude", "8.4228850417969");
-  writer.put_meta("origin.altitude", "112.83492279053");
-  writer.put_meta("map.tile_size", "4");
+  writer.put_meta("origin.latitude_deg", "49.011212804408");
+  writer.put_meta("origin.longitude_deg", "8.4228850417969");
+  writer.put_meta("origin.height_m", "112.83492279053");
+  writer.put_meta("map.tile_size_m", "4");
   writer.put_meta("config", "[registration]\nmethod = \"gicp\"\n");
   writer.put_meta("timing.total", "12.5");
+  writer.put_drive(0, sample_drive());
+  writer.put_sensor(0, sample_sensor());
+  writer.put_keyframe(sample_keyframe());
+  writer.put_checkpoint("tracker", sample_checkpoint());
   for (const FrameRecord& frame : sample_frames()) writer.put_frame(frame);
   for (std::size_t id = 0; id < map.submaps().size(); ++id) {
-    writer.put_submap(id, map.submaps()[id].T_local_submap);
+    writer.put_submap(id, sample_submap(map.submaps()[id].T_local_submap));
     for (const auto& [key, tile] : map.submaps()[id].tiles)
       writer.put_tile({id, key}, *tile.points);
   }

@@ -4,6 +4,7 @@
 
 #include "app/html_report/markup.h"
 #include "fovea/base/errors.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 
 namespace fovea::app {
@@ -38,7 +39,7 @@ std::optional<LoadedFrame> load_frame(const FrameSource& drive, const PlacedFram
 
 MapperOptions options_of(const ScoredMap& map) {
   MapperOptions options = load_preset("default");
-  const auto config = map.meta.find("config");
+  const auto config = map.meta.find(meta_key::kConfig);
   if (config == map.meta.end()) return options;
   try {
     apply_config_text(config->second, "the map's configuration", options);

@@ -21,6 +21,17 @@ std::optional<py::array_t<double>> twist_array(const FrameRecord& record,
 }  // namespace
 
 void bind_frame_record(py::module_& module) {
+  py::class_<ViewRecord>(module, "ViewRecord", "The image of one camera in a frame.")
+      .def_readonly("camera", &ViewRecord::camera, "Number of the camera.")
+      .def_readonly("stamp", &ViewRecord::stamp, "When the image was taken, ns, or None.")
+      .def_property_readonly(
+          "log2_gain",
+          [](const ViewRecord& view) -> std::optional<py::array_t<double>> {
+            if (!view.log2_gain) return std::nullopt;
+            return py::array_t<double>(3, view.log2_gain->data());
+          },
+          "Base-2 logarithms of the gains for red, green and blue (image = map * gain), or None.");
+
   py::class_<FrameRecord>(module, "FrameRecord", "What a map keeps of a frame of its drive.")
       .def_readonly("index", &FrameRecord::index)
       .def_readonly("stamp", &FrameRecord::stamp, "ns, or None.")
@@ -52,6 +63,7 @@ void bind_frame_record(py::module_& module) {
           "acceleration",
           [](const FrameRecord& record) { return twist_array(record, &SweepMotion::acceleration); },
           "Change of the velocity (rad/s^2, m/s^2), 6 numbers, or None.")
+      .def_readonly("views", &FrameRecord::views, "A ViewRecord an image, by camera.")
       .def_readonly("figures", &FrameRecord::figures, "Figures of the stages by name.")
       .def_readonly("milliseconds", &FrameRecord::milliseconds, "Wall time of the stages by name.")
       .def("__repr__", [](const FrameRecord& record) {

@@ -29,6 +29,7 @@ __all__ = [
     "OutputError",
     "Points",
     "Progress",
+    "ViewRecord",
     "__version__",
     "evaluate",
     "map_drive",
@@ -75,6 +76,16 @@ class Points:
     def intensity(self) -> Optional[_Floats]: ...
     def __len__(self) -> int: ...
 
+class ViewRecord:
+    """The image of one camera in a frame."""
+
+    @property
+    def camera(self) -> int: ...
+    @property
+    def stamp(self) -> Optional[int]: ...
+    @property
+    def log2_gain(self) -> Optional[_Doubles]: ...
+
 class FrameRecord:
     """What a map keeps of a frame of its drive."""
 
@@ -98,6 +109,8 @@ class FrameRecord:
     def velocity(self) -> Optional[_Doubles]: ...
     @property
     def acceleration(self) -> Optional[_Doubles]: ...
+    @property
+    def views(self) -> List[ViewRecord]: ...
     @property
     def figures(self) -> Dict[str, float]: ...
     @property

@@ -49,6 +49,11 @@ class MapTest(unittest.TestCase):
         self.assertGreater(first.figures["points_scan"], 0)
         self.assertLess(first.stamp, frames[1].stamp)
         self.assertIn("scan", frames[sample.WITHOUT_SCAN].note)
+        (view,) = first.views
+        self.assertEqual(str(view.camera), self.map.meta["cameras"])
+        self.assertEqual(view.stamp, first.stamp)
+        self.assertIsNone(view.log2_gain)
+        self.assertEqual(frames[sample.WITHOUT_SCAN].views, [])
 
     def test_columns_have_their_types(self):
         count = 0

@@ -52,11 +52,11 @@ nlohmann::json point_json(const Eigen::Vector3d& p_local, const PointCloud& tile
 void write(const std::filesystem::path& folder) {
   const TileMap map = map_points();
   const auto writer = MapWriter::create(folder / "map.fovea", true);
-  writer->put_meta("map.tile_size", "4");
+  writer->put_meta("map.tile_size_m", "4");
   writer->put_meta("georeferenced", "1");
-  writer->put_meta("origin.latitude", "49.011212804408");
-  writer->put_meta("origin.longitude", "8.4228850417969");
-  writer->put_meta("origin.altitude", "112.83492279053");
+  writer->put_meta("origin.latitude_deg", "49.011212804408");
+  writer->put_meta("origin.longitude_deg", "8.4228850417969");
+  writer->put_meta("origin.height_m", "112.83492279053");
   for (const FrameRecord& frame : dated_frames()) writer->put_frame(frame);
   nlohmann::json points = nlohmann::json::array();
   for (std::size_t id = 0; id < map.submaps().size(); ++id) {
@@ -121,7 +121,7 @@ void fill_columns(PointCloud& tile, int frame) {
 /// (10, -4) and (26, 8). A frame each metre along the middle, 1.7 m above the floor.
 void write_plain(const std::filesystem::path& folder) {
   const auto writer = MapWriter::create(folder / "plain.fovea", true);
-  writer->put_meta("map.tile_size", "4");
+  writer->put_meta("map.tile_size_m", "4");
   for (int i = 0; i < 100; ++i) {
     FrameRecord frame;
     frame.index = i;

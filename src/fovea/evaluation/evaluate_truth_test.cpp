@@ -95,9 +95,9 @@ TEST_F(EvaluateTruth, WithoutAlignmentTheMapStaysWhereItLies) {
   EXPECT_NEAR(report.frames[3].position_m, 0.04, 1e-6);
 
   const GeodeticPoint origin = LocalTangentPlane(TruthScene::origin()).to_geodetic({-0.04, 0, 0});
-  map.meta = {{"origin.latitude", fmt::format("{}", origin.latitude)},
-              {"origin.longitude", fmt::format("{}", origin.longitude)},
-              {"origin.altitude", fmt::format("{}", origin.altitude)}};
+  map.meta = {{"origin.latitude_deg", fmt::format("{}", origin.latitude)},
+              {"origin.longitude_deg", fmt::format("{}", origin.longitude)},
+              {"origin.height_m", fmt::format("{}", origin.altitude)}};
   const TruthReport on_earth = evaluate(map, {.align = false});
   EXPECT_TRUE(on_earth.georeferenced);
   EXPECT_LT(on_earth.accuracy.mean, 1e-5);

@@ -93,7 +93,7 @@ ScoredMap load_fovea_map(const std::filesystem::path& path, const std::string& d
         transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
   });
   map.cameras = cameras_of(map.points_local);
-  const std::vector<MergedDrive> drives = merged_drives(map.meta);
+  const std::vector<MergedDrive> drives = merged_drives(reader);
   if (!drives.empty() && !drive.empty()) choose_drive(drives, drive, path, map);
   return map;
 }

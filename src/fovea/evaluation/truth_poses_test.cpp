@@ -93,15 +93,15 @@ TEST(TruthPoses, TheGeoreferenceTakesTheMapToTheTruth) {
   const GeodeticPoint truth{49.01, 8.43, 114.5};
   // The map's origin lies 100 m east and 50 m north of the truth's.
   const GeodeticPoint origin = LocalTangentPlane(truth).to_geodetic({100, 50, 2});
-  const MapMeta meta{{"origin.latitude", fmt::format("{}", origin.latitude)},
-                     {"origin.longitude", fmt::format("{}", origin.longitude)},
-                     {"origin.altitude", fmt::format("{}", origin.altitude)}};
+  const MapMeta meta{{"origin.latitude_deg", fmt::format("{}", origin.latitude)},
+                     {"origin.longitude_deg", fmt::format("{}", origin.longitude)},
+                     {"origin.height_m", fmt::format("{}", origin.altitude)}};
   const std::optional<RigidMotion> T_true_map = georeference(meta, truth);
   ASSERT_TRUE(T_true_map);
   EXPECT_TRUE(T_true_map->translation().isApprox(Eigen::Vector3d(100, 50, 2), 1e-8));
   EXPECT_LT(rotation_angle(T_true_map->linear()), 1e-4);
   EXPECT_FALSE(georeference({}, truth));
-  EXPECT_FALSE(georeference({{"origin.latitude", "north"}}, truth));
+  EXPECT_FALSE(georeference({{"origin.latitude_deg", "north"}}, truth));
 }
 
 TEST(TruthPoses, PairsAreTheFramesThatBothKnow) {

@@ -104,7 +104,7 @@ TEST_F(PointStreamTest, AMapSaysItselfWhetherItHasAPlaceOnEarth) {
   }
   change([](MapWriter& writer) {
     writer.put_meta("georeferenced", "1");
-    writer.put_meta("origin.latitude", "49\nproperty");
+    writer.put_meta("origin.latitude_deg", "49\nproperty");
   });
   EXPECT_THROW(needs_earth(), InputError);
   EXPECT_FALSE(all({}).empty());

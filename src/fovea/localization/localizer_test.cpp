@@ -258,7 +258,7 @@ TEST_F(Localize, AnEmptyMapIsRefused) {
   const auto file = *folder_ / "empty.fovea";
   {
     const auto writer = MapWriter::create(file, true);
-    writer->put_meta("map.tile_size", "4");
+    writer->put_meta("map.tile_size_m", "4");
     writer->commit();
   }
   const MapReader empty(file);

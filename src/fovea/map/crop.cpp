@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 
 namespace fovea {
@@ -60,15 +61,6 @@ CropRegion CropRegion::polygon(std::string_view text) {
   return region;
 }
 
-CropRegion CropRegion::everything(std::string_view why) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
-  CropRegion region;
-  region.low_ = Eigen::Vector3d::Constant(-kAny);
-  region.high_ = -region.low_;
-  region.text_ = why;
-  return region;
-}
-
 bool CropRegion::contains(const Eigen::Vector3d& p) const {
   if (!((p.array() >= low_.array()).all() && (p.array() <= high_.array()).all())) return false;
   if (polygon_.empty()) return true;
@@ -86,16 +78,19 @@ CropFigures crop_map(const MapReader& map, const CropRegion& region, MapWriter& 
   CropFigures figures;
   const auto held_state = map.hold_state();
   const std::vector<RigidMotion> T_local_submap = copy_all_but_tiles(map, output);
-  output.put_meta(kCropKey, region.text());
-  map.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
+  output.put_meta(meta_key::kCrop, region.text());
+  map.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < tile.size(); ++i) {
-      const Eigen::Vector3d p_submap = tile.origin + tile.position[i].cast<double>();
-      if (region.contains(T_local_submap[submap] * p_submap)) kept.push_back(i);
+      const Eigen::Vector3d p_submap = tile.origin + tile.position_at(i).cast<double>();
+      if (region.contains(T_local_submap[id.submap] * p_submap)) kept.push_back(i);
     }
     figures.points += kept.size();
     figures.left_out += tile.size() - kept.size();
-    if (!kept.empty()) output.put_tile({submap, key}, tile.select(kept));
+    if (kept.empty()) return;
+    TilePoints inside = tile;
+    inside.keep(kept);
+    output.put_tile(id, inside);
   });
   output.commit();
   return figures;

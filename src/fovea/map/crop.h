@@ -21,11 +21,8 @@ class CropRegion {
   /// than three corners.
   static CropRegion polygon(std::string_view text);
 
-  /// All that there is.
-  static CropRegion everything(std::string_view why);
-
   bool contains(const Eigen::Vector3d& p_local) const;
-  /// As it was given: "box ...", "polygon ..." or why it is everything.
+  /// As it was given: "box ..." or "polygon ..."
   const std::string& text() const { return text_; }
 
  private:

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "fovea/base/time.h"
 #include "fovea/geometry/sweep_motion.h"
@@ -26,6 +27,17 @@ struct Revisit {
 /// A count as FrameRecord::figures has it.
 inline double as_figure(std::size_t count) { return static_cast<double>(count); }
 
+/// The image of one camera in a frame: the `views` table.
+struct ViewRecord {
+  int camera = 0;
+  std::optional<TimeNs> stamp;  ///< when the image was taken
+  /// Base-2 logarithms of the gains for red, green and blue: image = map * gain. Absent where
+  /// nothing has estimated them.
+  std::optional<Eigen::Vector3d> log2_gain;
+
+  bool operator==(const ViewRecord&) const = default;
+};
+
 struct FrameRecord {
   int index = 0;
   std::optional<TimeNs> stamp;
@@ -42,6 +54,7 @@ struct FrameRecord {
   /// Of the LiDAR at the stamp: undoes the sweep, and moves the cameras to their images. Absent
   /// where the drive needs neither.
   std::optional<SweepMotion> motion;
+  std::vector<ViewRecord> views;  ///< of the images that were used, by camera
   /// Per-stage figures by name ("points_scan", "registration_iterations", "filter_occluded", ...),
   /// part of the digest.
   std::map<std::string, double> figures;

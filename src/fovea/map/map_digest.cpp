@@ -1,57 +1,94 @@
-#include "fovea/map/map_digest.h"
-
-#include <fmt/format.h>
-#include <xxhash.h>
-
-#include <new>
+// MapReader::digest(), as docs/map-format.md defines it.
+#include "fovea/map/map_file.h"
+#include "fovea/map/map_store.h"
+#include "fovea/map/meta_keys.h"
+#include "fovea/map/record_rows.h"
+#include "fovea/map/value_hash.h"
 
 namespace fovea {
+namespace {
 
-MapDigest::MapDigest()
-    : state_(XXH3_createState(), [](XXH3_state_t* state) { XXH3_freeState(state); }) {
-  if (state_ == nullptr) throw std::bad_alloc();
-  XXH3_128bits_reset(state_.get());
-}
-MapDigest::~MapDigest() = default;
-
-void MapDigest::add(const void* data, std::size_t size) {
-  if (size > 0) XXH3_128bits_update(state_.get(), data, size);
+/// The values of a row that belong to the digest.
+void add_row(const Table& table, const Row& row, ValueHash& digest) {
+  digest.row();
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (table.columns[i].in_digest) add_cell(row[i], digest);
+  }
 }
 
-void MapDigest::tag(char kind) { add(&kind, 1); }
-
-void MapDigest::section(std::string_view table) {
-  tag('S');
-  value(table);
+void add_meta(const MapReader& map, ValueHash& digest) {
+  digest.section(kMetaTable.name);
+  for (const auto& [key, value] : map.meta()) {
+    if (key == meta_key::kFormatVersion || key.starts_with(meta_key::kTimingPrefix)) continue;
+    add_row(kMetaTable, meta_row(key, value), digest);
+  }
 }
 
-void MapDigest::value(std::int64_t number) {
-  tag('i');
-  add(&number, sizeof(number));
+/// Records whose numbers are their places.
+template <class Record>
+void add_numbered(const Table& table, const std::vector<Record>& records,
+                  Row (*to_row)(std::size_t, const Record&), ValueHash& digest) {
+  digest.section(table.name);
+  for (std::size_t id = 0; id < records.size(); ++id) {
+    add_row(table, to_row(id, records[id]), digest);
+  }
 }
 
-void MapDigest::value(double number) {
-  tag('r');
-  add(&number, sizeof(number));
+void add_frames(const std::vector<FrameRecord>& frames, ValueHash& digest) {
+  digest.section(kFramesTable.name);
+  for (const FrameRecord& frame : frames) add_row(kFramesTable, frame_row(frame), digest);
+  digest.section(kViewsTable.name);
+  for (const FrameRecord& frame : frames) {
+    for (const ViewRecord& view : frame.views) {
+      add_row(kViewsTable, view_row(frame.index, view), digest);
+    }
+  }
 }
 
-void MapDigest::value(std::string_view text) {
-  tag('t');
-  const auto size = static_cast<std::int64_t>(text.size());
-  add(&size, sizeof(size));
-  add(text.data(), text.size());
+void add_keyframes(const MapReader& map, ValueHash& digest) {
+  digest.section(kKeyframesTable.name);
+  map.for_each_keyframe([&](const KeyframeRecord& keyframe) {
+    std::vector<std::byte> blob;
+    Row row = keyframe_row(keyframe, blob);
+    const std::vector<std::byte> ranges = packed_ranges(keyframe);
+    row.back() = std::span<const std::byte>(ranges);
+    add_row(kKeyframesTable, row, digest);
+  });
 }
 
-void MapDigest::value(std::span<const std::byte> bytes) {
-  tag('b');
-  const auto size = static_cast<std::int64_t>(bytes.size());
-  add(&size, sizeof(size));
-  add(bytes.data(), bytes.size());
+void add_tiles(const MapReader& map, ValueHash& digest) {
+  digest.section(kTilesTable.name);
+  map.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
+    const PackedTile packed = pack_tile(id, tile);
+    TileRow row;
+    row.submap = static_cast<std::int64_t>(id.submap);
+    row.key = id.key;
+    row.points = packed.points;
+    row.colored = packed.colored;
+    row.origin = packed.origin;
+    Row cells = cells_of(row);
+    for (std::size_t i = 0; i < kStoredColumns; ++i) {
+      const bool is_missing = i >= kFirstOptionalColumn && packed.columns[i].empty();
+      cells[kFirstPointColumn + i] =
+          is_missing ? Cell() : Cell(std::span<const std::byte>(packed.columns[i]));
+    }
+    add_row(kTilesTable, cells, digest);
+  });
 }
 
-std::string MapDigest::hex() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}  // namespace
+
+std::string MapReader::digest() const {
+  const Snapshot snapshot(file_->sqlite());
+  ValueHash digest;
+  add_meta(*this, digest);
+  add_numbered(kDrivesTable, drives(), drive_row, digest);
+  add_numbered(kSensorsTable, sensors(), sensor_row, digest);
+  add_frames(frames(), digest);
+  add_numbered(kSubmapsTable, submap_records(), submap_row, digest);
+  add_keyframes(*this, digest);
+  add_tiles(*this, digest);
+  return digest.hex128();
 }
 
 }  // namespace fovea

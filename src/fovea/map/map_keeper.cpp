@@ -32,6 +32,8 @@ bool is_ready(const std::future<T>& result) {
 
 void put(MapWriter& writer, const MapRows& rows, const std::vector<TileId>& removed) {
   for (const auto& [key, value] : rows.meta) writer.put_meta(key, value);
+  for (std::size_t id = 0; id < rows.drives.size(); ++id) writer.put_drive(id, rows.drives[id]);
+  for (std::size_t id = 0; id < rows.sensors.size(); ++id) writer.put_sensor(id, rows.sensors[id]);
   for (const FrameRecord& frame : rows.frames) writer.put_frame(frame);
   for (const auto& [frame, T_local_lidar] : rows.poses) writer.put_pose(frame, T_local_lidar);
   for (const auto& [id, T_local_submap] : rows.submaps) writer.put_submap(id, T_local_submap);

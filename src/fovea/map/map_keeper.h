@@ -23,6 +23,8 @@ namespace fovea {
 /// What a checkpoint writes besides tiles.
 struct MapRows {
   MapMeta meta;
+  std::vector<DriveRecord> drives;    ///< by number; empty: as they were
+  std::vector<SensorRecord> sensors;  ///< by number; empty: as they were
   std::vector<FrameRecord> frames;
   std::vector<std::pair<int, RigidMotion>> poses;  ///< T_local_lidar of frames written before
   std::vector<std::pair<std::size_t, RigidMotion>> submaps;  ///< T_local_submap

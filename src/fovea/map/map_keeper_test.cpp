@@ -140,7 +140,13 @@ class CountingWriter : public MapWriter {
     file_->put_meta(key, value);
   }
   void put_frame(const FrameRecord& record) override { file_->put_frame(record); }
-  void put_submap(std::size_t id, const RigidMotion& T) override { file_->put_submap(id, T); }
+  void put_drive(std::size_t id, const DriveRecord& drive) override { file_->put_drive(id, drive); }
+  void put_sensor(std::size_t id, const SensorRecord& s) override { file_->put_sensor(id, s); }
+  void put_submap(std::size_t id, const SubmapRecord& s) override { file_->put_submap(id, s); }
+  void put_keyframe(const KeyframeRecord& k) override { file_->put_keyframe(k); }
+  void put_checkpoint(const std::string& name, const CheckpointRecord& c) override {
+    file_->put_checkpoint(name, c);
+  }
   void put_pose(int frame, const RigidMotion& T) override { file_->put_pose(frame, T); }
   void put_tile(const PackedTile& tile) override { ++tiles, file_->put_tile(tile); }
   void put_tiles(std::size_t count, const std::function<PackedTile(std::size_t)>& tile) override {
@@ -265,7 +271,7 @@ TEST_P(Keeper, AnErrorOfWritingComesOut) {
   TileMap map;
   map.add_submap(RigidMotion::Identity());
   MapRows rows;
-  rows.meta["schema_version"] = "9";  // the store's own
+  rows.meta["format_version"] = "9";  // the store's own
   keeper->checkpoint(map, std::move(rows), {0, 0, 0}, kNear);
   EXPECT_THROW(keeper->finish(), std::invalid_argument);
 }

@@ -26,9 +26,7 @@ struct MergedDrive {
 };
 
 /// The drives of a map that fovea merge made, in order; empty for any other map. InputError if the
-/// meta data are damaged.
-std::vector<MergedDrive> merged_drives(const MapMeta& meta);
-/// Puts these in the place of those that the meta data had.
-void set_merged_drives(const std::vector<MergedDrive>& drives, MapMeta& meta);
+/// tables of drives and submaps are damaged.
+std::vector<MergedDrive> merged_drives(const MapReader& map);
 
 }  // namespace fovea

@@ -12,23 +12,23 @@
 
 #include "fovea/base/point_cloud.h"
 #include "fovea/map/frame_record.h"
+#include "fovea/map/map_records.h"
 #include "fovea/map/packed_tile.h"
 #include "fovea/map/point_filter.h"
 #include "fovea/map/tile_map.h"
 
 namespace fovea {
 
-/// Version of the schema; a file of another version is refused.
-inline constexpr int kMapSchemaVersion = 6;
-
-/// Keys of meta: the store's own, and what crop_map() has kept of another map.
-inline constexpr const char* kSchemaVersionKey = "schema_version";
-inline constexpr const char* kCropKey = "crop";
+/// Version of the format that is written.
+inline constexpr int kMapFormatVersion = 7;
 
 /// What to do about a map that is damaged.
-inline constexpr const char* kRestoreMap = "restore the map from a copy or map the drive again";
+inline constexpr const char* kRestoreMap =
+    "restore the map from a copy, or save what is whole with 'fovea repair'";
 
 using MapMeta = std::map<std::string, std::string>;
+
+class MapFile;
 
 /// Writes a map. Everything put between two commits is on disk together or not at all; what was
 /// never committed leaves no file behind. An error ends the writing: only destruction may follow.
@@ -37,19 +37,32 @@ class MapWriter {
   /// Starts a new map. OutputError if `path` exists and `force` is false, its folder does not exist
   /// or nothing can be written there. The file appears under its name at the first commit.
   static std::unique_ptr<MapWriter> create(const std::filesystem::path& path, bool force);
-  /// Opens an existing map to go on with it. InputError as MapReader, OutputError if it cannot be
-  /// written or another program is writing it.
+  /// Opens an existing map to extend it. InputError as MapReader, and for a map of an older format;
+  /// OutputError if it cannot be written or another program is writing it.
   static std::unique_ptr<MapWriter> open(const std::filesystem::path& path);
 
   /// Drops what was not committed.
   virtual ~MapWriter() = default;
   /// Each put replaces what the map has under the same key.
   virtual void put_meta(const std::string& key, const std::string& value) = 0;
-  /// std::invalid_argument if a pose or velocity is not finite.
+  // The puts of records: std::invalid_argument if a number is not finite.
+  virtual void put_drive(std::size_t id, const DriveRecord& drive) = 0;
+  virtual void put_sensor(std::size_t id, const SensorRecord& sensor) = 0;
+  /// With its views, which replace all that the map has of the frame.
   virtual void put_frame(const FrameRecord& record) = 0;
-  virtual void put_submap(std::size_t id, const RigidMotion& T_local_submap) = 0;
-  /// Of a frame that has been put; std::invalid_argument if not finite.
+  virtual void put_submap(std::size_t id, const SubmapRecord& submap) = 0;
+  void put_submap(std::size_t id, const RigidMotion& T_local_submap) {
+    SubmapRecord submap;
+    submap.T_local_submap = T_local_submap;
+    put_submap(id, submap);
+  }
+  /// Changes the pose of a frame; nothing if the map does not have the frame. InputError if the
+  /// frame is damaged.
   virtual void put_pose(int frame, const RigidMotion& T_local_lidar) = 0;
+  /// std::invalid_argument also if rows times columns is not the number of ranges.
+  virtual void put_keyframe(const KeyframeRecord& keyframe) = 0;
+  /// State for resuming, under a name. It is not part of the digest.
+  virtual void put_checkpoint(const std::string& name, const CheckpointRecord& checkpoint) = 0;
   virtual void put_tile(const PackedTile& tile) = 0;
   /// Puts `tile(i)` for each i of [0, count), packed and compressed by all threads there are.
   virtual void put_tiles(std::size_t count, const std::function<PackedTile(std::size_t)>& tile) = 0;
@@ -64,14 +77,16 @@ class MapWriter {
 };
 
 /// Reads a map, tile by tile. Every method gives one committed state, also while the map is being
-/// written, and throws InputError where the file is damaged.
+/// written, and throws InputError where the file is damaged: each row has a checksum.
 class MapReader {
  public:
-  /// InputError if the file is missing, is not a Fovea map, or has another schema version.
+  /// Reads maps of formats 6 and 7. InputError if the file is missing, is not a Fovea map, or has
+  /// another format.
   explicit MapReader(const std::filesystem::path& path);
-  /// Reads what is whole of a file that may be damaged: tiles and frames that cannot be read are
-  /// told of, a line each, and left out. InputError if it is no map, or not even its meta data and
-  /// submaps are whole. What a damaged file has out of order comes out of order.
+  /// Reads what is whole of a file that may be damaged. Each row that cannot be read is reported in
+  /// one line and left out. A submap that cannot be read gets the pose of its first frame; without
+  /// one, its tiles are left out, too. Rows that the file has
+  /// out of order come out of order. InputError if the file is no map.
   MapReader(const std::filesystem::path& path,
             std::function<void(const std::string& damage)> on_damage);
   ~MapReader();
@@ -80,11 +95,19 @@ class MapReader {
   /// While the result lives, all methods give the same committed state; this reader outlives it.
   [[nodiscard]] std::shared_ptr<const void> hold_state() const;
 
+  int format_version() const;
   MapMeta meta() const;
-  std::vector<FrameRecord> frames() const;   ///< by index
-  std::vector<RigidMotion> submaps() const;  ///< T_local_submap by id
-  std::size_t size() const;                  ///< number of points
-  std::size_t colored_size() const;          ///< number of those that a camera has coloured
+  std::vector<DriveRecord> drives() const;           ///< by number
+  std::vector<SensorRecord> sensors() const;         ///< by number
+  std::vector<FrameRecord> frames() const;           ///< by index
+  std::vector<RigidMotion> submaps() const;          ///< T_local_submap by id
+  std::vector<SubmapRecord> submap_records() const;  ///< by id
+  /// Calls f(keyframe) in the order of frames and sensors.
+  void for_each_keyframe(const std::function<void(const KeyframeRecord&)>& f) const;
+  /// Nothing if there is no state under that name.
+  std::optional<CheckpointRecord> checkpoint(const std::string& name) const;
+  std::size_t size() const;          ///< number of points
+  std::size_t colored_size() const;  ///< number of those that a camera has coloured
   /// The tiles that there are, in the order of submap and key, and how many points each has.
   std::vector<std::pair<TileId, std::size_t>> tile_sizes() const;
   /// Submap frame, relative to the cloud's `origin` = the tile's lowest corner; InputError if the
@@ -95,22 +118,24 @@ class MapReader {
   /// Calls f(submap, key, tile) in the order of submap and key.
   void for_each_tile(
       const std::function<void(std::size_t, const TileKey&, const PointCloud&)>& f) const;
+  /// As for_each_tile(), with all columns that the file has.
+  void for_each_stored_tile(const std::function<void(const TileId&, const TilePoints&)>& f) const;
   /// All points that pass, in the local frame, origin at 0.
   PointCloud all_points_local(const PointFilter& where = {}) const;
   /// Hash of everything but timings, rows in key order: 32 hexadecimal digits (XXH3, 128 bits).
   std::string digest() const;
+  /// Reads every row.
+  /// @return the number of tiles
+  std::size_t check() const;
 
  private:
-  void for_each_stored_tile(const std::function<void(const TileId&, const TilePoints&)>& f) const;
-
-  struct Database;
-  std::unique_ptr<Database> database_;
+  std::unique_ptr<MapFile> file_;
 };
 
 /// Makes a map whose writer ended while others read it one file again, if nobody uses it any more.
 void fold_log(const std::filesystem::path& path);
 
-/// Puts all that a map has but its tiles: meta data, frames and submaps.
+/// Puts all that a map has but its tiles and checkpoints: no run can resume a copy.
 /// @return T_local_submap by id
 std::vector<RigidMotion> copy_all_but_tiles(const MapReader& map, MapWriter& output);
 

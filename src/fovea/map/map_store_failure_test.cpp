@@ -1,4 +1,5 @@
 // What the store does where files, disks and programs fail.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -16,6 +17,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/record_rows.h"
 
 namespace fovea::map_store_failure_test {
 
@@ -344,9 +346,9 @@ TEST(MapReader, RefusesWhatIsNoMap) {
 TEST(MapReader, RefusesOtherVersions) {
   const TemporaryFolder folder;
   write_sample_map(folder / "a.fovea");
-  run_sql(folder / "a.fovea", "PRAGMA user_version=7");
+  run_sql(folder / "a.fovea", "PRAGMA user_version=8");
   EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea"); }),
-              AllOf(HasSubstr("format version 7"), HasSubstr("newer Fovea")));
+              AllOf(HasSubstr("format version 8"), HasSubstr("newer Fovea")));
   EXPECT_THROW(MapWriter::open(folder / "a.fovea"), InputError);
   for (const char* old : {"0", "5"}) {  // 5: no runs
     run_sql(folder / "a.fovea", std::string("PRAGMA user_version=") + old);
@@ -386,9 +388,9 @@ TEST(MapReader, NamesTheDamagedTile) {
   };
   EXPECT_EQ(damage("points=points"), "nothing thrown");
   for (const char* assignment :
-       {"position=x'00'", "position=color", "color=zeroblob(length(color))",
+       {"position_mm=x'00'", "position_mm=color", "color=zeroblob(length(color))",
         "frame=substr(frame, 1, length(frame) - 1)", "intensity=NULL", "checksum=checksum+1",
-        "points=points+1", "colored=colored-1", "origin_z=origin_z+4",
+        "points=points+1", "colored=colored-1", "origin_z_m=origin_z_m+4",
         "camera=CAST('text' AS BLOB)"}) {
     EXPECT_THAT(damage(assignment), AllOf(HasSubstr("tile " + numbers(" ", " ") + " of submap 1"),
                                           HasSubstr("a.fovea")))
@@ -417,7 +419,7 @@ TEST(MapReader, ReadsAllTilesButTheDamagedOnes) {
   const Salvaged whole = salvage(folder / "a.fovea");
   EXPECT_TRUE(whole.damages.empty());
   run_sql(folder / "a.fovea", "UPDATE tiles SET color=zeroblob(length(color)) WHERE x=1");
-  run_sql(folder / "a.fovea", "UPDATE frames SET pose='x' WHERE idx=8");
+  run_sql(folder / "a.fovea", "UPDATE frames SET pose='x' WHERE frame=8");
   const Salvaged rest = salvage(folder / "a.fovea");
   std::size_t damaged = 0;
   for (const auto& [id, size] : whole.tiles) {
@@ -466,6 +468,14 @@ TEST(MapReader, OfADamagedFileWhatIsWholeIsRead) {
   EXPECT_GT(partly, 60u);
 }
 
+/// The eight bytes of a row's checksum as SQLite stores them.
+std::string checksum_bytes(const FrameRecord& frame) {
+  const std::uint64_t checksum = row_checksum(kFramesTable, frame_row(frame));
+  std::string bytes;
+  for (int shift = 56; shift >= 0; shift -= 8) bytes += static_cast<char>(checksum >> shift);
+  return bytes;
+}
+
 // Bytes of an index put where others are: SQLite gives rows in the order in which they lie there.
 TEST(MapReader, RowsOutOfOrderAreDamage) {
   const TemporaryFolder folder;
@@ -483,6 +493,13 @@ TEST(MapReader, RowsOutOfOrderAreDamage) {
   ASSERT_NE(at, std::string::npos);
   const std::size_t begin = bytes.rfind(char{4}, at);
   bytes[begin] = 2;
+  FrameRecord frame;
+  frame.note = "frame of a test";
+  frame.index = 4;
+  const std::size_t checksum = bytes.find(checksum_bytes(frame));
+  ASSERT_NE(checksum, std::string::npos);
+  frame.index = 2;
+  bytes.replace(checksum, 8, checksum_bytes(frame));
   write_file(folder / "b.fovea", bytes);
   EXPECT_THAT(message<InputError>([&] { MapReader(folder / "b.fovea").frames(); }),
               AllOf(HasSubstr("not in order"), HasSubstr("frame 2")));
@@ -518,37 +535,83 @@ TEST(MapReader, AViewInPlaceOfATableIsRefused) {
               HasSubstr("prohibited"));
 }
 
-TEST(MapReader, NamesTheDamagedFrameOrSubmap) {
+// A row is refused if any of its values has changed, whatever the value.
+TEST(MapReader, NamesTheDamagedRow) {
   const TemporaryFolder folder;
   const auto damage = [&](const std::string& sql) {
     std::filesystem::remove(folder / "a.fovea");
     write_sample_map(folder / "a.fovea");
     run_sql(folder / "a.fovea", sql);
-    return message<InputError>([&] {
-      const MapReader reader(folder / "a.fovea");
-      reader.frames();
-      reader.for_each_tile([](auto, auto&, auto&) {});
-    });
+    return message<InputError>([&] { MapReader(folder / "a.fovea").check(); });
   };
-  EXPECT_THAT(damage("UPDATE frames SET pose='1 2 3' WHERE idx=8"),
-              AllOf(HasSubstr("'pose'"), HasSubstr("frame 8")));
-  EXPECT_THAT(damage("UPDATE frames SET status='odd' WHERE idx=9"), HasSubstr("'status'"));
-  EXPECT_THAT(damage("UPDATE frames SET figures='[1]' WHERE idx=7"), HasSubstr("'figures'"));
-  EXPECT_THAT(damage("UPDATE frames SET velocity='1' WHERE idx=7"), HasSubstr("'velocity'"));
-  EXPECT_THAT(damage("UPDATE frames SET idx=1<<40 WHERE idx=9"), HasSubstr("impossible index"));
-  EXPECT_THAT(damage("UPDATE submaps SET pose='' WHERE id=1"), HasSubstr("submap 1"));
-  EXPECT_THAT(damage("DELETE FROM submaps WHERE id=0"), HasSubstr("submap 0"));
-  EXPECT_THAT(damage("DELETE FROM submaps WHERE id=1"), HasSubstr("submap 1"));
+  EXPECT_EQ(damage("UPDATE frames SET note=note"), "nothing thrown");
+  for (const auto& [sql, row] : std::map<std::string, std::string>{
+           {"UPDATE meta SET value='x' WHERE key='config'", "table 'meta', key 'config'"},
+           {"UPDATE drives SET name='x'", "table 'drives', id 0"},
+           {"UPDATE sensors SET profile='{}'", "table 'sensors', id 0"},
+           {"UPDATE frames SET pose='1 2 3' WHERE frame=8", "table 'frames', frame 8"},
+           {"UPDATE frames SET timings_ms='{}' WHERE frame=7", "table 'frames', frame 7"},
+           {"UPDATE frames SET checksum='7' WHERE frame=7", "table 'frames', frame 7"},
+           {"UPDATE views SET stamp_ns=stamp_ns+1 WHERE camera=3",
+            "table 'views', frame 7, camera 3"},
+           {"UPDATE views SET log2_gain_red=NULL WHERE camera=3",
+            "table 'views', frame 7, camera 3"},
+           {"UPDATE submaps SET pose='' WHERE id=1", "table 'submaps', id 1"},
+           {"UPDATE submaps SET id=7 WHERE id=1", "table 'submaps', id 7"},
+           {"UPDATE keyframes SET columns=columns+1", "table 'keyframes', frame 7, sensor 0"},
+           {"UPDATE checkpoint SET state=x'00'", "table 'checkpoint', name 'tracker'"},
+           {"UPDATE counts SET row_count=3 WHERE table_name='submaps'", "table 'counts'"}}) {
+    EXPECT_THAT(damage(sql), AllOf(HasSubstr("checksum"), HasSubstr("a.fovea, " + row))) << sql;
+  }
+  EXPECT_THAT(damage("UPDATE tiles SET x=1<<40 WHERE rowid=1"), HasSubstr("impossible key"));
+  EXPECT_THAT(damage("ALTER TABLE tiles DROP COLUMN range_cm"), HasSubstr("cannot be read"));
+  EXPECT_THAT(damage("DROP TABLE views"), HasSubstr("cannot be read"));
+}
+
+TEST(MapReader, FindsMissingRows) {
+  const TemporaryFolder folder;
+  for (const auto& [table, row] :
+       std::map<std::string, std::string>{{"meta", "key='config'"},
+                                          {"drives", "id=0"},
+                                          {"sensors", "id=0"},
+                                          {"frames", "frame=9"},
+                                          {"views", "camera=3"},
+                                          {"submaps", "id=1"},
+                                          {"keyframes", "frame=7"},
+                                          {"tiles", "rowid=1"},
+                                          {"checkpoint", "name='tracker'"},
+                                          {"counts", "table_name='tiles'"}}) {
+    std::filesystem::remove(folder / "a.fovea");
+    write_sample_map(folder / "a.fovea");
+    run_sql(folder / "a.fovea", fmt::format("DELETE FROM {} WHERE {}", table, row));
+    EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea").check(); }),
+                HasSubstr("table '"))
+        << table;
+  }
+}
+
+TEST(MapReader, SizesOfImpossibleTilesAreRefused) {
+  const TemporaryFolder folder;
   const auto sizes_damaged_by = [&](const std::string& sql) {
-    damage(sql);
+    std::filesystem::remove(folder / "a.fovea");
+    write_sample_map(folder / "a.fovea");
+    run_sql(folder / "a.fovea", sql);
     return message<InputError>([&] { MapReader(folder / "a.fovea").tile_sizes(); });
   };
   EXPECT_THAT(sizes_damaged_by("UPDATE tiles SET submap=2 WHERE rowid=1"),
               HasSubstr("impossible submap"));
   EXPECT_THAT(sizes_damaged_by("UPDATE tiles SET points=1<<27 WHERE rowid=1"),
               HasSubstr("impossible submap or size"));
-  EXPECT_THAT(damage("UPDATE tiles SET x=1<<40 WHERE rowid=1"), HasSubstr("impossible key"));
-  EXPECT_THAT(damage("ALTER TABLE tiles DROP COLUMN range"), HasSubstr("cannot be read"));
+}
+
+// A damaged frame must not get a new checksum.
+TEST(MapWriter, DoesNotHideADamagedFrame) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  run_sql(folder / "a.fovea", "UPDATE frames SET note='x' WHERE frame=8");
+  const auto writer = MapWriter::open(folder / "a.fovea");
+  EXPECT_THAT(message<InputError>([&] { writer->put_pose(8, RigidMotion::Identity()); }),
+              HasSubstr("frame 8"));
 }
 
 }  // namespace fovea::map_store_failure_test

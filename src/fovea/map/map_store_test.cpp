@@ -28,6 +28,7 @@ void expect_same_frame(const FrameRecord& a, const FrameRecord& b) {
     EXPECT_EQ(a.T_local_lidar_navigation->matrix(), b.T_local_lidar_navigation->matrix());
   }
   EXPECT_EQ(a.motion, b.motion);
+  EXPECT_EQ(a.views, b.views);
   EXPECT_EQ(a.figures, b.figures);
   EXPECT_EQ(a.milliseconds, b.milliseconds);
 }
@@ -45,8 +46,9 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   const MapReader reader(folder / "a.fovea");
   const MapMeta meta = reader.meta();
   EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
-  EXPECT_EQ(meta.at("schema_version"), "6");
+  EXPECT_EQ(meta.at("format_version"), "7");
   EXPECT_EQ(meta.size(), 7u);
+  EXPECT_EQ(reader.format_version(), 7);
   const std::vector<FrameRecord> expected = sample_frames(), frames = reader.frames();
   ASSERT_EQ(frames.size(), expected.size());
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same_frame(frames[i], expected[i]);
@@ -66,6 +68,107 @@ TEST(MapStore, EverythingComesBackBitForBit) {
   EXPECT_EQ(order.size(), map.submaps()[0].tiles.size() + map.submaps()[1].tiles.size());
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
   EXPECT_EQ(reader.colored_size(), colored);
+}
+
+void expect_same_drive(const DriveRecord& a, const DriveRecord& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.session, b.session);
+  EXPECT_EQ(a.calibration_fingerprint, b.calibration_fingerprint);
+  EXPECT_EQ(a.stamps_fingerprint, b.stamps_fingerprint);
+  EXPECT_EQ(a.first_frame, b.first_frame);
+  EXPECT_EQ(a.end_frame, b.end_frame);
+  EXPECT_EQ(a.frame_shift, b.frame_shift);
+  EXPECT_EQ(a.T_local_drive.matrix(), b.T_local_drive.matrix());
+  ASSERT_EQ(a.origin.has_value(), b.origin.has_value());
+  if (a.origin) {
+    EXPECT_EQ(a.origin->latitude, b.origin->latitude);
+    EXPECT_EQ(a.origin->longitude, b.origin->longitude);
+    EXPECT_EQ(a.origin->altitude, b.origin->altitude);
+  }
+  EXPECT_EQ(a.datum, b.datum);
+  EXPECT_EQ(a.epoch_year, b.epoch_year);
+  EXPECT_EQ(a.height_type, b.height_type);
+  EXPECT_EQ(a.source_digest, b.source_digest);
+}
+
+TEST(MapStore, DrivesAndSensorsComeBackBitForBit) {
+  const TemporaryFolder folder;
+  DriveRecord merged;  // with nothing that may be absent, but a digest
+  merged.source_digest = "d";
+  SensorRecord livox;
+  livox.drive = 1;
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map());
+    writer->put_drive(1, merged);
+    writer->put_sensor(1, livox);
+    writer->commit();
+  }
+  const MapReader reader(folder / "a.fovea");
+  const std::vector<DriveRecord> drives = reader.drives();
+  ASSERT_EQ(drives.size(), 2u);
+  expect_same_drive(drives[0], sample_drive());
+  expect_same_drive(drives[1], merged);
+  const std::vector<SensorRecord> sensors = reader.sensors();
+  ASSERT_EQ(sensors.size(), 2u);
+  EXPECT_EQ(sensors[0].profile, sample_sensor().profile);
+  EXPECT_EQ(sensors[0].drive, 0);
+  EXPECT_EQ(sensors[0].T_lidar_sensor.matrix(), sample_sensor().T_lidar_sensor.matrix());
+  EXPECT_EQ(sensors[1].profile, SensorProfile());
+  EXPECT_EQ(sensors[1].drive, 1);
+}
+
+TEST(MapStore, SubmapsKeyframesAndCheckpointsComeBackBitForBit) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const MapReader reader(folder / "a.fovea");
+  const SubmapRecord expected = sample_submap(RigidMotion::Identity());
+  for (const SubmapRecord& submap : reader.submap_records()) {
+    EXPECT_EQ(submap.drive, 0);
+    ASSERT_TRUE(submap.covariance);
+    EXPECT_EQ(*submap.covariance, *expected.covariance);
+    EXPECT_EQ(submap.gains, expected.gains);
+  }
+  int keyframes = 0;
+  reader.for_each_keyframe([&](const KeyframeRecord& keyframe) {
+    const KeyframeRecord sample = sample_keyframe();
+    EXPECT_EQ(keyframe.frame, sample.frame);
+    EXPECT_EQ(keyframe.sensor, sample.sensor);
+    EXPECT_EQ(keyframe.elevations, sample.elevations);
+    EXPECT_EQ(keyframe.columns, sample.columns);
+    EXPECT_EQ(keyframe.first_azimuth, sample.first_azimuth);
+    EXPECT_EQ(keyframe.azimuth_step, sample.azimuth_step);
+    EXPECT_EQ(keyframe.ranges, sample.ranges);
+    ++keyframes;
+  });
+  EXPECT_EQ(keyframes, 1);
+  const auto checkpoint = reader.checkpoint("tracker");
+  ASSERT_TRUE(checkpoint);
+  EXPECT_EQ(checkpoint->frame, sample_checkpoint().frame);
+  EXPECT_EQ(checkpoint->state, sample_checkpoint().state);
+  EXPECT_FALSE(reader.checkpoint("mapper"));
+}
+
+TEST(MapStore, ColumnsWithDefaultsComeBack) {
+  const TemporaryFolder folder;
+  TilePoints tile = TilePoints::of(one_point_each({{1, 2, 3}, {3, 2, 1}, {2, 2, 2}}));
+  tile.saturated.append(std::vector<std::uint8_t>{0, 7, 1});
+  tile.sensor.append(std::vector<std::uint16_t>{0, 300, 1});
+  tile.sampling_level.append(std::vector<std::uint8_t>{4, 0, 0});
+  tile.session.append(std::vector<std::uint16_t>{65535, 1, 1});
+  {
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    writer->put_submap(0, RigidMotion::Identity());
+    writer->put_tile({0, {0, 0, 0}}, tile);
+    writer->commit();
+  }
+  const auto read = MapReader(folder / "a.fovea").find_tile({0, {0, 0, 0}});
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->saturated, tile.saturated);
+  EXPECT_EQ(read->sensor, tile.sensor);
+  EXPECT_EQ(read->sampling_level, tile.sampling_level);
+  EXPECT_EQ(read->session, tile.session);
 }
 
 TEST(MapStore, TilesWithoutIntensityOrPointsComeBack) {
@@ -165,10 +268,22 @@ TEST(MapStore, RefusesWhatItCannotKeep) {
     return pack_tile({0, {int(i), 0, 0}}, TilePoints());
   };
   EXPECT_THROW(writer->put_tiles(100, pack), std::logic_error);
-  EXPECT_THROW(writer->put_meta("schema_version", "7"), std::invalid_argument);
+  EXPECT_THROW(writer->put_meta("format_version", "8"), std::invalid_argument);
   FrameRecord frame;
   frame.T_local_lidar.translation().x() = std::nan("");
   EXPECT_THROW(writer->put_frame(frame), std::invalid_argument);
+  DriveRecord drive;
+  drive.epoch_year = std::nan("");
+  EXPECT_THROW(writer->put_drive(0, drive), std::invalid_argument);
+  SensorRecord sensor;
+  sensor.profile.ring_elevations = {std::nan("")};
+  EXPECT_THROW(writer->put_sensor(0, sensor), std::invalid_argument);
+  SubmapRecord submap;
+  submap.gains = {{2, {0, std::nan(""), 0}}};
+  EXPECT_THROW(writer->put_submap(0, submap), std::invalid_argument);
+  KeyframeRecord keyframe = sample_keyframe();
+  keyframe.ranges.pop_back();
+  EXPECT_THROW(writer->put_keyframe(keyframe), std::invalid_argument);
   writer->commit();  // none of these spoiled the map
 }
 
@@ -203,7 +318,7 @@ TEST(MapDigest, DoesNotDependOnTheOrderOrNumberOfPuts) {
       for (auto it = tiles.rbegin(); it != tiles.rend(); ++it) {
         writer->put_tile({id, it->first}, *it->second.points);
       }
-      writer->put_submap(id, map.submaps()[id].T_local_submap);
+      writer->put_submap(id, sample_submap(map.submaps()[id].T_local_submap));
     }
     const std::vector<FrameRecord> frames = sample_frames();
     for (auto it = frames.rbegin(); it != frames.rend(); ++it) writer->put_frame(*it);
@@ -246,6 +361,52 @@ TEST(MapDigest, LeavesOutTimingsOnly) {
     x = std::nextafter(x, 1e9);
   }));
   expect_new(with_frame([](FrameRecord& f) { f.figures["b"] = 0; }));
+  expect_new(with_frame([](FrameRecord& f) { ++*f.views[0].stamp; }));
+  expect_new(with_frame([](FrameRecord& f) { f.views[1].log2_gain.reset(); }));
+  expect_new(with_frame([](FrameRecord& f) { f.views.pop_back(); }));
+}
+
+TEST(MapDigest, ChangesWithDrivesSensorsSubmapsAndKeyframes) {
+  std::set<std::string> digests = {digest_with([](MapWriter&) {})};
+  const auto expect_new = [&](const Change& change) {
+    EXPECT_TRUE(digests.insert(digest_with(change)).second);
+  };
+  const auto with_drive = [&](const std::function<void(DriveRecord&)>& change) {
+    expect_new([&](MapWriter& writer) {
+      DriveRecord drive = sample_drive();
+      change(drive);
+      writer.put_drive(0, drive);
+    });
+  };
+  with_drive([](DriveRecord& d) { d.stamps_fingerprint.reset(); });
+  with_drive([](DriveRecord& d) { d.calibration_fingerprint = "other"; });
+  with_drive([](DriveRecord& d) { d.height_type = HeightType::kEllipsoidal; });
+  with_drive([](DriveRecord& d) { d.epoch_year.reset(); });
+  with_drive([](DriveRecord& d) { d.origin.reset(); });
+  expect_new([](MapWriter& writer) {
+    SensorRecord sensor = sample_sensor();
+    sensor.profile.height.reset();
+    writer.put_sensor(0, sensor);
+  });
+  expect_new([](MapWriter& writer) {
+    SubmapRecord submap = sample_submap(RigidMotion::Identity());
+    writer.put_submap(0, submap);
+  });
+  expect_new([](MapWriter& writer) {
+    SubmapRecord submap = sample_submap(RigidMotion::Identity());
+    submap.covariance.reset();
+    writer.put_submap(0, submap);
+  });
+  expect_new([](MapWriter& writer) {
+    KeyframeRecord keyframe = sample_keyframe();
+    ++keyframe.ranges[0];
+    writer.put_keyframe(keyframe);
+  });
+}
+
+TEST(MapDigest, LeavesOutTheStateForResuming) {
+  EXPECT_EQ(digest_with([](MapWriter& w) { w.put_checkpoint("tracker", {}); }),
+            digest_with([](MapWriter& w) { w.put_checkpoint("other", sample_checkpoint()); }));
 }
 
 TEST(MapDigest, ChangesWithAnyBitOfATile) {

@@ -30,7 +30,7 @@ class Surfaces : public testing::Test {
  protected:
   void SetUp() override {
     const auto writer = MapWriter::create(folder_ / "map.fovea", false);
-    writer->put_meta("map.tile_size", "4");
+    writer->put_meta("map.tile_size_m", "4");
     writer->put_submap(0, RigidMotion::Identity());
     writer->put_submap(1, RigidMotion(Eigen::Translation3d(0, 100, 0)));
     for (int x = 0; x < 30; ++x) writer->put_tile({0, {x, 0, 0}}, line_tile({x, 0, 0}));

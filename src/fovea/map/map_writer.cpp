@@ -1,17 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
-#include "fovea/geometry/pose_file.h"
+#include "fovea/map/map_format.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
-#include "fovea/map/number_text.h"
+#include "fovea/map/meta_keys.h"
+#include "fovea/map/record_rows.h"
 #include "fovea/map/sqlite_database.h"
-#include "fovea/map/tile_codec.h"
 #include "fovea/map/tile_query.h"
 
 namespace fovea {
@@ -54,26 +55,26 @@ void settle_old_map(const fs::path& path) {
 }
 
 /// The prepared statements of one connection.
-struct Puts {
+class Puts {
+ public:
   explicit Puts(Database& database)
-      : meta(database, "INSERT OR REPLACE INTO meta VALUES(?1, ?2)"),
-        frame(database,
-              "INSERT OR REPLACE INTO frames VALUES(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13)"),
-        submap(database, "INSERT OR REPLACE INTO submaps VALUES(?1, ?2)"),
-        tile(database,
-             "INSERT OR REPLACE INTO tiles VALUES"
-             "(?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,?15,?16,?17,?18,?19,"
-             "?20,?21,?22)"),
-        pose(database, "UPDATE frames SET pose = ?2 WHERE idx = ?1"),
-        no_tile(database, fmt::format("DELETE FROM tiles WHERE {}", kThisTile)),
-        read_tile(database) {}
-  Statement meta, frame, submap, tile, pose, no_tile;
-  TileQuery read_tile;
-};
+      : no_tile(database, fmt::format("DELETE FROM tiles WHERE {}", kThisTile)),
+        no_views(database, "DELETE FROM views WHERE frame = ?1"),
+        frame(database, fmt::format("{} WHERE frame = ?1", select_sql(kFramesTable))),
+        read_tile(database, current_format()) {
+    for (const Table* table : kTables) inserts_.emplace_back(database, insert_sql(*table));
+  }
 
-void require_finite(bool finite, const std::string& what) {
-  if (!finite) throw std::invalid_argument(fmt::format("{} is not finite", what));
-}
+  Statement& insert(const Table& table) {
+    const auto place = std::find(kTables.begin(), kTables.end(), &table) - kTables.begin();
+    return inserts_.at(static_cast<std::size_t>(place));
+  }
+  Statement no_tile, no_views, frame;
+  TileQuery read_tile;
+
+ private:
+  std::vector<Statement> inserts_;
+};
 
 class SqliteMapWriter : public MapWriter {
  public:
@@ -101,14 +102,29 @@ class SqliteMapWriter : public MapWriter {
   }
 
   void put_meta(const std::string& key, const std::string& value) override {
-    if (key == kSchemaVersionKey) {
+    if (key == meta_key::kFormatVersion) {
       throw std::invalid_argument(fmt::format("the meta key '{}' is the store's own", key));
     }
-    write([&] { put_meta_row(key, value); });
+    put(kMetaTable, meta_row(key, value));
   }
-
+  void put_drive(std::size_t id, const DriveRecord& drive) override {
+    put(kDrivesTable, drive_row(id, drive));
+  }
+  void put_sensor(std::size_t id, const SensorRecord& sensor) override {
+    put(kSensorsTable, sensor_row(id, sensor));
+  }
+  void put_submap(std::size_t id, const SubmapRecord& submap) override {
+    put(kSubmapsTable, submap_row(id, submap));
+  }
+  void put_keyframe(const KeyframeRecord& keyframe) override {
+    std::vector<std::byte> blob;
+    put(kKeyframesTable, keyframe_row(keyframe, blob));
+  }
+  void put_checkpoint(const std::string& name, const CheckpointRecord& checkpoint) override {
+    std::vector<std::byte> blob;
+    put(kCheckpointTable, checkpoint_row(name, checkpoint, blob));
+  }
   void put_frame(const FrameRecord& record) override;
-  void put_submap(std::size_t id, const RigidMotion& T_local_submap) override;
   void put_pose(int frame, const RigidMotion& T_local_lidar) override;
   void put_tile(const PackedTile& tile) override { put_row(encoder_.encode(tile)); }
   void put_tiles(std::size_t count, const std::function<PackedTile(std::size_t)>& tile) override;
@@ -117,6 +133,7 @@ class SqliteMapWriter : public MapWriter {
 
   void commit() override {
     write([&] {
+      put_counts();
       database_->execute("COMMIT");
       if (!published_) {
         publish();
@@ -139,12 +156,15 @@ class SqliteMapWriter : public MapWriter {
     failed_ = false;
   }
 
-  void put_row(const TileRow& row);
-  void put_meta_row(std::string_view key, std::string_view value) {
-    puts_->meta.bind(1, key);
-    puts_->meta.bind(2, value);
-    puts_->meta.run();
+  void put(const Table& table, const Row& row) {
+    const std::uint64_t checksum = row_checksum(table, row);
+    write([&] { insert_row(puts_->insert(table), row, checksum); });
   }
+  void put_row(const TileRow& row) {
+    write([&] { insert_row(puts_->insert(kTilesTable), cells_of(row), row.checksum); });
+  }
+  /// Stores how many rows each table has, so that a missing row is found.
+  void put_counts();
 
   void start_partial_file();
   void remove_partial_file();
@@ -177,11 +197,11 @@ void SqliteMapWriter::start_partial_file() {
         fmt::format("PRAGMA page_size={}; PRAGMA locking_mode=EXCLUSIVE; PRAGMA journal_mode=OFF;"
                     "PRAGMA synchronous=OFF; PRAGMA application_id={}; PRAGMA user_version={};"
                     "BEGIN EXCLUSIVE;",
-                    kPageSize, kMapApplicationId, kMapSchemaVersion)
+                    kPageSize, kMapApplicationId, kMapFormatVersion)
             .c_str());
-    database_->execute(kCreateTables);
+    for (const Table* table : kTables) database_->execute(create_sql(*table).c_str());
     puts_ = std::make_unique<Puts>(*database_);
-    put_meta_row(kSchemaVersionKey, fmt::format("{}", kMapSchemaVersion));
+    put(kMetaTable, meta_row(meta_key::kFormatVersion, fmt::to_string(kMapFormatVersion)));
   } catch (...) {
     puts_.reset();
     database_.reset();
@@ -220,68 +240,39 @@ void SqliteMapWriter::open_published_file() {
 }
 
 void SqliteMapWriter::put_frame(const FrameRecord& record) {
-  const std::string what = fmt::format("frame {}: a pose or velocity", record.index);
-  require_finite(record.T_local_lidar.matrix().allFinite(), what);
-  require_finite(record.T_odom_lidar.matrix().allFinite(), what);
-  const std::string status = to_string(record.status);
-  const std::string pose = format_pose(record.T_local_lidar);
-  const std::string odom_pose = format_pose(record.T_odom_lidar);
-  const std::string figures = to_json(record.figures);
-  const std::string timings = to_json(record.milliseconds);
-  std::string navigation, velocity, revisited;
-  if (record.T_local_lidar_navigation) {
-    require_finite(record.T_local_lidar_navigation->matrix().allFinite(), what);
-    navigation = format_pose(*record.T_local_lidar_navigation);
-  }
-  if (record.motion) {
-    require_finite(record.motion->velocity.allFinite(), what);
-    require_finite(record.motion->acceleration.allFinite(), what);
-    velocity = to_text(*record.motion);
-  }
-  if (record.revisit) {
-    require_finite(record.revisit->T_submap_lidar.matrix().allFinite(), what);
-    revisited = format_pose(record.revisit->T_submap_lidar);
-  }
+  put(kFramesTable, frame_row(record));
   write([&] {
-    Statement& put = puts_->frame;
-    const auto bind_or_null = [&](int parameter, const std::string& text) {
-      text.empty() ? put.bind_null(parameter) : put.bind(parameter, std::string_view(text));
-    };
-    put.bind(1, std::int64_t{record.index});
-    record.stamp ? put.bind(2, *record.stamp) : put.bind_null(2);
-    put.bind(3, std::string_view(status));
-    put.bind(4, std::string_view(record.note));
-    put.bind(5, std::string_view(pose));
-    bind_or_null(6, navigation);
-    put.bind(7, std::string_view(odom_pose));
-    put.bind(8, std::int64_t{record.submap});
-    record.revisit ? put.bind(9, std::int64_t{record.revisit->submap}) : put.bind_null(9);
-    bind_or_null(10, revisited);
-    bind_or_null(11, velocity);
-    put.bind(12, std::string_view(figures));
-    put.bind(13, std::string_view(timings));
-    put.run();
+    puts_->no_views.bind(1, std::int64_t{record.index});
+    puts_->no_views.run();
   });
-}
-
-void SqliteMapWriter::put_submap(std::size_t id, const RigidMotion& T_local_submap) {
-  require_finite(T_local_submap.matrix().allFinite(), fmt::format("the pose of submap {}", id));
-  const std::string pose = format_pose(T_local_submap);
-  write([&] {
-    puts_->submap.bind(1, static_cast<std::int64_t>(id));
-    puts_->submap.bind(2, std::string_view(pose));
-    puts_->submap.run();
-  });
+  for (const ViewRecord& view : record.views) put(kViewsTable, view_row(record.index, view));
 }
 
 void SqliteMapWriter::put_pose(int frame, const RigidMotion& T_local_lidar) {
-  require_finite(T_local_lidar.matrix().allFinite(), fmt::format("frame {}: a pose", frame));
-  const std::string pose = format_pose(T_local_lidar);
+  std::optional<FrameRecord> record;
   write([&] {
-    puts_->pose.bind(1, std::int64_t{frame});
-    puts_->pose.bind(2, std::string_view(pose));
-    puts_->pose.run();
+    Statement& row = puts_->frame;
+    row.bind(1, std::int64_t{frame});
+    if (row.step()) {
+      const StoredRow stored = stored_row(row, kFramesTable);
+      // A new checksum would hide the damage.
+      require_whole(kFramesTable, stored, path_.string());
+      record = frame_of(RowCursor(kFramesTable, stored.row, path_.string()));
+    }
+    row.reset();
   });
+  if (!record) return;
+  record->T_local_lidar = T_local_lidar;
+  put(kFramesTable, frame_row(*record));
+}
+
+void SqliteMapWriter::put_counts() {
+  for (const Table* table : kTables) {
+    if (table == &kCountsTable) continue;
+    const std::string count = fmt::format("SELECT count(*) FROM {}", table->name);
+    const Row row{cell(std::string(table->name)), cell(database_->integer(count.c_str()))};
+    insert_row(puts_->insert(kCountsTable), row, row_checksum(kCountsTable, row));
+  }
 }
 
 void SqliteMapWriter::remove_tile(const TileId& id) {
@@ -325,22 +316,6 @@ void SqliteMapWriter::put_tiles(std::size_t count,
       });
 }
 
-void SqliteMapWriter::put_row(const TileRow& row) {
-  write([&] {
-    Statement& put = puts_->tile;
-    bind_tile(put, {static_cast<std::size_t>(row.submap), row.key});
-    int parameter = 4;
-    for (const std::int64_t number : {row.points, row.colored}) put.bind(++parameter, number);
-    for (const double coordinate : row.origin) put.bind(++parameter, coordinate);
-    for (const std::span<const std::byte> blob : row.blobs) {
-      ++parameter;
-      blob.empty() ? put.bind_null(parameter) : put.bind(parameter, blob);
-    }
-    put.bind(++parameter, static_cast<std::int64_t>(row.checksum));
-    put.run();
-  });
-}
-
 }  // namespace
 
 std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
@@ -362,7 +337,13 @@ std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {
     // Where a program was killed, its last commit may still lie in a journal.
     Database(path, Access::kWrite, path).attempt("SELECT count(*) FROM sqlite_master");
   }
-  { const MapReader check(path); }  // the same refusals as for reading
+  const int version = MapReader(path).format_version();  // the same refusals as for reading
+  if (version != kMapFormatVersion) {
+    throw InputError(fmt::format("the map has format version {}, which is only read", version),
+                     path.string(),
+                     fmt::format("rewrite it in format {} first: fovea repair {} -o OUT",
+                                 kMapFormatVersion, path.string()));
+  }
   return std::make_unique<SqliteMapWriter>(path);
 }
 

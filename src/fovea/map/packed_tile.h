@@ -14,7 +14,7 @@ inline constexpr std::int64_t kMaxTilePoints = std::int64_t{1} << 26;
 struct PackedTile {
   TileId id;
   std::int64_t points = 0;
-  std::int64_t colored = 0;  ///< points that a camera has coloured
+  std::int64_t colored = 0;  ///< points that a camera has colored
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   PackedColumns columns;
 };
@@ -23,7 +23,7 @@ struct PackedTile {
 /// many points or an origin that is not finite.
 PackedTile pack_tile(const TileId& id, const TilePoints& tile);
 
-/// Points of a tile that a camera has coloured.
+/// Points of a tile that a camera has colored.
 std::int64_t count_colored(const TilePoints& tile);
 
 }  // namespace fovea

@@ -25,7 +25,7 @@ struct FileWords {
   const char* noun = "map";
   const char* not_one = "not a Fovea map";
   const char* what_to_give = "give a file that 'fovea map' wrote";
-  const char* if_damaged = "restore it from a copy or map the drive again";
+  const char* if_damaged = "restore it from a copy, or save what is whole with 'fovea repair'";
 };
 
 enum class Outcome { kDone, kBusy, kFailed };
@@ -62,6 +62,8 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
+enum class ValueType { kNull, kInteger, kReal, kText, kBlob };
+
 /// A prepared statement. Parameters and columns are counted from 1 and from 0, as in SQLite.
 class Statement {
  public:
@@ -84,7 +86,8 @@ class Statement {
   /// Makes it ready for the next use, wherever it stands.
   void reset() noexcept;
 
-  bool is_null(int column) const;
+  ValueType type(int column) const;
+  bool is_null(int column) const { return type(column) == ValueType::kNull; }
   std::int64_t integer(int column) const;
   double real(int column) const;
   /// Valid until the next step().

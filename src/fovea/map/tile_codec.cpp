@@ -1,7 +1,6 @@
 #include "fovea/map/tile_codec.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 #define ZSTD_STATIC_LINKING_ONLY  // for how literals are kept
 #include <zstd.h>
 
@@ -10,6 +9,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/zstd_blob.h"
 
 namespace fovea {
 namespace {
@@ -28,34 +28,26 @@ void check(std::size_t zstd_result) {
   if (ZSTD_isError(zstd_result) != 0) throw std::bad_alloc();
 }
 
-/// Bytes of the smallest block of a zstd frame, and of the largest that it unpacks to.
-constexpr std::size_t kLeastBlock = 4, kMostOfBlock = 1 << 17;
 /// Bytes that the end of a part costs at most.
 constexpr std::size_t kMostOfFlush = 16;
 
-void add_bytes(XXH3_state_t* state, const void* data, std::size_t size) {
-  XXH3_64bits_update(state, data, size);
-}
-
 }  // namespace
 
-std::uint64_t checksum(const TileRow& row) {
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                              XXH3_freeState);
-  if (state == nullptr) throw std::bad_alloc();
-  XXH3_64bits_reset(state.get());
-  const std::array<std::int64_t, 6> numbers = {row.submap, row.key.x,  row.key.y,
-                                               row.key.z,  row.points, row.colored};
-  add_bytes(state.get(), numbers.data(), sizeof(numbers));
-  add_bytes(state.get(), row.origin.data(), 3 * sizeof(double));
-  for (const std::span<const std::byte> blob : row.blobs) {
-    // The lengths too: a byte must not be able to move from one blob to the next.
-    const auto size = static_cast<std::int64_t>(blob.size());
-    add_bytes(state.get(), &size, sizeof(size));
-    if (size > 0) add_bytes(state.get(), blob.data(), blob.size());
+Row cells_of(const TileRow& row) {
+  Row cells;
+  cells.reserve(kTilesTable.column_count());
+  for (const std::int64_t number : {row.submap, std::int64_t{row.key.x}, std::int64_t{row.key.y},
+                                    std::int64_t{row.key.z}, row.points, row.colored}) {
+    cells.emplace_back(number);
   }
-  return XXH3_64bits_digest(state.get());
+  for (const double coordinate : row.origin) cells.push_back(cell(coordinate));
+  for (const std::span<const std::byte> blob : row.blobs) {
+    cells.push_back(blob.empty() ? Cell() : Cell(blob));
+  }
+  return cells;
 }
+
+std::uint64_t checksum(const TileRow& row) { return row_checksum(kTilesTable, cells_of(row)); }
 
 TileEncoder::TileEncoder() : context_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
   if (context_ == nullptr) throw std::bad_alloc();
@@ -75,7 +67,7 @@ TileRow TileEncoder::encode(const PackedTile& tile) {
   blobs_.clear();
   for (std::size_t i = 0; i < kStoredColumns; ++i) {
     const std::vector<std::byte>& column = tile.columns[i];
-    if (i == kIntensityColumn && column.empty()) continue;
+    if (i >= kFirstOptionalColumn && column.empty()) continue;
     const std::span<const std::byte> blob = compress(column, kind_of(i));
     blobs_.insert(blobs_.end(), blob.begin(), blob.end());
     size[i] = blob.size();
@@ -108,7 +100,8 @@ std::span<const std::byte> TileEncoder::compress(std::span<const std::byte> colu
   return std::span(room_).first(out.pos);
 }
 
-TileDecoder::TileDecoder() : context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
+TileDecoder::TileDecoder(const TileFormat& format)
+    : format_(format), context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
   if (context_ == nullptr) throw std::bad_alloc();
 }
 TileDecoder::~TileDecoder() = default;
@@ -120,7 +113,7 @@ TilePoints TileDecoder::decode(const TileRow& row, const std::string& map_path) 
                                  row.key.z, row.submap),
                      kRestoreMap);
   };
-  if (checksum(row) != row.checksum) fail("the checksum of a tile is wrong");
+  if (format_.checksum(row) != row.checksum) fail("the checksum of a tile is wrong");
   if (row.points < 0 || row.points > kMaxTilePoints || !row.origin.allFinite()) {
     fail("a tile has an impossible size or origin");
   }
@@ -129,21 +122,21 @@ TilePoints TileDecoder::decode(const TileRow& row, const std::string& map_path) 
   const auto points = static_cast<std::size_t>(row.points);
   for (std::size_t i = 0; i < kStoredColumns; ++i) {
     const std::span<const std::byte> blob = row.blobs[i];
-    if (i == kIntensityColumn && blob.empty()) continue;
+    if (i >= kFirstOptionalColumn && blob.empty()) continue;
     const auto unpacked = [&] {
       const std::size_t size = ZSTD_getFrameContentSize(blob.data(), blob.size());
-      if (!packed_sizes(i, points).allow(size)) return false;
+      if (!format_.packed_sizes(i, points).allow(size)) return false;
       // Before memory is taken: a forged row must not ask for what its blobs cannot fill.
-      if (size / kMostOfBlock > blob.size() / kLeastBlock) return false;
+      if (!can_hold(blob.size(), size)) return false;
       memory_.resize(size);
       return ZSTD_decompressDCtx(context_.get(), memory_.data(), size, blob.data(), blob.size()) ==
                  size &&
-             unpack_column(i, memory_, points, tile);
+             format_.unpack_column(i, memory_, points, tile);
     };
     if (!unpacked()) fail("a column of a tile cannot be decoded");
   }
   tile.widen_boxes(0);
-  if (count_colored(tile) != row.colored) fail("a tile has another number of coloured points");
+  if (count_colored(tile) != row.colored) fail("a tile has another number of colored points");
   return tile;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/map/map_row.h"
 #include "fovea/map/packed_tile.h"
 
 struct ZSTD_CCtx_s;
@@ -28,8 +29,19 @@ struct TileRow {
   std::uint64_t checksum = 0;
 };
 
-/// XXH3, 64 bits, of a row's numbers and blobs (docs/map-format.md).
+/// All columns but the checksum. The blobs are shared, not copied.
+Row cells_of(const TileRow& row);
+/// row_checksum() of the tile.
 std::uint64_t checksum(const TileRow& row);
+
+/// What differs between the formats of tiles that can be read.
+struct TileFormat {
+  std::uint64_t (*checksum)(const TileRow& row);
+  PackedSizes (*packed_sizes)(std::size_t column, std::size_t points);
+  bool (*unpack_column)(std::size_t column, std::span<const std::byte> bytes, std::size_t points,
+                        TilePoints& tile);
+};
+inline constexpr TileFormat kTileFormat{checksum, packed_sizes, unpack_column};
 
 class TileEncoder {
  public:
@@ -50,13 +62,14 @@ class TileEncoder {
 
 class TileDecoder {
  public:
-  TileDecoder();
+  explicit TileDecoder(const TileFormat& format = kTileFormat);
   ~TileDecoder();
 
   /// The tile of a row; InputError that names tile and `map_path` if the row is damaged.
   TilePoints decode(const TileRow& row, const std::string& map_path);
 
  private:
+  TileFormat format_;
   std::unique_ptr<ZSTD_DCtx_s, std::size_t (*)(ZSTD_DCtx_s*)> context_;
   std::vector<std::byte> memory_;
 };

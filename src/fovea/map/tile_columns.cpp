@@ -6,65 +6,24 @@
 #include <cstring>
 #include <type_traits>
 
+#include "fovea/map/color_code.h"
+#include "fovea/map/value_plane.h"
+
 namespace fovea {
 namespace {
 
 // The columns are stored as they lie in memory; the format says little endian and packed.
 static_assert(std::endian::native == std::endian::little);
-static_assert(sizeof(Rgb) == 3);
 
 template <class Column>
 inline constexpr bool kIsRuns = false;
 template <class Value>
 inline constexpr bool kIsRuns<RunColumn<Value>> = true;
 
-/// Neighbours in a tile are neighbours in space: their differences are small and compress well. An
-/// even number is a difference of half of it, an odd one of minus half of the next.
-std::uint16_t difference(std::uint16_t from, std::uint16_t to) {
-  const auto d = static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
-  return static_cast<std::uint16_t>((static_cast<unsigned>(d) << 1) ^
-                                    static_cast<unsigned>(d >> 15));
-}
-std::uint16_t following(std::uint16_t from, std::uint16_t difference) {
-  const unsigned d = (difference >> 1) ^ (0u - (difference & 1u));
-  return static_cast<std::uint16_t>(from + d);
-}
-
-constexpr std::size_t kPlaneBytes = 2;  // of a point
-
-/// A plane of differences: all their lower bytes, then all their upper ones.
-void pack_plane(const std::vector<std::uint16_t>& values, std::byte* bytes) {
-  const std::size_t n = values.size();
-  // By blocks of their own memory: the compiler then knows that nothing overlaps, and works on
-  // sixteen values at a time.
-  constexpr std::size_t kBlock = 256;
-  std::array<std::uint16_t, kBlock> differences;
-  std::array<std::byte, kBlock> lower, upper;
-  std::uint16_t last = 0;
-  for (std::size_t begin = 0; begin < n; begin += kBlock) {
-    const std::size_t count = std::min(kBlock, n - begin);
-    const std::uint16_t* block = values.data() + begin;
-    differences[0] = difference(last, block[0]);
-    for (std::size_t i = 1; i < count; ++i) differences[i] = difference(block[i - 1], block[i]);
-    for (std::size_t i = 0; i < count; ++i) {
-      lower[i] = static_cast<std::byte>(differences[i] & 255);
-      upper[i] = static_cast<std::byte>(differences[i] >> 8);
-    }
-    std::memcpy(bytes + begin, lower.data(), count);
-    std::memcpy(bytes + n + begin, upper.data(), count);
-    last = block[count - 1];
-  }
-}
-void unpack_plane(std::size_t n, const std::byte* bytes, std::vector<std::uint16_t>& values) {
-  values.resize(n);
-  std::uint16_t last = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    last =
-        following(last, static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[i]) |
-                                                   std::to_integer<unsigned>(bytes[n + i]) << 8));
-    values[i] = last;
-  }
-}
+template <class Column>
+inline constexpr bool kIsColors = false;
+template <class Colors>
+inline constexpr bool kIsColors<ColorColumn<Colors, &FusedColor::color>> = true;
 
 /// A column as it is.
 template <class Value>
@@ -96,6 +55,47 @@ void copy(std::span<const std::byte> bytes, const ColorColumn<Colors, kPart>& co
     std::memcpy(&(color.*kPart), from, kSize);
     from += kSize;
   }
+}
+
+// The codes of green, and of red and blue relative to green, each as a plane: colors are mostly
+// gray, and neighbors are alike.
+constexpr std::size_t kChannels = 3;
+
+void pack_colors(const std::vector<FusedColor>& colors, std::vector<std::byte>& bytes) {
+  const std::array<std::uint16_t, 256>& codes = codes_of_bytes();
+  std::array<std::vector<std::uint16_t>, kChannels> planes;
+  for (std::vector<std::uint16_t>& plane : planes) plane.resize(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const Rgb& color = colors[i].color;
+    const std::uint16_t green = codes[color.g];
+    planes[0][i] = green;
+    planes[1][i] = static_cast<std::uint16_t>(codes[color.r] - green);
+    planes[2][i] = static_cast<std::uint16_t>(codes[color.b] - green);
+  }
+  bytes.resize(kChannels * kPlaneBytes * colors.size());
+  std::byte* to = bytes.data();
+  for (const std::vector<std::uint16_t>& plane : planes) {
+    pack_plane(plane, to);
+    to += kPlaneBytes * colors.size();
+  }
+}
+/// @return whether all codes are within their range
+bool unpack_colors(std::size_t n, const std::byte* bytes, std::vector<FusedColor>& colors) {
+  std::array<std::vector<std::uint16_t>, kChannels> planes;
+  for (std::vector<std::uint16_t>& plane : planes) {
+    unpack_plane(n, bytes, plane);
+    bytes += kPlaneBytes * n;
+  }
+  colors.resize(n);
+  unsigned largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint16_t green = planes[0][i];
+    const auto red = static_cast<std::uint16_t>(planes[1][i] + green);
+    const auto blue = static_cast<std::uint16_t>(planes[2][i] + green);
+    largest = std::max({largest, unsigned{red}, unsigned{green}, unsigned{blue}});
+    colors[i].color = {nearest_byte(red), nearest_byte(green), nearest_byte(blue)};
+  }
+  return largest <= unsigned{kMaxColorCode};
 }
 
 /// Bytes of a run: its value, and one less than its length.
@@ -139,21 +139,30 @@ bool unpack_runs(std::size_t n, std::span<const std::byte> bytes, RunColumn<Valu
   return values == n;
 }
 
-/// Calls `planes` with the columns that are planes of differences, a span of them, `runs` with
-/// those that are runs of equal values, and `as_it_is` with the others. Which they are is told by
-/// the tile's column itself.
-template <class Tile, class Column, class Planes, class Runs, class AsItIs>
-void by_packing(Tile& tile, Column& column, Planes&& planes, Runs&& runs, AsItIs&& as_it_is) {
+/// Calls `planes` with a span of the columns that are planes of differences, `colors` with the
+/// colors, `runs` with a column of runs of equal values, and `as_it_is` with any other column. The
+/// type and place of the tile's column decide.
+template <class Tile, class Column, class Planes, class Color, class Runs, class AsItIs>
+void by_packing(Tile& tile, Column& column, Planes&& planes, Color&& colors, Runs&& runs,
+                AsItIs&& as_it_is) {
   using Values = std::remove_const_t<Column>;
   if constexpr (std::is_same_v<Values, decltype(TilePoints::position)>) {
     planes(std::span(column));
   } else if constexpr (std::is_same_v<Values, decltype(TilePoints::range)>) {
     &column == &tile.range ? planes(std::span(&column, 1)) : as_it_is(column);
+  } else if constexpr (kIsColors<Values>) {
+    colors(column.colors);
   } else if constexpr (kIsRuns<Values>) {
     runs(column);
   } else {
     as_it_is(column);
   }
+}
+
+template <class Value>
+bool is_zero(const RunColumn<Value>& column) {
+  return std::all_of(column.runs().begin(), column.runs().end(),
+                     [](const auto& run) { return run.value == Value{}; });
 }
 
 /// Calls f with column i of a tile.
@@ -183,8 +192,14 @@ PackedColumns pack_columns(const TilePoints& tile) {
             to += kPlaneBytes * n;
           }
         },
+        [&](const auto& colors) { pack_colors(colors, bytes); },
         [&](const auto& runs) { pack_runs(runs, bytes); },
         [&](const auto& values) { copy(values, bytes); });
+  });
+  next = kFirstDefaultColumn;
+  for_each_default_column(tile, [&](const auto& column) {
+    if (is_zero(column)) columns[next].clear();
+    ++next;
   });
   return columns;
 }
@@ -198,11 +213,13 @@ ColumnKind kind_of(std::size_t column) {
         [&](const auto& planes) {
           kind = {planes.size() * kPlaneBytes, true};
         },
+        [&](const auto&) {
+          kind = {kChannels * kPlaneBytes, true};
+        },
         [&]<class Value>(const RunColumn<Value>&) { kind.parts = kRunBytes<Value>; },
         [&]<class Values>(const Values&) {
           using Colors = const std::vector<FusedColor>;
-          kind.is_noisy = std::is_same_v<Values, ColorColumn<Colors, &FusedColor::color>> ||
-                          std::is_same_v<Values, ColorColumn<Colors, &FusedColor::spread>>;
+          kind.is_noisy = std::is_same_v<Values, ColorColumn<Colors, &FusedColor::spread>>;
         });
   });
   return kind;
@@ -217,6 +234,7 @@ PackedSizes packed_sizes(std::size_t column, std::size_t points) {
         [&](const auto& planes) {
           sizes.least = sizes.most = points * planes.size() * kPlaneBytes;
         },
+        [&](const auto&) { sizes.least = sizes.most = points * kChannels * kPlaneBytes; },
         [&]<class Value>(const RunColumn<Value>&) {
           sizes.step = kRunBytes<Value>;
           sizes.least = (points + kLongestRun - 1) / kLongestRun * sizes.step;
@@ -242,6 +260,7 @@ bool unpack_column(std::size_t column, std::span<const std::byte> bytes, std::si
             from += kPlaneBytes * points;
           }
         },
+        [&](auto& colors) { is_whole = unpack_colors(points, bytes.data(), colors); },
         [&](auto& runs) { is_whole = unpack_runs(points, bytes, runs); },
         [&](auto& values) { copy(bytes, values); });
   });

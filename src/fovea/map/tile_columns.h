@@ -12,7 +12,8 @@
 
 namespace fovea {
 
-/// The bytes of each column, empty where the tile lacks it.
+/// The bytes of each column. Those of an optional column are empty if the tile lacks it, or if it
+/// is 0 for every point of a tile whose column may be empty for that reason.
 using PackedColumns = std::array<std::vector<std::byte>, kStoredColumns>;
 PackedColumns pack_columns(const TilePoints& tile);
 

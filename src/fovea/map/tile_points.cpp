@@ -64,6 +64,7 @@ void TilePoints::check() const {
   for_each_run_column(*this, *this, [&](const auto& column, const auto&) {
     require(column, /*may_be_empty=*/static_cast<const void*>(&column) == &intensity);
   });
+  for_each_default_column(*this, [&](const auto& column) { require(column, true); });
 }
 
 float TilePoints::incidence_at(std::size_t i) const {
@@ -144,6 +145,9 @@ void TilePoints::append(const PointCloud& points, const TilePlaces& places,
     if (from.empty()) return;
     for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));
   });
+  for_each_default_column(*this, [&](auto& column) {
+    if (!column.empty()) column.push_back({}, static_cast<std::uint32_t>(count));
+  });
   widen_boxes(before);
 }
 
@@ -174,6 +178,7 @@ void TilePoints::keep(std::span<const std::uint32_t> indices) {
   kept.close_up(incidence);
   kept.close_up(colors);
   for_each_run_column(*this, *this, [&](auto& column, auto&) { column.keep(indices); });
+  for_each_default_column(*this, [&](auto& column) { column.keep(indices); });
   box = {};
   boxes.clear();
   widen_boxes(0);

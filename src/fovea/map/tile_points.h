@@ -32,8 +32,8 @@ inline std::uint16_t position_steps(double p) {
 /// Places in a tile, a column for each of x, y, z: steps from its lowest corner.
 using TilePlaces = std::array<std::vector<std::uint16_t>, 3>;
 
-/// Columns of equal length, intensity excepted, which all tiles of a map have or none. What is not
-/// said otherwise is as in PointCloud; normals and times are not kept.
+/// Columns of equal length. All tiles of a map have intensities, or none has. Columns mean what
+/// they mean in PointCloud unless a comment states otherwise; normals and times are not kept.
 struct TilePoints {
   using Steps = std::array<std::uint16_t, 3>;  ///< along x, y, z
   static constexpr std::uint8_t kUnknownIncidence = 255;
@@ -49,6 +49,11 @@ struct TilePoints {
   RunColumn<std::uint8_t> interpolated;
   RunColumn<std::uint8_t> reason;
   RunColumn<float> intensity;
+  // Empty: 0 for every point.
+  RunColumn<std::uint8_t> saturated;  ///< bits 0 to 2: red, green, blue is saturated in every view
+  RunColumn<std::uint16_t> sensor;    ///< number of the LiDAR in the map's table `sensors`
+  RunColumn<std::uint8_t> sampling_level;  ///< the point stands for a cell of spacing * 2^level
+  RunColumn<std::uint16_t> session;        ///< number of the drive that gave the color
   /// Around some points, in steps, both ends included; without points it holds none.
   struct Box {
     Steps low{0xffff, 0xffff, 0xffff}, high{0, 0, 0};
@@ -74,7 +79,8 @@ struct TilePoints {
   /// A tile of a cloud with its origin, rounded to steps; what is out of their range becomes the
   /// nearest that can be kept. std::logic_error as check_tile_columns().
   static TilePoints of(const PointCloud& tile);
-  /// The same as a cloud, which of() turns back into what it was.
+  /// The same as a cloud, which of() turns back into the tile, except for the columns that a cloud
+  /// does not have: `saturated`, `sensor`, `sampling_level` and `session`.
   PointCloud cloud() const;
 
   /// Points of a cloud that follow each other: from `begin` up to before `end`.
@@ -94,7 +100,7 @@ struct TilePoints {
 /// column of a wrong length.
 void check_tile_columns(const PointCloud& cloud);
 
-/// A part of the colours, as a column.
+/// A part of the colors, as a column.
 template <class Colors, auto kPart>
 struct ColorColumn {
   Colors& colors;
@@ -105,7 +111,17 @@ ColorColumn<Colors, kPart> part_of(Colors& colors) {
   return {colors};
 }
 
-/// Calls `f(column)` for each column in the order of the file, of which position is the first.
+/// Calls `f(column)` for the columns of which an empty one means 0 for every point.
+template <class Tile, class F>
+void for_each_default_column(Tile& tile, F&& f) {
+  f(tile.saturated);
+  f(tile.sensor);
+  f(tile.sampling_level);
+  f(tile.session);
+}
+
+/// Calls `f(column)` for each column in the order of the file (kTileColumns), of which position is
+/// the first.
 template <class Tile, class F>
 void for_each_stored_column(Tile& tile, F&& f) {
   f(tile.position);
@@ -120,8 +136,12 @@ void for_each_stored_column(Tile& tile, F&& f) {
   f(part_of<&FusedColor::weight>(tile.colors));
   f(tile.reason);
   f(tile.intensity);
+  for_each_default_column(tile, f);
 }
-inline constexpr std::size_t kStoredColumns = 12;
-inline constexpr std::size_t kIntensityColumn = 11;  // the only one that may be missing
+inline constexpr std::size_t kStoredColumns = 16;
+inline constexpr std::size_t kColorColumn = 1;
+/// The columns from here on may be missing: first the intensity, then the default columns.
+inline constexpr std::size_t kFirstOptionalColumn = 11;
+inline constexpr std::size_t kFirstDefaultColumn = 12;
 
 }  // namespace fovea

@@ -29,8 +29,10 @@ TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path
   row.points = statement.integer(4);
   row.colored = statement.integer(5);
   row.origin = {statement.real(6), statement.real(7), statement.real(8)};
-  for (int i = 0; i < static_cast<int>(kStoredColumns); ++i) row.blobs[i] = statement.blob(9 + i);
-  row.checksum = static_cast<std::uint64_t>(statement.integer(9 + int{kStoredColumns}));
+  constexpr auto kFirst = static_cast<int>(kFirstPointColumn);
+  constexpr auto kCount = static_cast<int>(kStoredColumns);
+  for (int i = 0; i < kCount; ++i) row.blobs[std::size_t(i)] = statement.blob(kFirst + i);
+  row.checksum = static_cast<std::uint64_t>(statement.integer(kFirst + kCount));
   return row;
 }
 
@@ -42,8 +44,9 @@ void bind_tile(sqlite::Statement& statement, const TileId& id) {
   }
 }
 
-TileQuery::TileQuery(sqlite::Database& database)
-    : row_(database, fmt::format("SELECT {} FROM tiles WHERE {}", kTileColumns, kThisTile)) {}
+TileQuery::TileQuery(sqlite::Database& database, const MapFormat& format)
+    : row_(database, fmt::format("{} WHERE {}", format.select(kTilesTable), kThisTile)),
+      decoder_(format.tile) {}
 
 std::optional<TilePoints> TileQuery::find(const TileId& id, const std::string& map_path) {
   bind_tile(row_, id);

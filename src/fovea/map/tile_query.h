@@ -4,21 +4,17 @@
 #include <optional>
 #include <string>
 
+#include "fovea/map/map_format.h"
 #include "fovea/map/sqlite_database.h"
 #include "fovea/map/tile_codec.h"
 
 namespace fovea {
 
-/// What tile_row() wants, in this order.
-inline constexpr const char* kTileColumns =
-    "submap, x, y, z, points, colored, origin_x, origin_y, origin_z, position, color, camera, "
-    "frame, range, incidence, interpolated, views, spread, weight, reason, intensity, checksum";
-
 /// The condition for one tile: submap, x, y, z are its first four parameters.
 inline constexpr const char* kThisTile = "submap = ?1 AND x = ?2 AND y = ?3 AND z = ?4";
 
-/// The present row of a query for kTileColumns; its blobs are valid until the next step. InputError
-/// that names `map_path` if a number is impossible.
+/// The present row of a query for all columns of the tiles; its blobs are valid until the next
+/// step. InputError that names `map_path` if a number is impossible.
 TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path);
 
 /// The key in three columns from `column` on; InputError as above.
@@ -30,7 +26,7 @@ void bind_tile(sqlite::Statement& statement, const TileId& id);
 /// Reads one tile at a time.
 class TileQuery {
  public:
-  explicit TileQuery(sqlite::Database& database);
+  TileQuery(sqlite::Database& database, const MapFormat& format);
   /// Nothing if there is no such tile; InputError that names `map_path` if it is damaged.
   std::optional<TilePoints> find(const TileId& id, const std::string& map_path);
   /// InputError that names tile and `map_path` also if it is not there.

@@ -97,7 +97,7 @@ TEST_F(Merge, TheSecondDriveLiesWhereItWas) {
   EXPECT_NEAR(figures.alignment.moved, 0.9, 0.2);  // the error of GPS
 
   const MapReader merged(folder_ / "c.fovea");
-  const std::vector<MergedDrive> drives = merged_drives(merged.meta());
+  const std::vector<MergedDrive> drives = merged_drives(merged);
   ASSERT_EQ(drives.size(), 2u);
   EXPECT_EQ(drives[1].name, "second");
   EXPECT_EQ(drives[1].first_frame, 6);
@@ -186,7 +186,7 @@ TEST_F(Merge, OfAMergedMapComesWhatIsNew) {
   merge("a.fovea", "c.fovea", "ac.fovea");
   EXPECT_EQ(merge("ac.fovea", "ab.fovea", "acb.fovea").drives_added, 1u);
   const MapReader merged(folder_ / "acb.fovea");
-  const std::vector<MergedDrive> drives = merged_drives(merged.meta());
+  const std::vector<MergedDrive> drives = merged_drives(merged);
   ASSERT_EQ(drives.size(), 3u);
   EXPECT_EQ(drives[2].name, "second");
   EXPECT_EQ(drives[2].frame_shift, 12);
@@ -271,16 +271,63 @@ TEST_F(Merge, MapsThatDoNotMeetAreRefusedUnlessForced) {
 TEST_F(Merge, AMapThatDoesNotHaveItsDrivesIsRefused) {
   map(first_, "a.fovea");
   map(second_, "b.fovea");
-  for (const MergedDrive& damaged : {MergedDrive{"digest", "gone", 0, 6, 0, 0, 1000},
-                                     MergedDrive{"digest", "endless", 0, 1 << 30, 0, 0, 1}}) {
-    MapMeta meta;
-    set_merged_drives({damaged}, meta);
+  DriveRecord endless;
+  endless.source_digest = "digest";
+  endless.end_frame = 1 << 30;
+  const auto put = [&](std::size_t id, const DriveRecord& drive) {
     const auto writer = MapWriter::open(folder_ / "b.fovea");
-    for (const auto& [key, text] : meta) writer->put_meta(key, text);
+    writer->put_drive(id, drive);
     writer->commit();
-    EXPECT_THROW(merge("a.fovea", "b.fovea", "c.fovea"), InputError) << damaged.name;
-  }
+  };
+  put(0, endless);
+  EXPECT_THROW(merge("a.fovea", "b.fovea", "c.fovea"), InputError);
+  put(0, DriveRecord());
+  put(1, endless);  // one drive with a digest, one without
+  EXPECT_THROW(merge("a.fovea", "b.fovea", "c.fovea"), InputError);
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.fovea", "b.fovea"}));
+}
+
+// The tables of the merged map keep apart what belongs to the two drives.
+TEST_F(Merge, DrivesSensorsViewsAndKeyframesAreThoseOfBoth) {
+  map(first_, "a.fovea");
+  map(second_, "b.fovea");
+  {
+    const auto writer = MapWriter::open(folder_ / "b.fovea");
+    writer->put_keyframe({2, 0, {0.1}, 2, 0, 0.5, {700, 0}});
+    writer->commit();
+  }
+  merge("a.fovea", "b.fovea", "c.fovea");
+  const MapReader merged(folder_ / "c.fovea"), a(folder_ / "a.fovea"), b(folder_ / "b.fovea");
+  const std::vector<DriveRecord> drives = merged.drives();
+  ASSERT_EQ(drives.size(), 2u);
+  EXPECT_EQ(drives[0].calibration_fingerprint, a.drives()[0].calibration_fingerprint);
+  EXPECT_EQ(drives[1].stamps_fingerprint, b.drives()[0].stamps_fingerprint);
+  EXPECT_EQ(drives[1].source_digest, b.digest());
+  EXPECT_EQ(drives[1].first_frame, 6);
+  ASSERT_EQ(merged.sensors().size(), 2u);
+  EXPECT_EQ(merged.sensors()[0].drive, 0);
+  EXPECT_EQ(merged.sensors()[1].drive, 1);
+  EXPECT_EQ(merged.frames()[8].views, b.frames()[2].views);
+  int keyframes = 0;
+  merged.for_each_keyframe([&](const KeyframeRecord& keyframe) {
+    EXPECT_EQ(keyframe.frame, 8);
+    EXPECT_EQ(keyframe.sensor, 1);
+    ++keyframes;
+  });
+  EXPECT_EQ(keyframes, 1);
+  std::size_t seconds = 0;
+  const std::vector<SubmapRecord> submaps = merged.submap_records();
+  merged.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
+    const int drive = submaps[id.submap].drive;
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      EXPECT_EQ(tile.frame[i] >= 6, drive == 1);
+      EXPECT_EQ(tile.session.empty() ? 0 : int(tile.session[i]), drive);
+      EXPECT_EQ(tile.sensor.empty() ? 0 : int(tile.sensor[i]), drive);
+      seconds += drive == 1;
+    }
+  });
+  EXPECT_GT(seconds, 100u);
+  EXPECT_EQ(merged.check(), merged.tile_sizes().size());
 }
 
 TEST_F(Merge, MapsOfOtherTilesAreRefused) {

@@ -11,9 +11,11 @@
 #include "fovea/base/version.h"
 #include "fovea/map/map_keeper.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/self_calibration.h"
@@ -39,38 +41,42 @@ const char* to_string(PoseSource source) {
 /// What the map says of itself; a run can only be resumed with the same.
 MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   MapMeta meta;
-  meta["fovea.version"] = version();
-  meta["drive.name"] = name_of(drive.path);
-  meta["drive.kind"] = drive.kind;
+  meta[meta_key::kFoveaVersion] = version();
+  meta[meta_key::kDriveName] = name_of(drive.path);
+  meta[meta_key::kDriveKind] = drive.kind;
   std::vector<int> cameras;
   for (const Camera& camera : drive.calibration.cameras) cameras.push_back(camera.index);
-  meta["cameras"] = fmt::format("{}", fmt::join(cameras, ","));
-  meta["frames.begin"] = fmt::format("{}", drive.begin);
-  meta["frames.end"] = fmt::format("{}", drive.end);
-  meta["hold_out"] = job.hold_out.spec();
-  meta["poses"] = to_string(job.pose_source);
-  meta["variant"] = job.variant;
-  meta["calibration"] = job.calibrate ? "corrected" : "as given";
-  meta["config"] = to_toml(job.options);
-  meta["map.tile_size"] = fmt::format("{}", job.options.tile_size);
-  meta["georeferenced"] = fmt::to_string(drive.origin ? 1 : 0);
+  meta[meta_key::kCameras] = fmt::format("{}", fmt::join(cameras, ","));
+  meta[meta_key::kFramesBegin] = fmt::format("{}", drive.begin);
+  meta[meta_key::kFramesEnd] = fmt::format("{}", drive.end);
+  meta[meta_key::kHoldOut] = job.hold_out.spec();
+  meta[meta_key::kPoses] = to_string(job.pose_source);
+  meta[meta_key::kVariant] = job.variant;
+  meta[meta_key::kCalibration] = job.calibrate ? "corrected" : "as given";
+  meta[meta_key::kConfig] = to_toml(job.options);
+  meta[meta_key::kTileSize] = fmt::format("{}", job.options.tile_size);
+  meta[meta_key::kGeoreferenced] = fmt::to_string(drive.origin ? 1 : 0);
   if (drive.origin) {
-    meta["origin.latitude"] = fmt::format("{}", drive.origin->latitude);
-    meta["origin.longitude"] = fmt::format("{}", drive.origin->longitude);
-    meta["origin.altitude"] = fmt::format("{}", drive.origin->altitude);
+    meta[meta_key::kOriginLatitude] = fmt::format("{}", drive.origin->latitude);
+    meta[meta_key::kOriginLongitude] = fmt::format("{}", drive.origin->longitude);
+    meta[meta_key::kOriginHeight] = fmt::format("{}", drive.origin->altitude);
   }
-  meta["notes"] = fmt::format("{}", fmt::join(drive.notes, "\n"));
+  meta[meta_key::kNotes] = fmt::format("{}", fmt::join(drive.notes, "\n"));
   return meta;
 }
 
 /// InputError if a map was made with other settings.
 void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta& meta) {
   const MapMeta before = reader.meta();
-  if (before.contains(kCropKey)) {
+  if (before.contains(meta_key::kCrop)) {
     throw InputError("the map is a part of another one", job.output.string(),
                      "resume the whole map, or start a new one");
   }
-  if (!merged_drives(before).empty()) {
+  if (before.contains(meta_key::kRepair)) {
+    throw InputError("the map was repaired and lacks parts", job.output.string(),
+                     "start a new map");
+  }
+  if (!merged_drives(reader).empty()) {
     throw InputError("the map is of several drives", job.output.string(),
                      "resume the map of one drive, and merge it when it is whole");
   }
@@ -102,7 +108,8 @@ void note_missing_images(const Frame& frame, FrameRecord& record) {
 }
 
 /// The last stage of a frame.
-FrameRecord map_frame(Mapper& mapper, const FrameSource& source, LocatedFrame& located) {
+FrameRecord map_frame(Mapper& mapper, const FrameSource& source, const DriveInfo& drive,
+                      LocatedFrame& located) {
   if (const auto* skipped = std::get_if<SkippedFrame>(&located.result)) {
     return skipped_record(*skipped, source.stamp(skipped->index));
   }
@@ -114,6 +121,7 @@ FrameRecord map_frame(Mapper& mapper, const FrameSource& source, LocatedFrame& l
                                 milliseconds(mapping_began - located.tracking_ended);
   record.milliseconds["decode"] = located.decode_ms;
   note_missing_images(frame, record);
+  add_views(frame, drive, record);
   return record;
 }
 
@@ -147,6 +155,8 @@ class MapRun {
         drive_(drive),
         job_(job),
         meta_(std::move(meta)),
+        drive_records_{drive_record(source)},
+        sensor_records_(sensor_records(drive)),
         threaded_(job.overlap && available_threads() > 1),
         keeper_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
                 keeper_options()),
@@ -183,7 +193,10 @@ class MapRun {
   const FrameSource& source_;
   const DriveInfo& drive_;
   const MapJob& job_;
+  // Of the first checkpoint.
   MapMeta meta_;
+  std::vector<DriveRecord> drive_records_;
+  std::vector<SensorRecord> sensor_records_;
   bool threaded_;
   std::shared_ptr<IdleGate> gate_ = std::make_shared<IdleGate>();
   MapKeeper keeper_;
@@ -215,6 +228,7 @@ MapKeeperOptions MapRun::keeper_options() {
 void MapRun::take_up_earlier_run() {
   const MapReader reader(job_.output);
   require_same_run(reader, job_, meta_);
+  require_same_drive(reader, drive_records_.front(), job_.output);
   const std::vector<FrameRecord> records = reader.frames();
   for (const FrameRecord& record : records) {
     log_.add_stored(record);
@@ -238,7 +252,9 @@ void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record)
 MapRows MapRun::fresh_rows(bool last) {
   MapRows rows = log_.rows(mapper_.map(), /*exact=*/last);
   rows.meta = std::exchange(meta_, {});
-  rows.meta["complete"] = fmt::to_string(last && complete() ? 1 : 0);
+  rows.drives = std::exchange(drive_records_, {});
+  rows.sensors = std::exchange(sensor_records_, {});
+  rows.meta[meta_key::kComplete] = fmt::to_string(last && complete() ? 1 : 0);
   return rows;
 }
 
@@ -255,7 +271,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle_tracking(); }, gate_});
   while (std::optional<LocatedFrame> located = frames.next()) {
     if (const auto* frame = std::get_if<Frame>(&located->result)) views_.add(frame->scan);
-    FrameRecord record = map_frame(mapper_, source_, *located);
+    FrameRecord record = map_frame(mapper_, source_, drive_, *located);
     check_calibration(*located, record);
     figures_.add(record, /*is_new=*/true);
     log_.add(record);

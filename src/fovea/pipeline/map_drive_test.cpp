@@ -8,6 +8,7 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/map/drive_fingerprint.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/mapper_test_support.h"
 
@@ -17,6 +18,8 @@ namespace fovea::map_drive_test {
 class BrokenDrive : public SyntheticDrive {
  public:
   int error_at = -1;
+  TimeNs shift = 0;  ///< of all stamps
+  std::optional<TimeNs> stamp(int index) const override { return stamp_of(index) + shift; }
   BrokenDrive() : SyntheticDrive(street_scene(), 8, 0.8) {}
   FrameResult load(int index) const override {
     if (index == error_at) throw InputError("cannot be read", "frame", "repair it");
@@ -207,6 +210,55 @@ TEST_F(MapDrive, AnErrorAfterACommitLeavesAMapToGoOnWith) {
       EXPECT_EQ(digest(), whole) << error_at;
     }
   }
+}
+
+TEST_F(MapDrive, TheMapStatesItsDriveSensorAndViews) {
+  drive_.editable_info().origin = GeodeticPoint{49, 8, 110};
+  map_drive(drive_, job(), {});
+  const MapReader map(job().output);
+  const std::vector<DriveRecord> drives = map.drives();
+  ASSERT_EQ(drives.size(), 1u);
+  EXPECT_EQ(drives[0].calibration_fingerprint, calibration_fingerprint(drive_.info().calibration));
+  std::vector<std::optional<TimeNs>> stamps;
+  for (int i = 0; i < 8; ++i) stamps.push_back(drive_.stamp(i));
+  EXPECT_EQ(drives[0].stamps_fingerprint, stamps_fingerprint(0, stamps));
+  EXPECT_EQ(drives[0].end_frame, 8);
+  ASSERT_TRUE(drives[0].origin);
+  EXPECT_EQ(drives[0].origin->altitude, 110);
+  EXPECT_EQ(drives[0].datum, "WGS 84");
+  EXPECT_EQ(drives[0].height_type, HeightType::kEllipsoidal);
+  ASSERT_EQ(map.sensors().size(), 1u);
+  EXPECT_EQ(map.sensors()[0].profile.sweep.period, drive_.info().sweep_period);
+  for (const FrameRecord& frame : map.frames()) {
+    ASSERT_EQ(frame.views.size(), 1u);
+    EXPECT_EQ(frame.views[0].camera, drive_.info().calibration.cameras[0].index);
+    EXPECT_EQ(frame.views[0].stamp, frame.stamp);
+    EXPECT_FALSE(frame.views[0].log2_gain);
+  }
+}
+
+TEST_F(MapDrive, ADriveOfAnotherCalibrationOrOtherStampsDoesNotResume) {
+  std::stop_source stop;
+  MapJob job = this->job();
+  job.stop = stop.get_token();
+  map_drive(drive_, job, [&](const MapProgress&) { stop.request_stop(); });
+  job.stop = {};
+  job.resume = true;
+  const auto refusal = [&](const FrameSource& drive) -> std::string {
+    try {
+      map_drive(drive, job, {});
+    } catch (const InputError& error) {
+      return error.problem();
+    }
+    return "resumed";
+  };
+  BrokenDrive recalibrated;
+  recalibrated.editable_info().calibration.cameras[0].T_cam_lidar.translation().x() += 0.001;
+  EXPECT_EQ(refusal(recalibrated), "the map was made of a drive with another calibration");
+  BrokenDrive later;
+  later.shift = kNsPerSecond;
+  EXPECT_EQ(refusal(later), "the map was made of a drive with other stamps");
+  EXPECT_EQ(refusal(drive_), "resumed");
 }
 
 /// Leaves a place and comes back to it twice; 100 m lie between the two.

@@ -4,6 +4,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/map/occupancy.h"
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/image_pyramid.h"
@@ -17,13 +18,17 @@ namespace {
 constexpr double kMargin = 1;
 
 /// What fusion takes for a point that no view has shown.
-void forget_colors(PointCloud& tile) {
-  std::fill(tile.color.begin(), tile.color.end(), Rgb{});
-  std::fill(tile.views.begin(), tile.views.end(), std::uint8_t{0});
-  std::fill(tile.spread.begin(), tile.spread.end(), std::uint8_t{0});
-  std::fill(tile.weight.begin(), tile.weight.end(), std::uint16_t{0});
-  std::fill(tile.camera.begin(), tile.camera.end(), kNoCamera);
-  for (std::uint8_t& reason : tile.reason) reason &= static_cast<std::uint8_t>(~kExposureMatched);
+void forget_colors(TilePoints& tile) {
+  const auto count = static_cast<std::uint32_t>(tile.size());
+  std::fill(tile.colors.begin(), tile.colors.end(), FusedColor{});
+  tile.camera = {};
+  tile.camera.push_back(kNoCamera, count);
+  std::vector<std::uint8_t> reasons(count);
+  tile.reason.copy_to(reasons);
+  for (std::uint8_t& reason : reasons) reason &= static_cast<std::uint8_t>(~kExposureMatched);
+  tile.reason = RunColumn<std::uint8_t>(reasons);
+  tile.saturated = {};
+  tile.session = {};
 }
 
 /// The map without its colours; its tiles are in the file alone.
@@ -33,12 +38,12 @@ TileMap copy_uncolored(const MapReader& map, const MapperOptions& options, MapWr
   for (const RigidMotion& T_local_submap : copy_all_but_tiles(map, writer)) {
     copy.add_submap(T_local_submap);
   }
-  writer.put_meta("config", to_toml(options));
-  map.for_each_tile([&](std::size_t submap, const TileKey& key, const PointCloud& tile) {
-    PointCloud uncolored = tile;
-    forget_colors(uncolored);
-    writer.put_tile({submap, key}, uncolored);
-    copy.declare_stored({submap, key}, tile.size());
+  writer.put_meta(meta_key::kConfig, to_toml(options));
+  map.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
+    TilePoints uncolored = tile;
+    if (!tile.empty()) forget_colors(uncolored);
+    writer.put_tile(id, uncolored);
+    copy.declare_stored(id, tile.size());
   });
   return copy;
 }

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
+#include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 
 namespace fovea {
 namespace {
-
-constexpr const char* kPrefix = "calibration.camera_";
 
 /// A drive whose calibration is another.
 class RecalibratedSource : public FrameSource {
@@ -29,21 +30,34 @@ class RecalibratedSource : public FrameSource {
   DriveInfo info_;
 };
 
-/// What the meta data says of a camera; no correction if nothing.
+std::string key_of(int camera, const char* ending) {
+  return fmt::format("{}{}{}", meta_key::kCalibrationPrefix, camera, ending);
+}
+
+/// The numbers of a key; nothing without the key. InputError if they are not of that count.
+std::optional<std::vector<double>> numbers_of(const MapMeta& meta, const std::string& key,
+                                              std::size_t count, const std::filesystem::path& map) {
+  const auto found = meta.find(key);
+  if (found == meta.end()) return std::nullopt;
+  auto numbers = numbers_from_text(found->second);
+  if (!numbers || numbers->size() != count) {
+    throw InputError(fmt::format("'{}' is not {} numbers", key, count), map.string(),
+                     "make the map again with --calibrate");
+  }
+  return numbers;
+}
+
+/// The correction that the meta data state for a camera; none if they state nothing.
 CameraCalibration read_correction(const MapMeta& meta, int camera,
                                   const std::filesystem::path& map) {
   CameraCalibration correction;
   correction.camera = camera;
-  const std::string key = fmt::format("{}{}", kPrefix, camera);
-  const auto found = meta.find(key);
-  if (found == meta.end()) return correction;
-  const auto numbers = numbers_from_text(found->second);
-  if (!numbers || numbers->size() != 4) {
-    throw InputError(fmt::format("'{}' is not four numbers", key), map.string(),
-                     "make the map again with --calibrate");
+  if (const auto rotation = numbers_of(meta, key_of(camera, meta_key::kRotationEnding), 3, map)) {
+    correction.estimate.rotation = {(*rotation)[0], (*rotation)[1], (*rotation)[2]};
   }
-  correction.estimate.rotation = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
-  correction.estimate.delay = (*numbers)[3];
+  if (const auto delay = numbers_of(meta, key_of(camera, meta_key::kDelayEnding), 1, map)) {
+    correction.estimate.delay = delay->front();
+  }
   return correction;
 }
 
@@ -52,14 +66,15 @@ CameraCalibration read_correction(const MapMeta& meta, int camera,
 void store_calibration(const std::vector<CameraCalibration>& found, MapMeta& meta) {
   for (const CameraCalibration& camera : found) {
     const CalibrationEstimate& e = camera.estimate;
-    const std::array<double, 4> numbers{e.rotation.x(), e.rotation.y(), e.rotation.z(), e.delay};
-    meta[fmt::format("{}{}", kPrefix, camera.camera)] = to_text(numbers);
+    const std::array<double, 3> rotation{e.rotation.x(), e.rotation.y(), e.rotation.z()};
+    meta[key_of(camera.camera, meta_key::kRotationEnding)] = to_text(rotation);
+    meta[key_of(camera.camera, meta_key::kDelayEnding)] = to_text(std::array<double, 1>{e.delay});
   }
 }
 
 bool has_stored_calibration(const MapMeta& meta) {
-  const auto first = meta.lower_bound(kPrefix);
-  return first != meta.end() && first->first.starts_with(kPrefix);
+  const auto first = meta.lower_bound(meta_key::kCalibrationPrefix);
+  return first != meta.end() && first->first.starts_with(meta_key::kCalibrationPrefix);
 }
 
 std::unique_ptr<FrameSource> with_stored_calibration(std::unique_ptr<FrameSource> drive,

@@ -55,11 +55,15 @@ TEST(StoredCalibration, ComesBackExactly) {
 
 TEST(StoredCalibration, SaysWhatIsWrong) {
   EXPECT_THROW(with_stored_calibration(two_cameras(), {}, "some.fovea"), InputError);
-  for (const char* text : {"", "1 2 3", "1 2 3 x", "1 2 3 4 5"}) {
-    EXPECT_THROW(
-        with_stored_calibration(two_cameras(), {{"calibration.camera_2", text}}, "some.fovea"),
-        InputError)
-        << text;
+  for (const auto& [key, text] : std::vector<std::pair<std::string, std::string>>{
+           {"calibration.camera_2.rotation_rad", ""},
+           {"calibration.camera_2.rotation_rad", "1 2"},
+           {"calibration.camera_2.rotation_rad", "1 2 x"},
+           {"calibration.camera_2.rotation_rad", "1 2 3 4"},
+           {"calibration.camera_2.delay_s", "1 2"},
+           {"calibration.camera_2.delay_s", "x"}}) {
+    EXPECT_THROW(with_stored_calibration(two_cameras(), {{key, text}}, "some.fovea"), InputError)
+        << key << ' ' << text;
   }
 }
 

@@ -186,7 +186,7 @@ class LiveRun : public testing::Test {
         rows.poses.emplace_back(frame, T);
       }
     }
-    rows.meta["map.tile_size"] = "4";
+    rows.meta["map.tile_size_m"] = "4";
     keeper_->checkpoint(map_, std::move(rows), {0, 0, 0}, 1000);
   }
   void finish() {

@@ -9,6 +9,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/point_reason.h"
 #include "fovea/base/version.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 
 namespace fovea {
@@ -19,7 +20,7 @@ using Json = nlohmann::json;
 constexpr double kRounding = 1e3;  // a thousandth of a millisecond is noise
 
 std::optional<MapDescription::Foveal> foveal_of(const MapMeta& meta) {
-  const auto config = meta.find("config");
+  const auto config = meta.find(meta_key::kConfig);
   if (config == meta.end()) return std::nullopt;
   MapperOptions options;
   try {
@@ -53,7 +54,7 @@ std::array<double, 12> matrix_rows(const RigidMotion& T) {
 MapDescription describe_map(const MapReader& map) {
   const MapMeta meta = map.meta();
   MapDescription description;
-  const auto name = meta.find("drive.name");
+  const auto name = meta.find(meta_key::kDriveName);
   if (name != meta.end()) description.name = name->second;
   description.points = map.size();
   description.colored_points = map.colored_size();

@@ -23,7 +23,7 @@ void write_map(const std::filesystem::path& path, const PointCloud& points) {
   map.add_submap(RigidMotion(Eigen::Translation3d(3, -2, 1)));
   if (!points.empty()) map.add(points);
   const auto writer = MapWriter::create(path, true);
-  writer->put_meta("map.tile_size", "4");
+  writer->put_meta("map.tile_size_m", "4");
   FrameRecord frame;
   frame.T_local_lidar.translation() = Eigen::Vector3d(0, 0, 5);
   writer->put_frame(frame);

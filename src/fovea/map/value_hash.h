@@ -1,4 +1,5 @@
-// The hash that says whether two maps are the same (docs/map-format.md). Private to map/.
+// Hash of a sequence of values: the digest of a map and the checksums of its rows
+// (docs/map-format.md). Private to map/.
 #pragma once
 
 #include <cstddef>
@@ -12,28 +13,26 @@ struct XXH3_state_s;
 
 namespace fovea {
 
-/// XXH3, 128 bits, over values that each carry a byte for their kind, so that no two sequences of
-/// tables, rows and values give the same bytes.
-class MapDigest {
+/// XXH3 over values that each carry a byte for their kind, so that no two sequences of tables, rows
+/// and values give the same bytes.
+class ValueHash {
  public:
-  MapDigest();
-  ~MapDigest();
+  ValueHash();
+  ~ValueHash();
 
   void section(std::string_view table);
-  /// Begins a row; more values may follow.
-  template <class... Values>
-  void row(const Values&... values) {
-    tag('R');
-    (value(values), ...);
-  }
+  /// Begins a row; its values follow.
+  void row() { tag('R'); }
   void value(std::int64_t number);
   void value(double number);
   void value(std::string_view text);
   void value(std::span<const std::byte> bytes);
   void null() { tag('n'); }
 
-  /// 32 hexadecimal digits.
-  std::string hex() const;
+  /// The 64-bit hash.
+  std::uint64_t hash64() const;
+  /// The 128-bit hash: 32 hexadecimal digits.
+  std::string hex128() const;
 
  private:
   void tag(char kind);

@@ -1,0 +1,50 @@
+#include "fovea/map/color_code.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fovea {
+namespace {
+
+std::array<std::uint16_t, 256> make_codes_of_bytes() {
+  std::array<std::uint16_t, 256> codes;
+  for (std::size_t value = 0; value < codes.size(); ++value) {
+    codes[value] = color_code(double(value));
+  }
+  return codes;
+}
+
+std::array<std::uint8_t, kMaxColorCode + 1> make_bytes_of_codes() {
+  std::array<std::uint8_t, kMaxColorCode + 1> bytes;
+  for (std::size_t code = 0; code < bytes.size(); ++code) {
+    const double value = color_value(static_cast<std::uint16_t>(code));
+    bytes[code] = static_cast<std::uint8_t>(std::lround(std::min(value, 255.0)));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::uint16_t color_code(double value) {
+  if (!(value > 0)) return 0;
+  const double code = kColorCodeOfOne + kColorCodesPerStop * std::log2(value);
+  return static_cast<std::uint16_t>(
+      std::lround(std::clamp(code, 1.0, static_cast<double>(kMaxColorCode))));
+}
+
+double color_value(std::uint16_t code) {
+  if (code == 0) return 0;
+  return std::exp2(double(code - kColorCodeOfOne) / kColorCodesPerStop);
+}
+
+const std::array<std::uint16_t, 256>& codes_of_bytes() {
+  static const std::array<std::uint16_t, 256> codes = make_codes_of_bytes();
+  return codes;
+}
+
+std::uint8_t nearest_byte(std::uint16_t code) {
+  static const std::array<std::uint8_t, kMaxColorCode + 1> bytes = make_bytes_of_codes();
+  return bytes[std::min<std::size_t>(code, kMaxColorCode)];
+}
+
+}  // namespace fovea

@@ -1,0 +1,61 @@
+#include "fovea/map/drive_fingerprint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/map/value_hash.h"
+
+namespace fovea {
+namespace {
+
+/// Beyond this a value is the same as any other: no calibration has it.
+constexpr double kLargest = 1e9, kResolution = 1e-9;
+
+void add_rounded(double value, ValueHash& hash) {
+  const double bounded = std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : kLargest;
+  hash.value(std::int64_t{std::llround(bounded / kResolution)});
+}
+
+void add_pose(const RigidMotion& T, ValueHash& hash) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) add_rounded(T.matrix()(row, column), hash);
+  }
+}
+
+}  // namespace
+
+std::string calibration_fingerprint(const Calibration& calibration) {
+  std::string fingerprint;
+  const auto add = [&](const std::string& name, const ValueHash& hash) {
+    fingerprint += fmt::format("{}{}:{:016x}", fingerprint.empty() ? "" : " ", name, hash.hash64());
+  };
+  if (calibration.T_imu_lidar) {
+    ValueHash hash;
+    add_pose(*calibration.T_imu_lidar, hash);
+    add("imu", hash);
+  }
+  for (const Camera& camera : calibration.cameras) {
+    ValueHash hash;
+    for (const int number : {camera.width, camera.height}) hash.value(std::int64_t{number});
+    for (const double number : {camera.fx, camera.fy, camera.cx, camera.cy, camera.image_delay}) {
+      add_rounded(number, hash);
+    }
+    add_pose(camera.T_cam_lidar, hash);
+    add(fmt::to_string(camera.index), hash);
+  }
+  return fingerprint;
+}
+
+std::string stamps_fingerprint(int first_frame, std::span<const std::optional<TimeNs>> stamps) {
+  ValueHash hash;
+  hash.section("stamps");
+  hash.value(std::int64_t{first_frame});
+  for (const std::optional<TimeNs>& stamp : stamps) {
+    stamp ? hash.value(std::int64_t{*stamp}) : hash.null();
+  }
+  return hash.hex128();
+}
+
+}  // namespace fovea

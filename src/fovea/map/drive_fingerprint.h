@@ -1,0 +1,23 @@
+// Hashes that identify a drive by its calibration and its stamps, not by its name
+// (docs/map-format.md).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "fovea/base/time.h"
+#include "fovea/geometry/camera.h"
+
+namespace fovea {
+
+/// "imu:HASH 2:HASH 3:HASH": one hash of 16 hexadecimal digits for the place of the IMU, where it
+/// is known, and for each camera, so that drives with other cameras in use can be compared. Numbers
+/// count in whole 1e-9, so that the rounding of another computer changes nothing.
+std::string calibration_fingerprint(const Calibration& calibration);
+
+/// Of the stamps of consecutive frames: 32 hexadecimal digits.
+/// @param first_frame  the number of the first one
+std::string stamps_fingerprint(int first_frame, std::span<const std::optional<TimeNs>> stamps);
+
+}  // namespace fovea

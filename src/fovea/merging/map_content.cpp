@@ -1,0 +1,88 @@
+#include "fovea/merging/map_content.h"
+
+#include <algorithm>
+
+#include "fovea/base/errors.h"
+#include "fovea/map/meta_keys.h"
+
+namespace fovea {
+namespace {
+
+/// Puts what a merged map states of a drive into its record.
+void describe(const MergedDrive& drive, DriveRecord& record) {
+  record.name = drive.name;
+  record.source_digest = drive.digest;
+  record.first_frame = drive.first_frame;
+  record.end_frame = drive.end_frame;
+  record.frame_shift = drive.frame_shift;
+}
+
+/// The drive of a map that is not merged.
+MergedDrive only_drive(const MapReader& map, const MapContent& content) {
+  MergedDrive drive;
+  drive.digest = map.digest();
+  drive.name = content.text(meta_key::kDriveName);
+  if (!content.frames.empty()) {
+    drive.first_frame = content.frames.front().index;
+    drive.end_frame = content.frames.back().index + 1;
+  }
+  drive.end_submap = static_cast<int>(content.T_local_submap.size());
+  return drive;
+}
+
+}  // namespace
+
+MapContent::MapContent(const MapReader& map)
+    : meta(map.meta()),
+      frames(map.frames()),
+      T_local_submap(map.submaps()),
+      drives(merged_drives(map)),
+      records(map.drives()),
+      sensors(map.sensors()),
+      tile_size(map_tile_size(meta)) {
+  if (drives.empty()) {
+    drives.push_back(only_drive(map, *this));
+    records.resize(1);
+  }
+  for (std::size_t k = 0; k < drives.size(); ++k) describe(drives[k], records[k]);
+}
+
+std::string MapContent::text(const std::string& key) const {
+  const auto found = meta.find(key);
+  return found == meta.end() ? "" : found->second;
+}
+
+const MergedDrive* find_drive(const MapContent& map, const std::string& digest) {
+  const auto found = std::find_if(map.drives.begin(), map.drives.end(),
+                                  [&](const MergedDrive& drive) { return drive.digest == digest; });
+  return found == map.drives.end() ? nullptr : &*found;
+}
+
+std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b) {
+  std::vector<AddedDrive> added;
+  int frame = a.end_frame();
+  auto submap = static_cast<int>(a.T_local_submap.size());
+  for (std::size_t k = 0; k < b.drives.size(); ++k) {
+    const MergedDrive& drive = b.drives[k];
+    if (find_drive(a, drive.digest) != nullptr) continue;
+    MergedDrive merged = drive;
+    merged.first_frame = frame;
+    constexpr int kMostFrames = 1 << 30;
+    if (drive.first_frame < 0 || drive.end_frame - drive.first_frame > kMostFrames - frame) {
+      throw InputError("the maps have more frames than one can number", drive.name,
+                       "merge maps of shorter drives");
+    }
+    frame += drive.end_frame - drive.first_frame;
+    merged.end_frame = frame;
+    merged.frame_shift += merged.first_frame - drive.first_frame;
+    merged.first_submap = submap;
+    submap += drive.end_submap - drive.first_submap;
+    merged.end_submap = submap;
+    DriveRecord record = b.records[k];
+    describe(merged, record);
+    added.push_back({drive, merged, record, k, a.drives.size() + added.size()});
+  }
+  return added;
+}
+
+}  // namespace fovea

@@ -1,0 +1,49 @@
+// What merging needs of two maps besides their points. Private to merging/.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/map/map_meta.h"
+
+namespace fovea {
+
+/// A map without its points.
+struct MapContent {
+  explicit MapContent(const MapReader& map);
+
+  /// Of a key of the meta data; empty without it.
+  std::string text(const std::string& key) const;
+  int end_frame() const { return drives.back().end_frame; }
+
+  MapMeta meta;
+  std::vector<FrameRecord> frames;
+  std::vector<RigidMotion> T_local_submap;
+  std::vector<MergedDrive> drives;   ///< one at least
+  std::vector<DriveRecord> records;  ///< of these drives, as they are in a merged map
+  std::vector<SensorRecord> sensors;
+  double tile_size = 0;  ///< m
+};
+
+/// The drive that came from a map of this digest, or nullptr.
+const MergedDrive* find_drive(const MapContent& map, const std::string& digest);
+
+/// A drive of B that A does not have, and what becomes of it.
+struct AddedDrive {
+  MergedDrive in_b, merged;
+  DriveRecord record;           ///< in the merged map
+  std::size_t number_in_b = 0;  ///< of the drive
+  std::size_t number = 0;       ///< of the drive in the merged map
+
+  /// The number of a frame of B in the merged map; -1 for a frame of another drive, which a damaged
+  /// map may name.
+  int number_of(int frame_in_b) const {
+    if (frame_in_b < in_b.first_frame || frame_in_b >= in_b.end_frame) return -1;
+    return merged.first_frame + (frame_in_b - in_b.first_frame);
+  }
+};
+
+/// InputError if the frames of both maps are too many.
+std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b);
+
+}  // namespace fovea

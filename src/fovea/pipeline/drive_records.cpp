@@ -1,0 +1,90 @@
+#include "fovea/pipeline/drive_records.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/path_name.h"
+#include "fovea/map/drive_fingerprint.h"
+
+namespace fovea {
+namespace {
+
+/// 2000-01-01 in Unix time. Earlier stamps count from some other start.
+constexpr TimeNs kEarliestDate = 946'684'800 * kNsPerSecond;
+
+/// The day of a stamp in Unix time, or nothing if it is not in Unix time.
+std::optional<std::string> utc_day(std::optional<TimeNs> stamp) {
+  if (!stamp || *stamp < kEarliestDate) return std::nullopt;
+  const std::chrono::sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(*stamp)};
+  const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(time));
+  return fmt::format("{:04}-{:02}-{:02}", int(day.year()), unsigned(day.month()),
+                     unsigned(day.day()));
+}
+
+}  // namespace
+
+DriveRecord drive_record(const FrameSource& source) {
+  const DriveInfo& info = source.info();
+  std::vector<std::optional<TimeNs>> stamps;
+  for (int index = info.begin; index < info.end; ++index) stamps.push_back(source.stamp(index));
+  DriveRecord drive;
+  drive.name = name_of(info.path);
+  drive.kind = info.kind;
+  drive.calibration_fingerprint = calibration_fingerprint(info.calibration);
+  drive.stamps_fingerprint = stamps_fingerprint(info.begin, stamps);
+  drive.first_frame = info.begin;
+  drive.end_frame = info.end;
+  const auto first_stamp = std::find_if(stamps.begin(), stamps.end(),
+                                        [](const auto& stamp) { return stamp.has_value(); });
+  if (info.has_time_stamps && first_stamp != stamps.end()) drive.session = utc_day(*first_stamp);
+  if (info.origin) {
+    drive.origin = info.origin;
+    drive.datum = kWgs84;
+    drive.height_type = HeightType::kEllipsoidal;
+  }
+  return drive;
+}
+
+std::vector<SensorRecord> sensor_records(const DriveInfo& drive) {
+  std::vector<SensorRecord> sensors;
+  for (const SensorProfile& profile : drive.lidars) {
+    SensorRecord& sensor = sensors.emplace_back();
+    sensor.profile = profile;
+  }
+  return sensors;
+}
+
+void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record) {
+  for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
+    if (frame.images[slot].empty()) continue;
+    const Camera camera = drive.camera_at(slot, frame.index);
+    ViewRecord view;
+    view.camera = camera.index;
+    view.stamp = frame.stamp + from_seconds(camera.image_delay);
+    record.views.push_back(view);
+  }
+  std::sort(record.views.begin(), record.views.end(),
+            [](const ViewRecord& a, const ViewRecord& b) { return a.camera < b.camera; });
+}
+
+void require_same_drive(const MapReader& reader, const DriveRecord& drive,
+                        const std::filesystem::path& map) {
+  const std::vector<DriveRecord> stored = reader.drives();
+  if (stored.size() != 1 || !stored[0].calibration_fingerprint || !stored[0].stamps_fingerprint) {
+    throw InputError("the map does not state which drive it is of", map.string(),
+                     "start a new map");
+  }
+  const char* difference = nullptr;
+  if (stored[0].calibration_fingerprint != drive.calibration_fingerprint) {
+    difference = "another calibration";
+  }
+  if (stored[0].stamps_fingerprint != drive.stamps_fingerprint) difference = "other stamps";
+  if (difference == nullptr) return;
+  throw InputError(fmt::format("the map was made of a drive with {}", difference), map.string(),
+                   "resume with the drive of the first run, or start a new map");
+}
+
+}  // namespace fovea

@@ -1,0 +1,30 @@
+// What the map keeps of the drive that is mapped: its identity, its sensors, the stamps of its
+// images.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/map/map_records.h"
+#include "fovea/map/map_store.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// The drive as its source describes it, before any correction of the calibration.
+DriveRecord drive_record(const FrameSource& source);
+
+/// The LiDARs of a drive (DriveInfo::lidars).
+std::vector<SensorRecord> sensor_records(const DriveInfo& drive);
+
+/// Adds a view to the record for each image that the frame has.
+/// @param drive  its calibration has the frame's cameras
+void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record);
+
+/// InputError if the map to resume was made of a drive with another calibration or other stamps, or
+/// if the map does not state its drive.
+void require_same_drive(const MapReader& reader, const DriveRecord& drive,
+                        const std::filesystem::path& map);
+
+}  // namespace fovea
