@@ -112,7 +112,7 @@ TEST(GroundOptions, ValidateNamesTheField) {
     }
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  expect_rejected([](GroundOptions& o) { o.sensor_height = 0; }, "ground.sensor_height");
+  expect_rejected([](GroundOptions& o) { o.sensor_height = -1; }, "ground.sensor_height");
   expect_rejected([&](GroundOptions& o) { o.tolerance = nan; }, "ground.tolerance");
   expect_rejected([](GroundOptions& o) { o.ransac_iterations = 0; }, "ground.ransac_iterations");
   expect_rejected([](GroundOptions& o) { o.ransac_max_tilt = 90; }, "ground.ransac_max_tilt");

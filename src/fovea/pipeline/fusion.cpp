@@ -28,7 +28,8 @@ Twist deviations(double rotation, double translation) {
 }
 
 bool is_weak(const FrameRecord& record) {
-  return record.has("registration_failed") || record.has("registration_degenerate");
+  return record.has("registration_failed") || record.has("registration_degenerate") ||
+         record.has("registration_lost");
 }
 
 }  // namespace

@@ -11,12 +11,13 @@
 namespace fovea {
 namespace {
 
-constexpr double kLongestGap = 0.3;  // s from the first scan to the second
+constexpr double kLongestGap = 1.0;  // s from the first scan to the second
 constexpr double kFastest = 60;      // m/s
 
-/// The search begins at rest and at these speeds (m/s) along each of the LiDAR's axes, either way:
-/// a scan is found from some 2 m off.
-constexpr double kStartSpeeds[] = {15, 30};
+/// The search begins at rest and at steps along each of the LiDAR's axes, either way: at most half
+/// as far apart as pairs may be (m), and at least two steps up to this speed (m/s).
+constexpr double kLongestStep = 3;
+constexpr double kStartSpeed = 30;
 /// How far apart its pairs may be, first and then, with their kernels (m).
 constexpr double kFar = 4, kFarWidth = 1;
 constexpr double kNear = 1, kNearWidth = 0.3;
@@ -37,8 +38,10 @@ std::optional<Frame> usable_frame(const FrameSource& source, int begin) {
 
 std::vector<RigidMotion> first_guesses(double elapsed) {
   std::vector<RigidMotion> guesses{RigidMotion::Identity()};
-  for (const double speed : kStartSpeeds) {
-    const double way = speed * elapsed;
+  const double farthest = kStartSpeed * elapsed;
+  const int steps = std::max(2, static_cast<int>(std::ceil(farthest / kLongestStep)));
+  for (int i = 1; i <= steps; ++i) {
+    const double way = farthest * i / steps;
     for (const Eigen::Vector3d& start :
          {Eigen::Vector3d(way, 0, 0), {-way, 0, 0}, {0, way, 0}, {0, -way, 0}}) {
       guesses.emplace_back(Eigen::Translation3d(start));

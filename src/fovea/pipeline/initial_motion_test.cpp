@@ -47,12 +47,12 @@ TEST(InitialVelocity, IsThatOfThePosesGiven) {
 }
 
 TEST(InitialVelocity, IsOfTheFirstTwoFramesThatCanBeUsed) {
-  RawDrive drive(7, twist(0, 10));
+  RawDrive drive(13, twist(0, 10));
   drive.dropped = {0, 2};
   expect_near(initial_velocity(drive, {}, 0, true), twist(0, 10));  // frames 1 and 3
-  EXPECT_FALSE(initial_velocity(drive, {}, 6, true));               // the last of all
-  drive.dropped = {1, 2, 3};
-  EXPECT_FALSE(initial_velocity(drive, {}, 0, true));  // four tenths of a second
+  EXPECT_FALSE(initial_velocity(drive, {}, 12, true));              // the last of all
+  drive.dropped = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  EXPECT_FALSE(initial_velocity(drive, {}, 0, true));  // 1.1 s
 }
 
 TEST(InitialVelocity, IsUnknownWhereScansDoNotFit) {

@@ -228,7 +228,7 @@ TEST_F(MapDrive, TheMapStatesItsDriveSensorAndViews) {
   EXPECT_EQ(drives[0].datum, "WGS 84");
   EXPECT_EQ(drives[0].height_type, HeightType::kEllipsoidal);
   ASSERT_EQ(map.sensors().size(), 1u);
-  EXPECT_EQ(map.sensors()[0].profile.sweep.period, drive_.info().sweep_period);
+  EXPECT_EQ(map.sensors()[0].profile.sweep, drive_.info().sweep);
   for (const FrameRecord& frame : map.frames()) {
     ASSERT_EQ(frame.views.size(), 1u);
     EXPECT_EQ(frame.views[0].camera, drive_.info().calibration.cameras[0].index);

@@ -44,6 +44,7 @@ void DriveFigures::note_flaws(const FrameRecord& record) {
   if (drive_.navigation && !record.T_local_lidar_navigation) absent_.add(record.index);
   if (record.has("navigation_jumped")) jumped_.add(record.index);
   if (record.has("registration_degenerate")) degenerate_.add(record.index);
+  if (record.has("registration_lost")) lost_.add(record.index);
   if (record.has("images_blank")) blank_.add(record.index);
   if (record.has("exposure_off")) exposed_.add(record.index);
 }
@@ -82,6 +83,11 @@ MapSummary DriveFigures::summary() const {
   summary.notes = drive_.notes;
   note(absent_, "no GPS/INS, the scans alone tell the motion", summary.notes);
   note(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on",
+       summary.notes);
+  note(lost_,
+       "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "
+       "may "
+       "be wrong",
        summary.notes);
   note(degenerate_,
        "the scan leaves a direction of motion open, which is taken from the first guess",

@@ -17,6 +17,10 @@ double fit_of(const RegistrationResult& result, const RegistrationOptions& optio
 
 namespace {
 
+/// Share of a scan's points that have a counterpart, below which the scan is elsewhere: even after
+/// 14 m of a street, 0.7 of them have one.
+constexpr double kLeastOverlap = 0.3;
+
 std::optional<NormalOptions> target_normals(const RefinementOptions& options) {
   if (options.registration.method == RegistrationMethod::kPointToPoint) return std::nullopt;
   return NormalOptions{.neighbors = options.registration.neighbors,
@@ -126,6 +130,12 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
     refined.T_odom_lidar = result.T_target_source;
     refined.fit = fit_of(result, options_.registration);
   }
+  if (options_.target == RegistrationTarget::kLocalMap) {
+    const VerticalFit fit = vertical_fit(local_map_, refined.cloud, refined.T_odom_lidar);
+    const double overlap = double(result.pairs) / double(refined.cloud.points.size());
+    refined.lost = fit.contradicts() || overlap < kLeastOverlap;
+    refined.figures["registration_vertical_fit"] = fit.share;
+  }
   refined.figures["registration_iterations"] = result.iterations;
   refined.figures["registration_pairs"] = static_cast<double>(result.pairs);
   refined.figures["registration_rms"] = result.rms_distance;
@@ -134,6 +144,45 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
   refined.figures["correction_translation"] = moved;
   refined.figures["correction_rotation"] = turned;
   return refined;
+}
+
+RefinedPose PoseRefiner::search(RefinedPose lost, const RigidMotion& guess, double reach,
+                                StageClock& clock) const {
+  // Registration with pairs of up to 4 m finds a scan from half as far.
+  constexpr double kStep = 2.5, kMostReach = 20;  // m
+  RegistrationOptions far = options_.registration;
+  far.max_distance = 4;
+  far.robust_width = 1;
+  far.max_iterations = 30;
+  RefinedPose best = std::move(lost);
+  best.T_odom_lidar = guess;
+  best.note = "the scan fits nowhere around its first guess";
+  double best_share = 0;
+  const auto try_from = [&](const Eigen::Vector3d& offset) {
+    const RigidMotion start = guess * Eigen::Translation3d(offset);
+    const RigidMotion near = register_to(local_map_, best.cloud, start, far).T_target_source;
+    const RegistrationResult result =
+        register_to(local_map_, best.cloud, near, options_.registration);
+    const VerticalFit fit = vertical_fit(local_map_, best.cloud, result.T_target_source);
+    const bool fits = fit.points >= VerticalFit::kLeastPoints && !fit.contradicts();
+    if (!result.converged || !fits || fit.share <= best_share) return;
+    best_share = fit.share;
+    best.lost = false;
+    best.T_odom_lidar = result.T_target_source;
+    best.fit = fit_of(result, options_.registration);
+    best.note = "the scan was found again by a search";
+    best.figures["registration_vertical_fit"] = fit.share;
+  };
+  clock.time("register", [&] {
+    for (double way = 0; way <= std::min(reach, kMostReach); way += kStep) {
+      for (const Eigen::Vector3d& offset :
+           {Eigen::Vector3d(way, 0, 0), {-way, 0, 0}, {0, way, 0}, {0, -way, 0}}) {
+        try_from(offset);
+        if (way == 0) break;
+      }
+    }
+  });
+  return best;
 }
 
 void PoseRefiner::keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar,

@@ -21,7 +21,8 @@ struct RefinedPose {
   RigidMotion T_odom_lidar = RigidMotion::Identity();
   /// How well the scan fits: points with a counterpart, each the less the further it lies.
   double fit = 0;
-  std::string note;                       ///< why the first guess was kept; empty if it was not
+  std::string note;   ///< why the first guess was kept; empty if it was not
+  bool lost = false;  ///< the scan does not lie on the surfaces of the local map
   std::map<std::string, double> figures;  ///< registration_iterations, _pairs, _rms, ...
 };
 
@@ -44,6 +45,12 @@ class PoseRefiner {
   /// map
   RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_odom_lidar,
                      StageClock& clock, const std::optional<Twist>& sigma = std::nullopt) const;
+
+  /// Registers a scan that is lost, from guesses all around its first guess.
+  /// @param reach  m, of these guesses; at most 20
+  /// @return the pose that fits best, or else the first guess and `lost`
+  RefinedPose search(RefinedPose lost, const RigidMotion& guess_T_odom_lidar, double reach,
+                     StageClock& clock) const;
 
   /// Lets later scans be registered against this one, where it is.
   void keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar, StageClock& clock);

@@ -23,6 +23,11 @@ FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_sourc
   return fusion;
 }
 
+/// After as many frames that were lost, the local map is out of reach.
+constexpr int kLostFrames = 3;
+/// Fastest vehicle, m/s.
+constexpr double kFastest = 60;
+
 /// Median of the accuracy that navigation states where it has a fix (m); 0 if it states none.
 double stated_accuracy(const DriveInfo& drive) {
   std::vector<double> stated;
@@ -37,7 +42,12 @@ double stated_accuracy(const DriveInfo& drive) {
 
 /// Whether a scan that is mapped is a target of those after it. All that says so is in its record:
 /// a run that resumes chooses the same.
-bool takes(Keyframes& keyframes, const FrameRecord& record) {
+///
+/// A lost scan is none, since its pose is wrong; but where the scans before it were lost, too, the
+/// local map is out of reach, and starts again.
+/// @param lost_before  frames lost just before
+bool takes(Keyframes& keyframes, const FrameRecord& record, int lost_before) {
+  if (record.has("registration_lost") && lost_before < kLostFrames) return false;
   const auto pairs = record.figures.find("registration_pairs");
   const bool registered = pairs != record.figures.end() && record.has("registration_points");
   const double overlap = registered ? pairs->second / record.figures.at("registration_points") : 1;
@@ -79,6 +89,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
 
   // Pose refinement, and what needs no pose.
   Placed placed = place(frame, motion, given_pose, clock, held_out ? View() : view);
+  if (placed.refined.lost) find_again(placed, motion, record, clock);
   if (compensates() || drive_.has_image_delays()) record.motion = placed.motion;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
@@ -88,9 +99,11 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
     fusion_.track(record);
     if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
   });
-  if (!held_out && registers() && takes(keyframes_, record)) {
+  if (!held_out && registers() && takes(keyframes_, record, lost_frames_)) {
     next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
   }
+
+  count_lost(record);
 
   tracked.views = std::move(placed.views);
   if (maps_whole_scans_) tracked.scan_lidar = std::move(placed.scan_lidar);
@@ -98,6 +111,26 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   tracked.submaps = fusion_.submaps();
   tracked.T_local_odom = fusion_.T_local_odom();
   return tracked;
+}
+
+void Tracker::find_again(Placed& placed, const MotionPrediction& motion, FrameRecord& record,
+                         StageClock& clock) {
+  const MotionGuess& guess = motion.guesses.front();
+  // Not every frame of a drive that stays lost: a search takes half a second.
+  constexpr int kEvery = 10;
+  if (lost_frames_ < kLostFrames || lost_frames_ % kEvery == 0) {
+    const double elapsed = last_stamp_ ? seconds(*record.stamp - *last_stamp_) : 0;
+    placed.refined =
+        refiner_.search(std::move(placed.refined), guess.T_odom_lidar, kFastest * elapsed, clock);
+  }
+  if (!placed.refined.lost) return;
+  record.figures["registration_lost"] = 1;
+  placed.refined.T_odom_lidar = guess.T_odom_lidar;
+}
+
+void Tracker::count_lost(const FrameRecord& record) {
+  lost_frames_ = record.has("registration_lost") ? lost_frames_ + 1 : 0;
+  last_stamp_ = record.stamp;
 }
 
 void Tracker::settle() {
@@ -159,16 +192,21 @@ void Tracker::follow(const FrameRecord& record) {
   motion_model_.update(record.stamp.value(), record.T_odom_lidar);
   FrameRecord tracked = record;
   fusion_.track(tracked);
-  is_target_ = record.status == FrameStatus::kMapped && registers() && takes(keyframes_, record);
+  is_target_ = record.status == FrameStatus::kMapped && registers() &&
+               takes(keyframes_, record, lost_frames_);
+  count_lost(record);
 }
 
 int Tracker::first_target(const std::vector<FrameRecord>& records) const {
   Keyframes keyframes = refiner_.keyframes();
   std::vector<int> targets;
+  int lost = 0;
   for (const FrameRecord& record : records) {
-    if (record.status == FrameStatus::kMapped && takes(keyframes, record)) {
+    if (record.status == FrameStatus::kMapped && takes(keyframes, record, lost)) {
       targets.push_back(record.index);
     }
+    if (record.status != FrameStatus::kSkipped)
+      lost = record.has("registration_lost") ? lost + 1 : 0;
   }
   const auto memory = static_cast<std::size_t>(refiner_.memory());
   return targets.size() <= memory ? 0 : targets[targets.size() - memory];

@@ -92,6 +92,11 @@ class Tracker {
   RefinedPose locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
                      const MotionGuess& guess, const std::optional<RigidMotion>& given_pose,
                      StageClock& clock) const;
+  /// Searches for the pose of a scan that does not fit where it was registered. Notes in the record
+  /// whether it was found.
+  void find_again(Placed& placed, const MotionPrediction& motion, FrameRecord& record,
+                  StageClock& clock);
+  void count_lost(const FrameRecord& record);
   bool compensates() const;
   bool registers() const;
 
@@ -103,6 +108,8 @@ class Tracker {
   Fusion fusion_;
   Keyframes keyframes_;
   bool is_target_ = false;  // the frame followed last
+  int lost_frames_ = 0;     // that follow each other, up to the last one
+  std::optional<TimeNs> last_stamp_;
   struct Target {
     RegistrationCloud cloud_lidar;
     RigidMotion T_odom_lidar;

@@ -1,5 +1,7 @@
 #include "fovea/mapping/registration/local_map.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -159,6 +161,40 @@ void LocalMap::start_at(const Eigen::Vector3d& origin_local) {
 const LocalMap::Target& LocalMap::target() const {
   if (empty()) throw std::logic_error("the local map is empty");
   return target_;
+}
+
+VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_lidar,
+                         const RigidMotion& T_local_lidar) {
+  constexpr std::size_t kPoints = 1500;
+  constexpr float kReach = 1, kOnSurface = 0.1f;  // m
+  constexpr float kUpright = 0.5f;                // most of a vertical surface's normal along z
+  const LocalMap::Target& target = map.target();
+  VerticalFit fit;
+  if (target.cloud.normals.empty()) return fit;
+  const RigidMotion T_origin_lidar = Eigen::Translation3d(-target.origin_local) * T_local_lidar;
+  const Eigen::Vector3f ahead = T_local_lidar.linear().col(0).cast<float>(),
+                        left = T_local_lidar.linear().col(1).cast<float>();
+  const std::size_t step = std::max<std::size_t>(1, source_lidar.points.size() / kPoints);
+  std::array<std::size_t, 2> points{},
+      fitting{};  // of surfaces across and along the LiDAR's x axis
+  for (std::size_t i = 0; i < source_lidar.points.size(); i += step) {
+    const Eigen::Vector3f p =
+        (T_origin_lidar * source_lidar.points[i].cast<double>()).cast<float>();
+    const Neighbor nearest = target.index.nearest(p, kReach);
+    if (!std::isfinite(nearest.squared_distance)) continue;
+    const Eigen::Vector3f& normal = target.cloud.normals[nearest.index];
+    if (normal.isZero(0) || std::abs(normal.z()) > kUpright) continue;
+    const std::size_t kind = std::abs(normal.dot(ahead)) > std::abs(normal.dot(left)) ? 0 : 1;
+    ++points[kind];
+    const float away = normal.dot(p - target.cloud.points[nearest.index]);
+    fitting[kind] += std::abs(away) < kOnSurface ? 1 : 0;
+  }
+  for (const std::size_t kind : {0, 1}) {
+    if (points[kind] < VerticalFit::kLeastPoints) continue;
+    const double share = double(fitting[kind]) / double(points[kind]);
+    if (fit.points == 0 || share < fit.share) fit = {points[kind], share};
+  }
+  return fit;
 }
 
 RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,

@@ -97,4 +97,21 @@ RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& sou
                                const RegistrationOptions& options,
                                std::optional<PosePrior> prior = std::nullopt);
 
+/// How well a scan lies on the vertical surfaces of the map: on those across the LiDAR's x axis, or
+/// on those along it, whichever fits worse. A street's walls fit wherever along it the vehicle is;
+/// the ground fits everywhere.
+struct VerticalFit {
+  std::size_t points = 0;  ///< near these surfaces, of some 1500 points of the scan
+  double share = 0;        ///< of these, the points within 10 cm of the surface
+
+  /// A pose is wrong if enough points can tell, and too few of them fit. Right poses have a share
+  /// of 0.5 (16 rings, moving cars) to 0.98, wrong ones of 0.1 to 0.5.
+  bool contradicts() const { return points >= kLeastPoints && share < kLeastShare; }
+
+  static constexpr std::size_t kLeastPoints = 30;
+  static constexpr double kLeastShare = 0.45;
+};
+VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_lidar,
+                         const RigidMotion& T_local_lidar);
+
 }  // namespace fovea
