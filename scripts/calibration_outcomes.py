@@ -15,36 +15,10 @@ import tempfile
 
 import numpy as np
 
+from dropped_rings import copy_with_rings, every
+
 RINGS = {64: (1, 0), 32: (2, 0), 16: (4, 1), 8: (8, 0)}
 DEGREES = [0.5, 1, 2, 5, 10]
-
-
-def link_all(source, target, but):
-    os.makedirs(target)
-    for name in os.listdir(source):
-        if name not in but:
-            os.symlink(os.path.join(os.path.realpath(source), name), os.path.join(target, name))
-
-
-def thin(scan, divisor, rest):
-    """The points of a scan on some rings; each ring begins ahead and turns to the left."""
-    points = np.fromfile(scan, np.float32).reshape(-1, 4)
-    azimuth = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
-    ring = np.concatenate([[0], np.cumsum(np.diff(azimuth) < -np.pi)])
-    return points[ring % divisor == rest]
-
-
-def copy_with_rings(drive, root, divisor, rest):
-    date = os.path.join(root, os.path.basename(os.path.dirname(drive)))
-    copy = os.path.join(date, os.path.basename(drive))
-    link_all(os.path.dirname(drive), date, [os.path.basename(drive)])
-    link_all(drive, copy, ["velodyne_points"])
-    link_all(drive + "/velodyne_points", copy + "/velodyne_points", ["data"])
-    os.makedirs(copy + "/velodyne_points/data")
-    for name in os.listdir(drive + "/velodyne_points/data"):
-        kept = thin(f"{drive}/velodyne_points/data/{name}", divisor, rest)
-        kept.tofile(f"{copy}/velodyne_points/data/{name}")
-    return copy
 
 
 def turn(calibration, axis, degrees):
@@ -78,7 +52,7 @@ def outcomes(fovea, drive, divisor, rest, turns):
     given = open(os.path.dirname(drive) + "/calib_velo_to_cam.txt").read()
     cells = []
     with tempfile.TemporaryDirectory() as root:
-        copy = copy_with_rings(drive, root + "/drive", divisor, rest)
+        copy = copy_with_rings(drive, root + "/drive", every(divisor, rest))
         file = os.path.dirname(copy) + "/calib_velo_to_cam.txt"
         os.remove(file)
         for axis, degrees in turns:
