@@ -105,6 +105,29 @@ RegistrationResult PoseRefiner::register_scan(const RegistrationCloud& source,
   return result;
 }
 
+std::string PoseRefiner::objection_to(const RegistrationResult& result,
+                                      const RigidMotion& correction,
+                                      const std::optional<Twist>& sigma,
+                                      const VerticalFit& fit) const {
+  // Deviations of navigation by which a pose has to be confirmed.
+  constexpr double kDoubtful = 5;
+  const double moved = correction.translation().norm();
+  const double turned = rotation_angle(correction.linear());
+  if (!result.converged) return "registration did not converge, first guess kept";
+  if (moved > options_.max_correction_translation || turned > options_.max_correction_rotation) {
+    return fmt::format("registration moved {:.2f} m and {:.1f} degrees, first guess kept", moved,
+                       turned * 180 / std::numbers::pi);
+  }
+  const bool is_doubtful = sigma && (moved > kDoubtful * sigma->tail<3>().maxCoeff() ||
+                                     turned > kDoubtful * sigma->head<3>().maxCoeff());
+  if (is_doubtful && fit.points < VerticalFit::kLeastPoints) {
+    return fmt::format(
+        "registration moved {:.2f} m off navigation and no wall confirms it, navigation kept",
+        moved);
+  }
+  return "";
+}
+
 RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion& guess,
                                 StageClock& clock, const std::optional<Twist>& sigma) const {
   RefinedPose refined;
@@ -112,26 +135,21 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
   refined.cloud = prepare(scan_lidar, clock);
   refined.figures["registration_points"] = static_cast<double>(refined.cloud.points.size());
 
-  const bool has_target = options_.target == RegistrationTarget::kLocalMap ? !local_map_.empty()
-                                                                           : previous_.has_value();
-  if (!has_target) return refined;
+  const bool to_map = options_.target == RegistrationTarget::kLocalMap;
+  if (to_map ? local_map_.empty() : !previous_.has_value()) return refined;
   const RegistrationResult result =
       clock.time("register", [&] { return register_scan(refined.cloud, guess, sigma); });
   const RigidMotion correction = guess.inverse() * result.T_target_source;
-  const double moved = correction.translation().norm();
-  const double turned = rotation_angle(correction.linear());
-  if (!result.converged) {
-    refined.note = "registration did not converge, first guess kept";
-  } else if (moved > options_.max_correction_translation ||
-             turned > options_.max_correction_rotation) {
-    refined.note = fmt::format("registration moved {:.2f} m and {:.1f} degrees, first guess kept",
-                               moved, turned * 180 / std::numbers::pi);
-  } else {
+  VerticalFit fit;
+  if (to_map) fit = vertical_fit(local_map_, refined.cloud, result.T_target_source);
+  refined.note = objection_to(result, correction, sigma, fit);
+  if (refined.note.empty()) {
     refined.T_odom_lidar = result.T_target_source;
     refined.fit = fit_of(result, options_.registration);
+  } else if (to_map) {
+    fit = vertical_fit(local_map_, refined.cloud, guess);
   }
-  if (options_.target == RegistrationTarget::kLocalMap) {
-    const VerticalFit fit = vertical_fit(local_map_, refined.cloud, refined.T_odom_lidar);
+  if (to_map) {
     const double overlap = double(result.pairs) / double(refined.cloud.points.size());
     refined.lost = fit.contradicts() || overlap < kLeastOverlap;
     refined.figures["registration_vertical_fit"] = fit.share;
@@ -141,8 +159,8 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
   refined.figures["registration_rms"] = result.rms_distance;
   refined.figures["registration_degenerate"] = result.degenerate_directions;
   refined.figures["registration_failed"] = refined.note.empty() ? 0 : 1;
-  refined.figures["correction_translation"] = moved;
-  refined.figures["correction_rotation"] = turned;
+  refined.figures["correction_translation"] = correction.translation().norm();
+  refined.figures["correction_rotation"] = rotation_angle(correction.linear());
   return refined;
 }
 

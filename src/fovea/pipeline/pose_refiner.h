@@ -66,6 +66,12 @@ class PoseRefiner {
                                    const RigidMotion& guess_T_odom_lidar,
                                    const std::optional<Twist>& sigma) const;
 
+  /// Why the pose of a registration is not taken; empty if it is.
+  /// @param correction  from the first guess to that pose
+  /// @param fit         of that pose
+  std::string objection_to(const RegistrationResult& result, const RigidMotion& correction,
+                           const std::optional<Twist>& sigma, const VerticalFit& fit) const;
+
   struct PreviousScan {
     RegistrationCloud cloud;
     RigidMotion T_odom_lidar;
