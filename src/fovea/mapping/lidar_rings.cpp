@@ -1,0 +1,220 @@
+#include "fovea/mapping/lidar_rings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "fovea/base/angle.h"
+
+namespace fovea {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+/// Nearer points are the vehicle's own.
+constexpr float kMinRange = 0.5f;  // m
+/// A pattern of fewer rings, or a scan of fewer points, is no evidence.
+constexpr std::size_t kMinRings = 4, kMinPoints = 200;
+
+LidarSweep directions_of(const PointCloud& scan) {
+  LidarSweep sweep;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Eigen::Vector3f& p = scan.position[i];
+    const float range = p.norm();
+    if (!(range > kMinRange)) continue;
+    sweep.directions.push_back({std::atan2(p.y(), p.x()), std::asin(p.z() / range), range});
+    if (!scan.ring.empty()) sweep.ring.push_back(scan.ring[i]);
+  }
+  return sweep;
+}
+
+std::vector<LidarRing> rings_by_column(const LidarSweep& sweep) {
+  std::map<std::uint16_t, LidarRing> rings;
+  for (std::size_t i = 0; i < sweep.ring.size(); ++i) {
+    rings[sweep.ring[i]].push_back(sweep.directions[i]);
+  }
+  std::vector<LidarRing> result;
+  for (auto& [number, ring] : rings) result.push_back(std::move(ring));
+  return result;
+}
+
+/// Change of azimuth from the point before, in (-pi, pi].
+double step_to(const std::vector<LidarDirection>& directions, std::size_t i) {
+  return std::remainder(directions[i].azimuth - directions[i - 1].azimuth, kTurn);
+}
+
+/// Azimuth at which the rings of a scan begin that lists ring after ring: there the elevation
+/// jumps.
+double start_azimuth(const std::vector<LidarDirection>& d) {
+  double turned = 0;
+  std::vector<std::pair<double, double>> jumps;  // of elevation; azimuth
+  for (std::size_t i = 1; i < d.size(); ++i) {
+    turned += step_to(d, i);
+    jumps.emplace_back(std::abs(d[i].elevation - d[i - 1].elevation), d[i].azimuth);
+  }
+  const auto turns = static_cast<std::size_t>(std::abs(turned) / kTurn);
+  const std::size_t count = std::clamp<std::size_t>(turns, 1, jumps.size());
+  std::partial_sort(jumps.begin(), jumps.begin() + std::ptrdiff_t(count), jumps.end(),
+                    std::greater<>());
+  // The median azimuth of the jumps in the sector that has the most.
+  constexpr int kSectors = 36;
+  std::array<std::vector<double>, kSectors> sectors;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turn =
+        jumps[i].second / kTurn + 0.5 / kSectors;  // sectors are centered on the axes
+    const double share = turn - std::floor(turn);
+    const int sector = std::min(int(share * kSectors), kSectors - 1);
+    const double center = kTurn * sector / kSectors;
+    sectors[std::size_t(sector)].push_back(center +
+                                           std::remainder(jumps[i].second - center, kTurn));
+  }
+  return median_of(
+      *std::max_element(sectors.begin(), sectors.end(),
+                        [](const auto& a, const auto& b) { return a.size() < b.size(); }));
+}
+
+/// Rings of points that are listed ring after ring.
+/// @param start  azimuth at which rings begin
+std::vector<LidarRing> rings_from(const std::vector<LidarDirection>& d, double start,
+                                  bool turns_left) {
+  constexpr double kLeastShare = 0.05;  // of the points of a mean ring
+  // Angle turned since the start of a ring.
+  const auto along = [&](const LidarDirection& direction) {
+    const double since = (turns_left ? 1 : -1) * (direction.azimuth - start);
+    return since - kTurn * std::floor(since / kTurn);
+  };
+  std::vector<LidarRing> rings(1);
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    if (i > 0 && along(d[i]) < along(d[i - 1]) - kTurn / 2) rings.emplace_back();
+    rings.back().push_back(d[i]);
+  }
+  // Where the end of a ring overlaps the start of the next, a few points are taken for a ring.
+  const double least = kLeastShare * double(d.size()) / double(rings.size());
+  std::erase_if(rings, [&](const LidarRing& ring) { return double(ring.size()) < least; });
+  return rings;
+}
+
+/// Mean over rings of the median distance of their elevations from the median.
+double spread_of(const std::vector<LidarRing>& rings) {
+  double sum = 0;
+  for (const LidarRing& ring : rings) {
+    const double middle = elevation_of(ring);
+    std::vector<double> away;
+    for (const LidarDirection& d : ring) away.push_back(std::abs(d.elevation - middle));
+    sum += median_of(std::move(away));
+  }
+  return sum / double(rings.size());
+}
+
+/// Rings of a scan that lists ring after ring, each by azimuth. Empty if its points do not follow
+/// each other that way.
+std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
+  constexpr double kNear = 2 * kDegree;  // between points that follow each other on a ring
+  constexpr double kFollowShare = 0.9;   // of the points
+  const std::vector<LidarDirection>& d = sweep.directions;
+  std::size_t near = 0, forward = 0;
+  for (std::size_t i = 1; i < d.size(); ++i) {
+    near += std::abs(step_to(d, i)) < kNear ? 1 : 0;
+    forward += step_to(d, i) > 0 ? 1 : 0;
+  }
+  if (double(near) < kFollowShare * double(d.size())) return {};
+  const bool turns_left = forward > d.size() / 2;
+  // Ahead, behind, or where elevations jump: objects near the sensor make elevations jump, too.
+  std::vector<LidarRing> best;
+  for (const double start : {0.0, kTurn / 2, start_azimuth(d)}) {
+    std::vector<LidarRing> rings = rings_from(d, start, turns_left);
+    if (best.empty() || spread_of(rings) < spread_of(best)) best = std::move(rings);
+  }
+  return best;
+}
+
+/// Rings as runs of elevations with gaps between them. Empty if elevations do not gather.
+std::vector<LidarRing> rings_by_elevation(const std::vector<LidarSweep>& sweeps) {
+  constexpr double kBin = 0.02 * kDegree;
+  constexpr double kLeastCount = 0.05;   // of the mean of bins that have points
+  constexpr double kMostOccupied = 0.5;  // of the bins between the outermost rings
+  std::map<int, std::size_t> bins;
+  std::size_t points = 0;
+  const auto bin_of = [&](const LidarDirection& d) { return int(std::floor(d.elevation / kBin)); };
+  for (const LidarSweep& sweep : sweeps) {
+    for (const LidarDirection& d : sweep.directions) ++bins[bin_of(d)];
+    points += sweep.directions.size();
+  }
+  if (bins.empty()) return {};
+  const double least = kLeastCount * double(points) / double(bins.size());
+  std::erase_if(bins, [&](const auto& bin) { return double(bin.second) < least; });
+  const int span = bins.rbegin()->first - bins.begin()->first + 1;
+  if (double(bins.size()) > kMostOccupied * span) return {};
+  // Bins that follow each other, but for one empty bin, are one ring.
+  std::map<int, std::size_t> ring_of_bin;
+  std::size_t count = 0;
+  int last = bins.begin()->first;
+  for (const auto& [bin, unused] : bins) {
+    count += bin > last + 2 ? 1 : 0;
+    ring_of_bin[bin] = count;
+    last = bin;
+  }
+  std::vector<LidarRing> rings(count + 1);
+  for (const LidarSweep& sweep : sweeps) {
+    for (const LidarDirection& d : sweep.directions) {
+      const auto ring = ring_of_bin.find(bin_of(d));
+      if (ring != ring_of_bin.end()) rings[ring->second].push_back(d);
+    }
+  }
+  return rings;
+}
+
+/// The rings of one sweep, of as many rings as most sweeps have.
+std::vector<LidarRing> usual_rings(const std::vector<LidarSweep>& sweeps,
+                                   std::vector<LidarRing> (*rings_of)(const LidarSweep&)) {
+  std::map<std::size_t, std::vector<std::vector<LidarRing>>> by_count;
+  for (const LidarSweep& sweep : sweeps) {
+    std::vector<LidarRing> rings = rings_of(sweep);
+    by_count[rings.size()].push_back(std::move(rings));
+  }
+  const auto usual = std::max_element(
+      by_count.begin(), by_count.end(),
+      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  return usual == by_count.end() ? std::vector<LidarRing>() : usual->second.front();
+}
+
+}  // namespace
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double elevation_of(const LidarRing& ring) {
+  std::vector<double> elevations;
+  for (const LidarDirection& d : ring) elevations.push_back(d.elevation);
+  return median_of(std::move(elevations));
+}
+
+std::vector<LidarSweep> sweeps_of(std::span<const PointCloud> scans) {
+  std::vector<LidarSweep> sweeps;
+  for (const PointCloud& scan : scans) {
+    LidarSweep sweep = directions_of(scan);
+    if (sweep.directions.size() >= kMinPoints) sweeps.push_back(std::move(sweep));
+  }
+  return sweeps;
+}
+
+std::vector<LidarRing> find_rings(const std::vector<LidarSweep>& sweeps) {
+  const bool stated = std::all_of(sweeps.begin(), sweeps.end(),
+                                  [](const LidarSweep& sweep) { return !sweep.ring.empty(); });
+  std::vector<LidarRing> rings = usual_rings(sweeps, stated ? rings_by_column : rings_by_order);
+  if (rings.size() < kMinRings) rings = rings_by_elevation(sweeps);
+  if (rings.size() < kMinRings) return {};
+  std::sort(rings.begin(), rings.end(), [](const LidarRing& a, const LidarRing& b) {
+    return elevation_of(a) > elevation_of(b);
+  });
+  return rings;
+}
+
+}  // namespace fovea
