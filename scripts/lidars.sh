@@ -42,8 +42,8 @@ drives=(
 )
 mkdir -p "$out"
 
-echo "| drive | keys | pose, cm | accuracy, mm | 95 %, mm | precision 5 cm | completeness 5 cm | colors within 20 |"
-echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
+echo "| drive | pose, cm | accuracy, mm | 95 %, mm | precision 5 cm | completeness 5 cm | colors within 20 |"
+echo "| --- | --- | --- | --- | --- | --- | --- |"
 for drive in "${drives[@]}"; do
   read -r name keys <<<"$drive"
   [[ $name =~ $chosen ]] || continue
@@ -54,9 +54,9 @@ for drive in "${drives[@]}"; do
     "$fovea" simulate -o "$base" --format generic --frames "$frames" --quiet "${settings[@]}"
   [[ -s $base.fovea ]] || "$fovea" map "$base" -o "$base.fovea" --force --quiet
   [[ -s $base.json ]] || "$fovea" evaluate "$base.fovea" "$base" --truth --json "$base.json" >/dev/null
-  jq -r --arg name "$name" --arg keys "${keys:-}" '
+  jq -r --arg name "$name" '
     def f(n): if . == null then "-" else . * pow(10; n) | round / pow(10; n) end;
-    [$name, $keys, (.pose_aligned_m.mean * 100 | f(2)), (.accuracy_mean * 1000 | f(1)),
+    [$name, (.pose_aligned_m.mean * 100 | f(2)), (.accuracy_mean * 1000 | f(1)),
      (.accuracy_p95 * 1000 | f(1)), (.precision_5cm | f(3)), (.completeness_5cm | f(3)),
      (.color_view.within_20 | f(3))]
     | "| " + (map(tostring) | join(" | ")) + " |"' "$base.json"
