@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::string> notes;
   read_or_refuse([&] {
     const auto cameras = plan_cameras(survey, {}, lidar_frame, notes);
-    require(!cameras.empty() && cameras.size() <= 10, "there are cameras");
+    require(cameras.size() <= 10, "cameras have numbers of one digit");
   });
   for (const NavigationSource source :
        {NavigationSource::kAuto, NavigationSource::kOdometry, NavigationSource::kTf}) {

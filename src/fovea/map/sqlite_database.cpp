@@ -147,6 +147,8 @@ void Statement::bind(int parameter, std::string_view text) {
 }
 
 void Statement::bind(int parameter, std::span<const std::byte> blob) {
+  // A null pointer would bind NULL instead of an empty blob.
+  if (blob.empty()) return check(sqlite3_bind_zeroblob(handle_, parameter, 0));
   check(sqlite3_bind_blob64(handle_, parameter, blob.data(), blob.size(), SQLITE_STATIC));
 }
 
