@@ -48,7 +48,7 @@ const std::vector<Ablation>& ablations() {
       {"no-footprint", kParts, {"texture.footprint=0"}},
       {"with-slices", kParts, {kSlices}},
 
-      {"method-plane", kPoses, {"registration.method=plane"}},
+      {"method-gicp", kPoses, {"registration.method=gicp"}},
       {"method-icp", kPoses, {"registration.method=icp"}},
       {"registered-in-view", kPoses, {"refinement.visible_only=true"}},
       {"registered-upsampled-2", kPoses, {"refinement.upsample_rate=2"}},

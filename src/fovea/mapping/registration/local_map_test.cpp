@@ -95,13 +95,13 @@ TEST(LocalMap, PlanesComeFromAllScansAroundAPoint) {
     return voxel_thinned(test::ring_scan(wall, T, {4 * std::numbers::pi / 180}, 1, 0.02), 0.25f);
   };
   const auto known = [](const LocalMap& map) {
-    std::size_t known = 0;
+    std::size_t with_plane = 0;
     for (const Eigen::Vector3f& normal : map.target().cloud.normals) {
       if (normal.isZero()) continue;
       EXPECT_GT(std::abs(normal.x()), std::cos(0.28f));  // four deviations
-      ++known;
+      ++with_plane;
     }
-    return double(known) / double(map.size());
+    return double(with_plane) / double(map.size());
   };
   LocalMap map{LocalMapOptions()};
   map.add(ring(motion(0, 0, 0, 0, 0, 0)), motion(0, 0, 0, 0, 0, 0));

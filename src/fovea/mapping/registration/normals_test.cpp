@@ -111,11 +111,11 @@ TEST(Normals, NeedMoreOfNoisierRanges) {
   const std::vector<Eigen::Vector3f> points =
       test::sample({{{20, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}}}, 12, 6, 0.005);
   const auto known = [&](double range_noise) {
-    std::size_t known = 0;
+    std::size_t with_plane = 0;
     for (const auto& normal : estimate_normals(points, {10, 0.25, range_noise})) {
-      known += normal.isZero() ? 0 : 1;
+      with_plane += normal.isZero() ? 0 : 1;
     }
-    return known;
+    return with_plane;
   };
   // 12 points of variance 1/12 m^2: 0.02 m tilts their plane by 1.1 degrees, 0.2 m by 11.
   EXPECT_EQ(known(0.02), points.size());
