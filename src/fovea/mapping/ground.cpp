@@ -134,8 +134,9 @@ std::optional<Plane> find_ground_plane(std::span<const Eigen::Vector3f> points,
 std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lidar) {
   constexpr double kStep = 0.6;         // m, between heights that are tried; each reaches 0.5 m
   constexpr float kLeastHeight = 0.4f;  // m
-  constexpr double kLeastShare = 0.1;   // of all points
-  GroundOptions options{.method = GroundMethod::kRansac, .ransac_iterations = 50};
+  constexpr double kLeastShare = 0.05;  // of all points
+  GroundOptions options{
+      .method = GroundMethod::kRansac, .ransac_iterations = 50, .ransac_max_tilt = 25};
   std::optional<double> best;
   double most = kLeastShare * static_cast<double>(points_lidar.size());
   for (options.sensor_height = kStep; options.sensor_height < 4.5; options.sensor_height += kStep) {

@@ -27,7 +27,7 @@ std::vector<std::uint8_t> segment_ground(std::span<const Eigen::Vector3f> points
                                          const GroundOptions& options);
 
 /// Height of the LiDAR above the plane under it that most points lie on (m): 0.3 to 4.5 m, tilted
-/// by at most 10 degrees. Nothing where no such plane is in view.
+/// by at most 25 degrees. Nothing where no such plane is in view.
 std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lidar);
 
 }  // namespace fovea

@@ -114,6 +114,7 @@ double spread_of(const std::vector<LidarRing>& rings) {
 std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
   constexpr double kNear = 2 * kDegree;  // between points that follow each other on a ring
   constexpr double kFollowShare = 0.9;   // of the points
+  constexpr double kTurningShare = 0.8;  // of steps that turn the same way
   const std::vector<LidarDirection>& d = sweep.directions;
   std::size_t near = 0, forward = 0;
   for (std::size_t i = 1; i < d.size(); ++i) {
@@ -121,6 +122,9 @@ std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
     forward += step_to(d, i) > 0 ? 1 : 0;
   }
   if (double(near) < kFollowShare * double(d.size())) return {};
+  // A pattern that swings back and forth has no rings.
+  const double turning = double(std::max(forward, d.size() - forward)) / double(d.size());
+  if (turning < kTurningShare) return {};
   const bool turns_left = forward > d.size() / 2;
   // Ahead, behind, or where elevations jump: objects near the sensor make elevations jump, too.
   std::vector<LidarRing> best;

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "fovea/base/angle.h"
 #include "fovea/base/random.h"
+#include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
 namespace fovea::sensor_profile_estimate_test {
@@ -93,6 +95,21 @@ TEST(SensorProfileEstimate, WithoutRingsSpacingIsThatOfPoints) {
   EXPECT_TRUE(profile.ring_elevations.empty());
   const double solid_angle = 70 * kDegree * 2 * std::sin(30 * kDegree);
   EXPECT_NEAR(profile.point_spacing, std::sqrt(solid_angle / 20'000), 0.05 * profile.point_spacing);
+}
+
+TEST(SensorProfileEstimate, ARosetteHasNoRings) {
+  // Fields of view of 70 and 120 degrees, point after point.
+  for (const auto& [width, height] : {std::pair(70.4, 77.2), std::pair(120.0, 25.0)}) {
+    PointCloud cloud;
+    for (int i = 0; i < 24'000; ++i) {
+      const Eigen::Vector2d angles =
+          rosette_angles({width * kDegree, height * kDegree}, 0.1 * i / 24'000);
+      cloud.position.emplace_back(15 * std::cos(angles[0]) * std::cos(angles[1]),
+                                  15 * std::sin(angles[0]) * std::cos(angles[1]),
+                                  15 * std::sin(angles[1]));
+    }
+    EXPECT_TRUE(estimate_sensor_profile({&cloud, 1}, {}).ring_elevations.empty()) << width;
+  }
 }
 
 TEST(SensorProfileEstimate, UpsideDownItIsAsHigh) {

@@ -44,7 +44,9 @@ std::map<int, TimeNs> stamps_of(const std::vector<std::vector<Shot>>& schedule) 
     int of_frame = 0;
     for (const Shot& shot : shots) {
       of_frame += shot.is_of_frame;
-      if (shot.image) EXPECT_TRUE(stamps.emplace(*shot.image, shot.stamp).second);
+      if (shot.image) {
+        EXPECT_TRUE(stamps.emplace(*shot.image, shot.stamp).second);
+      }
     }
     EXPECT_EQ(of_frame, 1);
   }
@@ -119,7 +121,9 @@ TEST(ImageSchedule, ImagesBelongToTheFramesThatTheReaderGivesThem) {
           for (const Shot& shot : schedule[std::size_t(frame)]) {
             if (!shot.is_of_frame) continue;
             EXPECT_EQ(shot.image.has_value(), found != matches.image_of_scan.end());
-            if (shot.image) EXPECT_EQ(*shot.image, found->second) << rate << ' ' << phase;
+            if (shot.image) {
+              EXPECT_EQ(*shot.image, found->second) << rate << ' ' << phase;
+            }
           }
         }
       }
