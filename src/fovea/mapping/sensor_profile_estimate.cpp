@@ -69,20 +69,16 @@ double spacing_without_rings(const LidarSweep& sweep) {
   return std::sqrt(solid_angle / double(sweep.directions.size()));
 }
 
-/// Height above the ground of a LiDAR that stands upright or upside down.
+/// Height above the ground of a LiDAR that stands upright or upside down, by the first scan that
+/// shows ground.
 std::optional<double> height_of(std::span<const PointCloud> scans) {
-  std::vector<double> heights;
   for (const PointCloud& scan : scans) {
+    if (const auto height = sensor_height(scan.position)) return height;
     std::vector<Eigen::Vector3f> turned = scan.position;
-    std::optional<double> height = sensor_height(turned);
-    if (!height) {
-      for (Eigen::Vector3f& p : turned) p = {p.x(), -p.y(), -p.z()};
-      height = sensor_height(turned);
-    }
-    if (height) heights.push_back(*height);
+    for (Eigen::Vector3f& p : turned) p = {p.x(), -p.y(), -p.z()};
+    if (const auto height = sensor_height(turned)) return height;
   }
-  if (heights.empty()) return std::nullopt;
-  return median_of(std::move(heights));
+  return std::nullopt;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace fovea {
 
 SensorProfile lidar_profile(const FrameSource& source) {
-  constexpr std::size_t kScans = 3;
+  constexpr std::size_t kScans = 2;
   const DriveInfo& drive = source.info();
   std::vector<PointCloud> scans;
   for (int index = drive.begin; index < drive.end && scans.size() < kScans; ++index) {

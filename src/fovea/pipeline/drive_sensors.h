@@ -8,7 +8,7 @@
 namespace fovea {
 
 /// Profile of the drive's LiDAR: what the drive states, and the rest as estimated from the first
-/// three usable scans. Reads these frames.
+/// two usable scans. Reads these frames.
 SensorProfile lidar_profile(const FrameSource& source);
 
 /// What is known of the drive, with the profiles of its LiDARs.
