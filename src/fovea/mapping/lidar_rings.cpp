@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "fovea/base/angle.h"
+#include "fovea/base/median.h"
 
 namespace fovea {
 namespace {
@@ -128,9 +130,13 @@ std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
   const bool turns_left = forward > d.size() / 2;
   // Ahead, behind, or where elevations jump: objects near the sensor make elevations jump, too.
   std::vector<LidarRing> best;
+  double least_spread = std::numeric_limits<double>::infinity();
   for (const double start : {0.0, kTurn / 2, start_azimuth(d)}) {
     std::vector<LidarRing> rings = rings_from(d, start, turns_left);
-    if (best.empty() || spread_of(rings) < spread_of(best)) best = std::move(rings);
+    const double spread = spread_of(rings);
+    if (spread >= least_spread) continue;
+    least_spread = spread;
+    best = std::move(rings);
   }
   return best;
 }
@@ -187,13 +193,6 @@ std::vector<LidarRing> usual_rings(const std::vector<LidarSweep>& sweeps,
 
 }  // namespace
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double elevation_of(const LidarRing& ring) {
   std::vector<double> elevations;
   for (const LidarDirection& d : ring) elevations.push_back(d.elevation);
@@ -215,9 +214,18 @@ std::vector<LidarRing> find_rings(const std::vector<LidarSweep>& sweeps) {
   std::vector<LidarRing> rings = usual_rings(sweeps, stated ? rings_by_column : rings_by_order);
   if (rings.size() < kMinRings) rings = rings_by_elevation(sweeps);
   if (rings.size() < kMinRings) return {};
-  std::sort(rings.begin(), rings.end(), [](const LidarRing& a, const LidarRing& b) {
-    return elevation_of(a) > elevation_of(b);
-  });
+  std::vector<std::pair<double, LidarRing>> by_elevation;
+  for (LidarRing& ring : rings) {
+    std::sort(ring.begin(), ring.end(), [](const LidarDirection& a, const LidarDirection& b) {
+      return a.azimuth < b.azimuth;
+    });
+    const double elevation = elevation_of(ring);
+    by_elevation.emplace_back(elevation, std::move(ring));
+  }
+  std::sort(by_elevation.begin(), by_elevation.end(),
+            [](const auto& a, const auto& b) { return a.first > b.first; });
+  rings.clear();
+  for (auto& [elevation, ring] : by_elevation) rings.push_back(std::move(ring));
   return rings;
 }
 

@@ -15,7 +15,7 @@ struct LidarDirection {
   double azimuth, elevation, range;  // rad, m
 };
 
-/// Points of one ring.
+/// Points of one ring, by azimuth.
 using LidarRing = std::vector<LidarDirection>;
 
 /// A scan in the order of its file, without the points on the vehicle itself.
@@ -32,8 +32,5 @@ std::vector<LidarRing> find_rings(const std::vector<LidarSweep>& sweeps);
 
 /// Median elevation of a ring, rad.
 double elevation_of(const LidarRing& ring);
-
-/// Median; 0 of nothing.
-double median_of(std::vector<double> values);
 
 }  // namespace fovea

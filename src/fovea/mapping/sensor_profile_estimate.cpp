@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/base/angle.h"
+#include "fovea/base/median.h"
 #include "fovea/mapping/ground.h"
 #include "fovea/mapping/lidar_rings.h"
 
@@ -15,14 +16,11 @@ namespace fovea {
 namespace {
 
 /// Median angle between points that follow each other on a ring.
-double spacing_along(std::vector<LidarRing> rings) {
+double spacing_along(const std::vector<LidarRing>& rings) {
   constexpr double kSame = 1e-4;  // rad: further returns of one beam
   constexpr double kGap = 3 * kDegree;
   std::vector<double> steps;
-  for (LidarRing& ring : rings) {
-    std::sort(ring.begin(), ring.end(), [](const LidarDirection& a, const LidarDirection& b) {
-      return a.azimuth < b.azimuth;
-    });
+  for (const LidarRing& ring : rings) {
     for (std::size_t i = 1; i < ring.size(); ++i) {
       const double step = ring[i].azimuth - ring[i - 1].azimuth;
       if (step > kSame && step < kGap) steps.push_back(step);
@@ -33,15 +31,12 @@ double spacing_along(std::vector<LidarRing> rings) {
 
 /// Standard deviation of ranges: of a range against the mean of its neighbors on the ring, which
 /// lies on the surface, if that is smooth. Nothing if too few ranges can be compared.
-std::optional<double> range_noise_of(std::vector<LidarRing> rings, double spacing) {
+std::optional<double> range_noise_of(const std::vector<LidarRing>& rings, double spacing) {
   constexpr std::size_t kLeastDifferences = 200;
   constexpr double kStep = 0.3;                // m: more is an edge of depth
   constexpr double kToDeviation = 1 / 0.6745;  // median of a normal variable's magnitude
   std::vector<double> differences;
-  for (LidarRing& ring : rings) {
-    std::sort(ring.begin(), ring.end(), [](const LidarDirection& a, const LidarDirection& b) {
-      return a.azimuth < b.azimuth;
-    });
+  for (const LidarRing& ring : rings) {
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
       const double before = ring[i].azimuth - ring[i - 1].azimuth,
                    after = ring[i + 1].azimuth - ring[i].azimuth;

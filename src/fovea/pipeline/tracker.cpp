@@ -1,10 +1,10 @@
 #include "fovea/pipeline/tracker.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "fovea/base/median.h"
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/motion_compensation.h"
 
@@ -34,10 +34,7 @@ double stated_accuracy(const DriveInfo& drive) {
   for (const double accuracy : drive.navigation_accuracy) {
     if (accuracy > 0 && std::isfinite(accuracy)) stated.push_back(accuracy);
   }
-  if (stated.empty()) return 0;
-  const auto middle = stated.begin() + std::ptrdiff_t(stated.size() / 2);
-  std::nth_element(stated.begin(), middle, stated.end());
-  return *middle;
+  return median_of(std::move(stated));
 }
 
 /// Whether a scan that is mapped is a target of those after it. All that says so is in its record:

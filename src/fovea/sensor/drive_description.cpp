@@ -8,6 +8,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/settings.h"
+#include "fovea/geometry/sweep_direction_names.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/plausible.h"
 #include "fovea/sensor/plausible_lens.h"
@@ -28,12 +29,6 @@ constexpr auto names_of(TimeReference) {
   return std::array{EnumName<TimeReference>{TimeReference::kStamp, "stamp"},
                     EnumName<TimeReference>{TimeReference::kAbsolute, "absolute"},
                     EnumName<TimeReference>{TimeReference::kNone, "none"}};
-}
-
-constexpr auto names_of(SweepDirection) {
-  return std::array{
-      EnumName<SweepDirection>{SweepDirection::kClockwise, "clockwise"},
-      EnumName<SweepDirection>{SweepDirection::kCounterclockwise, "counterclockwise"}};
 }
 
 inline auto names_of(LensModel) {

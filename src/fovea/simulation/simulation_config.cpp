@@ -11,6 +11,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/settings.h"
+#include "fovea/geometry/sweep_direction_names.h"
 
 namespace fovea {
 
@@ -31,12 +32,6 @@ std::vector<EnumName<LidarModel>> names_of(LidarModel) {
   for (const LidarDataSheet& sheet : lidar_data_sheets())
     names.push_back({sheet.model, sheet.name});
   return names;
-}
-
-constexpr auto names_of(SweepDirection) {
-  return std::array{
-      EnumName<SweepDirection>{SweepDirection::kClockwise, "clockwise"},
-      EnumName<SweepDirection>{SweepDirection::kCounterclockwise, "counterclockwise"}};
 }
 
 namespace {

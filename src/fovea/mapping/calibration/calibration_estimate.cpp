@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "fovea/base/angle.h"
+#include "fovea/base/median.h"
 #include "fovea/mapping/calibration/edge_agreement.h"
 #include "fovea/mapping/calibration/edge_score.h"
 
@@ -135,12 +136,6 @@ Matrix covariance(const std::vector<EdgeProfile>& profiles, const Free& free, co
   return result;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Variance of a rotation across sparse rings. Where between two rings a thing ends is known by the
 /// rings alone, and things favor one side: wide gaps shift the edges of a whole drive alike.
 Matrix gap_covariance(const std::vector<EdgeProfile>& profiles) {
@@ -166,8 +161,8 @@ void describe_pixels(const std::vector<EdgeProfile>& profiles, const Vector& x, 
     ways.push_back((J * x.head<4>()).norm());
     sigmas.push_back(std::sqrt((J * cov.topLeftCorner<4, 4>() * J.transpose()).trace()));
   }
-  estimate.pixels = median(std::move(ways));
-  estimate.pixels_sigma = median(std::move(sigmas));
+  estimate.pixels = median_of(std::move(ways));
+  estimate.pixels_sigma = median_of(std::move(sigmas));
 }
 
 /// Whether edges are seen so much better than elsewhere that chance did not make the maximum.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fovea/base/angle.h"
+#include "fovea/base/median.h"
 
 namespace fovea {
 namespace {
@@ -127,10 +128,7 @@ void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, Li
       add_if_edge(a, b, kMaxElevationStep, jump, max_range, true, edges);
     }
   }
-  if (steps.empty()) return;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  edges.ring_spacing = double(*middle);
+  if (!steps.empty()) edges.ring_spacing = double(median_of(std::move(steps)));
 }
 
 }  // namespace
