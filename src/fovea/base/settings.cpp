@@ -13,6 +13,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/input_file.h"
+#include "fovea/base/nesting.h"
 
 namespace fovea {
 namespace {
@@ -238,6 +239,10 @@ class Writer : public SettingVisitor {
 };
 
 toml::table parse(std::string_view text, std::string_view name) {
+  if (nesting_depth(text) > kMaxNesting) {
+    throw ConfigError(fmt::format("the TOML text is nested over {} levels deep", kMaxNesting),
+                      std::string(name), "give keys and arrays of fewer levels");
+  }
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
@@ -279,8 +284,8 @@ SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,
   const std::string key(assignment.substr(0, equals)), value(assignment.substr(equals + 1));
   toml::table table;
   try {
-    table = toml::parse(fmt::format("{} = {}", key, value));
-  } catch (const toml::parse_error&) {
+    table = parse(fmt::format("{} = {}", key, value), name);
+  } catch (const ConfigError&) {
     table = parse(fmt::format("{} = \"{}\"", key, value), name);  // a bare word is a string
   }
   return SettingsDocument(std::make_unique<Content>(Content{std::move(table), name}));

@@ -18,6 +18,13 @@ constexpr auto names_of(Shade) {
                     EnumName<Shade>{Shade::kLight, std::string_view("light")}};
 }
 
+/// `part`, `count` times.
+std::string repeated(const std::string& part, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += part;
+  return text;
+}
+
 struct Options {
   bool on = true;
   int count = 3;
@@ -163,6 +170,16 @@ TEST(Settings, WhatIsRejectedForWantOfAKeyNamesTheTable) {
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("x.toml:2, key 'a.count'"));
   }
+}
+
+TEST(Settings, ATextOfThousandsOfLevelsIsRefused) {
+  const auto deep = HasSubstr("over 32 levels deep, x.toml");
+  EXPECT_THAT(error_of(repeated("a.", 50'000) + "a = 1"), deep);
+  EXPECT_THAT(error_of("[" + repeated("a.", 50'000) + "a]"), deep);
+  EXPECT_THAT(error_of("a = " + repeated("[", 50'000)), deep);
+  EXPECT_THAT(error_of(repeated("a = {", 50'000)), deep);
+  EXPECT_THAT(error_of(repeated("a.b = { c = ", 20'000)), deep);
+  EXPECT_THROW(SettingsDocument::from_assignment(repeated("a.", 50'000) + "a=1", ""), ConfigError);
 }
 
 }  // namespace fovea::settings_test

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/nesting.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/sensor/read_file.h"
 
@@ -88,7 +89,10 @@ DriveTruth::DriveTruth(const fs::path& drive) : folder_(drive / "truth") {
 
 void DriveTruth::read_description() {
   const fs::path file = folder_ / "truth.json";
-  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::vector<std::uint8_t> bytes = read_bytes(file, kDescriptionFile);
+  if (nesting_depth({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) > kMaxNesting) {
+    throw InputError("the truth's description is nested too deep", file.string(), kRemedy);
+  }
   try {
     const Json json = Json::parse(bytes);
     const int version = whole_number<int>(json.at("version"), file);

@@ -9,6 +9,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/input_file.h"
+#include "fovea/base/nesting.h"
 #include "fovea/base/output_file.h"
 #include "fovea/world/mesh_ply.h"
 
@@ -77,6 +78,9 @@ std::uint32_t surface_id(const std::string& key) {
 
 void read_lists(const fs::path& file, World& world) {
   const std::vector<std::uint8_t> bytes = InputFile(file, kDescriptionFile).bytes();
+  if (nesting_depth({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) > kMaxNesting) {
+    throw InputError("the world's materials are nested too deep", file.string(), kWorldRemedy);
+  }
   try {
     const Json json = Json::parse(bytes);
     for (const Json& material : json.at("materials")) {
