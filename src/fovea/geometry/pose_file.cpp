@@ -6,6 +6,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/input_file.h"
+#include "fovea/geometry/position_limit.h"
 
 namespace fovea {
 namespace {
@@ -38,6 +39,10 @@ RigidMotion parse_pose(const std::string& line, const std::string& where) {
   }
   RigidMotion pose = RigidMotion::Identity();
   pose.affine() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
+  if (!is_possible_position(pose.translation())) {
+    throw InputError(fmt::format("a pose lies over {:.0f} km from the origin", kMaxPosition / 1000),
+                     where, kRemedy);
+  }
   if (!is_rotation(pose.linear(), kRotationTolerance)) {
     throw InputError("a pose has no rotation matrix", where, kRemedy);
   }

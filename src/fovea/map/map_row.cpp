@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/geometry/position_limit.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/number_text.h"
 
@@ -144,8 +145,12 @@ int RowCursor::index(int least) {
 }
 
 RigidMotion RowCursor::pose() {
+  constexpr double kRotationTolerance = 1e-3;
   const std::string text = this->text();
-  return require(motion_from_text(text));
+  const RigidMotion pose = require(motion_from_text(text));
+  if (!is_possible_position(pose.translation())) fail();
+  if (!is_rotation(pose.linear(), kRotationTolerance)) fail();
+  return pose;
 }
 
 std::vector<double> RowCursor::numbers() {

@@ -65,7 +65,7 @@ class RowCursor {
   std::string text();
   std::span<const std::byte> blob();
   int index(int least = 0);       ///< an integer of at least `least` that an int can hold
-  RigidMotion pose();             ///< from text
+  RigidMotion pose();             ///< from text; fail() without a rotation, or far off any drive
   std::vector<double> numbers();  ///< from text
 
   /// Whether the next value is NULL, which is then skipped.

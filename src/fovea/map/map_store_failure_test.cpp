@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +17,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/random.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/record_rows.h"
 
@@ -566,6 +568,60 @@ TEST(MapReader, NamesTheDamagedRow) {
   EXPECT_THAT(damage("UPDATE tiles SET x=1<<40 WHERE rowid=1"), HasSubstr("impossible key"));
   EXPECT_THAT(damage("ALTER TABLE tiles DROP COLUMN range_cm"), HasSubstr("cannot be read"));
   EXPECT_THAT(damage("DROP TABLE views"), HasSubstr("cannot be read"));
+}
+
+TEST(MapReader, PosesFarFromAnyDriveAreRefused) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::function<void(MapWriter&)>& put) {
+    std::filesystem::remove(folder / "a.fovea");
+    const auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map());
+    put(*writer);
+    writer->commit();
+    return message<InputError>([&] { MapReader(folder / "a.fovea").check(); });
+  };
+  EXPECT_EQ(refusal([](MapWriter&) {}), "nothing thrown");
+  for (const double far : {1e300, -1.1e7}) {
+    const RigidMotion pose(Eigen::Translation3d(0, far, 0));
+    EXPECT_THAT(refusal([&](MapWriter& writer) {
+                  FrameRecord frame = sample_frames()[1];
+                  frame.T_local_lidar = pose;
+                  writer.put_frame(frame);
+                }),
+                AllOf(HasSubstr("column 'pose'"), HasSubstr("table 'frames', frame 8")));
+    EXPECT_THAT(refusal([&](MapWriter& writer) { writer.put_submap(1, pose); }),
+                AllOf(HasSubstr("column 'pose'"), HasSubstr("table 'submaps', id 1")));
+  }
+  RigidMotion turned = RigidMotion::Identity();
+  turned.linear()(0, 0) = 1e300;
+  EXPECT_THAT(refusal([&](MapWriter& writer) { writer.put_submap(0, turned); }),
+              HasSubstr("table 'submaps', id 0"));
+  EXPECT_THAT(refusal([&](MapWriter& writer) {
+                Random random(1);
+                PointCloud tile = random_map_points(1, random, 1.0);
+                tile.origin = {1e300, 0, 0};
+                writer.put_tile({0, {500, 0, 0}}, tile);
+              }),
+              HasSubstr("impossible origin"));
+}
+
+TEST(MapReader, APipeOrSocketInPlaceOfAFileIsRefusedAtOnce) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe.fovea").c_str(), 0600), 0);
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder / "pipe.fovea"); }),
+              AllOf(HasSubstr("it is a pipe"), HasSubstr("pipe.fovea")));
+  EXPECT_THAT(message<InputError>([&] { MapReader("/dev/zero"); }), HasSubstr("it is a device"));
+  for (const char* ending : {"-wal", "-journal", "-shm"}) {
+    std::filesystem::remove(folder / "a.fovea");
+    write_sample_map(folder / "a.fovea");
+    const auto side = folder / ("a.fovea" + std::string(ending));
+    ASSERT_EQ(mkfifo(side.c_str(), 0600), 0);
+    EXPECT_THAT(message<InputError>([&] { MapReader(folder / "a.fovea").check(); }),
+                AllOf(HasSubstr("it is a pipe"), HasSubstr(ending)));
+    EXPECT_THAT(message<InputError>([&] { MapWriter::open(folder / "a.fovea"); }),
+                HasSubstr("it is a pipe"));
+    std::filesystem::remove(side);
+  }
 }
 
 TEST(MapReader, FindsMissingRows) {

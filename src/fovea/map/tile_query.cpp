@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/geometry/position_limit.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea {
@@ -29,6 +30,9 @@ TileRow tile_row(const sqlite::Statement& statement, const std::string& map_path
   row.points = statement.integer(4);
   row.colored = statement.integer(5);
   row.origin = {statement.real(6), statement.real(7), statement.real(8)};
+  if (!is_possible_position(row.origin)) {
+    throw InputError("a tile has an impossible origin", map_path, kRestoreMap);
+  }
   constexpr auto kFirst = static_cast<int>(kFirstPointColumn);
   constexpr auto kCount = static_cast<int>(kStoredColumns);
   for (int i = 0; i < kCount; ++i) row.blobs[std::size_t(i)] = statement.blob(kFirst + i);

@@ -458,6 +458,21 @@ TEST_F(GenericNavigation, BadLinesAreNotedAndNotUsed) {
                                             HasSubstr("4 lines of"), HasSubstr("1 lines of")));
 }
 
+TEST_F(GenericNavigation, APoseFarFromAllOthersIsNotUsed) {
+  std::string text = "time_ns,x,y,z,qx,qy,qz,qw\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const double x = i == 0 ? -9e7 : 5.6e6 + 1.2 * i;  // the first one would be the origin
+    text += fmt::format("{},{},4e5,0,0,0,0,1\n", kStart + i * kStep, x);
+  }
+  write_text(folder_ / "poses.csv", text);
+  const auto drive = open();
+  ASSERT_TRUE(drive->info().navigation);
+  for (const StampedPose& pose : drive->info().navigation->poses()) {
+    EXPECT_LT(pose.T_local_body.translation().norm(), 10);
+  }
+  EXPECT_THAT(notes(), testing::Contains(HasSubstr("1 lines of")));
+}
+
 TEST_F(GenericNavigation, TablesThatAreNoneAreErrors) {
   write_text(folder_ / "gnss.csv", "time_ns,lat\n");
   EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("no column latitude"), HasSubstr("gnss.csv:1")));

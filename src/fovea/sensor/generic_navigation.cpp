@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fovea/geometry/position_limit.h"
 #include "fovea/sensor/course.h"
 #include "fovea/sensor/csv_rows.h"
 #include "fovea/sensor/measured_velocity.h"
@@ -26,6 +27,22 @@ std::optional<Eigen::Quaterniond> quaternion_of(const CsvRows& rows, std::size_t
                              rows.at(row, first + 2));
   if (!(std::abs(q.norm() - 1) < 0.01)) return std::nullopt;  // NaN, too
   return q.normalized();
+}
+
+/// The middle one of the positions of all rows, axis by axis: one damaged row does not move it.
+Eigen::Vector3d median_position(const CsvRows& rows) {
+  Eigen::Vector3d median = Eigen::Vector3d::Zero();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (std::isfinite(rows.at(row, axis))) values.push_back(rows.at(row, axis));
+    }
+    if (values.empty()) continue;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[static_cast<Eigen::Index>(axis)] = *middle;
+  }
+  return median;
 }
 
 /// Lines that cannot be used, for a note.
@@ -89,11 +106,13 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::vector<StampedPose> poses;
+  const Eigen::Vector3d middle = median_position(rows);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const Eigen::Vector3d position(rows.at(row, kX), rows.at(row, kY), rows.at(row, kZ));
     const auto q = quaternion_of(rows, row, kQx);
     // The largest of numbers and a NaN may be a number.
-    if (!q || !position.allFinite() || position.cwiseAbs().maxCoeff() > kMaxWorldCoordinate) {
+    if (!q || !position.allFinite() || position.cwiseAbs().maxCoeff() > kMaxWorldCoordinate ||
+        !is_possible_position(position - middle)) {
       left_out.add(rows.lines[row]);
       continue;
     }
