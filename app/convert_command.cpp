@@ -11,9 +11,9 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
-#include "fovea/base/printable.h"
 #include "fovea/recording/camera_name.h"
 #include "fovea/rosbag/convert_bags.h"
 
@@ -69,9 +69,9 @@ void run(const ConvertArguments& arguments) {
                 "start it again: nothing of it was kept");
   }
   if (arguments.quiet) return;
-  for (const std::string& note : figures.notes) fmt::print("{}\n", printable(note));
-  fmt::print("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
-             figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
+  for (const std::string& note : figures.notes) print_out("{}\n", note);
+  print_out("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
+            figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
 }
 
 }  // namespace

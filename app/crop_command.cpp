@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/map_arguments.h"
+#include "app/print.h"
 #include "fovea/map/crop.h"
 
 namespace fovea::app {
@@ -25,7 +26,7 @@ void run(const CropArguments& arguments) {
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const CropFigures figures = crop_map(map, region, *writer);
   if (arguments.quiet) return;
-  fmt::print("{}: {} points, {} left out\n", arguments.output, figures.points, figures.left_out);
+  print_out("{}: {} points, {} left out\n", arguments.output, figures.points, figures.left_out);
 }
 
 }  // namespace

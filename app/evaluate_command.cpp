@@ -11,6 +11,7 @@
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
 #include "app/html_report/truth_page.h"
+#include "app/print.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
@@ -54,7 +55,7 @@ void put_report(const Report& report, std::optional<OutputFile>& json) {
     json->stream() << to_json(report);
     json->commit();
   }
-  fmt::print("{}", to_text(report));
+  print_lines(to_text(report));
 }
 
 /// Whose calibration to score under: the drive's or a map's.

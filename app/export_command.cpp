@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/finite_range.h"
+#include "app/print.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
@@ -67,36 +68,36 @@ void check_options(const CLI::App& command, const ExportArguments& arguments,
 }
 
 void print_figures(const ExportArguments& arguments, const ExportFigures& figures) {
-  fmt::print("{}: {} points\n", arguments.output, figures.points);
+  print_out("{}: {} points\n", arguments.output, figures.points);
   if (figures.uncolored_left_out > 0) {
-    fmt::print("left out: {} points that no camera coloured (--uncolored keeps them)\n",
-               figures.uncolored_left_out);
+    print_out("left out: {} points that no camera coloured (--uncolored keeps them)\n",
+              figures.uncolored_left_out);
   }
   if (figures.filtered_out > 0) {
-    fmt::print("left out: {} points that do not meet --where\n", figures.filtered_out);
+    print_out("left out: {} points that do not meet --where\n", figures.filtered_out);
   }
 }
 
 void print_times(const LasFigures& figures) {
   if (!figures.dated) {
-    fmt::print("the drive's stamps have no date: LAS has them in seconds, as GPS week time\n");
+    print_out("the drive's stamps have no date: LAS has them in seconds, as GPS week time\n");
   }
   if (figures.points_without_time > 0) {
-    fmt::print("{} points are of frames without a stamp and have time 0\n",
-               figures.points_without_time);
+    print_out("{} points are of frames without a stamp and have time 0\n",
+              figures.points_without_time);
   }
 }
 
 void print_mesh(const MeshFigures& figures) {
-  fmt::print("{} triangles of {} cells with points\n", figures.triangles, figures.cells);
+  print_out("{} triangles of {} cells with points\n", figures.triangles, figures.cells);
   if (figures.lonely_cells > 0) {
-    fmt::print("{} cells have too few others around them for a surface\n", figures.lonely_cells);
+    print_out("{} cells have too few others around them for a surface\n", figures.lonely_cells);
   }
   if (figures.uncolored_vertices > 0) {
-    fmt::print("{} vertices are grey: no coloured point is near\n", figures.uncolored_vertices);
+    print_out("{} vertices are grey: no coloured point is near\n", figures.uncolored_vertices);
   }
   if (figures.without_frame > 0) {
-    fmt::print("left out: {} points of frames that the map does not have\n", figures.without_frame);
+    print_out("left out: {} points of frames that the map does not have\n", figures.without_frame);
   }
 }
 
@@ -116,7 +117,7 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
   if (arguments.quiet) return;
   print_figures(arguments, figures);
   print_mesh(figures);
-  fmt::print("{} tiles\n", figures.tiles);
+  print_out("{} tiles\n", figures.tiles);
 }
 
 void run(ExportArguments& arguments, const CLI::App& command) {
@@ -129,7 +130,7 @@ void run(ExportArguments& arguments, const CLI::App& command) {
   }
   if (map.size() > 0 && map.colored_size() == 0 && !arguments.points.include_uncolored) {
     arguments.points.include_uncolored = true;
-    if (!arguments.quiet) fmt::print("the map has no colors: its points are gray\n");
+    if (!arguments.quiet) print_out("the map has no colors: its points are gray\n");
   }
   if (!arguments.where.empty()) arguments.points.where = PointFilter::parse(arguments.where);
   arguments.points.crs = *crs_of(arguments.crs);
@@ -152,7 +153,7 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     }
     const TilesetFigures figures = write_tileset(map, arguments.output, options);
     report(figures);
-    if (!arguments.quiet) fmt::print("{} tiles\n", figures.tiles);
+    if (!arguments.quiet) print_out("{} tiles\n", figures.tiles);
     return;
   }
   if (format == "mesh" || format == "glb") return write_mesh(map, arguments, format == "mesh");

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/print.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/map/map_meta.h"
@@ -88,42 +89,43 @@ void print_text(const Contents& c, const std::string& path) {
     const auto found = c.meta.find(key);
     return found != c.meta.end() ? found->second : std::string();
   };
-  fmt::print("{}{}\n", path,
-             meta(meta_key::kComplete) == "1" ? "" : " (unfinished: --resume goes on)");
+  print_out("{}{}\n", path,
+            meta(meta_key::kComplete) == "1" ? "" : " (unfinished: --resume goes on)");
   const std::string cameras =
       meta(meta_key::kCameras).empty() ? "no camera" : "cameras " + meta(meta_key::kCameras);
-  fmt::print("  drive      {} ({}), frames {} to {}, {}\n", meta(meta_key::kDriveName),
-             meta(meta_key::kDriveKind), meta(meta_key::kFramesBegin),
-             std::stoi("0" + meta(meta_key::kFramesEnd)) - 1, cameras);
+  print_out("  drive      {} ({}), frames {} to {}, {}\n", meta(meta_key::kDriveName),
+            meta(meta_key::kDriveKind), meta(meta_key::kFramesBegin),
+            std::stoi("0" + meta(meta_key::kFramesEnd)) - 1, cameras);
   for (const MergedDrive& d : c.drives) {
-    fmt::print("  merged     {}: frames {} to {}, in the drive {} to {}\n", d.name, d.first_frame,
-               d.end_frame - 1, d.first_frame - d.frame_shift, d.end_frame - 1 - d.frame_shift);
+    print_out("  merged     {}: frames {} to {}, in the drive {} to {}\n", d.name, d.first_frame,
+              d.end_frame - 1, d.first_frame - d.frame_shift, d.end_frame - 1 - d.frame_shift);
   }
-  fmt::print("  frames     {} mapped, {} held out{}, {} skipped\n", c.mapped, c.held_out,
-             meta(meta_key::kHoldOut).empty() ? "" : " (" + meta(meta_key::kHoldOut) + ")",
-             c.skipped);
+  print_out("  frames     {} mapped, {} held out{}, {} skipped\n", c.mapped, c.held_out,
+            meta(meta_key::kHoldOut).empty() ? "" : " (" + meta(meta_key::kHoldOut) + ")",
+            c.skipped);
   for (const SensorRecord& sensor : c.sensors) {
-    fmt::print("  LiDAR      {}: {}\n", sensor.profile.name, to_text(sensor.profile));
+    print_out("  LiDAR      {}: {}\n", sensor.profile.name, to_text(sensor.profile));
   }
-  fmt::print("  points     {} in {} tiles of {} submaps\n", c.points, c.tiles, c.submaps);
+  print_out("  points     {} in {} tiles of {} submaps\n", c.points, c.tiles, c.submaps);
   if (!c.bounds_local.isEmpty()) {
     const Eigen::Vector3d size = c.bounds_local.sizes();
-    fmt::print("  extent     {:.1f} x {:.1f} x {:.1f} m, path {:.1f} m\n", size.x(), size.y(),
-               size.z(), c.path_length);
+    print_out("  extent     {:.1f} x {:.1f} x {:.1f} m, path {:.1f} m\n", size.x(), size.y(),
+              size.z(), c.path_length);
   }
   if (meta(meta_key::kGeoreferenced) == "1") {
-    fmt::print("  origin     {} N, {} E, {} m (WGS84; axes east, north, up)\n",
-               meta(meta_key::kOriginLatitude), meta(meta_key::kOriginLongitude),
-               meta(meta_key::kOriginHeight));
+    print_out("  origin     {} N, {} E, {} m (WGS84; axes east, north, up)\n",
+              meta(meta_key::kOriginLatitude), meta(meta_key::kOriginLongitude),
+              meta(meta_key::kOriginHeight));
   } else {
-    fmt::print("  origin     not georeferenced: the first scan's own axes\n");
+    print_out("  origin     not georeferenced: the first scan's own axes\n");
   }
   for (const char* key : {meta_key::kCrop, meta_key::kRepair}) {
-    if (!meta(key).empty()) fmt::print("  {:<10} {}\n", key, meta(key));
+    if (!meta(key).empty()) print_out("  {:<10} {}\n", key, meta(key));
   }
-  if (!meta(meta_key::kVariant).empty()) fmt::print("  variant    {}\n", meta(meta_key::kVariant));
-  if (!meta(meta_key::kNotes).empty()) fmt::print("  notes      {}\n", meta(meta_key::kNotes));
-  fmt::print("\n{}", meta(meta_key::kConfig));
+  if (!meta(meta_key::kVariant).empty()) print_out("  variant    {}\n", meta(meta_key::kVariant));
+  if (!meta(meta_key::kNotes).empty()) print_out("  notes      {}\n", meta(meta_key::kNotes));
+  print_out("\n");
+  print_lines(meta(meta_key::kConfig));
 }
 
 void print_json(const Contents& c) {
@@ -143,7 +145,7 @@ void print_json(const Contents& c) {
     json["bounds_local"] = {{"min", corner(c.bounds_local.min())},
                             {"max", corner(c.bounds_local.max())}};
   }
-  fmt::print("{}\n", json.dump(2));
+  print_json_value(json);
 }
 
 /// Names each part of a map that cannot be read; InputError if there is one.
@@ -151,16 +153,16 @@ void check(const std::string& path) {
   std::size_t damages = 0;
   const MapReader reader(path, [&](const std::string& damage) {
     ++damages;
-    fmt::print("{}\n", damage);
+    print_out("{}\n", damage);
   });
   const std::size_t tiles = reader.check();
   if (damages > 0) {
     throw InputError(fmt::format("{} parts of the map cannot be read", damages), path,
                      "save the rest with 'fovea repair' or map the drive again");
   }
-  fmt::print("{}: whole, {} tiles\n", path, tiles);
+  print_out("{}: whole, {} tiles\n", path, tiles);
   if (reader.format_version() != kMapFormatVersion) {
-    fmt::print(
+    print_out(
         "format {}: only the tiles have checksums; 'fovea repair' rewrites the map in "
         "format {}\n",
         reader.format_version(), kMapFormatVersion);
@@ -171,7 +173,7 @@ void run(const InfoArguments& arguments) {
   if (arguments.check) return check(arguments.map);
   const MapReader reader(arguments.map);
   if (arguments.digest) {
-    fmt::print("{}\n", reader.digest());
+    print_out("{}\n", reader.digest());
   } else if (arguments.json) {
     print_json(read_contents(reader));
   } else {

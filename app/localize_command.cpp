@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "fovea/base/errors.h"
@@ -150,16 +151,16 @@ nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::strin
 }
 
 void print_summary(const LocalizeArguments& arguments, const LocalizedDrive& localized) {
-  for (const std::string& note : localized.notes) fmt::print("note: {}\n", note);
-  fmt::print("{}: {} of {} frames localised (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
-             arguments.output, localized.count(LocalizationState::kLocalized),
-             localized.frames.size(), arguments.guess, localized.frames_per_second,
-             localized.peak_rss_mb);
+  for (const std::string& note : localized.notes) print_out("note: {}\n", note);
+  print_out("{}: {} of {} frames localised (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
+            arguments.output, localized.count(LocalizationState::kLocalized),
+            localized.frames.size(), arguments.guess, localized.frames_per_second,
+            localized.peak_rss_mb);
   for (const auto& [state, meaning] :
        {std::pair(LocalizationState::kLost, "lost: the scan fits nowhere that was tried"),
         {LocalizationState::kOutside, "outside: the map has nothing there"}}) {
     const int count = localized.count(state);
-    if (count > 0) fmt::print("{} frame{} {}\n", count, count == 1 ? "" : "s", meaning);
+    if (count > 0) print_out("{} frame{} {}\n", count, count == 1 ? "" : "s", meaning);
   }
 }
 
@@ -215,7 +216,7 @@ void run(LocalizeArguments arguments) {
                         {"rotation_max_deg", errors.rotation_max},
                         {"normalized_error", errors.normalized}};
     if (!arguments.quiet) {
-      fmt::print(
+      print_out(
           "against the truth: {:.4f} m RMS (at most {:.4f}), {:.4f} degrees RMS (at most "
           "{:.4f}); squared errors are {:.2f} times what their covariances say\n",
           errors.position_rms, errors.position_max, errors.rotation_rms, errors.rotation_max,

@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "app/commands.h"
 #include "fovea/base/errors.h"
@@ -20,8 +21,14 @@ constexpr int kWrongUsage = 2;
 /// One line on standard error, whatever a library wrote. Must not throw: it is the last resort.
 void print_error(const char* message, const char* where_and_remedy = "") noexcept {
   std::fputs("fovea: error: ", stderr);
-  for (const char* c = message; *c != '\0'; ++c) {
-    std::fputc(fovea::is_control(*c) ? ' ' : *c, stderr);
+  for (std::string_view rest = message; !rest.empty();) {
+    const fovea::Character character = fovea::first_character(rest);
+    if (character.is_control) {
+      std::fputc(' ', stderr);
+    } else {
+      std::fwrite(rest.data(), 1, character.bytes, stderr);
+    }
+    rest.remove_prefix(character.bytes);
   }
   std::fputs(where_and_remedy, stderr);
   std::fputc('\n', stderr);

@@ -14,6 +14,7 @@
 #include "app/drive_arguments.h"
 #include "app/finite_range.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/view_arguments.h"
@@ -56,29 +57,29 @@ MapperOptions resolve_options(const MapArguments& arguments) {
 }
 
 void print_summary(const MapSummary& summary, const MapArguments& arguments) {
-  for (const std::string& note : summary.notes) fmt::print("note: {}\n", note);
-  fmt::print("{}: {} points from {} frames", arguments.output, summary.points,
-             summary.frames_mapped);
-  if (summary.frames_held_out > 0) fmt::print(", {} held out", summary.frames_held_out);
-  fmt::print(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
+  for (const std::string& note : summary.notes) print_out("note: {}\n", note);
+  print_out("{}: {} points from {} frames", arguments.output, summary.points,
+            summary.frames_mapped);
+  if (summary.frames_held_out > 0) print_out(", {} held out", summary.frames_held_out);
+  print_out(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
   if (summary.rate > 0) {
-    fmt::print("at {} Hz: {} frame{} late: not yet in the map when the next one was due\n",
-               summary.rate, summary.late_frames, summary.late_frames == 1 ? "" : "s");
+    print_out("at {} Hz: {} frame{} late: not yet in the map when the next one was due\n",
+              summary.rate, summary.late_frames, summary.late_frames == 1 ? "" : "s");
   }
   for (const auto& [reason, count] : summary.frames_skipped) {
-    fmt::print("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
+    print_out("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
   }
   if (summary.registrations_failed > 0) {
-    fmt::print("registration failed on {} frames: their first guess was kept\n",
-               summary.registrations_failed);
+    print_out("registration failed on {} frames: their first guess was kept\n",
+              summary.registrations_failed);
   }
   if (summary.loops_closed > 0) {
-    fmt::print("loops closed: {} scans were registered to places seen before\n",
-               summary.loops_closed);
+    print_out("loops closed: {} scans were registered to places seen before\n",
+              summary.loops_closed);
   }
-  for (const std::string& line : calibration_lines(summary)) fmt::print("{}\n", line);
+  for (const std::string& line : calibration_lines(summary)) print_out("{}\n", line);
   if (summary.interrupted) {
-    fmt::print("interrupted: what was mapped is saved; the same command with --resume goes on\n");
+    print_out("interrupted: what was mapped is saved; the same command with --resume goes on\n");
   }
 }
 
@@ -88,7 +89,7 @@ void go_on_showing(std::unique_ptr<LiveShow> show, const MapArguments& arguments
   show->finish();
   if (!stop.stop_requested()) {
     if (!arguments.quiet) {
-      fmt::print("the map is still shown at {} (Ctrl-C ends)\n", show->url());
+      print_out("the map is still shown at {} (Ctrl-C ends)\n", show->url());
       std::fflush(stdout);
     }
     wait_for(stop);
@@ -110,7 +111,7 @@ std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob&
     show = std::make_unique<LiveShow>(job, images, viewer_page(), options);
   });
   if (!arguments.quiet) {
-    fmt::print("shown at {}\n", show->url());
+    print_out("shown at {}\n", show->url());
     std::fflush(stdout);
   }
   return show;

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/map_arguments.h"
+#include "app/print.h"
 #include "fovea/base/parallel.h"
 #include "fovea/merging/merge_maps.h"
 
@@ -21,23 +22,22 @@ struct MergeArguments {
 };
 
 void print(const MergeFigures& figures, const std::string& output) {
-  fmt::print("{}: {} points\n", output, figures.points);
+  print_out("{}: {} points\n", output, figures.points);
   if (figures.drives_added == 0) {
-    fmt::print("nothing new: the first map has what the second one shows\n");
+    print_out("nothing new: the first map has what the second one shows\n");
     return;
   }
   const MapAlignment& alignment = figures.alignment;
-  fmt::print(
-      "submaps registered: {} of {} that have the other map around them, moved by {:.2f} m\n",
-      alignment.registered, alignment.met, alignment.moved);
+  print_out("submaps registered: {} of {} that have the other map around them, moved by {:.2f} m\n",
+            alignment.registered, alignment.met, alignment.moved);
   if (alignment.registered == 0) {
-    fmt::print("not registered: the maps lie to each other as {}\n",
-               figures.georeferenced ? "their georeference says" : "if they had one local frame");
+    print_out("not registered: the maps lie to each other as {}\n",
+              figures.georeferenced ? "their georeference says" : "if they had one local frame");
   }
-  fmt::print("points added: {}, known already: {}, coloured by both: {}\n", figures.merged.added,
-             figures.merged.known, figures.merged.fused);
-  fmt::print("brightness of the second map: x {:.2f} {:.2f} {:.2f}\n", figures.gain[0],
-             figures.gain[1], figures.gain[2]);
+  print_out("points added: {}, known already: {}, coloured by both: {}\n", figures.merged.added,
+            figures.merged.known, figures.merged.fused);
+  print_out("brightness of the second map: x {:.2f} {:.2f} {:.2f}\n", figures.gain[0],
+            figures.gain[1], figures.gain[2]);
 }
 
 void run(const MergeArguments& arguments) {

@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -67,13 +68,13 @@ void run(RecolorArguments arguments) {
     return recolor_map(map, *drive, job, [&](int done, int total) { bar.draw(done, total); });
   }();
   if (arguments.quiet) return;
-  fmt::print("{}: {} points coloured by {} frames\n", arguments.output,
-             figures.points - figures.uncolored, figures.frames);
-  if (figures.uncolored > 0) fmt::print("without colour: {} points\n", figures.uncolored);
-  if (figures.unread > 0) fmt::print("not to be read: {} frames of the map\n", figures.unread);
+  print_out("{}: {} points coloured by {} frames\n", arguments.output,
+            figures.points - figures.uncolored, figures.frames);
+  if (figures.uncolored > 0) print_out("without colour: {} points\n", figures.uncolored);
+  if (figures.unread > 0) print_out("not to be read: {} frames of the map\n", figures.unread);
   if (figures.images_left_out > 0) {
-    fmt::print("left out: {} images, blank or exposed otherwise than the others\n",
-               figures.images_left_out);
+    print_out("left out: {} images, blank or exposed otherwise than the others\n",
+              figures.images_left_out);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/finite_range.h"
+#include "app/print.h"
 #include "fovea/base/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/voxel_grid.h"
@@ -55,7 +56,7 @@ void require_fit(const RegisterArguments& arguments, const PlaceFit& fit) {
   constexpr std::size_t kLeastPoints = 50;
   constexpr double kLeastOverlap = 0.5, kLeastOnPlane = 0.6;
   if (fit.standing < kLeastPoints) {
-    fmt::print(stderr, "the scans have too few vertical surfaces to confirm the motion\n");
+    print_err("the scans have too few vertical surfaces to confirm the motion\n");
     return;
   }
   if (fit.overlap >= kLeastOverlap && fit.on_plane >= kLeastOnPlane) return;
@@ -84,10 +85,10 @@ void run(const RegisterArguments& arguments) {
   require_fit(arguments,
               fit_of(ScanSurfaces(target_points, arguments.voxel),
                      ScanSurfaces(source_points, arguments.voxel), result.T_target_source));
-  fmt::print("{}\n", format_pose(result.T_target_source));
-  fmt::print(stderr, "{} after {} iterations, {} pairs, rms {:.4f} m, {} degenerate directions\n",
-             result.converged ? "converged" : "NOT converged", result.iterations, result.pairs,
-             result.rms_distance, result.degenerate_directions);
+  print_out("{}\n", format_pose(result.T_target_source));
+  print_err("{} after {} iterations, {} pairs, rms {:.4f} m, {} degenerate directions\n",
+            result.converged ? "converged" : "NOT converged", result.iterations, result.pairs,
+            result.rms_distance, result.degenerate_directions);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "app/drive_arguments.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -134,20 +135,20 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   if (!figures)
     throw Error("the rendering was interrupted", arguments.output, "give the same command again");
   if (arguments.quiet) return;
-  fmt::print("{}: {} frames", arguments.output, figures->frames);
+  print_out("{}: {} frames", arguments.output, figures->frames);
   if (!job.cameras.empty()) {
-    fmt::print(", {} images each, {:.0f} % of their pixels show something", job.cameras.size(),
-               100 * figures->covered);
+    print_out(", {} images each, {:.0f} % of their pixels show something", job.cameras.size(),
+              100 * figures->covered);
   }
-  if (job.lidar) fmt::print(", {:.0f} points a scan", figures->points);
-  fmt::print("\n");
+  if (job.lidar) print_out(", {:.0f} points a scan", figures->points);
+  print_out("\n");
   if (job.cameras.empty() || !job.lidar || figures->empty == figures->frames) {
-    fmt::print("note: it takes both images and scans to be a drive that fovea map reads\n");
+    print_out("note: it takes both images and scans to be a drive that fovea map reads\n");
   }
   if (figures->blank > 0)
-    fmt::print("{} images are black: the map has nothing there\n", figures->blank);
+    print_out("{} images are black: the map has nothing there\n", figures->blank);
   if (figures->empty > 0)
-    fmt::print("{} scans have no point and were not written\n", figures->empty);
+    print_out("{} scans have no point and were not written\n", figures->empty);
 }
 
 }  // namespace fovea::app

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/map_arguments.h"
+#include "app/print.h"
 #include "fovea/map/repair.h"
 
 namespace fovea::app {
@@ -23,13 +24,13 @@ void run(const RepairArguments& arguments) {
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
-    if (!arguments.quiet) fmt::print("left out: {}\n", damage);
+    if (!arguments.quiet) print_out("left out: {}\n", damage);
   });
   if (arguments.quiet) return;
-  fmt::print("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
-             figures.damages);
+  print_out("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
+            figures.damages);
   if (format != kMapFormatVersion) {
-    fmt::print("rewritten from format {} in format {}\n", format, kMapFormatVersion);
+    print_out("rewritten from format {} in format {}\n", format, kMapFormatVersion);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/reproduce/results_page.h"
@@ -110,7 +111,7 @@ void run(const ReproduceArguments& arguments) {
           row == "default" ? output / report_file(drive.name) : std::filesystem::path();
       nlohmann::ordered_json result = run_row(*source, row, folder, page, interrupt.token());
       if (interrupt.token().stop_requested()) {
-        fmt::print("interrupted: the rows that are done are kept; the same command goes on\n");
+        print_out("interrupted: the rows that are done are kept; the same command goes on\n");
         return;
       }
       if (!result.is_null()) drive.rows.push_back(std::move(result));
@@ -123,7 +124,7 @@ void run(const ReproduceArguments& arguments) {
   page.stream() << write_results_page(results, mls, command_line(arguments), output);
   write_json(json, results_json(results));
   page.commit();
-  if (!arguments.quiet) fmt::print("{}\n", (output / "results.md").string());
+  if (!arguments.quiet) print_out("{}\n", (output / "results.md").string());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -51,8 +52,8 @@ void run(const SimulateArguments& arguments) {
                 "start it again: nothing of it was kept");
   }
   if (!arguments.quiet) {
-    fmt::print("{}: {} frame{} of scene {}, seed {}\n", drive.string(), options.frames,
-               options.frames == 1 ? "" : "s", to_string(options.scene), options.seed);
+    print_out("{}: {} frame{} of scene {}, seed {}\n", drive.string(), options.frames,
+              options.frames == 1 ? "" : "s", to_string(options.scene), options.seed);
   }
 }
 

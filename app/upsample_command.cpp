@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/print.h"
 #include "fovea/base/errors.h"
 #include "fovea/exporting/cloud_ply.h"
 #include "fovea/geometry/transform_cloud.h"
@@ -49,7 +50,7 @@ void run(const UpsampleArguments& arguments) {
   const PointCloud dense_cam = upsample(visible_cam, camera, arguments.options);
   write_cloud_ply(transform_cloud(dense_cam, camera.T_cam_lidar.inverse()), arguments.output,
                   arguments.force);
-  fmt::print("{} points in view, {} after upsampling\n", visible_cam.size(), dense_cam.size());
+  print_out("{} points in view, {} after upsampling\n", visible_cam.size(), dense_cam.size());
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/interrupt.h"
+#include "app/print.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
 #include "fovea/base/errors.h"
@@ -72,7 +73,7 @@ void run(const ViewArguments& arguments) {
     show.emplace(arguments.map, viewer_page(), images, options);
   });
   if (!arguments.quiet) {
-    fmt::print("{} is shown at {} (Ctrl-C ends)\n", arguments.map, show->url());
+    print_out("{} is shown at {} (Ctrl-C ends)\n", arguments.map, show->url());
     std::fflush(stdout);
   }
   if (!arguments.no_browser) open_browser(show->url());

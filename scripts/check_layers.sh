@@ -32,4 +32,10 @@ if grep -rnE '^ *# *include +"app/' python || grep -rnE '^ *# *include +"python/
   echo "app/ and python/ must not include each other" >&2
   failed=1
 fi
+# Text from files must not steer the terminal: app/print.h is the only way to it.
+if grep -nE 'fmt::print|std::cout|std::cerr|printf\(|fputs\(|\bputs\(|fwrite\(' app/*.cpp app/*/*.cpp |
+  grep -vE '^app/(print|main|progress_bar)\.cpp:'; then
+  echo "app/ prints through app/print.h" >&2
+  failed=1
+fi
 exit $failed
