@@ -170,10 +170,7 @@ class MapRun {
     if (has_cameras && job.options.check_calibration && !job.calibrate) {
       check_.emplace(drive, has_sweep_motion(drive, job));
     }
-    if (const auto velocity =
-            initial_velocity(source, job.given_poses, drive.begin, job.options.compensate_motion)) {
-      mapper_.begin_with(*velocity);
-    }
+    begin_with_velocity_at(drive.begin);
     if (job.resume) take_up_earlier_run();
     frames_before_ = log_.size();
   }
@@ -186,6 +183,7 @@ class MapRun {
  private:
   MapKeeperOptions keeper_options();
   void take_up_earlier_run();
+  void begin_with_velocity_at(int index);
   void check_calibration(const LocatedFrame& located, FrameRecord& record);
   MapRows fresh_rows(bool last);
   bool complete() const { return log_.size() == std::size_t(drive_.end - drive_.begin); }
@@ -225,6 +223,11 @@ MapKeeperOptions MapRun::keeper_options() {
   return options;
 }
 
+void MapRun::begin_with_velocity_at(int index) {
+  mapper_.begin_with(
+      initial_velocity(source_, job_.given_poses, index, job_.options.compensate_motion));
+}
+
 void MapRun::take_up_earlier_run() {
   const MapReader reader(job_.output);
   require_same_run(reader, job_, meta_);
@@ -235,6 +238,10 @@ void MapRun::take_up_earlier_run() {
     figures_.add(record, /*is_new=*/false);
   }
   mapper_.resume(stored_map(reader, job_.options.tile_size), records, source_);
+  const auto tracked = std::find_if(records.rbegin(), records.rend(), [](const FrameRecord& r) {
+    return r.status != FrameStatus::kSkipped;
+  });
+  if (tracked != records.rend() && mapper_.begins()) begin_with_velocity_at(tracked->index);
   if (!records.empty()) latest_ = records.back();
   if (log_.has_mapped()) views_.skip();
 }
@@ -264,6 +271,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     std::optional<RigidMotion> given;
     const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
     if (place < job_.given_poses.size()) given = job_.given_poses[place];
+    if (mapper_.follows_pause(frame.stamp)) begin_with_velocity_at(frame.index);
     return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
   FramePipeline frames(
