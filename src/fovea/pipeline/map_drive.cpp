@@ -21,6 +21,7 @@
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/pipeline/view_check.h"
+#include "fovea/sensor/lost_drive.h"
 
 namespace fovea {
 namespace {
@@ -89,12 +90,17 @@ void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta&
   }
 }
 
+bool is_damage(SkipReason reason) {
+  return reason == SkipReason::kDamagedScan || reason == SkipReason::kDamagedImage;
+}
+
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
   FrameRecord record;
   record.index = skipped.index;
   record.stamp = stamp;
   record.status = FrameStatus::kSkipped;
   record.note = fmt::format("{}: {}", to_string(skipped.reason), skipped.detail);
+  if (is_damage(skipped.reason)) record.figures["damaged"] = 1;
   return record;
 }
 
@@ -175,9 +181,13 @@ class MapRun {
     frames_before_ = log_.size();
   }
 
+  /// Maps all frames, or those before the drive was lost.
   void map_frames(const std::function<void(const MapProgress&)>& progress);
   /// Ends the file. InputError if no frame could be mapped.
   void finish();
+  /// InputError if the drive was lost or too many of its frames are damaged. The file is complete
+  /// as far as the frames go.
+  void require_whole_drive() const;
   MapSummary summary() const;
 
  private:
@@ -186,7 +196,7 @@ class MapRun {
   void begin_with_velocity_at(int index);
   void check_calibration(const LocatedFrame& located, FrameRecord& record);
   MapRows fresh_rows(bool last);
-  bool complete() const { return log_.size() == std::size_t(drive_.end - drive_.begin); }
+  bool complete() const { return log_.size() == drive_.frame_count(); }
 
   const FrameSource& source_;
   const DriveInfo& drive_;
@@ -206,6 +216,7 @@ class MapRun {
   std::vector<CameraCalibration> calibration_;  // what it has found
   std::optional<FrameRecord> latest_;
   std::size_t frames_before_ = 0;  // of an earlier run
+  std::optional<DriveLostError> lost_;
 };
 
 MapKeeperOptions MapRun::keeper_options() {
@@ -266,7 +277,7 @@ MapRows MapRun::fresh_rows(bool last) {
 }
 
 void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress) {
-  const int total = drive_.end - drive_.begin;
+  const int total = static_cast<int>(drive_.frame_count());
   const auto track = [&](const Frame& frame) {
     std::optional<RigidMotion> given;
     const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
@@ -274,10 +285,20 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     if (mapper_.follows_pause(frame.stamp)) begin_with_velocity_at(frame.index);
     return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
+  std::vector<int> indices = drive_.frame_indices();
+  indices.erase(indices.begin(), indices.begin() + std::ptrdiff_t(log_.size()));
   FramePipeline frames(
-      source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
+      source_, std::move(indices), track,
       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle_tracking(); }, gate_});
-  while (std::optional<LocatedFrame> located = frames.next()) {
+  const auto next_frame = [&]() -> std::optional<LocatedFrame> {
+    try {
+      return frames.next();
+    } catch (const DriveLostError& error) {
+      lost_ = error;
+      return std::nullopt;
+    }
+  };
+  while (std::optional<LocatedFrame> located = next_frame()) {
     if (const auto* frame = std::get_if<Frame>(&located->result)) views_.add(frame->scan);
     FrameRecord record = map_frame(mapper_, source_, drive_, *located);
     check_calibration(*located, record);
@@ -299,6 +320,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
 
 void MapRun::finish() {
   if (!log_.has_mapped()) {
+    if (lost_) throw *lost_;
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
                      "check that the drive has scans and images for the frames asked for");
   }
@@ -309,6 +331,25 @@ void MapRun::finish() {
   });
   keeper_.finish(mapper_.map(), fresh_rows(/*last=*/true));
   calibration_ = calibration.get();
+}
+
+void MapRun::require_whole_drive() const {
+  if (lost_) {
+    throw InputError(lost_->problem(), lost_->where(),
+                     lost_->remedy() + fmt::format(" and continue with --resume: {} holds the "
+                                                   "frames before",
+                                                   job_.output.string()));
+  }
+  const MapSummary& figures = figures_.summary();
+  const int usable = figures.frames_mapped + figures.frames_held_out,
+            damaged = figures.frames_damaged;
+  if (damaged <= job_.options.max_damaged_share * (usable + damaged)) return;
+  throw InputError(fmt::format("{} of {} frames are damaged (the first: {})", damaged,
+                               usable + damaged, figures.first_damage),
+                   drive_.path.string(),
+                   fmt::format("restore them and map again, or allow a larger share (--set "
+                               "input.max_damaged_share=1): {} holds the other frames",
+                               job_.output.string()));
 }
 
 MapSummary MapRun::summary() const {
@@ -359,6 +400,7 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   MapRun run(source, drive, job, std::move(meta));
   run.map_frames(progress);
   run.finish();
+  run.require_whole_drive();
   MapSummary summary = run.summary();
   if (job.calibrate) summary.calibration = correction;
   summary.calibrated = job.calibrate;

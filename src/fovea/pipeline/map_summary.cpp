@@ -64,6 +64,9 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
       break;
     case FrameStatus::kSkipped:
       ++summary_.frames_skipped[record.note.substr(0, record.note.find(':'))];
+      if (record.has("damaged") && summary_.frames_damaged++ == 0) {
+        summary_.first_damage = record.note;
+      }
       break;
   }
   if (record.has("registration_failed")) ++summary_.registrations_failed;
