@@ -61,22 +61,25 @@ TemporaryFolder* BrokenRecording::scratch_ = nullptr;
 fs::path BrokenRecording::whole_;
 std::vector<RigidMotion> BrokenRecording::T_local_lidar_;
 
-/// The lines of a stamp file, with a minute between the first four and the others.
-std::string paused(const std::string& stamps) {
+/// The lines of a stamp file, with almost an hour between the first four and the others.
+/// @param delay  in units of 10 ms, 0 to 9, added to each
+std::string paused(const std::string& stamps, char delay) {
   std::string result;
   std::istringstream lines(stamps);
   std::string line;
   for (int i = 0; std::getline(lines, line); ++i) {
     if (i >= 4) line.replace(line.find(':') + 1, 2, "59");  // minutes
+    line[line.find('.') + 2] = delay;
     result += line + "\n";
   }
   return result;
 }
 
 TEST_F(BrokenRecording, APauseOfScansAndNavigationKeepsThePoses) {
-  for (const char* sensor : {"velodyne_points", "oxts"}) {
+  // Records lie 10 ms behind the scans: none has the time of a scan.
+  for (const auto& [sensor, delay] : {std::pair("velodyne_points", '0'), std::pair("oxts", '1')}) {
     const fs::path file = drive_ / sensor / "timestamps.txt";
-    write_text(file, paused(read_text(file)));
+    write_text(file, paused(read_text(file), delay));
   }
   ASSERT_EQ(map().exit_code, 0);
   const std::vector<RigidMotion> found = poses(0, kFrames);
