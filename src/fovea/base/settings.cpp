@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 
 namespace fovea {
 namespace {
@@ -263,13 +263,9 @@ SettingsDocument SettingsDocument::from_text(std::string_view text, std::string_
 }
 
 SettingsDocument SettingsDocument::from_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError("the configuration cannot be read", file.string(), "check the path");
-  }
-  return from_text(text.str(), file.string());
+  const std::vector<std::uint8_t> bytes = InputFile(file, kSettingsFile).bytes();
+  const std::string text(bytes.begin(), bytes.end());
+  return from_text(text, file.string());
 }
 
 SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,

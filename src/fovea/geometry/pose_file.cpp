@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <sstream>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 
 namespace fovea {
 namespace {
@@ -65,10 +65,8 @@ std::vector<Pose> of_frames(const std::vector<Pose>& poses, int begin, int end,
 /// Calls f(line, where) for each line that is not blank; InputError if there is none.
 template <class F>
 void for_each_line(const std::filesystem::path& file, F&& f) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError("the poses cannot be read", file.string(), "check the path");
-  }
+  InputFile input(file, kDataFile);
+  std::istream& stream = input.stream();
   int number = 0;
   bool any = false;
   for (std::string line; std::getline(stream, line);) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/output_file.h"
 
 namespace fovea::sqlite {
@@ -23,6 +24,14 @@ std::string immutable_uri(const std::filesystem::path& path) {
     uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return uri + "?immutable=1";
+}
+
+/// SQLite would wait for a pipe without end.
+void require_regular_files(const std::filesystem::path& path) {
+  for (const char* ending : {"", "-wal", "-shm", "-journal"}) {
+    std::filesystem::path file = path;
+    require_regular_if_present(file += ending, kStreamedFile);
+  }
 }
 
 int open_flags(Access access) {
@@ -50,6 +59,7 @@ Database::Database(const std::filesystem::path& path, Access access,
     : access_(access), shown_path_(shown_path), words_(words) {
   // Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
   const std::filesystem::path absolute = std::filesystem::absolute(path);
+  require_regular_files(absolute);
   const std::string name =
       access == Access::kReadImmutable ? immutable_uri(absolute) : absolute.string();
   const int code = sqlite3_open_v2(name.c_str(), &handle_, open_flags(access), nullptr);

@@ -10,13 +10,16 @@
 #include <string_view>
 #include <vector>
 
+#include "fovea/base/input_file.h"
+
 namespace fovea {
 
-/// Whole content of a file; InputError if it cannot be read.
-std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file);
+/// Whole content of a file; InputError if it cannot be read or is too large (InputFile).
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file,
+                                     const FileKind& kind = kDataFile);
 
-/// Has the system fetch a file that will be read, and waits for nothing. Of a file that cannot be
-/// read nothing is said: who reads it will be told.
+/// Makes the system fetch a file that will be read, without waiting. Ignores a file that cannot be
+/// read: its reader reports it.
 void expect_file(const std::filesystem::path& file);
 
 /// Lines of a text file without their line ends (LF or CRLF); InputError if it cannot be read.
