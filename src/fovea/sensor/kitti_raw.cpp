@@ -9,6 +9,8 @@
 namespace fovea {
 namespace {
 
+constexpr TimeNs kSummerTime = TimeNs{2} * 3600 * kNsPerSecond;
+
 /// The folder above the drive's, for "." and "drive/", too.
 std::filesystem::path date_folder(const std::filesystem::path& drive) {
   const auto absolute = std::filesystem::absolute(drive / "").lexically_normal();
@@ -110,5 +112,7 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
   if (options.use_navigation) find_navigation(calibration, info, files);
   return make_frame_source(std::move(info), std::move(files));
 }
+
+TimeNs utc_offset_of(std::string_view kind) { return kind.starts_with("kitti") ? kSummerTime : 0; }
 
 }  // namespace fovea
