@@ -59,10 +59,9 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
 
 std::variant<OxtsRecord, std::string> read_oxts(const std::filesystem::path& file) {
   try {
-    const auto bytes = read_bytes(file);
-    return parse_oxts(std::string(bytes.begin(), bytes.end()));
-  } catch (const InputError&) {
-    return "cannot be read";
+    return parse_oxts(read_text(file));
+  } catch (const InputError& error) {
+    return "cannot be read: " + error.problem();
   }
 }
 
