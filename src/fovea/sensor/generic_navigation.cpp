@@ -25,7 +25,7 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
     const auto q = quaternion_of(rows, row, kQx);
     // The largest of numbers and a NaN may be a number.
     if (!q || !position.allFinite() || position.cwiseAbs().maxCoeff() > kMaxWorldCoordinate) {
-      left_out.add(rows.lines[row]);
+      left_out.add(rows.lines[row], "without a pose");
       continue;
     }
     RigidMotion T_world_body(*q);

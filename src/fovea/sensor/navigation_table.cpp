@@ -1,6 +1,7 @@
 #include "fovea/sensor/navigation_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +32,14 @@ double accuracy_of(const CsvRows& rows, std::size_t row, std::size_t column) {
 }
 
 void LeftOut::note(std::vector<std::string>& notes) const {
-  if (!malformed_.empty()) {
-    notes.push_back(fmt::format("{} lines of {} cannot be used (the first: {})", malformed_.size(),
-                                file_.string(),
-                                *std::min_element(malformed_.begin(), malformed_.end())));
+  if (!lines_.empty()) {
+    std::vector<std::string> reasons;
+    for (const auto& [reason, count] : count_by_reason_) {
+      reasons.push_back(fmt::format("{} {}", count, reason));
+    }
+    notes.push_back(fmt::format("{} lines of {} cannot be used (the first: {}): {}", lines_.size(),
+                                file_.string(), *std::min_element(lines_.begin(), lines_.end()),
+                                fmt::join(reasons, ", ")));
   }
   if (out_of_order_ > 0) {
     notes.push_back(

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,15 +37,22 @@ constexpr std::array<CsvColumn, N + 6> with_velocity(const std::array<CsvColumn,
 class LeftOut {
  public:
   LeftOut(const std::filesystem::path& file, const CsvRows& rows)
-      : file_(file), malformed_(rows.malformed) {}
+      : file_(file), lines_(rows.malformed) {
+    if (!lines_.empty()) count_by_reason_["malformed"] = lines_.size();
+  }
 
-  void add(int line) { malformed_.push_back(line); }
+  /// @param reason  "without an attitude"
+  void add(int line, const std::string& reason) {
+    lines_.push_back(line);
+    ++count_by_reason_[reason];
+  }
   void add_out_of_order(std::size_t count) { out_of_order_ = count; }
   void note(std::vector<std::string>& notes) const;
 
  private:
   std::filesystem::path file_;
-  std::vector<int> malformed_;
+  std::vector<int> lines_;
+  std::map<std::string, std::size_t> count_by_reason_;
   std::size_t out_of_order_ = 0;
 };
 
