@@ -1,5 +1,7 @@
 #include "app/map_arguments.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "fovea/base/errors.h"
@@ -17,6 +19,20 @@ MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
   MapperOptions options;
   apply_config_text(stored->second, map, options);
   return options;
+}
+
+void add_foreign_option(CLI::App& command, bool& foreign) {
+  command.add_flag("--foreign", foreign, "Accept a drive that the map was not made of");
+}
+
+std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameSource& drive,
+                                            bool foreign, bool quiet) {
+  if (foreign) return std::nullopt;
+  DriveMatch match = match_drive(MapReader(map), drive, map);
+  if (!quiet) {
+    for (const std::string& note : match.notes) fmt::print("note: {}\n", note);
+  }
+  return match;
 }
 
 void require_other_file(const std::string& map, const std::string& output) {
