@@ -1,7 +1,5 @@
 #include "app/map_arguments.h"
 
-#include <filesystem>
-
 #include "fovea/base/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
@@ -17,13 +15,6 @@ MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
   MapperOptions options;
   apply_config_text(stored->second, map, options);
   return options;
-}
-
-void require_other_file(const std::string& map, const std::string& output) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(map, output, ignored)) {
-    throw OutputError("a map cannot be written over while it is read", output, "give another name");
-  }
 }
 
 }  // namespace fovea::app

@@ -11,7 +11,4 @@ namespace fovea::app {
 /// The settings that a map was made with; InputError if it does not tell them.
 MapperOptions stored_options(const MapMeta& meta, const std::string& map);
 
-/// OutputError if the output is the file that is read.
-void require_other_file(const std::string& map, const std::string& output);
-
 }  // namespace fovea::app
