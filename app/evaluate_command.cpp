@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
@@ -68,6 +69,12 @@ void run(EvaluateArguments arguments) {
   arguments.truth = arguments.truth || arguments.protocol == kTruth;
   if (arguments.truth) arguments.protocol = kTruth;
   check(arguments);
+  CommandFiles files;
+  files.inputs = {arguments.map, arguments.drive.drive, arguments.poses};
+  if (arguments.calibration != kDrive) files.inputs.push_back(arguments.calibration);
+  files.outputs = {{arguments.json, FileKind::kReport, /*force=*/true},
+                   {arguments.html, FileKind::kHtml, /*force=*/true}};
+  check_files(files);
   const ThreadLimit threads(arguments.threads);
   ProtocolOptions options;
   if (!arguments.truth) options.protocol = parse_protocol(arguments.protocol);

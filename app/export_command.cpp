@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/finite_range.h"
 #include "app/viewer_page.h"
@@ -119,9 +121,26 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
   fmt::print("{} tiles\n", figures.tiles);
 }
 
+CommandFiles files_of(const ExportArguments& arguments, const std::string& format) {
+  CommandFiles files;
+  files.inputs = {arguments.map};
+  const std::map<std::string, FileKind> kinds{{"ply", FileKind::kPly},
+                                              {"pcd", FileKind::kPcd},
+                                              {"las", FileKind::kLas},
+                                              {"glb", FileKind::kGlb},
+                                              {"kitti-poses", FileKind::kPoses}};
+  if (const auto kind = kinds.find(format); kind != kinds.end()) {
+    files.outputs = {{arguments.output, kind->second, arguments.force}};
+  } else {
+    files.folder = {arguments.output};
+  }
+  return files;
+}
+
 void run(ExportArguments& arguments, const CLI::App& command) {
   const std::string format = format_of(arguments);
   check_options(command, arguments, format);
+  check_files(files_of(arguments, format));
   const MapReader map(arguments.map);
   if (format == "kitti-poses") {
     write_kitti_poses(map.frames(), arguments.output, arguments.force);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/standard_output.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/printable.h"
 #include "fovea/base/process_memory.h"
@@ -68,13 +69,20 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fovea::app::prepare_standard_streams();
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    fovea::app::finish_standard_output();
+    return code;
   } catch (const fovea::Error& error) {
     print_error(error.what());
   } catch (const std::bad_alloc&) {
     print_error("out of memory, this machine, map fewer frames or at a lower upsampling rate");
   } catch (const std::exception& error) {
+    if (fovea::app::standard_output_failed()) {
+      print_error(error.what(), ", standard output, check the disk or the program that reads it");
+      return kFailed;
+    }
     print_error(error.what(), ", inside fovea, please report this with the command that caused it");
   }
   return kFailed;

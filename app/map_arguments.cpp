@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "fovea/base/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
@@ -33,13 +31,6 @@ std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameS
     for (const std::string& note : match.notes) fmt::print("note: {}\n", note);
   }
   return match;
-}
-
-void require_other_file(const std::string& map, const std::string& output) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(map, output, ignored)) {
-    throw OutputError("a map cannot be written over while it is read", output, "give another name");
-  }
 }
 
 }  // namespace fovea::app

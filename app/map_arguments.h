@@ -23,7 +23,4 @@ void add_foreign_option(CLI::App& command, bool& foreign);
 std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameSource& drive,
                                             bool foreign, bool quiet = false);
 
-/// OutputError if the output is the file that is read.
-void require_other_file(const std::string& map, const std::string& output);
-
 }  // namespace fovea::app

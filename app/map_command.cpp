@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/finite_range.h"
@@ -18,6 +19,7 @@
 #include "app/reports.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
+#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/process_memory.h"
 #include "fovea/geometry/pose_file.h"
@@ -36,9 +38,13 @@ constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
 /// What --live without a port stands for.
 constexpr const char* kSomePort = "some";
 
+/// Values of --poses that are no file.
+constexpr const char* kRefinedPoses = "refine";
+constexpr const char* kNavigationPoses = "navigation";
+
 struct MapArguments {
   DriveArguments drive;
-  std::string output, preset = "default", config, hold_out, poses = "refine", variant, report;
+  std::string output, preset = "default", config, hold_out, poses = kRefinedPoses, variant, report;
   std::vector<std::string> settings;
   int threads = 0;
   double rate = 0;
@@ -82,6 +88,13 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
   }
 }
 
+/// The error with what to do with the log that the run leaves next to its map, if there is one.
+OutputError with_log_remedy(const OutputError& error, const std::string& map) {
+  const std::string remedy = log_remedy(map);
+  if (log_of_map(map).empty() || error.remedy() == remedy) return error;
+  return {error.problem(), error.where(), error.remedy() + "; " + remedy};
+}
+
 /// Shows the finished map until Ctrl-C.
 void go_on_showing(std::unique_ptr<LiveShow> show, const MapArguments& arguments,
                    const std::stop_token& stop) {
@@ -116,8 +129,20 @@ std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob&
   return show;
 }
 
+CommandFiles files_of(const MapArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.drive.drive, arguments.config};
+  if (arguments.poses != kRefinedPoses && arguments.poses != kNavigationPoses) {
+    files.inputs.push_back(arguments.poses);
+  }
+  files.outputs = {{arguments.output, FileKind::kMap, arguments.force || arguments.resume},
+                   {arguments.report, FileKind::kReport, /*force=*/true}};
+  return files;
+}
+
 void run(const MapArguments& arguments) {
   const InterruptGuard interrupt;
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   MapJob job;
   job.output = arguments.output;
@@ -134,9 +159,9 @@ void run(const MapArguments& arguments) {
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
   const std::shared_ptr<const FrameSource> source = arguments.drive.open();
-  if (arguments.poses == "navigation") {
+  if (arguments.poses == kNavigationPoses) {
     job.pose_source = PoseSource::kNavigation;
-  } else if (arguments.poses != "refine") {
+  } else if (arguments.poses != kRefinedPoses) {
     job.pose_source = PoseSource::kGiven;
     const DriveInfo& info = source->info();
     job.given_poses = read_poses(arguments.poses, info.begin, info.end);
@@ -150,7 +175,11 @@ void run(const MapArguments& arguments) {
   job.observer = show.get();
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
-    return map_drive(*source, job, std::ref(bar));
+    try {
+      return map_drive(*source, job, std::ref(bar));
+    } catch (const OutputError& error) {
+      throw with_log_remedy(error, arguments.output);
+    }
   }();
   if (report) write_json(*report, {{"map", to_json(summary)}});
   if (!arguments.quiet) print_summary(summary, arguments);

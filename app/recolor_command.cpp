@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
@@ -42,6 +43,8 @@ MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta)
 }
 
 void run(RecolorArguments arguments) {
+  check_files({{arguments.map, arguments.drive.drive, arguments.config},
+               {{arguments.output, FileKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
   const MapReader map(arguments.map);
   const MapMeta meta = map.meta();
@@ -49,7 +52,6 @@ void run(RecolorArguments arguments) {
   job.output = arguments.output;
   job.options = options_of(arguments, meta);
   job.force = arguments.force;
-  require_other_file(arguments.map, arguments.output);
   if (arguments.drive.cameras.empty() && meta.contains(meta_key::kCameras)) {
     arguments.drive.cameras = meta.at(meta_key::kCameras);
   }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/finite_range.h"
@@ -139,6 +140,17 @@ void check_options(const CLI::App& command) {
   }
 }
 
+CommandFiles files_of(const RenderArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.map, arguments.drive, arguments.path.poses, arguments.camera};
+  if (arguments.path.poses.empty()) {
+    files.outputs = {{arguments.output, FileKind::kPng, arguments.force}};
+  } else {
+    files.folder = {arguments.output};
+  }
+  return files;
+}
+
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
   ScoredMap map = load_scored_map(arguments.map, {});
@@ -201,6 +213,7 @@ void add_render_command(CLI::App& app) {
   command->add_flag("--quiet", path.quiet, "Say nothing but errors");
   command->callback([arguments, command] {
     check_options(*command);
+    check_files(files_of(*arguments));
     RenderDriveArguments& drive = arguments->path;
     if (drive.poses.empty()) return run(*arguments);
     drive.map = arguments->map;

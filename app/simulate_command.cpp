@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
@@ -37,6 +38,7 @@ SimulationOptions resolve_options(const SimulateArguments& arguments) {
 
 void run(const SimulateArguments& arguments) {
   const InterruptGuard interrupt;
+  check_files({{arguments.config}, {}, {arguments.output}});
   const ThreadLimit threads(arguments.threads);
   const SimulationOptions options = resolve_options(arguments);
   const std::filesystem::path drive = [&] {

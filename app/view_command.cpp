@@ -57,6 +57,8 @@ void run(const ViewArguments& arguments) {
   }
   if (!arguments.no_browser) open_browser(show->url());
   wait_for(interrupt.token());
+  show.reset();
+  fold_log(arguments.map);  // of a map whose writer ended in the meantime
 }
 
 }  // namespace

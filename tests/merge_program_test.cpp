@@ -55,7 +55,7 @@ TEST_F(MergeProgram, TwoPartsOfADriveAreOneMapAgain) {
   EXPECT_EQ(run_fovea(merge + " --force --quiet").out, "");
   const std::string over =
       fmt::format("merge '{0}' '{1}' -o '{1}' --force", path("a.fovea"), path("b.fovea"));
-  EXPECT_THAT(run_fovea(over).err, HasSubstr("written over while it is read"));
+  EXPECT_THAT(run_fovea(over).err, HasSubstr("a file that the command reads"));
   const ProgramRun resume =
       run_fovea(fmt::format("map '{}' -o '{}' --cameras 2 --frames 0:22 --hold-out 8:4 --resume",
                             drive.string(), path("c.fovea")));

@@ -398,8 +398,11 @@ TEST_F(Program, BadOutputs) {
   write_text(output(), "something dear");
   const ProgramRun refused = map(drive_);
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_THAT(refused.err, HasSubstr("of another kind"));
+  EXPECT_EQ(map(drive_, "--force").exit_code, 1);
   EXPECT_EQ(read_text(output()), "something dear");
+  write_text(output(), "");
+  EXPECT_THAT(map(drive_).err, HasSubstr("--force"));
   EXPECT_EQ(map(drive_, "--force").exit_code, 0);
 }
 

@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
@@ -79,6 +81,31 @@ TEST_F(MapShowTest, EveryTileOfTheTilesetIsThere) {
   EXPECT_GE(tiles, 5u);
   EXPECT_EQ(get_json("status.json")["state"], "ready");
   EXPECT_EQ(get("tiles/r9.glb").status, 404);
+}
+
+TEST_F(MapShowTest, TheWriterOfAMapThatIsShownEndsItAsOneFile) {
+  const TileMap tiles = sample_tile_map();
+  const auto writer = MapWriter::create(folder_ / "a.fovea", false);
+  put_sample_map(*writer, tiles);
+  writer->commit();
+  show();
+  const auto statuses = [&] {
+    std::set<int> seen;
+    const std::function<void(const json&)> visit = [&](const json& tile) {
+      seen.insert(get("tiles/" + std::string(tile["content"]["uri"])).status);
+      if (!tile.contains("children")) return;
+      for (const json& child : tile["children"]) visit(child);
+    };
+    visit(get_json("tiles/tileset.json")["root"]);
+    return seen;
+  };
+  EXPECT_THAT(statuses(), ElementsAre(200));
+  writer->remove_tile({0, tiles.submaps()[0].tiles.begin()->first});
+  writer->finish(std::chrono::milliseconds(50));
+  EXPECT_TRUE(log_of_map(folder_ / "a.fovea").empty());
+  std::filesystem::copy_file(folder_ / "a.fovea", folder_ / "alone.fovea");
+  EXPECT_EQ(MapReader(folder_ / "alone.fovea").check(), MapReader(folder_ / "a.fovea").check());
+  EXPECT_THAT(statuses(), ElementsAre(200)) << "a tile that is gone is shown as empty";
 }
 
 TEST_F(MapShowTest, ImagesOfADrive) {
