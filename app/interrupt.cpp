@@ -84,9 +84,7 @@ std::stop_token InterruptGuard::stop_gently() {
   return stop_.get_token();
 }
 
-int InterruptGuard::exit_code(int code) const {
-  return signal_ != 0 ? kSignalled + signal_ : code;
-}
+int InterruptGuard::exit_code(int code) const { return signal_ != 0 ? kSignalled + signal_ : code; }
 
 void InterruptGuard::wait_for_signals(const std::stop_token& done) {
   constexpr timespec kTimeout{0, 100'000'000};

@@ -9,7 +9,6 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "fovea/base/errors.h"
@@ -176,7 +175,6 @@ void require_poses(const LocalizedDrive& localized, const LocalizeArguments& arg
 }
 
 void run(LocalizeArguments arguments) {
-  const InterruptGuard interrupt;
   const ThreadLimit threads(arguments.threads);
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
   std::optional<OutputFile> report;
@@ -188,17 +186,12 @@ void run(LocalizeArguments arguments) {
   LocalizationJob job;
   job.guess = find_guess(arguments, *drive, map.meta());
   job.only = parse_frame_set(arguments.only, "--only");
-  job.stop = interrupt.token();
   std::optional<Truth> truth;
   if (!arguments.truth.empty()) truth = open_truth(arguments, *drive, map);
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);
     return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
-  if (job.stop.stop_requested()) {
-    throw Error("the localisation was interrupted", arguments.output,
-                "give the same command again");
-  }
   require_poses(localized, arguments);
   if (std::filesystem::path(arguments.output).extension() == ".csv") {
     write_pose_table(localized.frames, output.stream());

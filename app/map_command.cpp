@@ -13,7 +13,6 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/finite_range.h"
-#include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/view_arguments.h"
@@ -77,8 +76,16 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
                summary.loops_closed);
   }
   for (const std::string& line : calibration_lines(summary)) fmt::print("{}\n", line);
+}
+
+/// What an interrupted run keeps. It is an error line of a quiet run.
+void print_interruption(const MapSummary& summary, const MapArguments& arguments) {
+  std::FILE* const out = arguments.quiet ? stderr : stdout;
   if (summary.interrupted) {
-    fmt::print("interrupted: what was mapped is saved; the same command with --resume goes on\n");
+    fmt::print(out, "interrupted: {} keeps the frames mapped so far, --resume continues\n",
+               arguments.output);
+  } else {
+    fmt::print(out, "interrupted: {} is whole\n", arguments.output);
   }
 }
 
@@ -116,8 +123,7 @@ std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob&
   return show;
 }
 
-void run(const MapArguments& arguments) {
-  const InterruptGuard interrupt;
+void run(const MapArguments& arguments, Session& session) {
   const ThreadLimit threads(arguments.threads);
   MapJob job;
   job.output = arguments.output;
@@ -129,7 +135,6 @@ void run(const MapArguments& arguments) {
   job.calibrate = arguments.calibrate;
   job.force = arguments.force;
   job.resume = arguments.resume;
-  job.stop = interrupt.token();
 
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
@@ -146,6 +151,7 @@ void run(const MapArguments& arguments) {
   }
   // Played live, the first frames are as much in a hurry as any.
   if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
+  job.stop = session.interrupt.stop_gently();
   std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
   job.observer = show.get();
   const MapSummary summary = [&] {
@@ -154,12 +160,13 @@ void run(const MapArguments& arguments) {
   }();
   if (report) write_json(*report, {{"map", to_json(summary)}});
   if (!arguments.quiet) print_summary(summary, arguments);
-  if (show) go_on_showing(std::move(show), arguments, interrupt.token());
+  if (job.stop.stop_requested()) print_interruption(summary, arguments);
+  if (show) go_on_showing(std::move(show), arguments, job.stop);
 }
 
 }  // namespace
 
-void add_map_command(CLI::App& app) {
+void add_map_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
   command
@@ -228,7 +235,7 @@ void add_map_command(CLI::App& app) {
         return is_port ? std::string() : port + " is no port: 0 to 65535";
       });
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session); });
 }
 
 }  // namespace fovea::app

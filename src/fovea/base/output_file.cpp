@@ -90,9 +90,7 @@ void publish_file(const fs::path& partial, const fs::path& path, UnfinishedOutpu
   sync_folder_of(path);
 }
 
-void sync_folder_of(const fs::path& path) {
-  sync_to_disk(folder_of(path), O_RDONLY | O_DIRECTORY);
-}
+void sync_folder_of(const fs::path& path) { sync_to_disk(folder_of(path), O_RDONLY | O_DIRECTORY); }
 
 /// A file descriptor behind a buffer; std::filebuf would lose why a write failed.
 class OutputFile::Buffer : public std::streambuf {

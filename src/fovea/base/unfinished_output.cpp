@@ -66,6 +66,11 @@ OutputNames discard_unfinished_outputs() {
     if (entry.finished) continue;
     for (const fs::path& file : entry.files) remove_with_contents(file);
   }
+  // Scratch outputs are finished, too, and then removed.
+  std::erase_if(names.finished, [](const fs::path& path) {
+    std::error_code ignored;
+    return !fs::exists(path, ignored);
+  });
   return names;
 }
 

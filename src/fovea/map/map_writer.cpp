@@ -83,7 +83,8 @@ class SqliteMapWriter : public MapWriter {
   /// A new map, which grows in PATH.partial until its first commit.
   SqliteMapWriter(const fs::path& path, bool force)
       : path_(path), target_(check_output_path(path, force)), force_(force) {
-    unfinished_.emplace(path_, std::vector{partial_path(target_)}, [this] { start_partial_file(); });
+    unfinished_.emplace(path_, std::vector{partial_path(target_)},
+                        [this] { start_partial_file(); });
   }
 
   /// An existing map.
