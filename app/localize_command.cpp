@@ -10,7 +10,6 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "fovea/base/errors.h"
@@ -193,7 +192,6 @@ CommandFiles files_of(const LocalizeArguments& arguments) {
 }
 
 void run(LocalizeArguments arguments) {
-  const InterruptGuard interrupt;
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
@@ -206,17 +204,12 @@ void run(LocalizeArguments arguments) {
   LocalizationJob job;
   job.guess = find_guess(arguments, *drive, map.meta());
   job.only = parse_frame_set(arguments.only, "--only");
-  job.stop = interrupt.token();
   std::optional<Truth> truth;
   if (!arguments.truth.empty()) truth = open_truth(arguments, *drive, map);
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);
     return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
-  if (job.stop.stop_requested()) {
-    throw Error("the localisation was interrupted", arguments.output,
-                "give the same command again");
-  }
   require_poses(localized, arguments);
   if (writes_table(arguments)) {
     write_pose_table(localized.frames, output.stream());

@@ -14,7 +14,6 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/finite_range.h"
-#include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/view_arguments.h"
@@ -83,8 +82,16 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
                summary.loops_closed);
   }
   for (const std::string& line : calibration_lines(summary)) fmt::print("{}\n", line);
+}
+
+/// What an interrupted run keeps. It is an error line of a quiet run.
+void print_interruption(const MapSummary& summary, const MapArguments& arguments) {
+  std::FILE* const out = arguments.quiet ? stderr : stdout;
   if (summary.interrupted) {
-    fmt::print("interrupted: what was mapped is saved; the same command with --resume goes on\n");
+    fmt::print(out, "interrupted: {} keeps the frames mapped so far, --resume continues\n",
+               arguments.output);
+  } else {
+    fmt::print(out, "interrupted: {} is whole\n", arguments.output);
   }
 }
 
@@ -140,8 +147,7 @@ CommandFiles files_of(const MapArguments& arguments) {
   return files;
 }
 
-void run(const MapArguments& arguments) {
-  const InterruptGuard interrupt;
+void run(const MapArguments& arguments, Session& session) {
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   MapJob job;
@@ -154,7 +160,6 @@ void run(const MapArguments& arguments) {
   job.calibrate = arguments.calibrate;
   job.force = arguments.force;
   job.resume = arguments.resume;
-  job.stop = interrupt.token();
 
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
@@ -171,6 +176,7 @@ void run(const MapArguments& arguments) {
   }
   // Played live, the first frames are as much in a hurry as any.
   if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
+  job.stop = session.interrupt.stop_gently();
   std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
   job.observer = show.get();
   const MapSummary summary = [&] {
@@ -183,12 +189,13 @@ void run(const MapArguments& arguments) {
   }();
   if (report) write_json(*report, {{"map", to_json(summary)}});
   if (!arguments.quiet) print_summary(summary, arguments);
-  if (show) go_on_showing(std::move(show), arguments, interrupt.token());
+  if (job.stop.stop_requested()) print_interruption(summary, arguments);
+  if (show) go_on_showing(std::move(show), arguments, job.stop);
 }
 
 }  // namespace
 
-void add_map_command(CLI::App& app) {
+void add_map_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
   command
@@ -257,7 +264,7 @@ void add_map_command(CLI::App& app) {
         return is_port ? std::string() : port + " is no port: 0 to 65535";
       });
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session); });
 }
 
 }  // namespace fovea::app

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/map_arguments.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
@@ -130,7 +129,6 @@ std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) 
 }  // namespace
 
 void render_drive_command(const RenderDriveArguments& arguments) {
-  const InterruptGuard interrupt;
   const ThreadLimit threads(arguments.threads);
   check_drive(arguments);
   RenderJob job;
@@ -144,14 +142,11 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   job.T_local_lidar = read_poses(arguments.poses);
   job.period = from_seconds(1 / arguments.rate);
   job.reach = arguments.reach;
-  job.stop = interrupt.token();
   const MapReader map(arguments.map);
   const auto figures = [&] {
     ProgressBar bar(arguments.quiet);
     return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
-  if (!figures)
-    throw Error("the rendering was interrupted", arguments.output, "give the same command again");
   if (arguments.quiet) return;
   fmt::print("{}: {} frames", arguments.output, figures->frames);
   if (!job.cameras.empty()) {

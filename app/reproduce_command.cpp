@@ -10,7 +10,6 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/reproduce/results_page.h"
@@ -93,7 +92,6 @@ CommandFiles files_of(const ReproduceArguments& arguments) {
 }
 
 void run(const ReproduceArguments& arguments) {
-  const InterruptGuard interrupt;
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   const std::vector<std::string> rows = wanted_rows(arguments);
@@ -123,11 +121,7 @@ void run(const ReproduceArguments& arguments) {
       // One row's pictures are enough to look at.
       const std::filesystem::path page =
           row == "default" ? output / report_file(drive.name) : std::filesystem::path();
-      nlohmann::ordered_json result = run_row(*source, row, folder, page, interrupt.token());
-      if (interrupt.token().stop_requested()) {
-        fmt::print("interrupted: the rows that are done are kept; the same command goes on\n");
-        return;
-      }
+      nlohmann::ordered_json result = run_row(*source, row, folder, page);
       if (!result.is_null()) drive.rows.push_back(std::move(result));
       bar.draw(++done, total, row + "  ");
     }

@@ -8,7 +8,6 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/map_arguments.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
@@ -44,8 +43,7 @@ std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
   return std::make_shared<const DriveImages>(std::move(source));
 }
 
-void run(const ViewArguments& arguments) {
-  const InterruptGuard interrupt;
+void run(const ViewArguments& arguments, Session& session) {
   const auto images = open_images(arguments);
   std::optional<MapShow> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
@@ -56,14 +54,14 @@ void run(const ViewArguments& arguments) {
     std::fflush(stdout);
   }
   if (!arguments.no_browser) open_browser(show->url());
-  wait_for(interrupt.token());
+  wait_for(session.interrupt.stop_gently());
   show.reset();
   fold_log(arguments.map);  // of a map whose writer ended in the meantime
 }
 
 }  // namespace
 
-void add_view_command(CLI::App& app) {
+void add_view_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ViewArguments>();
   arguments->server.threads = 2;
   CLI::App* command = app.add_subcommand("view", "Show a map in a browser");
@@ -88,7 +86,7 @@ void add_view_command(CLI::App& app) {
   add_foreign_option(*command, arguments->foreign);
   command->add_flag("--no-browser", arguments->no_browser, "Open no browser");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session); });
 }
 
 }  // namespace fovea::app

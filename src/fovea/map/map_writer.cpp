@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
+#include "fovea/base/unfinished_output.h"
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
@@ -99,7 +101,8 @@ class SqliteMapWriter : public MapWriter {
   /// A new map, which grows in PATH.partial until its first commit.
   SqliteMapWriter(const fs::path& path, bool force)
       : path_(path), target_(check_output_path(path, force)), force_(force) {
-    start_partial_file();
+    unfinished_.emplace(path_, std::vector{partial_path(target_)},
+                        [this] { start_partial_file(); });
   }
 
   /// An existing map.
@@ -208,6 +211,7 @@ class SqliteMapWriter : public MapWriter {
   bool force_;
   bool published_ = false;
   bool ended_ = false;  // by finish() or by an error
+  std::optional<UnfinishedOutput> unfinished_;  // of a new map
   TileEncoder encoder_;
   std::unique_ptr<Database> database_;
   std::unique_ptr<Puts> puts_;
@@ -252,7 +256,7 @@ void SqliteMapWriter::publish() {
   // Another program may have made the file meanwhile.
   check_output_path(path_, force_);
   settle_old_map(target_);
-  publish_file(partial_path(target_), target_);
+  publish_file(partial_path(target_), target_, *unfinished_);
   published_ = true;
   puts_.reset();
   database_.reset();

@@ -107,6 +107,13 @@ FrameRecord map_frame(Mapper& mapper, const FrameSource& source, const DriveInfo
   return record;
 }
 
+/// Error if the run was stopped, for steps before there is a map to keep.
+void require_no_stop(const MapJob& job) {
+  if (!job.stop.stop_requested()) return;
+  throw Error("interrupted before the first frame was mapped", job.output.string(),
+              "give the same command again");
+}
+
 bool has_sweep_motion(const DriveInfo& drive, const MapJob& job) {
   return job.options.compensate_motion && !drive.sweep_compensated;
 }
@@ -116,6 +123,7 @@ std::vector<CameraCalibration> calibrate(const FrameSource& source, const MapJob
   calibration.compensate = has_sweep_motion(source.info(), job);
   calibration.usable = [&](int index) { return !job.hold_out.contains(index); };
   calibration.motion = [&](int index) { return known_motion(source, job.given_poses, index); };
+  calibration.stop = job.stop;
   return calibrate(source, calibration);
 }
 
@@ -295,6 +303,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
 }
 
 void MapRun::finish() {
+  if (!log_.has_mapped() || !views_.passed()) require_no_stop(job_);
   if (!log_.has_mapped()) {
     if (lost_) throw *lost_;
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
@@ -393,6 +402,7 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
     }
   }
   const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
+  require_no_stop(job);
   MapRun run(source, drive, job, std::move(meta));
   run.map_frames(progress);
   run.finish();
