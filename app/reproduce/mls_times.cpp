@@ -12,7 +12,7 @@
 namespace fovea::app {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 MlsRow& row_of(MlsTimes& times, const std::string& method) {
   const auto found = std::find_if(times.rows.begin(), times.rows.end(),

@@ -10,12 +10,12 @@
 #include "fovea/base/path_name.h"
 #include "fovea/base/version.h"
 #include "fovea/map/map_keeper.h"
-#include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/self_calibration.h"
@@ -66,30 +66,6 @@ MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   return meta;
 }
 
-/// InputError if a map was made with other settings.
-void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta& meta) {
-  const MapMeta before = reader.meta();
-  if (before.contains(meta_key::kCrop)) {
-    throw InputError("the map is a part of another one", job.output.string(),
-                     "resume the whole map, or start a new one");
-  }
-  if (before.contains(meta_key::kRepair)) {
-    throw InputError("the map was repaired and lacks parts", job.output.string(),
-                     "start a new map");
-  }
-  if (!merged_drives(reader).empty()) {
-    throw InputError("the map is of several drives", job.output.string(),
-                     "resume the map of one drive, and merge it when it is whole");
-  }
-  for (const auto& [key, value] : meta) {
-    const auto found = before.find(key);
-    if (found == before.end() || found->second != value) {
-      throw InputError(fmt::format("the map was made with another '{}'", key), job.output.string(),
-                       "resume with the drive and settings of the first run, or start a new map");
-    }
-  }
-}
-
 bool is_damage(SkipReason reason) {
   return reason == SkipReason::kDamagedScan || reason == SkipReason::kDamagedImage;
 }
@@ -131,6 +107,13 @@ FrameRecord map_frame(Mapper& mapper, const FrameSource& source, const DriveInfo
   return record;
 }
 
+/// Error if the run was stopped, for steps before there is a map to keep.
+void require_no_stop(const MapJob& job) {
+  if (!job.stop.stop_requested()) return;
+  throw Error("interrupted before the first frame was mapped", job.output.string(),
+              "give the same command again");
+}
+
 bool has_sweep_motion(const DriveInfo& drive, const MapJob& job) {
   return job.options.compensate_motion && !drive.sweep_compensated;
 }
@@ -140,6 +123,7 @@ std::vector<CameraCalibration> calibrate(const FrameSource& source, const MapJob
   calibration.compensate = has_sweep_motion(source.info(), job);
   calibration.usable = [&](int index) { return !job.hold_out.contains(index); };
   calibration.motion = [&](int index) { return known_motion(source, job.given_poses, index); };
+  calibration.stop = job.stop;
   return calibrate(source, calibration);
 }
 
@@ -241,8 +225,8 @@ void MapRun::begin_with_velocity_at(int index) {
 
 void MapRun::take_up_earlier_run() {
   const MapReader reader(job_.output);
-  require_same_run(reader, job_, meta_);
-  require_same_drive(reader, drive_records_.front(), job_.output);
+  require_same_run(reader, meta_, drive_records_.front(), job_.output);
+  keep_names(reader, meta_, drive_records_.front());
   const std::vector<FrameRecord> records = reader.frames();
   for (const FrameRecord& record : records) {
     log_.add_stored(record);
@@ -319,6 +303,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
 }
 
 void MapRun::finish() {
+  if (!log_.has_mapped() || !views_.passed()) require_no_stop(job_);
   if (!log_.has_mapped()) {
     if (lost_) throw *lost_;
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
@@ -374,6 +359,21 @@ MapSummary MapRun::summary() const {
   return summary;
 }
 
+/// The summary of a map to resume that is complete; nothing if frames are missing.
+std::optional<MapSummary> complete_run(const FrameSource& source, const DriveInfo& drive,
+                                       const MapJob& job, const MapMeta& meta) {
+  const MapReader reader(job.output);
+  // MapWriter refuses an older format.
+  if (reader.format_version() != kMapFormatVersion || !is_complete(reader.meta())) return {};
+  require_same_run(reader, meta, drive_record(source), job.output);
+  DriveFigures figures(drive, job.rate);
+  for (const FrameRecord& record : reader.frames()) figures.add(record, /*is_new=*/false);
+  MapSummary summary = figures.summary();
+  summary.points = reader.size();
+  summary.notes.push_back("the map is complete: there is nothing to resume");
+  return summary;
+}
+
 /// InputError if the drive lacks a motion or a camera that the job needs.
 void require_sources(const DriveInfo& drive, const MapJob& job) {
   if (job.pose_source == PoseSource::kNavigation && !drive.navigation) {
@@ -396,7 +396,13 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   DriveInfo drive = info_with_lidars(source);
   require_sources(drive, job);
   MapMeta meta = describe(drive, job);
+  if (job.resume) {
+    if (std::optional<MapSummary> complete = complete_run(source, drive, job, meta)) {
+      return *std::move(complete);
+    }
+  }
   const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
+  require_no_stop(job);
   MapRun run(source, drive, job, std::move(meta));
   run.map_frames(progress);
   run.finish();

@@ -45,6 +45,7 @@ std::vector<std::vector<EdgeProfile>> gather(const FrameSource& source, const Ca
   using ByCamera = std::vector<std::vector<EdgeProfile>>;
   std::vector<ByCamera> by_frame(frames.size(), ByCamera(cameras.size()));
   parallel_for(frames.size(), 1, [&](std::size_t i) {
+    if (job.stop.stop_requested()) return;
     const std::optional<FrameMotion> motion = job.motion(frames[i]);
     if (!motion) return;
     const FrameResult loaded = source.load(frames[i]);

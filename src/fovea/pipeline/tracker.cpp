@@ -174,7 +174,9 @@ PointCloud Tracker::compensated(const PointCloud& scan,
                                 const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = scan;
   if (motion && compensates()) compensate_sweep(scan_lidar, *motion, drive_.sweep);
-  scan_lidar.time.clear();  // of no use to any stage
+  // No stage uses these. Interpolated points have neither.
+  scan_lidar.time.clear();
+  scan_lidar.ring.clear();
   return scan_lidar;
 }
 
