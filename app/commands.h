@@ -4,9 +4,11 @@
 
 #include <CLI/App.hpp>
 
+#include "app/session.h"
+
 namespace fovea::app {
 
-void add_map_command(CLI::App& app);
+void add_map_command(CLI::App& app, Session& session);
 void add_info_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
@@ -21,6 +23,6 @@ void add_reproduce_command(CLI::App& app);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
-void add_view_command(CLI::App& app);
+void add_view_command(CLI::App& app, Session& session);
 
 }  // namespace fovea::app

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
@@ -52,7 +52,7 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
 }
 
 void run(const ConvertArguments& arguments) {
-  const InterruptGuard interrupt;
+  check_files({arguments.bags, {}, {arguments.output}});
   ConvertOptions options = arguments.options;
   options.cameras = parse_camera_topics(arguments.cameras);
   options.poses = kSources.at(arguments.poses);
@@ -61,13 +61,9 @@ void run(const ConvertArguments& arguments) {
     ProgressBar bar(arguments.quiet, "messages");
     return convert_bags(bags, arguments.output, arguments.force, options, [&](int done, int total) {
       if (total > 0) bar.draw(done, total);
-      return !interrupt.token().stop_requested();
+      return true;
     });
   }();
-  if (figures.stopped) {
-    throw Error("the conversion was interrupted", arguments.output,
-                "start it again: nothing of it was kept");
-  }
   if (arguments.quiet) return;
   for (const std::string& note : figures.notes) print_out("{}\n", note);
   print_out("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,

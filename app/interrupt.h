@@ -1,14 +1,15 @@
-// Ctrl-C ends a run cleanly: the frame at hand is finished and what was mapped is committed.
+// Ctrl-C, SIGTERM and SIGHUP end every command: nothing half-written stays.
 #pragma once
 
+#include <atomic>
 #include <csignal>
 #include <stop_token>
 #include <thread>
 
 namespace fovea::app {
 
-/// Turns SIGINT and SIGTERM into a stop request for as long as it lives; a second one ends the
-/// program at once. To be made before other threads start, which inherit its signal mask.
+/// While it lives, SIGINT, SIGTERM or SIGHUP removes unfinished outputs, reports this and ends the
+/// program with 128 + signal. To be made before other threads start, which inherit its signal mask.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -16,11 +17,20 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  std::stop_token token() const { return interrupted_.get_token(); }
+  /// From now on the first signal only requests a stop, for a command that then ends by itself. A
+  /// second signal ends the program.
+  std::stop_token stop_gently();
+
+  /// What the program exits with: `code`, or 128 + signal after a gentle stop.
+  int exit_code(int code) const;
 
  private:
+  void wait_for_signals(const std::stop_token& done);
+
   sigset_t signals_{}, mask_before_{};
-  std::stop_source interrupted_;
+  std::atomic<bool> gently_ = false;
+  std::atomic<int> signal_ = 0;  ///< that requested a stop
+  std::stop_source stop_;
   std::jthread waiter_;
 };
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -176,8 +176,24 @@ void require_poses(const LocalizedDrive& localized, const LocalizeArguments& arg
       "give a map of the place, or a better --guess");
 }
 
+bool writes_table(const LocalizeArguments& arguments) {
+  return std::filesystem::path(arguments.output).extension() == ".csv";
+}
+
+CommandFiles files_of(const LocalizeArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.drive.drive, arguments.map, arguments.truth};
+  if (arguments.guess != kNavigation && arguments.guess != kFirst) {
+    files.inputs.push_back(arguments.guess);
+  }
+  const FileKind kind = writes_table(arguments) ? FileKind::kPoseTable : FileKind::kPoses;
+  files.outputs = {{arguments.output, kind, arguments.force},
+                   {arguments.report, FileKind::kReport, /*force=*/true}};
+  return files;
+}
+
 void run(LocalizeArguments arguments) {
-  const InterruptGuard interrupt;
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
   std::optional<OutputFile> report;
@@ -189,19 +205,14 @@ void run(LocalizeArguments arguments) {
   LocalizationJob job;
   job.guess = find_guess(arguments, *drive, map.meta());
   job.only = parse_frame_set(arguments.only, "--only");
-  job.stop = interrupt.token();
   std::optional<Truth> truth;
   if (!arguments.truth.empty()) truth = open_truth(arguments, *drive, map);
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);
     return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
-  if (job.stop.stop_requested()) {
-    throw Error("the localisation was interrupted", arguments.output,
-                "give the same command again");
-  }
   require_poses(localized, arguments);
-  if (std::filesystem::path(arguments.output).extension() == ".csv") {
+  if (writes_table(arguments)) {
     write_pose_table(localized.frames, output.stream());
   } else {
     write_pose_lines(localized.frames, drive->info().begin, drive->info().end, output.stream());

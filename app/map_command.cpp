@@ -10,15 +10,16 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/finite_range.h"
-#include "app/interrupt.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
+#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/process_memory.h"
 #include "fovea/geometry/pose_file.h"
@@ -37,9 +38,13 @@ constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
 /// What --live without a port stands for.
 constexpr const char* kSomePort = "some";
 
+/// Values of --poses that are no file.
+constexpr const char* kRefinedPoses = "refine";
+constexpr const char* kNavigationPoses = "navigation";
+
 struct MapArguments {
   DriveArguments drive;
-  std::string output, preset = "default", config, hold_out, poses = "refine", variant, report;
+  std::string output, preset = "default", config, hold_out, poses = kRefinedPoses, variant, report;
   std::vector<std::string> settings;
   int threads = 0;
   double rate = 0;
@@ -78,9 +83,24 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
               summary.loops_closed);
   }
   for (const std::string& line : calibration_lines(summary)) print_out("{}\n", line);
+}
+
+/// What an interrupted run keeps. It is an error line of a quiet run.
+void print_interruption(const MapSummary& summary, const MapArguments& arguments) {
+  std::FILE* const out = arguments.quiet ? stderr : stdout;
   if (summary.interrupted) {
-    print_out("interrupted: what was mapped is saved; the same command with --resume goes on\n");
+    print_to(out, "interrupted: {} keeps the frames mapped so far, --resume continues\n",
+             arguments.output);
+  } else {
+    print_to(out, "interrupted: {} is whole\n", arguments.output);
   }
+}
+
+/// The error with what to do with the log that the run leaves next to its map, if there is one.
+OutputError with_log_remedy(const OutputError& error, const std::string& map) {
+  const std::string remedy = log_remedy(map);
+  if (log_of_map(map).empty() || error.remedy() == remedy) return error;
+  return {error.problem(), error.where(), error.remedy() + "; " + remedy};
 }
 
 /// Shows the finished map until Ctrl-C.
@@ -117,8 +137,19 @@ std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob&
   return show;
 }
 
-void run(const MapArguments& arguments) {
-  const InterruptGuard interrupt;
+CommandFiles files_of(const MapArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.drive.drive, arguments.config};
+  if (arguments.poses != kRefinedPoses && arguments.poses != kNavigationPoses) {
+    files.inputs.push_back(arguments.poses);
+  }
+  files.outputs = {{arguments.output, FileKind::kMap, arguments.force || arguments.resume},
+                   {arguments.report, FileKind::kReport, /*force=*/true}};
+  return files;
+}
+
+void run(const MapArguments& arguments, Session& session) {
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   MapJob job;
   job.output = arguments.output;
@@ -130,14 +161,13 @@ void run(const MapArguments& arguments) {
   job.calibrate = arguments.calibrate;
   job.force = arguments.force;
   job.resume = arguments.resume;
-  job.stop = interrupt.token();
 
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
   const std::shared_ptr<const FrameSource> source = arguments.drive.open();
-  if (arguments.poses == "navigation") {
+  if (arguments.poses == kNavigationPoses) {
     job.pose_source = PoseSource::kNavigation;
-  } else if (arguments.poses != "refine") {
+  } else if (arguments.poses != kRefinedPoses) {
     job.pose_source = PoseSource::kGiven;
     const DriveInfo& info = source->info();
     job.given_poses = read_poses(arguments.poses, info.begin, info.end);
@@ -147,20 +177,26 @@ void run(const MapArguments& arguments) {
   }
   // Played live, the first frames are as much in a hurry as any.
   if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
+  job.stop = session.interrupt.stop_gently();
   std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
   job.observer = show.get();
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
-    return map_drive(*source, job, std::ref(bar));
+    try {
+      return map_drive(*source, job, std::ref(bar));
+    } catch (const OutputError& error) {
+      throw with_log_remedy(error, arguments.output);
+    }
   }();
   if (report) write_json(*report, {{"map", to_json(summary)}});
   if (!arguments.quiet) print_summary(summary, arguments);
-  if (show) go_on_showing(std::move(show), arguments, interrupt.token());
+  if (job.stop.stop_requested()) print_interruption(summary, arguments);
+  if (show) go_on_showing(std::move(show), arguments, job.stop);
 }
 
 }  // namespace
 
-void add_map_command(CLI::App& app) {
+void add_map_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
   command
@@ -229,7 +265,7 @@ void add_map_command(CLI::App& app) {
         return is_port ? std::string() : port + " is no port: 0 to 65535";
       });
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session); });
 }
 
 }  // namespace fovea::app

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/interrupt.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -79,8 +79,21 @@ std::filesystem::path make_folder(const std::filesystem::path& folder) {
   return folder;
 }
 
+CommandFiles files_of(const ReproduceArguments& arguments) {
+  CommandFiles files;
+  files.inputs = arguments.drives;
+  files.inputs.push_back(arguments.mls);
+  files.folder = {arguments.output, FolderUse::kAddTo};
+  const std::filesystem::path folder = arguments.output;
+  if (std::filesystem::is_directory(folder)) {
+    files.outputs = {{folder / "results.json", FileKind::kReport, /*force=*/true},
+                     {folder / "results.md", FileKind::kMarkdown, /*force=*/true}};
+  }
+  return files;
+}
+
 void run(const ReproduceArguments& arguments) {
-  const InterruptGuard interrupt;
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   const std::vector<std::string> rows = wanted_rows(arguments);
   std::vector<std::unique_ptr<FrameSource>>
@@ -109,11 +122,7 @@ void run(const ReproduceArguments& arguments) {
       // One row's pictures are enough to look at.
       const std::filesystem::path page =
           row == "default" ? output / report_file(drive.name) : std::filesystem::path();
-      nlohmann::ordered_json result = run_row(*source, row, folder, page, interrupt.token());
-      if (interrupt.token().stop_requested()) {
-        print_out("interrupted: the rows that are done are kept; the same command goes on\n");
-        return;
-      }
+      nlohmann::ordered_json result = run_row(*source, row, folder, page);
       if (!result.is_null()) drive.rows.push_back(std::move(result));
       bar.draw(++done, total, row + "  ");
     }

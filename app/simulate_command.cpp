@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
@@ -37,20 +37,16 @@ SimulationOptions resolve_options(const SimulateArguments& arguments) {
 }
 
 void run(const SimulateArguments& arguments) {
-  const InterruptGuard interrupt;
+  check_files({{arguments.config}, {}, {arguments.output}});
   const ThreadLimit threads(arguments.threads);
   const SimulationOptions options = resolve_options(arguments);
   const std::filesystem::path drive = [&] {
     ProgressBar bar(arguments.quiet);
     return simulate(options, arguments.output, [&](int done, int total) {
       bar.draw(done, total);
-      return !interrupt.token().stop_requested();
+      return true;
     });
   }();
-  if (drive.empty()) {
-    throw Error("the simulation was interrupted", arguments.output,
-                "start it again: nothing of it was kept");
-  }
   if (!arguments.quiet) {
     print_out("{}: {} frame{} of scene {}, seed {}\n", drive.string(), options.frames,
               options.frames == 1 ? "" : "s", to_string(options.scene), options.seed);

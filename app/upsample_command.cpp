@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/print.h"
 #include "fovea/base/errors.h"
@@ -44,6 +45,8 @@ PointCloud in_view(const PointCloud& points_cam, const Camera& camera) {
 }
 
 void run(const UpsampleArguments& arguments) {
+  check_files({{arguments.scan, arguments.calibration},
+               {{arguments.output, FileKind::kPly, arguments.force}}});
   const Camera camera = find_camera(arguments);
   const PointCloud scan_lidar = read_lidar_scan(arguments.scan, {}, 0).points;
   const PointCloud visible_cam = in_view(transform_cloud(scan_lidar, camera.T_cam_lidar), camera);

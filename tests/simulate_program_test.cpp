@@ -94,7 +94,7 @@ TEST_F(Simulate, AnInterruptEndsCleanlyAndLeavesNothing) {
   const ProgramRun run =
       simulate("--frames 5000 --set camera.width=96 --set camera.height=32 --set lidar.columns=90",
                "timeout --foreground --preserve-status -s INT 2");
-  expect_error(run, 1, "interrupted");
+  expect_error(run, 130, "interrupted");
   EXPECT_THAT(folder_.names(), IsEmpty());
 }
 

@@ -9,6 +9,7 @@
 #include "app/reproduce/ablations.h"
 #include "fovea/base/input_file.h"
 #include "fovea/base/path_name.h"
+#include "fovea/base/unfinished_output.h"
 #include "fovea/base/version.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
@@ -78,20 +79,19 @@ Json score(const ScoredMap& map, const FrameSource& drive, Protocol protocol) {
 class RowRun {
  public:
   RowRun(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
-         std::filesystem::path page, const std::stop_token& stop)
-      : drive_(drive),
-        row_(row),
-        map_file_(folder / (row + ".fovea")),
-        page_(std::move(page)),
-        stop_(stop) {}
+         std::filesystem::path page)
+      : drive_(drive), row_(row), map_file_(folder / (row + ".fovea")), page_(std::move(page)) {}
 
-  /// Null if it was stopped.
   Json run(const RowPlan& plan) {
+    // The row's map is scratch; a signal removes it with what SQLite keeps next to it.
+    std::vector<std::filesystem::path> files{map_file_};
+    for (const char* ending : {"-wal", "-shm", "-journal"}) {
+      files.push_back(std::filesystem::path(map_file_) += ending);
+    }
+    const UnfinishedOutput scratch(map_file_, files, [] {});
     Json result = {{"row", row_}, {"config", fingerprint(plan, drive_)}};
     if (plan.in_sample) result["all"] = run_all(plan);
-    if (stop_.stop_requested()) return nullptr;
     result["held_out"] = run_held_out(plan);
-    if (stop_.stop_requested()) return nullptr;
     std::filesystem::remove(map_file_);
     return result;
   }
@@ -99,7 +99,6 @@ class RowRun {
  private:
   Json run_all(const RowPlan& plan) {
     Json all = map(plan, HoldOut());
-    if (stop_.stop_requested()) return all;
     const ScoredMap scored = load_scored_map(map_file_, {});
     all["in_sample"] = score(scored, drive_, Protocol::kInSample);
     if (drive_.info().navigation) {
@@ -113,7 +112,6 @@ class RowRun {
 
   Json run_held_out(const RowPlan& plan) {
     Json held = map(plan, HoldOut::parse(kHoldOut));
-    if (stop_.stop_requested()) return held;
     const ScoredMap scored = load_scored_map(map_file_, {});
     held["held_out"] = score_held_out(scored);
     if (std::filesystem::exists(drive_.info().path / "truth" / "truth.json")) {
@@ -129,7 +127,6 @@ class RowRun {
     job.pose_source = plan.pose_source;
     job.hold_out = hold_out;
     job.force = true;
-    job.stop = stop_;
     return {{"map", to_json(map_drive(drive_, job, [](const MapProgress&) {}))}};
   }
 
@@ -148,7 +145,6 @@ class RowRun {
   const FrameSource& drive_;
   const std::string& row_;
   std::filesystem::path map_file_, page_;
-  std::stop_token stop_;
 };
 
 }  // namespace
@@ -164,7 +160,7 @@ std::vector<std::string> reproduced_rows() {
 void check_row(const std::string& row) { plan_of(row).options.validate(); }
 
 Json run_row(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
-             const std::filesystem::path& page, const std::stop_token& stop) {
+             const std::filesystem::path& page) {
   const RowPlan plan = plan_of(row);
   if (plan.pose_source == PoseSource::kNavigation && !drive.info().navigation) return nullptr;
   const std::filesystem::path file = folder / (row + ".json");
@@ -174,11 +170,9 @@ Json run_row(const FrameSource& drive, const std::string& row, const std::filesy
                                   /*allow_exceptions=*/false);
     if (kept.is_object() && kept.value("config", "") == fingerprint(plan, drive)) return kept;
   }
-  Json result = RowRun(drive, row, folder, page, stop).run(plan);
-  if (!result.is_null()) {
-    OutputFile output(file, /*force=*/true);
-    write_json(output, result);
-  }
+  Json result = RowRun(drive, row, folder, page).run(plan);
+  OutputFile output(file, /*force=*/true);
+  write_json(output, result);
   return result;
 }
 

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,10 +23,10 @@ void check_row(const std::string& row);
 /// @param page  where to write the page of the held-out evaluation (see report_page); empty:
 /// nowhere
 /// @return {"row", "config", "all": {"map", "in_sample", "in_sample_nav", "scan_matching"},
-/// "held_out": {"map", "held_out", "truth" of simulated drives}}; null if it was stopped, and if
-///         the row wants navigation's poses and the drive has none
+/// "held_out": {"map", "held_out", "truth" of simulated drives}}; null if the row uses navigation's
+/// poses and the drive has none
 nlohmann::ordered_json run_row(const FrameSource& drive, const std::string& row,
                                const std::filesystem::path& folder,
-                               const std::filesystem::path& page, const std::stop_token& stop);
+                               const std::filesystem::path& page);
 
 }  // namespace fovea::app

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/unfinished_output.h"
 
 namespace fovea {
 namespace fs = std::filesystem;
@@ -38,13 +39,18 @@ fs::path folder_of(const fs::path& path) {
 }  // namespace
 
 void throw_output_error(const fs::path& path, int error) {
-  // EFBIG: a limit on file sizes, of the user or of the file system (4 GB on FAT).
-  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
-    throw OutputError(fmt::format("the disk is full ({})", std::generic_category().message(error)),
-                      path.string(), "free some space or write to another disk");
+  const std::string reason = std::generic_category().message(error);
+  if (error == EFBIG) {  // 4 GB on FAT
+    throw OutputError(
+        fmt::format("the disk is full or the file is larger than a limit allows ({})", reason),
+        path.string(), "free some space, raise the limit (ulimit -f) or write to another disk");
   }
-  throw OutputError(fmt::format("cannot be written ({})", std::generic_category().message(error)),
-                    path.string(), "check the path and its permissions");
+  if (error == ENOSPC || error == EDQUOT) {
+    throw OutputError(fmt::format("the disk is full ({})", reason), path.string(),
+                      "free some space or write to another disk");
+  }
+  throw OutputError(fmt::format("cannot be written ({})", reason), path.string(),
+                    "check the path and its permissions");
 }
 
 fs::path check_output_path(const fs::path& path, bool force) {
@@ -79,29 +85,25 @@ fs::path partial_path(const fs::path& path) {
   return partial;
 }
 
-void publish_file(const fs::path& partial, const fs::path& path) {
+void publish_file(const fs::path& partial, const fs::path& path, UnfinishedOutput& output) {
   if (!sync_to_disk(partial, O_RDONLY)) throw_output_error(path, errno);
-  if (::rename(partial.c_str(), path.c_str()) != 0) throw_output_error(path, errno);
-  sync_to_disk(folder_of(path), O_RDONLY | O_DIRECTORY);
+  {
+    const OutputStep step;
+    if (::rename(partial.c_str(), path.c_str()) != 0) throw_output_error(path, errno);
+    output.finish();
+  }
+  sync_folder_of(path);
 }
+
+void sync_folder_of(const fs::path& path) { sync_to_disk(folder_of(path), O_RDONLY | O_DIRECTORY); }
 
 /// A file descriptor behind a buffer; std::filebuf would lose why a write failed.
 class OutputFile::Buffer : public std::streambuf {
  public:
-  explicit Buffer(const fs::path& target) : target_(target), partial_(partial_path(target)) {
-    fd_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-    if (fd_ < 0) throw_output_error(target_, errno);
-    // A partial file that nobody has locked was left behind by a killed program.
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 || !still_named()) {
-      ::close(fd_);
-      throw OutputError("another program is writing this output", target_.string(),
-                        "wait until it has ended or give another name");
-    }
-    if (::ftruncate(fd_, 0) != 0) {
-      const int error = errno;
-      discard();
-      throw_output_error(target_, error);
-    }
+  explicit Buffer(const fs::path& target)
+      : target_(target),
+        partial_(partial_path(target)),
+        unfinished_(target_, {partial_}, [this] { open_partial_file(); }) {
     setp(memory_.data(), memory_.data() + memory_.size());
   }
   Buffer(const Buffer&) = delete;
@@ -118,7 +120,7 @@ class OutputFile::Buffer : public std::streambuf {
   /// The lock goes with the descriptor, so it is kept until the file has its name.
   void publish() {
     flush();
-    publish_file(partial_, target_);
+    publish_file(partial_, target_, unfinished_);
     close();
   }
 
@@ -159,6 +161,22 @@ class OutputFile::Buffer : public std::streambuf {
   }
 
  private:
+  void open_partial_file() {
+    fd_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (fd_ < 0) throw_output_error(target_, errno);
+    // A partial file without a lock was left behind by a killed program.
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 || !still_named()) {
+      ::close(fd_);
+      throw OutputError("another program is writing this output", target_.string(),
+                        "wait until it has ended or give another name");
+    }
+    if (::ftruncate(fd_, 0) != 0) {
+      const int error = errno;
+      discard();
+      throw_output_error(target_, error);
+    }
+  }
+
   void write_all(const char* data, std::size_t count) {
     while (count > 0) {
       const ssize_t written = ::write(fd_, data, count);
@@ -191,6 +209,7 @@ class OutputFile::Buffer : public std::streambuf {
   fs::path target_;
   fs::path partial_;
   int fd_ = -1;
+  UnfinishedOutput unfinished_;  // below fd_, which it opens
   std::vector<char> memory_ = std::vector<char>(std::size_t{1} << 20);
 };
 

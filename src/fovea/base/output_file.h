@@ -7,6 +7,8 @@
 
 namespace fovea {
 
+class UnfinishedOutput;
+
 /// Checks, before any work is done, that an output can be made at `path`. OutputError if there is
 /// something already and `force` is false, if it is not an ordinary file, or if its folder does not
 /// exist or cannot be written to.
@@ -17,7 +19,12 @@ std::filesystem::path check_output_path(const std::filesystem::path& path, bool 
 std::filesystem::path partial_path(const std::filesystem::path& path);
 
 /// Makes `partial` durable and renames it to `path`, which replaces what was there in one step.
-void publish_file(const std::filesystem::path& partial, const std::filesystem::path& path);
+/// @param output  finished by this
+void publish_file(const std::filesystem::path& partial, const std::filesystem::path& path,
+                  UnfinishedOutput& output);
+
+/// Makes a file's name durable: flushes the folder that it is in.
+void sync_folder_of(const std::filesystem::path& path);
 
 /// Throws the OutputError of a failed write, by `error` (errno); a full disk has its own remedy.
 [[noreturn]] void throw_output_error(const std::filesystem::path& path, int error);

@@ -42,7 +42,10 @@ OutputFolder::OutputFolder(const fs::path& path, bool force, std::vector<std::st
       force_(force),
       contents_(std::move(contents)),
       target_(check_target()),
-      partial_(partial_path(target_)) {
+      partial_(partial_path(target_)),
+      unfinished_(target_, {partial_}, [this] { open_partial_folder(); }) {}
+
+void OutputFolder::open_partial_folder() {
   if (::mkdir(partial_.c_str(), 0777) != 0 && errno != EEXIST) throw_output_error(target_, errno);
   lock_ = ::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (lock_ < 0) throw_output_error(partial_, errno);
@@ -100,11 +103,14 @@ fs::path OutputFolder::check_target() const {
 }
 
 void OutputFolder::write(const fs::path& relative, std::string_view bytes) const {
-  const fs::path file = partial_ / relative;
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
-  if (error) throw_output_error(target_, error.value());
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int fd = [&] {
+    const OutputStep step;  // the folder must not be made anew after a signal removed it
+    const fs::path file = partial_ / relative;
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    if (error) throw_output_error(target_, error.value());
+    return ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  }();
   if (fd < 0) throw_output_error(target_, errno);
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd, bytes.data(), bytes.size());
@@ -123,18 +129,26 @@ void OutputFolder::commit() {
   check_target();  // another program may have made it meanwhile
   // One flush for thousands of files, where an fsync each would take minutes.
   if (::syncfs(lock_) != 0) throw_output_error(target_, errno);
-  std::error_code ignored;
-  if (!fs::exists(target_, ignored)) {
-    publish_file(partial_, target_);
-  } else if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) !=
-             0) {
-    if (errno != EINVAL && errno != ENOSYS) throw_output_error(target_, errno);
-    std::error_code error;  // a file system that knows no exchange
-    fs::remove_all(target_, error);
-    if (error) throw_output_error(target_, error.value());
-    publish_file(partial_, target_);
+  {
+    const OutputStep step;
+    exchange();
+    discard();  // of the old folder
+    unfinished_.finish();
   }
-  discard();  // what was replaced
+  sync_folder_of(target_);
+}
+
+void OutputFolder::exchange() {
+  std::error_code error;
+  if (fs::exists(target_, error)) {
+    if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+      return;
+    }
+    if (errno != EINVAL && errno != ENOSYS) throw_output_error(target_, errno);
+    fs::remove_all(target_, error);  // a file system without exchange
+    if (error) throw_output_error(target_, error.value());
+  }
+  if (::rename(partial_.c_str(), target_.c_str()) != 0) throw_output_error(target_, errno);
 }
 
 void OutputFolder::discard() noexcept {

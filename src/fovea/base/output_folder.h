@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "fovea/base/unfinished_output.h"
+
 namespace fovea {
 
 /// A folder that grows as PATH.partial and gets its name by commit(); what was not committed is
@@ -34,6 +36,9 @@ class OutputFolder {
 
  private:
   std::filesystem::path check_target() const;
+  void open_partial_folder();
+  /// Gives the folder its name, and `partial_` the old folder or none.
+  void exchange();
   void discard() noexcept;
 
   std::filesystem::path path_;  // as the user named it
@@ -41,6 +46,7 @@ class OutputFolder {
   std::vector<std::string> contents_;
   std::filesystem::path target_, partial_;
   int lock_ = -1;
+  UnfinishedOutput unfinished_;  // below lock_, which it opens
 };
 
 }  // namespace fovea

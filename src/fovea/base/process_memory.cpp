@@ -1,12 +1,12 @@
 #include "fovea/base/process_memory.h"
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <new>
+#include <string>
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
@@ -25,9 +25,16 @@ std::size_t resident_memory() {
 }
 
 std::size_t peak_resident_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  // getrusage() reports the parent's peak instead, if that is larger: exec() keeps it.
+  std::ifstream status("/proc/self/status");
+  std::size_t kilobytes = 0;
+  for (std::string word; status >> word;) {
+    if (word == "VmHWM:") {
+      status >> kilobytes;
+      break;
+    }
+  }
+  return kilobytes * 1024;
 }
 
 void reserve_memory(std::size_t bytes) {

@@ -7,7 +7,7 @@ namespace fovea {
 
 /// Bytes in physical memory now; 0 where the system does not tell.
 std::size_t resident_memory();
-/// The most that it ever had there, bytes.
+/// The largest value since this program started, bytes; 0 where the system does not report it.
 std::size_t peak_resident_memory();
 
 /// Has the allocator take so many bytes of addresses in one piece, none of which is written to.

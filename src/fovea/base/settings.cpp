@@ -14,6 +14,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/input_file.h"
 #include "fovea/base/nesting.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -36,14 +37,14 @@ class Reader : public SettingVisitor {
   /// ConfigError for the first key of the document that is not known.
   void reject_unknown_keys(std::string_view help) const { reject_unknown(table_, "", help); }
 
-  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else the key
-  /// alone.
+  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else "FILE,
+  /// KEY".
   std::string where(std::string_view key) const {
     std::string_view path = key;
     while (true) {
       if (const toml::node* node = table_.at_path(path).node()) return place(*node, key);
       const std::size_t dot = path.rfind('.');
-      if (dot == std::string_view::npos) return std::string(key);
+      if (dot == std::string_view::npos) return fmt::format("{}, key '{}'", name_, key);
       path = path.substr(0, dot);
     }
   }
@@ -270,7 +271,7 @@ SettingsDocument SettingsDocument::from_text(std::string_view text, std::string_
 SettingsDocument SettingsDocument::from_file(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = InputFile(file, kSettingsFile).bytes();
   const std::string text(bytes.begin(), bytes.end());
-  return from_text(text, file.string());
+  return from_text(without_byte_order_mark(text, file.string()), file.string());
 }
 
 SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,

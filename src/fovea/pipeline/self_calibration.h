@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "fovea/mapping/calibration/calibration_estimate.h"
@@ -47,6 +48,7 @@ struct CalibrationJob {
   std::function<bool(int index)> usable;
   /// At a frame; one without is left out.
   std::function<std::optional<FrameMotion>(int index)> motion;
+  std::stop_token stop;  ///< ends early, with estimates of no use
 };
 
 /// Estimates from up to 60 frames spread over the drive, twice: the second time round the first

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -46,14 +47,20 @@ void expect_file(const std::filesystem::path& file) {
   }
 }
 
-std::vector<std::string> read_lines(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::string text(bytes.begin(), bytes.end());
+  return std::string(without_byte_order_mark(text, file.string()));
+}
+
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
   std::vector<std::string> lines;
-  for (auto begin = bytes.begin(); begin != bytes.end();) {
-    const auto end = std::find(begin, bytes.end(), '\n');
+  for (auto begin = text.begin(); begin != text.end();) {
+    const auto end = std::find(begin, text.end(), '\n');
     lines.emplace_back(begin, end);
     if (!lines.back().empty() && lines.back().back() == '\r') lines.back().pop_back();
-    begin = end == bytes.end() ? end : end + 1;
+    begin = end == text.end() ? end : end + 1;
   }
   return lines;
 }
