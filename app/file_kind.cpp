@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <string_view>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/file_format.h"
+#include "fovea/base/input_file.h"
 
 namespace fovea::app {
 namespace {
@@ -14,11 +17,11 @@ namespace {
 constexpr std::size_t kHead = 4096;  // bytes: more than the longest line of a pose file
 
 std::string head_of(const std::filesystem::path& file) {
-  std::string head(kHead, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
-  return head;
+  try {
+    return InputFile(file, kStreamedFile).beginning(kHead);
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 std::string_view without_blanks(std::string_view text) {
@@ -79,14 +82,21 @@ FileKind kind_of_file(const std::filesystem::path& file) {
   if (std::filesystem::file_size(file, error) == 0 && !error) return FileKind::kEmpty;
   const std::string head = head_of(file);
   const std::string_view text = without_blanks(head);
-  if (head.starts_with(std::string_view("SQLite format 3\0", 16))) return kind_of_sqlite(head);
-  if (begins_with_tag(head, "ply\n") || begins_with_tag(head, "ply\r") ||
-      begins_with_tag(head, "ply "))
-    return FileKind::kPly;
-  if (begins_with_tag(head, "# .pcd") || head.starts_with("VERSION ")) return FileKind::kPcd;
-  if (head.starts_with("LASF")) return FileKind::kLas;
+  switch (sniff_format(head).format) {
+    case FileFormat::kSqlite:
+      return kind_of_sqlite(head);
+    case FileFormat::kPly:
+      return FileKind::kPly;
+    case FileFormat::kPcd:
+      return FileKind::kPcd;
+    case FileFormat::kLas:
+      return FileKind::kLas;
+    case FileFormat::kPng:
+      return FileKind::kPng;
+    default:
+      break;
+  }
   if (head.starts_with("glTF")) return FileKind::kGlb;
-  if (head.starts_with("\x89PNG")) return FileKind::kPng;
   if (begins_with_tag(text, "<!doctype html") || begins_with_tag(text, "<html"))
     return FileKind::kHtml;
   if (text.starts_with('{')) return kind_of_json_object(text);
