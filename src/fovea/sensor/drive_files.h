@@ -66,7 +66,7 @@ void find_stamps(const std::filesystem::path& file,
                  DriveFiles& files);
 
 /// Takes the sweep's period from the stamps into `info`. Returns false if they have no step, or,
-/// with a note, if it cannot be a period.
+/// with a note, if it cannot be a period. InputError for steps below 1 ms.
 bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info);
 

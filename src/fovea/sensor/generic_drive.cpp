@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "fovea/base/errors.h"
 #include "fovea/geometry/rectified_camera.h"
-#include "fovea/sensor/csv_rows.h"
 #include "fovea/sensor/described_sweep.h"
 #include "fovea/sensor/drive_description.h"
 #include "fovea/sensor/drive_files.h"
+#include "fovea/sensor/drive_stamps.h"
 #include "fovea/sensor/first_scans.h"
 #include "fovea/sensor/generic_navigation.h"
 #include "fovea/sensor/image_decode.h"
@@ -22,30 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxNumber = 1'000'000;     // of scans and images: a day at 10 Hz
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
 constexpr int kFirstScans = 5;            // whose intensities give the scale
-
-/// Stamps of numbered files. Lines without a usable number are noted.
-NumberedTimes read_stamps(const fs::path& file, std::vector<std::string>& notes) {
-  constexpr std::array<CsvColumn, 1> kColumns = {{{"index"}}};
-  const CsvRows rows = read_csv(file, kColumns);
-  std::vector<int> unusable = rows.malformed;
-  NumberedTimes times;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const double index = rows.at(row, 0);
-    const bool number = index >= 0 && index < kMaxNumber && index == std::floor(index);
-    if (!number || !times.emplace(static_cast<int>(index), rows.times[row]).second) {
-      unusable.push_back(rows.lines[row]);
-    }
-  }
-  if (!unusable.empty()) {
-    notes.push_back(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
-                                file.string(),
-                                *std::min_element(unusable.begin(), unusable.end())));
-  }
-  return times;
-}
 
 class GenericDrive {
  public:
@@ -74,8 +50,8 @@ class GenericDrive {
       throw InputError("the drive has no scan", folder.string(),
                        "put scans there as NUMBER.pcd, .ply or .bin (docs/drives.md)");
     }
-    if (files_.scans.rbegin()->first >= kMaxNumber) {
-      throw InputError(fmt::format("a scan's number is over {}", kMaxNumber - 1),
+    if (files_.scans.rbegin()->first >= kMaxFileNumber) {
+      throw InputError(fmt::format("a scan's number is over {}", kMaxFileNumber - 1),
                        files_.scans.rbegin()->second.string(), "number the scans from 0 on");
     }
     std::tie(info_.begin, info_.end) = frame_range(files_.scans, options_, info_.path);
@@ -86,7 +62,7 @@ class GenericDrive {
     files_.stamps_name_scans = true;
     if (fs::exists(file)) {
       files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
-      for (const auto& [scan, time] : read_stamps(file, info_.notes)) {
+      for (const auto& [scan, time] : read_scan_stamps(file, info_.notes)) {
         if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
       }
       remove_out_of_order(files_.stamps);
@@ -216,12 +192,12 @@ class GenericDrive {
       info_.notes.push_back(file.string() + " is not used: the scans have no stamps");
       return images;
     }
-    NumberedTimes times = read_stamps(file, info_.notes);
-    std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     NumberedTimes scans;
     for (const auto& [scan, path] : files_.scans) {
       if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
     }
+    NumberedTimes times = read_image_stamps(file, scans, info_.notes);
+    std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     const ImageMatches matches =
         match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
     camera.image_delay += matches.median_delay;

@@ -211,6 +211,14 @@ TEST_F(GenericDrive, TheScaleOfIntensitiesIsThatOfTheFirstScans) {
   EXPECT_THAT(notes(), IsEmpty());
 }
 
+TEST_F(GenericDrive, ImagesMayHaveStampsOfAnotherUnit) {
+  std::string text = "index,time_ns\n";
+  for (int i = 0; i < kFrames; ++i) text += fmt::format("{},{}\n", i, (kStart + i * kStep) / 1000);
+  write_text(folder_ / "images/left/stamps.csv", text);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("left/stamps.csv are in us")));
+  EXPECT_TRUE(std::holds_alternative<Frame>(open()->load(4)));
+}
+
 TEST_F(GenericDrive, WithoutStampsScansCountAsTenHertz) {
   test::fs::remove(scan_stamps_);
   EXPECT_THAT(notes(), ElementsAre(HasSubstr("is missing: scans are counted as 10 Hz"),
