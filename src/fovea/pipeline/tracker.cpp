@@ -78,7 +78,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   record.stamp = frame.stamp;
   record.status = held_out ? FrameStatus::kHeldOut : FrameStatus::kMapped;
   record.figures["points_scan"] = as_figure(frame.scan.size());
-  record.figures["points_dropped"] = as_figure(frame.dropped_points);
+  record.figures["points_dropped"] = as_figure(frame.dropped_points.total());
 
   // Where are we, and how do we move?
   const MotionPrediction motion = motion_model_.predict(frame.stamp);

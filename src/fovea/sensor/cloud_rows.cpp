@@ -41,6 +41,13 @@ std::size_t size_of(Scalar type) {
 
 bool is_real(Scalar type) { return type == Scalar::kFloat || type == Scalar::kDouble; }
 
+bool are_coordinates(std::span<const std::optional<Scalar>> types, const CloudRows& rows) {
+  if (!types[0] || !types[1] || !types[2]) return false;
+  const bool real = is_real(*types[0]);
+  return real == is_real(*types[1]) && real == is_real(*types[2]) &&
+         (real || rows.takes_whole_coordinates());
+}
+
 double decode(Scalar type, const char* bytes) {
   switch (type) {
     case Scalar::kInt8:

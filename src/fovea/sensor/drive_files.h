@@ -9,8 +9,8 @@
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/image_rectifier.h"
 #include "fovea/sensor/kitti_calibration.h"
-#include "fovea/sensor/lidar_scan.h"
 #include "fovea/sensor/read_file.h"
+#include "fovea/sensor/scan_format.h"
 #include "fovea/sensor/time_stamps.h"
 
 namespace fovea {

@@ -6,6 +6,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/drive_files.h"
 #include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/lidar_scan.h"
 
 namespace fovea {
 namespace {

@@ -14,6 +14,7 @@
 #include "fovea/sensor/generic_navigation.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/nearest_images.h"
+#include "fovea/sensor/recognized_format.h"
 
 namespace fovea {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
-constexpr int kFirstScans = 5;            // whose intensities give the scale
+constexpr int kFirstScans = 5;            // whose numbers give the units
 
 class GenericDrive {
  public:
@@ -45,7 +46,6 @@ class GenericDrive {
   void find_scans() {
     const fs::path folder = info_.path / description_.scans;
     files_.scans = list_numbered_files(folder, {".bin", ".pcd", ".ply"});
-    files_.scan_format = description_.scan_format;
     if (files_.scans.empty()) {
       throw InputError("the drive has no scan", folder.string(),
                        "put scans there as NUMBER.pcd, .ply or .bin (docs/drives.md)");
@@ -84,24 +84,34 @@ class GenericDrive {
     }
   }
 
-  /// Timing of the sweeps and scale of the intensities, by drive.toml and the first scans.
+  /// Units of the scans and timing of the sweeps, by drive.toml and the first scans.
   void find_scan_format() {
-    const bool scale_given = description_.intensity_max.has_value();
-    const FirstScans first =
-        read_first_scans(files_.scans, files_.scan_format, scale_given ? 1 : kFirstScans,
-                         [&](int scan) { return frame_stamp(info_, files_.stamps, scan); });
-    if (const double scale = first.scale.max(); !scale_given && scale > 1) {
-      files_.scan_format.intensity_max = scale;
-      info_.notes.push_back(fmt::format(
-          "intensities exceed 1; assumed: {} stands for a reflectance of 1; to change: [lidar] "
-          "intensity_max in drive.toml",
-          scale));
-    }
+    const auto stamp = [&](int scan) { return frame_stamp(info_, files_.stamps, scan); };
+    const std::vector<ScanNumbers> numbers = read_first_numbers(files_.scans, kFirstScans, stamp);
+    recognize_scan_format(numbers);
     info_.sweep = sweep_timing(description_.sweep, stamp_step_);
     if (info_.sweep_compensated) return;
-    sweep_middle_ = first.sweep_middle.value_or(info_.sweep.middle_time());
-    if (first.any && !first.sweep_middle) {
+    const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
+    sweep_middle_ = middle.value_or(info_.sweep.middle_time());
+    if (!numbers.empty() && !middle) {
       info_.notes.push_back(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
+    }
+  }
+
+  void recognize_scan_format(const std::vector<ScanNumbers>& numbers) {
+    StatedScanFormat stated = description_.scan_format;
+    if (info_.sweep_compensated) stated.time_reference = TimeReference::kNone;
+    try {
+      const RecognizedFormat recognized = recognize_format(numbers, stated);
+      files_.scan_format = recognized.format;
+      for (const auto& [what, keys] : recognized.notes) {
+        info_.notes.push_back(
+            keys.empty() ? what : what + "; to change: [lidar] " + keys + " in drive.toml");
+      }
+    } catch (const ConfigError& error) {
+      throw ConfigError(error.problem(),
+                        fmt::format("{}: {}", (info_.path / "drive.toml").string(), error.where()),
+                        error.remedy());
     }
   }
 

@@ -211,6 +211,23 @@ TEST_F(GenericDrive, TheScaleOfIntensitiesIsThatOfTheFirstScans) {
   EXPECT_THAT(notes(), IsEmpty());
 }
 
+TEST_F(GenericDrive, UnitsAreThoseOfTheFirstScansForAll) {
+  const auto write_millimeters = [&](int i, float factor) {
+    test::fs::remove(scan(i));
+    write_scan(scan(i), {{5000, 2000, 300, 0.5f}, {factor * 4000, 0, 0, 1}});
+  };
+  for (int i = 0; i < kFrames; ++i) write_millimeters(i, 1);
+  EXPECT_THAT(notes(), ElementsAre(AllOf(HasSubstr("coordinates are in mm"),
+                                         HasSubstr("[lidar] length_unit in drive.toml"))));
+  write_millimeters(5, 1e-3f);  // alone, it might be of another unit
+  const Frame frame = std::get<Frame>(open()->load(5));
+  EXPECT_LT((frame.scan.position[0] - Eigen::Vector3f(5, 2, 0.3f)).norm(), 1e-5f);
+  EXPECT_LT((frame.scan.position[1] - Eigen::Vector3f(0.004f, 0, 0)).norm(), 1e-6f);
+  write_text(toml_, test::read_text(toml_) + "[lidar]\nlength_unit = \"m\"\n");
+  EXPECT_THAT(error<ConfigError>(),
+              AllOf(HasSubstr("drive.toml: lidar.length_unit"), HasSubstr("\"mm\"")));
+}
+
 TEST_F(GenericDrive, ImagesMayHaveStampsOfAnotherUnit) {
   std::string text = "index,time_ns\n";
   for (int i = 0; i < kFrames; ++i) text += fmt::format("{},{}\n", i, (kStart + i * kStep) / 1000);

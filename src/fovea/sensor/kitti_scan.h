@@ -11,4 +11,7 @@ namespace fovea {
 /// of its points is usable.
 LidarScan read_kitti_scan(const std::filesystem::path& file);
 
+/// The same points as rows with the columns x, y, z and intensity, in the file's units.
+void read_kitti_rows(const std::filesystem::path& file, CloudRows& rows);
+
 }  // namespace fovea
