@@ -212,4 +212,46 @@ TEST_F(UnitsProgram, WhatCannotBeRightIsAnErrorThatNamesTheKey) {
                AllOf(HasSubstr("100 s apart by the column time_us"), HasSubstr("stamps.csv")));
 }
 
+/// Spoils every `every`th point.
+Encode spoiled(int every, const std::function<void(Point&)>& spoil) {
+  const auto count = std::make_shared<int>(0);
+  return [=](std::string& bytes, Point point, int frame) {
+    if ((*count)++ % every == 0) spoil(point);
+    encode_usual(bytes, point, frame);
+  };
+}
+
+TEST_F(UnitsProgram, ManyDroppedPointsAreAnErrorUnlessAllowed) {
+  const auto not_finite = [](Point& p) {
+    p.position.x() = std::numeric_limits<double>::quiet_NaN();
+  };
+  write_drive("nan", 1, kUsual, spoiled(5, not_finite));
+  expect_error("nan", AllOf(HasSubstr("2304 of 11520 points (20 %)"), HasSubstr("2304 not finite"),
+                            HasSubstr("--allow-dropped")));
+  const ProgramRun allowed = map("nan", "--allow-dropped --report " + quoted("r.json"));
+  ASSERT_EQ(allowed.exit_code, 0) << allowed.err;
+  EXPECT_THAT(allowed.out, HasSubstr("note: 2304 of 11520 points of the scans are dropped (20 %)"));
+  const auto report = nlohmann::json::parse(read_text(folder_ / "r.json")).at("map");
+  EXPECT_EQ(report.at("points_read"), kPoints);
+  EXPECT_EQ(report.at("points_dropped").at("not_finite"), kPoints / 5);
+  EXPECT_EQ(report.at("points_dropped").at("off_time"), 0);
+
+  write_drive("late", 1, kUsual, spoiled(6, [](Point& p) { p.time = 7; }));
+  expect_error("late", AllOf(HasSubstr("1920 over 1 s off the stamp"), HasSubstr("time_unit")));
+  write_drive("far", 1, kUsual, spoiled(6, [](Point& p) { p.position *= 1e4; }));
+  expect_error("far", AllOf(HasSubstr("1920 beyond 1 km"), HasSubstr("length_unit")));
+}
+
+TEST_F(UnitsProgram, FewDroppedPointsAndMissingReturnsAreCounted) {
+  write_drive("few", 1, kUsual, spoiled(20, [](Point& p) { p.time = -3; }));
+  const ProgramRun few = map("few");
+  EXPECT_EQ(few.exit_code, 0) << few.err;
+  EXPECT_THAT(few.out,
+              HasSubstr("576 of 11520 points of the scans are dropped (5 %): 576 over 1 s"));
+  write_drive("sky", 1, kUsual, spoiled(3, [](Point& p) { p.position.setZero(); }));
+  const ProgramRun sky = map("sky");
+  EXPECT_EQ(sky.exit_code, 0) << sky.err;
+  EXPECT_THAT(sky.out, HasSubstr("3840 without a return"));
+}
+
 }  // namespace fovea::units_program_test

@@ -62,6 +62,7 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
       break;
   }
   if (record.has("registration_failed")) ++summary_.registrations_failed;
+  points_.add(record);
   if (record.revisit) ++summary_.loops_closed;
   for (const Camera& camera : drive_.calibration.cameras) {
     if (!record.lacks_image(camera.index)) continue;
@@ -79,8 +80,11 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
 MapSummary DriveFigures::summary() const {
   MapSummary summary = summary_;
   for (const auto& [stage, times] : by_stage_) summary.latency_ms[stage] = latency_of(times);
-  // What a user must know of poses and images.
+  summary.points_dropped = points_.dropped();
+  summary.points_read = points_.used() + points_.dropped().total();
+  // What a user must know of scans, poses and images.
   summary.notes = drive_.notes;
+  if (std::string note = points_.note(); !note.empty()) summary.notes.push_back(std::move(note));
   note(absent_, "no GPS/INS, the scans alone tell the motion", summary.notes);
   note(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on",
        summary.notes);

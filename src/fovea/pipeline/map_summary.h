@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/pipeline/point_counts.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -30,6 +31,8 @@ struct MapSummary {
   int registrations_failed = 0;
   int loops_closed = 0;  ///< scans registered to a place seen before
   std::size_t points = 0;
+  std::size_t points_read = 0;   ///< of the scans, dropped ones included
+  DroppedPoints points_dropped;  ///< of these
   std::size_t frames_new = 0;    ///< of all kinds, made by this run and not by one that it resumes
   double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
   double rate = 0;  ///< Hz, at which frames were released; 0: as fast as they were mapped
@@ -56,6 +59,8 @@ class DriveFigures {
   /// which it resumes) latencies and lateness, too.
   void add(const FrameRecord& record, bool is_new);
 
+  const PointCounts& points() const { return points_; }
+
   /// Points, rate of frames, calibration and interruption are the caller's to add.
   MapSummary summary() const;
 
@@ -73,6 +78,7 @@ class DriveFigures {
   std::map<std::string, std::vector<float>> by_stage_;  // ms
   Flaw absent_, jumped_, degenerate_, lost_, blank_, exposed_;
   std::map<int, Flaw> missing_;  // by camera
+  PointCounts points_;
 };
 
 }  // namespace fovea
