@@ -37,11 +37,14 @@ class SweepTimes {
       middles_.push_back(scan.times->middle);
       spans_.push_back(scan.times->span);
       whole_ = scan.times->whole;
+      split_ += scan.times->split;
     }
   }
 
   std::size_t size() const { return spans_.size(); }
   bool whole() const { return whole_; }
+  /// Whether the times of most scans lie in two groups.
+  bool split() const { return 2 * split_ > size(); }
   /// Of a sweep, in the unit of the file.
   double span() const { return median_of(spans_); }
 
@@ -67,6 +70,7 @@ class SweepTimes {
   std::vector<double> stamps_;           // s
   std::vector<double> middles_, spans_;  // in the unit of the file
   bool whole_ = false;
+  std::size_t split_ = 0;  // scans
 };
 
 double spread(const std::vector<double>& values) {
@@ -78,10 +82,15 @@ double unit_of(const SweepTimes& times, std::optional<double> stated) {
   const double span = times.span();
   if (stated) {
     const double duration = span * *stated;
-    if (duration >= kShortestStated && duration <= kLongest) return *stated;
+    if (times.split() || (duration >= kShortestStated && duration <= kLongest)) return *stated;
     throw ConfigError(
         fmt::format("a sweep takes {:.4g} s by this unit of its points' times", duration), kUnitKey,
         "state the right unit, or \"auto\"");
+  }
+  if (times.split()) {
+    throw ConfigError(
+        fmt::format("the times of the points of a scan lie in two groups, {:.4g} apart", 0.5 * span),
+        kUnitKey, "state time_unit and time_reference, or correct the times");
   }
   constexpr double kFewest = 10;  // different whole times of a sweep; fewer are no times
   for (const Unit& unit : kUnits) {

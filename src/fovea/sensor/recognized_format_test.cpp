@@ -112,6 +112,22 @@ TEST(RecognizedFormat, AFewWrongTimesDoNotDecide) {
   EXPECT_EQ(recognize_format(scans, {}).format.time_unit, 1);
 }
 
+TEST(RecognizedFormat, TimesInTwoGroupsAreAnErrorUnlessStated) {
+  std::vector<ScanNumbers> scans = {scan_of(kEpoch, Scalar::kDouble, [](double share) {
+    return Point{.time = (share < 0.4 ? 5 : 0) + 0.1 * share};
+  })};
+  EXPECT_THAT(error_of(scans), AllOf(HasSubstr("two groups"), HasSubstr("lidar.time_unit")));
+  StatedScanFormat stated;
+  stated.time_unit = 1;
+  stated.time_reference = TimeReference::kNone;
+  EXPECT_EQ(error_of(scans, stated), "no error");
+  // A LiDAR that sees something ahead and behind only.
+  scans = {scan_of(kEpoch, Scalar::kDouble, [](double share) {
+    return Point{.time = 0.1 * (share < 0.5 ? 0.1 * share : 1 - 0.1 * share)};
+  })};
+  EXPECT_EQ(recognize_format(scans, {}).format.time_unit, 1);
+}
+
 TEST(RecognizedFormat, SlowAndFastSweepsAreSweeps) {
   for (const double duration : {0.004, 0.05, 0.5, 1.5}) {
     const std::vector<ScanNumbers> scans = {scan_of(kEpoch, Scalar::kDouble, [&](double share) {

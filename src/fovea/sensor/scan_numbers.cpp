@@ -17,6 +17,17 @@ double quantile(std::vector<T>& values, double share) {
   return static_cast<double>(*middle);
 }
 
+/// Whether hardly a number lies between two that are the ends of the middle half.
+bool is_split(const std::vector<double>& values, double low, double high) {
+  constexpr double kInner = 0.95, kFewest = 0.01;  // shares
+  constexpr std::size_t kEnough = 20;
+  const double middle = 0.5 * (low + high), reach = 0.5 * kInner * (high - low);
+  const auto inner = std::count_if(values.begin(), values.end(), [&](double value) {
+    return std::abs(value - middle) < reach;
+  });
+  return values.size() >= kEnough && high > low && double(inner) < kFewest * double(values.size());
+}
+
 }  // namespace
 
 std::span<const char* const> ScanNumberRows::columns() const { return kScanColumns; }
@@ -53,7 +64,8 @@ ScanNumbers ScanNumberRows::take() {
   if (!intensities_.empty()) numbers_.median_intensity = quantile(intensities_, 0.5);
   if (!times_.empty()) {
     const double low = quantile(times_, 0.25), high = quantile(times_, 0.75);
-    numbers_.times = RawTimes{0.5 * (low + high), 2 * (high - low), whole_times_, times_.size()};
+    numbers_.times = RawTimes{0.5 * (low + high), 2 * (high - low), whole_times_,
+                              is_split(times_, low, high), times_.size()};
   }
   return std::move(numbers_);
 }

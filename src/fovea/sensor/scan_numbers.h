@@ -18,6 +18,7 @@ namespace fovea {
 struct RawTimes {
   double middle = 0, span = 0;
   bool whole = false;  ///< whether the file has whole numbers
+  bool split = false;  ///< whether the middle half lies at its two ends: no times of one sweep
   std::size_t count = 0;
 };
 
