@@ -129,6 +129,33 @@ TEST_F(GenericDrive, PosesThatDoNotReachTheScansAreTold) {
   EXPECT_FALSE(open()->info().navigation);
 }
 
+TEST_F(GenericDrive, PosesThatMoveAsNoVehicleAreAnErrorWithItsCause) {
+  const auto write_poses = [&](const std::function<RigidMotion(double way)>& T) {
+    std::string text = "time_ns,x,y,z,qx,qy,qz,qw\n";
+    for (int i = 0; i < kFrames; ++i) {
+      const RigidMotion pose = T(i);
+      const Eigen::Vector3d p = pose.translation();
+      const Eigen::Quaterniond q(pose.linear());
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", kStart + i * kStep, p.x(), p.y(), p.z(),
+                          q.x(), q.y(), q.z(), q.w());
+    }
+    write_text(folder_ / "poses.csv", text);
+  };
+  // A bend, in coordinates of UTM.
+  const auto T_world_body = [](double way) {
+    RigidMotion T(Eigen::AngleAxisd(0.02 * way, Eigen::Vector3d::UnitZ()));
+    T.pretranslate(Eigen::Vector3d(450'000 + way, 5'400'000, 110));
+    return T;
+  };
+  write_poses(T_world_body);
+  EXPECT_NO_THROW(open());
+  write_poses([&](double way) { return T_world_body(way).inverse(); });
+  EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("likely T_body_world, not T_world_body"),
+                                         HasSubstr("poses.csv"), HasSubstr("give T_world_body")));
+  write_poses([&](double way) { return T_world_body(1000 * way); });
+  EXPECT_THAT(error<InputError>(), HasSubstr("another unit than meters"));
+}
+
 TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
   EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 1);
   test::fs::remove_all(folder_ / "images/left");
@@ -552,6 +579,17 @@ TEST_F(GenericNavigation, AnglesOfOverATurnAreLikelyDegrees) {
   EXPECT_THAT(error<InputError>(), HasSubstr("up to 12.5"));
   write([](int i) { return fmt::format(",0,0,{}", 6.1 + 0.1 * i); });
   EXPECT_NO_THROW(open());
+}
+
+TEST_F(GenericNavigation, PositionsThatHardlyMoveMayBeInRadians) {
+  std::string text = "time_ns,latitude,longitude,altitude\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const GeodeticPoint p = place(i);
+    text += fmt::format("{},{},{},100\n", kStart + i * kStep, p.latitude * kDegree,
+                        p.longitude * kDegree);
+  }
+  write_text(folder_ / "gnss.csv", text);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("latitude and longitude in radians?")));
 }
 
 TEST_F(GenericNavigation, BadLinesAreNotedAndNotUsed) {

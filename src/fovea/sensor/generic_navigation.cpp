@@ -1,5 +1,9 @@
 #include "fovea/sensor/generic_navigation.h"
 
+#include <fmt/format.h>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/median.h"
 #include "fovea/sensor/gnss_table.h"
 #include "fovea/sensor/navigation_table.h"
 
@@ -9,6 +13,34 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxWorldCoordinate = 1e8;  // m: any map projection's, earth-centred ones, too
+
+/// Median speed of a motion from line to line, m/s.
+template <class Motion>
+double median_speed(const std::vector<StampedPose>& poses, Motion&& motion) {
+  std::vector<double> speeds;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const double elapsed = seconds(poses[i].time - poses[i - 1].time);
+    speeds.push_back(motion(poses[i - 1].T_local_body, poses[i].T_local_body).norm() / elapsed);
+  }
+  return median_of(std::move(speeds));
+}
+
+/// InputError if the poses move faster than any vehicle.
+/// @param poses  T_world_body
+void require_vehicle_speed(const std::vector<StampedPose>& poses, const fs::path& file) {
+  constexpr double kFastest = 150;  // m/s
+  const double speed = median_speed(poses, [](const RigidMotion& a, const RigidMotion& b) {
+    return Eigen::Vector3d(b.translation() - a.translation());
+  });
+  if (speed <= kFastest) return;
+  const double inverted = median_speed(poses, [](const RigidMotion& a, const RigidMotion& b) {
+    return Eigen::Vector3d(b.inverse().translation() - a.inverse().translation());
+  });
+  throw InputError(fmt::format("the poses move at {:.0f} m/s: likely {}", speed,
+                               inverted <= kFastest ? "T_body_world, not T_world_body"
+                                                    : "another unit than meters"),
+                   file.string(), "give T_world_body in meters, and times in nanoseconds");
+}
 
 GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& drive,
                                   TimeNs origin_time) {
@@ -30,16 +62,18 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
     }
     RigidMotion T_world_body(*q);
     T_world_body.pretranslate(position);
-    poses.push_back({rows.times[row], T_world_body * drive.T_body_lidar, {}});
-    if (const auto velocity = velocity_of(rows, row, kVelocity)) {
-      poses.back().velocity = twist_of_part(*velocity, drive.T_body_lidar);
-    }
+    poses.push_back({rows.times[row], T_world_body, velocity_of(rows, row, kVelocity)});
     result.accuracy.push_back(accuracy_of(rows, row, kAccuracy));
   }
   left_out.note(result.notes);
   if (poses.empty()) {
     result.notes.push_back(file.string() + " has no pose that can be used: no navigation");
     return result;
+  }
+  require_vehicle_speed(poses, file);
+  for (StampedPose& pose : poses) {
+    pose.T_local_body = pose.T_local_body * drive.T_body_lidar;
+    if (pose.velocity) pose.velocity = twist_of_part(*pose.velocity, drive.T_body_lidar);
   }
   const Trajectory T_world_lidar(poses);
   const Eigen::Vector3d origin =
