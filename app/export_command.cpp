@@ -27,7 +27,7 @@ namespace {
 struct ExportArguments {
   std::string map, output, format, where, crs = "local";
   PointChoice points;
-  double utc_offset = seconds(LasOptions().utc_offset) / 3600;
+  std::optional<double> utc_offset;  // h
   double voxel = MeshOptions().voxel;
   bool double_positions = false, viewer = false, force = false, quiet = false;
 };
@@ -137,9 +137,9 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     if (!arguments.quiet) print_figures(arguments, figures);
   };
   if (format == "las") {
-    const LasFigures figures =
-        write_las(map, arguments.output,
-                  {arguments.points, from_seconds(3600 * arguments.utc_offset), arguments.force});
+    LasOptions options{.points = arguments.points, .force = arguments.force};
+    if (arguments.utc_offset) options.utc_offset = from_seconds(3600 * *arguments.utc_offset);
+    const LasFigures figures = write_las(map, arguments.output, options);
     report(figures);
     if (!arguments.quiet) print_times(figures);
     return;
@@ -186,8 +186,8 @@ void add_export_command(CLI::App& app) {
   command
       ->add_option(
           "--utc-offset", arguments->utc_offset,
-          "LAS: hours that the drive's clock is ahead of UTC, for GPS times; KITTI's names "
-          "no zone; default: 2, Karlsruhe's summer time")
+          "LAS: hours that the drive's clock is ahead of UTC, for GPS times; default: 0, or 2 for "
+          "KITTI drives (Karlsruhe's summer time)")
       ->check(finite_range(-24.0, 24.0));
   command
       ->add_option("--voxel", arguments->voxel,

@@ -13,6 +13,7 @@
 
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -35,14 +36,14 @@ class Reader : public SettingVisitor {
   /// ConfigError for the first key of the document that is not known.
   void reject_unknown_keys(std::string_view help) const { reject_unknown(table_, "", help); }
 
-  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else the key
-  /// alone.
+  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else "FILE,
+  /// KEY".
   std::string where(std::string_view key) const {
     std::string_view path = key;
     while (true) {
       if (const toml::node* node = table_.at_path(path).node()) return place(*node, key);
       const std::size_t dot = path.rfind('.');
-      if (dot == std::string_view::npos) return std::string(key);
+      if (dot == std::string_view::npos) return fmt::format("{}, key '{}'", name_, key);
       path = path.substr(0, dot);
     }
   }
@@ -269,7 +270,7 @@ SettingsDocument SettingsDocument::from_file(const std::filesystem::path& file) 
   if (!stream || std::filesystem::is_directory(file)) {
     throw InputError("the configuration cannot be read", file.string(), "check the path");
   }
-  return from_text(text.str(), file.string());
+  return from_text(without_byte_order_mark(text.str(), file.string()), file.string());
 }
 
 SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -73,6 +74,7 @@ void for_each_line(const std::filesystem::path& file, F&& f) {
   bool any = false;
   for (std::string line; std::getline(stream, line);) {
     ++number;
+    if (number == 1) line = without_byte_order_mark(line, file.string());
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     any = true;
     f(line, fmt::format("{}:{}", file.string(), number));

@@ -70,6 +70,7 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
     if (record.status != FrameStatus::kSkipped) missing_[camera.index].add(record.index);
   }
   if (record.status != FrameStatus::kSkipped) note_flaws(record);
+  navigation_.add(record);
   if (!is_new) return;
   if (is_late(record, summary_.rate)) ++summary_.late_frames;
   for (const auto& [stage, ms] : record.milliseconds) {
@@ -88,6 +89,7 @@ MapSummary DriveFigures::summary() const {
   note(absent_, "no GPS/INS, the scans alone tell the motion", summary.notes);
   note(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on",
        summary.notes);
+  if (const auto cause = navigation_.likely_cause()) summary.notes.push_back(*cause);
   note(lost_,
        "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "
        "may "

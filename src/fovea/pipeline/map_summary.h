@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/pipeline/navigation_faults.h"
 #include "fovea/pipeline/point_counts.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/sensor/frame_source.h"
@@ -53,7 +54,9 @@ class DriveFigures {
  public:
   /// @param drive  must outlive the figures
   /// @param rate   Hz, at which frames of this run are released, or 0
-  DriveFigures(const DriveInfo& drive, double rate) : drive_(drive) { summary_.rate = rate; }
+  DriveFigures(const DriveInfo& drive, double rate) : drive_(drive), navigation_(drive) {
+    summary_.rate = rate;
+  }
 
   /// Counts a frame, its skip or its failures; of one that this run has made (not an earlier one,
   /// which it resumes) latencies and lateness, too.
@@ -74,6 +77,7 @@ class DriveFigures {
   void note_flaws(const FrameRecord& record);
 
   const DriveInfo& drive_;
+  NavigationFaults navigation_;
   MapSummary summary_;
   std::map<std::string, std::vector<float>> by_stage_;  // ms
   Flaw absent_, jumped_, degenerate_, lost_, blank_, exposed_;

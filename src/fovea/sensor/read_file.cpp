@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -65,14 +66,20 @@ void expect_file(const std::filesystem::path& file) {
   if (stream) static_cast<void>(posix_fadvise(fileno(stream.get()), 0, 0, POSIX_FADV_WILLNEED));
 }
 
-std::vector<std::string> read_lines(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::string text(bytes.begin(), bytes.end());
+  return std::string(without_byte_order_mark(text, file.string()));
+}
+
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
   std::vector<std::string> lines;
-  for (auto begin = bytes.begin(); begin != bytes.end();) {
-    const auto end = std::find(begin, bytes.end(), '\n');
+  for (auto begin = text.begin(); begin != text.end();) {
+    const auto end = std::find(begin, text.end(), '\n');
     lines.emplace_back(begin, end);
     if (!lines.back().empty() && lines.back().back() == '\r') lines.back().pop_back();
-    begin = end == bytes.end() ? end : end + 1;
+    begin = end == text.end() ? end : end + 1;
   }
   return lines;
 }

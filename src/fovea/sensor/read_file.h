@@ -19,7 +19,11 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file);
 /// read nothing is said: who reads it will be told.
 void expect_file(const std::filesystem::path& file);
 
-/// Lines of a text file without their line ends (LF or CRLF); InputError if it cannot be read.
+/// Text of a UTF-8 file without a byte order mark. InputError if the file cannot be read or has
+/// another encoding.
+std::string read_text(const std::filesystem::path& file);
+
+/// Lines of read_text() without their line ends (LF or CRLF).
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 
 /// All numbers of a text, separated by white space; empty if anything in it is no number. "nan" and
