@@ -98,30 +98,16 @@ class GenericDrive {
   void find_scan_format() {
     const auto stamp = [&](int scan) { return frame_stamp(info_, files_.stamps, scan); };
     const std::vector<ScanNumbers> numbers = read_first_numbers(files_.scans, kFirstScans, stamp);
-    recognize_scan_format(numbers);
+    StatedScanFormat stated = description_.scan_format;
+    if (info_.sweep_compensated) stated.time_reference = TimeReference::kNone;
+    files_.scan_format =
+        recognize_format_of_drive(numbers, stated, info_.path / "drive.toml", info_.notes);
     info_.sweep = sweep_timing(description_.sweep, stamp_step_);
     if (info_.sweep_compensated) return;
     const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
     sweep_middle_ = middle.value_or(info_.sweep.middle_time());
     if (!numbers.empty() && !middle) {
       info_.notes.push_back(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
-    }
-  }
-
-  void recognize_scan_format(const std::vector<ScanNumbers>& numbers) {
-    StatedScanFormat stated = description_.scan_format;
-    if (info_.sweep_compensated) stated.time_reference = TimeReference::kNone;
-    try {
-      const RecognizedFormat recognized = recognize_format(numbers, stated);
-      files_.scan_format = recognized.format;
-      for (const auto& [what, keys] : recognized.notes) {
-        info_.notes.push_back(
-            keys.empty() ? what : what + "; to change: [lidar] " + keys + " in drive.toml");
-      }
-    } catch (const ConfigError& error) {
-      throw ConfigError(error.problem(),
-                        fmt::format("{}: {}", (info_.path / "drive.toml").string(), error.where()),
-                        error.remedy());
     }
   }
 
@@ -271,7 +257,8 @@ class GenericDrive {
     const std::optional<int> first = first_usable_frame(info_, files_);
     const TimeNs origin_time =
         frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
-    GenericNavigation navigation = read_generic_navigation(info_.path, description_, origin_time);
+    GenericNavigation navigation =
+        read_generic_navigation(info_.path, description_, origin_time, period_of(files_.stamps));
     info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
     if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
     info_.calibration.T_imu_lidar = description_.T_body_lidar;

@@ -263,6 +263,21 @@ TEST_F(GenericDrive, ImagesMayHaveStampsOfAnotherUnit) {
   EXPECT_TRUE(std::holds_alternative<Frame>(open()->load(4)));
 }
 
+TEST_F(GenericDrive, AllTablesMayBeInMicroseconds) {
+  std::string scans = "index,time_ns\n", poses = "time_ns,x,y,z,qx,qy,qz,qw\n";
+  for (int i = 0; i < kFrames; ++i) {
+    scans += fmt::format("{},{}\n", i, (kStart + i * kStep) / 1000);
+    poses += fmt::format("{},{},200,30,0,0,0,1\n", (kStart + i * kStep) / 1000, 100 + i);
+  }
+  write_text(scan_stamps_, scans);
+  write_text(folder_ / "poses.csv", poses);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("lidar/stamps.csv are in us"),
+                                   HasSubstr("poses.csv are in us")));
+  const auto drive = open();
+  EXPECT_EQ(drive->stamp(2), kStart + 2 * kStep);
+  EXPECT_NEAR(drive->info().navigation->at(kStart + 3 * kStep)->translation().x(), 3, 1e-9);
+}
+
 TEST_F(GenericDrive, WithoutStampsScansCountAsTenHertz) {
   test::fs::remove(scan_stamps_);
   EXPECT_THAT(notes(), ElementsAre(HasSubstr("is missing: scans are counted as 10 Hz"),

@@ -43,12 +43,12 @@ void require_vehicle_speed(const std::vector<StampedPose>& poses, const fs::path
 }
 
 GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& drive,
-                                  TimeNs origin_time) {
+                                  TimeNs origin_time, const std::optional<ScanPeriod>& scans) {
   enum { kX, kY, kZ, kQx, kAccuracy = 7, kVelocity };
   constexpr auto kColumns = with_velocity<kVelocity>(
       {{{"x"}, {"y"}, {"z"}, {"qx"}, {"qy"}, {"qz"}, {"qw"}, {"accuracy", false}}});
   GenericNavigation result;
-  CsvRows rows = read_csv(file, kColumns);
+  CsvRows rows = read_timed_csv(file, kColumns, scans, result.notes);
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::vector<StampedPose> poses;
@@ -86,11 +86,12 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
 }  // namespace
 
 GenericNavigation read_generic_navigation(const fs::path& folder, const DriveDescription& drive,
-                                          TimeNs origin_time) {
+                                          TimeNs origin_time,
+                                          const std::optional<ScanPeriod>& scans) {
   if (fs::exists(folder / "poses.csv")) {
-    return read_pose_table(folder / "poses.csv", drive, origin_time);
+    return read_pose_table(folder / "poses.csv", drive, origin_time, scans);
   }
-  if (fs::exists(folder / "gnss.csv")) return read_gnss(folder, drive, origin_time);
+  if (fs::exists(folder / "gnss.csv")) return read_gnss(folder, drive, origin_time, scans);
   GenericNavigation none;
   none.notes.push_back("the drive has neither poses.csv nor gnss.csv: no navigation");
   return none;

@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 class ImuOrientations {
  public:
   ImuOrientations(const fs::path& file, const RigidMotion& T_body_imu,
-                  std::vector<std::string>& notes)
+                  const std::optional<ScanPeriod>& scans, std::vector<std::string>& notes)
       : R_imu_body_(T_body_imu.linear().transpose()) {
     constexpr std::array<CsvColumn, 4> kColumns = {
         {{"qx", false}, {"qy", false}, {"qz", false}, {"qw", false}}};
-    rows_ = read_csv(file, kColumns);
+    rows_ = read_timed_csv(file, kColumns, scans, notes);
     LeftOut left_out(file, rows_);
     left_out.add_out_of_order(rows_.drop_out_of_order());
     left_out.note(notes);
@@ -240,15 +240,15 @@ std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, con
 }  // namespace
 
 GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& drive,
-                            TimeNs origin_time) {
+                            TimeNs origin_time, const std::optional<ScanPeriod>& scans) {
   const fs::path file = folder / "gnss.csv", imu_file = folder / "imu.csv";
   GenericNavigation result;
-  CsvRows rows = read_csv(file, kGnssNames);
+  CsvRows rows = read_timed_csv(file, kGnssNames, scans, result.notes);
   require_radians(rows, file);
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::optional<ImuOrientations> imu;
-  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, result.notes);
+  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, scans, result.notes);
   std::vector<GnssLine> lines = lines_with_position(rows, drive, imu, left_out);
   leave_out_far_positions(lines, left_out);
   const std::string lack = what_lacks(lines);

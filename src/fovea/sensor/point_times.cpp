@@ -89,8 +89,9 @@ double unit_of(const SweepTimes& times, std::optional<double> stated) {
   }
   if (times.split()) {
     throw ConfigError(
-        fmt::format("the times of the points of a scan lie in two groups, {:.4g} apart", 0.5 * span),
-        kUnitKey, "state time_unit and time_reference, or correct the times");
+        fmt::format("the times of the points of a scan lie in two groups, {:.4g} apart",
+                    0.5 * span),
+        kUnitKey, "state time_unit and time_reference (\"none\": read the points without times)");
   }
   constexpr double kFewest = 10;  // different whole times of a sweep; fewer are no times
   for (const Unit& unit : kUnits) {

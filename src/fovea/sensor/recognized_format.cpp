@@ -125,4 +125,21 @@ RecognizedFormat recognize_format(std::span<const ScanNumbers> scans,
   return result;
 }
 
+ScanFormat recognize_format_of_drive(std::span<const ScanNumbers> scans,
+                                     const StatedScanFormat& stated,
+                                     const std::filesystem::path& toml,
+                                     std::vector<std::string>& notes) {
+  try {
+    const RecognizedFormat recognized = recognize_format(scans, stated);
+    for (const auto& [what, keys] : recognized.notes) {
+      notes.push_back(keys.empty() ? what
+                                   : what + "; to change: [lidar] " + keys + " in drive.toml");
+    }
+    return recognized.format;
+  } catch (const ConfigError& error) {
+    throw ConfigError(error.problem(), fmt::format("{}: {}", toml.string(), error.where()),
+                      error.remedy());
+  }
+}
+
 }  // namespace fovea

@@ -1,6 +1,7 @@
 // Recognizes units and columns of scans by the numbers of the first ones.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,5 +27,11 @@ struct RecognizedFormat {
 /// @param scans  the first ones of the drive; may be empty
 RecognizedFormat recognize_format(std::span<const ScanNumbers> scans,
                                   const StatedScanFormat& stated);
+
+/// The same for a drive with this drive.toml, which notes and errors name.
+ScanFormat recognize_format_of_drive(std::span<const ScanNumbers> scans,
+                                     const StatedScanFormat& stated,
+                                     const std::filesystem::path& toml,
+                                     std::vector<std::string>& notes);
 
 }  // namespace fovea

@@ -182,7 +182,7 @@ TEST(RecognizedFormat, OneScanNearTheEpochMayBeAmbiguous) {
 
 TEST(RecognizedFormat, NoUnitMakesItASweep) {
   const std::vector<ScanNumbers> scans = {scan_of(
-      kEpoch, Scalar::kInt32, [](double share) { return Point{.time = std::round(share)}; })};
+      kEpoch, Scalar::kInt32, [](double share) { return Point{.time = std::round(4 * share)}; })};
   EXPECT_THAT(error_of(scans), AllOf(HasSubstr("time_unit"), HasSubstr("\"none\"")));
 }
 

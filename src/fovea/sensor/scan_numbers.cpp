@@ -22,9 +22,8 @@ bool is_split(const std::vector<double>& values, double low, double high) {
   constexpr double kInner = 0.95, kFewest = 0.01;  // shares
   constexpr std::size_t kEnough = 20;
   const double middle = 0.5 * (low + high), reach = 0.5 * kInner * (high - low);
-  const auto inner = std::count_if(values.begin(), values.end(), [&](double value) {
-    return std::abs(value - middle) < reach;
-  });
+  const auto inner = std::count_if(values.begin(), values.end(),
+                                   [&](double value) { return std::abs(value - middle) < reach; });
   return values.size() >= kEnough && high > low && double(inner) < kFewest * double(values.size());
 }
 

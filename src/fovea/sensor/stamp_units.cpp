@@ -124,4 +124,21 @@ void set_time_unit_by_scans(CsvRows& rows, const ScanPeriod& scans,
   if (chosen != 1) set_recognized(rows, chosen, file, notes);
 }
 
+std::optional<ScanPeriod> period_of(const TimeStamps& stamps) {
+  std::optional<ScanPeriod> period;
+  for (const std::optional<TimeNs>& time : stamps.times) {
+    if (!time) continue;
+    if (!period) period = {*time, *time};
+    period->last = *time;
+  }
+  return period;
+}
+
+CsvRows read_timed_csv(const std::filesystem::path& file, std::span<const CsvColumn> columns,
+                       const std::optional<ScanPeriod>& scans, std::vector<std::string>& notes) {
+  CsvRows rows = read_csv(file, columns);
+  if (scans) set_time_unit_by_scans(rows, *scans, file, notes);
+  return rows;
+}
+
 }  // namespace fovea

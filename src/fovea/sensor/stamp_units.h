@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "fovea/base/time.h"
 #include "fovea/sensor/csv_rows.h"
+#include "fovea/sensor/time_stamps.h"
 
 namespace fovea {
 
@@ -25,5 +28,12 @@ void set_scan_time_unit(CsvRows& rows, const std::filesystem::path& file,
 /// nanoseconds where no unit fits.
 void set_time_unit_by_scans(CsvRows& rows, const ScanPeriod& scans,
                             const std::filesystem::path& file, std::vector<std::string>& notes);
+
+/// From the first to the last stamp; empty if there is none.
+std::optional<ScanPeriod> period_of(const TimeStamps& stamps);
+
+/// read_csv(), with the unit by the scans where their time is known.
+CsvRows read_timed_csv(const std::filesystem::path& file, std::span<const CsvColumn> columns,
+                       const std::optional<ScanPeriod>& scans, std::vector<std::string>& notes);
 
 }  // namespace fovea
