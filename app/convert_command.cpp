@@ -106,6 +106,8 @@ void add_convert_command(CLI::App& app) {
       ->type_name("FRAME");
   command->add_flag("--compensated", options.sweep_compensated,
                     "The scans' motion was undone when they were recorded");
+  command->add_flag("--allow-dropped", options.allow_dropped,
+                    "Convert scans even if over 10 % of their points cannot be used");
   command->add_flag("--force", arguments->force, "Replace DIR");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });

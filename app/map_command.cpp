@@ -49,7 +49,7 @@ struct MapArguments {
   int threads = 0;
   double rate = 0;
   std::size_t memory = std::size_t{1} << 30;
-  bool calibrate = false, resume = false, force = false, quiet = false;
+  bool calibrate = false, resume = false, force = false, quiet = false, allow_dropped = false;
   std::string live;  // empty: no; a port, or kSomePort
 };
 
@@ -159,6 +159,7 @@ void run(const MapArguments& arguments, Session& session) {
   job.rate = arguments.rate;
   job.memory = arguments.memory;
   job.calibrate = arguments.calibrate;
+  job.allow_dropped = arguments.allow_dropped;
   job.force = arguments.force;
   job.resume = arguments.resume;
 
@@ -250,6 +251,8 @@ void add_map_command(CLI::App& app, Session& session) {
   command->add_flag("--calibrate", arguments->calibrate,
                     "First estimate rotation and delay of the cameras from the drive's edges, and "
                     "map under them");
+  command->add_flag("--allow-dropped", arguments->allow_dropped,
+                    "Map even if over 10 % of the scans' points cannot be used");
   command->add_flag("--resume", arguments->resume, "Go on with an unfinished map");
   command->add_flag("--force", arguments->force, "Overwrite the map");
   command->add_option("--report", arguments->report, "Write figures as JSON")

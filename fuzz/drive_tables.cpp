@@ -47,12 +47,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             "100\n");
       write(folder / "imu.csv", text);
   }
-  read_or_refuse([&] { check(read_generic_navigation(folder.path(), {}, 1'000'000'000)); });
+  const bool has_scans = (data[0] & 0x80) != 0;
+  const auto scans =
+      has_scans ? std::optional(ScanPeriod{1'000'000'000, 2'000'000'000}) : std::nullopt;
+  read_or_refuse([&] { check(read_generic_navigation(folder.path(), {}, 1'000'000'000, scans)); });
 
   constexpr std::array<CsvColumn, 1> kColumns = {{{"index", false}}};
   static FileInMemory file;
   read_or_refuse([&] {
     CsvRows rows = read_csv(file.hold(text), kColumns);
+    std::vector<std::string> notes;
+    if (has_scans) set_scan_time_unit(rows, "stamps.csv", notes);
     rows.drop_out_of_order();
     require(rows.lines.size() == rows.size() && rows.values.size() == rows.size(),
             "rows are whole");

@@ -1,8 +1,10 @@
-// Scans in PCD and PLY: the first byte says which, and how the times count.
+// Scans in PCD and PLY. The first byte says which, and how the times count or whether the units are
+// recognized.
 #include "fovea/sensor/lidar_scan.h"
 
 #include <fstream>
 
+#include "fovea/sensor/recognized_format.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 
@@ -15,8 +17,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(file, std::ios::binary) << as_text(data + 1, size - 1);
   ScanFormat format;
   if ((data[0] & 2) != 0) format.time_reference = TimeReference::kAbsolute;
+  constexpr TimeNs kStamp = 1'700'000'000'000'000'000;
   read_or_refuse([&] {
-    const LidarScan scan = read_lidar_scan(file, format, 1'700'000'000'000'000'000);
+    const ScanNumbers numbers = read_scan_numbers(file, kStamp);
+    try {
+      if ((data[0] & 4) != 0) format = recognize_format(std::span(&numbers, 1), {}).format;
+    } catch (const ConfigError&) {
+      // Numbers without a meaning; the file may still be read.
+    }
+    const LidarScan scan = read_lidar_scan(file, format, kStamp);
     scan.points.check();
     require(!scan.points.empty(), "a scan has points");
     for (const Eigen::Vector3f& p : scan.points.position) {

@@ -2,10 +2,12 @@
 #include "fovea/rosbag/ros_messages.h"
 
 #include <array>
+#include <vector>
 
 #include "fovea/rosbag/camera_topics.h"
 #include "fovea/rosbag/pixels.h"
 #include "fovea/rosbag/point_cloud_rows.h"
+#include "fovea/sensor/recognized_format.h"
 #include "fuzz_input.h"
 
 using namespace fovea;
@@ -14,7 +16,15 @@ namespace {
 
 void read_scan(CdrReader& message) {
   const ros::PointCloud2 cloud = ros::read_point_cloud(message);
-  ScanRows rows(time_format_of(cloud, "t"), cloud.header.stamp);
+  ScanNumberRows numbers(cloud.header.stamp);
+  read_cloud_rows(cloud, "t", numbers);
+  ScanFormat format;
+  try {
+    format = recognize_format(std::vector{numbers.take()}, {}).format;
+  } catch (const ConfigError&) {
+    format.time_reference = TimeReference::kNone;
+  }
+  ScanRows rows(format, cloud.header.stamp);
   read_cloud_rows(cloud, "t", rows);
   const LidarScan scan = rows.take("t");
   scan.points.check();

@@ -9,7 +9,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_or_refuse([&] {
     const LidarScan scan = read_kitti_scan(file.hold(as_text(data, size)));
     scan.points.check();
-    require(scan.points.size() + scan.dropped == size / 16, "every point is kept or counted");
+    require(scan.points.size() + scan.dropped.total() == size / 16,
+            "every point is kept or counted");
     for (const Eigen::Vector3f& p : scan.points.position) {
       require(p.allFinite(), "points are finite");
     }

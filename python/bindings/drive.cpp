@@ -123,7 +123,8 @@ void bind_frame(py::module_& module) {
           [](const DriveFrame& self) { return optional_column(scan_of(self), &PointCloud::time); },
           "N float32, s from the stamp, or None.")
       .def_property_readonly(
-          "dropped_points", [](const DriveFrame& self) { return self.frame->dropped_points; },
+          "dropped_points",
+          [](const DriveFrame& self) { return self.frame->dropped_points.total(); },
           "Points of the scan that are not finite or out of reach, and not in `points`.")
       .def_property_readonly("images", &images,
                              "A height x width x channels uint8 array a camera of the drive, RGB "

@@ -179,6 +179,12 @@ class MapRun {
   void take_up_earlier_run();
   void begin_with_velocity_at(int index);
   void check_calibration(const LocatedFrame& located, FrameRecord& record);
+  /// InputError if too many points were dropped so far.
+  void check_points() const {
+    if (job_.allow_dropped) return;
+    require_few_dropped(figures_.points().dropped(), figures_.points().used(),
+                        drive_.path.string());
+  }
   MapRows fresh_rows(bool last);
   bool complete() const { return log_.size() == drive_.frame_count(); }
 
@@ -288,6 +294,9 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
     check_calibration(*located, record);
     figures_.add(record, /*is_new=*/true);
     log_.add(record);
+    // Early, and at frames that do not depend on timing.
+    constexpr std::size_t kCheckEvery = 30;
+    if (log_.size() % kCheckEvery == 0) check_points();
     if (job_.observer != nullptr) {
       job_.observer->frame_mapped(record, std::get_if<Frame>(&located->result), mapper_.map());
     }
@@ -310,6 +319,7 @@ void MapRun::finish() {
                      "check that the drive has scans and images for the frames asked for");
   }
   views_.require_view();
+  check_points();
   // Beside the writer, which waits for the disk now and then.
   auto calibration = std::async(threaded_ ? std::launch::async : std::launch::deferred, [this] {
     return check_ ? check_->estimates() : std::vector<CameraCalibration>();

@@ -41,9 +41,10 @@ struct MapJob {
   /// Stages work side by side on neighbouring frames where there are threads for it; the map is the
   /// same.
   bool overlap = true;
-  bool calibrate = false;  ///< correct the calibration first (pipeline/self_calibration.h)
-  bool force = false;      ///< overwrite `output`
-  bool resume = false;     ///< go on with `output`, which an earlier run left unfinished
+  bool calibrate = false;      ///< correct the calibration first (pipeline/self_calibration.h)
+  bool force = false;          ///< overwrite `output`
+  bool allow_dropped = false;  ///< however many points of the scans are dropped
+  bool resume = false;         ///< go on with `output`, which an earlier run left unfinished
   /// Bytes that the process should keep to: tiles of the map that are out of reach are in the file
   /// alone.
   std::size_t memory = std::size_t{1} << 30;

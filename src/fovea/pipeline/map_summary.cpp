@@ -70,6 +70,7 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
       break;
   }
   if (record.has("registration_failed")) ++summary_.registrations_failed;
+  points_.add(record);
   if (record.revisit) ++summary_.loops_closed;
   for (const Camera& camera : drive_.calibration.cameras) {
     if (!record.lacks_image(camera.index)) continue;
@@ -77,6 +78,7 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
     if (record.status != FrameStatus::kSkipped) missing_[camera.index].add(record.index);
   }
   if (record.status != FrameStatus::kSkipped) note_flaws(record);
+  navigation_.add(record);
   if (!is_new) return;
   if (is_late(record, summary_.rate)) ++summary_.late_frames;
   for (const auto& [stage, ms] : record.milliseconds) {
@@ -87,11 +89,15 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
 MapSummary DriveFigures::summary() const {
   MapSummary summary = summary_;
   for (const auto& [stage, times] : by_stage_) summary.latency_ms[stage] = latency_of(times);
-  // What a user must know of poses and images.
+  summary.points_dropped = points_.dropped();
+  summary.points_read = points_.used() + points_.dropped().total();
+  // What a user must know of scans, poses and images.
   summary.notes = drive_.notes;
+  if (std::string note = points_.note(); !note.empty()) summary.notes.push_back(std::move(note));
   note(absent_, "no GPS/INS, the scans alone tell the motion", summary.notes);
   note(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on",
        summary.notes);
+  if (const auto cause = navigation_.likely_cause()) summary.notes.push_back(*cause);
   note(lost_,
        "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "
        "may "

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "fovea/map/frame_record.h"
+#include "fovea/pipeline/navigation_faults.h"
+#include "fovea/pipeline/point_counts.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -32,6 +34,8 @@ struct MapSummary {
   int registrations_failed = 0;
   int loops_closed = 0;  ///< scans registered to a place seen before
   std::size_t points = 0;
+  std::size_t points_read = 0;   ///< of the scans, dropped ones included
+  DroppedPoints points_dropped;  ///< of these
   std::size_t frames_new = 0;    ///< of all kinds, made by this run and not by one that it resumes
   double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
   double rate = 0;  ///< Hz, at which frames were released; 0: as fast as they were mapped
@@ -52,11 +56,15 @@ class DriveFigures {
  public:
   /// @param drive  must outlive the figures
   /// @param rate   Hz, at which frames of this run are released, or 0
-  DriveFigures(const DriveInfo& drive, double rate) : drive_(drive) { summary_.rate = rate; }
+  DriveFigures(const DriveInfo& drive, double rate) : drive_(drive), navigation_(drive) {
+    summary_.rate = rate;
+  }
 
   /// Counts a frame, its skip or its failures; of one that this run has made (not an earlier one,
   /// which it resumes) latencies and lateness, too.
   void add(const FrameRecord& record, bool is_new);
+
+  const PointCounts& points() const { return points_; }
 
   /// Points, rate of frames, calibration and interruption are the caller's to add.
   MapSummary summary() const;
@@ -71,10 +79,12 @@ class DriveFigures {
   void note_flaws(const FrameRecord& record);
 
   const DriveInfo& drive_;
+  NavigationFaults navigation_;
   MapSummary summary_;
   std::map<std::string, std::vector<float>> by_stage_;  // ms
   Flaw absent_, jumped_, degenerate_, lost_, restarted_, unknown_, blank_, exposed_;
   std::map<int, Flaw> missing_;  // by camera
+  PointCounts points_;
 };
 
 }  // namespace fovea

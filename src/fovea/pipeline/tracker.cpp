@@ -8,6 +8,7 @@
 
 #include "fovea/base/median.h"
 #include "fovea/base/parallel.h"
+#include "fovea/pipeline/point_counts.h"
 #include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
@@ -83,8 +84,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   record.index = frame.index;
   record.stamp = frame.stamp;
   record.status = held_out ? FrameStatus::kHeldOut : FrameStatus::kMapped;
-  record.figures["points_scan"] = as_figure(frame.scan.size());
-  record.figures["points_dropped"] = as_figure(frame.dropped_points);
+  count_points(frame, record);
 
   // Where are we, and how do we move?
   const MotionPrediction motion = motion_model_.predict(frame.stamp);

@@ -5,6 +5,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/rosbag/navigation_topics.h"
 #include "fovea/rosbag/only_topic.h"
+#include "fovea/sensor/recognized_format.h"
 
 namespace fovea {
 namespace {
@@ -59,6 +60,31 @@ void check_sensors(const BagSurvey& survey, const ConversionPlan& plan) {
   }
 }
 
+/// Recognizes the units of the scans. Times that have no meaning are not used, which a note says.
+ScanFormat recognize_scans(const SensorTopic& lidar, const std::string& topic,
+                           std::vector<std::string>& notes) {
+  const auto recognize = [&](const StatedScanFormat& stated) {
+    const RecognizedFormat recognized = recognize_format(lidar.first_scans, stated);
+    const ScanFormat& format = recognized.format;
+    const bool timed = format.time_unit && format.time_reference != TimeReference::kNone;
+    notes.push_back(fmt::format("scans: {} of {}, {}", lidar.stamps.size(), topic,
+                                timed ? "points have times" : "points have no times"));
+    for (const FormatNote& note : recognized.notes) notes.push_back(note.what);
+    return format;
+  };
+  try {
+    return recognize({});
+  } catch (const ConfigError& error) {
+    if (!error.where().starts_with("lidar.time_")) {
+      throw InputError(error.problem(), topic, "record coordinates in m, in the LiDAR's frame");
+    }
+    notes.push_back("the times of points are not used: " + error.problem());
+    StatedScanFormat untimed;
+    untimed.time_reference = TimeReference::kNone;
+    return recognize(untimed);
+  }
+}
+
 }  // namespace
 
 ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options) {
@@ -67,9 +93,7 @@ ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& op
   plan.lidar = only_topic(survey.clouds, options.lidar, "PointCloud2", "--lidar");
   const SensorTopic& lidar = survey.clouds.at(plan.lidar);
   plan.drive.sweep_compensated = options.sweep_compensated;
-  plan.notes.push_back(
-      fmt::format("scans: {} of {}, {}", lidar.stamps.size(), plan.lidar,
-                  lidar.scan_format.time_unit ? "points have times" : "points have no times"));
+  plan.scan_format = recognize_scans(lidar, plan.lidar, plan.notes);
   plan.cameras = plan_cameras(survey, options, lidar.frame, plan.notes);
   for (const PlannedCamera& planned : plan.cameras) {
     plan.notes.push_back(fmt::format("camera {}: '{}', {} images of {}", planned.camera.index,

@@ -8,11 +8,13 @@
 #include "fovea/rosbag/camera_topics.h"
 #include "fovea/rosbag/convert_options.h"
 #include "fovea/rosbag/survey.h"
+#include "fovea/sensor/scan_format.h"
 
 namespace fovea {
 
 struct ConversionPlan {
   std::string lidar;  ///< topic of the scans
+  ScanFormat scan_format;
   std::vector<PlannedCamera> cameras;
   RecordedDrive drive;
   std::vector<std::string> notes;  ///< what was chosen, what is left out and why

@@ -47,7 +47,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
     return figures;
   }
   ConversionPlan plan = naming(bags, [&] { return plan_conversion(survey, options); });
-  Recorder recorder(survey, plan, writer, progress);
+  Recorder recorder(survey, plan, writer, options.allow_dropped, progress);
   for (const std::filesystem::path& file : files) {
     if (!recorder.stopped()) read_bag_file(file, scratch, recorder);
   }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "../../../tests/cdr_writer.h"
@@ -23,8 +24,9 @@ using testing::IsEmpty;
 constexpr int kSecond = 1'700'000'000;
 constexpr std::uint32_t kStep = 100'000'000, kMiddle = kStep / 2;  // ns, of a sweep
 
+/// @param spoiled  points without coordinates
 std::string cloud(std::uint32_t nanosec, std::uint32_t points, std::string_view frame = "lidar",
-                  float intensity = 0.5f) {
+                  float intensity = 0.5f, std::uint32_t spoiled = 0) {
   CdrWriter message;
   message.header(kSecond, nanosec, frame).number(1u).number(points).number(5u);
   std::uint32_t offset = 0;
@@ -35,7 +37,8 @@ std::string cloud(std::uint32_t nanosec, std::uint32_t points, std::string_view 
   std::string data;
   for (std::uint32_t i = 0; i < points; ++i) {
     const float time = 0.1f * float(i) / float(points - 1);
-    for (const float value : {float(i + 1), 2.0f, 3.0f, intensity, time}) {
+    const float x = i < spoiled ? std::nanf("") : float(i + 1);
+    for (const float value : {x, 2.0f, 3.0f, intensity, time}) {
       data += mcap::number(value);
     }
   }
@@ -137,6 +140,18 @@ class ConvertBags : public testing::Test {
   std::string records_;
   ConvertOptions options_;
 };
+
+TEST_F(ConvertBags, ManyPointsThatCannotBeUsedAreAnErrorUnlessAllowed) {
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    add(kPoints, cloud(i * kStep, 40, "lidar", 0.5f, 6));
+    add(kRaw, grey_image(i * kStep + kMiddle));
+  }
+  EXPECT_THAT(error(), testing::AllOf(HasSubstr("18 of 120 points (15 %)"),
+                                      HasSubstr("18 not finite"), HasSubstr("--allow-dropped")));
+  options_.allow_dropped = true;
+  EXPECT_THAT(convert().notes, Contains("points left out: 18 not finite"));
+  EXPECT_EQ(std::get<Frame>(open_converted()->load(1)).scan.size(), 34u);
+}
 
 TEST_F(ConvertBags, ADriveThatIsReadAsItWasRecorded) {
   add_frames();

@@ -26,6 +26,7 @@ struct ConvertOptions {
   NavigationSource poses = NavigationSource::kAuto;
   std::string fix, imu, odometry;  ///< topics
   std::string body, world;         ///< frames of tf
+  bool allow_dropped = false;      ///< however many points are left out
   bool sweep_compensated = false;  ///< something has undone the sweep's motion already
 };
 

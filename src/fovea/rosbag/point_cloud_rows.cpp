@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/column_names.h"
 
 namespace fovea {
 namespace {
@@ -41,16 +42,18 @@ class Cloud {
     if (!fits) refuse("it has fewer bytes than its points take");
   }
 
-  std::optional<Column> find(std::string_view name) const {
-    for (const PointField& field : cloud_.fields) {
-      if (field.name != name) continue;
-      const auto type = scalar_of(field.datatype);
-      if (!type || std::uint64_t{field.offset} + size_of(*type) > cloud_.point_step) {
-        refuse("a field lies outside of its points");
-      }
-      return Column{*type, field.offset};
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const PointField& field : cloud_.fields) names.emplace_back(field.name);
+    return names;
+  }
+  Column column(std::size_t place) const {
+    const PointField& field = cloud_.fields[place];
+    const auto type = scalar_of(field.datatype);
+    if (!type || std::uint64_t{field.offset} + size_of(*type) > cloud_.point_step) {
+      refuse("a field lies outside of its points");
     }
-    return std::nullopt;
+    return Column{*type, field.offset};
   }
 
   std::size_t size() const { return std::size_t{cloud_.width} * cloud_.height; }
@@ -73,25 +76,23 @@ class Cloud {
   std::uint64_t row_step_ = 0;  // bytes
 };
 
-std::optional<Column> find_column(const Cloud& cloud, std::string_view name) {
-  auto column = cloud.find(name);
-  if (!column && name == "intensity") column = cloud.find("reflectivity");
-  return column;
-}
-
 }  // namespace
 
 void read_cloud_rows(const PointCloud2& message, const std::string& where, CloudRows& rows) {
   const Cloud cloud(message, where);
   std::vector<std::optional<Column>> columns;
   std::vector<std::optional<Scalar>> types;
-  for (const char* name : rows.columns()) {
-    columns.push_back(find_column(cloud, name));
-    types.push_back(columns.back() ? std::optional(columns.back()->type) : std::nullopt);
+  const std::vector<std::string> names = cloud.names();
+  for (const char* wanted : rows.columns()) {
+    columns.emplace_back();
+    types.emplace_back();
+    if (const auto found = find_column(names, wanted)) {
+      columns.back() = cloud.column(*found);
+      types.back() = columns.back()->type;
+    }
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!types[axis] || !is_real(*types[axis])) cloud.refuse("it has no real x y z");
-  }
+  if (!are_coordinates(types, rows)) cloud.refuse("it has no real x y z");
+  rows.describe(names, message.height > 1);
   rows.begin(cloud.size(), types);
   std::vector<double> row(columns.size(), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -101,40 +102,6 @@ void read_cloud_rows(const PointCloud2& message, const std::string& where, Cloud
     }
     rows.add(row, i);
   }
-}
-
-ScanFormat time_format_of(const PointCloud2& message, const std::string& where) {
-  constexpr double kShortest = 0.005, kLongest = 1;  // s, from first to last point
-  const Cloud cloud(message, where);
-  ScanFormat format;
-  std::optional<Column> column;
-  for (const char* name : kPointTimeNames) {
-    if ((column = cloud.find(name))) break;
-  }
-  format.time_reference = TimeReference::kNone;
-  if (!column) return format;
-  const std::optional<Column> x_column = cloud.find("x");
-  double first = std::numeric_limits<double>::infinity(), last = -first;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double time = Cloud::value(cloud.point(i), *column);
-    // Where nothing came back, times may be anything.
-    const double x = x_column ? Cloud::value(cloud.point(i), *x_column) : 1;
-    if (!std::isfinite(time) || !std::isfinite(x) || x == 0) continue;
-    first = std::min(first, time), last = std::max(last, time);
-  }
-  const double stamp = seconds(message.header.stamp);
-  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
-    const double duration = (last - first) * unit;
-    if (!(duration >= kShortest && duration <= kLongest)) continue;
-    for (const TimeReference reference : {TimeReference::kStamp, TimeReference::kAbsolute}) {
-      const double offset = first * unit - (reference == TimeReference::kAbsolute ? stamp : 0);
-      if (std::abs(offset) > kLongest) continue;
-      format.time_unit = unit;
-      format.time_reference = reference;
-      return format;
-    }
-  }
-  return format;
 }
 
 }  // namespace fovea

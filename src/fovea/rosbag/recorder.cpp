@@ -11,8 +11,12 @@
 namespace fovea {
 
 Recorder::Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
-                   const std::function<bool(int, int)>& progress)
-    : lidar_(plan.lidar, survey.clouds.at(plan.lidar)), writer_(writer), progress_(progress) {
+                   bool allow_dropped, const std::function<bool(int, int)>& progress)
+    : lidar_(plan.lidar, survey.clouds.at(plan.lidar)),
+      format_(plan.scan_format),
+      allow_dropped_(allow_dropped),
+      writer_(writer),
+      progress_(progress) {
   total_ = lidar_.stamps.size();
   for (const PlannedCamera& planned : plan.cameras) {
     Numbered& camera =
@@ -56,20 +60,15 @@ void Recorder::finish(RecordedDrive& drive, ConvertFigures& figures) const {
     figures.images += camera.written;
     account_for(camera, figures);
   }
-  if (dropped_ > 0) {
-    figures.notes.push_back(fmt::format(
-        "{} points are left out: not finite, at the origin, beyond 1 km or 1 s off the stamp",
-        dropped_));
+  if (dropped_.total() > 0) {
+    figures.notes.push_back("points left out: " + reasons_of(dropped_));
   }
+  if (!allow_dropped_) require_few_dropped(dropped_, kept_, lidar_.topic);
   drive.intensity_max = scale_.max();
 }
 
 Recorder::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
-    : topic(topic_name),
-      frame(sensor.frame),
-      stamps(sensor.stamps),
-      taken(stamps.size()),
-      format(sensor.scan_format) {}
+    : topic(topic_name), frame(sensor.frame), stamps(sensor.stamps), taken(stamps.size()) {}
 
 std::optional<int> Recorder::Numbered::take(const ros::Header& header) {
   const auto found = std::lower_bound(stamps.begin(), stamps.end(), header.stamp);
@@ -97,10 +96,11 @@ void Recorder::use(Numbered& sensor, const ros::Header& header, Write&& write) {
 void Recorder::write_scan(const ros::PointCloud2& cloud) {
   const TimeNs stamp = cloud.header.stamp;
   use(lidar_, cloud.header, [&](int number) {
-    ScanRows rows(lidar_.format, stamp);
+    ScanRows rows(format_, stamp);
     read_cloud_rows(cloud, lidar_.topic, rows);
     const LidarScan scan = rows.take(lidar_.topic);
     dropped_ += scan.dropped;
+    kept_ += scan.points.size();
     scale_.add(scan.points.intensity);
     writer_.write_scan(number, stamp, scan.points);
   });

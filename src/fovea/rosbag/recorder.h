@@ -12,24 +12,27 @@
 #include "fovea/recording/generic_drive_writer.h"
 #include "fovea/rosbag/conversion_plan.h"
 #include "fovea/rosbag/convert_bags.h"
+#include "fovea/sensor/dropped_points.h"
 #include "fovea/sensor/intensity_scale.h"
+#include "fovea/sensor/scan_format.h"
 
 namespace fovea {
 
 /// Writes scans and images as they come, numbered by their stamps.
 class Recorder : public BagSink {
  public:
+  /// @param allow_dropped  whether many points may be left out
   /// @param progress  called with messages done and in all; false ends it
   Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
-           const std::function<bool(int, int)>& progress);
+           bool allow_dropped, const std::function<bool(int, int)>& progress);
 
   bool wants(const BagTopic& topic) override;
   bool add(const BagTopic& topic, std::string_view bytes) override;
 
   bool stopped() const { return stopped_; }
 
-  /// Accounts for all, and tells the drive the scale of the scans' intensities. InputError if
-  /// nothing could be used of a sensor.
+  /// Counts what was written and left out; sets the scale of the intensities. InputError if nothing
+  /// could be used of a sensor, or, unless allowed, if too many points were left out.
   void finish(RecordedDrive& drive, ConvertFigures& figures) const;
 
  private:
@@ -43,7 +46,6 @@ class Recorder : public BagSink {
     std::string topic, name, frame;
     std::vector<TimeNs> stamps;
     std::vector<bool> taken;
-    ScanFormat format;
     std::size_t written = 0;
     UnusableMessages unusable;
   };
@@ -56,11 +58,14 @@ class Recorder : public BagSink {
   static void account_for(const Numbered& sensor, ConvertFigures& figures);
 
   Numbered lidar_;
+  ScanFormat format_;  // of the scans
+  bool allow_dropped_;
   std::map<std::string, Numbered> cameras_;  // by topic
   GenericDriveWriter& writer_;
   const std::function<bool(int, int)>& progress_;
   std::size_t done_ = 0, total_ = 0;
-  std::size_t dropped_ = 0;
+  std::size_t kept_ = 0;  // points
+  DroppedPoints dropped_;
   IntensityScale scale_;
   bool stopped_ = false;
 };

@@ -101,11 +101,24 @@ class Surveyor : public BagSink {
 
   void add_cloud(const std::string& name, CdrReader& message) {
     const ros::PointCloud2 cloud = ros::read_point_cloud(message);
-    const ScanFormat times = time_format_of(cloud, name);
+    ScanNumberRows rows(cloud.header.stamp);
+    read_cloud_rows(cloud, name, rows);
     SensorTopic& topic = survey_.clouds[name];
-    const bool first = add_stamp(cloud.header, topic);
-    if (first || topic.scan_format.time_reference == TimeReference::kNone)
-      topic.scan_format = times;
+    add_stamp(cloud.header, topic);
+    keep_first(rows.take(), topic.first_scans);
+  }
+  /// Keeps the first scans, and the first ones with times that differ.
+  static void keep_first(ScanNumbers numbers, std::vector<ScanNumbers>& scans) {
+    constexpr std::size_t kKept = 5;
+    const auto has_times = [](const ScanNumbers& scan) {
+      return scan.times && scan.times->span > 0;
+    };
+    if (scans.size() < kKept) {
+      scans.push_back(std::move(numbers));
+    } else if (has_times(numbers)) {
+      const auto without = std::find_if_not(scans.begin(), scans.end(), has_times);
+      if (without != scans.end()) *without = std::move(numbers);
+    }
   }
   void add_image(const std::string& name, CdrReader& message) {
     const ros::ImageMessage image = ros::read_image(message);

@@ -11,7 +11,7 @@
 #include "fovea/rosbag/bag_sink.h"
 #include "fovea/rosbag/ros_messages.h"
 #include "fovea/rosbag/transform_tree.h"
-#include "fovea/sensor/lidar_scan.h"
+#include "fovea/sensor/scan_numbers.h"
 
 namespace fovea {
 
@@ -31,8 +31,8 @@ struct UnusableMessages {
 struct SensorTopic {
   std::string frame;           ///< of its first message; those of other frames are unusable
   std::vector<TimeNs> stamps;  ///< ascending, each once
-  ScanFormat scan_format;      ///< how points' times are read, by the first scan that has any
-  std::string unread;          ///< why images like the first are not read; empty if they are
+  std::vector<ScanNumbers> first_scans;  ///< some of the first, with times if any has times
+  std::string unread;  ///< why images like the first are not read; empty if they are
   std::uint32_t width = 0, height = 0;  ///< of the first image; 0 of compressed ones
 };
 

@@ -39,6 +39,13 @@ std::size_t size_of(Scalar type) {
 
 bool is_real(Scalar type) { return type == Scalar::kFloat || type == Scalar::kDouble; }
 
+bool are_coordinates(std::span<const std::optional<Scalar>> types, const CloudRows& rows) {
+  if (!types[0] || !types[1] || !types[2]) return false;
+  const bool real = is_real(*types[0]);
+  return real == is_real(*types[1]) && real == is_real(*types[2]) &&
+         (real || rows.takes_whole_coordinates());
+}
+
 double decode(Scalar type, const char* bytes) {
   switch (type) {
     case Scalar::kInt8:
@@ -63,11 +70,6 @@ double decode(Scalar type, const char* bytes) {
       return read_as<double>(bytes);
   }
   return 0;
-}
-
-bool is_column_name(std::string_view in_file, std::string_view lower_case) {
-  return std::equal(in_file.begin(), in_file.end(), lower_case.begin(), lower_case.end(),
-                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
 std::optional<std::string> LineReader::next() {

@@ -1,5 +1,4 @@
-// What the readers of point clouds in PCD and PLY have in common: the rows they hand on, the types
-// of a file's numbers, and its lines.
+// Shared by the readers of point clouds: the rows that they pass on, types of numbers, and lines.
 #pragma once
 
 #include <cstdint>
@@ -32,20 +31,27 @@ bool is_real(Scalar type);
 /// The number at `bytes`, little endian.
 double decode(Scalar type, const char* bytes);
 
-/// Whether the name of a column in a file is the one that is wanted, in any case.
-bool is_column_name(std::string_view in_file, std::string_view lower_case);
+class CloudRows;
+/// Whether x, y, z may be of these types: all real, or all whole where the rows take that.
+bool are_coordinates(std::span<const std::optional<Scalar>> types, const CloudRows& rows);
 
 /// Who wants the points of a file: which columns, and what becomes of each point.
 class CloudRows {
  public:
   virtual ~CloudRows() = default;
 
-  /// Names of the columns wanted, the same at every call. The first three are "x", "y", "z", which
-  /// a file must have, of a real type.
+  /// Names of the columns wanted, the same at every call; find_column() finds them in a file. The
+  /// first three are "x", "y", "z", which a file must have, of one kind of type.
   virtual std::span<const char* const> columns() const = 0;
+  /// Whether x, y, z may be whole numbers: they cannot be meters then.
+  virtual bool takes_whole_coordinates() const { return false; }
   /// What a right file has ("x y z and rgb"), for errors.
   virtual const char* description() const = 0;
 
+  /// Called once, before begin().
+  /// @param names      of all columns, as the file has them
+  /// @param organized  whether the points form a grid, in which NaN marks a missing return
+  virtual void describe(std::span<const std::string> /*names*/, bool /*organized*/) {}
   /// Called once, before any point. InputError if the file's columns are not as they should be.
   /// @param points  as many at most; the file is long enough for them
   /// @param types   of the columns, in their order; empty where the file has none of that name

@@ -16,6 +16,8 @@
 namespace fovea {
 
 enum class TimeUnit { kAuto, kSecond, kMillisecond, kMicrosecond, kNanosecond };
+enum class LengthUnit { kAuto, kMeter, kCentimeter, kMillimeter };
+enum class ReferenceKey { kAuto, kStamp, kAbsolute, kNone };
 
 constexpr auto names_of(TimeUnit) {
   return std::array{EnumName<TimeUnit>{TimeUnit::kAuto, "auto"},
@@ -25,10 +27,18 @@ constexpr auto names_of(TimeUnit) {
                     EnumName<TimeUnit>{TimeUnit::kNanosecond, "ns"}};
 }
 
-constexpr auto names_of(TimeReference) {
-  return std::array{EnumName<TimeReference>{TimeReference::kStamp, "stamp"},
-                    EnumName<TimeReference>{TimeReference::kAbsolute, "absolute"},
-                    EnumName<TimeReference>{TimeReference::kNone, "none"}};
+constexpr auto names_of(LengthUnit) {
+  return std::array{EnumName<LengthUnit>{LengthUnit::kAuto, "auto"},
+                    EnumName<LengthUnit>{LengthUnit::kMeter, "m"},
+                    EnumName<LengthUnit>{LengthUnit::kCentimeter, "cm"},
+                    EnumName<LengthUnit>{LengthUnit::kMillimeter, "mm"}};
+}
+
+constexpr auto names_of(ReferenceKey) {
+  return std::array{EnumName<ReferenceKey>{ReferenceKey::kAuto, "auto"},
+                    EnumName<ReferenceKey>{ReferenceKey::kStamp, "stamp"},
+                    EnumName<ReferenceKey>{ReferenceKey::kAbsolute, "absolute"},
+                    EnumName<ReferenceKey>{ReferenceKey::kNone, "none"}};
 }
 
 inline auto names_of(LensModel) {
@@ -246,9 +256,10 @@ class DriveKeys {
     visit("lidar.rotation", drive_.sweep.direction);
     visit("lidar.sweep_start_deg", sweep_start_deg_);
     visit("lidar.stamp_phase", drive_.sweep.stamp_phase);
-    visit("lidar.intensity_max", drive_.intensity_max);
+    visit("lidar.intensity_max", drive_.scan_format.intensity_max);
+    visit("lidar.length_unit", length_unit_);
     visit("lidar.time_unit", time_unit_);
-    visit("lidar.time_reference", drive_.scan_format.time_reference);
+    visit("lidar.time_reference", time_reference_);
     visit("images.tolerance", drive_.image_tolerance);
     T_body_lidar_.visit(visit);
     T_body_imu_.visit(visit);
@@ -264,13 +275,7 @@ class DriveKeys {
              "version", "use a newer Fovea");
     }
     drive_.scans = scans_;
-    double& intensity_max = drive_.scan_format.intensity_max;
-    intensity_max = drive_.intensity_max.value_or(intensity_max);
-    check("lidar.intensity_max", intensity_max, 1e-6, 1e9);
-    constexpr std::array<double, 5> kUnits = {0, 1, 1e-3, 1e-6, 1e-9};
-    if (time_unit_ != TimeUnit::kAuto) {
-      drive_.scan_format.time_unit = kUnits.at(static_cast<std::size_t>(time_unit_));
-    }
+    finish_scan_format();
     finish_sweep();
     check("images.tolerance", drive_.image_tolerance, 0, 1);
     drive_.T_body_lidar = T_body_lidar_.motion().value_or(drive_.T_body_lidar);
@@ -287,6 +292,22 @@ class DriveKeys {
   DriveDescription take() { return std::move(drive_); }
 
  private:
+  void finish_scan_format() {
+    StatedScanFormat& format = drive_.scan_format;
+    check("lidar.intensity_max", format.intensity_max.value_or(1), 1e-6, 1e9);
+    constexpr std::array<double, 5> kTimeUnits = {0, 1, 1e-3, 1e-6, 1e-9};
+    constexpr std::array<double, 4> kLengthUnits = {0, 1, 1e-2, 1e-3};
+    constexpr std::array<TimeReference, 4> kReferences = {
+        TimeReference::kStamp, TimeReference::kStamp, TimeReference::kAbsolute,
+        TimeReference::kNone};
+    const auto stated = [](const auto& values, auto choice, auto& value) {
+      if (choice != decltype(choice){}) value = values.at(static_cast<std::size_t>(choice));
+    };
+    stated(kTimeUnits, time_unit_, format.time_unit);
+    stated(kLengthUnits, length_unit_, format.length_unit);
+    stated(kReferences, time_reference_, format.time_reference);
+  }
+
   void finish_sweep() {
     SweepDescription& sweep = drive_.sweep;
     check("lidar.sweep_period_s", sweep.period.value_or(0.1), 0.01, 1);
@@ -314,6 +335,8 @@ class DriveKeys {
   std::string scans_ = "lidar";
   std::optional<double> sweep_start_deg_;
   TimeUnit time_unit_ = TimeUnit::kAuto;
+  LengthUnit length_unit_ = LengthUnit::kAuto;
+  ReferenceKey time_reference_ = ReferenceKey::kAuto;
   EitherMotion T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
   std::vector<double> antenna_{0, 0, 0};
   std::vector<CameraKeys> cameras_;

@@ -11,7 +11,7 @@
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/geometry/sensor_profile.h"
-#include "fovea/sensor/lidar_scan.h"
+#include "fovea/sensor/scan_format.h"
 
 namespace fovea {
 
@@ -36,8 +36,7 @@ struct SweepDescription {
 
 struct DriveDescription {
   std::filesystem::path scans;  ///< folder, below the drive's
-  ScanFormat scan_format;
-  std::optional<double> intensity_max;  ///< also in scan_format; absent: not stated
+  StatedScanFormat scan_format;
   bool sweep_compensated = false;
   SweepDescription sweep;
   double image_tolerance = 0.06;  ///< s, between an image and its sweep's middle

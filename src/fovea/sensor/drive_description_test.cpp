@@ -69,6 +69,16 @@ TEST(DriveDescription, SweepKeysAreAbsentUnlessStated) {
   EXPECT_THAT(error(sweep("stamp_phase = 1.5\n")), HasSubstr("give 0 to 1"));
 }
 
+TEST(DriveDescription, UnitsAreRecognizedUnlessStated) {
+  for (const char* keys :
+       {"", "[lidar]\ntime_unit = \"auto\"\nlength_unit = \"auto\"\ntime_reference = \"auto\"\n"}) {
+    const StatedScanFormat format = parse(std::string(kSmallest) + keys).scan_format;
+    EXPECT_FALSE(format.intensity_max || format.length_unit || format.time_unit);
+    EXPECT_FALSE(format.time_reference);
+  }
+  EXPECT_THAT(error(std::string(kSmallest) + "[lidar]\nlength_unit = \"ft\"\n"), HasSubstr("'mm'"));
+}
+
 TEST(DriveDescription, EveryKey) {
   const DriveDescription drive = parse(R"(
 version = 1
@@ -76,6 +86,7 @@ version = 1
 folder = "scans"
 compensated = true
 intensity_max = 255
+length_unit = "mm"
 time_unit = "us"
 time_reference = "absolute"
 [images]
@@ -107,6 +118,7 @@ T_cam_lidar = {translation = [0, 0, 0.1]}
   EXPECT_EQ(drive.scans, "scans");
   EXPECT_TRUE(drive.sweep_compensated);
   EXPECT_EQ(drive.scan_format.intensity_max, 255);
+  EXPECT_EQ(drive.scan_format.length_unit, 1e-3);
   EXPECT_EQ(drive.scan_format.time_unit, 1e-6);
   EXPECT_EQ(drive.scan_format.time_reference, TimeReference::kAbsolute);
   EXPECT_EQ(drive.image_tolerance, 0.02);

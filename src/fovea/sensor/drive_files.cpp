@@ -152,6 +152,11 @@ bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stam
   const std::optional<double> step = median_period(stamps);
   if (!step) return false;
   const double period = *step;
+  constexpr double kShortestStep = 0.001;  // s; below, the unit is wrong
+  if (period < kShortestStep) {
+    throw InputError(fmt::format("stamps are {:.4g} s apart, which are no sweeps", period),
+                     file.string(), "check the unit of the times");
+  }
   if (period >= kMinPeriod && period <= kMaxPeriod) {
     info.sweep.period = period;
     return true;

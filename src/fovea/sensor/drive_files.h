@@ -9,8 +9,8 @@
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/image_rectifier.h"
 #include "fovea/sensor/kitti_calibration.h"
-#include "fovea/sensor/lidar_scan.h"
 #include "fovea/sensor/read_file.h"
+#include "fovea/sensor/scan_format.h"
 #include "fovea/sensor/time_stamps.h"
 
 namespace fovea {
@@ -73,7 +73,7 @@ void find_stamps(const std::filesystem::path& file,
                  DriveFiles& files);
 
 /// Takes the sweep's period from the stamps into `info`. Returns false if they have no step, or,
-/// with a note, if it cannot be a period.
+/// with a note, if it cannot be a period. InputError for steps below 1 ms.
 bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info);
 

@@ -8,6 +8,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/drive_files.h"
 #include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/lidar_scan.h"
 #include "fovea/sensor/lost_drive.h"
 
 namespace fovea {

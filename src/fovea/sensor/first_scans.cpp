@@ -3,29 +3,50 @@
 #include <algorithm>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/lidar_scan.h"
 
 namespace fovea {
+namespace {
 
-FirstScans read_first_scans(const NumberedFiles& scans, const ScanFormat& format, int count,
-                            const std::function<std::optional<TimeNs>(int scan)>& stamp) {
-  FirstScans first;
+/// Calls `read(file, stamp)` for scans that have a stamp until it returns true. Passes over scans
+/// that cannot be read: load() reports the damage.
+template <class Read>
+void until(const NumberedFiles& scans, const StampOfScan& stamp, Read&& read) {
   for (const auto& [scan, file] : scans) {
     const std::optional<TimeNs> time = stamp(scan);
     if (!time) continue;
     try {
-      const PointCloud points = read_lidar_scan(file, format, *time).points;
-      first.scale.add(points.intensity);
-      if (!first.any && !points.time.empty()) {
-        const auto [begin, end] = std::minmax_element(points.time.begin(), points.time.end());
-        first.sweep_middle = 0.5 * (double(*begin) + double(*end));
-      }
-      first.any = true;
-      if (--count <= 0) break;
+      if (read(file, *time)) return;
     } catch (const InputError&) {
-      continue;  // load() reports the damage
+      continue;
     }
   }
-  return first;
+}
+
+}  // namespace
+
+std::vector<ScanNumbers> read_first_numbers(const NumberedFiles& scans, int count,
+                                            const StampOfScan& stamp) {
+  std::vector<ScanNumbers> numbers;
+  until(scans, stamp, [&](const std::filesystem::path& file, TimeNs time) {
+    numbers.push_back(read_scan_numbers(file, time));
+    return numbers.size() >= static_cast<std::size_t>(count);
+  });
+  return numbers;
+}
+
+std::optional<double> first_sweep_middle(const NumberedFiles& scans, const ScanFormat& format,
+                                         const StampOfScan& stamp) {
+  std::optional<double> middle;
+  until(scans, stamp, [&](const std::filesystem::path& file, TimeNs time) {
+    const PointCloud points = read_lidar_scan(file, format, time).points;
+    if (!points.time.empty()) {
+      const auto [begin, end] = std::minmax_element(points.time.begin(), points.time.end());
+      middle = 0.5 * (double(*begin) + double(*end));
+    }
+    return true;
+  });
+  return middle;
 }
 
 }  // namespace fovea

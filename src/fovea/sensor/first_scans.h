@@ -3,24 +3,24 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "fovea/base/time.h"
-#include "fovea/sensor/intensity_scale.h"
-#include "fovea/sensor/lidar_scan.h"
 #include "fovea/sensor/read_file.h"
+#include "fovea/sensor/scan_format.h"
+#include "fovea/sensor/scan_numbers.h"
 
 namespace fovea {
 
-struct FirstScans {
-  /// Middle of the sweep, s from the stamp, by the point times of the first scan; absent if its
-  /// points have no times.
-  std::optional<double> sweep_middle;
-  bool any = false;      ///< whether a scan could be read
-  IntensityScale scale;  ///< of the intensities in the files, in units of format.intensity_max
-};
+using StampOfScan = std::function<std::optional<TimeNs>(int scan)>;
 
-/// Reads up to `count` scans that have a stamp. Damaged scans do not count.
-FirstScans read_first_scans(const NumberedFiles& scans, const ScanFormat& format, int count,
-                            const std::function<std::optional<TimeNs>(int scan)>& stamp);
+/// The numbers of up to `count` scans that have a stamp. Damaged scans do not count.
+std::vector<ScanNumbers> read_first_numbers(const NumberedFiles& scans, int count,
+                                            const StampOfScan& stamp);
+
+/// Middle of the sweep, s from the stamp, by the point times of the first scan that can be read;
+/// absent if its points have no times.
+std::optional<double> first_sweep_middle(const NumberedFiles& scans, const ScanFormat& format,
+                                         const StampOfScan& stamp);
 
 }  // namespace fovea

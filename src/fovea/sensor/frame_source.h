@@ -17,6 +17,7 @@
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/sensor_profile.h"
 #include "fovea/geometry/trajectory.h"
+#include "fovea/sensor/dropped_points.h"
 
 namespace fovea {
 
@@ -38,10 +39,10 @@ struct MissingImage {
 
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
-  int index = 0;                   ///< the number in the file's name
-  TimeNs stamp = 0;                ///< scan time; see DriveInfo::camera_at() for the images
-  PointCloud scan;                 ///< lidar frame, as measured, with intensity
-  std::size_t dropped_points = 0;  ///< not finite or beyond any LiDAR's reach; not in `scan`
+  int index = 0;                 ///< the number in the file's name
+  TimeNs stamp = 0;              ///< scan time; see DriveInfo::camera_at() for the images
+  PointCloud scan;               ///< lidar frame, as measured, with intensity
+  DroppedPoints dropped_points;  ///< not in `scan`
   /// One a camera of the calibration, in its order; empty where the camera has none that can be
   /// used, which at most all but one are.
   std::vector<Image> images;

@@ -3,49 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "fovea/base/errors.h"
 #include "fovea/geometry/rectified_camera.h"
-#include "fovea/sensor/csv_rows.h"
 #include "fovea/sensor/described_sweep.h"
 #include "fovea/sensor/drive_description.h"
 #include "fovea/sensor/drive_files.h"
+#include "fovea/sensor/drive_stamps.h"
 #include "fovea/sensor/first_scans.h"
 #include "fovea/sensor/generic_navigation.h"
 #include "fovea/sensor/image_decode.h"
 #include "fovea/sensor/nearest_images.h"
+#include "fovea/sensor/recognized_format.h"
 
 namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxNumber = 1'000'000;     // of scans and images: a day at 10 Hz
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
-constexpr int kFirstScans = 5;            // whose intensities give the scale
-
-/// Stamps of numbered files. Lines without a usable number are noted.
-NumberedTimes read_stamps(const fs::path& file, std::vector<std::string>& notes) {
-  constexpr std::array<CsvColumn, 1> kColumns = {{{"index"}}};
-  const CsvRows rows = read_csv(file, kColumns);
-  std::vector<int> unusable = rows.malformed;
-  NumberedTimes times;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    const double index = rows.at(row, 0);
-    const bool number = index >= 0 && index < kMaxNumber && index == std::floor(index);
-    if (!number || !times.emplace(static_cast<int>(index), rows.times[row]).second) {
-      unusable.push_back(rows.lines[row]);
-    }
-  }
-  if (!unusable.empty()) {
-    notes.push_back(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
-                                file.string(),
-                                *std::min_element(unusable.begin(), unusable.end())));
-  }
-  return times;
-}
+constexpr int kFirstScans = 5;            // whose numbers give the units
 
 /// The first and the last of some times.
 std::pair<TimeNs, TimeNs> time_span(const NumberedTimes& times) {
@@ -79,13 +56,12 @@ class GenericDrive {
   void find_scans() {
     const fs::path folder = info_.path / description_.scans;
     files_.scans = list_numbered_files(folder, {".bin", ".pcd", ".ply"});
-    files_.scan_format = description_.scan_format;
     if (files_.scans.empty()) {
       throw InputError("the drive has no scan", folder.string(),
                        "put scans there as NUMBER.pcd, .ply or .bin (docs/drives.md)");
     }
-    if (files_.scans.rbegin()->first >= kMaxNumber) {
-      throw InputError(fmt::format("a scan's number is over {}", kMaxNumber - 1),
+    if (files_.scans.rbegin()->first >= kMaxFileNumber) {
+      throw InputError(fmt::format("a scan's number is over {}", kMaxFileNumber - 1),
                        files_.scans.rbegin()->second.string(), "number the scans from 0 on");
     }
     std::tie(info_.begin, info_.end) = frame_range(files_.scans, options_, info_.path);
@@ -96,7 +72,7 @@ class GenericDrive {
     files_.stamps_name_scans = true;
     if (fs::exists(file)) {
       files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
-      for (const auto& [scan, time] : read_stamps(file, info_.notes)) {
+      for (const auto& [scan, time] : read_scan_stamps(file, info_.notes)) {
         if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
       }
       remove_out_of_order(files_.stamps);
@@ -118,23 +94,19 @@ class GenericDrive {
     }
   }
 
-  /// Timing of the sweeps and scale of the intensities, by drive.toml and the first scans.
+  /// Units of the scans and timing of the sweeps, by drive.toml and the first scans.
   void find_scan_format() {
-    const bool scale_given = description_.intensity_max.has_value();
-    const FirstScans first =
-        read_first_scans(files_.scans, files_.scan_format, scale_given ? 1 : kFirstScans,
-                         [&](int scan) { return frame_stamp(info_, files_.stamps, scan); });
-    if (const double scale = first.scale.max(); !scale_given && scale > 1) {
-      files_.scan_format.intensity_max = scale;
-      info_.notes.push_back(fmt::format(
-          "intensities exceed 1; assumed: {} stands for a reflectance of 1; to change: [lidar] "
-          "intensity_max in drive.toml",
-          scale));
-    }
+    const auto stamp = [&](int scan) { return frame_stamp(info_, files_.stamps, scan); };
+    const std::vector<ScanNumbers> numbers = read_first_numbers(files_.scans, kFirstScans, stamp);
+    StatedScanFormat stated = description_.scan_format;
+    if (info_.sweep_compensated) stated.time_reference = TimeReference::kNone;
+    files_.scan_format =
+        recognize_format_of_drive(numbers, stated, info_.path / "drive.toml", info_.notes);
     info_.sweep = sweep_timing(description_.sweep, stamp_step_);
     if (info_.sweep_compensated) return;
-    sweep_middle_ = first.sweep_middle.value_or(info_.sweep.middle_time());
-    if (first.any && !first.sweep_middle) {
+    const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
+    sweep_middle_ = middle.value_or(info_.sweep.middle_time());
+    if (!numbers.empty() && !middle) {
       info_.notes.push_back(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
     }
   }
@@ -226,12 +198,12 @@ class GenericDrive {
       info_.notes.push_back(file.string() + " is not used: the scans have no stamps");
       return images;
     }
-    NumberedTimes times = read_stamps(file, info_.notes);
-    std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     NumberedTimes scans;
     for (const auto& [scan, path] : files_.scans) {
       if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
     }
+    NumberedTimes times = read_image_stamps(file, scans, info_.notes);
+    std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     const ImageMatches matches =
         match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
     if (matches.image_of_scan.empty()) reject_clock(file, described, scans, times);
@@ -285,7 +257,8 @@ class GenericDrive {
     const std::optional<int> first = first_usable_frame(info_, files_);
     const TimeNs origin_time =
         frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
-    GenericNavigation navigation = read_generic_navigation(info_.path, description_, origin_time);
+    GenericNavigation navigation =
+        read_generic_navigation(info_.path, description_, origin_time, period_of(files_.stamps));
     info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
     if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
     info_.calibration.T_imu_lidar = description_.T_body_lidar;

@@ -129,6 +129,33 @@ TEST_F(GenericDrive, PosesThatDoNotReachTheScansAreTold) {
   EXPECT_FALSE(open()->info().navigation);
 }
 
+TEST_F(GenericDrive, PosesThatMoveAsNoVehicleAreAnErrorWithItsCause) {
+  const auto write_poses = [&](const std::function<RigidMotion(double way)>& T) {
+    std::string text = "time_ns,x,y,z,qx,qy,qz,qw\n";
+    for (int i = 0; i < kFrames; ++i) {
+      const RigidMotion pose = T(i);
+      const Eigen::Vector3d p = pose.translation();
+      const Eigen::Quaterniond q(pose.linear());
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", kStart + i * kStep, p.x(), p.y(), p.z(),
+                          q.x(), q.y(), q.z(), q.w());
+    }
+    write_text(folder_ / "poses.csv", text);
+  };
+  // A bend, in coordinates of UTM.
+  const auto T_world_body = [](double way) {
+    RigidMotion T(Eigen::AngleAxisd(0.02 * way, Eigen::Vector3d::UnitZ()));
+    T.pretranslate(Eigen::Vector3d(450'000 + way, 5'400'000, 110));
+    return T;
+  };
+  write_poses(T_world_body);
+  EXPECT_NO_THROW(open());
+  write_poses([&](double way) { return T_world_body(way).inverse(); });
+  EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("likely T_body_world, not T_world_body"),
+                                         HasSubstr("poses.csv"), HasSubstr("give T_world_body")));
+  write_poses([&](double way) { return T_world_body(1000 * way); });
+  EXPECT_THAT(error<InputError>(), HasSubstr("another unit than meters"));
+}
+
 TEST_F(GenericDrive, TheFirstCameraThatThereIsWithoutAnyAskedFor) {
   EXPECT_EQ(open()->info().calibration.cameras.at(0).index, 1);
   test::fs::remove_all(folder_ / "images/left");
@@ -209,6 +236,46 @@ TEST_F(GenericDrive, TheScaleOfIntensitiesIsThatOfTheFirstScans) {
   write_text(toml_, test::read_text(toml_) + "[lidar]\nintensity_max = 102\n");
   EXPECT_FLOAT_EQ(intensity(), 0.5f);
   EXPECT_THAT(notes(), IsEmpty());
+}
+
+TEST_F(GenericDrive, UnitsAreThoseOfTheFirstScansForAll) {
+  const auto write_millimeters = [&](int i, float factor) {
+    test::fs::remove(scan(i));
+    write_scan(scan(i), {{5000, 2000, 300, 0.5f}, {factor * 4000, 0, 0, 1}});
+  };
+  for (int i = 0; i < kFrames; ++i) write_millimeters(i, 1);
+  EXPECT_THAT(notes(), ElementsAre(AllOf(HasSubstr("coordinates are in mm"),
+                                         HasSubstr("[lidar] length_unit in drive.toml"))));
+  write_millimeters(5, 1e-3f);  // alone, it might be of another unit
+  const Frame frame = std::get<Frame>(open()->load(5));
+  EXPECT_LT((frame.scan.position[0] - Eigen::Vector3f(5, 2, 0.3f)).norm(), 1e-5f);
+  EXPECT_LT((frame.scan.position[1] - Eigen::Vector3f(0.004f, 0, 0)).norm(), 1e-6f);
+  write_text(toml_, test::read_text(toml_) + "[lidar]\nlength_unit = \"m\"\n");
+  EXPECT_THAT(error<ConfigError>(),
+              AllOf(HasSubstr("drive.toml: lidar.length_unit"), HasSubstr("\"mm\"")));
+}
+
+TEST_F(GenericDrive, ImagesMayHaveStampsOfAnotherUnit) {
+  std::string text = "index,time_ns\n";
+  for (int i = 0; i < kFrames; ++i) text += fmt::format("{},{}\n", i, (kStart + i * kStep) / 1000);
+  write_text(folder_ / "images/left/stamps.csv", text);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("left/stamps.csv are in us")));
+  EXPECT_TRUE(std::holds_alternative<Frame>(open()->load(4)));
+}
+
+TEST_F(GenericDrive, AllTablesMayBeInMicroseconds) {
+  std::string scans = "index,time_ns\n", poses = "time_ns,x,y,z,qx,qy,qz,qw\n";
+  for (int i = 0; i < kFrames; ++i) {
+    scans += fmt::format("{},{}\n", i, (kStart + i * kStep) / 1000);
+    poses += fmt::format("{},{},200,30,0,0,0,1\n", (kStart + i * kStep) / 1000, 100 + i);
+  }
+  write_text(scan_stamps_, scans);
+  write_text(folder_ / "poses.csv", poses);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("lidar/stamps.csv are in us"),
+                                   HasSubstr("poses.csv are in us")));
+  const auto drive = open();
+  EXPECT_EQ(drive->stamp(2), kStart + 2 * kStep);
+  EXPECT_NEAR(drive->info().navigation->at(kStart + 3 * kStep)->translation().x(), 3, 1e-9);
 }
 
 TEST_F(GenericDrive, WithoutStampsScansCountAsTenHertz) {
@@ -552,6 +619,17 @@ TEST_F(GenericNavigation, AnglesOfOverATurnAreLikelyDegrees) {
   EXPECT_THAT(error<InputError>(), HasSubstr("up to 12.5"));
   write([](int i) { return fmt::format(",0,0,{}", 6.1 + 0.1 * i); });
   EXPECT_NO_THROW(open());
+}
+
+TEST_F(GenericNavigation, PositionsThatHardlyMoveMayBeInRadians) {
+  std::string text = "time_ns,latitude,longitude,altitude\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const GeodeticPoint p = place(i);
+    text += fmt::format("{},{},{},100\n", kStart + i * kStep, p.latitude * kDegree,
+                        p.longitude * kDegree);
+  }
+  write_text(folder_ / "gnss.csv", text);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("latitude and longitude in radians?")));
 }
 
 TEST_F(GenericNavigation, BadLinesAreNotedAndNotUsed) {

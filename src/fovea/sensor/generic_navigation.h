@@ -9,6 +9,7 @@
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/trajectory.h"
 #include "fovea/sensor/drive_description.h"
+#include "fovea/sensor/stamp_units.h"
 
 namespace fovea {
 
@@ -23,8 +24,10 @@ struct GenericNavigation {
 /// Reads the files of a drive's folder. With poses.csv, local has the axes of the poses' world and
 /// its origin where the LiDAR was at `origin_time`, or at the first pose, where they do not reach
 /// that time; with gnss.csv it is east-north-up there. Lines that cannot be used are left out and
-/// noted. InputError if a file cannot be read or lacks a column.
+/// noted. The time of the scans, where it is known, shows the unit of times. InputError if a file
+/// cannot be read or lacks a column.
 GenericNavigation read_generic_navigation(const std::filesystem::path& folder,
-                                          const DriveDescription& drive, TimeNs origin_time);
+                                          const DriveDescription& drive, TimeNs origin_time,
+                                          const std::optional<ScanPeriod>& scans);
 
 }  // namespace fovea

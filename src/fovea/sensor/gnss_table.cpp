@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "fovea/base/errors.h"
 #include "fovea/sensor/course.h"
@@ -21,11 +22,11 @@ namespace fs = std::filesystem;
 class ImuOrientations {
  public:
   ImuOrientations(const fs::path& file, const RigidMotion& T_body_imu,
-                  std::vector<std::string>& notes)
+                  const std::optional<ScanPeriod>& scans, std::vector<std::string>& notes)
       : R_imu_body_(T_body_imu.linear().transpose()) {
     constexpr std::array<CsvColumn, 4> kColumns = {
         {{"qx", false}, {"qy", false}, {"qz", false}, {"qw", false}}};
-    rows_ = read_csv(file, kColumns);
+    rows_ = read_timed_csv(file, kColumns, scans, notes);
     LeftOut left_out(file, rows_);
     left_out.add_out_of_order(rows_.drop_out_of_order());
     left_out.note(notes);
@@ -204,6 +205,17 @@ void leave_out_far_positions(std::vector<GnssLine>& lines, LeftOut& left_out) {
   lines = std::move(kept);
 }
 
+/// What is missing for poses, if there are none.
+std::string what_lacks(const std::vector<GnssLine>& lines) {
+  if (lines.empty()) return "position that can be used";
+  const bool like_radians = std::all_of(lines.begin(), lines.end(), [](const GnssLine& line) {
+    return std::abs(line.pose.position.latitude) <= std::numbers::pi / 2 &&
+           std::abs(line.pose.position.longitude) <= std::numbers::pi;
+  });
+  return std::string("attitude and never moves by a meter") +
+         (like_radians ? " (latitude and longitude in radians?)" : "");
+}
+
 /// The poses of lines with an attitude. If no line has one, the vehicle heads along its way; a note
 /// states that. Empty if it never moves then.
 std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, const fs::path& file,
@@ -228,24 +240,23 @@ std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, con
 }  // namespace
 
 GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& drive,
-                            TimeNs origin_time) {
+                            TimeNs origin_time, const std::optional<ScanPeriod>& scans) {
   const fs::path file = folder / "gnss.csv", imu_file = folder / "imu.csv";
   GenericNavigation result;
-  CsvRows rows = read_csv(file, kGnssNames);
+  CsvRows rows = read_timed_csv(file, kGnssNames, scans, result.notes);
   require_radians(rows, file);
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::optional<ImuOrientations> imu;
-  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, result.notes);
+  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, scans, result.notes);
   std::vector<GnssLine> lines = lines_with_position(rows, drive, imu, left_out);
   leave_out_far_positions(lines, left_out);
-  const bool any_position = !lines.empty();
+  const std::string lack = what_lacks(lines);
   const auto poses = oriented_poses(lines, file, left_out, result.notes);
   left_out.note(result.notes);
   if (poses.empty()) {
     result.notes.push_back(fmt::format(
-        "{} has no {}: no navigation, the map will not be georeferenced", file.string(),
-        any_position ? "attitude and never moves by a meter" : "position that can be used"));
+        "{} has no {}: no navigation, the map will not be georeferenced", file.string(), lack));
     return result;
   }
   const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body));

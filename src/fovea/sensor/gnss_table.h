@@ -7,6 +7,6 @@ namespace fovea {
 
 /// Reads the tables of a drive's folder; see read_generic_navigation().
 GenericNavigation read_gnss(const std::filesystem::path& folder, const DriveDescription& drive,
-                            TimeNs origin_time);
+                            TimeNs origin_time, const std::optional<ScanPeriod>& scans);
 
 }  // namespace fovea

@@ -16,6 +16,11 @@ class IntensityScale {
       above_255_ += intensity > 255;
     }
   }
+  void add(const IntensityScale& other) {
+    points_ += other.points_;
+    above_1_ += other.above_1_;
+    above_255_ += other.above_255_;
+  }
   double max() const {
     if (above_255_ * 1000 > points_) return 65535;
     return above_1_ * 1000 > points_ ? 255 : 1;

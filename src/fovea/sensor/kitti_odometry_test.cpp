@@ -79,6 +79,15 @@ TEST_F(KittiOdometry, WithoutTimesTenHertz) {
   EXPECT_THAT(drive->info().notes, ElementsAre(HasSubstr("times.txt is missing")));
 }
 
+TEST_F(KittiOdometry, StampsThatAreNoSweepsAreAnError) {
+  std::string times;
+  for (int i = 0; i < 6; ++i) times += std::to_string(1e-4 * i) + "\n";
+  test::write_text(sequence_ / "times.txt", times);
+  EXPECT_THAT(
+      error_of<InputError>([&] { open_drive(sequence_, {}); }),
+      testing::AllOf(HasSubstr("0.0001 s apart"), HasSubstr("times.txt"), HasSubstr("unit")));
+}
+
 TEST_F(KittiOdometry, SizeIsThatOfTheFirstReadableImage) {
   test::truncate(sequence_ / "image_0/000000.png", 0.5);
   const auto drive = open_drive(sequence_, {});

@@ -333,7 +333,7 @@ TEST_F(KittiRaw, ScansWithBadPointsLoadWithoutThem) {
   write_scan(scan(0), {{1, 2, 3, 0}, {std::nanf(""), 0, 0, 0}, {1, 1e9f, 0, 0}});
   const Frame frame = std::get<Frame>(open()->load(0));
   EXPECT_EQ(frame.scan.size(), 1u);
-  EXPECT_EQ(frame.dropped_points, 2u);
+  EXPECT_EQ(frame.dropped_points.total(), 2u);
 }
 
 TEST_F(KittiRaw, WithoutStampsTenHertz) {

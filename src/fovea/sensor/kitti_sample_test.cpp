@@ -36,7 +36,7 @@ TEST(KittiSample, AllFramesLoadWithBothColourCameras) {
     EXPECT_GT(frame.scan.size(), 110'000u);
     EXPECT_LT(frame.scan.size(), 123'000u);
     EXPECT_EQ(frame.scan.intensity.size(), frame.scan.size());
-    EXPECT_EQ(frame.dropped_points, 0u);
+    EXPECT_EQ(frame.dropped_points.total(), 0u);
     ASSERT_EQ(frame.images.size(), 2u);
     for (const Image& image : frame.images) {
       EXPECT_EQ(image.width, 1242);

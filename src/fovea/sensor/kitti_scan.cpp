@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/column_names.h"
 #include "fovea/sensor/point_layout.h"
 
 namespace fovea {
@@ -59,28 +60,43 @@ LidarScan read_rows(std::span<const std::uint8_t> bytes, const std::filesystem::
   return scan.take(file);
 }
 
-LidarScan read_ring_rows(std::span<const std::uint8_t> bytes, const std::filesystem::path& file) {
+bool is_finite(const RingRow& row) {
+  return std::all_of(row.begin(), row.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// InputError unless each fifth number is a ring.
+std::vector<RingRow> ring_rows(std::span<const std::uint8_t> bytes, const std::string& name) {
   std::vector<RingRow> rows(bytes.size() / sizeof(RingRow));
   std::memcpy(rows.data(), bytes.data(), rows.size() * sizeof(RingRow));
-  const auto finite = [](const RingRow& row) {
-    return std::all_of(row.begin(), row.end(), [](float value) { return std::isfinite(value); });
-  };
+  for (const RingRow& row : rows) {
+    if (is_finite(row) && !is_ring_row(row)) {
+      throw InputError("the points have 5 numbers each, but not x y z intensity ring", name,
+                       kWriteAnew);
+    }
+  }
+  return rows;
+}
+
+LidarScan read_ring_rows(std::span<const std::uint8_t> bytes, const std::filesystem::path& file) {
+  const std::vector<RingRow> rows = ring_rows(bytes, file.string());
   ScanBuilder scan(rows.size(), /*timed=*/false);
   for (const RingRow& row : rows) {
-    if (finite(row) && !is_ring_row(row)) {
-      throw InputError("the points have 5 numbers each, but not x y z intensity ring",
-                       file.string(), kWriteAnew);
-    }
     if (scan.add({row[0], row[1], row[2]}, row[3])) scan.add_ring(row[4]);
   }
   return scan.take(file);
 }
 
+/// Bytes of the points. InputError if there are none.
+std::vector<std::uint8_t> point_bytes(const InputFile& file) {
+  std::vector<std::uint8_t> bytes = file.bytes();
+  if (bytes.empty()) throw InputError("the scan is empty", file.path().string(), kRestore);
+  return bytes;
+}
+
 }  // namespace
 
 LidarScan read_kitti_scan(const InputFile& file) {
-  const std::vector<std::uint8_t> bytes = file.bytes();
-  if (bytes.empty()) throw InputError("the scan is empty", file.path().string(), kRestore);
+  const std::vector<std::uint8_t> bytes = point_bytes(file);
   const std::size_t numbers = layout_of(bytes, file.path().string());
   return numbers == kRingNumbers ? read_ring_rows(bytes, file.path())
                                  : read_rows(bytes, file.path());
@@ -88,6 +104,32 @@ LidarScan read_kitti_scan(const InputFile& file) {
 
 LidarScan read_kitti_scan(const std::filesystem::path& file) {
   return read_kitti_scan(InputFile(file, kScanFile));
+}
+
+void read_kitti_rows(const InputFile& file, CloudRows& rows) {
+  const std::array<std::string, kRingNumbers> all_names = {"x", "y", "z", "intensity", "ring"};
+  const std::vector<std::uint8_t> bytes = point_bytes(file);
+  const std::size_t numbers = layout_of(bytes, file.path().string());
+  if (numbers == kRingNumbers) ring_rows(bytes, file.path().string());
+  const std::span<const std::string> names = std::span(all_names).first(numbers);
+  std::vector<std::optional<std::size_t>> places;  // by column wanted
+  std::vector<std::optional<Scalar>> types;
+  for (const char* wanted : rows.columns()) {
+    places.push_back(find_column(names, wanted));
+    types.push_back(places.back() ? std::optional(Scalar::kFloat) : std::nullopt);
+  }
+  const std::size_t count = bytes.size() / (4 * numbers);
+  rows.describe(names, /*organized=*/false);
+  rows.begin(count, types);
+  std::vector<double> row(places.size(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    RingRow values{};
+    std::memcpy(values.data(), bytes.data() + i * 4 * numbers, 4 * numbers);
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      if (places[column]) row[column] = double(values[*places[column]]);
+    }
+    rows.add(row, i);
+  }
 }
 
 }  // namespace fovea

@@ -13,4 +13,8 @@ namespace fovea {
 LidarScan read_kitti_scan(const InputFile& file);
 LidarScan read_kitti_scan(const std::filesystem::path& file);
 
+/// The same points as rows with the columns x, y, z, intensity and, of 20 bytes, ring, in the
+/// file's units.
+void read_kitti_rows(const InputFile& file, CloudRows& rows);
+
 }  // namespace fovea

@@ -26,7 +26,7 @@ TEST(KittiScan, ReadsPointsInOrder) {
   ASSERT_EQ(scan.points.size(), 2u);
   EXPECT_EQ(scan.points.position[1], Eigen::Vector3f(-4, 5, -6));
   EXPECT_EQ(scan.points.intensity, (std::vector<float>{0.5f, 0.99f}));
-  EXPECT_EQ(scan.dropped, 0u);
+  EXPECT_EQ(scan.dropped.total(), 0u);
   EXPECT_NO_THROW(scan.points.check());
 }
 
@@ -40,7 +40,7 @@ TEST(KittiScan, DropsAndCountsWhatNoLidarMeasures) {
                                        {0, 0, -1e30f, 0},
                                        {7, 8, 9, 0.1f}});
   const LidarScan scan = read_kitti_scan(folder.path() / "a.bin");
-  EXPECT_EQ(scan.dropped, 6u);
+  EXPECT_EQ(scan.dropped.total(), 6u);
   ASSERT_EQ(scan.points.size(), 1u);
   EXPECT_EQ(scan.points.position[0], Eigen::Vector3f(7, 8, 9));
   EXPECT_EQ(scan.points.intensity.size(), 1u);
@@ -54,7 +54,7 @@ TEST(KittiScan, OnesThatAreDroppedTakeNoneOfTheirNeighboursAlong) {
   points[999] = {0, 0, 0, 0.5f};  // nothing came back
   write_scan(folder.path() / "a.bin", points);
   const LidarScan scan = read_kitti_scan(folder.path() / "a.bin");
-  EXPECT_EQ(scan.dropped, 2u);
+  EXPECT_EQ(scan.dropped.total(), 2u);
   ASSERT_EQ(scan.points.size(), 998u);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const std::array<float, 4>& point = points[i < 300 ? i : i + 1];
@@ -99,7 +99,7 @@ TEST(KittiScan, PointsOfTwentyBytesHaveRings) {
   write_text(folder.path() / "a.bin", bytes_of(points));  // 2000 points of 16 bytes by its size
   const LidarScan scan = read_kitti_scan(folder.path() / "a.bin");
   ASSERT_EQ(scan.points.size(), points.size());
-  EXPECT_EQ(scan.dropped, 0u);
+  EXPECT_EQ(scan.dropped.total(), 0u);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [x, y, z, intensity, ring] = points[i];
     ASSERT_EQ(scan.points.position[i], Eigen::Vector3f(x, y, z));

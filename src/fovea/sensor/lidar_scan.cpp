@@ -11,17 +11,10 @@
 #include "fovea/sensor/kitti_scan.h"
 #include "fovea/sensor/pcd_rows.h"
 #include "fovea/sensor/ply_rows.h"
+#include "fovea/sensor/scan_columns.h"
 
 namespace fovea {
 namespace {
-
-enum Column : std::size_t { kX, kY, kZ, kIntensity, kRing, kChannel, kFirstTime };
-constexpr auto kColumns = [] {
-  std::array<const char*, kFirstTime + kPointTimeNames.size()> names = {
-      "x", "y", "z", "intensity", "ring", "channel"};
-  std::copy(kPointTimeNames.begin(), kPointTimeNames.end(), names.begin() + kFirstTime);
-  return names;
-}();
 
 bool has_ending(const std::filesystem::path& file, std::string_view lower_case) {
   std::string ending = file.extension().string();
@@ -63,40 +56,55 @@ void ScanBuilder::add_ring(double number) {
   scan_.points.ring.push_back(is_ring ? static_cast<std::uint16_t>(number) : 0);
 }
 
+void ScanBuilder::count_dropped(const Eigen::Vector3f& position, float intensity, double time) {
+  const float reach = position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  DroppedPoints& dropped = scan_.dropped;
+  if (reach == 0 || (organized_ && position.array().isNaN().all())) {
+    ++dropped.no_return;
+  } else if (!std::isfinite(reach) || !std::isfinite(intensity) || !std::isfinite(time)) {
+    ++dropped.not_finite;
+  } else if (reach > kMaxCoordinate) {
+    ++dropped.out_of_reach;
+  } else {
+    ++dropped.off_time;
+  }
+}
+
 LidarScan ScanBuilder::take(const std::filesystem::path& file) {
   if (!scan_.points.empty()) return std::move(scan_);
-  throw InputError("the scan has no usable point (" + std::to_string(scan_.dropped) +
-                       " are not finite, beyond 1 km or over 1 s off the stamp)",
-                   file.string(), "restore the file from the drive's archive");
+  const DroppedPoints& dropped = scan_.dropped;
+  std::string problem = "the scan has no usable point";
+  if (dropped.total() > 0) problem += ": " + reasons_of(dropped);
+  throw InputError(problem, file.string(), remedy_for(dropped));
 }
 
-std::span<const char* const> ScanRows::columns() const { return kColumns; }
+std::span<const char* const> ScanRows::columns() const { return kScanColumns; }
+
+const char* ScanRows::description() const { return kScanDescription; }
 
 void ScanRows::begin(std::size_t points, std::span<const std::optional<Scalar>> types) {
-  if (format_.time_reference != TimeReference::kNone) {
-    for (std::size_t column = types.size(); column-- > kFirstTime;) {
-      if (types[column]) time_ = column;
-    }
+  has_rings_ = types[kScanRing].has_value();
+  has_times_ = format_.time_reference != TimeReference::kNone && types[kScanTime];
+  if (has_times_) {
+    time_unit_ = format_.time_unit.value_or(is_real(*types[kScanTime]) ? 1 : 1e-9);
   }
-  if (time_) unit_ = format_.time_unit.value_or(is_real(*types[*time_]) ? 1 : 1e-9);
-  for (const Column column : {kChannel, kRing}) {
-    if (types[column]) ring_ = column;
-  }
-  scan_.emplace(points, time_.has_value());
+  scan_.emplace(points, has_times_);
+  scan_->set_organized(organized_);
 }
 
-void ScanRows::add(std::span<const double> row, std::size_t) {
-  const Eigen::Vector3d position(row[kX], row[kY], row[kZ]);
+void ScanRows::add(std::span<const double> row, std::size_t /*number*/) {
+  const Eigen::Vector3d position =
+      format_.length_unit * Eigen::Vector3d(row[kScanX], row[kScanY], row[kScanZ]);
   const bool is_usable = scan_->add(position.cast<float>(),
-                                    static_cast<float>(row[kIntensity] / format_.intensity_max),
-                                    time_ ? seconds_from_stamp(row[*time_]) : 0);
-  if (is_usable && ring_) scan_->add_ring(row[*ring_]);
+                                    static_cast<float>(row[kScanIntensity] / format_.intensity_max),
+                                    has_times_ ? seconds_from_stamp(row[kScanTime]) : 0);
+  if (is_usable && has_rings_) scan_->add_ring(row[kScanRing]);
 }
 
 double ScanRows::seconds_from_stamp(double time) const {
-  if (format_.time_reference == TimeReference::kStamp) return time * unit_;
+  if (format_.time_reference == TimeReference::kStamp) return time * time_unit_;
   // Nanoseconds since 1970 take 61 bits: of numbers as large, doubles have but every 256th.
-  return (time - static_cast<double>(stamp_) * 1e-9 / unit_) * unit_;
+  return (time - static_cast<double>(stamp_) * 1e-9 / time_unit_) * time_unit_;
 }
 
 FileFormat scan_format(const InputFile& file) {
@@ -116,23 +124,40 @@ FileFormat scan_format(const InputFile& file) {
   }
 }
 
+namespace {
+
+void read_scan_rows(InputFile& file, FileFormat format, CloudRows& rows) {
+  if (format == FileFormat::kPcd) {
+    read_pcd_rows(file, rows);
+  } else if (format == FileFormat::kPly) {
+    read_ply_rows(file, rows);
+  } else {
+    read_kitti_rows(file, rows);
+  }
+}
+
+}  // namespace
+
 LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,
                           TimeNs stamp) {
   InputFile input(file, kScanFile);
   const FileFormat found = scan_format(input);
-  if (found == FileFormat::kUnknown) {
+  if (found == FileFormat::kUnknown && format.length_unit == 1) {
     LidarScan scan = read_kitti_scan(input);
     const auto scale = static_cast<float>(format.intensity_max);
     for (float& intensity : scan.points.intensity) intensity /= scale;
     return scan;
   }
   ScanRows rows(format, stamp);
-  if (found == FileFormat::kPcd) {
-    read_pcd_rows(input, rows);
-  } else {
-    read_ply_rows(input, rows);
-  }
+  read_scan_rows(input, found, rows);
   return rows.take(file);
+}
+
+ScanNumbers read_scan_numbers(const std::filesystem::path& file, TimeNs stamp) {
+  ScanNumberRows rows(stamp);
+  InputFile input(file, kScanFile);
+  read_scan_rows(input, scan_format(input), rows);
+  return rows.take();
 }
 
 }  // namespace fovea

@@ -14,14 +14,15 @@
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/time.h"
 #include "fovea/sensor/cloud_rows.h"
+#include "fovea/sensor/dropped_points.h"
+#include "fovea/sensor/scan_format.h"
+#include "fovea/sensor/scan_numbers.h"
 
 namespace fovea {
 
 struct LidarScan {
   PointCloud points;  ///< lidar frame, m; with intensity (0-1) and, where the file has them, times
-  /// Points that were not finite, had a coordinate beyond 1 km or a time over a second off the
-  /// stamp.
-  std::size_t dropped = 0;
+  DroppedPoints dropped;
 };
 
 /// Gathers the usable points of a scan.
@@ -31,6 +32,9 @@ class ScanBuilder {
   /// @param timed   whether they have times
   ScanBuilder(std::size_t points, bool timed);
 
+  /// NaN then marks a missing return.
+  void set_organized(bool organized) { organized_ = organized; }
+
   /// A point without time: x, y, z (m) and intensity.
   using Row = std::array<float, 4>;
 
@@ -38,7 +42,7 @@ class ScanBuilder {
   /// @return whether the point is usable
   bool add(const Eigen::Vector3f& position, float intensity, double time = 0) {
     if (!is_usable(position, intensity, time)) {
-      ++scan_.dropped;
+      count_dropped(position, intensity, time);
       return false;
     }
     scan_.points.position.push_back(position);
@@ -68,37 +72,24 @@ class ScanBuilder {
             (std::abs(time) <= kMaxOffset)) != 0;
   }
 
+  void count_dropped(const Eigen::Vector3f& position, float intensity, double time);
+
   LidarScan scan_;
-  bool timed_;
+  bool timed_, organized_ = false;
 };
 
-/// What the time of a point counts from.
-enum class TimeReference {
-  kStamp,     ///< the scan's stamp
-  kAbsolute,  ///< the epoch of the stamps
-  kNone,      ///< nothing: points have no times, whatever their columns are called
-};
-
-/// What a scan's file does not say about its numbers.
-struct ScanFormat {
-  double intensity_max = 1;  ///< the value that stands for a reflectance of 1
-  TimeReference time_reference = TimeReference::kStamp;
-  /// s, of the points' times; absent: nanoseconds where they are whole numbers, or else seconds.
-  std::optional<double> time_unit;
-};
-
-/// Columns of points' times; the first that is there counts.
-inline constexpr std::array<const char*, 4> kPointTimeNames = {"t", "time", "timestamp",
-                                                               "offset_time"};
-
-/// Makes a scan of rows: x y z, perhaps intensity, ring (or channel) and one of kPointTimeNames.
+/// Makes a scan of rows.
 class ScanRows : public CloudRows {
  public:
   /// @param stamp  of the scan
   ScanRows(const ScanFormat& format, TimeNs stamp) : format_(format), stamp_(stamp) {}
 
   std::span<const char* const> columns() const override;
-  const char* description() const override { return "x y z, intensity, ring and time"; }
+  bool takes_whole_coordinates() const override { return true; }
+  const char* description() const override;
+  void describe(std::span<const std::string> /*names*/, bool organized) override {
+    organized_ = organized;
+  }
   void begin(std::size_t points, std::span<const std::optional<Scalar>> types) override;
   void add(std::span<const double> row, std::size_t number) override;
 
@@ -110,8 +101,8 @@ class ScanRows : public CloudRows {
 
   ScanFormat format_;
   TimeNs stamp_;
-  std::optional<std::size_t> time_, ring_;  // columns
-  double unit_ = 1;                         // s
+  bool organized_ = false, has_times_ = false, has_rings_ = false;
+  double time_unit_ = 1;  // s
   std::optional<ScanBuilder> scan_;
 };
 
@@ -126,5 +117,8 @@ FileFormat scan_format(const InputFile& file);
 /// @param stamp  of the scan
 LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,
                           TimeNs stamp);
+
+/// The numbers of the same files, as they are. InputError as above.
+ScanNumbers read_scan_numbers(const std::filesystem::path& file, TimeNs stamp);
 
 }  // namespace fovea

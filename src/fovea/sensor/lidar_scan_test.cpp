@@ -107,8 +107,41 @@ TEST_F(LidarScanTest, DropsAndCountsWhatNoLidarMeasures) {
   const LidarScan scan = read("a.pcd", pcd("x y z t", "4 4 4 4", "F F F F", 7,
                                            "ascii\nnan 2 3 0\n1 inf 3 0\n1e30 0 0 0\n1 2 3 nan\n"
                                            "1 2 3 1.5\n0 0 0 0.01\n1 2 3 0.01\n"));
-  EXPECT_EQ(scan.dropped, 6u);  // the origin is what drivers write where nothing came back
+  EXPECT_EQ(scan.dropped.total(), 6u);  // the origin is what drivers write where nothing came back
   EXPECT_EQ(scan.points.size(), 1u);
+}
+
+TEST_F(LidarScanTest, DroppedPointsAreCountedByReason) {
+  const std::string points =
+      "ascii\nnan nan nan 0\n1 inf 3 0\n1e30 0 0 0\n1 2 3 1.5\n0 0 0 0.01\n1 2 3 0.01\n";
+  const LidarScan scan = read("a.pcd", pcd("x y z t", "4 4 4 4", "F F F F", 6, points));
+  EXPECT_EQ(scan.dropped, (DroppedPoints{1, 2, 1, 1}));
+  EXPECT_EQ(reasons_of(scan.dropped),
+            "2 not finite, 1 beyond 1 km, 1 over 1 s off the stamp, 1 without a return");
+  // In a grid of points, NaN marks a missing return.
+  std::string grid = pcd("x y z t", "4 4 4 4", "F F F F", 3, points);
+  grid.replace(grid.find("HEIGHT 1"), 8, "HEIGHT 2");
+  EXPECT_EQ(read("b.pcd", grid).dropped, (DroppedPoints{2, 1, 1, 1}));
+}
+
+TEST_F(LidarScanTest, OverATenthOfFaultyPointsIsTooMany) {
+  EXPECT_NO_THROW(require_few_dropped({900, 0, 0, 10}, 90, "drive"));
+  EXPECT_THAT(
+      error_of<InputError>([] {
+        require_few_dropped({0, 0, 0, 11}, 89, "d");
+      }),
+      testing::AllOf(HasSubstr("11 of 100 points (11 %)"), HasSubstr("11 over 1 s off the stamp"),
+                     HasSubstr("time_unit"), HasSubstr("--allow-dropped")));
+}
+
+TEST_F(LidarScanTest, CoordinatesInOtherUnitsAndAsWholeNumbers) {
+  format_.length_unit = 1e-3;
+  const LidarScan whole =
+      read("a.pcd", pcd("X Y Z", "4 4 4", "I I I", 1, "ascii\n-1500 20000 3\n"));
+  EXPECT_LT((whole.points.position[0] - Eigen::Vector3f(-1.5f, 20, 0.003f)).norm(), 1e-5f);
+  EXPECT_THAT(error_of<InputError>(
+                  [&] { read("b.pcd", pcd("x y z", "4 4 4", "I F F", 1, "ascii\n1 2 3\n")); }),
+              HasSubstr("must be of type F"));
 }
 
 TEST_F(LidarScanTest, UnusableFilesAreErrorsThatNameThem) {

@@ -1,11 +1,14 @@
 #include "fovea/sensor/pcd_rows.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <charconv>
 #include <cstring>
 #include <sstream>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/column_names.h"
 #include "fovea/sensor/lzf.h"
 #include "fovea/sensor/read_file.h"
 
@@ -47,9 +50,7 @@ std::optional<Scalar> parse_scalar(std::string_view type, std::size_t size) {
 }
 
 /// Whether the field is four bytes of colour, which may be declared as a float.
-bool is_packed_color(std::string_view name) {
-  return is_column_name(name, "rgb") || is_column_name(name, "rgba");
-}
+bool is_packed_color(std::string_view name) { return name == "rgb" || name == "rgba"; }
 
 class PcdFile {
  public:
@@ -70,11 +71,7 @@ class PcdFile {
     } else {
       require_length(rest * kLzfMaxRatio / point_bytes_);
     }
-    std::vector<std::optional<Scalar>> types;
-    for (const std::optional<Field>& field : columns_) {
-      types.push_back(field ? std::optional(field->type) : std::nullopt);
-    }
-    rows_.begin(points_, types);
+    rows_.begin(points_, types());
     switch (encoding_) {
       case Encoding::kAscii:
         read_ascii();
@@ -176,6 +173,7 @@ class PcdFile {
     }
     if (points && *points != *width * rows) reject("POINTS is not WIDTH x HEIGHT");
     points_ = *width * rows;
+    organized_ = rows > 1;
   }
 
   void lay_out_fields() {
@@ -199,28 +197,34 @@ class PcdFile {
     }
   }
 
-  const Field* find(std::string_view name) const {
-    for (const Field& field : fields_) {
-      if (!is_column_name(field.name, name)) continue;
-      if (field.count != 1) reject("the field " + field.name + " must have COUNT 1");
-      return &field;
-    }
-    return nullptr;
-  }
-
   void resolve_columns() {
     constexpr std::size_t kAxes = 3;
-    for (const char* name : rows_.columns()) {
-      const Field* field = find(name);
-      columns_.push_back(field ? std::optional(*field) : std::nullopt);
-      if (columns_.size() <= kAxes) {
-        if (!field) reject(std::string("there is no field ") + name);
-        if (!is_real(field->type)) reject("x, y, z must be of type F");
-      }
-      if (field && is_packed_color(name) && size_of(field->type) != 4) {
-        reject(std::string(name) + " must have four bytes");
+    std::vector<std::string> names;
+    for (const Field& field : fields_) names.push_back(field.name);
+    for (const char* wanted : rows_.columns()) {
+      std::optional<Field>& column = columns_.emplace_back();
+      if (const auto found = find_column(names, wanted)) {
+        column = fields_[*found];
+        if (column->count != 1) reject("the field " + column->name + " must have COUNT 1");
+        column->name = wanted;
+        if (is_packed_color(wanted) && size_of(column->type) != 4) {
+          reject(std::string(wanted) + " must have four bytes");
+        }
+      } else if (columns_.size() <= kAxes) {
+        reject(fmt::format("there is no field {} among {}", wanted, list_columns(names)));
       }
     }
+    if (!are_coordinates(types(), rows_)) reject("x, y, z must be of type F");
+    rows_.describe(names, organized_);
+  }
+
+  /// Of the columns wanted.
+  std::vector<std::optional<Scalar>> types() const {
+    std::vector<std::optional<Scalar>> types;
+    for (const std::optional<Field>& field : columns_) {
+      types.push_back(field ? std::optional(field->type) : std::nullopt);
+    }
+    return types;
   }
 
   /// @param at  the first byte of a field's value for this point
@@ -322,6 +326,7 @@ class PcdFile {
   std::vector<std::string> sizes_, types_, counts_;  // of the header, as they stand there
   std::vector<Field> fields_;
   std::size_t points_ = 0, point_bytes_ = 0, numbers_ = 0;
+  bool organized_ = false;
   std::vector<std::optional<Field>> columns_;  // in the order of rows_.columns()
   std::vector<double> row_;                    // of the point that is being read
 };

@@ -1,11 +1,14 @@
 #include "fovea/sensor/ply_rows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <sstream>
 #include <string>
 
 #include "fovea/base/errors.h"
+#include "fovea/sensor/column_names.h"
 #include "fovea/sensor/read_file.h"
 
 namespace fovea {
@@ -56,11 +59,7 @@ class PlyFile {
   }
 
   void read() {
-    std::vector<std::optional<Scalar>> types;
-    for (const std::optional<std::size_t>& column : header_.columns) {
-      types.push_back(column ? std::optional(header_.properties[*column].type) : std::nullopt);
-    }
-    rows_.begin(header_.vertices, types);
+    rows_.begin(header_.vertices, types());
     header_.ascii ? read_ascii() : read_binary();
   }
 
@@ -120,20 +119,25 @@ class PlyFile {
 
   void resolve_columns() {
     constexpr std::size_t kAxes = 3;
-    const auto& properties = header_.properties;
-    for (const char* name : rows_.columns()) {
-      const auto found = std::find_if(properties.begin(), properties.end(), [&](const Property& p) {
-        return is_column_name(p.name, name);
-      });
-      const bool axis = header_.columns.size() < kAxes;
-      if (found == properties.end()) {
-        if (axis) reject(std::string("the vertices have no ") + name);
-        header_.columns.emplace_back();
-        continue;
+    std::vector<std::string> names;
+    for (const Property& property : header_.properties) names.push_back(property.name);
+    for (const char* wanted : rows_.columns()) {
+      header_.columns.push_back(find_column(names, wanted));
+      if (header_.columns.size() <= kAxes && !header_.columns.back()) {
+        reject(fmt::format("the vertices have no {}, only {}", wanted, list_columns(names)));
       }
-      if (axis && !is_real(found->type)) reject("x, y, z must be float or double");
-      header_.columns.emplace_back(static_cast<std::size_t>(found - properties.begin()));
     }
+    if (!are_coordinates(types(), rows_)) reject("x, y, z must be float or double");
+    rows_.describe(names, /*organized=*/false);
+  }
+
+  /// Of the columns wanted.
+  std::vector<std::optional<Scalar>> types() const {
+    std::vector<std::optional<Scalar>> types;
+    for (const std::optional<std::size_t>& column : header_.columns) {
+      types.push_back(column ? std::optional(header_.properties[*column].type) : std::nullopt);
+    }
+    return types;
   }
 
   void read_binary() {

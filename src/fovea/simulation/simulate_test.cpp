@@ -99,7 +99,7 @@ TEST(Simulate, ProductReadsTheDriveAndItsTruth) {
     ASSERT_TRUE(std::holds_alternative<Frame>(result));
     const auto& frame = std::get<Frame>(result);
     EXPECT_GT(frame.scan.size(), 1000u);
-    EXPECT_EQ(frame.dropped_points, 0u);
+    EXPECT_EQ(frame.dropped_points.total(), 0u);
     const auto returns = truth.returns(k);
     ASSERT_EQ(returns.size(), frame.scan.size());
     // Camera, image and truth belong together.

@@ -1,0 +1,50 @@
+// Why navigation moves otherwise than the scans: errors of units, order and direction.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/pipeline/navigation_repairs.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// Compares navigation with registered scans over the way of a drive. Where they differ, it applies
+/// each known error to navigation in reverse. An error that makes navigation agree with the scans
+/// is a likely cause.
+///
+///     NavigationFaults faults(drive);
+///     for (const FrameRecord& record : records) faults.add(record);
+///     if (const auto cause = faults.likely_cause()) notes.push_back(*cause);
+class NavigationFaults {
+ public:
+  /// @param drive  must outlive the faults
+  explicit NavigationFaults(const DriveInfo& drive) : drive_(drive) {}
+
+  /// The next frame, in order.
+  void add(const FrameRecord& record);
+
+  /// A note that names the likely causes; empty if navigation agrees with the scans, if the vehicle
+  /// has hardly moved, or if no known error explains the difference.
+  std::optional<std::string> likely_cause() const;
+
+ private:
+  struct Sample {
+    RigidMotion T_local_lidar;  // by navigation
+    RigidMotion T_odom_lidar;   // by registration
+    bool is_joined = false;     // to the sample before, without a gap of either
+  };
+  static NavigationStep step_between(const Sample& first, const Sample& last);
+  /// From each sample to the next.
+  NavigationSteps steps() const;
+  /// From samples to the next one that is turned against it.
+  NavigationSteps turns() const;
+
+  const DriveInfo& drive_;
+  std::vector<Sample> samples_;
+  bool is_interrupted_ = true;  // since the last sample
+};
+
+}  // namespace fovea

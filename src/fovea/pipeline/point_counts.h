@@ -1,0 +1,29 @@
+// Points of the scans of a run: used and dropped.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "fovea/map/frame_record.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// Writes the counts of a frame into its record, where PointCounts finds them again.
+void count_points(const Frame& frame, FrameRecord& record);
+
+class PointCounts {
+ public:
+  void add(const FrameRecord& record);
+
+  std::size_t used() const { return used_; }
+  const DroppedPoints& dropped() const { return dropped_; }
+  /// One line with count, share and reasons; empty if no point was dropped.
+  std::string note() const;
+
+ private:
+  std::size_t used_ = 0;
+  DroppedPoints dropped_;
+};
+
+}  // namespace fovea
