@@ -155,6 +155,15 @@ TEST_F(CommandFilesTest, OnlyAFileOfTheSameKindIsReplaced) {
   EXPECT_THAT(answer({{}, {{"/dev/null", FileKind::kReport, true}}}), HasSubstr("ordinary"));
 }
 
+TEST_F(CommandFilesTest, APartialFileIsReplacedUnlessItIsOfAnotherKind) {
+  file("a.ply.partial", kPly);
+  EXPECT_EQ(answer({{}, {{path("a.ply"), FileKind::kPly}}}), kAccepted);
+  EXPECT_THAT(answer({{}, {{path("a.ply"), FileKind::kReport}}}),
+              AllOf(HasSubstr("is a PLY file"), HasSubstr("a.ply.partial")));
+  map("b.partial");
+  EXPECT_THAT(answer({{}, {{path("b"), FileKind::kLas}}}), HasSubstr("is a Fovea map"));
+}
+
 TEST_F(CommandFilesTest, AMapHasNoNameOfAnotherFormat) {
   for (const char* name : {"a.ply", "a.LAS", "a.json", "a.html"}) {
     EXPECT_THAT(answer({{}, {{path(name), FileKind::kMap}}}), HasSubstr("ends in")) << name;
