@@ -36,14 +36,17 @@ void remove_side_files(const fs::path& path) {
 }
 
 /// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
-/// new map's after the rename; that of a map which was removed is left. OutputError if a program is
-/// using it.
+/// new map's after the rename. OutputError if a program is using it.
+void merge_old_map(const fs::path& path) {
+  if (!fs::exists(path)) return;
+  Database old(path, Access::kWrite, path);
+  // What fails otherwise is no map, and is replaced all the same.
+  if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
+}
+
+/// As merge_old_map(), and removes the log of a map that was removed.
 void settle_old_map(const fs::path& path) {
-  if (fs::exists(path)) {
-    Database old(path, Access::kWrite, path);
-    // What fails otherwise is no map, and is replaced all the same.
-    if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
-  }
+  merge_old_map(path);
   remove_side_files(path);
 }
 
@@ -74,6 +77,7 @@ class SqliteMapWriter : public MapWriter {
   /// A new map, which grows in PATH.partial until its first commit.
   SqliteMapWriter(const fs::path& path, bool force)
       : path_(path), target_(check_output_path(path, force)), force_(force) {
+    merge_old_map(target_);  // now, and not after a long run, it shows that it is in use
     start_partial_file();
   }
 
