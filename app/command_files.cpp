@@ -13,6 +13,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/sensor/kitti_drives.h"
 
 namespace fovea::app {
 namespace {
@@ -99,9 +100,10 @@ void require_other_file(const OutputPath& output, const std::string& input) {
   std::error_code ignored;
   const auto existing = identity_of(output.path);
   if (existing && can_be_in_a_drive(output.kind) && fs::is_directory(input, ignored) &&
-      has_file(input, *existing)) {
+      (has_file(input, *existing) || identity_of(shipped_poses(input)) == existing)) {
     throw OutputError(
-        fmt::format("the output is a file of the folder {}, which the command reads", input),
+        fmt::format("the output is a file of the drive or folder {}, which the command reads",
+                    input),
         output.path, kOtherName);
   }
   // A log or journal belongs to the map that is read.

@@ -13,4 +13,7 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
 std::unique_ptr<FrameSource> open_kitti_odometry(const std::filesystem::path& path,
                                                  const DriveOptions& options);
 
+/// ../../poses/NN.txt of a sequence sequences/NN, where KITTI ships its poses.
+std::filesystem::path shipped_poses(const std::filesystem::path& sequence);
+
 }  // namespace fovea
