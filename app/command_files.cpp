@@ -13,6 +13,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/sensor/kitti_drives.h"
 
 namespace fovea::app {
 namespace {
@@ -99,9 +100,10 @@ void require_other_file(const OutputPath& output, const std::string& input) {
   std::error_code ignored;
   const auto existing = identity_of(output.path);
   if (existing && can_be_in_a_drive(output.kind) && fs::is_directory(input, ignored) &&
-      has_file(input, *existing)) {
+      (has_file(input, *existing) || identity_of(shipped_poses(input)) == existing)) {
     throw OutputError(
-        fmt::format("the output is a file of the folder {}, which the command reads", input),
+        fmt::format("the output is a file of the drive or folder {}, which the command reads",
+                    input),
         output.path, kOtherName);
   }
   // A log or journal belongs to the map that is read.
@@ -152,6 +154,20 @@ void check_ending(const OutputPath& output) {
   }
 }
 
+/// A partial file that a killed program left is replaced, but it is never of another known kind.
+void check_partial(const OutputPath& output) {
+  const fs::path partial = partial_path(resolved(output.path));
+  std::error_code ignored;
+  if (!fs::is_regular_file(partial, ignored)) return;
+  const FileKind kind = kind_of_file(partial);
+  const bool can_be_left = kind == output.kind || kind == FileKind::kEmpty ||
+                           kind == FileKind::kOther || kind == FileKind::kSqlite;
+  if (can_be_left) return;
+  throw OutputError(
+      fmt::format("the output grows under a name that exists and is {}", describe(kind)),
+      partial.string(), "give the output another name, or move this file");
+}
+
 void check_existing(const OutputPath& output) {
   std::error_code ignored;
   if (fs::is_regular_file(output.path, ignored)) {
@@ -197,6 +213,7 @@ void check_files(const CommandFiles& files) {
   check_folder(files.folder, files.inputs);
   for (const OutputPath& output : outputs) {
     check_existing(output);
+    check_partial(output);
     check_ending(output);
   }
 }

@@ -32,7 +32,7 @@ void finish_standard_output() {
   const std::string reason =
       errno != 0 ? fmt::format(" ({})", std::generic_category().message(errno)) : std::string();
   throw OutputError(fmt::format("the output cannot be written{}", reason), "standard output",
-                    "check the disk or the program that reads it; --quiet writes none");
+                    "check the disk or the program that reads it");
 }
 
 }  // namespace fovea::app

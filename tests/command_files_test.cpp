@@ -119,11 +119,23 @@ TEST_F(CommandFilesTest, NoOutputIsAFileOfAnInputFolder) {
   const std::string other = file("archive/2.ply", kPly);
   for (const std::string& output : {scan, elsewhere, path("archive/../drive/scans/1.ply")}) {
     EXPECT_THAT(answer({{path("drive")}, {{output, FileKind::kPly, true}}}),
-                HasSubstr("a file of the folder"));
+                HasSubstr("a file of the drive or folder"));
   }
   EXPECT_EQ(answer({{path("drive")}, {{other, FileKind::kPly, true}}}), kAccepted);
   EXPECT_EQ(answer({{path("drive")}, {{map("drive/a.fovea"), FileKind::kMap, true}}}), kAccepted)
       << "no drive has a map";
+}
+
+// KITTI's poses of a sequence lie outside of its folder.
+TEST_F(CommandFilesTest, NoOutputIsThePoseFileOfASequence) {
+  file("set/sequences/04/calib.txt", "P0: 1\n");
+  const std::string poses = file("set/poses/04.txt", kPose),
+                    other = file("set/poses/05.txt", kPose);
+  const std::string sequence = path("set/sequences/04");
+  EXPECT_THAT(answer({{sequence}, {{poses, FileKind::kPoses, true}}}), HasSubstr("of the drive"));
+  EXPECT_THAT(answer({{sequence + "/"}, {{poses, FileKind::kPoses, true}}}),
+              HasSubstr("of the drive"));
+  EXPECT_EQ(answer({{sequence}, {{other, FileKind::kPoses, true}}}), kAccepted);
 }
 
 TEST_F(CommandFilesTest, TwoOutputsAreTwoFiles) {
@@ -153,6 +165,15 @@ TEST_F(CommandFilesTest, OnlyAFileOfTheSameKindIsReplaced) {
     EXPECT_EQ(answer({{}, {{output, FileKind::kReport, true}}}), kAccepted);
   }
   EXPECT_THAT(answer({{}, {{"/dev/null", FileKind::kReport, true}}}), HasSubstr("ordinary"));
+}
+
+TEST_F(CommandFilesTest, APartialFileIsReplacedUnlessItIsOfAnotherKind) {
+  file("a.ply.partial", kPly);
+  EXPECT_EQ(answer({{}, {{path("a.ply"), FileKind::kPly}}}), kAccepted);
+  EXPECT_THAT(answer({{}, {{path("a.ply"), FileKind::kReport}}}),
+              AllOf(HasSubstr("is a PLY file"), HasSubstr("a.ply.partial")));
+  map("b.partial");
+  EXPECT_THAT(answer({{}, {{path("b"), FileKind::kLas}}}), HasSubstr("is a Fovea map"));
 }
 
 TEST_F(CommandFilesTest, AMapHasNoNameOfAnotherFormat) {

@@ -123,6 +123,25 @@ TEST_F(MapLog, FinishReportsTheLogIfAReaderKeepsAnEarlierState) {
   EXPECT_EQ(log_of_map(map_).filename(), "a.fovea-wal") << "it is still in use";
 }
 
+TEST_F(MapLog, AMapInUseIsNotReplacedAndThatShowsAtOnce) {
+  {
+    const auto writer = growing_map();
+    const MapReader reader(map_);
+    ASSERT_EQ(reader.meta().at("config"), "one");
+    writer->finish(kShort);
+    try {
+      MapWriter::create(map_, true);
+      ADD_FAILURE() << "nothing thrown";
+    } catch (const OutputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("another program"));
+    }
+    EXPECT_EQ(value_in_copy(), "two");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.fovea.partial"));
+  }
+  MapWriter::create(map_, true)->finish(kShort);
+  EXPECT_THAT(folder_.names(), ElementsAre("a.fovea"));
+}
+
 // The disk has room for the log, but not for the file that grows by it.
 TEST_F(MapLog, FinishReportsTheLogIfTheDiskIsFull) {
   std::unique_ptr<MapWriter> writer;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +10,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/unfinished_output.h"
 #include "fovea/map/map_format.h"
+#include "fovea/map/map_log.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"
@@ -37,40 +37,18 @@ void remove_side_files(const fs::path& path) {
   }
 }
 
-bool has_side_files(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(fs::path(path) += "-wal", ignored);
-}
-
-/// Merges the log into the file and removes it. While others have the map open, an empty log stays.
-/// Waits for nothing. Best effort: SQLite reads the content of a log that stays.
-void leave_one_file(Database& database) noexcept {
-  database.attempt("PRAGMA busy_timeout=0");
-  if (database.attempt("PRAGMA journal_mode=DELETE") == Outcome::kDone) return;
-  database.attempt("PRAGMA wal_checkpoint(TRUNCATE)");
-}
-
-/// OutputError if the file alone would not be the whole map.
-void merge_log(Database& database, const fs::path& map, std::chrono::milliseconds reader_timeout) {
-  const Outcome outcome = database.merge_log(reader_timeout);
-  if (outcome == Outcome::kDone) return leave_one_file(database);
-  const std::string reason = outcome == Outcome::kBusy
-                                 ? "another program keeps an earlier state of the map open"
-                                 : database.reason();
-  throw OutputError(
-      fmt::format("the end of the map is only in its log, not in the map ({})", reason),
-      fs::path(map).concat("-wal").string(), log_remedy(map));
-}
-
 /// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
-/// new map's after the rename; that of a map which was removed is left. OutputError if a program is
-/// using it.
+/// new map's after the rename. OutputError if a program is using it.
+void merge_old_map(const fs::path& path) {
+  if (!fs::exists(path)) return;
+  Database old(path, Access::kWrite, path);
+  // What fails otherwise is no map, and is replaced all the same.
+  if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
+}
+
+/// As merge_old_map(), and removes the log of a map that was removed.
 void settle_old_map(const fs::path& path) {
-  if (fs::exists(path)) {
-    Database old(path, Access::kWrite, path);
-    // What fails otherwise is no map, and is replaced all the same.
-    if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
-  }
+  merge_old_map(path);
   remove_side_files(path);
 }
 
@@ -101,6 +79,7 @@ class SqliteMapWriter : public MapWriter {
   /// A new map, which grows in PATH.partial until its first commit.
   SqliteMapWriter(const fs::path& path, bool force)
       : path_(path), target_(check_output_path(path, force)), force_(force) {
+    merge_old_map(target_);  // now, and not after a long run, it shows that it is in use
     unfinished_.emplace(path_, std::vector{partial_path(target_)},
                         [this] { start_partial_file(); });
   }
@@ -355,36 +334,6 @@ void SqliteMapWriter::put_tiles(std::size_t count,
 
 std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
   return std::make_unique<SqliteMapWriter>(path, force);
-}
-
-void fold_log(const fs::path& path) {
-  std::error_code ignored;
-  const fs::path file = fs::canonical(path, ignored);
-  if (!has_side_files(file)) return;
-  try {
-    { const MapReader is_a_map(file); }
-    // Fails at once while another program has the map open.
-    Database(file, Access::kWrite, path)
-        .attempt("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
-  } catch (const Error&) {
-    // No map, or one that cannot be written: reading it reports what is wrong.
-  }
-}
-
-fs::path log_of_map(const fs::path& path) {
-  std::error_code ignored;
-  const fs::path log = fs::canonical(path, ignored).concat("-wal");
-  const std::uintmax_t size = fs::file_size(log, ignored);
-  return ignored || size == 0 ? fs::path() : log;
-}
-
-std::string log_remedy(const fs::path& map) {
-  std::error_code ignored;
-  const std::string log = fs::canonical(map, ignored).concat("-wal").string();
-  return fmt::format(
-      "keep {} next to the map, it is part of it; free disk space or close the programs that have "
-      "the map open, then 'fovea info {}' merges it",
-      log, fs::canonical(map, ignored).string());
 }
 
 std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {

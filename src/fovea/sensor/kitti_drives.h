@@ -18,4 +18,7 @@ std::unique_ptr<FrameSource> open_kitti_odometry(const std::filesystem::path& pa
 /// kinds are Unix time, which is UTC.
 TimeNs utc_offset_of(std::string_view kind);
 
+/// ../../poses/NN.txt of a sequence sequences/NN, where KITTI ships its poses.
+std::filesystem::path shipped_poses(const std::filesystem::path& sequence);
+
 }  // namespace fovea

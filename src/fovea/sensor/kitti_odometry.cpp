@@ -34,10 +34,7 @@ void read_image_size(const NumberedFiles& images, Camera& camera) {
 
 /// poses.txt in the sequence's folder, or ../../poses/NN.txt as KITTI ships them.
 std::optional<std::filesystem::path> find_poses(const std::filesystem::path& sequence) {
-  const auto folder = std::filesystem::absolute(sequence / "").lexically_normal().parent_path();
-  const auto shipped =
-      folder.parent_path().parent_path() / "poses" / (folder.filename().string() + ".txt");
-  for (const auto& file : {sequence / "poses.txt", shipped}) {
+  for (const auto& file : {sequence / "poses.txt", shipped_poses(sequence)}) {
     if (std::filesystem::exists(file)) return file;
   }
   return std::nullopt;
@@ -59,6 +56,11 @@ void find_reference_poses(const RigidMotion& T_cam0_lidar, DriveInfo& info) {
 }
 
 }  // namespace
+
+std::filesystem::path shipped_poses(const std::filesystem::path& sequence) {
+  const auto folder = std::filesystem::absolute(sequence / "").lexically_normal().parent_path();
+  return folder.parent_path().parent_path() / "poses" / (folder.filename().string() + ".txt");
+}
 
 std::unique_ptr<FrameSource> open_kitti_odometry(const std::filesystem::path& path,
                                                  const DriveOptions& options) {
