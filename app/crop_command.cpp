@@ -21,7 +21,7 @@ void run(const CropArguments& arguments) {
   const CropRegion region = arguments.box.empty() ? CropRegion::polygon(arguments.polygon)
                                                   : CropRegion::box(arguments.box);
   require_other_file(arguments.map, arguments.output);
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const CropFigures figures = crop_map(map, region, *writer);
   if (arguments.quiet) return;

@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/finite_range.h"
+#include "app/map_arguments.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
@@ -122,8 +123,9 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
 void run(ExportArguments& arguments, const CLI::App& command) {
   const std::string format = format_of(arguments);
   check_options(command, arguments, format);
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   if (format == "kitti-poses") {
+    map.check();  // poses need no tile
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
     return;
   }

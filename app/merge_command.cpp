@@ -45,7 +45,7 @@ void run(const MergeArguments& arguments) {
   for (const std::string& map : {arguments.a, arguments.b}) {
     require_other_file(map, arguments.output);
   }
-  const MapReader a(arguments.a), b(arguments.b);
+  const MapReader a = open_map(arguments.a), b = open_map(arguments.b);
   MergeJob job;
   job.output = arguments.output;
   job.force = arguments.force;

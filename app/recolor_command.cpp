@@ -43,7 +43,7 @@ MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta)
 
 void run(RecolorArguments arguments) {
   const ThreadLimit threads(arguments.threads);
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   const MapMeta meta = map.meta();
   RecolorJob job;
   job.output = arguments.output;
@@ -54,8 +54,7 @@ void run(RecolorArguments arguments) {
     arguments.drive.cameras = meta.at(meta_key::kCameras);
   }
   auto drive = arguments.drive.open();
-  const auto match =
-      find_drive_in_map(arguments.map, *drive, arguments.foreign, arguments.quiet);
+  const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign, arguments.quiet);
   if (has_stored_calibration(meta)) {
     drive = with_stored_calibration(std::move(drive), meta, arguments.map);
   }

@@ -21,6 +21,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/evaluation/cloud_format.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
@@ -141,10 +142,10 @@ void check_options(const CLI::App& command) {
 
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
+  if (!cloud_format(arguments.map)) open_map(arguments.map);
   ScoredMap map = load_scored_map(arguments.map, {});
-  const std::vector<std::uint8_t> png =
-      encode_png(arguments.drive.empty() ? from_view(arguments, map)
-                                         : beside_photograph(arguments, map));
+  const std::vector<std::uint8_t> png = encode_png(
+      arguments.drive.empty() ? from_view(arguments, map) : beside_photograph(arguments, map));
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));
   output.commit();

@@ -1,12 +1,15 @@
 // fovea repair: the whole rows of a damaged map, or a map of an older format, as a new map.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "app/commands.h"
 #include "app/map_arguments.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/map/repair.h"
 
 namespace fovea::app {
@@ -23,11 +26,20 @@ void run(const RepairArguments& arguments) {
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
-    if (!arguments.quiet) fmt::print("left out: {}\n", damage);
+    if (!arguments.quiet) fmt::print("{}\n", damage);
   });
   if (arguments.quiet) return;
   fmt::print("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
-             figures.damages);
+             figures.left_out);
+  if (!figures.restored.empty()) {
+    fmt::print("restored from other tables: {}\n", fmt::join(figures.restored, ", "));
+  }
+  if (!figures.lost.empty()) {
+    const bool has_calibration =
+        std::count(figures.lost.begin(), figures.lost.end(), meta_key::kCalibration) == 0;
+    fmt::print("lost: {}{}\n", fmt::join(figures.lost, ", "),
+               has_calibration ? "" : ", and a corrected calibration, if the map had one");
+  }
   if (format != kMapFormatVersion) {
     fmt::print("rewritten from format {} in format {}\n", format, kMapFormatVersion);
   }

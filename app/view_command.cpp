@@ -35,8 +35,7 @@ std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
   if (drive.cameras.empty() && meta.contains(meta_key::kCameras))
     drive.cameras = meta.at(meta_key::kCameras);
   std::unique_ptr<FrameSource> source = drive.open();
-  const auto match =
-      find_drive_in_map(arguments.map, *source, arguments.foreign, arguments.quiet);
+  const auto match = find_drive_in_map(arguments.map, *source, arguments.foreign, arguments.quiet);
   if (has_stored_calibration(meta)) {
     source = with_stored_calibration(std::move(source), meta, arguments.map);
   }
@@ -46,6 +45,7 @@ std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
 
 void run(const ViewArguments& arguments) {
   const InterruptGuard interrupt;
+  open_map(arguments.map);
   const auto images = open_images(arguments);
   std::optional<MapShow> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
