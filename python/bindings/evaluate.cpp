@@ -61,13 +61,13 @@ py::object evaluate_map(const std::filesystem::path& file, const std::filesystem
 }  // namespace
 
 void bind_evaluate(py::module_& module) {
-  module.def("evaluate", &evaluate_map, py::arg("map"), py::arg("drive"),
-             py::arg("protocol") = "held-out", py::kw_only(),
-             py::arg("cameras") = std::vector<int>(), py::arg("hold_out") = "",
-             py::arg("foreign") = false, py::arg("threads") = 0,
-             "Scores a map against its drive: a dict with the keys of `fovea evaluate --json` "
-             "(docs/report.md). protocol: 'held-out', 'cross-camera', 'in-sample', 'in-sample-nav' "
-             "or, of simulated drives, 'truth'. foreign: also a drive that the map was not made of.");
+  module.def(
+      "evaluate", &evaluate_map, py::arg("map"), py::arg("drive"), py::arg("protocol") = "held-out",
+      py::kw_only(), py::arg("cameras") = std::vector<int>(), py::arg("hold_out") = "",
+      py::arg("foreign") = false, py::arg("threads") = 0,
+      "Scores a map against its drive: a dict with the keys of `fovea evaluate --json` "
+      "(docs/report.md). protocol: 'held-out', 'cross-camera', 'in-sample', 'in-sample-nav' "
+      "or, of simulated drives, 'truth'. foreign: also a drive that the map was not made of.");
 }
 
 }  // namespace fovea::python

@@ -89,10 +89,9 @@ TEST_F(MapShowTest, ImagesOfADrive) {
   EXPECT_EQ(map["cameras"][0]["index"], 3);
   EXPECT_EQ(map["cameras"][0]["T_cam_lidar"], json({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
   EXPECT_EQ(get("images/7/3.jpg").body.substr(0, 2), "\xff\xd8");
-  for (const char* path :
-       {"images/6/3.jpg", "images/7/2.jpg", "images/8/3.jpg", "images/9/3.jpg",
-        "images/7/3.png", "images/7", "images/-1/3.jpg", "images/7/x.jpg",
-        "images/99999999999999/3.jpg", "images/7/3/3.jpg", "images/7/.jpg"}) {
+  for (const char* path : {"images/6/3.jpg", "images/7/2.jpg", "images/8/3.jpg", "images/9/3.jpg",
+                           "images/7/3.png", "images/7", "images/-1/3.jpg", "images/7/x.jpg",
+                           "images/99999999999999/3.jpg", "images/7/3/3.jpg", "images/7/.jpg"}) {
     EXPECT_EQ(get(path).status, 404) << path;
   }
 }
