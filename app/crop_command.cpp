@@ -22,7 +22,7 @@ void run(const CropArguments& arguments) {
   check_files({{arguments.map}, {{arguments.output, FileKind::kMap, arguments.force}}});
   const CropRegion region = arguments.box.empty() ? CropRegion::polygon(arguments.polygon)
                                                   : CropRegion::box(arguments.box);
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const CropFigures figures = crop_map(map, region, *writer);
   if (arguments.quiet) return;

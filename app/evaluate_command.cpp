@@ -18,6 +18,7 @@
 #include "fovea/base/output_file.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/path_name.h"
+#include "fovea/evaluation/cloud_format.h"
 #include "fovea/evaluation/compare_color_rules.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
@@ -88,6 +89,7 @@ void run(EvaluateArguments arguments) {
   ScoredMapOptions loading;
   if (!arguments.poses.empty()) loading.poses = arguments.poses;
   loading.first_frame = arguments.first_frame;
+  if (!cloud_format(arguments.map)) open_map(arguments.map);
   ScoredMap map = load_scored_map(arguments.map, loading);
   if (!has_colors(map) && !arguments.html.empty()) {
     throw InputError("the map has no colors, of which the page makes pictures", arguments.map,
@@ -105,13 +107,13 @@ void run(EvaluateArguments arguments) {
     arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));
   }
   auto drive = arguments.drive.open();
-  if (arguments.poses.empty()) {  // a Fovea map
+  if (!cloud_format(arguments.map)) {
     const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign);
     if (match && !match->keeps_numbers) choose_frames(match->number_in_drive, map);
   }
   const std::string calibration = calibration_of(arguments, map);
   if (calibration != kDrive) {
-    const MapMeta meta = calibration == arguments.map ? map.meta : MapReader(calibration).meta();
+    const MapMeta meta = calibration == arguments.map ? map.meta : open_map(calibration).meta();
     drive = with_stored_calibration(std::move(drive), meta, calibration);
   }
   if (arguments.truth) {

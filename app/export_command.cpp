@@ -13,6 +13,7 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/finite_range.h"
+#include "app/map_arguments.h"
 #include "app/print.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
@@ -142,8 +143,9 @@ void run(ExportArguments& arguments, const CLI::App& command) {
   const std::string format = format_of(arguments);
   check_options(command, arguments, format);
   check_files(files_of(arguments, format));
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   if (format == "kitti-poses") {
+    map.check();  // poses need no tile
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
     return;
   }

@@ -1,14 +1,18 @@
 // fovea info: what a map holds.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/commands.h"
+#include "app/map_arguments.h"
 #include "app/print.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
@@ -30,6 +34,13 @@ struct Contents {
   std::vector<MergedDrive> drives;  // of a merged map
   std::vector<SensorRecord> sensors;
   std::size_t points = 0, submaps = 0, tiles = 0;
+  bool has(const char* key) const { return meta.contains(key); }
+  /// Nothing if a repaired map has lost the key.
+  std::optional<bool> is_complete() const {
+    const auto complete = meta.find(meta_key::kComplete);
+    if (complete == meta.end() && has(meta_key::kRepair)) return std::nullopt;
+    return complete != meta.end() && complete->second == "1";
+  }
   int mapped = 0, held_out = 0, skipped = 0;
   double path_length = 0;  // m, along the refined poses
   Eigen::AlignedBox3d bounds_local;
@@ -85,13 +96,25 @@ std::string to_text(const SensorProfile& profile) {
   return text;
 }
 
+/// " (repaired, unfinished)"; empty for a complete map of a drive.
+std::string state_of(const Contents& c) {
+  std::vector<std::string> states;
+  if (c.has(meta_key::kRepair)) states.emplace_back("repaired");
+  if (c.has(meta_key::kCrop)) states.emplace_back("cropped");
+  if (!c.drives.empty()) states.emplace_back("merged");
+  if (c.is_complete() == false) {
+    // Only such a map can be resumed.
+    states.emplace_back(states.empty() ? "unfinished: --resume goes on" : "unfinished");
+  }
+  return states.empty() ? "" : fmt::format(" ({})", fmt::join(states, ", "));
+}
+
 void print_text(const Contents& c, const std::string& path) {
   const auto meta = [&](const char* key) {
     const auto found = c.meta.find(key);
     return found != c.meta.end() ? found->second : std::string();
   };
-  print_out("{}{}\n", path,
-            meta(meta_key::kComplete) == "1" ? "" : " (unfinished: --resume goes on)");
+  print_out("{}{}\n", path, state_of(c));
   const std::string cameras =
       meta(meta_key::kCameras).empty() ? "no camera" : "cameras " + meta(meta_key::kCameras);
   print_out("  drive      {} ({}), frames {} to {}, {}\n", meta(meta_key::kDriveName),
@@ -131,6 +154,10 @@ void print_text(const Contents& c, const std::string& path) {
 
 void print_json(const Contents& c) {
   nlohmann::ordered_json json{{"meta", c.meta},
+                              {"complete", nullptr},
+                              {"repaired", c.has(meta_key::kRepair)},
+                              {"cropped", c.has(meta_key::kCrop)},
+                              {"merged", !c.drives.empty()},
                               {"points", c.points},
                               {"tiles", c.tiles},
                               {"submaps", c.submaps},
@@ -138,6 +165,13 @@ void print_json(const Contents& c) {
                               {"frames_held_out", c.held_out},
                               {"frames_skipped", c.skipped},
                               {"path_length_m", c.path_length}};
+  if (const auto complete = c.is_complete()) json["complete"] = *complete;
+  for (const MergedDrive& drive : c.drives) {
+    json["drives"].push_back({{"name", drive.name},
+                              {"first_frame", drive.first_frame},
+                              {"end_frame", drive.end_frame},
+                              {"frame_shift", drive.frame_shift}});
+  }
   for (const SensorRecord& sensor : c.sensors) {
     json["sensors"].push_back(nlohmann::ordered_json::parse(to_json(sensor.profile)));
   }
@@ -158,8 +192,9 @@ void check(const std::string& path) {
   });
   const std::size_t tiles = reader.check();
   if (damages > 0) {
-    throw InputError(fmt::format("{} parts of the map cannot be read", damages), path,
-                     "save the rest with 'fovea repair' or map the drive again");
+    throw InputError(
+        fmt::format("{} part{} of the map cannot be read", damages, damages == 1 ? "" : "s"), path,
+        kRestoreMap);
   }
   print_out("{}: whole, {} tiles\n", path, tiles);
   if (reader.format_version() != kMapFormatVersion) {
@@ -183,7 +218,7 @@ void run(const InfoArguments& arguments) {
     check(arguments.map);
     return report_log(arguments.map);
   }
-  const MapReader reader(arguments.map);
+  const MapReader reader = open_map(arguments.map);
   if (arguments.digest) {
     print_out("{}\n", reader.digest());
   } else if (arguments.json) {

@@ -10,6 +10,7 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/map_arguments.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -198,7 +199,7 @@ void run(LocalizeArguments arguments) {
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
   std::optional<OutputFile> report;
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   DriveOptions wanted = arguments.drive.options();
   wanted.use_images = false;
   const auto drive = open_drive(arguments.drive.drive, wanted);

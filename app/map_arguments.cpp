@@ -9,10 +9,19 @@
 
 namespace fovea::app {
 
+MapReader open_map(const std::string& map) {
+  MapReader reader(map);
+  reader.check_structure();
+  reader.check_records();
+  return reader;
+}
+
 MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
   const auto stored = meta.find(meta_key::kConfig);
   if (stored == meta.end()) {
-    throw InputError("the map does not tell its settings", map,
+    throw meta.contains(meta_key::kRepair)
+        ? InputError("the map was repaired and has lost its settings", map, "map the drive again")
+        : InputError("the map does not tell its settings", map,
                      "give a map that 'fovea map' wrote");
   }
   MapperOptions options;

@@ -11,6 +11,10 @@
 
 namespace fovea::app {
 
+/// Opens a map. InputError if its structure or any row but those of tiles is damaged; tiles are
+/// checked when they are read. So all commands accept and refuse the same maps.
+MapReader open_map(const std::string& map);
+
 /// The settings that a map was made with; InputError if it does not tell them.
 MapperOptions stored_options(const MapMeta& meta, const std::string& map);
 

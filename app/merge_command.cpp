@@ -44,7 +44,7 @@ void print(const MergeFigures& figures, const std::string& output) {
 void run(const MergeArguments& arguments) {
   check_files({{arguments.a, arguments.b}, {{arguments.output, FileKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
-  const MapReader a(arguments.a), b(arguments.b);
+  const MapReader a = open_map(arguments.a), b = open_map(arguments.b);
   MergeJob job;
   job.output = arguments.output;
   job.force = arguments.force;

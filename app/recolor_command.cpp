@@ -47,7 +47,7 @@ void run(RecolorArguments arguments) {
   check_files({{arguments.map, arguments.drive.drive, arguments.config},
                {{arguments.output, FileKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   const MapMeta meta = map.meta();
   RecolorJob job;
   job.output = arguments.output;

@@ -22,6 +22,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/evaluation/cloud_format.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
@@ -153,6 +154,7 @@ CommandFiles files_of(const RenderArguments& arguments) {
 
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
+  if (!cloud_format(arguments.map)) open_map(arguments.map);
   ScoredMap map = load_scored_map(arguments.map, {});
   const std::vector<std::uint8_t> png = encode_png(
       arguments.drive.empty() ? from_view(arguments, map) : beside_photograph(arguments, map));

@@ -143,7 +143,7 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   job.T_local_lidar = read_poses(arguments.poses);
   job.period = from_seconds(1 / arguments.rate);
   job.reach = arguments.reach;
-  const MapReader map(arguments.map);
+  const MapReader map = open_map(arguments.map);
   const auto figures = [&] {
     ProgressBar bar(arguments.quiet);
     return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });

@@ -1,13 +1,17 @@
 // fovea repair: the whole rows of a damaged map, or a map of an older format, as a new map.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "app/command_files.h"
 #include "app/commands.h"
+#include "app/map_arguments.h"
 #include "app/print.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/map/repair.h"
 
 namespace fovea::app {
@@ -24,11 +28,20 @@ void run(const RepairArguments& arguments) {
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
-    if (!arguments.quiet) print_out("left out: {}\n", damage);
+    if (!arguments.quiet) print_out("{}\n", damage);
   });
   if (arguments.quiet) return;
   print_out("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
-            figures.damages);
+             figures.left_out);
+  if (!figures.restored.empty()) {
+    print_out("restored from other tables: {}\n", fmt::join(figures.restored, ", "));
+  }
+  if (!figures.lost.empty()) {
+    const bool has_calibration =
+        std::count(figures.lost.begin(), figures.lost.end(), meta_key::kCalibration) == 0;
+    print_out("lost: {}{}\n", fmt::join(figures.lost, ", "),
+               has_calibration ? "" : ", and a corrected calibration, if the map had one");
+  }
   if (format != kMapFormatVersion) {
     print_out("rewritten from format {} in format {}\n", format, kMapFormatVersion);
   }

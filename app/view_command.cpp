@@ -44,6 +44,7 @@ std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
 }
 
 void run(const ViewArguments& arguments, Session& session) {
+  open_map(arguments.map);
   const auto images = open_images(arguments);
   std::optional<MapShow> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/first_page.h"
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_row.h"
 #include "fovea/map/sqlite_database.h"
@@ -37,9 +38,12 @@ class MapFile {
   ///                   absent: such a row is an InputError
   MapFile(const std::filesystem::path& path, std::function<void(const std::string&)> on_damage);
 
+  /// InputError, or a report, of each fault that SQLite finds in pages, indexes and free pages.
+  void check_structure();
+
   sqlite::Database& sqlite() { return *sqlite_; }
   const MapFormat& format() const { return *format_; }
-  std::string where() const { return sqlite_->where(); }
+  std::string where() const { return path_.string(); }
   bool reports_damage() const { return static_cast<bool>(on_damage_); }
 
   /// Runs a step of reading. If damage is reported, reports its InputError and returns false.
@@ -59,6 +63,16 @@ class MapFile {
     }
   }
 
+  /// Runs a query of a table; an error of SQLite names the table then.
+  template <class Step>
+  auto query(const Table& table, Step&& step) const {
+    try {
+      return step();
+    } catch (const sqlite::CorruptFile& error) {
+      throw damage(error.problem(), table);
+    }
+  }
+
   /// Calls f(row) for each whole row of a table in the order of its key, and checks their number.
   void for_each_row(const Table& table, const std::function<void(const Row&)>& f);
   /// The row whose first column has this text; nothing if there is none. Its blob, one at most, is
@@ -71,8 +85,14 @@ class MapFile {
   void require_count(const Table& table, std::int64_t rows);
 
  private:
-  void for_each_whole_tile(const std::function<void(const TileRow&)>& f);
+  void open();
+  void open_with_new_first_page(const InputError& error);
+  void for_each_readable_row(const Table& table, const std::function<void(const Row&)>& f);
+  void for_each_readable_tile(const std::function<void(const TileRow&)>& f);
+  sqlite::CorruptFile damage(const std::string& problem, const Table& table) const;
 
+  std::filesystem::path path_;
+  std::unique_ptr<CopyWithNewFirstPage> copy_;  // if the first page is damaged
   std::unique_ptr<sqlite::Database> sqlite_;
   const MapFormat* format_ = nullptr;
   std::function<void(const std::string&)> on_damage_;

@@ -215,24 +215,28 @@ std::optional<CheckpointRecord> MapReader::checkpoint(const std::string& name) c
 }
 
 std::size_t MapReader::size() const {
-  return static_cast<std::size_t>(
-      file_->sqlite().integer("SELECT coalesce(sum(points), 0) FROM tiles"));
+  return static_cast<std::size_t>(file_->query(kTilesTable, [&] {
+    return file_->sqlite().integer("SELECT coalesce(sum(points), 0) FROM tiles");
+  }));
 }
 
 std::size_t MapReader::colored_size() const {
-  return static_cast<std::size_t>(
-      file_->sqlite().integer("SELECT coalesce(sum(colored), 0) FROM tiles"));
+  return static_cast<std::size_t>(file_->query(kTilesTable, [&] {
+    return file_->sqlite().integer("SELECT coalesce(sum(colored), 0) FROM tiles");
+  }));
 }
 
 std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
   const std::string where = file_->where();
   const Snapshot snapshot(file_->sqlite());
   const std::size_t submap_count = submaps().size();
-  Statement rows(file_->sqlite(),
-                 "SELECT submap, x, y, z, points FROM tiles ORDER BY submap, x, y, z");
+  Statement rows = file_->query(kTilesTable, [&] {
+    return Statement(file_->sqlite(),
+                     "SELECT submap, x, y, z, points FROM tiles ORDER BY submap, x, y, z");
+  });
   std::vector<std::pair<TileId, std::size_t>> sizes;
   TileOrder order(where);
-  while (rows.step()) {
+  while (file_->query(kTilesTable, [&] { return rows.step(); })) {
     const std::int64_t submap = rows.integer(0), points = rows.integer(4);
     if (submap < 0 || submap >= static_cast<std::int64_t>(submap_count) || points < 0 ||
         points > kMaxTilePoints) {
@@ -299,7 +303,9 @@ PointCloud MapReader::all_points_local(const PointFilter& where) const {
   return points_local;
 }
 
-std::size_t MapReader::check() const {
+void MapReader::check_structure() const { file_->check_structure(); }
+
+void MapReader::check_records() const {
   const Snapshot snapshot(file_->sqlite());
   meta();
   drives();
@@ -310,6 +316,13 @@ std::size_t MapReader::check() const {
     checkpoint_of(RowCursor(kCheckpointTable, row, file_->where()));
   });
   file_->for_each_row(kCountsTable, [](const Row&) {});
+  submap_records();
+}
+
+std::size_t MapReader::check() const {
+  const Snapshot snapshot(file_->sqlite());
+  check_structure();
+  check_records();
   std::size_t tiles = 0;
   for_each_stored_tile([&](const TileId&, const TilePoints&) { ++tiles; });
   return tiles;

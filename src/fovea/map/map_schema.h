@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 
@@ -9,6 +10,9 @@ namespace fovea {
 
 /// "FVEA": marks a map among other SQLite files.
 inline constexpr int kMapApplicationId = 0x46564541;
+
+/// Bytes. Larger than SQLite's default: a tile's columns are tens of kilobytes each.
+inline constexpr std::size_t kPageSize = 8192;
 
 struct Column {
   const char* name;

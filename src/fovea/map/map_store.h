@@ -135,7 +135,11 @@ class MapReader {
   PointCloud all_points_local(const PointFilter& where = {}) const;
   /// Hash of everything but timings, rows in key order: 32 hexadecimal digits (XXH3, 128 bits).
   std::string digest() const;
-  /// Reads every row.
+  /// Has SQLite check pages, indexes and free pages.
+  void check_structure() const;
+  /// Reads every row but those of tiles.
+  void check_records() const;
+  /// Both, and reads every tile.
   /// @return the number of tiles
   std::size_t check() const;
 

@@ -27,9 +27,6 @@ using sqlite::Database;
 using sqlite::Outcome;
 using sqlite::Statement;
 
-/// Larger than SQLite's default: a tile's columns are tens of kilobytes each.
-constexpr int kPageSize = 8192;
-
 void remove_side_files(const fs::path& path) {
   for (const char* ending : {"-wal", "-shm", "-journal"}) {
     std::error_code ignored;

@@ -39,7 +39,7 @@ class Repair : public testing::Test {
 
 TEST_F(Repair, AWholeMapStaysTheSame) {
   const RepairFigures figures = repair();
-  EXPECT_EQ(figures.damages, 0u);
+  EXPECT_EQ(figures.left_out, 0u);
   EXPECT_EQ(figures.points, sample_tile_map().size());
   EXPECT_EQ(repaired().digest(), MapReader(folder_ / "a.fovea").digest());
   EXPECT_FALSE(repaired().checkpoint("tracker"));
@@ -51,7 +51,7 @@ TEST_F(Repair, LeavesOutDamagedRowsAndKeepsAllOthers) {
   run_sql("UPDATE meta SET value='x' WHERE key='config'");
   run_sql("UPDATE sensors SET name='x'");
   const RepairFigures figures = repair();
-  EXPECT_EQ(figures.damages, 4u);
+  EXPECT_EQ(figures.left_out, 4u);
   EXPECT_THAT(damages_, ElementsAre(HasSubstr("key 'config'"), HasSubstr("table 'sensors'"),
                                     HasSubstr("frame 7, camera 2"), HasSubstr("frame 8")));
   const MapReader map = repaired();
@@ -96,7 +96,7 @@ TEST_F(Repair, LostSubmapsGetThePosesOfTheirFirstFrames) {
   for (const char* loss : {"DELETE FROM submaps WHERE id=0", "DELETE FROM submaps WHERE id=1",
                            "UPDATE submaps SET pose='1'", "DROP TABLE submaps"}) {
     run_sql(loss);
-    EXPECT_GT(repair().damages, 0u);
+    EXPECT_GT(repair().left_out, 0u);
     const std::vector<RigidMotion> submaps = repaired().submaps();
     ASSERT_EQ(submaps.size(), 2u) << loss;
     for (std::size_t id = 0; id < 2; ++id) {
@@ -110,7 +110,7 @@ TEST_F(Repair, LostSubmapsGetThePosesOfTheirFirstFrames) {
 TEST_F(Repair, RestoresMetaDataThatOtherRowsStateToo) {
   run_sql("DROP TABLE meta");
   EXPECT_THROW(MapReader(folder_ / "a.fovea").meta(), InputError);
-  EXPECT_GT(repair().damages, 0u);
+  EXPECT_GT(repair().left_out, 0u);
   const MapMeta meta = repaired().meta();
   EXPECT_EQ(map_tile_size(meta), 4);
   const auto origin = map_origin(meta);
@@ -122,7 +122,7 @@ TEST_F(Repair, RestoresMetaDataThatOtherRowsStateToo) {
 TEST_F(Repair, FindsMissingRows) {
   run_sql("DELETE FROM tiles WHERE rowid=1");
   run_sql("DELETE FROM frames WHERE frame=9");
-  EXPECT_EQ(repair().damages, 2u);
+  EXPECT_EQ(repair().left_out, 2u);
   EXPECT_THAT(damages_, ElementsAre(HasSubstr("table 'frames'"), HasSubstr("table 'tiles'")));
 }
 

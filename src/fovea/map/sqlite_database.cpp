@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <cerrno>
+#include <sstream>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -138,11 +139,15 @@ void Database::fail(int code) const {
   const std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
   if (is_reading(access_)) {
     if (primary == SQLITE_NOTADB) {
-      throw InputError(words_.not_one, where(), words_.what_to_give);
+      throw NoDatabase(words_.not_one, where(), words_.what_to_give);
     }
     if (primary == SQLITE_CORRUPT) {
-      throw InputError(fmt::format("the {} is damaged ({})", words_.noun, message), where(),
-                       words_.if_damaged);
+      throw CorruptFile(fmt::format("the {} is damaged ({})", words_.noun, message), where(),
+                        words_.if_damaged);
+    }
+    if (primary == SQLITE_ERROR) {  // as "no such table"
+      throw CorruptFile(fmt::format("the {} cannot be read ({})", words_.noun, message), where(),
+                        words_.if_damaged);
     }
     throw InputError(fmt::format("the {} cannot be read ({})", words_.noun, message), where(),
                      "check the file, its permissions and that no program is replacing it");
@@ -150,7 +155,7 @@ void Database::fail(int code) const {
   if (const int error = system_error(code); error != 0) throw_output_error(shown_path_, error);
   if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) throw_busy();
   if (primary == SQLITE_NOTADB || primary == SQLITE_CORRUPT) {
-    throw OutputError(fmt::format("the map is damaged ({})", message), where(), "start a new map");
+    throw OutputError(fmt::format("the map is damaged ({})", message), where(), words_.if_damaged);
   }
   throw OutputError(fmt::format("the map cannot be written ({})", message), where(),
                     "check the file and its permissions");
@@ -244,6 +249,23 @@ std::string_view Statement::text(int column) const {
 std::span<const std::byte> Statement::blob(int column) const {
   const auto* data = static_cast<const std::byte*>(sqlite3_column_blob(handle_, column));
   return {data, static_cast<std::size_t>(sqlite3_column_bytes(handle_, column))};
+}
+
+std::vector<std::string> find_faults(Database& database, const std::string& table) {
+  std::vector<std::string> faults;
+  try {
+    Statement rows(database, table.empty() ? "PRAGMA integrity_check"
+                                           : fmt::format("PRAGMA integrity_check({})", table));
+    while (rows.step()) {
+      std::istringstream lines{std::string(rows.text(0))};
+      for (std::string line; std::getline(lines, line);) {
+        if (line != "ok" && !line.starts_with("***")) faults.push_back(line);
+      }
+    }
+  } catch (const CorruptFile&) {
+    faults.emplace_back("SQLite cannot read the pages");
+  }
+  return faults;
 }
 
 }  // namespace fovea::sqlite

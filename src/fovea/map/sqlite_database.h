@@ -8,6 +8,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "fovea/base/errors.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -26,7 +29,19 @@ struct FileWords {
   const char* noun = "map";
   const char* not_one = "not a Fovea map";
   const char* what_to_give = "give a file that 'fovea map' wrote";
-  const char* if_damaged = "restore it from a copy, or save what is whole with 'fovea repair'";
+  const char* if_damaged = "restore the map from a copy, or save what is whole with 'fovea repair'";
+};
+
+/// A file has no header of SQLite.
+class NoDatabase : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// A file that is read is damaged, or lacks a table or column.
+class CorruptFile : public InputError {
+ public:
+  using InputError::InputError;
 };
 
 enum class Outcome { kDone, kBusy, kFailed };
@@ -109,5 +124,8 @@ class Statement {
   Database* database_;
   sqlite3_stmt* handle_ = nullptr;
 };
+
+/// What SQLite finds wrong with the structure of a file or of one of its tables, a line each.
+std::vector<std::string> find_faults(Database& database, const std::string& table = "");
 
 }  // namespace fovea::sqlite

@@ -57,7 +57,14 @@ std::optional<TilePoints> TileQuery::find(const TileId& id, const std::string& m
   // However this ends, the next tile can be asked for.
   const std::unique_ptr<sqlite::Statement, void (*)(sqlite::Statement*)> ready(
       &row_, [](sqlite::Statement* row) { row->reset(); });
-  if (!row_.step()) return std::nullopt;
+  try {
+    if (!row_.step()) return std::nullopt;
+  } catch (const sqlite::CorruptFile& error) {
+    throw InputError(error.problem(),
+                     fmt::format("{}, tile {} {} {} of submap {}", map_path, id.key.x, id.key.y,
+                                 id.key.z, id.submap),
+                     kRestoreMap);
+  }
   return decoder_.decode(tile_row(row_, map_path), map_path);
 }
 

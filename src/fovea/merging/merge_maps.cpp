@@ -68,6 +68,12 @@ MapMeta merged_meta(const MapContent& a, const MapContent& b,
   meta[meta_key::kFramesEnd] = fmt::to_string(added.back().merged.end_frame);
   meta[meta_key::kCameras] = cameras_of_both(a, b);
   if (b.text(meta_key::kComplete) != "1") meta[meta_key::kComplete] = fmt::to_string(0);
+  for (const char* key : {meta_key::kCrop, meta_key::kRepair}) {
+    const std::string text = b.text(key);
+    if (text.empty()) continue;
+    std::string& both = meta[key];
+    both += fmt::format("{}{} ({})", both.empty() ? "" : "; ", text, b.drives.front().name);
+  }
   meta.erase(meta_key::kFormatVersion);
   return meta;
 }

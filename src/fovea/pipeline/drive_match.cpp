@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/path_name.h"
 #include "fovea/map/drive_fingerprint.h"
+#include "fovea/pipeline/renumbered_drive.h"
 
 namespace fovea {
 namespace {
@@ -64,39 +66,34 @@ Numbers common_frames(const Stamps& in_map, const Stamps& in_drive) {
   return numbers;
 }
 
-/// Compares the numbers of points of some scans: drives with regular stamps, or without stamps,
-/// have the same stamps. Returns how they differ; nothing if half of them are equal or none can be
-/// read.
-std::optional<std::string> scan_difference(const Frames& frames, const Numbers& numbers,
-                                           const FrameSource& drive) {
-  constexpr const char* kPoints = "points_scan";
-  std::vector<const FrameRecord*> candidates;
+/// Whether navigation moves the vehicle alike in the map and in the drive, between its first common
+/// frame and two others. False without navigation in either.
+bool has_same_navigation(const Frames& frames, const Numbers& numbers, const FrameSource& drive) {
+  if (!drive.info().navigation) return false;
+  struct Poses {
+    RigidMotion in_map, in_drive;
+  };
+  std::vector<Poses> poses;
   for (const FrameRecord& frame : frames) {
-    if (numbers.contains(frame.index) && frame.has(kPoints)) candidates.push_back(&frame);
+    if (!numbers.contains(frame.index) || !frame.stamp || !frame.T_local_lidar_navigation) continue;
+    const auto in_drive = drive.info().navigation->at(*frame.stamp);
+    if (in_drive) poses.push_back({*frame.T_local_lidar_navigation, *in_drive});
   }
-  // Of a thinned drive most frames may be missing.
-  constexpr std::size_t kCompared = 3, kTried = 100;
-  int compared = 0, equal = 0;
-  std::optional<std::string> difference;
-  for (std::size_t k = 0; k < kCompared; ++k) {
-    const std::size_t begin = k * candidates.size() / kCompared,
-                      end = std::min((k + 1) * candidates.size() / kCompared, begin + kTried);
-    for (std::size_t i = begin; i < end; ++i) {
-      const FrameResult loaded = drive.load(numbers.at(candidates[i]->index));
-      const auto* frame = std::get_if<Frame>(&loaded);
-      if (frame == nullptr) continue;
-      const double in_map = candidates[i]->figures.at(kPoints);
-      ++compared;
-      if (in_map == double(frame->scan.size())) {
-        ++equal;
-      } else {
-        difference = fmt::format("its scan {} has {} points, that of the map has {}", frame->index,
-                                 frame->scan.size(), in_map);
-      }
-      break;
-    }
-  }
-  return 2 * equal >= compared ? std::nullopt : difference;
+  if (poses.size() < 2) return false;
+  // The origins of the two local frames may differ.
+  constexpr double kTolerance = 0.005;  // m, rad
+  const auto agree = [&](const Poses& a, const Poses& b) {
+    const RigidMotion difference =
+        (a.in_map.inverse() * b.in_map).inverse() * (a.in_drive.inverse() * b.in_drive);
+    return log_se3(difference).norm() < kTolerance;
+  };
+  return agree(poses.front(), poses.back()) && agree(poses.front(), poses[poses.size() / 2]);
+}
+
+/// Whether one of two scans can be the other one without some of its rings.
+bool may_be_thinned(double points_a, double points_b) {
+  constexpr double kLeastShare = 0.1;  // of a ring or more
+  return std::abs(points_a - points_b) > kLeastShare * std::max(points_a, points_b);
 }
 
 /// Delays of single images of a camera after their scans. The fingerprint of a camera contains the
@@ -181,51 +178,41 @@ bool has_same_numbers(const Frames& frames, const FrameSource& drive) {
   });
 }
 
-/// A drive under other numbers of its frames.
-class RenumberedDrive : public FrameSource {
- public:
-  RenumberedDrive(std::unique_ptr<FrameSource> drive, Numbers numbers)
-      : drive_(std::move(drive)), numbers_(std::move(numbers)), info_(drive_->info()) {
-    info_.begin = numbers_.empty() ? 0 : numbers_.begin()->first;
-    info_.end = numbers_.empty() ? 0 : numbers_.rbegin()->first + 1;
-    info_.reference_poses.clear();
-    for (std::map<int, double>& offsets : info_.image_offsets) {
-      const std::map<int, double> of_drive = std::exchange(offsets, {});
-      for (const auto& [number, in_drive] : numbers_) {
-        const auto found = of_drive.find(in_drive);
-        if (found != of_drive.end()) offsets.emplace(number, found->second);
-      }
-    }
-  }
-  const DriveInfo& info() const override { return info_; }
-  FrameResult load(int index) const override {
-    const auto found = numbers_.find(index);
-    if (found == numbers_.end()) {
-      return SkippedFrame{index, SkipReason::kMissingScan,
-                          fmt::format("frame {} of the map is not in the drive", index)};
-    }
-    FrameResult result = drive_->load(found->second);
-    std::visit([&](auto& frame) { frame.index = index; }, result);
-    return result;
-  }
-  void expect(int index) const override {
-    if (const auto found = numbers_.find(index); found != numbers_.end()) {
-      drive_->expect(found->second);
-    }
-  }
-  std::optional<TimeNs> stamp(int index) const override {
-    const auto found = numbers_.find(index);
-    if (found == numbers_.end()) return std::nullopt;
-    return drive_->stamp(found->second);
-  }
-
- private:
-  std::unique_ptr<FrameSource> drive_;
-  Numbers numbers_;
-  DriveInfo info_;
-};
-
 }  // namespace
+
+std::optional<std::string> scan_difference(const std::vector<FrameRecord>& frames,
+                                           const std::map<int, int>& number_in_drive,
+                                           const FrameSource& drive, bool allow_thinned) {
+  constexpr const char* kPoints = "points_scan";
+  std::vector<const FrameRecord*> candidates;
+  for (const FrameRecord& frame : frames) {
+    if (number_in_drive.contains(frame.index) && frame.has(kPoints)) candidates.push_back(&frame);
+  }
+  // Of a thinned drive most frames may be missing.
+  constexpr std::size_t kCompared = 3, kTried = 100;
+  allow_thinned = allow_thinned && has_same_navigation(frames, number_in_drive, drive);
+  int compared = 0, equal = 0;
+  std::optional<std::string> difference;
+  for (std::size_t k = 0; k < kCompared; ++k) {
+    const std::size_t begin = k * candidates.size() / kCompared,
+                      end = std::min((k + 1) * candidates.size() / kCompared, begin + kTried);
+    for (std::size_t i = begin; i < end; ++i) {
+      const FrameResult loaded = drive.load(number_in_drive.at(candidates[i]->index));
+      const auto* frame = std::get_if<Frame>(&loaded);
+      if (frame == nullptr) continue;
+      const double in_map = candidates[i]->figures.at(kPoints), now = as_figure(frame->scan.size());
+      ++compared;
+      if (in_map == now || (allow_thinned && may_be_thinned(in_map, now))) {
+        ++equal;
+      } else {
+        difference = fmt::format("its scan {} has {} points, that of the map has {}", frame->index,
+                                 frame->scan.size(), in_map);
+      }
+      break;
+    }
+  }
+  return 2 * equal >= compared ? std::nullopt : difference;
+}
 
 DriveMatch match_drive(const MapReader& map, const FrameSource& drive,
                        const std::filesystem::path& path) {
@@ -240,14 +227,16 @@ DriveMatch match_drive(const MapReader& map, const FrameSource& drive,
     const Numbers numbers = common_frames(in_map, in_drive);
     const std::size_t comparable = comparable_stamps(in_map, in_drive);
     if (numbers.empty() || double(numbers.size()) < kMinCommonStamps * double(comparable)) {
-      difference = fmt::format("{} of {} stamps within their common time are equal", numbers.size(),
-                               comparable);
+      difference = in_drive.empty()
+                       ? "it has no stamps"
+                       : fmt::format("{} of {} stamps within their common time are equal",
+                                     numbers.size(), comparable);
       continue;
     }
     if (!drives[k].calibration_fingerprint) {
       match.notes = {
           "the map has no fingerprint of its drive: only the stamps of the frames are compared"};
-    } else if (const auto scans = scan_difference(frames, numbers, drive)) {
+    } else if (const auto scans = scan_difference(frames, numbers, drive, /*allow_thinned=*/true)) {
       difference = *scans;
       continue;
     } else if (const auto cameras = different_calibration(*drives[k].calibration_fingerprint,

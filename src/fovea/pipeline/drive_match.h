@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ struct DriveMatch {
 
 /// Finds a drive among the drives of a map. It is the same drive if
 /// - at least kMinCommonStamps of the stamps are equal, to the nanosecond,
-/// - scans of common frames (three are read) have as many points as when they were mapped,
+/// - scans of common frames (three are read) have as many points as when they were mapped, or over
+///   10 % more or less if navigation moves the vehicle alike: rings may be left out,
 /// - each camera in use, and the place of the IMU, has the same fingerprint in both.
 /// The map of a format without fingerprints is compared by stamps alone, and a note says so.
 /// @param drive  under its own calibration, not a corrected one
@@ -35,6 +37,15 @@ struct DriveMatch {
 /// @throws InputError  if the map was not made of the drive
 DriveMatch match_drive(const MapReader& map, const FrameSource& drive,
                        const std::filesystem::path& path);
+
+/// Compares the numbers of points of up to three scans: drives with regular stamps, or without
+/// stamps, have the same stamps. Returns how they differ; nothing if half of them agree or none can
+/// be read.
+/// @param number_in_drive  by the number of the frame in the map
+/// @param allow_thinned    whether rings may be left out (see match_drive())
+std::optional<std::string> scan_difference(const std::vector<FrameRecord>& frames,
+                                           const std::map<int, int>& number_in_drive,
+                                           const FrameSource& drive, bool allow_thinned);
 
 /// The drive with the numbers that its frames have in the map; it has no other frames then.
 std::unique_ptr<FrameSource> with_map_numbers(std::unique_ptr<FrameSource> drive,

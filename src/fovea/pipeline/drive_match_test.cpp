@@ -66,6 +66,9 @@ void put_drive(MapWriter& writer, std::size_t id, const TestDrive& drive, int sh
     FrameRecord frame;
     frame.index = index + shift;
     frame.stamp = drive.stamp(index);
+    if (drive.info_.navigation) {
+      frame.T_local_lidar_navigation = drive.info_.navigation->at(*frame.stamp);
+    }
     frame.figures["points_scan"] = as_figure(std::get<Frame>(loaded).scan.size());
     for (std::size_t slot = 0; slot < drive.info_.image_offsets.size(); ++slot) {
       const Camera camera = drive.info_.camera_at(slot, index);
@@ -118,7 +121,7 @@ TEST_F(MatchDrive, RefusesOtherStampsUnderTheSameName) {
   }
   TestDrive without_stamps;
   without_stamps.stamps.clear();
-  EXPECT_THAT(refusal(without_stamps), HasSubstr("0 of 0 stamps"));
+  EXPECT_THAT(refusal(without_stamps), HasSubstr("it has no stamps"));
 }
 
 // Simulated drives have the same stamps, and so do drives without stamps.
@@ -126,6 +129,32 @@ TEST_F(MatchDrive, RefusesOtherScansAtTheSameStamps) {
   write_map(TestDrive());
   TestDrive other;
   other.more_points = 1;
+  EXPECT_THAT(refusal(other), HasSubstr("its scan"));
+}
+
+/// Gives a drive navigation that moves by steps of `step` m.
+void set_navigation(double step, const Eigen::Vector3d& origin, TestDrive& drive) {
+  std::vector<StampedPose> poses;
+  for (const auto& [index, stamp] : drive.stamps) {
+    const Eigen::Vector3d place = origin + step * index * Eigen::Vector3d::UnitX();
+    poses.push_back({stamp, RigidMotion(Eigen::Translation3d(place))});
+  }
+  drive.info_.navigation = Trajectory(poses);
+}
+
+TEST_F(MatchDrive, AcceptsScansWithoutSomeRingsIfNavigationAgrees) {
+  TestDrive drive;
+  set_navigation(0.8, {0, 0, 0}, drive);
+  write_map(drive);
+  TestDrive dense = drive, other = drive;
+  dense.more_points = 20'000;
+  set_navigation(0.8, {3, 1, 0}, dense);  // with another origin
+  EXPECT_EQ(refusal(dense), "accepted");
+  set_navigation(0.81, {0, 0, 0}, dense);
+  EXPECT_THAT(refusal(dense), HasSubstr("its scan"));
+  dense.info_.navigation.reset();
+  EXPECT_THAT(refusal(dense), HasSubstr("its scan"));
+  other.more_points = 1;  // another place on the same course
   EXPECT_THAT(refusal(other), HasSubstr("its scan"));
 }
 

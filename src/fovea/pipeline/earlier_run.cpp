@@ -4,18 +4,24 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "fovea/base/errors.h"
 #include "fovea/map/drive_fingerprint.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/pipeline/drive_match.h"
 
 namespace fovea {
 namespace {
 
 /// Their values contain the path of the drive.
 constexpr std::array kNames{meta_key::kDriveName, meta_key::kNotes};
+
+constexpr std::array kOrigin{meta_key::kGeoreferenced, meta_key::kOriginLatitude,
+                             meta_key::kOriginLongitude, meta_key::kOriginHeight};
 
 /// " (8:4, now 8:3)" if both values are short.
 std::string change(const std::string& before, const std::string& now) {
@@ -38,6 +44,22 @@ void require_resumable(const MapReader& map, const MapMeta& meta, const std::str
   }
 }
 
+void require_same_values(const MapMeta& before, const MapMeta& now, const std::string& path) {
+  for (const auto& [key, value] : now) {
+    if (std::count(kNames.begin(), kNames.end(), key) > 0) continue;
+    const auto found = before.find(key);
+    if (found != before.end() && found->second == value) continue;
+    const std::string values = found == before.end() ? "" : change(found->second, value);
+    throw InputError(fmt::format("the map was made with another '{}'{}", key, values), path,
+                     "resume with the drive and settings of the first run, or start a new map");
+  }
+}
+
+[[noreturn]] void throw_other_drive(const std::string& difference, const std::string& path) {
+  throw InputError(fmt::format("the map was made of a drive with {}", difference), path,
+                   "resume with the drive of the first run, or start a new map");
+}
+
 void require_same_drive(const DriveRecord& before, const DriveRecord& now,
                         const std::string& path) {
   std::string difference;
@@ -45,9 +67,7 @@ void require_same_drive(const DriveRecord& before, const DriveRecord& now,
                                                   now.calibration_fingerprint.value_or(""));
   if (calibration) difference = fmt::format("another calibration ({})", *calibration);
   if (before.stamps_fingerprint != now.stamps_fingerprint) difference = "other stamps";
-  if (difference.empty()) return;
-  throw InputError(fmt::format("the map was made of a drive with {}", difference), path,
-                   "resume with the drive of the first run, or start a new map");
+  if (!difference.empty()) throw_other_drive(difference, path);
 }
 
 }  // namespace
@@ -57,25 +77,30 @@ bool is_complete(const MapMeta& meta) {
   return stated != meta.end() && stated->second == "1";
 }
 
-void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& drive,
-                      const std::filesystem::path& path) {
+void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& record,
+                      const FrameSource& drive, const std::filesystem::path& path) {
   const MapMeta before = map.meta();
   require_resumable(map, before, path.string());
-  for (const auto& [key, value] : meta) {
-    if (std::count(kNames.begin(), kNames.end(), key) > 0) continue;
-    const auto found = before.find(key);
-    if (found != before.end() && found->second == value) continue;
-    const std::string values = found == before.end() ? "" : change(found->second, value);
-    throw InputError(fmt::format("the map was made with another '{}'{}", key, values),
-                     path.string(),
-                     "resume with the drive and settings of the first run, or start a new map");
+  MapMeta origin;  // which another drive has, too
+  for (const char* key : kOrigin) {
+    if (const auto found = meta.find(key); found != meta.end()) origin.insert(*found);
   }
+  MapMeta settings = meta;
+  for (const auto& [key, value] : origin) settings.erase(key);
+  require_same_values(before, settings, path.string());
   const std::vector<DriveRecord> drives = map.drives();
   if (drives.size() != 1 || !drives[0].calibration_fingerprint || !drives[0].stamps_fingerprint) {
     throw InputError("the map does not state which drive it is of", path.string(),
                      "start a new map");
   }
-  require_same_drive(drives[0], drive, path.string());
+  require_same_drive(drives[0], record, path.string());
+  const std::vector<FrameRecord> frames = map.frames();
+  std::map<int, int> numbers;
+  for (const FrameRecord& frame : frames) numbers.emplace(frame.index, frame.index);
+  if (const auto difference = scan_difference(frames, numbers, drive, /*allow_thinned=*/false)) {
+    throw_other_drive(fmt::format("other scans: {}", *difference), path.string());
+  }
+  require_same_values(before, origin, path.string());
 }
 
 void keep_names(const MapReader& map, MapMeta& meta, DriveRecord& drive) {

@@ -231,7 +231,7 @@ void MapRun::begin_with_velocity_at(int index) {
 
 void MapRun::take_up_earlier_run() {
   const MapReader reader(job_.output);
-  require_same_run(reader, meta_, drive_records_.front(), job_.output);
+  require_same_run(reader, meta_, drive_records_.front(), source_, job_.output);
   keep_names(reader, meta_, drive_records_.front());
   const std::vector<FrameRecord> records = reader.frames();
   for (const FrameRecord& record : records) {
@@ -373,9 +373,11 @@ MapSummary MapRun::summary() const {
 std::optional<MapSummary> complete_run(const FrameSource& source, const DriveInfo& drive,
                                        const MapJob& job, const MapMeta& meta) {
   const MapReader reader(job.output);
+  reader.check_structure();
+  reader.check_records();
   // MapWriter refuses an older format.
   if (reader.format_version() != kMapFormatVersion || !is_complete(reader.meta())) return {};
-  require_same_run(reader, meta, drive_record(source), job.output);
+  require_same_run(reader, meta, drive_record(source), source, job.output);
   DriveFigures figures(drive, job.rate);
   for (const FrameRecord& record : reader.frames()) figures.add(record, /*is_new=*/false);
   MapSummary summary = figures.summary();

@@ -263,6 +263,12 @@ TEST_F(MapDrive, ADriveOfAnotherCalibrationOrOtherStampsDoesNotResume) {
   BrokenDrive later;
   later.shift = kNsPerSecond;
   EXPECT_EQ(refusal(later), "the map was made of a drive with other stamps");
+  for (const int beams : {47, 24}) {  // with the same stamps, as all simulated drives have
+    BrokenDrive elsewhere;
+    elsewhere.beams = beams;
+    EXPECT_THAT(refusal(elsewhere),
+                testing::HasSubstr("made of a drive with other scans: its scan "));
+  }
   EXPECT_EQ(refusal(drive_), "resumed");
 }
 
