@@ -113,6 +113,15 @@ TEST_P(TurnedCamera, DoesNotAgreeWithTheLidar) {
 }
 INSTANTIATE_TEST_SUITE_P(Degrees, TurnedCamera, testing::Values(2.0, 5.0, -10.0));
 
+// A correction needs the motion, which navigation states here.
+TEST_F(CalibrationCheck, TheRemedyIsOneThatWorks) {
+  const fs::path drive = street_with(turned(toml(), 0.7, Eigen::Vector3d::UnitY()));
+  EXPECT_THAT(map(drive), HasSubstr("do not agree, --calibrate corrects this"));
+  EXPECT_EQ(report_.at("correctable"), true);
+  fs::remove(drive / "gnss.csv");
+  EXPECT_THAT(map(drive), HasSubstr("--calibrate with --poses FILE corrects this"));
+}
+
 TEST_F(CalibrationCheck, AnInverseExtrinsicDoesNotAgree) {
   std::string swapped = toml();
   swapped.replace(swapped.find("T_lidar_cam"), std::strlen("T_lidar_cam"), "T_cam_lidar");
