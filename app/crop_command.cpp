@@ -7,6 +7,7 @@
 
 #include "app/command_files.h"
 #include "app/commands.h"
+#include "app/map_arguments.h"
 #include "app/print.h"
 #include "fovea/map/crop.h"
 

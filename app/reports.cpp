@@ -20,25 +20,36 @@ std::string figures_of(const CalibrationEstimate& e) {
                      1e3 * e.delay_sigma);
 }
 
-std::string calibration_line(int camera, const CalibrationEstimate& e, bool applied) {
+constexpr const char* kCheckCalibration =
+    "check its T_cam_lidar, its K and the stamps of its images";
+
+/// What the user can do about edges that lie over a pixel off.
+std::string remedy_of(const CalibrationEstimate& e, bool can_calibrate) {
+  if (!e.correctable) {
+    return fmt::format("this is beyond what --calibrate corrects: {}", kCheckCalibration);
+  }
+  return can_calibrate ? "--calibrate corrects this"
+                       : "--calibrate with --poses FILE corrects this";
+}
+
+std::string calibration_line(int camera, const CalibrationEstimate& e, const MapSummary& summary) {
   if (e.disagrees) {
     return fmt::format(
-        "warning: camera {}: camera and LiDAR do not agree ({} edges in {} frames): check its "
-        "T_cam_lidar, its K and the stamps of its images",
-        camera, e.edges, e.frames);
+        "warning: camera {}: camera and LiDAR do not agree ({} edges in {} frames): {}", camera,
+        e.edges, e.frames, kCheckCalibration);
   }
   if (!e.rotation_observable) {
     return fmt::format(
         "camera {}: calibration not observable ({} edges in {} frames), it stays as given", camera,
         e.edges, e.frames);
   }
+  const bool applied = summary.calibrated;
   const std::string edges =
       fmt::format("edges {} {:.1f} pixels off the LiDAR's", applied ? "lay" : "lie", e.pixels);
   if (applied) return fmt::format("camera {}: corrected, {}: {}", camera, edges, figures_of(e));
   if (!e.off_by_a_pixel()) return fmt::format("camera {}: {}: {}", camera, edges, figures_of(e));
-  return fmt::format(
-      "warning: camera {}: {}: {}; camera and LiDAR do not agree, --calibrate corrects this",
-      camera, edges, figures_of(e));
+  return fmt::format("warning: camera {}: {}: {}; camera and LiDAR do not agree, {}", camera, edges,
+                     figures_of(e), remedy_of(e, summary.can_calibrate));
 }
 
 }  // namespace
@@ -46,7 +57,7 @@ std::string calibration_line(int camera, const CalibrationEstimate& e, bool appl
 std::vector<std::string> calibration_lines(const MapSummary& summary) {
   std::vector<std::string> lines;
   for (const auto& [camera, estimate] : summary.calibration) {
-    lines.push_back(calibration_line(camera, estimate, summary.calibrated));
+    lines.push_back(calibration_line(camera, estimate, summary));
   }
   return lines;
 }

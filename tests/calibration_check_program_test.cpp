@@ -104,6 +104,7 @@ TEST_P(TurnedCamera, DoesNotAgreeWithTheLidar) {
   EXPECT_THAT(out, HasSubstr("warning: camera 2: "));
   EXPECT_THAT(out, HasSubstr("camera and LiDAR do not agree"));
   EXPECT_THAT(out, Not(HasSubstr("not observable")));
+  EXPECT_THAT(out, Not(HasSubstr("--calibrate corrects this")));
   if (std::abs(GetParam()) < 3) return;  // may be within reach of the estimate
   EXPECT_THAT(out, HasSubstr("check its T_cam_lidar"));
   EXPECT_EQ(report_.at("disagrees"), true);
@@ -111,6 +112,15 @@ TEST_P(TurnedCamera, DoesNotAgreeWithTheLidar) {
   EXPECT_TRUE(report_.at("rotation_deg").is_null());
 }
 INSTANTIATE_TEST_SUITE_P(Degrees, TurnedCamera, testing::Values(2.0, 5.0, -10.0));
+
+// A correction needs the motion, which navigation states here.
+TEST_F(CalibrationCheck, TheRemedyIsOneThatWorks) {
+  const fs::path drive = street_with(turned(toml(), 0.7, Eigen::Vector3d::UnitY()));
+  EXPECT_THAT(map(drive), HasSubstr("do not agree, --calibrate corrects this"));
+  EXPECT_EQ(report_.at("correctable"), true);
+  fs::remove(drive / "gnss.csv");
+  EXPECT_THAT(map(drive), HasSubstr("--calibrate with --poses FILE corrects this"));
+}
 
 TEST_F(CalibrationCheck, AnInverseExtrinsicDoesNotAgree) {
   std::string swapped = toml();

@@ -114,6 +114,11 @@ void require_no_stop(const MapJob& job) {
               "give the same command again");
 }
 
+/// Whether anything states the motion that a calibration needs.
+bool knows_motion(const DriveInfo& drive, const MapJob& job) {
+  return drive.navigation.has_value() || !job.given_poses.empty();
+}
+
 bool has_sweep_motion(const DriveInfo& drive, const MapJob& job) {
   return job.options.compensate_motion && !drive.sweep_compensated;
 }
@@ -366,6 +371,7 @@ MapSummary MapRun::summary() const {
   summary.frames_new = log_.size() - frames_before_;
   summary.interrupted = !complete();
   summary.calibration = calibration_;
+  summary.can_calibrate = knows_motion(drive_, job_);
   return summary;
 }
 
@@ -394,7 +400,7 @@ void require_sources(const DriveInfo& drive, const MapJob& job) {
   }
   if (job.calibrate) require_cameras(drive, "calibration");
   if (job.options.refinement.visible_only) require_cameras(drive, "refinement.visible_only");
-  if (job.calibrate && !drive.navigation && job.given_poses.empty()) {
+  if (job.calibrate && !knows_motion(drive, job)) {
     throw InputError("nothing says how the vehicle moves, which a calibration needs",
                      drive.path.string(), "give poses (--poses FILE) or map without --calibrate");
   }

@@ -48,6 +48,7 @@ struct MapSummary {
   /// What the calibration lacks, a camera each; `calibrated`: what has been added to it.
   std::vector<CameraCalibration> calibration;
   bool calibrated = false;
+  bool can_calibrate = false;  ///< the motion that a correction needs is known
   int skipped() const;
 };
 

@@ -21,6 +21,7 @@ nlohmann::ordered_json to_json(const std::vector<CameraCalibration>& cameras, bo
                                   {"pixels", nullptr},
                                   {"pixels_sigma", nullptr},
                                   {"off_by_a_pixel", e.off_by_a_pixel()},
+                                  {"correctable", e.correctable},
                                   {"disagrees", e.disagrees}};
     if (e.rotation_observable) {
       const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;

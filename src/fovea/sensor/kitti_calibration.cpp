@@ -103,7 +103,9 @@ class CalibrationFile {
     }
     camera.width = static_cast<int>(size[0]);
     camera.height = static_cast<int>(size[1]);
-    if (const auto problem = lens_problem(camera)) fail(projection, "is wrong: " + problem->what);
+    if (const auto problem = lens_problem(camera)) {
+      fail(projection, "is wrong: " + problem->what, problem->remedy);
+    }
   }
 
  private:
@@ -114,9 +116,10 @@ class CalibrationFile {
     std::string text;
   };
 
-  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+  [[noreturn]] void fail(const std::string& key, const std::string& what,
+                         std::string_view remedy = kRemedy) const {
     throw InputError(key + " " + what, file_.string() + ":" + std::to_string(lines_.at(key).number),
-                     kRemedy);
+                     remedy);
   }
 
   Eigen::Matrix3d checked_rotation(const std::string& key, const Eigen::Matrix3d& R) const {
@@ -127,8 +130,9 @@ class CalibrationFile {
   /// Written so that NaN fails, too: the inverse of a tiny focal length has it.
   Eigen::Vector3d checked_translation(const std::string& key, const Eigen::Vector3d& t) const {
     if (!(t.norm() <= kMaxLever)) {
-      fail(key, fmt::format("has a translation of {:.6g} m, over {:g} m (millimeters?)", t.norm(),
-                            kMaxLever));
+      const bool like_millimeters = t.norm() <= 1000 * kMaxLever;
+      fail(key, fmt::format("has a translation of {:.6g} m, over {:g} m", t.norm(), kMaxLever),
+           like_millimeters ? "give it in meters: these are likely millimeters" : kRemedy);
     }
     return t;
   }

@@ -64,7 +64,7 @@ Trajectory read_trajectory(const Drive& drive) {
   const Navigation navigation =
       make_navigation(read(drive.records()), drive.rig.T_imu_lidar, stamp_of(0, drive.options));
   const RigidMotion T_truth_local =
-      LocalTangentPlane(drive.options.navigation.origin).T_local_enu(navigation.origin);
+      LocalTangentPlane(drive.options.navigation.origin).T_local_enu(*navigation.origin);
   std::vector<StampedPose> poses = navigation.trajectory.poses();
   for (StampedPose& pose : poses) pose.T_local_body = T_truth_local * pose.T_local_body;
   return Trajectory(poses);

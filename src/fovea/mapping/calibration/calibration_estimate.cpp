@@ -35,6 +35,9 @@ constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxDelaySigma = 0.004;
 // A vehicle that hardly moves shows no delay: pixels a second that edges move, RMS.
 constexpr double kMinFlow = 40;
 constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // beyond it is a wrong maximum
+// What is found from any frames (docs/calibration.md).
+constexpr double kSureRotation = 1.7 * kDegree, kSureDelay = 0.08;
+constexpr double kSurePixels = EdgeProfile::kReach - 4;
 // Rings up to this spacing (an HDL-64E's) give no shift, wider ones a standard deviation of this
 // share of the rest: KITTI with half of the rings is off by 0.15 degrees in one of two cameras.
 constexpr double kDenseRings = 0.5 * kDegree, kGapShare = 1.0 / 6;
@@ -204,6 +207,9 @@ Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
   estimate.delay = with_delay ? found[kDelay] : 0;
   estimate.delay_sigma = with_delay ? sigma[kDelay] : 0;
   describe_pixels(profiles, x, whole, estimate);
+  estimate.correctable = estimate.rotation.norm() <= kSureRotation &&
+                         std::abs(estimate.delay) <= kSureDelay && estimate.pixels <= kSurePixels &&
+                         !edges_disagree(profiles, x);
   return Outcome::kFound;
 }
 

@@ -20,6 +20,9 @@ struct CalibrationEstimate {
   bool rotation_observable = false, delay_observable = false;
   /// Median way of the edges in the image by rotation and delay, and its standard deviation.
   double pixels = 0, pixels_sigma = 0;
+  /// Whether edges meet under the estimate, and it lies so far within the reach of the search that
+  /// an estimate from other frames finds it, too: then fovea map --calibrate corrects the fault.
+  bool correctable = false;
   /// There are many edges, but nothing within reach brings those of the images and those of the
   /// LiDAR together. Then nothing is observable.
   bool disagrees = false;

@@ -215,6 +215,19 @@ TEST(CalibrationEstimate, ATurnBeyondReachDisagrees) {
   EXPECT_FALSE(estimate_calibration(profiles_of({}, planted(0.3, 0, 0, 0))).disagrees);
 }
 
+TEST(CalibrationEstimate, ACorrectionFarWithinReachIsSure) {
+  const auto estimate_of = [](double degrees) {
+    return estimate_calibration(profiles_of({}, planted(0, degrees, 0, 5)));
+  };
+  for (const double degrees : {0.0, 0.3, -0.8, 1.2}) {
+    EXPECT_TRUE(estimate_of(degrees).correctable) << degrees;
+  }
+  // 21 to 24 pixels, at the end of the profiles.
+  for (const double degrees : {1.72, -1.8, 1.9, 1.98}) {
+    EXPECT_FALSE(estimate_of(degrees).correctable) << degrees;
+  }
+}
+
 // Three frames are too few for a correction, and enough for that.
 TEST(CalibrationEstimate, ThreeFramesAreEnoughToDisagree) {
   Drive drive;

@@ -43,6 +43,12 @@ bool shows_a_step(const EdgeProfile& profile) {
   return *std::max_element(profile.strength.begin(), profile.strength.end()) > kClearStep;
 }
 
+/// Whether the profile shows what lies around the place of the edge under a correction.
+bool is_in_profile(const EdgeProfile& profile, const CalibrationVector& correction) {
+  const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
+  return std::abs(J.dot(correction)) <= EdgeProfile::kReach - 2 * kWidth;
+}
+
 }  // namespace
 
 EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
@@ -62,25 +68,29 @@ EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
   return result;
 }
 
-EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis) {
+EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis,
+                       const CalibrationVector& correction) {
   std::vector<const EdgeProfile*> used;
   std::vector<double> contrasts;
   for (const EdgeProfile& profile : profiles) {
     if (!moves_across(profile, axis) || !shows_a_step(profile)) continue;
-    double turned = 0;
+    double turned = 0, turns = 0;
     for (const double turn : kTurns) {
-      turned += edge_value(profile, turn * CalibrationVector::Unit(axis), kWidth);
+      const CalibrationVector other = correction + turn * CalibrationVector::Unit(axis);
+      if (!is_in_profile(profile, other)) continue;
+      turned += edge_value(profile, other, kWidth);
+      ++turns;
     }
+    if (turns == 0) continue;
     used.push_back(&profile);
-    contrasts.push_back(edge_value(profile, CalibrationVector::Zero(), kWidth) -
-                        turned / double(kTurns.size()));
+    contrasts.push_back(edge_value(profile, correction, kWidth) - turned / turns);
   }
   return mean_over_edges(used, contrasts);
 }
 
-bool edges_disagree(const std::vector<EdgeProfile>& profiles) {
+bool edges_disagree(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction) {
   for (const int axis : {0, 1}) {
-    const EdgeMean contrast = edge_contrast(profiles, axis);
+    const EdgeMean contrast = edge_contrast(profiles, axis, correction);
     if (contrast.edges >= kManyEdges &&
         contrast.mean + kSignificant * contrast.sigma < kLeastContrast) {
       return true;
