@@ -100,6 +100,15 @@ TEST_F(BrokenRecording, AStrayScanIsOneFrame) {
   EXPECT_EQ(info().at("frames_skipped"), 1);
 }
 
+TEST_F(BrokenRecording, ScansWithoutANumberOfTheirOwnAreReported) {
+  fs::copy(scan(5), scan(5).parent_path() / "1317042504957314.bin");
+  fs::copy(scan(5), scan(5).parent_path() / "5.bin");
+  const ProgramRun run = map();
+  ASSERT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out + run.err, HasSubstr("2 scans are left out"));
+  EXPECT_EQ(info().at("frames"), kFrames);
+}
+
 TEST_F(BrokenRecording, NumbersMayHaveGaps) {
   ASSERT_EQ(map("--poses navigation").exit_code, 0);
   const std::vector<RigidMotion> without_gap = poses(0, kFrames);

@@ -154,10 +154,21 @@ std::vector<int> present_frames(const DriveInfo& info, const DriveFiles& files) 
   return {present.begin(), present.end()};
 }
 
+/// Notes scans whose names are no number of a frame, or a number that another scan has.
+void note_scans_left_out(const NumberedFiles& scans, DriveInfo& info) {
+  const std::vector<std::filesystem::path> others = files_left_out(scans);
+  if (others.empty()) return;
+  info.notes.push_back(fmt::format(
+      "{} scan{} left out: the name is no number below {}, or a number that another "
+      "scan has (the first: {})",
+      others.size(), others.size() == 1 ? " is" : "s are", kEndOfNames, others.front().string()));
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> make_frame_source(DriveInfo info, DriveFiles files) {
   info.frames = present_frames(info, files);
+  note_scans_left_out(files.scans, info);
   return std::make_unique<FileFrameSource>(std::move(info), std::move(files));
 }
 

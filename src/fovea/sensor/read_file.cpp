@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/text_encoding.h"
@@ -11,16 +12,13 @@
 namespace fovea {
 namespace {
 
-/// No drive has as many frames; a larger number in a name is something else, such as a date.
-constexpr int kMaxFileNumber = 10'000'000;
-
 constexpr std::string_view kWhiteSpace = " \t\r\n\v\f";
 
 std::optional<int> parse_file_number(const std::string& stem) {
   int number = 0;
   const char* end = stem.data() + stem.size();
   const auto [rest, error] = std::from_chars(stem.data(), end, number);
-  if (error != std::errc() || rest != end || number < 0 || number >= kMaxFileNumber) {
+  if (error != std::errc() || rest != end || number < 0 || number >= kEndOfNames) {
     return std::nullopt;
   }
   return number;
@@ -93,6 +91,23 @@ NumberedFiles list_numbered_files(const std::filesystem::path& folder,
     if (!is_new && file < it->second) it->second = file;
   }
   return files;
+}
+
+std::vector<std::filesystem::path> files_left_out(const NumberedFiles& listed) {
+  std::set<std::filesystem::path> names;
+  for (const auto& [number, file] : listed) names.insert(file);
+  std::vector<std::filesystem::path> others;
+  if (names.empty()) return others;
+  const std::string extension = lower_case(names.begin()->extension().string());
+  std::error_code missing;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(names.begin()->parent_path(), missing)) {
+    const std::filesystem::path& file = entry.path();
+    if (lower_case(file.extension().string()) != extension || names.contains(file)) continue;
+    others.push_back(file);
+  }
+  std::sort(others.begin(), others.end());
+  return others;
 }
 
 }  // namespace fovea

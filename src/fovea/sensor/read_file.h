@@ -36,10 +36,16 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text);
 /// Files by the number that their names consist of ("0000000012.bin" is 12).
 using NumberedFiles = std::map<int, std::filesystem::path>;
 
+/// No drive has as many frames; a larger number in a name is something else, such as a date.
+inline constexpr int kEndOfNames = 10'000'000;
+
 /// The files of `folder` whose name is a number with one of the `extensions` (".png", any case);
 /// others are ignored. Empty if there is no such folder. Of two files with one number the first by
 /// name.
 NumberedFiles list_numbered_files(const std::filesystem::path& folder,
                                   std::initializer_list<std::string_view> extensions);
+
+/// The files next to the listed ones that have the same extension and are not listed, by name.
+std::vector<std::filesystem::path> files_left_out(const NumberedFiles& listed);
 
 }  // namespace fovea
