@@ -256,6 +256,46 @@ TEST_F(MapDamage, SwappedPagesAreFound) {
   }
 }
 
+/// A page whose cells all refer to one page.
+std::string page_of_references(char type, std::uint32_t child, int cells) {
+  std::string page(kPageSize, '\0');
+  const auto put = [&](std::size_t at, std::uint32_t number, int bytes) {
+    for (int i = 0; i < bytes; ++i) {
+      page[at + std::size_t(i)] = static_cast<char>(number >> (8 * (bytes - 1 - i)) & 0xff);
+    }
+  };
+  page[0] = type;
+  const std::size_t first_cell = kPageSize - 5 * std::size_t(cells);
+  put(3, std::uint32_t(cells), 2);
+  put(5, std::uint32_t(first_cell), 2);
+  put(8, child, 4);
+  for (int i = 0; i < cells; ++i) {
+    const std::size_t cell = first_cell + 5 * std::size_t(i);
+    put(12 + 2 * std::size_t(i), std::uint32_t(cell), 2);
+    put(cell, child, 4);
+    page[cell + 4] = 10;  // a number of a row
+  }
+  return page;
+}
+
+// 1,000 references each to 1,000 references each to 1,000 references to a leaf.
+TEST_F(MapDamage, PagesThatReferToEachOtherDoNotHang) {
+  const std::vector<std::size_t> of_frames = pages_of("frames"), of_tiles = pages_of("tiles");
+  std::string damaged = bytes_;
+  const std::size_t leaf = of_frames.back();
+  std::size_t child = leaf;
+  for (const std::size_t page : {of_tiles[5], of_tiles[6], of_frames.front()}) {
+    constexpr char kInnerPage = 5;
+    damaged.replace((page - 1) * kPageSize, kPageSize,
+                    page_of_references(kInnerPage, std::uint32_t(child), 1000));
+    child = page;
+  }
+  write(damaged);
+  EXPECT_NE(error(), "whole");
+  EXPECT_THAT(damages(), Contains(AllOf(HasSubstr("more rows than the file can hold"),
+                                        HasSubstr("table 'frames'"))));
+}
+
 TEST_F(MapDamage, OtherFilesAreNoMapsWithADamagedFirstPage) {
   for (const std::string& bytes :
        {std::string(bytes_.size(), 'x'), std::string(bytes_.size(), '\0'), std::string("text")}) {

@@ -208,10 +208,12 @@ void MapFile::for_each_row(const Table& table, const std::function<void(const Ro
 void MapFile::for_each_readable_row(const Table& table, const std::function<void(const Row&)>& f) {
   std::set<std::uint64_t> seen;
   std::int64_t count = 0;
+  RowLimit limit(path_, table);
   read([&] {
     scan_rows(
         *sqlite_, table, format_->select(table),
         [&](const Statement& found) {
+          limit.count();
           const StoredRow stored = stored_row(found, table);
           if (stored.checksum && !seen.insert(*stored.checksum).second) return;
           ++count;
@@ -262,10 +264,12 @@ void MapFile::for_each_readable_tile(const std::function<void(const TileRow&)>& 
   const auto key_of = [](const Statement& row) {
     return std::array{row.integer(0), row.integer(1), row.integer(2), row.integer(3)};
   };
+  RowLimit limit(path_, kTilesTable);
   read([&] {
     scan_rows(
         *sqlite_, kTilesTable, format_->select(kTilesTable),
         [&](const Statement& row) {
+          limit.count();
           if (found.insert(key_of(row)).second) read([&] { f(tile_row(row, where())); });
         },
         [&](const std::string& problem) { read([&] { throw damage(problem, kTilesTable); }); });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"
 
 namespace fovea {
@@ -136,6 +137,20 @@ void scan_by_text(sqlite::Database& database, const Table& table, const std::str
 }
 
 }  // namespace
+
+RowLimit::RowLimit(const std::filesystem::path& map, const Table& table)
+    : map_(map.string()), table_(table) {
+  // A row is read twice at most: from either end of the table.
+  constexpr std::uintmax_t kLeastRow = 16;  // bytes
+  std::error_code ignored;
+  left_ = 2 * (std::filesystem::file_size(map, ignored) / kLeastRow);
+}
+
+void RowLimit::count() {
+  if (left_-- > 0) return;
+  throw InputError("more rows than the file can hold: its pages refer to each other",
+                   fmt::format("{}, table '{}'", map_, table_.name), kRestoreMap);
+}
 
 void scan_rows(sqlite::Database& database, const Table& table, const std::string& select,
                const std::function<void(const Statement&)>& row,

@@ -1,6 +1,8 @@
 // Reads the rows of a table whose pages may be damaged. Private to map/.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -8,6 +10,19 @@
 #include "fovea/map/sqlite_database.h"
 
 namespace fovea {
+
+/// Ends the reading of a table whose pages refer to the same pages again and again.
+class RowLimit {
+ public:
+  RowLimit(const std::filesystem::path& map, const Table& table);
+  /// Counts a row. InputError if the file cannot hold so many.
+  void count();
+
+ private:
+  std::string map_;
+  const Table& table_;
+  std::uintmax_t left_;
+};
 
 /// Calls row(statement) for each row of a table that can be reached. Rows may come twice and in any
 /// order. Rows behind a damaged page are found by their numbers, rows of tables with text keys from

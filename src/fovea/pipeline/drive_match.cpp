@@ -227,8 +227,9 @@ DriveMatch match_drive(const MapReader& map, const FrameSource& drive,
     const Numbers numbers = common_frames(in_map, in_drive);
     const std::size_t comparable = comparable_stamps(in_map, in_drive);
     if (numbers.empty() || double(numbers.size()) < kMinCommonStamps * double(comparable)) {
-      difference = in_drive.empty()
-                       ? "it has no stamps"
+      difference = in_drive.empty() ? "it has no stamps"
+                   : comparable == 0
+                       ? "their stamps have no common time"
                        : fmt::format("{} of {} stamps within their common time are equal",
                                      numbers.size(), comparable);
       continue;
