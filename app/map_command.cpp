@@ -74,6 +74,9 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
   for (const auto& [reason, count] : summary.frames_skipped) {
     print_out("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
   }
+  if (!summary.first_damage.empty()) {
+    print_out("the first damaged frame: {}\n", summary.first_damage);
+  }
   if (summary.registrations_failed > 0) {
     print_out("registration failed on {} frames: their first guess was kept\n",
               summary.registrations_failed);

@@ -122,7 +122,8 @@ TEST_F(LimitsProgram, FilesOfGigabytesAreNamedAndTakeNoMemory) {
       run_fovea("map '" + drive().string() + "' -o " + quoted("m.fovea") + " --report " + report,
                 std::string("ulimit -v 3000000; ") + kLimit);
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("skipped: 1 frame"));
+  EXPECT_THAT(run.out, AllOf(HasSubstr("skipped: 1 frame"), HasSubstr("more than any scan"),
+                             HasSubstr("0000000001.bin")));
   expect_error(run_fovea("register '" + scan.string() + "' '" + scan.string() + "'", kLimit),
                "6000000000 bytes, more than any scan");
   write_text(folder_ / "c.toml", "");
