@@ -22,8 +22,10 @@ constexpr double kClosureRotation = 0.05 * kDegree;
 /// motion is not known. The path counts as so long that loops between the two are searched.
 constexpr double kRestartTranslation = 100, kRestartRotation = 90 * kDegree;  // m, rad
 constexpr double kRestartPath = 2500;                                         // m
-/// Without navigation the first submap stays where it is.
+/// Without navigation the first submap stays where it is. If navigation begins later, the first
+/// submap is almost free until then.
 constexpr double kAnchor = 1e-4;
+constexpr double kFreeRotation = 10, kFreeTranslation = 1e4;  // rad, m
 
 Twist deviations(double rotation, double translation) {
   Twist sigma;
@@ -54,6 +56,7 @@ Fusion::Fusion(const FusionOptions& options, const RegistrationOptions& registra
 
 bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
   if (submaps_.empty()) return true;
+  if (!is_located_ && navigation_.measurement(submaps_.size(), stamp)) return true;
   const Submap& submap = submaps_.back();
   const double moved = (T_odom_lidar.translation() - submap.T_odom_submap.translation()).norm();
   return seconds(stamp - submap.start) >= options_.submap_duration && moved >= kSubmapLength;
@@ -69,12 +72,17 @@ Twist Fusion::odometry_deviations(double length, bool restarts) const {
 void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts) {
   const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
   const auto measured = navigation_.measurement(node, stamp);
+  if (measured && !std::exchange(is_located_, true) && node > 0) {
+    graph_.move(measured->T_local_node * graph_.poses().back().inverse());
+  }
   if (node > 0) {
     const Submap& before = submaps_.back();
     graph_.add(RelativePose{node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
                             odometry_deviations(path_ - before.path, restarts)});
   } else if (!measured) {
-    graph_.add(AbsolutePose{node, graph_.poses().back(), deviations(kAnchor, kAnchor)});
+    graph_.add(AbsolutePose{node, graph_.poses().back(),
+                            navigation_.has_fix() ? deviations(kFreeRotation, kFreeTranslation)
+                                                  : deviations(kAnchor, kAnchor)});
   }
   submaps_.push_back({T_odom_lidar, stamp, path_});
   weak_frames_ = 0;

@@ -74,6 +74,7 @@ class Fusion {
   NavigationCheck navigation_;
   PoseGraph graph_;
   bool is_solved_ = true;
+  bool is_located_ = false;  // navigation has stated the pose of a submap
   LoopCloser closer_;
   std::vector<Submap> submaps_;
   std::optional<RigidMotion> last_T_odom_lidar_;

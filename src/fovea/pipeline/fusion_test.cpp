@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 
 #include "fovea/base/random.h"
@@ -151,6 +152,29 @@ TEST(Fusion, NavigationHoldsALongDriveInPlace) {
     worst = std::max(worst, error_of(fusion.T_local_lidar(records[std::size_t(i)]), i));
   }
   EXPECT_LT(worst, without / 3);
+}
+
+// The first frames have no position, or none with a fix; odometry begins elsewhere.
+TEST(Fusion, NavigationThatBeginsLaterMovesTheSubmapsBeforeIt) {
+  for (const bool without_fix : {false, true}) {
+    DriveInfo info;
+    const RigidMotion T_local_true = RigidMotion(Eigen::Translation3d(300, -200, 5)) *
+                                     RigidMotion(Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()));
+    std::vector<StampedPose> poses;
+    for (int i = without_fix ? 0 : 70; i < 200; ++i) {
+      const bool has_fix = i >= 70;
+      poses.push_back({i * kTenth, has_fix ? T_local_true * true_pose(i) : true_pose(0)});
+      info.navigation_accuracy.push_back(has_fix ? 0.1 : std::numeric_limits<double>::infinity());
+    }
+    info.navigation = Trajectory(poses);
+    Fusion fusion({.loop_closure = false}, {}, info);
+    const auto records = drive(fusion, 0, 200, false);
+    for (int i = 0; i < 200; ++i) {
+      const RigidMotion T = fusion.T_local_lidar(records[std::size_t(i)]);
+      EXPECT_LT((T.translation() - (T_local_true * true_pose(i)).translation()).norm(), 0.05)
+          << without_fix << " " << i;
+    }
+  }
 }
 
 TEST(Fusion, SwitchedOffItLeavesAllPosesAsTheyAre) {

@@ -31,6 +31,9 @@ std::string NavigationCheck::observe(TimeNs stamp, const RigidMotion& T_local_li
   last_position_ = T_local_lidar.translation();
   const auto now = navigation_->at(stamp);
   if (!now) return "";
+  // Positions before the first fix are no reason to doubt it.
+  is_located_ = is_located_ || std::isfinite(accuracy_at(stamp));
+  if (!is_located_) return "";
   std::string problem;
   if (last_) {
     // Compared in the axes of navigation, that jumps of it add up there.
@@ -47,6 +50,12 @@ std::string NavigationCheck::observe(TimeNs stamp, const RigidMotion& T_local_li
   last_ = Known{*now, T_local_lidar};
   path_ = 0;
   return problem;
+}
+
+bool NavigationCheck::has_fix() const {
+  if (navigation_ == nullptr) return false;
+  return accuracy_.empty() || std::any_of(accuracy_.begin(), accuracy_.end(),
+                                          [](double accuracy) { return std::isfinite(accuracy); });
 }
 
 double NavigationCheck::accuracy_at(TimeNs stamp) const {

@@ -32,6 +32,9 @@ class NavigationCheck {
     path_ = 0;
   }
 
+  /// Whether any position has a fix.
+  bool has_fix() const;
+
   /// What navigation says of a node's pose, with the deviations that it deserves; empty in an
   /// outage.
   std::optional<AbsolutePose> measurement(std::size_t node, TimeNs stamp) const;
@@ -45,7 +48,8 @@ class NavigationCheck {
   const Trajectory* navigation_;
   const std::vector<double>& accuracy_;
   std::optional<Known> last_;
-  double path_ = 0;  // m since last_
+  double path_ = 0;          // m since last_
+  bool is_located_ = false;  // a position with a fix was observed
   std::optional<Eigen::Vector3d> last_position_;
   struct Jump {
     TimeNs stamp;

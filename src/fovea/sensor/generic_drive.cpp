@@ -24,16 +24,6 @@ namespace fs = std::filesystem;
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
 constexpr int kFirstScans = 5;            // whose numbers give the units
 
-/// The first and the last of some times.
-std::pair<TimeNs, TimeNs> time_span(const NumberedTimes& times) {
-  std::pair<TimeNs, TimeNs> span(times.begin()->second, times.begin()->second);
-  for (const auto& [number, time] : times) {
-    span.first = std::min(span.first, time);
-    span.second = std::max(span.second, time);
-  }
-  return span;
-}
-
 class GenericDrive {
  public:
   GenericDrive(const fs::path& path, const DriveOptions& options)
@@ -206,7 +196,12 @@ class GenericDrive {
     std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     const ImageMatches matches =
         match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
-    if (matches.image_of_scan.empty()) reject_clock(file, described, scans, times);
+    if (matches.image_of_scan.empty()) {
+      throw InputError(fmt::format("no image of camera {} belongs to a scan: {}", described.name,
+                                   why_none_matches(scans, times, description_.image_tolerance)),
+                       file.string(),
+                       "give stamps of one clock, or leave the camera out (--cameras)");
+    }
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size());
     info_.image_stamps_are_capture_times = true;
@@ -217,25 +212,6 @@ class GenericDrive {
       info_.image_offsets.back()[scan] = delay - matches.median_delay;
     }
     return result;
-  }
-
-  /// InputError: no image of a camera lies near a scan.
-  [[noreturn]] void reject_clock(const fs::path& file, const CameraDescription& camera,
-                                 const NumberedTimes& scans, const NumberedTimes& images) const {
-    if (images.empty()) {
-      throw InputError(fmt::format("no image of camera {} has a stamp", camera.name), file.string(),
-                       "give a line index,time_ns for each image, or remove the file");
-    }
-    const auto [first_scan, last_scan] = time_span(scans);
-    const auto [first_image, last_image] = time_span(images);
-    const bool apart = first_image > last_scan || last_image < first_scan;
-    throw InputError(
-        fmt::format("{} of camera {} lies within {:g} s of a scan: images have stamps from {:.3f} "
-                    "to {:.3f} s, scans from {:.3f} to {:.3f} s",
-                    apart ? "images and scans have different clocks, no image" : "no image",
-                    camera.name, description_.image_tolerance, seconds(first_image),
-                    seconds(last_image), seconds(first_scan), seconds(last_scan)),
-        file.string(), "give stamps of one clock, or leave the camera out (--cameras)");
   }
 
   void note_matches(const CameraDescription& camera, const ImageMatches& matches,

@@ -1,7 +1,10 @@
 #include "fovea/sensor/nearest_images.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace fovea {
 namespace {
@@ -52,6 +55,16 @@ std::vector<TimeNs> delays_of(const std::map<int, int>& image_of_scan, const Num
   return delays;
 }
 
+/// The first and the last of some times, at least one.
+std::pair<TimeNs, TimeNs> time_span(const NumberedTimes& times) {
+  std::pair<TimeNs, TimeNs> span(times.begin()->second, times.begin()->second);
+  for (const auto& [number, time] : times) {
+    span.first = std::min(span.first, time);
+    span.second = std::max(span.second, time);
+  }
+  return span;
+}
+
 }  // namespace
 
 ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& images,
@@ -70,6 +83,20 @@ ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& imag
   matches.min_delay = seconds(delays.front());
   matches.max_delay = seconds(delays.back());
   return matches;
+}
+
+std::string why_none_matches(const NumberedTimes& scans, const NumberedTimes& images,
+                             double tolerance) {
+  if (images.empty()) return "no image has a stamp";
+  if (scans.empty()) return "no scan has a stamp";
+  const auto [first_scan, last_scan] = time_span(scans);
+  const auto [first_image, last_image] = time_span(images);
+  const bool apart = first_image > last_scan || last_image < first_scan;
+  return fmt::format(
+      "{}, images have stamps from {:.3f} to {:.3f} s, scans from {:.3f} to {:.3f} s",
+      apart ? "they have different clocks"
+            : fmt::format("none lies within {:g} s of one", tolerance),
+      seconds(first_image), seconds(last_image), seconds(first_scan), seconds(last_scan));
 }
 
 }  // namespace fovea

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include "fovea/base/time.h"
@@ -26,5 +27,9 @@ struct ImageMatches {
 /// @param tolerance     s
 ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& images,
                            double sweep_middle, double tolerance);
+
+/// Why match_nearest() found no image: "they have different clocks, ...".
+std::string why_none_matches(const NumberedTimes& scans, const NumberedTimes& images,
+                             double tolerance);
 
 }  // namespace fovea

@@ -126,6 +126,10 @@ std::size_t PoseGraph::add_node(const RigidMotion& T_local_node) {
   return poses_.size() - 1;
 }
 
+void PoseGraph::move(const RigidMotion& T_new_old) {
+  for (RigidMotion& pose : poses_) pose = T_new_old * pose;
+}
+
 void PoseGraph::add(const RelativePose& measurement) {
   if (measurement.from >= measurement.to || measurement.to >= poses_.size()) {
     throw std::invalid_argument("a relative pose needs two nodes, the earlier first");

@@ -34,6 +34,9 @@ class PoseGraph {
   void add(const RelativePose& measurement);
   void add(const AbsolutePose& measurement);
 
+  /// Moves all poses alike.
+  void move(const RigidMotion& T_new_old);
+
   const std::vector<RigidMotion>& poses() const { return poses_; }
   /// Squared error of a measurement in standard deviations, at the present poses.
   double squared_error(const RelativePose& measurement) const;
