@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
 #include <utility>
 #include <vector>
+
+#include "fovea/base/path_remedy.h"
 
 namespace fovea {
 namespace {
@@ -14,8 +17,12 @@ using sqlite::Access;
 using sqlite::Statement;
 
 void require_file(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
+  std::error_code error, ignored;
+  const fs::file_status status = fs::status(path, error);
+  if (error && error.value() != ENOENT && error.value() != ENOTDIR) {
+    throw InputError(fmt::format("the map cannot be read ({})", error.message()), path.string(),
+                     path_remedy(error.value(), "check its permissions and its disk"));
+  }
   if (!fs::exists(status)) {
     throw InputError("the map does not exist", path.string(), "check the name");
   }
