@@ -12,7 +12,6 @@
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
-#include "fovea/base/printable.h"
 #include "fovea/recording/camera_name.h"
 #include "fovea/rosbag/convert_bags.h"
 
@@ -50,7 +49,7 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
   return cameras;
 }
 
-void run(const ConvertArguments& arguments) {
+void run(const ConvertArguments& arguments, Warnings& warnings) {
   ConvertOptions options = arguments.options;
   options.cameras = parse_camera_topics(arguments.cameras);
   options.poses = kSources.at(arguments.poses);
@@ -62,15 +61,15 @@ void run(const ConvertArguments& arguments) {
       return true;
     });
   }();
+  warnings.add(figures, "", arguments.quiet);
   if (arguments.quiet) return;
-  for (const std::string& note : figures.notes) fmt::print("{}\n", printable(note));
   fmt::print("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
              figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
 }
 
 }  // namespace
 
-void add_convert_command(CLI::App& app) {
+void add_convert_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ConvertArguments>();
   ConvertOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand(
@@ -106,7 +105,7 @@ void add_convert_command(CLI::App& app) {
                     "The scans' motion was undone when they were recorded");
   command->add_flag("--force", arguments->force, "Replace DIR");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

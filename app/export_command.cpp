@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "app/finite_range.h"
+#include "app/number_checks.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"

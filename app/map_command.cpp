@@ -12,7 +12,7 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/finite_range.h"
+#include "app/number_checks.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/view_arguments.h"
@@ -55,7 +55,6 @@ MapperOptions resolve_options(const MapArguments& arguments) {
 }
 
 void print_summary(const MapSummary& summary, const MapArguments& arguments) {
-  for (const std::string& note : summary.notes) fmt::print("note: {}\n", note);
   fmt::print("{}: {} points from {} frames", arguments.output, summary.points,
              summary.frames_mapped);
   if (summary.frames_held_out > 0) fmt::print(", {} held out", summary.frames_held_out);
@@ -64,18 +63,10 @@ void print_summary(const MapSummary& summary, const MapArguments& arguments) {
     fmt::print("at {} Hz: {} frame{} late: not yet in the map when the next one was due\n",
                summary.rate, summary.late_frames, summary.late_frames == 1 ? "" : "s");
   }
-  for (const auto& [reason, count] : summary.frames_skipped) {
-    fmt::print("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
-  }
-  if (summary.registrations_failed > 0) {
-    fmt::print("registration failed on {} frames: their first guess was kept\n",
-               summary.registrations_failed);
-  }
   if (summary.loops_closed > 0) {
     fmt::print("loops closed: {} scans were registered to places seen before\n",
                summary.loops_closed);
   }
-  for (const std::string& line : calibration_lines(summary)) fmt::print("{}\n", line);
 }
 
 /// What an interrupted run keeps. It is an error line of a quiet run.
@@ -158,8 +149,15 @@ void run(const MapArguments& arguments, Session& session) {
     ProgressBar bar(arguments.quiet);
     return map_drive(*source, job, std::ref(bar));
   }();
-  if (report) write_json(*report, {{"map", to_json(summary)}});
+  const Messages calibration = calibration_messages(summary);
+  if (report) {
+    MapSummary reported = summary;
+    reported.append(calibration);
+    write_json(*report, {{"map", to_json(reported)}});
+  }
+  session.warnings.add(summary, "note: ", arguments.quiet);
   if (!arguments.quiet) print_summary(summary, arguments);
+  session.warnings.add(calibration, "", arguments.quiet);
   if (job.stop.stop_requested()) print_interruption(summary, arguments);
   if (show) go_on_showing(std::move(show), arguments, job.stop);
 }
@@ -205,7 +203,7 @@ void add_map_command(CLI::App& app, Session& session) {
   command
       ->add_option("--threads", arguments->threads,
                    "Threads that a stage may use (default: all); with 1, one stage at a time")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command
       ->add_option("--rate", arguments->rate,
                    "Play the drive as a live sensor would, and count late frames; none is dropped")
@@ -216,7 +214,7 @@ void add_map_command(CLI::App& app, Session& session) {
                    "Memory to keep to (default: 1GiB): the map's parts out of reach are in the "
                    "file alone")
       ->type_name("SIZE")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
+      ->transform(memory_size());
   command->add_flag("--calibrate", arguments->calibrate,
                     "First estimate rotation and delay of the cameras from the drive's edges, and "
                     "map under them");

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/commands.h"
-#include "app/finite_range.h"
+#include "app/number_checks.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/registration/registration.h"

@@ -17,7 +17,7 @@ struct RepairArguments {
   bool force = false, quiet = false;
 };
 
-void run(const RepairArguments& arguments) {
+void run(const RepairArguments& arguments, Warnings& warnings) {
   require_other_file(arguments.map, arguments.output);
   // Before a file is made: whether this is a map at all.
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
@@ -25,6 +25,11 @@ void run(const RepairArguments& arguments) {
   const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
     if (!arguments.quiet) fmt::print("left out: {}\n", damage);
   });
+  if (figures.damages > 0) {
+    warnings.add({fmt::format("{} lacks {} parts of {}, which cannot be read", arguments.output,
+                              figures.damages, arguments.map)},
+                 arguments.quiet);
+  }
   if (arguments.quiet) return;
   fmt::print("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
              figures.damages);
@@ -35,7 +40,7 @@ void run(const RepairArguments& arguments) {
 
 }  // namespace
 
-void add_repair_command(CLI::App& app) {
+void add_repair_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RepairArguments>();
   CLI::App* command = app.add_subcommand(
       "repair",
@@ -46,7 +51,7 @@ void add_repair_command(CLI::App& app) {
       ->type_name("OUT.fovea");
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

@@ -23,7 +23,7 @@ std::string figures_of(const CalibrationEstimate& e) {
 std::string calibration_line(int camera, const CalibrationEstimate& e, bool applied) {
   if (e.disagrees) {
     return fmt::format(
-        "warning: camera {}: camera and LiDAR do not agree ({} edges in {} frames): check its "
+        "camera {}: camera and LiDAR do not agree ({} edges in {} frames): check its "
         "T_cam_lidar, its K and the stamps of its images",
         camera, e.edges, e.frames);
   }
@@ -36,19 +36,28 @@ std::string calibration_line(int camera, const CalibrationEstimate& e, bool appl
       fmt::format("edges {} {:.1f} pixels off the LiDAR's", applied ? "lay" : "lie", e.pixels);
   if (applied) return fmt::format("camera {}: corrected, {}: {}", camera, edges, figures_of(e));
   if (!e.off_by_a_pixel()) return fmt::format("camera {}: {}: {}", camera, edges, figures_of(e));
-  return fmt::format(
-      "warning: camera {}: {}: {}; camera and LiDAR do not agree, --calibrate corrects this",
-      camera, edges, figures_of(e));
+  return fmt::format("camera {}: {}: {}; camera and LiDAR do not agree, --calibrate corrects this",
+                     camera, edges, figures_of(e));
+}
+
+/// Whether the drive's calibration is wrong and stays so.
+bool is_warning(const CalibrationEstimate& e, bool applied) {
+  return e.disagrees || (e.rotation_observable && !applied && e.off_by_a_pixel());
 }
 
 }  // namespace
 
-std::vector<std::string> calibration_lines(const MapSummary& summary) {
-  std::vector<std::string> lines;
+Messages calibration_messages(const MapSummary& summary) {
+  Messages messages;
   for (const auto& [camera, estimate] : summary.calibration) {
-    lines.push_back(calibration_line(camera, estimate, summary.calibrated));
+    std::string line = calibration_line(camera, estimate, summary.calibrated);
+    if (is_warning(estimate, summary.calibrated)) {
+      messages.warn(std::move(line));
+    } else {
+      messages.notes.push_back(std::move(line));
+    }
   }
-  return lines;
+  return messages;
 }
 
 void write_json(OutputFile& file, const nlohmann::ordered_json& json) {

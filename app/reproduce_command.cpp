@@ -9,6 +9,7 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/number_checks.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/reproduce/results_page.h"
@@ -77,7 +78,7 @@ std::filesystem::path make_folder(const std::filesystem::path& folder) {
   return folder;
 }
 
-void run(const ReproduceArguments& arguments) {
+void run(const ReproduceArguments& arguments, Warnings& warnings) {
   const ThreadLimit threads(arguments.threads);
   const std::vector<std::string> rows = wanted_rows(arguments);
   std::vector<std::unique_ptr<FrameSource>>
@@ -117,12 +118,13 @@ void run(const ReproduceArguments& arguments) {
   page.stream() << write_results_page(results, mls, command_line(arguments), output);
   write_json(json, results_json(results));
   page.commit();
+  warnings.add(results_warnings(results), arguments.quiet);
   if (!arguments.quiet) fmt::print("{}\n", (output / "results.md").string());
 }
 
 }  // namespace
 
-void add_reproduce_command(CLI::App& app) {
+void add_reproduce_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ReproduceArguments>();
   CLI::App* command =
       app.add_subcommand("reproduce", "The paper's tables and figures on drives of your own");
@@ -144,9 +146,9 @@ void add_reproduce_command(CLI::App& app) {
                    "Times of PCL's moving least squares for Table I, from upsampling_bench --json")
       ->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

@@ -33,11 +33,8 @@ void DriveFigures::Flaw::add(int index) {
   if (frames++ == 0) first = index;
 }
 
-void DriveFigures::note(const Flaw& flaw, const std::string& what,
-                        std::vector<std::string>& notes) {
-  if (flaw.frames == 0) return;
-  notes.push_back(fmt::format("{} frame{} (the first: {}): {}", flaw.frames,
-                              flaw.frames == 1 ? "" : "s", flaw.first, what));
+std::string DriveFigures::Flaw::text(std::string_view what) const {
+  return fmt::format("{} frame{} (the first: {}): {}", frames, frames == 1 ? "" : "s", first, what);
 }
 
 void DriveFigures::note_flaws(const FrameRecord& record) {
@@ -79,28 +76,33 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
 MapSummary DriveFigures::summary() const {
   MapSummary summary = summary_;
   for (const auto& [stage, times] : by_stage_) summary.latency_ms[stage] = latency_of(times);
-  // What a user must know of poses and images.
-  summary.notes = drive_.notes;
-  note(absent_, "no GPS/INS, the scans alone tell the motion", summary.notes);
-  note(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on",
-       summary.notes);
-  note(lost_,
+  summary.append(drive_);
+  const auto note = [&](const Flaw& flaw, std::string_view what) {
+    if (flaw.frames > 0) summary.notes.push_back(flaw.text(what));
+  };
+  const auto warn = [&](const Flaw& flaw, std::string_view what) {
+    if (flaw.frames > 0) summary.warn(flaw.text(what));
+  };
+  warn(absent_, "no GPS/INS, the scans alone tell the motion");
+  warn(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on");
+  warn(lost_,
        "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "
-       "may "
-       "be wrong",
-       summary.notes);
+       "may be wrong");
   note(degenerate_,
-       "the scan leaves a direction of motion open, which is taken from the first guess",
-       summary.notes);
+       "the scan leaves a direction of motion open, which is taken from the first guess");
   note(exposed_,
-       "an image is exposed otherwise than the map by over 40 % and colours new points only",
-       summary.notes);
-  note(blank_, "an image shows nothing but black or white and colours no point", summary.notes);
+       "an image is exposed otherwise than the map by over 40 % and colours new points only");
+  warn(blank_, "an image shows nothing but black or white and colours no point");
   for (const auto& [camera, flaw] : missing_) {
-    note(flaw,
-         fmt::format("camera {} has no image that can be read, the frame is used without it",
-                     camera),
-         summary.notes);
+    warn(flaw, fmt::format("camera {} has no image that can be read, the frame is used without it",
+                           camera));
+  }
+  for (const auto& [reason, count] : summary.frames_skipped) {
+    summary.warn(fmt::format("skipped: {} frame{} ({})", count, count == 1 ? "" : "s", reason));
+  }
+  if (summary.registrations_failed > 0) {
+    summary.warn(fmt::format("registration failed on {} frames: their first guess was kept",
+                             summary.registrations_failed));
   }
   summary.peak_rss_mb = double(peak_resident_memory()) / (1024 * 1024);
   return summary;

@@ -58,7 +58,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   figures.notes = plan.notes;
   naming(bags, [&] { recorder.finish(plan.drive, figures); });
   for (const auto& [topic, unusable] : survey.unusable) {
-    figures.notes.push_back(unusable.note(topic));
+    figures.warn(unusable.note(topic));
   }
   writer.finish(plan.drive);
   return figures;

@@ -26,8 +26,8 @@ constexpr int kMaxNumber = 1'000'000;     // of scans and images: a day at 10 Hz
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
 constexpr int kFirstScans = 5;            // whose intensities give the scale
 
-/// Stamps of numbered files. Lines without a usable number are noted.
-NumberedTimes read_stamps(const fs::path& file, std::vector<std::string>& notes) {
+/// Stamps of numbered files, with a warning of lines without a usable number.
+NumberedTimes read_stamps(const fs::path& file, Messages& messages) {
   constexpr std::array<CsvColumn, 1> kColumns = {{{"index"}}};
   const CsvRows rows = read_csv(file, kColumns);
   std::vector<int> unusable = rows.malformed;
@@ -40,9 +40,8 @@ NumberedTimes read_stamps(const fs::path& file, std::vector<std::string>& notes)
     }
   }
   if (!unusable.empty()) {
-    notes.push_back(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
-                                file.string(),
-                                *std::min_element(unusable.begin(), unusable.end())));
+    messages.warn(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
+                              file.string(), *std::min_element(unusable.begin(), unusable.end())));
   }
   return times;
 }
@@ -86,19 +85,19 @@ class GenericDrive {
     files_.stamps_name_scans = true;
     if (fs::exists(file)) {
       files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
-      for (const auto& [scan, time] : read_stamps(file, info_.notes)) {
+      for (const auto& [scan, time] : read_stamps(file, info_)) {
         if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
       }
       remove_out_of_order(files_.stamps);
     }
     info_.has_time_stamps = files_.stamps.any();
     if (!info_.has_time_stamps) {
-      info_.notes.push_back(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
-                                        fs::exists(file) ? "has no usable line" : "is missing"));
+      info_.warn(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
+                             fs::exists(file) ? "has no usable line" : "is missing"));
       return;
     }
     if (const std::size_t count = files_.stamps.out_of_order.size(); count > 0) {
-      info_.notes.push_back(
+      info_.warn(
           fmt::format("{} stamps of {} are out of order (the first of scan {}): "
                       "these scans are skipped",
                       count, file.string(), files_.stamps.out_of_order.front()));
@@ -125,7 +124,7 @@ class GenericDrive {
     if (info_.sweep_compensated) return;
     sweep_middle_ = first.sweep_middle.value_or(info_.sweep.middle_time());
     if (first.any && !first.sweep_middle) {
-      info_.notes.push_back(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
+      info_.warn(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
     }
   }
 
@@ -136,8 +135,8 @@ class GenericDrive {
       const fs::path folder = info_.path / camera.folder;
       NumberedFiles files = list_numbered_files(folder, {".png", ".jpg", ".jpeg"});
       if (files.empty()) {
-        info_.notes.push_back(fmt::format("camera {} ({}) has no image in {}: it is left out",
-                                          camera.index, camera.name, folder.string()));
+        info_.warn(fmt::format("camera {} ({}) has no image in {}: it is left out", camera.index,
+                               camera.name, folder.string()));
       } else {
         images.emplace(camera.index, std::move(files));
       }
@@ -213,10 +212,10 @@ class GenericDrive {
     const fs::path file = info_.path / described.folder / "stamps.csv";
     if (!fs::exists(file)) return images;
     if (!info_.has_time_stamps) {
-      info_.notes.push_back(file.string() + " is not used: the scans have no stamps");
+      info_.warn(file.string() + " is not used: the scans have no stamps");
       return images;
     }
-    NumberedTimes times = read_stamps(file, info_.notes);
+    NumberedTimes times = read_stamps(file, info_);
     std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     NumberedTimes scans;
     for (const auto& [scan, path] : files_.scans) {
@@ -239,9 +238,9 @@ class GenericDrive {
   void note_matches(const CameraDescription& camera, const ImageMatches& matches,
                     std::size_t scans) {
     if (matches.image_of_scan.size() < scans) {
-      info_.notes.push_back(fmt::format(
-          "camera {} ({}) has no image within {:g} s of {} of {} scans", camera.index, camera.name,
-          description_.image_tolerance, scans - matches.image_of_scan.size(), scans));
+      info_.warn(fmt::format("camera {} ({}) has no image within {:g} s of {} of {} scans",
+                             camera.index, camera.name, description_.image_tolerance,
+                             scans - matches.image_of_scan.size(), scans));
     }
     if (matches.max_delay - matches.min_delay > kNotableSpread) {
       info_.notes.push_back(fmt::format(
@@ -256,7 +255,7 @@ class GenericDrive {
     const TimeNs origin_time =
         frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
     GenericNavigation navigation = read_generic_navigation(info_.path, description_, origin_time);
-    info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
+    info_.append(navigation);
     if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
     info_.calibration.T_imu_lidar = description_.T_body_lidar;
     info_.navigation = std::move(navigation.T_local_lidar);
@@ -274,7 +273,7 @@ class GenericDrive {
       if (!T_local_lidar.at(*stamp)) ++without;
     }
     if (without == 0) return true;
-    info_.notes.push_back(
+    info_.warn(
         fmt::format("poses or positions reach {} of {} scans{}", stamped - without, stamped,
                     without == stamped ? ", are their times of one clock? No navigation" : ""));
     return without < stamped;

@@ -36,15 +36,15 @@ class LeftOut {
   void add(int line) { malformed_.push_back(line); }
   void add_out_of_order(std::size_t count) { out_of_order_ = count; }
 
-  void note(std::vector<std::string>& notes) const {
+  void warn(Messages& messages) const {
     if (!malformed_.empty()) {
-      notes.push_back(fmt::format("{} lines of {} cannot be used (the first: {})",
-                                  malformed_.size(), file_.string(),
-                                  *std::min_element(malformed_.begin(), malformed_.end())));
+      messages.warn(fmt::format("{} lines of {} cannot be used (the first: {})", malformed_.size(),
+                                file_.string(),
+                                *std::min_element(malformed_.begin(), malformed_.end())));
     }
     if (out_of_order_ > 0) {
-      notes.push_back(fmt::format("{} lines of {} are out of order and not used", out_of_order_,
-                                  file_.string()));
+      messages.warn(fmt::format("{} lines of {} are out of order and not used", out_of_order_,
+                                file_.string()));
     }
   }
 
@@ -105,9 +105,9 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
     }
     result.accuracy.push_back(accuracy_of(rows, row, kAccuracy));
   }
-  left_out.note(result.notes);
+  left_out.warn(result);
   if (poses.empty()) {
-    result.notes.push_back(file.string() + " has no pose that can be used: no navigation");
+    result.warn(file.string() + " has no pose that can be used: no navigation");
     return result;
   }
   const Trajectory T_world_lidar(poses);
@@ -121,15 +121,14 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
 /// Orientations of imu.csv, interpolated.
 class ImuOrientations {
  public:
-  ImuOrientations(const fs::path& file, const RigidMotion& T_body_imu,
-                  std::vector<std::string>& notes)
+  ImuOrientations(const fs::path& file, const RigidMotion& T_body_imu, Messages& messages)
       : R_imu_body_(T_body_imu.linear().transpose()) {
     constexpr std::array<CsvColumn, 4> kColumns = {
         {{"qx", false}, {"qy", false}, {"qz", false}, {"qw", false}}};
     rows_ = read_csv(file, kColumns);
     LeftOut left_out(file, rows_);
     left_out.add_out_of_order(rows_.drop_out_of_order());
-    left_out.note(notes);
+    left_out.warn(messages);
   }
 
   /// Rotation from the body to east-north-up; empty if the file has none near that time.
@@ -221,7 +220,7 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::optional<ImuOrientations> imu;
-  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, result.notes);
+  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, result);
 
   const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body));
   std::vector<GeodeticPose> level, turned;  // all places, and those of a known attitude
@@ -249,8 +248,8 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
     }
   }
   const auto without = [&](const std::string& why) {
-    left_out.note(result.notes);
-    result.notes.push_back(why + ": no navigation, the map will not be georeferenced");
+    left_out.warn(result);
+    result.warn(why + ": no navigation, the map will not be georeferenced");
     return result;
   };
   if (level.empty()) return without(file.string() + " has no position that can be used");
@@ -259,12 +258,12 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
       return without(file.string() + " has no attitude and never moves by a metre");
     }
     turned = std::move(level);
-    result.notes.push_back(file.string() +
-                           " has no attitude: headings are those of the way, roll and pitch 0");
+    result.warn(file.string() +
+                " has no attitude: headings are those of the way, roll and pitch 0");
   } else {
     for (const int line : without_attitude) left_out.add(line);
   }
-  left_out.note(result.notes);
+  left_out.warn(result);
   Navigation navigation =
       navigation_of(turned, T_body_antenna.inverse() * drive.T_body_lidar, origin_time);
   result.T_local_lidar = std::move(navigation.trajectory);

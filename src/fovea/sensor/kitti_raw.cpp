@@ -43,9 +43,9 @@ OxtsFolder read_oxts_folder(const NumberedFiles& files, const std::optional<Time
 void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const DriveFiles& files,
                       DriveInfo& info) {
   if (!folder.why_unusable.empty()) {
-    info.notes.push_back(fmt::format("{} of {} GPS/INS records cannot be used (the first: {})",
-                                     folder.why_unusable.size(), oxts.size(),
-                                     folder.why_unusable.begin()->second));
+    info.warn(fmt::format("{} of {} GPS/INS records cannot be used (the first: {})",
+                          folder.why_unusable.size(), oxts.size(),
+                          folder.why_unusable.begin()->second));
   }
   std::vector<int> without;
   for (auto scan = files.scans.lower_bound(info.begin);
@@ -53,15 +53,15 @@ void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const
     if (!oxts.contains(scan->first)) without.push_back(scan->first);
   }
   if (without.empty()) return;
-  info.notes.push_back(fmt::format("{} frames have no GPS/INS record (the first: {})",
-                                   without.size(), without.front()));
+  info.warn(fmt::format("{} frames have no GPS/INS record (the first: {})", without.size(),
+                        without.front()));
 }
 
 /// Fills info.navigation and info.origin, or notes why there is none.
 void find_navigation(const KittiCalibration& calibration, DriveInfo& info, DriveFiles& files) {
   const std::filesystem::path folder = info.path / "oxts";
   const auto without = [&](const std::string& why) {
-    info.notes.push_back(why + ": no navigation, the map will not be georeferenced");
+    info.warn(why + ": no navigation, the map will not be georeferenced");
   };
   const NumberedFiles oxts = list_numbered_files(folder / "data", {".txt"});
   if (oxts.empty()) return without((folder / "data").string() + " has no record");
