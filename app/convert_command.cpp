@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
@@ -50,6 +51,7 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
 }
 
 void run(const ConvertArguments& arguments, Warnings& warnings) {
+  check_files({arguments.bags, {}, {arguments.output}});
   ConvertOptions options = arguments.options;
   options.cameras = parse_camera_topics(arguments.cameras);
   options.poses = kSources.at(arguments.poses);

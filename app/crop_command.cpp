@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
-#include "app/map_arguments.h"
 #include "fovea/map/crop.h"
 
 namespace fovea::app {
@@ -18,9 +18,9 @@ struct CropArguments {
 };
 
 void run(const CropArguments& arguments) {
+  check_files({{arguments.map}, {{arguments.output, FileKind::kMap, arguments.force}}});
   const CropRegion region = arguments.box.empty() ? CropRegion::polygon(arguments.polygon)
                                                   : CropRegion::box(arguments.box);
-  require_other_file(arguments.map, arguments.output);
   const MapReader map(arguments.map);
   const auto writer = MapWriter::create(arguments.output, arguments.force);
   const CropFigures figures = crop_map(map, region, *writer);

@@ -7,10 +7,12 @@
 #include <optional>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
 #include "app/html_report/truth_page.h"
+#include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
@@ -30,7 +32,7 @@ struct EvaluateArguments {
   std::string map, protocol = "held-out", poses, hold_out, json, html, calibration;
   DriveArguments drive;
   int first_frame = 0, threads = 0;
-  bool truth = false, no_align = false, color_rules = false;
+  bool truth = false, no_align = false, color_rules = false, foreign = false;
 };
 
 constexpr const char* kTruth = "truth";
@@ -69,6 +71,12 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
   arguments.truth = arguments.truth || arguments.protocol == kTruth;
   if (arguments.truth) arguments.protocol = kTruth;
   check(arguments);
+  CommandFiles files;
+  files.inputs = {arguments.map, arguments.drive.drive, arguments.poses};
+  if (arguments.calibration != kDrive) files.inputs.push_back(arguments.calibration);
+  files.outputs = {{arguments.json, FileKind::kReport, /*force=*/true},
+                   {arguments.html, FileKind::kHtml, /*force=*/true}};
+  check_files(files);
   const ThreadLimit threads(arguments.threads);
   ProtocolOptions options;
   if (!arguments.truth) options.protocol = parse_protocol(arguments.protocol);
@@ -81,8 +89,7 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
   ScoredMapOptions loading;
   if (!arguments.poses.empty()) loading.poses = arguments.poses;
   loading.first_frame = arguments.first_frame;
-  loading.drive = name_of(arguments.drive.drive);
-  const ScoredMap map = load_scored_map(arguments.map, loading);
+  ScoredMap map = load_scored_map(arguments.map, loading);
   if (!has_colors(map) && !arguments.html.empty()) {
     throw InputError("the map has no colors, of which the page makes pictures", arguments.map,
                      "evaluate it without --html");
@@ -99,6 +106,10 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
     arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));
   }
   auto drive = arguments.drive.open();
+  if (arguments.poses.empty()) {  // a Fovea map
+    const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign);
+    if (match && !match->keeps_numbers) choose_frames(match->number_in_drive, map);
+  }
   const std::string calibration = calibration_of(arguments, map);
   if (calibration != kDrive) {
     const MapMeta meta = calibration == arguments.map ? map.meta : MapReader(calibration).meta();
@@ -172,6 +183,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                    "Score under the calibration of the drive, or under the corrected one of a map "
                    "(default: MAP's, if it was made with --calibrate)")
       ->type_name("drive|FILE.fovea");
+  add_foreign_option(*command, arguments->foreign);
   command->add_option("--json", arguments->json, "Write all figures as JSON")->type_name("FILE");
   command
       ->add_option("--html", arguments->html,

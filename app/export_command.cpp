@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "app/viewer_page.h"
@@ -27,7 +29,7 @@ namespace {
 struct ExportArguments {
   std::string map, output, format, where, crs = "local";
   PointChoice points;
-  double utc_offset = seconds(LasOptions().utc_offset) / 3600;
+  std::optional<double> utc_offset;  // h
   double voxel = MeshOptions().voxel;
   bool double_positions = false, viewer = false, force = false, quiet = false;
 };
@@ -119,9 +121,26 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
   fmt::print("{} tiles\n", figures.tiles);
 }
 
+CommandFiles files_of(const ExportArguments& arguments, const std::string& format) {
+  CommandFiles files;
+  files.inputs = {arguments.map};
+  const std::map<std::string, FileKind> kinds{{"ply", FileKind::kPly},
+                                              {"pcd", FileKind::kPcd},
+                                              {"las", FileKind::kLas},
+                                              {"glb", FileKind::kGlb},
+                                              {"kitti-poses", FileKind::kPoses}};
+  if (const auto kind = kinds.find(format); kind != kinds.end()) {
+    files.outputs = {{arguments.output, kind->second, arguments.force}};
+  } else {
+    files.folder = {arguments.output};
+  }
+  return files;
+}
+
 void run(ExportArguments& arguments, const CLI::App& command) {
   const std::string format = format_of(arguments);
   check_options(command, arguments, format);
+  check_files(files_of(arguments, format));
   const MapReader map(arguments.map);
   if (format == "kitti-poses") {
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
@@ -137,9 +156,9 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     if (!arguments.quiet) print_figures(arguments, figures);
   };
   if (format == "las") {
-    const LasFigures figures =
-        write_las(map, arguments.output,
-                  {arguments.points, from_seconds(3600 * arguments.utc_offset), arguments.force});
+    LasOptions options{.points = arguments.points, .force = arguments.force};
+    if (arguments.utc_offset) options.utc_offset = from_seconds(3600 * *arguments.utc_offset);
+    const LasFigures figures = write_las(map, arguments.output, options);
     report(figures);
     if (!arguments.quiet) print_times(figures);
     return;
@@ -186,8 +205,8 @@ void add_export_command(CLI::App& app) {
   command
       ->add_option(
           "--utc-offset", arguments->utc_offset,
-          "LAS: hours that the drive's clock is ahead of UTC, for GPS times; KITTI's names "
-          "no zone; default: 2, Karlsruhe's summer time")
+          "LAS: hours that the drive's clock is ahead of UTC, for GPS times; default: 0, or 2 for "
+          "KITTI drives (Karlsruhe's summer time)")
       ->check(finite_range(-24.0, 24.0));
   command
       ->add_option("--voxel", arguments->voxel,

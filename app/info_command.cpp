@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -178,8 +179,19 @@ void check(const std::string& path) {
   }
 }
 
+/// A copy of the map alone would lack what is in its log.
+void report_log(const std::string& map) {
+  const std::filesystem::path log = log_of_map(map);
+  if (log.empty()) return;
+  fmt::print("note: {} is part of the map: copy and move both together\n", log.string());
+}
+
 void run(const InfoArguments& arguments) {
-  if (arguments.check) return check(arguments.map);
+  fold_log(arguments.map);
+  if (arguments.check) {
+    check(arguments.map);
+    return report_log(arguments.map);
+  }
   const MapReader reader(arguments.map);
   if (arguments.digest) {
     fmt::print("{}\n", reader.digest());
@@ -187,6 +199,7 @@ void run(const InfoArguments& arguments) {
     print_json(read_contents(reader));
   } else {
     print_text(read_contents(reader), arguments.map);
+    report_log(arguments.map);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/number_checks.h"
@@ -183,7 +184,24 @@ void require_poses(const LocalizedDrive& localized, const LocalizeArguments& arg
       "give a map of the place, or a better --guess");
 }
 
+bool writes_table(const LocalizeArguments& arguments) {
+  return std::filesystem::path(arguments.output).extension() == ".csv";
+}
+
+CommandFiles files_of(const LocalizeArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.drive.drive, arguments.map, arguments.truth};
+  if (arguments.guess != kNavigation && arguments.guess != kFirst) {
+    files.inputs.push_back(arguments.guess);
+  }
+  const FileKind kind = writes_table(arguments) ? FileKind::kPoseTable : FileKind::kPoses;
+  files.outputs = {{arguments.output, kind, arguments.force},
+                   {arguments.report, FileKind::kReport, /*force=*/true}};
+  return files;
+}
+
 void run(LocalizeArguments arguments, Warnings& warnings) {
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
   std::optional<OutputFile> report;
@@ -202,7 +220,7 @@ void run(LocalizeArguments arguments, Warnings& warnings) {
     return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
   require_poses(localized, arguments);
-  if (std::filesystem::path(arguments.output).extension() == ".csv") {
+  if (writes_table(arguments)) {
     write_pose_table(localized.frames, output.stream());
   } else {
     write_pose_lines(localized.frames, drive->info().begin, drive->info().end, output.stream());

@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/error_line.h"
+#include "app/standard_output.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/printable.h"
 #include "fovea/base/process_memory.h"
@@ -109,7 +110,11 @@ int report_errors(Body&& body) noexcept {
     try {
       return body();
     } catch (const std::exception& error) {
-      print_error(fovea::app::error_line(error, command).c_str());
+      if (fovea::app::standard_output_failed()) {
+        print_error(error.what(), ", standard output, check the disk or the program that reads it");
+      } else {
+        print_error(fovea::app::error_line(error, command).c_str());
+      }
     }
   } catch (...) {  // of the line itself
     print_error("out of memory, this machine, end other programs");
@@ -122,9 +127,14 @@ int report_errors(Body&& body) noexcept {
 int main(int argc, char** argv) {
   command = command_of(argc, argv);
   std::set_terminate(end_with_error);
+  fovea::app::prepare_standard_streams();
   return report_errors([&] {
-    fovea::app::Session session;  // first: it blocks signals for all threads
-    const int code = report_errors([&] { return run(argc, argv, session); });
+    fovea::app::Session session;  // before any thread starts: it blocks signals for all threads
+    const int code = report_errors([&] {
+      const int done = run(argc, argv, session);
+      fovea::app::finish_standard_output();
+      return done;
+    });
     return session.interrupt.exit_code(code);
   });
 }

@@ -1,6 +1,6 @@
 #include "app/map_arguments.h"
 
-#include <filesystem>
+#include <fmt/format.h>
 
 #include "fovea/base/errors.h"
 #include "fovea/map/meta_keys.h"
@@ -19,11 +19,18 @@ MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
   return options;
 }
 
-void require_other_file(const std::string& map, const std::string& output) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(map, output, ignored)) {
-    throw OutputError("a map cannot be written over while it is read", output, "give another name");
+void add_foreign_option(CLI::App& command, bool& foreign) {
+  command.add_flag("--foreign", foreign, "Accept a drive that the map was not made of");
+}
+
+std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameSource& drive,
+                                            bool foreign, bool quiet) {
+  if (foreign) return std::nullopt;
+  DriveMatch match = match_drive(MapReader(map), drive, map);
+  if (!quiet) {
+    for (const std::string& note : match.notes) fmt::print("note: {}\n", note);
   }
+  return match;
 }
 
 }  // namespace fovea::app

@@ -1,9 +1,12 @@
 // What commands that make a map of maps need to know of them.
 #pragma once
 
+#include <CLI/App.hpp>
+#include <optional>
 #include <string>
 
 #include "fovea/map/map_store.h"
+#include "fovea/pipeline/drive_match.h"
 #include "fovea/pipeline/mapper_options.h"
 
 namespace fovea::app {
@@ -11,7 +14,13 @@ namespace fovea::app {
 /// The settings that a map was made with; InputError if it does not tell them.
 MapperOptions stored_options(const MapMeta& meta, const std::string& map);
 
-/// OutputError if the output is the file that is read.
-void require_other_file(const std::string& map, const std::string& output);
+/// Adds the option --foreign.
+void add_foreign_option(CLI::App& command, bool& foreign);
+
+/// The frames of a map that are the drive's (match_drive()). InputError if the map was not made of
+/// the drive; nothing for a `foreign` drive. Prints what could not be compared.
+/// @param drive  under its own calibration
+std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameSource& drive,
+                                            bool foreign, bool quiet = false);
 
 }  // namespace fovea::app

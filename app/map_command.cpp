@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/number_checks.h"
@@ -17,6 +18,7 @@
 #include "app/reports.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
+#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/process_memory.h"
 #include "fovea/geometry/pose_file.h"
@@ -35,9 +37,13 @@ constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
 /// What --live without a port stands for.
 constexpr const char* kSomePort = "some";
 
+/// Values of --poses that are no file.
+constexpr const char* kRefinedPoses = "refine";
+constexpr const char* kNavigationPoses = "navigation";
+
 struct MapArguments {
   DriveArguments drive;
-  std::string output, preset = "default", config, hold_out, poses = "refine", variant, report;
+  std::string output, preset = "default", config, hold_out, poses = kRefinedPoses, variant, report;
   std::vector<std::string> settings;
   int threads = 0;
   double rate = 0;
@@ -80,6 +86,13 @@ void print_interruption(const MapSummary& summary, const MapArguments& arguments
   }
 }
 
+/// The error with what to do with the log that the run leaves next to its map, if there is one.
+OutputError with_log_remedy(const OutputError& error, const std::string& map) {
+  const std::string remedy = log_remedy(map);
+  if (log_of_map(map).empty() || error.remedy() == remedy) return error;
+  return {error.problem(), error.where(), error.remedy() + "; " + remedy};
+}
+
 /// Shows the finished map until Ctrl-C.
 void go_on_showing(std::unique_ptr<LiveShow> show, const MapArguments& arguments,
                    const std::stop_token& stop) {
@@ -114,7 +127,19 @@ std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob&
   return show;
 }
 
+CommandFiles files_of(const MapArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.drive.drive, arguments.config};
+  if (arguments.poses != kRefinedPoses && arguments.poses != kNavigationPoses) {
+    files.inputs.push_back(arguments.poses);
+  }
+  files.outputs = {{arguments.output, FileKind::kMap, arguments.force || arguments.resume},
+                   {arguments.report, FileKind::kReport, /*force=*/true}};
+  return files;
+}
+
 void run(const MapArguments& arguments, Session& session) {
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   MapJob job;
   job.output = arguments.output;
@@ -130,9 +155,9 @@ void run(const MapArguments& arguments, Session& session) {
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
   const std::shared_ptr<const FrameSource> source = arguments.drive.open();
-  if (arguments.poses == "navigation") {
+  if (arguments.poses == kNavigationPoses) {
     job.pose_source = PoseSource::kNavigation;
-  } else if (arguments.poses != "refine") {
+  } else if (arguments.poses != kRefinedPoses) {
     job.pose_source = PoseSource::kGiven;
     const DriveInfo& info = source->info();
     job.given_poses = read_poses(arguments.poses, info.begin, info.end);
@@ -147,7 +172,11 @@ void run(const MapArguments& arguments, Session& session) {
   job.observer = show.get();
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
-    return map_drive(*source, job, std::ref(bar));
+    try {
+      return map_drive(*source, job, std::ref(bar));
+    } catch (const OutputError& error) {
+      throw with_log_remedy(error, arguments.output);
+    }
   }();
   const Messages calibration = calibration_messages(summary);
   if (report) {

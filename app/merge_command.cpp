@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
@@ -42,10 +43,8 @@ void print(const MergeFigures& figures, const std::string& output) {
 }
 
 void run(const MergeArguments& arguments) {
+  check_files({{arguments.a, arguments.b}, {{arguments.output, FileKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
-  for (const std::string& map : {arguments.a, arguments.b}) {
-    require_other_file(map, arguments.output);
-  }
   const MapReader a(arguments.a), b(arguments.b);
   MergeJob job;
   job.output = arguments.output;

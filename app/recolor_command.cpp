@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
@@ -13,7 +14,6 @@
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
-#include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/recolor.h"
@@ -27,7 +27,7 @@ struct RecolorArguments {
   DriveArguments drive;
   std::vector<std::string> settings;
   int threads = 0;
-  bool force = false, quiet = false;
+  bool force = false, quiet = false, foreign = false;
 };
 
 /// The map's own settings, with what is to be different.
@@ -44,6 +44,8 @@ MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta)
 }
 
 void run(RecolorArguments arguments, Warnings& warnings) {
+  check_files({{arguments.map, arguments.drive.drive, arguments.config},
+               {{arguments.output, FileKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
   const MapReader map(arguments.map);
   const MapMeta meta = map.meta();
@@ -51,17 +53,17 @@ void run(RecolorArguments arguments, Warnings& warnings) {
   job.output = arguments.output;
   job.options = options_of(arguments, meta);
   job.force = arguments.force;
-  require_other_file(arguments.map, arguments.output);
-  if (!merged_drives(map).empty()) {
-    throw InputError("the map is of several drives", arguments.map,
-                     "recolour the maps of each, then merge them");
-  }
   if (arguments.drive.cameras.empty() && meta.contains(meta_key::kCameras)) {
     arguments.drive.cameras = meta.at(meta_key::kCameras);
   }
   auto drive = arguments.drive.open();
+  const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign, arguments.quiet);
   if (has_stored_calibration(meta)) {
     drive = with_stored_calibration(std::move(drive), meta, arguments.map);
+  }
+  if (match) {
+    job.drive = match->drives.front();
+    drive = with_map_numbers(std::move(drive), *match);
   }
   const RecolorFigures figures = [&] {
     ProgressBar bar(arguments.quiet);
@@ -76,6 +78,9 @@ void run(RecolorArguments arguments, Warnings& warnings) {
   fmt::print("{}: {} points coloured by {} frames\n", arguments.output,
              figures.points - figures.uncolored, figures.frames);
   if (figures.uncolored > 0) fmt::print("without colour: {} points\n", figures.uncolored);
+  if (map.drives().size() > 1) {
+    fmt::print("note: the map is of several drives: only the images of this one are used\n");
+  }
   if (figures.images_left_out > 0) {
     fmt::print("left out: {} images, blank or exposed otherwise than the others\n",
                figures.images_left_out);
@@ -102,6 +107,7 @@ void add_recolor_command(CLI::App& app, Session& session) {
       ->allow_extra_args(false);
   command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
       ->check(whole_number(0, kMaxThreads));
+  add_foreign_option(*command, arguments->foreign);
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments, &session] { run(*arguments, session.warnings); });

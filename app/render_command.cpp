@@ -3,19 +3,25 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/viewpoint.h"
+#include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/render_drive.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
-#include "fovea/base/path_name.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
@@ -31,7 +37,7 @@ struct RenderArguments {
   std::string map, drive, output, view = "behind";
   std::string camera = "2";
   int frame = -1, width = 1280, height = 720;
-  bool force = false;
+  bool force = false, foreign = false;
 };
 
 constexpr std::array kViews{Viewpoint{"driver", 0, 0, 4 * kDegree, 80 * kDegree},
@@ -60,22 +66,44 @@ SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_
   return splat(points, sample_spacing(points.position), camera, T_local_cam.inverse(), options);
 }
 
+/// A frame of the map with its scan and image.
+using LoadedFrame = std::pair<FrameRecord, Frame>;
+
+/// The frame asked for, or the one next to the middle that can be read.
+LoadedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
+                       const FrameSource& drive) {
+  std::vector<FrameRecord> records = {find_frame(map, arguments.frame, arguments.map)};
+  if (arguments.frame < 0) {
+    const int middle = records.front().index;
+    records = map.frames;
+    std::stable_sort(records.begin(), records.end(),
+                     [&](const FrameRecord& a, const FrameRecord& b) {
+                       return std::abs(a.index - middle) < std::abs(b.index - middle);
+                     });
+  }
+  std::optional<SkippedFrame> first;
+  for (FrameRecord& record : records) {
+    FrameResult loaded = drive.load(record.index);
+    if (auto* frame = std::get_if<Frame>(&loaded)) return {std::move(record), std::move(*frame)};
+    if (!first) first = std::get<SkippedFrame>(loaded);
+  }
+  throw InputError(fmt::format("frame {} cannot be read ({})", first->index, first->detail),
+                   arguments.drive, "choose another --frame");
+}
+
 /// The map as one of the drive's cameras sees it, above the photograph that it took.
-Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
-                        const FrameRecord& frame) {
+Image beside_photograph(const RenderArguments& arguments, ScoredMap& map) {
   const DriveArguments drive_arguments{arguments.drive, "", arguments.camera};
   auto drive = drive_arguments.open();
+  const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign, /*quiet=*/true);
+  if (match) choose_frames(match->number_in_drive, map);
   if (has_stored_calibration(map.meta)) {
     drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
   }
   require_cameras(drive->info(), "a picture beside a photograph");
+  const auto [frame, loaded] = load_frame(arguments, map, *drive);
   const Camera camera = drive->info().camera_at(0, frame.index).at_image(frame.motion);
-  const FrameResult loaded = drive->load(frame.index);
-  if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
-    throw InputError(fmt::format("frame {} cannot be read ({})", skipped->index, skipped->detail),
-                     arguments.drive, "choose another --frame");
-  }
-  const Image& photograph = std::get<Frame>(loaded).images.at(0);
+  const Image& photograph = loaded.images.at(0);
   const SplatView drawn = draw(map, camera, frame.T_local_lidar * camera.T_cam_lidar.inverse());
   Image both(camera.width, 2 * camera.height, 3);
   for (int v = 0; v < camera.height; ++v) {
@@ -90,7 +118,8 @@ Image beside_photograph(const RenderArguments& arguments, const ScoredMap& map,
   return both;
 }
 
-Image from_view(const RenderArguments& arguments, const ScoredMap& map, const FrameRecord& frame) {
+Image from_view(const RenderArguments& arguments, const ScoredMap& map) {
+  const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
   const Viewpoint& view = *std::find_if(
       kViews.begin(), kViews.end(), [&](const Viewpoint& v) { return v.name == arguments.view; });
   return draw(map, viewpoint_camera(view, arguments.width, arguments.height),
@@ -111,15 +140,22 @@ void check_options(const CLI::App& command) {
   }
 }
 
+CommandFiles files_of(const RenderArguments& arguments) {
+  CommandFiles files;
+  files.inputs = {arguments.map, arguments.drive, arguments.path.poses, arguments.camera};
+  if (arguments.path.poses.empty()) {
+    files.outputs = {{arguments.output, FileKind::kPng, arguments.force}};
+  } else {
+    files.folder = {arguments.output};
+  }
+  return files;
+}
+
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
-  ScoredMapOptions loading;
-  if (!arguments.drive.empty()) loading.drive = name_of(arguments.drive);
-  const ScoredMap map = load_scored_map(arguments.map, loading);
-  const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
-  const std::vector<std::uint8_t> png =
-      encode_png(arguments.drive.empty() ? from_view(arguments, map, frame)
-                                         : beside_photograph(arguments, map, frame));
+  ScoredMap map = load_scored_map(arguments.map, {});
+  const std::vector<std::uint8_t> png = encode_png(
+      arguments.drive.empty() ? from_view(arguments, map) : beside_photograph(arguments, map));
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));
   output.commit();
@@ -153,6 +189,7 @@ void add_render_command(CLI::App& app, Session& session) {
       ->capture_default_str()
       ->check(whole_number(16, 8192));
   command->add_flag("--force", arguments->force, "Overwrite OUT");
+  add_foreign_option(*command, arguments->foreign);
   RenderDriveArguments& path = arguments->path;
   command->add_option("--poses", path.poses,
                       "Render a drive: images, depth and scans at each pose T_local_lidar of this "
@@ -175,6 +212,7 @@ void add_render_command(CLI::App& app, Session& session) {
   command->add_flag("--quiet", path.quiet, "Say nothing but errors");
   command->callback([arguments, command, &session] {
     check_options(*command);
+    check_files(files_of(*arguments));
     RenderDriveArguments& drive = arguments->path;
     if (drive.poses.empty()) return run(*arguments);
     drive.map = arguments->map;
@@ -182,8 +220,7 @@ void add_render_command(CLI::App& app, Session& session) {
     if (command->count("--camera") > 0) drive.camera = arguments->camera;
     drive.drive = arguments->drive;
     drive.force = arguments->force;
-    drive.drive = arguments->drive;
-    drive.force = arguments->force;
+    drive.foreign = arguments->foreign;
     render_drive_command(drive, session.warnings);
   });
 }

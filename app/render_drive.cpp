@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/drive_arguments.h"
+#include "app/map_arguments.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
@@ -60,6 +61,23 @@ RenderedCamera camera_of(const std::vector<double>& numbers) {
   return {"camera", camera};
 }
 
+/// Whether the cameras are those of DRIVE, if there is one.
+bool uses_cameras_of_drive(const RenderDriveArguments& arguments) {
+  return arguments.camera.empty() || arguments.camera == "calib";
+}
+
+/// InputError if the map was not made of DRIVE.
+void check_drive(const RenderDriveArguments& arguments) {
+  if (arguments.drive.empty()) return;
+  DriveOptions options;
+  options.use_images = uses_cameras_of_drive(arguments);
+  if (options.use_images && !arguments.cameras.empty()) {
+    options.cameras = parse_cameras(arguments.cameras);
+  }
+  const auto drive = open_drive(arguments.drive, options);
+  find_drive_in_map(arguments.map, *drive, arguments.foreign, arguments.quiet);
+}
+
 std::vector<Camera> calibrated_cameras(const std::string& path, const std::vector<int>& wanted) {
   namespace fs = std::filesystem;
   if (!fs::exists(fs::path(path) / "calib_cam_to_cam.txt")) {
@@ -87,7 +105,7 @@ std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) 
     throw CLI::ValidationError("--cameras", "needs a DRIVE, or --camera with a calibration");
   }
   if (numbers) return {camera_of(*numbers)};
-  const bool of_drive = arguments.camera.empty() || arguments.camera == "calib";
+  const bool of_drive = uses_cameras_of_drive(arguments);
   if (of_drive && arguments.drive.empty()) {
     if (arguments.camera.empty()) return {};
     throw CLI::ValidationError("--camera",
@@ -112,6 +130,7 @@ std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) 
 
 void render_drive_command(const RenderDriveArguments& arguments, Warnings& warnings) {
   const ThreadLimit threads(arguments.threads);
+  check_drive(arguments);
   RenderJob job;
   job.output = arguments.output;
   job.force = arguments.force;

@@ -17,7 +17,7 @@ struct RenderDriveArguments {
   double rate = 10;     ///< frames a second
   double reach = 80;    ///< m
   int threads = 0;
-  bool force = false, quiet = false;
+  bool force = false, quiet = false, foreign = false;
 };
 
 void render_drive_command(const RenderDriveArguments& arguments, Warnings& warnings);

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
-#include "app/map_arguments.h"
 #include "fovea/map/repair.h"
 
 namespace fovea::app {
@@ -18,7 +18,7 @@ struct RepairArguments {
 };
 
 void run(const RepairArguments& arguments, Warnings& warnings) {
-  require_other_file(arguments.map, arguments.output);
+  check_files({{arguments.map}, {{arguments.output, FileKind::kMap, arguments.force}}});
   // Before a file is made: whether this is a map at all.
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
   const auto writer = MapWriter::create(arguments.output, arguments.force);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/number_checks.h"
@@ -78,7 +79,21 @@ std::filesystem::path make_folder(const std::filesystem::path& folder) {
   return folder;
 }
 
+CommandFiles files_of(const ReproduceArguments& arguments) {
+  CommandFiles files;
+  files.inputs = arguments.drives;
+  files.inputs.push_back(arguments.mls);
+  files.folder = {arguments.output, FolderUse::kAddTo};
+  const std::filesystem::path folder = arguments.output;
+  if (std::filesystem::is_directory(folder)) {
+    files.outputs = {{folder / "results.json", FileKind::kReport, /*force=*/true},
+                     {folder / "results.md", FileKind::kMarkdown, /*force=*/true}};
+  }
+  return files;
+}
+
 void run(const ReproduceArguments& arguments, Warnings& warnings) {
+  check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   const std::vector<std::string> rows = wanted_rows(arguments);
   std::vector<std::unique_ptr<FrameSource>>

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "app/progress_bar.h"
@@ -36,6 +37,7 @@ SimulationOptions resolve_options(const SimulateArguments& arguments) {
 }
 
 void run(const SimulateArguments& arguments) {
+  check_files({{arguments.config}, {}, {arguments.output}});
   const ThreadLimit threads(arguments.threads);
   const SimulationOptions options = resolve_options(arguments);
   const std::filesystem::path drive = [&] {

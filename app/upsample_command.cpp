@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "fovea/base/errors.h"
@@ -12,7 +13,7 @@
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/sensor/kitti_calibration.h"
-#include "fovea/sensor/kitti_scan.h"
+#include "fovea/sensor/lidar_scan.h"
 
 namespace fovea::app {
 namespace {
@@ -44,8 +45,10 @@ PointCloud in_view(const PointCloud& points_cam, const Camera& camera) {
 }
 
 void run(const UpsampleArguments& arguments) {
+  check_files({{arguments.scan, arguments.calibration},
+               {{arguments.output, FileKind::kPly, arguments.force}}});
   const Camera camera = find_camera(arguments);
-  const PointCloud scan_lidar = read_kitti_scan(arguments.scan).points;
+  const PointCloud scan_lidar = read_lidar_scan(arguments.scan, {}, 0).points;
   const PointCloud visible_cam = in_view(transform_cloud(scan_lidar, camera.T_cam_lidar), camera);
   const PointCloud dense_cam = upsample(visible_cam, camera, arguments.options);
   write_cloud_ply(transform_cloud(dense_cam, camera.T_cam_lidar.inverse()), arguments.output,
@@ -57,8 +60,8 @@ void run(const UpsampleArguments& arguments) {
 
 void add_upsample_command(CLI::App& app) {
   auto arguments = std::make_shared<UpsampleArguments>();
-  CLI::App* command = app.add_subcommand("upsample", "Densify one KITTI scan in a camera's view");
-  command->add_option("SCAN.bin", arguments->scan, "KITTI scan")->required();
+  CLI::App* command = app.add_subcommand("upsample", "Densify one scan in a camera's view");
+  command->add_option("SCAN", arguments->scan, "Scan in .bin, PCD or PLY")->required();
   command->add_option("CALIB_DIR", arguments->calibration, "Folder of the date's calibration files")
       ->required();
   command->add_option("OUT.ply", arguments->output, "Points in the LiDAR frame")->required();

@@ -2,19 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/path_name.h"
-#include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/server/map_show.h"
@@ -27,41 +24,23 @@ struct ViewArguments {
   DriveArguments drive;
   WebServerOptions server;
   int port = -1;
-  bool no_browser = false, quiet = false;
+  bool no_browser = false, quiet = false, foreign = false;
 };
-
-/// Which of the map's frames are the drive's; InputError if the map is not of that drive.
-DriveImages::Frames frames_of_drive(const MapReader& map, const ViewArguments& arguments) {
-  const std::string name = name_of(arguments.drive.drive);
-  const std::vector<MergedDrive> merged = merged_drives(map);
-  if (!merged.empty()) {
-    const auto found = std::find_if(merged.begin(), merged.end(),
-                                    [&](const MergedDrive& drive) { return drive.name == name; });
-    if (found != merged.end()) {
-      return {found->first_frame, found->end_frame, found->frame_shift};
-    }
-  } else {
-    const MapMeta meta = map.meta();
-    const auto known = meta.find(meta_key::kDriveName);
-    if (known == meta.end() || known->second == name) return {};
-  }
-  throw InputError(fmt::format("the map was not made of the drive '{}'", name), arguments.map,
-                   "give the drive that 'fovea info' names");
-}
 
 std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
   if (arguments.drive.drive.empty()) return nullptr;
   const MapReader map(arguments.map);
   const MapMeta meta = map.meta();
-  const DriveImages::Frames frames = frames_of_drive(map, arguments);
   DriveArguments drive = arguments.drive;
   if (drive.cameras.empty() && meta.contains(meta_key::kCameras))
     drive.cameras = meta.at(meta_key::kCameras);
   std::unique_ptr<FrameSource> source = drive.open();
+  const auto match = find_drive_in_map(arguments.map, *source, arguments.foreign, arguments.quiet);
   if (has_stored_calibration(meta)) {
     source = with_stored_calibration(std::move(source), meta, arguments.map);
   }
-  return std::make_shared<const DriveImages>(std::move(source), frames);
+  if (match) source = with_map_numbers(std::move(source), *match);
+  return std::make_shared<const DriveImages>(std::move(source));
 }
 
 void run(const ViewArguments& arguments, Session& session) {
@@ -76,6 +55,8 @@ void run(const ViewArguments& arguments, Session& session) {
   }
   if (!arguments.no_browser) open_browser(show->url());
   wait_for(session.interrupt.stop_gently());
+  show.reset();
+  fold_log(arguments.map);  // of a map whose writer ended in the meantime
 }
 
 }  // namespace
@@ -102,6 +83,7 @@ void add_view_command(CLI::App& app, Session& session) {
       ->add_option("--address", arguments->server.address,
                    "Address to serve at: 0.0.0.0 shows the map to all that reach this machine")
       ->capture_default_str();
+  add_foreign_option(*command, arguments->foreign);
   command->add_flag("--no-browser", arguments->no_browser, "Open no browser");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments, &session] { run(*arguments, session); });

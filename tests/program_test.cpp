@@ -343,7 +343,7 @@ TEST_F(Program, DamagedFramesAreSkippedAndCounted) {
   const auto report = own_ / "report.json";
   const ProgramRun run = map(drive, "--report " + report.string());
   ASSERT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.out, HasSubstr("1 of 6 GPS/INS records cannot be used"));
+  EXPECT_THAT(run.err, HasSubstr("1 of 6 GPS/INS records cannot be used"));
   const auto figures = nlohmann::json::parse(read_text(report)).at("map");
   EXPECT_EQ(figures.at("frames"), 4);  // one without its record is mapped all the same
   EXPECT_EQ(figures.at("frames_skipped").at("damaged scan"), 1);
@@ -376,7 +376,7 @@ TEST_F(Program, BadStamps) {
   std::filesystem::remove(file);
   const ProgramRun run = map(drive, "--force");
   ASSERT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.out, HasSubstr("10 Hz"));
+  EXPECT_THAT(run.err, HasSubstr("10 Hz"));
 }
 
 TEST_F(Program, WithoutNavigationItSaysSo) {
@@ -384,7 +384,7 @@ TEST_F(Program, WithoutNavigationItSaysSo) {
   std::filesystem::remove_all(drive / "oxts");
   const ProgramRun run = map(drive);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("navigation"));
+  EXPECT_THAT(run.err, HasSubstr("navigation"));
   EXPECT_EQ(info().at("meta").at("georeferenced"), "0");
   const ProgramRun nav = map(drive, "--force --poses navigation");
   EXPECT_EQ(nav.exit_code, 1);
@@ -400,8 +400,11 @@ TEST_F(Program, BadOutputs) {
   write_text(output(), "something dear");
   const ProgramRun refused = map(drive_);
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_THAT(refused.err, HasSubstr("of another kind"));
+  EXPECT_EQ(map(drive_, "--force").exit_code, 1);
   EXPECT_EQ(read_text(output()), "something dear");
+  write_text(output(), "");
+  EXPECT_THAT(map(drive_).err, HasSubstr("--force"));
   EXPECT_EQ(map(drive_, "--force").exit_code, 0);
 }
 

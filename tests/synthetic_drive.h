@@ -64,6 +64,8 @@ class SyntheticDrive : public FrameSource {
   BoxScene scene;
   std::vector<RigidMotion> T_local_lidar;  ///< true pose of each frame
   int beams = 48, columns = 720;
+  int paused_frame = 0;  ///< the recording pauses before this frame,
+  TimeNs pause = 0;      ///< for so long
 
   /// Straight ahead (local x) in steps, with a slight weave, one camera, scans without sweep
   /// motion.
@@ -97,11 +99,13 @@ class SyntheticDrive : public FrameSource {
   DriveInfo& editable_info() { return info_; }
 
   const DriveInfo& info() const override { return info_; }
-  std::optional<TimeNs> stamp(int index) const override { return stamp_of(index); }
+  std::optional<TimeNs> stamp(int index) const override {
+    return stamp_of(index) + (index >= paused_frame ? pause : 0);
+  }
   FrameResult load(int index) const override {
     Frame frame;
     frame.index = index;
-    frame.stamp = stamp_of(index);
+    frame.stamp = *stamp(index);
     const RigidMotion& T = T_local_lidar[std::size_t(index)];
     for (int b = 0; b < beams; ++b) {
       const double elevation = (3.0 - 28.0 * b / (beams - 1)) * std::numbers::pi / 180;

@@ -12,6 +12,8 @@
 namespace fovea::app {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 MlsRow& row_of(MlsTimes& times, const std::string& method) {
   const auto found = std::find_if(times.rows.begin(), times.rows.end(),
                                   [&](const MlsRow& row) { return row.method == method; });
@@ -19,16 +21,16 @@ MlsRow& row_of(MlsTimes& times, const std::string& method) {
   return times.rows.emplace_back(MlsRow{method, {}});
 }
 
-MlsTimes times_of(const nlohmann::json& json) {
+MlsTimes times_of(const Json& json) {
   MlsTimes times{json.at("drive"), json.at("search_radius"), json.at("polynomial_order"), {}};
-  const nlohmann::json& columns = json.at("columns");
+  const Json& columns = json.at("columns");
   const auto wanted = paper_table_1();
   if (columns.size() != wanted.size()) throw std::runtime_error("it has not the table's columns");
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (columns[c].at("points") != wanted[c].points) {
       throw std::runtime_error("it has other columns than the table");
     }
-    for (const nlohmann::json& result : columns[c].at("results")) {
+    for (const Json& result : columns[c].at("results")) {
       if (result.at("threads") != 1 || result.at("method") == "fovea") continue;
       row_of(times, result.at("method"))
           .of_columns.push_back({result.at("given"), result.at("produced"), result.at("seconds"),
@@ -47,7 +49,7 @@ MlsTimes times_of(const nlohmann::json& json) {
 MlsTimes read_mls_times(const std::filesystem::path& file) {
   const std::vector<std::uint8_t> bytes = read_bytes(file);
   try {
-    return times_of(nlohmann::json::parse(bytes));
+    return times_of(Json::parse(bytes));
   } catch (const std::exception& error) {
     throw InputError(fmt::format("no times of the upsampling benchmark: {}", error.what()),
                      file.string(), "write it with upsampling_bench --json");

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
-
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
 #include "app/reports.h"
 #include "app/reproduce/ablations.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/path_name.h"
 #include "fovea/base/unfinished_output.h"
 #include "fovea/base/version.h"
@@ -166,8 +165,9 @@ Json run_row(const FrameSource& drive, const std::string& row, const std::filesy
   if (plan.pose_source == PoseSource::kNavigation && !drive.info().navigation) return nullptr;
   const std::filesystem::path file = folder / (row + ".json");
   const bool has_page = page.empty() || std::filesystem::exists(page);
-  if (std::ifstream stream(file); stream && has_page) {
-    const Json kept = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (std::filesystem::exists(file) && has_page) {
+    const Json kept = Json::parse(InputFile(file, kDescriptionFile).bytes(), nullptr,
+                                  /*allow_exceptions=*/false);
     if (kept.is_object() && kept.value("config", "") == fingerprint(plan, drive)) return kept;
   }
   Json result = RowRun(drive, row, folder, page).run(plan);

@@ -281,6 +281,7 @@ def evaluate(
     *,
     cameras: Sequence[int] = ...,
     hold_out: str = "",
+    foreign: bool = False,
     threads: int = 0,
 ) -> Dict[str, Any]:
     """Scores a map against its drive: the keys of `fovea evaluate --json`."""

@@ -40,13 +40,18 @@ fs::path folder_of(const fs::path& path) {
 }  // namespace
 
 void throw_output_error(const fs::path& path, int error) {
-  // EFBIG: a limit on file sizes, of the user or of the file system (4 GB on FAT).
-  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
-    throw OutputError(fmt::format("the disk is full ({})", std::generic_category().message(error)),
-                      path.string(), "free some space or write to another disk");
+  const std::string reason = std::generic_category().message(error);
+  if (error == EFBIG) {  // 4 GB on FAT
+    throw OutputError(
+        fmt::format("the disk is full or the file is larger than a limit allows ({})", reason),
+        path.string(), "free some space, raise the limit (ulimit -f) or write to another disk");
   }
-  throw OutputError(fmt::format("cannot be written ({})", std::generic_category().message(error)),
-                    path.string(), "check the path and its permissions");
+  if (error == ENOSPC || error == EDQUOT) {
+    throw OutputError(fmt::format("the disk is full ({})", reason), path.string(),
+                      "free some space or write to another disk");
+  }
+  throw OutputError(fmt::format("cannot be written ({})", reason), path.string(),
+                    "check the path and its permissions");
 }
 
 fs::path check_output_path(const fs::path& path, bool force) {

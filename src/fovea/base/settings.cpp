@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -35,14 +36,14 @@ class Reader : public SettingVisitor {
   /// ConfigError for the first key of the document that is not known.
   void reject_unknown_keys(std::string_view help) const { reject_unknown(table_, "", help); }
 
-  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else the key
-  /// alone.
+  /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else "FILE,
+  /// KEY".
   std::string where(std::string_view key) const {
     std::string_view path = key;
     while (true) {
       if (const toml::node* node = table_.at_path(path).node()) return place(*node, key);
       const std::size_t dot = path.rfind('.');
-      if (dot == std::string_view::npos) return std::string(key);
+      if (dot == std::string_view::npos) return fmt::format("{}, key '{}'", name_, key);
       path = path.substr(0, dot);
     }
   }
@@ -263,13 +264,9 @@ SettingsDocument SettingsDocument::from_text(std::string_view text, std::string_
 }
 
 SettingsDocument SettingsDocument::from_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError("the configuration cannot be read", file.string(), "check the path");
-  }
-  return from_text(text.str(), file.string());
+  const std::vector<std::uint8_t> bytes = InputFile(file, kSettingsFile).bytes();
+  const std::string text(bytes.begin(), bytes.end());
+  return from_text(without_byte_order_mark(text, file.string()), file.string());
 }
 
 SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "../../../tests/temporary_folder.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 
@@ -120,6 +123,40 @@ TEST(Settings, ErrorsNameFileLineAndKey) {
   EXPECT_THAT(error_of("[c]\ntext = 7"), HasSubstr("give a text in quotes"));
   EXPECT_THAT(error_of("[c]\nlengths = [1, 'x']"), HasSubstr("give a number"));
   EXPECT_THAT(error_of("[b"), HasSubstr("x.toml:1"));
+}
+
+TEST(Settings, WhatIsRejectedForWantOfAnyTableNamesTheFile) {
+  const auto document = SettingsDocument::from_text("[a]\non = true", "x.toml");
+  Options options;
+  const auto reject = [&](const char* key) -> std::string {
+    try {
+      document.apply([&](SettingVisitor& visit) { visit_options(visit, options); },
+                     [&] { throw ConfigError("a key is missing", key, "add it"); }, "");
+    } catch (const ConfigError& error) {
+      return error.where();
+    }
+    return "nothing was rejected";
+  };
+  EXPECT_EQ(reject("version"), "x.toml, key 'version'");
+  EXPECT_EQ(reject("d.length"), "x.toml, key 'd.length'");
+}
+
+TEST(Settings, AByteOrderMarkIsNoPartOfAFile) {
+  const TemporaryFolder folder;
+  const auto read_text = [&](std::string_view text) {
+    std::ofstream(folder / "x.toml", std::ios::binary) << text;
+    Options options;
+    SettingsDocument::from_file(folder / "x.toml")
+        .apply([&](SettingVisitor& visit) { visit_options(visit, options); }, [] {}, "");
+    return options.count;
+  };
+  EXPECT_EQ(read_text("\xEF\xBB\xBF[a]\r\ncount = 7\r\n"), 7);
+  try {
+    read_text(std::string_view("\xFF\xFE[\0a\0", 6));
+    FAIL() << "UTF-16 was read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("UTF-16"), HasSubstr("x.toml")));
+  }
 }
 
 TEST(Settings, NumbersInRowsAndTextsComeBackFromWhatIsWritten) {

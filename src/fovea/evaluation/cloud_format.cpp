@@ -1,14 +1,21 @@
 #include "fovea/evaluation/cloud_format.h"
 
 #include <cctype>
+#include <string>
 
+#include "fovea/base/errors.h"
+#include "fovea/base/file_format.h"
+#include "fovea/base/input_file.h"
 #include "fovea/evaluation/las_reader.h"
 #include "fovea/evaluation/pcd_reader.h"
 #include "fovea/evaluation/ply_reader.h"
 
 namespace fovea {
 
-std::optional<CloudFormat> cloud_format(const std::filesystem::path& file) {
+namespace {
+
+/// The readers of clouds and maps report what is wrong with a file of no known format.
+std::optional<CloudFormat> format_by_ending(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".ply") return CloudFormat::kPly;
@@ -16,6 +23,31 @@ std::optional<CloudFormat> cloud_format(const std::filesystem::path& file) {
   if (ending == ".las") return CloudFormat::kLas;
   if (ending == ".laz") return CloudFormat::kLaz;
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<CloudFormat> cloud_format(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return format_by_ending(file);
+  const SniffedFormat found = sniff_format(InputFile(file, kStreamedFile).beginning(kSniffedBytes));
+  switch (found.format) {
+    case FileFormat::kPly:
+      return CloudFormat::kPly;
+    case FileFormat::kPcd:
+      return CloudFormat::kPcd;
+    case FileFormat::kLas:
+      return CloudFormat::kLas;
+    case FileFormat::kLaz:
+      return CloudFormat::kLaz;
+    case FileFormat::kSqlite:
+      return std::nullopt;
+    case FileFormat::kUnknown:
+      return format_by_ending(file);
+    default:
+      throw InputError("this is " + std::string(found.name) + ", neither a map nor a cloud",
+                       file.string(), "give a Fovea map, or a cloud in PLY, PCD or LAS");
+  }
 }
 
 CloudFile read_cloud(const std::filesystem::path& file, CloudFormat format,

@@ -11,7 +11,8 @@ namespace fovea {
 
 enum class CloudFormat { kPly, kPcd, kLas, kLaz };
 
-/// By the ending, in any case; empty if it is none of a cloud.
+/// By the content, or by the ending in any case if the content is of no known format. Empty for a
+/// map. InputError that names the format of any other file.
 std::optional<CloudFormat> cloud_format(const std::filesystem::path& file);
 
 /// Reads a coloured cloud, see read_ply, read_pcd and read_las. InputError if it is missing,

@@ -1,6 +1,7 @@
 #include "fovea/evaluation/las_reader.h"
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/sensor/cloud_rows.h"
 
 namespace fovea {
@@ -30,11 +31,7 @@ constexpr std::array<Layout, 6> kLayouts = {{{2, 26, 20, false},
 class LasFile {
  public:
   LasFile(const std::filesystem::path& file, const Eigen::Vector3d& origin)
-      : file_(file), stream_(file, std::ios::binary), cloud_(file, origin) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(file, error);
-    if (!stream_ || error)
-      throw InputError("the file cannot be read", file.string(), "check the path");
+      : file_(file), input_(file, kStreamedFile), cloud_(file, origin) {
     read_header();
   }
 
@@ -72,9 +69,9 @@ class LasFile {
 
   void read_header() {
     std::string header(kHeaderBytes14, '\0');
-    stream_.read(header.data(), kHeaderBytes14);
-    const auto got = static_cast<std::size_t>(stream_.gcount());
-    stream_.clear();
+    input_.stream().read(header.data(), kHeaderBytes14);
+    const auto got = static_cast<std::size_t>(input_.stream().gcount());
+    input_.stream().clear();
     if (!header.starts_with("LASF"))
       reject("this is no LAS file", 0, "give a LAS file, 1.2 to 1.4");
     if (got < kHeaderBytes12) reject("the LAS header ends early", got);
@@ -107,7 +104,7 @@ class LasFile {
     begin_ = static_cast<std::uintmax_t>(at(Scalar::kUint32, kPointsBegin));
     if (begin_ < header_size) reject("the points begin inside the header", kPointsBegin);
     // A damaged header can say anything: checked before anything is allocated.
-    if (begin_ > size_ || points_ > (size_ - begin_) / record_bytes_) {
+    if (begin_ > input_.size() || points_ > (input_.size() - begin_) / record_bytes_) {
       reject("the file is too short for its " + std::to_string(points_) + " points", kPointsBegin);
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -146,10 +143,10 @@ class LasFile {
     constexpr std::size_t kBlock = 1 << 10;
     // No larger than the file needs: a header may give a point 64 KiB.
     std::string buffer(std::min<std::size_t>(kBlock, points_) * record_bytes_, '\0');
-    stream_.seekg(static_cast<std::streamoff>(begin_));
+    input_.stream().seekg(static_cast<std::streamoff>(begin_));
     for (std::size_t begin = 0; begin < points_; begin += kBlock) {
       const std::size_t count = std::min<std::size_t>(kBlock, points_ - begin);
-      if (!stream_.read(buffer.data(), std::streamsize(count * record_bytes_))) {
+      if (!input_.stream().read(buffer.data(), std::streamsize(count * record_bytes_))) {
         reject("the file cannot be read to its end", begin_ + begin * record_bytes_);
       }
       for (std::size_t i = 0; i < count; ++i) f(buffer.data() + i * record_bytes_, begin + i);
@@ -157,8 +154,8 @@ class LasFile {
   }
 
   std::filesystem::path file_;
-  std::ifstream stream_;
-  std::uintmax_t size_ = 0, begin_ = 0;  // bytes: of the file, before the first point
+  InputFile input_;
+  std::uintmax_t begin_ = 0;  // bytes before the first point
   CloudBuilder cloud_;
   Layout layout_{};
   std::size_t record_bytes_ = 0;

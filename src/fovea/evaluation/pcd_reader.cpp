@@ -60,7 +60,8 @@ class ColoredPoints : public CloudRows {
 
 CloudFile read_pcd(const std::filesystem::path& file, const Eigen::Vector3d& origin) {
   ColoredPoints points(file, origin);
-  read_pcd_rows(file, points);
+  InputFile input(file, kStreamedFile);
+  read_pcd_rows(input, points);
   return points.take();
 }
 

@@ -57,7 +57,8 @@ class ColoredVertices : public CloudRows {
 
 CloudFile read_ply(const std::filesystem::path& file, const Eigen::Vector3d& origin) {
   ColoredVertices vertices(file, origin);
-  read_ply_rows(file, vertices);
+  InputFile input(file, kStreamedFile);
+  read_ply_rows(input, vertices);
   return vertices.take();
 }
 

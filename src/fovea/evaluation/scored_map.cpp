@@ -11,7 +11,6 @@
 #include "fovea/evaluation/las_reader.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/map/map_meta.h"
 
 namespace fovea {
 namespace {
@@ -33,35 +32,6 @@ std::vector<int> cameras_of(const PointCloud& points) {
   return {cameras.begin(), cameras.end()};
 }
 
-/// Leaves of a merged map's frames those of the drives of one name, by their numbers there. Where
-/// two parts of a map show one frame it counts as mapped if either used it.
-void choose_drive(const std::vector<MergedDrive>& drives, const std::string& name,
-                  const std::filesystem::path& path, ScoredMap& map) {
-  std::map<int, FrameRecord> chosen;
-  std::map<int, int> number_of;  // in the drive, by the number in the map
-  for (const FrameRecord& record : map.frames) {
-    for (const MergedDrive& drive : drives) {
-      const bool is_its = record.index >= drive.first_frame && record.index < drive.end_frame;
-      if (drive.name != name || !is_its) continue;
-      FrameRecord renumbered = record;
-      renumbered.index -= drive.frame_shift;
-      number_of[record.index] = renumbered.index;
-      const auto [there, is_new] = chosen.try_emplace(renumbered.index, renumbered);
-      if (!is_new && record.status == FrameStatus::kMapped) there->second.status = record.status;
-    }
-  }
-  if (chosen.empty()) {
-    throw InputError(fmt::format("the merged map was not made of the drive '{}'", name),
-                     path.string(), "give one of the drives that 'fovea info' names");
-  }
-  map.frames.clear();
-  for (auto& [number, record] : chosen) map.frames.push_back(std::move(record));
-  for (std::int32_t& frame : map.points_local.frame) {
-    const auto found = number_of.find(frame);
-    frame = found == number_of.end() ? -1 : found->second;
-  }
-}
-
 /// Gives points without color their intensity as gray, for pictures. Scores of colors leave these
 /// points out.
 void show_intensity(const PointCloud& tile, std::vector<Rgb>& color) {
@@ -72,7 +42,7 @@ void show_intensity(const PointCloud& tile, std::vector<Rgb>& color) {
   }
 }
 
-ScoredMap load_fovea_map(const std::filesystem::path& path, const std::string& drive) {
+ScoredMap load_fovea_map(const std::filesystem::path& path) {
   const MapReader reader(path);
   ScoredMap map;
   map.frames = reader.frames();
@@ -93,8 +63,6 @@ ScoredMap load_fovea_map(const std::filesystem::path& path, const std::string& d
         transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
   });
   map.cameras = cameras_of(map.points_local);
-  const std::vector<MergedDrive> drives = merged_drives(reader);
-  if (!drives.empty() && !drive.empty()) choose_drive(drives, drive, path, map);
   return map;
 }
 
@@ -133,7 +101,25 @@ ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOpti
   if (options.poses) {
     throw ConfigError("a Fovea map has poses of its own", path.string(), "leave out --poses");
   }
-  return load_fovea_map(path, options.drive);
+  return load_fovea_map(path);
+}
+
+void choose_frames(const std::map<int, int>& number_in_drive, ScoredMap& map) {
+  std::map<int, FrameRecord> chosen;
+  for (const FrameRecord& record : map.frames) {
+    const auto number = number_in_drive.find(record.index);
+    if (number == number_in_drive.end()) continue;
+    FrameRecord renumbered = record;
+    renumbered.index = number->second;
+    const auto [place, is_new] = chosen.try_emplace(renumbered.index, renumbered);
+    if (!is_new && record.status == FrameStatus::kMapped) place->second.status = record.status;
+  }
+  map.frames.clear();
+  for (auto& [number, record] : chosen) map.frames.push_back(std::move(record));
+  for (std::int32_t& frame : map.points_local.frame) {
+    const auto number = number_in_drive.find(frame);
+    frame = number == number_in_drive.end() ? -1 : number->second;
+  }
 }
 
 }  // namespace fovea

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,14 +28,15 @@ struct ScoredMapOptions {
   /// T_local_lidar, 12 numbers a line (3x4, row-major); needed for a cloud, and for a cloud only.
   std::optional<std::filesystem::path> poses;
   int first_frame = 0;  ///< frame index of the first line of `poses`
-  /// Of a merged map only this drive's frames, by their numbers in it; points of other drives then
-  /// are of frame -1. Empty: all, by the map's own numbers.
-  std::string drive = {};
 };
 
 /// Loads a Fovea map, or a coloured cloud (PLY, PCD, LAS) with its poses, told apart by the file's
-/// ending. InputError if a file is missing, damaged or of a format that is not read (LAZ), or if a
-/// merged map was not made of the drive; ConfigError for poses that are missing or not wanted.
+/// ending. InputError if a file is missing, damaged or of a format that is not read (LAZ);
+/// ConfigError for poses that are missing or not wanted.
 ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options);
+
+/// Leaves the frames of one drive, under their numbers in the drive. Points of other frames then
+/// are of frame -1. If a merged map has a frame twice, it counts as mapped if either is mapped.
+void choose_frames(const std::map<int, int>& number_in_drive, ScoredMap& map);
 
 }  // namespace fovea

@@ -170,17 +170,24 @@ TEST_F(ScoredMapTest, CompressedLasIsRefusedWithAWayOut) {
   }
 }
 
-TEST_F(ScoredMapTest, CloudsAreToldByTheirEnding) {
+TEST_F(ScoredMapTest, TheContentOfACloudDecidesItsFormat) {
   const auto poses = write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   const std::string pcd =
       "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nWIDTH 1\nHEIGHT 1\nDATA ascii\n1 2 3 66051\n";
-  for (const char* name : {"a.pcd", "a.PCD"}) {
+  for (const char* name : {"a.pcd", "a.PCD", "a.ply", "a.las", "a"}) {
     const ScoredMap map = load_scored_map(write(name, pcd), {.poses = poses});
     EXPECT_THAT(map.points_local.color, ElementsAre(Rgb{1, 2, 3}));
   }
-  for (const char* name : {"a.ply", "a.las"}) {
-    EXPECT_THROW(load_scored_map(write(name, pcd), {.poses = poses}), InputError);
+  for (const char* name : {"a.ply", "a.fovea"}) {
+    EXPECT_THAT([&] { load_scored_map(write(name, "ASTM-E57 and more"), {.poses = poses}); },
+                ThrowsMessage<InputError>(HasSubstr("an E57 point cloud, neither a map nor")));
   }
+  const std::string ply =
+      "ply \nformat ascii 1.0\nelement vertex 1\nproperty float X\nproperty float Y\n"
+      "property float Z\nproperty uchar Red\nproperty uchar Green\nproperty uchar Blue\n"
+      "end_header\n1 2 3 4 5 6\n";
+  const ScoredMap map = load_scored_map(write("a.ply", ply), {.poses = poses});
+  EXPECT_THAT(map.points_local.color, ElementsAre(Rgb{4, 5, 6}));
 }
 
 TEST_F(ScoredMapTest, LoadsAFoveaMap) {

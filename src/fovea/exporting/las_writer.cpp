@@ -15,6 +15,7 @@
 #include "fovea/base/output_file.h"
 #include "fovea/base/version.h"
 #include "fovea/exporting/point_packing.h"
+#include "fovea/sensor/kitti_drives.h"
 
 // Numbers of sections and tables are those of the LAS Specification 1.4 - R15 (ASPRS).
 namespace fovea {
@@ -84,12 +85,23 @@ std::string variable_length_records(const Georeference& georeference) {
          variable_length_record("LASF_Spec", 4, "Extra bytes", extra_bytes_content());
 }
 
+/// How far the stamp of a frame is ahead of UTC, by the kind of its drive.
+TimeNs utc_offset_of_frame(int frame, const std::vector<DriveRecord>& drives) {
+  for (const DriveRecord& drive : drives) {
+    const bool is_its_own = frame >= drive.first_frame && frame < drive.end_frame;
+    if (is_its_own) return utc_offset_of(drive.kind);
+  }
+  return 0;
+}
+
 /// GPS times of a map's frames.
 class FrameTimes {
  public:
-  FrameTimes(const std::vector<FrameRecord>& frames, TimeNs utc_offset) {
-    for (const FrameRecord& frame : frames) {
+  FrameTimes(const MapReader& map, std::optional<TimeNs> stated_offset) {
+    const std::vector<DriveRecord> drives = map.drives();
+    for (const FrameRecord& frame : map.frames()) {
       if (!frame.stamp) continue;
+      const TimeNs utc_offset = stated_offset.value_or(utc_offset_of_frame(frame.index, drives));
       // Beyond any date the difference could overflow.
       const std::optional<double> gps = adjusted_gps_seconds(*frame.stamp)
                                             ? adjusted_gps_seconds(*frame.stamp - utc_offset)
@@ -227,7 +239,7 @@ LasFigures write_las(const MapReader& map, const std::filesystem::path& path,
                      const LasOptions& options) {
   OutputFile file(path, options.force);
   const PointStream points(map, options.points);
-  const FrameTimes times(map.frames(), options.utc_offset);
+  const FrameTimes times(map, options.utc_offset);
   const std::string records = variable_length_records(points.georeference());
   LasFigures figures{points.figures(), 0, times.dated()};
   Grid grid(points.georeference().from_local(Eigen::Vector3d::Zero()));

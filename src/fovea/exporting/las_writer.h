@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "fovea/base/time.h"
 #include "fovea/exporting/point_stream.h"
@@ -10,9 +11,8 @@ namespace fovea {
 
 struct LasOptions {
   PointChoice points = {};
-  /// What the drive's clock is ahead of UTC. KITTI's stamps name no zone; they are taken for
-  /// Karlsruhe's summer time.
-  TimeNs utc_offset = TimeNs{2} * 3600 * kNsPerSecond;
+  /// How far the stamps are ahead of UTC. Absent: the kind of each drive of the map determines it.
+  std::optional<TimeNs> utc_offset = {};
   bool force = false;  ///< replace an existing file
 };
 

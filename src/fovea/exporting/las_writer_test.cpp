@@ -1,5 +1,6 @@
 #include "fovea/exporting/las_writer.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,6 +67,13 @@ class LasWriter : public testing::Test {
   LasFigures write(const LasOptions& options = {}) {
     return write_las(MapReader(folder_ / "a.fovea"), folder_ / "a.las", options);
   }
+  double gps_time_of(int frame, LasOptions options = {}) {
+    options.points.where = PointFilter::parse(fmt::format("frame == {}", frame));
+    options.points.include_uncolored = true;
+    options.force = true;
+    write(options);
+    return Las(folder_ / "a.las").gps_time(0);
+  }
   TemporaryFolder folder_;
 };
 
@@ -123,9 +131,9 @@ TEST_F(LasWriter, EveryFieldOfEveryPoint) {
     EXPECT_EQ(las.at<std::uint8_t>(at + 46), tile.views[i]);
     EXPECT_EQ(las.at<std::uint8_t>(at + 47), tile.spread[i]);
     EXPECT_EQ(las.at<std::uint8_t>(at + 48), tile.reason[i]);
-    // Frame 7 is of 2011-09-26 14:14:13.07 in Karlsruhe.
+    // Frame 7 is of 2011-09-26 14:14:13.07 UTC, and GPS was 15 leap seconds ahead.
     if (tile.frame[i] == 7) {
-      EXPECT_NEAR(las.gps_time(row), 1317046453.072943 - 7200 - 315964800 + 15 - 1e9, 1e-6);
+      EXPECT_NEAR(las.gps_time(row), 1317046453.072943 - 315964800 + 15 - 1e9, 1e-6);
     } else if (tile.frame[i] != 8) {
       EXPECT_EQ(las.gps_time(row), 0);
       ++without_time;
@@ -136,13 +144,49 @@ TEST_F(LasWriter, EveryFieldOfEveryPoint) {
   EXPECT_TRUE(figures.dated);
 }
 
-TEST_F(LasWriter, TheClockCanBeOfAnotherZone) {
+// Frame 7 is of 14:14:13.07 by its stamp. GPS seconds at 2011-09-26 00:00:00 UTC: 1655 weeks and
+// one day since 1980-01-06, and 15 leap seconds.
+constexpr double kMidnight = (1655 * 7 + 1) * 86400.0 + 15 - 1e9;
+constexpr double kStamp = 14 * 3600 + 14 * 60 + 13.072943;
+
+TEST_F(LasWriter, KittiStampsAreTheSummerTimeOfKarlsruhe) {
+  for (const char* kind : {"kitti-raw", "kitti-odometry"}) {
+    change([&](MapWriter& writer) {
+      DriveRecord drive = sample_drive();
+      drive.kind = kind;
+      writer.put_drive(0, drive);
+    });
+    EXPECT_NEAR(gps_time_of(7), kMidnight + kStamp - 7200, 1e-6) << kind;
+  }
+}
+
+TEST_F(LasWriter, EachDriveOfAMapHasItsOwnClock) {
+  change([](MapWriter& writer) {
+    DriveRecord drive = sample_drive();
+    drive.first_frame = 8;
+    writer.put_drive(1, drive);
+    drive.kind = "kitti-raw";
+    drive.first_frame = 7;
+    drive.end_frame = 8;
+    writer.put_drive(0, drive);
+  });
+  EXPECT_NEAR(gps_time_of(7), kMidnight + kStamp - 7200, 1e-6);
+  EXPECT_NEAR(gps_time_of(8), kMidnight + kStamp + 0.1, 1e-6);
+}
+
+TEST_F(LasWriter, StampsOfAMapWithoutDrivesAreUtc) {
+  change([](MapWriter& writer) {
+    DriveRecord drive = sample_drive();
+    drive.kind = "";
+    writer.put_drive(0, drive);
+  });
+  EXPECT_NEAR(gps_time_of(7), kMidnight + kStamp, 1e-6);
+}
+
+TEST_F(LasWriter, TheStatedOffsetOverridesTheDrive) {
   LasOptions options;
-  options.utc_offset = 0;
-  options.points.where = PointFilter::parse("frame == 7");
-  options.points.include_uncolored = true;
-  write(options);
-  EXPECT_NEAR(Las(folder_ / "a.las").gps_time(0), 1317046453.072943 - 315964800 + 15 - 1e9, 1e-6);
+  options.utc_offset = -TimeNs{5} * 1800 * kNsPerSecond;
+  EXPECT_NEAR(gps_time_of(7, options), kMidnight + kStamp + 9000, 1e-6);
 }
 
 // Stamps of an odometry sequence count from its begin.

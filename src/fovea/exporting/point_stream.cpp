@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <vector>
 
 #include "fovea/base/errors.h"
@@ -81,7 +82,12 @@ void PointStream::for_each_block(const std::function<void(std::span<const Export
 }
 
 void PointStream::append_tile(const TileId& id, std::vector<ExportPoint>& points) const {
-  const PointCloud tile = map_.read_tile(id);
+  PointCloud tile;
+  if (held_state_ != nullptr) {
+    tile = map_.read_tile(id);
+  } else if (const std::optional<TilePoints> stored = map_.find_tile(id)) {
+    tile = stored->cloud();
+  }
   for (std::size_t i = 0; i < tile.size(); ++i) {
     if (is_chosen(tile, i)) points.push_back(point(tile, i, id.submap));
   }

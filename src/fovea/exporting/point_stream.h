@@ -49,6 +49,11 @@ class PointStream {
   /// InputError if the map is damaged, or has no georeference and `choice.crs` needs one.
   PointStream(const MapReader& map, const PointChoice& choice);
 
+  /// Lets go of the state, which a writer of the map would have to wait for. From now on
+  /// append_tile() takes each tile from the latest state, and nothing from a tile that is gone;
+  /// for_each_block() must not be called.
+  void release_state() { held_state_.reset(); }
+
   const ExportFigures& figures() const { return figures_; }
   const Georeference& georeference() const { return georeference_; }
 

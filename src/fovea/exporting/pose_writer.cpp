@@ -7,19 +7,30 @@
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {
+namespace {
+
+/// Interpolated lines for the indices between two frames that the drive has not.
+void write_gap(const FrameRecord& before, const FrameRecord& after, std::ostream& out) {
+  const double steps = after.index - before.index;
+  for (int index = before.index + 1; index < after.index; ++index) {
+    out << format_pose(interpolate(before.T_local_lidar, after.T_local_lidar,
+                                   (index - before.index) / steps))
+        << '\n';
+  }
+}
+
+}  // namespace
 
 void write_kitti_poses(const std::vector<FrameRecord>& frames, const std::filesystem::path& path,
                        bool force) {
-  constexpr const char* kRemedy = "map the drive again";
-  if (frames.empty()) throw InputError("the map has no frames", path.string(), kRemedy);
+  if (frames.empty()) {
+    throw InputError("the map has no frames", path.string(), "map the drive again");
+  }
   OutputFile file(path, force);
-  int expected = frames.front().index;
-  for (const FrameRecord& frame : frames) {
-    if (frame.index != expected) {
-      throw InputError("a frame of the map is missing", fmt::format("frame {}", expected), kRemedy);
-    }
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FrameRecord& frame = frames[i];
+    if (i > 0) write_gap(frames[i - 1], frame, file.stream());
     file.stream() << format_pose(frame.T_local_lidar) << '\n';
-    ++expected;
   }
   file.commit();
 }

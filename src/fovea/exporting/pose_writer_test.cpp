@@ -42,11 +42,26 @@ TEST(PoseWriter, IdentityReadsAsInTheKittiFiles) {
   EXPECT_EQ(text.str(), "1 0 0 0 0 1 0 0 0 0 1 0\n");
 }
 
-TEST(PoseWriter, RefusesGapsEmptyMapsAndExistingFiles) {
+TEST(PoseWriter, AnIndexWithoutAFrameHasALineToo) {
   const TemporaryFolder folder;
-  std::vector<FrameRecord> frames = sample_frames();
-  frames.erase(frames.begin() + 1);
-  EXPECT_THROW(write_kitti_poses(frames, folder / "poses.txt", false), InputError);
+  std::vector<FrameRecord> frames(2);
+  frames[0].index = 3;
+  frames[1].index = 7;
+  frames[1].T_local_lidar.translation().x() = 8;
+  write_kitti_poses(frames, folder / "poses.txt", false);
+  std::ifstream file(folder / "poses.txt");
+  for (const double x : {0.0, 2.0, 4.0, 6.0, 8.0}) {
+    for (const double expected : {1.0, 0.0, 0.0, x, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}) {
+      double number = 0;
+      ASSERT_TRUE(file >> number);
+      EXPECT_NEAR(number, expected, 1e-12);
+    }
+  }
+  EXPECT_TRUE((file >> std::ws).eof());
+}
+
+TEST(PoseWriter, RefusesEmptyMapsAndExistingFiles) {
+  const TemporaryFolder folder;
   EXPECT_THROW(write_kitti_poses({}, folder / "poses.txt", false), InputError);
   EXPECT_TRUE(folder.names().empty());
   std::ofstream(folder / "poses.txt") << "old";

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <sstream>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -65,14 +66,13 @@ std::vector<Pose> of_frames(const std::vector<Pose>& poses, int begin, int end,
 /// Calls f(line, where) for each line that is not blank; InputError if there is none.
 template <class F>
 void for_each_line(const std::filesystem::path& file, F&& f) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError("the poses cannot be read", file.string(), "check the path");
-  }
+  InputFile input(file, kDataFile);
+  std::istream& stream = input.stream();
   int number = 0;
   bool any = false;
   for (std::string line; std::getline(stream, line);) {
     ++number;
+    if (number == 1) line = without_byte_order_mark(line, file.string());
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     any = true;
     f(line, fmt::format("{}:{}", file.string(), number));

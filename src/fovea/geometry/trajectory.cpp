@@ -16,6 +16,17 @@ constexpr double kMaxTurnAcceleration = 200 * kDegree;  // rad/s^2
 /// stamp.
 constexpr TimeNs kLeastReach = kNsPerSecond / 40;
 
+/// Whether two consecutive poses have no outage between them.
+bool are_joined(const StampedPose& a, const StampedPose& b) {
+  return b.time - a.time <= Trajectory::kMaxGap;
+}
+
+/// The pose at a time, by the constant twist from `a` to `b`.
+RigidMotion on_line(const StampedPose& a, const StampedPose& b, TimeNs time) {
+  return interpolate(a.T_local_body, b.T_local_body,
+                     seconds(time - a.time) / seconds(b.time - a.time));
+}
+
 /// The span of measurements and poses that give the motion at `time`.
 TimeNs reach_of(TimeNs time, TimeNs known_until) {
   return std::max(known_until - time, kLeastReach);
@@ -36,20 +47,28 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
 }
 
 std::optional<RigidMotion> Trajectory::at(TimeNs time) const {
-  if (poses_.empty() || time < poses_.front().time - kMaxExtrapolation ||
-      time > poses_.back().time + kMaxExtrapolation) {
-    return std::nullopt;
+  const auto next = std::upper_bound(poses_.begin(), poses_.end(), time,
+                                     [](TimeNs t, const StampedPose& p) { return t < p.time; });
+  const bool has_before = next != poses_.begin(), has_next = next != poses_.end();
+  if (has_before && has_next && are_joined(*(next - 1), *next)) {
+    return on_line(*(next - 1), *next, time);
   }
-  if (poses_.size() == 1) return poses_.front().T_local_body;
-  const auto after = std::upper_bound(poses_.begin() + 1, poses_.end() - 1, time,
-                                      [](TimeNs t, const StampedPose& p) { return t < p.time; });
-  const StampedPose &p0 = *(after - 1), &p1 = *after;
-  if (p1.time - p0.time > kMaxGap) {
-    if (time == p0.time) return p0.T_local_body;
-    return time == p1.time ? std::optional(p1.T_local_body) : std::nullopt;
+  // Before the first pose, after the last one, or in an outage.
+  const TimeNs since_last = has_before ? time - (next - 1)->time : kMaxExtrapolation + 1;
+  const TimeNs until_next = has_next ? next->time - time : kMaxExtrapolation + 1;
+  if (std::min(since_last, until_next) > kMaxExtrapolation) return std::nullopt;
+  const auto nearest = since_last <= until_next ? next - 1 : next;
+  if (nearest != poses_.begin() && are_joined(*(nearest - 1), *nearest)) {
+    return on_line(*(nearest - 1), *nearest, time);
   }
-  return interpolate(p0.T_local_body, p1.T_local_body,
-                     seconds(time - p0.time) / seconds(p1.time - p0.time));
+  if (nearest + 1 != poses_.end() && are_joined(*nearest, *(nearest + 1))) {
+    return on_line(*nearest, *(nearest + 1), time);
+  }
+  if (nearest->velocity) {
+    return nearest->T_local_body * exp_se3(*nearest->velocity * seconds(time - nearest->time));
+  }
+  const bool holds = time == nearest->time || poses_.size() == 1;
+  return holds ? std::optional(nearest->T_local_body) : std::nullopt;
 }
 
 std::optional<RigidMotion> Trajectory::nearest(TimeNs time) const {
@@ -96,11 +115,18 @@ std::optional<SweepMotion> Trajectory::motion(TimeNs time, TimeNs known_until) c
   if (poses_.size() < 2) return std::nullopt;
   const auto unknown = std::upper_bound(poses_.begin() + 2, poses_.end(), known_until,
                                         [](TimeNs t, const StampedPose& p) { return t < p.time; });
-  const auto last = unknown - 1;
+  auto last = unknown - 1;
+  const bool ends_outage = !are_joined(*(last - 1), *last);
+  if (ends_outage && unknown != poses_.end()) last = unknown;
   auto first = last - 1;
-  while (first != poses_.begin() && last->time - first->time < reach * 3 / 2) --first;
+  while (first != poses_.begin() && last->time - first->time < reach * 3 / 2 &&
+         are_joined(*(first - 1), *first)) {
+    --first;
+  }
   const StampedPose &p0 = *first, &p1 = *last;
-  if (p1.time - p0.time > kMaxGap) return std::nullopt;
+  if (!are_joined(p0, p1) || time < p0.time - kMaxGap || time > p1.time + kMaxGap) {
+    return std::nullopt;
+  }
   return SweepMotion{
       velocity_between(p0.T_local_body, p1.T_local_body, seconds(p1.time - p0.time))};
 }

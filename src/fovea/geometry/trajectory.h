@@ -17,7 +17,8 @@ struct StampedPose {
 
 class Trajectory {
  public:
-  /// How far before the first and after the last pose the constant velocity is trusted.
+  /// Longest time before the first pose, after the last one, and into an outage, for which the
+  /// velocity of the nearest two poses is trusted.
   static constexpr TimeNs kMaxExtrapolation = kNsPerSecond / 5;
   /// Poses further apart than this are not interpolated: between them is an outage.
   static constexpr TimeNs kMaxGap = kNsPerSecond;
@@ -29,8 +30,10 @@ class Trajectory {
 
   const std::vector<StampedPose>& poses() const { return poses_; }
 
-  /// Pose at a time: constant twist between neighbouring poses, and beyond the ends by the velocity
-  /// of the two poses there for at most kMaxExtrapolation; empty further out and in an outage.
+  /// Pose at a time, by the constant twist between neighboring poses. Beyond the ends and in an
+  /// outage, by the velocity of the nearest two poses for at most kMaxExtrapolation. A pose between
+  /// two outages needs a measured velocity for that; the only pose of a trajectory holds as long.
+  /// Empty further out.
   std::optional<RigidMotion> at(TimeNs time) const;
 
   /// The pose nearest in time, where at() has one.
@@ -43,8 +46,8 @@ class Trajectory {
   /// left out as a fault. Where none was: the motion between the last pose known and the next that
   /// lies before it by 3/4 of that span or more, without change: poses a span apart, whose times
   /// jitter, are enough, and the noise of closer ones would be divided by a moment. Where fewer
-  /// than two poses are that early, the first two of the trajectory. Empty for a single pose and in
-  /// an outage.
+  /// than two poses are that early, or since an outage, the first two of the trajectory or after
+  /// the outage. Empty for a single pose and in an outage.
   std::optional<SweepMotion> motion(TimeNs time, TimeNs known_until) const;
 
  private:

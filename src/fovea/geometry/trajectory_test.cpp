@@ -65,11 +65,29 @@ TEST(Trajectory, BridgesNoOutage) {
                                {12 * kNsPerSecond, at_x(52)}});
   EXPECT_TRUE(trajectory.at(kNsPerSecond));
   EXPECT_TRUE(trajectory.at(11 * kNsPerSecond));
-  EXPECT_FALSE(trajectory.at(kNsPerSecond + 1));
-  EXPECT_FALSE(trajectory.at(11 * kNsPerSecond - 1));
+  // Near a pose, the velocity on its side of the outage counts.
+  EXPECT_NEAR(x_at(trajectory, 1.2), 1.2, 1e-12);
+  EXPECT_NEAR(x_at(trajectory, 10.8), 49.6, 1e-12);
+  EXPECT_FALSE(trajectory.at(from_seconds(1.2) + 1));
+  EXPECT_FALSE(trajectory.at(from_seconds(10.8) - 1));
   EXPECT_FALSE(trajectory.nearest(6 * kNsPerSecond));
   EXPECT_FALSE(trajectory.motion(6 * kNsPerSecond, 20 * kNsPerSecond));
   EXPECT_NEAR(speed(trajectory, 12, 12.05), 2, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 11, 11.05), 2, 1e-12);  // the first two poses after the outage
+}
+
+TEST(Trajectory, APoseBetweenTwoOutagesNeedsAVelocity) {
+  Twist velocity = Twist::Zero();
+  velocity[3] = 10;
+  const auto isolated = [&](std::optional<Twist> measured) {
+    return Trajectory(
+        {{0, at_x(0)}, {5 * kNsPerSecond, at_x(50), measured}, {10 * kNsPerSecond, at_x(100)}});
+  };
+  EXPECT_NEAR(x_at(isolated(velocity), 5.1), 51, 1e-12);
+  EXPECT_NEAR(x_at(isolated(velocity), 4.9), 49, 1e-12);
+  EXPECT_FALSE(isolated(velocity).at(from_seconds(5.3)));
+  EXPECT_FALSE(isolated(std::nullopt).at(from_seconds(5.1)));
+  EXPECT_TRUE(isolated(std::nullopt).at(from_seconds(5)));
 }
 
 TEST(Trajectory, SinglePoseHoldsWithoutVelocity) {
@@ -86,7 +104,8 @@ TEST(Trajectory, VelocityIsThatAroundTheTimeAsFarAsItIsKnown) {
   EXPECT_NEAR(speed(trajectory, 1.5, 1.9), 10, 1e-12);    // the pose at 2 s is still to come
   EXPECT_NEAR(speed(trajectory, 1.5, 2), 20, 1e-12);
   EXPECT_NEAR(speed(trajectory, 2.9, 2.9), 20, 1e-12);
-  EXPECT_NEAR(speed(trajectory, 9, 9), 5, 1e-12);
+  EXPECT_NEAR(speed(trajectory, 4, 4), 5, 1e-12);
+  EXPECT_FALSE(trajectory.motion(from_seconds(4) + 1, from_seconds(9)));
   EXPECT_NEAR(speed(trajectory, 0.5, 0.5), 10, 1e-12);  // too early for two: the first two
   EXPECT_NEAR(speed(trajectory, -1, -1), 10, 1e-12);
 }

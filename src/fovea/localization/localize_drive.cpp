@@ -23,7 +23,7 @@ struct LoadedFrame {
 
 std::vector<int> wanted_frames(const DriveInfo& drive, const HoldOut& only) {
   std::vector<int> wanted;
-  for (int index = drive.begin; index < drive.end; ++index) {
+  for (const int index : drive.frame_indices()) {
     if (only.none() || only.contains(index)) wanted.push_back(index);
   }
   return wanted;

@@ -92,7 +92,7 @@ CropFigures crop_map(const MapReader& map, const CropRegion& region, MapWriter& 
     inside.keep(kept);
     output.put_tile(id, inside);
   });
-  output.commit();
+  output.finish();
   return figures;
 }
 

@@ -1,9 +1,12 @@
 #include "fovea/map/drive_fingerprint.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <vector>
 
 #include "fovea/map/value_hash.h"
 
@@ -12,6 +15,8 @@ namespace {
 
 /// Beyond this a value is the same as any other: no calibration has it.
 constexpr double kLargest = 1e9, kResolution = 1e-9;
+
+constexpr const char* kImu = "imu";
 
 void add_rounded(double value, ValueHash& hash) {
   const double bounded = std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : kLargest;
@@ -34,7 +39,7 @@ std::string calibration_fingerprint(const Calibration& calibration) {
   if (calibration.T_imu_lidar) {
     ValueHash hash;
     add_pose(*calibration.T_imu_lidar, hash);
-    add("imu", hash);
+    add(kImu, hash);
   }
   for (const Camera& camera : calibration.cameras) {
     ValueHash hash;
@@ -46,6 +51,32 @@ std::string calibration_fingerprint(const Calibration& calibration) {
     add(fmt::to_string(camera.index), hash);
   }
   return fingerprint;
+}
+
+std::map<std::string, std::string> fingerprint_parts(const std::string& fingerprint) {
+  std::map<std::string, std::string> parts;
+  std::istringstream words(fingerprint);
+  for (std::string word; words >> word;) {
+    const std::size_t colon = std::min(word.find(':'), word.size());
+    parts[word.substr(0, colon)] = word.substr(colon);
+  }
+  return parts;
+}
+
+std::optional<std::string> calibration_difference(const std::string& a, const std::string& b) {
+  const std::map<std::string, std::string> parts_a = fingerprint_parts(a),
+                                           parts_b = fingerprint_parts(b);
+  std::map<std::string, std::string> all = parts_a;
+  all.insert(parts_b.begin(), parts_b.end());
+  std::vector<std::string> different;
+  for (const auto& [name, hash] : all) {
+    const auto in_a = parts_a.find(name), in_b = parts_b.find(name);
+    const bool both = in_a != parts_a.end() && in_b != parts_b.end();
+    if (both && in_a->second == in_b->second) continue;
+    different.push_back(name == kImu ? "the place of the IMU" : "camera " + name);
+  }
+  if (different.empty()) return std::nullopt;
+  return fmt::format("{}", fmt::join(different, ", "));
 }
 
 std::string stamps_fingerprint(int first_frame, std::span<const std::optional<TimeNs>> stamps) {

@@ -2,6 +2,7 @@
 // (docs/map-format.md).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,13 @@ namespace fovea {
 /// is known, and for each camera, so that drives with other cameras in use can be compared. Numbers
 /// count in whole 1e-9, so that the rounding of another computer changes nothing.
 std::string calibration_fingerprint(const Calibration& calibration);
+
+/// The parts of a calibration's fingerprint: hash by "imu" or the number of a camera.
+std::map<std::string, std::string> fingerprint_parts(const std::string& fingerprint);
+
+/// What differs between two calibrations, as in "camera 2, the place of the IMU"; nothing if
+/// they are equal.
+std::optional<std::string> calibration_difference(const std::string& a, const std::string& b);
 
 /// Of the stamps of consecutive frames: 32 hexadecimal digits.
 /// @param first_frame  the number of the first one

@@ -58,6 +58,15 @@ TEST(CalibrationFingerprint, NamesEachCamera) {
   EXPECT_EQ(single.substr(21, 2), "3:");
 }
 
+TEST(CalibrationFingerprint, DifferencesAreNamed) {
+  const std::string before = "imu:1 2:3 3:4";
+  EXPECT_EQ(calibration_difference(before, before), std::nullopt);
+  EXPECT_EQ(calibration_difference(before, "imu:1 2:5 3:4"), "camera 2");
+  EXPECT_EQ(calibration_difference(before, "imu:2 2:3 3:4"), "the place of the IMU");
+  EXPECT_EQ(calibration_difference(before, "2:3"), "camera 3, the place of the IMU");
+  EXPECT_EQ(calibration_difference("", ""), std::nullopt);
+}
+
 TEST(StampsFingerprint, ChangesWithEachStampAndItsFrame) {
   using Stamps = std::vector<std::optional<TimeNs>>;
   const std::set<std::string> fingerprints = {

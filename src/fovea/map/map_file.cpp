@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "fovea/base/file_format.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/path_remedy.h"
 
 namespace fovea {
@@ -15,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using sqlite::Access;
 using sqlite::Statement;
+
+constexpr const char* kGiveMap = "give a map that 'fovea map' wrote";
 
 void require_file(const fs::path& path) {
   std::error_code error, ignored;
@@ -26,11 +30,12 @@ void require_file(const fs::path& path) {
   if (!fs::exists(status)) {
     throw InputError("the map does not exist", path.string(), "check the name");
   }
-  if (!fs::is_regular_file(status)) {
-    throw InputError("not a file", path.string(), "give a map that 'fovea map' wrote");
-  }
-  if (fs::file_size(path, ignored) == 0) {
-    throw InputError("the file is empty", path.string(), "give a map that 'fovea map' wrote");
+  const InputFile file(path, kStreamedFile);
+  if (file.size() == 0) throw InputError("the file is empty", path.string(), kGiveMap);
+  const SniffedFormat found = sniff_format(file.beginning(kSniffedBytes));
+  if (found.format != FileFormat::kSqlite && found.format != FileFormat::kUnknown) {
+    throw InputError(fmt::format("this is {}, not a Fovea map", found.name), path.string(),
+                     kGiveMap);
   }
 }
 

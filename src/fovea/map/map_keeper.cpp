@@ -204,7 +204,7 @@ void MapKeeper::finish(TileMap& map, MapRows rows) {
       .post([&] {
         put(*writer_, rows, changes.removed);
         writer_->put_tiles(tiles.size(), [&](std::size_t i) { return tiles.take(i); });
-        writer_->commit();
+        writer_->finish();
       })
       .get();
 }

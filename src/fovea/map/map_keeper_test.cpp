@@ -155,6 +155,9 @@ class CountingWriter : public MapWriter {
   void remove_tile(const TileId& id) override { file_->remove_tile(id); }
   TilePoints read_tile(const TileId& id) override { return file_->read_tile(id); }
   void commit() override { ++commits, file_->commit(); }
+  void finish(std::chrono::milliseconds reader_timeout) override {
+    ++commits, file_->finish(reader_timeout);
+  }
 
  private:
   std::unique_ptr<MapWriter> file_;
@@ -200,13 +203,15 @@ TEST_F(PatientKeeper, HurriesWhenItIsWaitedFor) {
   keeper->bring_near(map, here, kNear);
   EXPECT_EQ(map.size_in_memory(), map.size());
   map.add(points_at(100, random_));
-  keeper->finish(map, {});
+  keeper->checkpoint(map, {}, here, 1000);
+  until_it_waits(3);
+  keeper->finish();
   expect_stored(path_, map);
   map.add(points_at(100, random_));
   keeper->checkpoint(map, {}, there, kNear);
-  until_it_waits(3);
+  until_it_waits(4);
   keeper.reset();
-  EXPECT_EQ(pauses_, 3);  // who is waited for waits no more
+  EXPECT_EQ(pauses_, 4);  // who is waited for waits no more
 }
 
 // Nobody needs the state before the last one: what of it is still to be written goes with that, and

@@ -1,6 +1,7 @@
 // The map file: one SQLite database (docs/map-format.md). The only place that knows its schema.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -29,6 +30,10 @@ inline constexpr const char* kRestoreMap =
 using MapMeta = std::map<std::string, std::string>;
 
 class MapFile;
+
+/// How long the last commit waits for a program that keeps an earlier state of the map open: longer
+/// than a reader of tiles does, shorter than what a user takes for a hang.
+inline constexpr std::chrono::seconds kReaderTimeout{10};
 
 /// Writes a map. Everything put between two commits is on disk together or not at all; what was
 /// never committed leaves no file behind. An error ends the writing: only destruction may follow.
@@ -74,6 +79,12 @@ class MapWriter {
   virtual TilePoints read_tile(const TileId& id) = 0;
   /// OutputError when the disk is full or the file cannot be written.
   virtual void commit() = 0;
+  /// The last commit. Afterwards the file alone is the whole map, also while others read it; only
+  /// destruction may follow. OutputError as commit(), or if the write-ahead log cannot be merged
+  /// into the file: the disk is full, or another program keeps an earlier state open for longer
+  /// than `reader_timeout`.
+  virtual void finish(std::chrono::milliseconds reader_timeout) = 0;
+  void finish() { finish(kReaderTimeout); }
 };
 
 /// Reads a map, tile by tile. Every method gives one committed state, also while the map is being
@@ -132,8 +143,15 @@ class MapReader {
   std::unique_ptr<MapFile> file_;
 };
 
-/// Makes a map whose writer ended while others read it one file again, if nobody uses it any more.
+/// Merges the log that a writer left next to a map, if no program uses the map. Nothing else, and
+/// no error, if that is not possible.
 void fold_log(const std::filesystem::path& path);
+
+/// The log that belongs to a map: MAP-wal, if it has content. Empty: the file is the whole map.
+std::filesystem::path log_of_map(const std::filesystem::path& path);
+
+/// What to do with a log, for errors: "keep MAP-wal with the map, it is part of it; ...".
+std::string log_remedy(const std::filesystem::path& map);
 
 /// Puts all that a map has but its tiles and checkpoints: no run can resume a copy.
 /// @return T_local_submap by id

@@ -331,7 +331,7 @@ TEST(MapReader, RefusesWhatIsNoMap) {
     return message<InputError>([&] { MapReader(folder / name); });
   };
   EXPECT_THAT(refusal("none.fovea"), AllOf(HasSubstr("does not exist"), HasSubstr("none.fovea")));
-  EXPECT_THAT(message<InputError>([&] { MapReader(folder.path()); }), HasSubstr("not a file"));
+  EXPECT_THAT(message<InputError>([&] { MapReader(folder.path()); }), HasSubstr("it is a folder"));
   write_file(folder / "empty", "");
   EXPECT_THAT(refusal("empty"), HasSubstr("empty"));
   write_file(folder / "text", "hello");

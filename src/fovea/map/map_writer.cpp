@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -41,8 +42,25 @@ bool has_side_files(const fs::path& path) {
   return fs::exists(fs::path(path) += "-wal", ignored);
 }
 
-/// Folds everything into the one file. Best effort: what stays beside it is read by SQLite.
-void leave_one_file(Database& database) noexcept { database.attempt("PRAGMA journal_mode=DELETE"); }
+/// Merges the log into the file and removes it. While others have the map open, an empty log stays.
+/// Waits for nothing. Best effort: SQLite reads the content of a log that stays.
+void leave_one_file(Database& database) noexcept {
+  database.attempt("PRAGMA busy_timeout=0");
+  if (database.attempt("PRAGMA journal_mode=DELETE") == Outcome::kDone) return;
+  database.attempt("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+/// OutputError if the file alone would not be the whole map.
+void merge_log(Database& database, const fs::path& map, std::chrono::milliseconds reader_timeout) {
+  const Outcome outcome = database.merge_log(reader_timeout);
+  if (outcome == Outcome::kDone) return leave_one_file(database);
+  const std::string reason = outcome == Outcome::kBusy
+                                 ? "another program keeps an earlier state of the map open"
+                                 : database.reason();
+  throw OutputError(
+      fmt::format("the end of the map is only in its log, not in the map ({})", reason),
+      fs::path(map).concat("-wal").string(), log_remedy(map));
+}
 
 /// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
 /// new map's after the rename; that of a map which was removed is left. OutputError if a program is
@@ -140,6 +158,7 @@ class SqliteMapWriter : public MapWriter {
       database_->execute("COMMIT");
       if (!published_) {
         publish();
+        open_published_file();
       } else {
         // A reader may hold the log; then a later commit moves its pages.
         database_->attempt("PRAGMA wal_checkpoint(PASSIVE)");
@@ -148,15 +167,28 @@ class SqliteMapWriter : public MapWriter {
     });
   }
 
+  void finish(std::chrono::milliseconds reader_timeout) override {
+    write([&] {
+      put_counts();
+      database_->execute("COMMIT");
+      if (!published_) {
+        publish();
+      } else {
+        merge_log(*database_, target_, reader_timeout);
+      }
+    });
+    ended_ = true;
+  }
+
  private:
   /// Runs a step of writing; after a failure SQLite may have ended the transaction, so that a later
   /// step would be written on its own.
   template <class Step>
   void write(Step&& step) {
-    if (failed_) throw std::logic_error("a map is written on after an error");
-    failed_ = true;
+    if (ended_) throw std::logic_error("a map is written on after its end or an error");
+    ended_ = true;
     step();
-    failed_ = false;
+    ended_ = false;
   }
 
   void put(const Table& table, const Row& row) {
@@ -178,7 +210,7 @@ class SqliteMapWriter : public MapWriter {
   fs::path target_;  // the file itself, where path_ is a symbolic link
   bool force_;
   bool published_ = false;
-  bool failed_ = false;
+  bool ended_ = false;  // by finish() or by an error
   std::optional<UnfinishedOutput> unfinished_;  // of a new map
   TileEncoder encoder_;
   std::unique_ptr<Database> database_;
@@ -228,7 +260,6 @@ void SqliteMapWriter::publish() {
   published_ = true;
   puts_.reset();
   database_.reset();
-  open_published_file();
 }
 
 void SqliteMapWriter::open_published_file() {
@@ -331,9 +362,29 @@ void fold_log(const fs::path& path) {
   const fs::path file = fs::canonical(path, ignored);
   if (!has_side_files(file)) return;
   try {
-    MapWriter::open(file);  // whose end it is to do so
-  } catch (const Error&) {  // somebody writes it: then it is theirs to do
+    { const MapReader is_a_map(file); }
+    // Fails at once while another program has the map open.
+    Database(file, Access::kWrite, path)
+        .attempt("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
+  } catch (const Error&) {
+    // No map, or one that cannot be written: reading it reports what is wrong.
   }
+}
+
+fs::path log_of_map(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path log = fs::canonical(path, ignored).concat("-wal");
+  const std::uintmax_t size = fs::file_size(log, ignored);
+  return ignored || size == 0 ? fs::path() : log;
+}
+
+std::string log_remedy(const fs::path& map) {
+  std::error_code ignored;
+  const std::string log = fs::canonical(map, ignored).concat("-wal").string();
+  return fmt::format(
+      "keep {} next to the map, it is part of it; free disk space or close the programs that have "
+      "the map open, then 'fovea info {}' merges it",
+      log, fs::canonical(map, ignored).string());
 }
 
 std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {

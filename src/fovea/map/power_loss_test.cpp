@@ -34,11 +34,15 @@ void put_step(MapWriter& writer, int step) {
   writer.put_meta("complete", step + 1 == kCommits ? "1" : "0");
 }
 
-/// Commits all steps from `first` on; says what the map is after each.
+/// Commits all steps from `first` on, the last as the end of the map.
 void write_steps(MapWriter& writer, int first, const std::function<void()>& committed) {
   for (int step = first; step < kCommits; ++step) {
     put_step(writer, step);
-    writer.commit();
+    if (step + 1 == kCommits) {
+      writer.finish();
+    } else {
+      writer.commit();
+    }
     committed();
   }
 }

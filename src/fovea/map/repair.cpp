@@ -61,7 +61,7 @@ RepairFigures repair_map(const std::filesystem::path& map, MapWriter& output,
     output.put_meta(meta_key::kRepair,
                     fmt::format("{} damaged parts are left out", figures.damages));
   }
-  output.commit();
+  output.finish();
   return figures;
 }
 

@@ -5,9 +5,12 @@
 
 #include <cerrno>
 #include <new>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/output_file.h"
 
 namespace fovea::sqlite {
@@ -24,6 +27,14 @@ std::string immutable_uri(const std::filesystem::path& path) {
     uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return uri + "?immutable=1";
+}
+
+/// SQLite would wait for a pipe without end.
+void require_regular_files(const std::filesystem::path& path) {
+  for (const char* ending : {"", "-wal", "-shm", "-journal"}) {
+    std::filesystem::path file = path;
+    require_regular_if_present(file += ending, kStreamedFile);
+  }
 }
 
 int open_flags(Access access) {
@@ -51,6 +62,7 @@ Database::Database(const std::filesystem::path& path, Access access,
     : access_(access), shown_path_(shown_path), words_(words) {
   // Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
   const std::filesystem::path absolute = std::filesystem::absolute(path);
+  require_regular_files(absolute);
   const std::string name =
       access == Access::kReadImmutable ? immutable_uri(absolute) : absolute.string();
   const int code = sqlite3_open_v2(name.c_str(), &handle_, open_flags(access), nullptr);
@@ -72,6 +84,7 @@ Database::Database(const std::filesystem::path& path, Access access,
 Database::~Database() { sqlite3_close(handle_); }
 
 void Database::execute(const char* sql) {
+  errno = 0;
   const int code = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code);
 }
@@ -80,6 +93,35 @@ Outcome Database::attempt(const char* sql) noexcept {
   const int code = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
   if (code == SQLITE_OK) return Outcome::kDone;
   return (code & 0xff) == SQLITE_BUSY ? Outcome::kBusy : Outcome::kFailed;
+}
+
+Outcome Database::merge_log(std::chrono::milliseconds timeout) noexcept {
+  const auto end = std::chrono::steady_clock::now() + timeout;
+  while (true) {
+    int in_log = -1, merged = -1;
+    const int code =
+        sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_FULL, &in_log, &merged);
+    if (code == SQLITE_OK) return Outcome::kDone;
+    if ((code & 0xff) != SQLITE_BUSY) return Outcome::kFailed;
+    // A reader of the latest state keeps the log, but the file has all of it.
+    if (in_log >= 0 && merged == in_log) return Outcome::kDone;
+    if (std::chrono::steady_clock::now() >= end) return Outcome::kBusy;
+    // SQLite does not wait for a program that merges the log at the same time.
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+int Database::system_error(int code) const {
+  const int primary = code & 0xff;
+  if (primary == SQLITE_FULL) return ENOSPC;
+  if (handle_ == nullptr || (primary != SQLITE_IOERR && primary != SQLITE_CANTOPEN)) return 0;
+  const int error = sqlite3_system_errno(handle_);
+  return error != 0 ? error : errno;  // SQLite keeps none of a failed COMMIT
+}
+
+std::string Database::reason() const {
+  const int error = system_error(sqlite3_extended_errcode(handle_));
+  return error != 0 ? std::generic_category().message(error) : sqlite3_errmsg(handle_);
 }
 
 std::int64_t Database::integer(const char* sql) {
@@ -107,11 +149,7 @@ void Database::fail(int code) const {
     throw InputError(fmt::format("the {} cannot be read ({})", words_.noun, message), where(),
                      "check the file, its permissions and that no program is replacing it");
   }
-  if (primary == SQLITE_FULL) throw_output_error(shown_path_, ENOSPC);
-  const int error = handle_ != nullptr ? sqlite3_system_errno(handle_) : 0;
-  if ((primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && error != 0) {
-    throw_output_error(shown_path_, error);
-  }
+  if (const int error = system_error(code); error != 0) throw_output_error(shown_path_, error);
   if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) throw_busy();
   if (primary == SQLITE_NOTADB || primary == SQLITE_CORRUPT) {
     throw OutputError(fmt::format("the map is damaged ({})", message), where(), "start a new map");
@@ -157,6 +195,7 @@ void Statement::bind(int parameter, std::span<const std::byte> blob) {
 void Statement::bind_null(int parameter) { check(sqlite3_bind_null(handle_, parameter)); }
 
 bool Statement::step() {
+  errno = 0;
   const int code = sqlite3_step(handle_);
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) {

@@ -1,6 +1,7 @@
 // SQLite with the library's errors. Private: no public header includes it.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -43,8 +44,13 @@ class Database {
   void execute(const char* sql);
   /// As execute(), where a failure is no error of the user: says how it went.
   Outcome attempt(const char* sql) noexcept;
+  /// Copies the write-ahead log into the file, so that the file alone has the latest commit.
+  /// Waits so long for readers of earlier states.
+  Outcome merge_log(std::chrono::milliseconds timeout) noexcept;
   /// First column of the first row, as an integer.
   std::int64_t integer(const char* sql);
+  /// Why the latest call failed: the operating system's words, or SQLite's.
+  std::string reason() const;
 
   /// Throws the InputError or OutputError of a failed call with this result code.
   [[noreturn]] void fail(int code) const;
@@ -56,6 +62,9 @@ class Database {
   sqlite3* handle() const { return handle_; }
 
  private:
+  /// errno of a failed call with this result code; 0 if the operating system did not fail.
+  int system_error(int code) const;
+
   Access access_;
   std::filesystem::path shown_path_;
   FileWords words_;

@@ -109,7 +109,7 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
   MapJoiner joiner(a, b, *writer, map);
   joiner.copy_a(content_a);
   if (added.empty()) {
-    writer->commit();
+    writer->finish();
   } else {
     const Renumbering renumbering(content_a, content_b, added);
     put_drives(content_a, added, renumbering, T_a_b, *writer);

@@ -62,6 +62,7 @@ inline void visit_slices(SettingVisitor& visit, std::string_view key,
 
 /// Calls `visit(key, reference)` for every key; a reader assigns, a writer prints.
 inline void visit_config(SettingVisitor& visit, MapperOptions& o) {
+  visit("input.max_damaged_share", o.max_damaged_share);
   visit("motion.compensate", o.compensate_motion);
   visit("motion.interpolate_navigation", o.interpolate_navigation);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/path_name.h"
 #include "fovea/map/drive_fingerprint.h"
 
@@ -68,23 +67,6 @@ void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record) 
   }
   std::sort(record.views.begin(), record.views.end(),
             [](const ViewRecord& a, const ViewRecord& b) { return a.camera < b.camera; });
-}
-
-void require_same_drive(const MapReader& reader, const DriveRecord& drive,
-                        const std::filesystem::path& map) {
-  const std::vector<DriveRecord> stored = reader.drives();
-  if (stored.size() != 1 || !stored[0].calibration_fingerprint || !stored[0].stamps_fingerprint) {
-    throw InputError("the map does not state which drive it is of", map.string(),
-                     "start a new map");
-  }
-  const char* difference = nullptr;
-  if (stored[0].calibration_fingerprint != drive.calibration_fingerprint) {
-    difference = "another calibration";
-  }
-  if (stored[0].stamps_fingerprint != drive.stamps_fingerprint) difference = "other stamps";
-  if (difference == nullptr) return;
-  throw InputError(fmt::format("the map was made of a drive with {}", difference), map.string(),
-                   "resume with the drive of the first run, or start a new map");
 }
 
 }  // namespace fovea

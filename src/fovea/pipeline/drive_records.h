@@ -2,12 +2,10 @@
 // images.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_records.h"
-#include "fovea/map/map_store.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
@@ -21,10 +19,5 @@ std::vector<SensorRecord> sensor_records(const DriveInfo& drive);
 /// Adds a view to the record for each image that the frame has.
 /// @param drive  its calibration has the frame's cameras
 void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record);
-
-/// InputError if the map to resume was made of a drive with another calibration or other stamps, or
-/// if the map does not state its drive.
-void require_same_drive(const MapReader& reader, const DriveRecord& drive,
-                        const std::filesystem::path& map);
 
 }  // namespace fovea

@@ -13,7 +13,8 @@ SensorProfile lidar_profile(const FrameSource& source) {
   constexpr std::size_t kScans = 2;
   const DriveInfo& drive = source.info();
   std::vector<PointCloud> scans;
-  for (int index = drive.begin; index < drive.end && scans.size() < kScans; ++index) {
+  for (const int index : drive.frame_indices()) {
+    if (scans.size() == kScans) break;
     FrameResult result = source.load(index);
     if (auto* frame = std::get_if<Frame>(&result)) scans.push_back(std::move(frame->scan));
   }

@@ -1,12 +1,18 @@
 #include "fovea/pipeline/frame_motion.h"
 
+#include <cmath>
+
 namespace fovea {
 namespace {
 
+/// Poses farther apart in time have a pause between them, s.
+constexpr double kLongestStep = 1;
+
 std::optional<FrameMotion> between(const RigidMotion& here, TimeNs stamp, const RigidMotion& other,
                                    TimeNs other_stamp) {
-  if (stamp == other_stamp) return std::nullopt;
-  return FrameMotion{here, {velocity_between(here, other, seconds(other_stamp - stamp))}};
+  const double elapsed = seconds(other_stamp - stamp);
+  if (elapsed == 0 || std::abs(elapsed) > kLongestStep) return std::nullopt;
+  return FrameMotion{here, {velocity_between(here, other, elapsed)}};
 }
 
 }  // namespace

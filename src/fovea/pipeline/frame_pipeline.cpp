@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kAhead = 1;
 /// So many frames before its turn the disk is told of a frame: a second at 10 Hz, which a disk that
 /// sleeps or serves others may take.
-constexpr int kExpected = 10;
+constexpr std::size_t kExpected = 10;
 /// At a rate a frame is decoded once none is under way, but begun this long before it is due at the
 /// latest, in periods.
 constexpr double kInTime = 0.25;
@@ -29,14 +29,11 @@ bool are_tasks(const FramePipelineOptions& options) { return options.overlap && 
 
 }  // namespace
 
-FramePipeline::FramePipeline(const FrameSource& source, int begin, int end,
+FramePipeline::FramePipeline(const FrameSource& source, std::vector<int> indices,
                              std::function<TrackedFrame(const Frame&)> track,
                              const FramePipelineOptions& options)
     : source_(source),
-      begin_(begin),
-      next_(begin),
-      expected_(begin + 1),
-      end_(end),
+      indices_(std::move(indices)),
       track_(std::move(track)),
       options_(options),
       sensed_(options.overlap && options.rate != 0 ? kAhead : 0,
@@ -57,22 +54,24 @@ std::optional<LocatedFrame> FramePipeline::next() {
   return located;
 }
 
-void FramePipeline::expect_until(int index) {
-  for (; expected_ < std::min(index, end_); ++expected_) source_.expect(expected_);
+void FramePipeline::expect_until(std::size_t place) {
+  for (; expected_ < std::min(place, indices_.size()); ++expected_) {
+    source_.expect(indices_[expected_]);
+  }
 }
 
 std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_token& stop) {
-  if (next_ == end_) return std::nullopt;
-  const int index = next_++;
-  const bool is_first = index == begin_, at_rate = options_.rate != 0;
-  expect_until(index + kExpected);
+  if (next_ == indices_.size()) return std::nullopt;
+  const std::size_t place = next_++;
+  const bool is_first = place == 0, at_rate = options_.rate != 0;
+  expect_until(place + kExpected);
   std::optional<TimePoint> due;
   if (at_rate && !is_first) {
-    due = first_arrival_ + periods(index - begin_);
+    due = first_arrival_ + periods(double(place));
     options_.gate->wait(*due - periods(kInTime), stop);
   }
   const TimePoint start = WallClock::now();
-  FrameResult result = source_.load(index);
+  FrameResult result = source_.load(indices_[place]);
   const TimePoint loaded = WallClock::now();
   if (at_rate && is_first) due = first_arrival_ = loaded;
   if (due && !wait_until(*due, stop)) return std::nullopt;

@@ -44,10 +44,10 @@ struct LocatedFrame {
 
 class FramePipeline {
  public:
-  /// Of frames [begin, end).
   /// @param source  must outlive the pipeline
+  /// @param indices  of the frames, in order
   /// @param track   called for each usable frame in order, in one thread at a time
-  FramePipeline(const FrameSource& source, int begin, int end,
+  FramePipeline(const FrameSource& source, std::vector<int> indices,
                 std::function<TrackedFrame(const Frame&)> track,
                 const FramePipelineOptions& options);
 
@@ -62,15 +62,15 @@ class FramePipeline {
     double decode_ms;
     std::optional<TimePoint> due;
   };
-  void expect_until(int index);
+  void expect_until(std::size_t place);
   std::optional<Arrived> arrive(const std::stop_token& stop);
   std::optional<LocatedFrame> locate();
   WallClock::duration periods(double count) const;
 
   const FrameSource& source_;
-  int begin_, next_;
-  int expected_;  // first frame of which the source has not been told
-  int end_;
+  std::vector<int> indices_;
+  std::size_t next_ = 0;      // place in indices_
+  std::size_t expected_ = 1;  // first place of which the source has not been told
   std::function<TrackedFrame(const Frame&)> track_;
   FramePipelineOptions options_;
   TimePoint first_arrival_;

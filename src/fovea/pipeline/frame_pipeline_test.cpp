@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,13 @@ TrackedFrame number_of(const Frame& frame) {
 }
 
 /// Indices in the order in which they come; the one skipped negative.
+/// first, ..., end - 1.
+std::vector<int> numbers(int first, int end) {
+  std::vector<int> numbers(static_cast<std::size_t>(end - first));
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
 std::vector<int> indices(FramePipeline& frames) {
   std::vector<int> found;
   while (const auto located = frames.next()) {
@@ -56,7 +64,7 @@ std::vector<int> indices(FramePipeline& frames) {
 
 TEST(FramePipeline, EachFrameIsExpectedOnceBeforeItIsLoaded) {
   const Numbers source;
-  FramePipeline frames(source, 0, 30, number_of, {.overlap = true});
+  FramePipeline frames(source, numbers(0, 30), number_of, {.overlap = true});
   while (frames.next()) {
   }
   ASSERT_EQ(source.expected.size(), 29u);  // the first is loaded at once
@@ -70,9 +78,9 @@ TEST(FramePipeline, EachFrameIsExpectedOnceBeforeItIsLoaded) {
 TEST(FramePipeline, FramesComeInOrderTrackedOrSkipped) {
   const Numbers source;
   for (const bool overlap : {false, true}) {
-    FramePipeline frames(source, 1, 6, number_of, {.overlap = overlap});
+    FramePipeline frames(source, numbers(1, 6), number_of, {.overlap = overlap});
     EXPECT_EQ(indices(frames), (std::vector<int>{1, 2, -3, 4, 5}));
-    FramePipeline none(source, 6, 6, number_of, {.overlap = overlap});
+    FramePipeline none(source, numbers(6, 6), number_of, {.overlap = overlap});
     EXPECT_EQ(indices(none), std::vector<int>{});
   }
 }
@@ -81,14 +89,14 @@ TEST(FramePipeline, ErrorsOfAnyStageComeAfterTheFramesBefore) {
   Numbers source;
   source.error_at = 5;
   for (const bool overlap : {false, true}) {
-    FramePipeline decoding(source, 0, 9, number_of, {.overlap = overlap});
+    FramePipeline decoding(source, numbers(0, 9), number_of, {.overlap = overlap});
     const auto fails_at = [](int index) {
       return [index](const Frame& frame) {
         if (frame.index == index) throw OutputError("no pose", "frame", "give one");
         return number_of(frame);
       };
     };
-    FramePipeline tracking(source, 0, 9, fails_at(4), {.overlap = overlap});
+    FramePipeline tracking(source, numbers(0, 9), fails_at(4), {.overlap = overlap});
     for (int i = 0; i < 5; ++i) ASSERT_TRUE(decoding.next()) << i;
     EXPECT_THROW(decoding.next(), InputError);
     for (int i = 0; i < 4; ++i) ASSERT_TRUE(tracking.next()) << i;
@@ -99,7 +107,7 @@ TEST(FramePipeline, ErrorsOfAnyStageComeAfterTheFramesBefore) {
 TEST(FramePipeline, ReadsFewFramesAhead) {
   if (available_threads() < 2) GTEST_SKIP() << "one processor";
   const Numbers source;
-  FramePipeline frames(source, 10, 100, number_of, {});
+  FramePipeline frames(source, numbers(10, 100), number_of, {});
   for (int taken = 0; taken < 10; ++taken) {
     while (source.loaded < taken + 2) std::this_thread::yield();  // one tracked, one decoded
     std::this_thread::sleep_for(1ms);                             // so that it could go on
@@ -111,7 +119,7 @@ TEST(FramePipeline, ReadsFewFramesAhead) {
 TEST(FramePipeline, AtARateFramesArriveWhenTheyAreDue) {
   const Numbers source;
   for (const bool overlap : {false, true}) {
-    FramePipeline frames(source, 0, 6, number_of, {.rate = 200, .overlap = overlap});
+    FramePipeline frames(source, numbers(0, 6), number_of, {.rate = 200, .overlap = overlap});
     const auto first = frames.next();
     for (int i = 1; i < 6; ++i) {
       const auto located = frames.next();
@@ -129,7 +137,7 @@ TEST(FramePipeline, WaitingCountsAtARateAndNotWithoutOne) {
       std::this_thread::sleep_for(20ms);
       return number_of(frame);
     };
-    FramePipeline frames(source, 10, 14, slow, {.rate = rate});
+    FramePipeline frames(source, numbers(10, 14), slow, {.rate = rate});
     std::optional<LocatedFrame> last;
     while (auto located = frames.next()) last = std::move(located);
     const auto waited = last->tracking_began - last->arrival;
@@ -142,7 +150,7 @@ TEST(FramePipeline, AtARateWhatCanWaitWaitsForTheFrameInHand) {
   const Numbers source;
   std::atomic<int> settled = 0;
   std::stop_source stop;
-  FramePipeline frames(source, 0, 9, number_of,
+  FramePipeline frames(source, numbers(0, 9), number_of,
                        {.rate = 1e-3, .stop = stop.get_token(), .settle = [&] { ++settled; }});
   ASSERT_TRUE(frames.next());
   std::this_thread::sleep_for(5ms);  // so that it could go on
@@ -155,7 +163,7 @@ TEST(FramePipeline, AtARateWhatCanWaitWaitsForTheFrameInHand) {
 
 TEST(FramePipeline, AFrameInHandForLongHoldsUpNoOther) {
   const Numbers source;
-  FramePipeline frames(source, 10, 14, number_of, {.rate = 100});
+  FramePipeline frames(source, numbers(10, 14), number_of, {.rate = 100});
   ASSERT_TRUE(frames.next());
   while (source.loaded < 2) std::this_thread::yield();  // it is about to be due
   EXPECT_TRUE(frames.next());
@@ -165,7 +173,7 @@ TEST(FramePipeline, AStopEndsTheWaitForAFrameNotDue) {
   const Numbers source;
   for (const bool overlap : {false, true}) {
     std::stop_source stop;
-    FramePipeline frames(source, 0, 9, number_of,
+    FramePipeline frames(source, numbers(0, 9), number_of,
                          {.rate = 1e-3, .overlap = overlap, .stop = stop.get_token()});
     EXPECT_TRUE(frames.next());  // at once
     std::jthread interrupt([&] {
@@ -185,7 +193,7 @@ TEST(FramePipeline, AStopLosesNoFrameThatWasTracked) {
     ++tracked;
     return number_of(frame);
   };
-  FramePipeline frames(source, 10, 100, track, {.stop = stop.get_token()});
+  FramePipeline frames(source, numbers(10, 100), track, {.stop = stop.get_token()});
   ASSERT_TRUE(frames.next());
   while (tracked < 2) std::this_thread::yield();
   stop.request_stop();

@@ -18,6 +18,10 @@ constexpr double kRotation = 0.02 * kDegree, kRotationPerMetre = 0.003 * kDegree
 /// Registration of a place seen again.
 constexpr double kClosureTranslation = 0.03;  // m
 constexpr double kClosureRotation = 0.05 * kDegree;
+/// From the last submap before a pause to the first one after it, where the track restarts: the
+/// motion is not known. The path counts as so long that loops between the two are searched.
+constexpr double kRestartTranslation = 100, kRestartRotation = 90 * kDegree;  // m, rad
+constexpr double kRestartPath = 2500;                                         // m
 /// Without navigation the first submap stays where it is.
 constexpr double kAnchor = 1e-4;
 
@@ -55,17 +59,20 @@ bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
   return seconds(stamp - submap.start) >= options_.submap_duration && moved >= kSubmapLength;
 }
 
-void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar) {
+Twist Fusion::odometry_deviations(double length, bool restarts) const {
+  if (restarts) return deviations(kRestartRotation, kRestartTranslation);
+  return deviations(
+      kRotation + kRotationPerMetre * length + kRotationPerWeak * weak_frames_,
+      kTranslation + kTranslationPerMetre * length + kTranslationPerWeak * weak_frames_);
+}
+
+void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts) {
   const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
   const auto measured = navigation_.measurement(node, stamp);
   if (node > 0) {
     const Submap& before = submaps_.back();
-    const double length = path_ - before.path;
-    graph_.add(RelativePose{
-        node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
-        deviations(
-            kRotation + kRotationPerMetre * length + kRotationPerWeak * weak_frames_,
-            kTranslation + kTranslationPerMetre * length + kTranslationPerWeak * weak_frames_)});
+    graph_.add(RelativePose{node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
+                            odometry_deviations(path_ - before.path, restarts)});
   } else if (!measured) {
     graph_.add(AbsolutePose{node, graph_.poses().back(), deviations(kAnchor, kAnchor)});
   }
@@ -84,6 +91,12 @@ void Fusion::settle() {
 void Fusion::track(FrameRecord& record) {
   settle();
   const RigidMotion& T_odom_lidar = record.T_odom_lidar;
+  const bool restarts = record.has("track_restarted");
+  if (restarts) {
+    last_T_odom_lidar_.reset();
+    path_ += kRestartPath;
+    navigation_.restart();
+  }
   if (last_T_odom_lidar_) {
     path_ += (T_odom_lidar.translation() - last_T_odom_lidar_->translation()).norm();
   }
@@ -94,7 +107,9 @@ void Fusion::track(FrameRecord& record) {
     record.note += (record.note.empty() ? "" : "; ") + problem;
   }
   weak_frames_ += is_weak(record) ? 1 : 0;
-  if (is_due(*record.stamp, T_odom_lidar)) open_submap(*record.stamp, T_odom_lidar);
+  if (restarts || is_due(*record.stamp, T_odom_lidar)) {
+    open_submap(*record.stamp, T_odom_lidar, restarts);
+  }
   record.submap = static_cast<int>(submaps_.size()) - 1;
   record.T_local_lidar = T_local_lidar(record);
 }

@@ -30,7 +30,8 @@ class Fusion {
   Fusion(const FusionOptions& options, const RegistrationOptions& registration,
          const DriveInfo& drive);
 
-  /// Takes the next frame's pose in odom, opens a submap if one is due, and sets record.submap and
+  /// Takes the next frame's pose in odom, opens a submap if one is due or the track restarts, and
+  /// sets record.submap and
   /// record.T_local_lidar; appends to record.note what is wrong with the navigation.
   void track(FrameRecord& record);
   /// Solves the graph with the submap that the last frame opened: until then that is where odometry
@@ -61,7 +62,10 @@ class Fusion {
     double path;  // m driven before
   };
   bool is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const;
-  void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar);
+  void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts);
+  /// Of the odometry from the submap before to a new one.
+  /// @param length  m driven between their origins
+  Twist odometry_deviations(double length, bool restarts) const;
   RigidMotion T_submap_lidar(const FrameRecord& record) const;
   void close_loop(const FrameRecord& record);
   std::vector<LoopCandidate> candidates(const RigidMotion& T_local_lidar) const;

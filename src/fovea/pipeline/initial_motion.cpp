@@ -29,7 +29,8 @@ constexpr int kMostRegistrations = 8;
 
 /// The first usable frame from `begin` on.
 std::optional<Frame> usable_frame(const FrameSource& source, int begin) {
-  for (int index = begin; index < source.info().end; ++index) {
+  for (const int index : source.info().frame_indices()) {
+    if (index < begin) continue;
     FrameResult result = source.load(index);
     if (auto* frame = std::get_if<Frame>(&result)) return std::move(*frame);
   }

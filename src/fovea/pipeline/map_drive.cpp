@@ -10,17 +10,18 @@
 #include "fovea/base/path_name.h"
 #include "fovea/base/version.h"
 #include "fovea/map/map_keeper.h"
-#include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/self_calibration.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/pipeline/view_check.h"
+#include "fovea/sensor/lost_drive.h"
 
 namespace fovea {
 namespace {
@@ -65,28 +66,8 @@ MapMeta describe(const DriveInfo& drive, const MapJob& job) {
   return meta;
 }
 
-/// InputError if a map was made with other settings.
-void require_same_run(const MapReader& reader, const MapJob& job, const MapMeta& meta) {
-  const MapMeta before = reader.meta();
-  if (before.contains(meta_key::kCrop)) {
-    throw InputError("the map is a part of another one", job.output.string(),
-                     "resume the whole map, or start a new one");
-  }
-  if (before.contains(meta_key::kRepair)) {
-    throw InputError("the map was repaired and lacks parts", job.output.string(),
-                     "start a new map");
-  }
-  if (!merged_drives(reader).empty()) {
-    throw InputError("the map is of several drives", job.output.string(),
-                     "resume the map of one drive, and merge it when it is whole");
-  }
-  for (const auto& [key, value] : meta) {
-    const auto found = before.find(key);
-    if (found == before.end() || found->second != value) {
-      throw InputError(fmt::format("the map was made with another '{}'", key), job.output.string(),
-                       "resume with the drive and settings of the first run, or start a new map");
-    }
-  }
+bool is_damage(SkipReason reason) {
+  return reason == SkipReason::kDamagedScan || reason == SkipReason::kDamagedImage;
 }
 
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
@@ -95,6 +76,7 @@ FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> st
   record.stamp = stamp;
   record.status = FrameStatus::kSkipped;
   record.note = fmt::format("{}: {}", to_string(skipped.reason), skipped.detail);
+  if (is_damage(skipped.reason)) record.figures["damaged"] = 1;
   return record;
 }
 
@@ -178,25 +160,27 @@ class MapRun {
     if (has_cameras && job.options.check_calibration && !job.calibrate) {
       check_.emplace(drive, has_sweep_motion(drive, job));
     }
-    if (const auto velocity =
-            initial_velocity(source, job.given_poses, drive.begin, job.options.compensate_motion)) {
-      mapper_.begin_with(*velocity);
-    }
+    begin_with_velocity_at(drive.begin);
     if (job.resume) take_up_earlier_run();
     frames_before_ = log_.size();
   }
 
+  /// Maps all frames, or those before the drive was lost.
   void map_frames(const std::function<void(const MapProgress&)>& progress);
   /// Ends the file. InputError if no frame could be mapped.
   void finish();
+  /// InputError if the drive was lost or too many of its frames are damaged. The file is complete
+  /// as far as the frames go.
+  void require_whole_drive() const;
   MapSummary summary() const;
 
  private:
   MapKeeperOptions keeper_options();
   void take_up_earlier_run();
+  void begin_with_velocity_at(int index);
   void check_calibration(const LocatedFrame& located, FrameRecord& record);
   MapRows fresh_rows(bool last);
-  bool complete() const { return log_.size() == std::size_t(drive_.end - drive_.begin); }
+  bool complete() const { return log_.size() == drive_.frame_count(); }
 
   const FrameSource& source_;
   const DriveInfo& drive_;
@@ -216,6 +200,7 @@ class MapRun {
   std::vector<CameraCalibration> calibration_;  // what it has found
   std::optional<FrameRecord> latest_;
   std::size_t frames_before_ = 0;  // of an earlier run
+  std::optional<DriveLostError> lost_;
 };
 
 MapKeeperOptions MapRun::keeper_options() {
@@ -233,16 +218,25 @@ MapKeeperOptions MapRun::keeper_options() {
   return options;
 }
 
+void MapRun::begin_with_velocity_at(int index) {
+  mapper_.begin_with(
+      initial_velocity(source_, job_.given_poses, index, job_.options.compensate_motion));
+}
+
 void MapRun::take_up_earlier_run() {
   const MapReader reader(job_.output);
-  require_same_run(reader, job_, meta_);
-  require_same_drive(reader, drive_records_.front(), job_.output);
+  require_same_run(reader, meta_, drive_records_.front(), job_.output);
+  keep_names(reader, meta_, drive_records_.front());
   const std::vector<FrameRecord> records = reader.frames();
   for (const FrameRecord& record : records) {
     log_.add_stored(record);
     figures_.add(record, /*is_new=*/false);
   }
   mapper_.resume(stored_map(reader, job_.options.tile_size), records, source_);
+  const auto tracked = std::find_if(records.rbegin(), records.rend(), [](const FrameRecord& r) {
+    return r.status != FrameStatus::kSkipped;
+  });
+  if (tracked != records.rend() && mapper_.begins()) begin_with_velocity_at(tracked->index);
   if (!records.empty()) latest_ = records.back();
   if (log_.has_mapped()) views_.skip();
 }
@@ -267,17 +261,28 @@ MapRows MapRun::fresh_rows(bool last) {
 }
 
 void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress) {
-  const int total = drive_.end - drive_.begin;
+  const int total = static_cast<int>(drive_.frame_count());
   const auto track = [&](const Frame& frame) {
     std::optional<RigidMotion> given;
     const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
     if (place < job_.given_poses.size()) given = job_.given_poses[place];
+    if (mapper_.follows_pause(frame.stamp)) begin_with_velocity_at(frame.index);
     return mapper_.track(frame, job_.hold_out.contains(frame.index), given);
   };
+  std::vector<int> indices = drive_.frame_indices();
+  indices.erase(indices.begin(), indices.begin() + std::ptrdiff_t(log_.size()));
   FramePipeline frames(
-      source_, drive_.begin + static_cast<int>(log_.size()), drive_.end, track,
+      source_, std::move(indices), track,
       {job_.rate, threaded_, job_.stop, [this] { mapper_.settle_tracking(); }, gate_});
-  while (std::optional<LocatedFrame> located = frames.next()) {
+  const auto next_frame = [&]() -> std::optional<LocatedFrame> {
+    try {
+      return frames.next();
+    } catch (const DriveLostError& error) {
+      lost_ = error;
+      return std::nullopt;
+    }
+  };
+  while (std::optional<LocatedFrame> located = next_frame()) {
     if (const auto* frame = std::get_if<Frame>(&located->result)) views_.add(frame->scan);
     FrameRecord record = map_frame(mapper_, source_, drive_, *located);
     check_calibration(*located, record);
@@ -300,6 +305,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
 void MapRun::finish() {
   if (!log_.has_mapped() || !views_.passed()) require_no_stop(job_);
   if (!log_.has_mapped()) {
+    if (lost_) throw *lost_;
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
                      "check that the drive has scans and images for the frames asked for");
   }
@@ -310,6 +316,25 @@ void MapRun::finish() {
   });
   keeper_.finish(mapper_.map(), fresh_rows(/*last=*/true));
   calibration_ = calibration.get();
+}
+
+void MapRun::require_whole_drive() const {
+  if (lost_) {
+    throw InputError(lost_->problem(), lost_->where(),
+                     lost_->remedy() + fmt::format(" and continue with --resume: {} holds the "
+                                                   "frames before",
+                                                   job_.output.string()));
+  }
+  const MapSummary& figures = figures_.summary();
+  const int usable = figures.frames_mapped + figures.frames_held_out,
+            damaged = figures.frames_damaged;
+  if (damaged <= job_.options.max_damaged_share * (usable + damaged)) return;
+  throw InputError(fmt::format("{} of {} frames are damaged (the first: {})", damaged,
+                               usable + damaged, figures.first_damage),
+                   drive_.path.string(),
+                   fmt::format("restore them and map again, or allow a larger share (--set "
+                               "input.max_damaged_share=1): {} holds the other frames",
+                               job_.output.string()));
 }
 
 MapSummary MapRun::summary() const {
@@ -331,6 +356,21 @@ MapSummary MapRun::summary() const {
   summary.frames_new = log_.size() - frames_before_;
   summary.interrupted = !complete();
   summary.calibration = calibration_;
+  return summary;
+}
+
+/// The summary of a map to resume that is complete; nothing if frames are missing.
+std::optional<MapSummary> complete_run(const FrameSource& source, const DriveInfo& drive,
+                                       const MapJob& job, const MapMeta& meta) {
+  const MapReader reader(job.output);
+  // MapWriter refuses an older format.
+  if (reader.format_version() != kMapFormatVersion || !is_complete(reader.meta())) return {};
+  require_same_run(reader, meta, drive_record(source), job.output);
+  DriveFigures figures(drive, job.rate);
+  for (const FrameRecord& record : reader.frames()) figures.add(record, /*is_new=*/false);
+  MapSummary summary = figures.summary();
+  summary.points = reader.size();
+  summary.notes.push_back("the map is complete: there is nothing to resume");
   return summary;
 }
 
@@ -356,11 +396,17 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
   DriveInfo drive = info_with_lidars(source);
   require_sources(drive, job);
   MapMeta meta = describe(drive, job);
+  if (job.resume) {
+    if (std::optional<MapSummary> complete = complete_run(source, drive, job, meta)) {
+      return *std::move(complete);
+    }
+  }
   const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
   require_no_stop(job);
   MapRun run(source, drive, job, std::move(meta));
   run.map_frames(progress);
   run.finish();
+  run.require_whole_drive();
   MapSummary summary = run.summary();
   if (job.calibrate) summary.calibration = correction;
   summary.calibrated = job.calibrate;

@@ -61,6 +61,8 @@ struct MapProgress {
 
 /// Maps the frames of a drive into a map file. `progress` is called in the caller's thread after
 /// each frame, in order. Errors as in MapWriter; InputError if no frame of the range can be used,
+/// if the drive can no longer be read in mid-run or too many frames are damaged (the map of the
+/// other frames is kept),
 /// if navigation's poses are wanted and there are none, or if the map to resume was made with other
 /// settings. Where frames have been committed before an error, the file stays, to be resumed.
 MapSummary map_drive(const FrameSource& source, const MapJob& job,

@@ -254,11 +254,52 @@ TEST_F(MapDrive, ADriveOfAnotherCalibrationOrOtherStampsDoesNotResume) {
   };
   BrokenDrive recalibrated;
   recalibrated.editable_info().calibration.cameras[0].T_cam_lidar.translation().x() += 0.001;
-  EXPECT_EQ(refusal(recalibrated), "the map was made of a drive with another calibration");
+  EXPECT_EQ(refusal(recalibrated),
+            "the map was made of a drive with another calibration (camera 2)");
+  BrokenDrive remounted;
+  remounted.editable_info().calibration.T_imu_lidar = RigidMotion::Identity();
+  EXPECT_EQ(refusal(remounted),
+            "the map was made of a drive with another calibration (the place of the IMU)");
   BrokenDrive later;
   later.shift = kNsPerSecond;
   EXPECT_EQ(refusal(later), "the map was made of a drive with other stamps");
   EXPECT_EQ(refusal(drive_), "resumed");
+}
+
+// The name of a drive is no part of its identity, and a note may contain it.
+TEST_F(MapDrive, ARenamedDriveResumesToTheSameMap) {
+  map_drive(drive_, job(), {});
+  const std::string whole = digest();
+  std::stop_source stop;
+  MapJob job = this->job();
+  job.stop = stop.get_token();
+  map_drive(drive_, job, [&](const MapProgress&) { stop.request_stop(); });
+  job.stop = {};
+  job.resume = true;
+  BrokenDrive renamed;
+  renamed.editable_info().path = "elsewhere/renamed";
+  renamed.editable_info().notes = {"elsewhere/renamed/stamps.csv has 1 bad line"};
+  EXPECT_FALSE(map_drive(renamed, job, {}).interrupted);
+  EXPECT_EQ(digest(), whole);
+}
+
+TEST_F(MapDrive, ACompleteMapIsNotWrittenAgainByResume) {
+  const MapSummary made = map_drive(drive_, job(), {});
+  const auto written = std::filesystem::last_write_time(job().output);
+  MapJob job = this->job();
+  job.resume = true;
+  const MapSummary resumed = map_drive(drive_, job, {});
+  EXPECT_EQ(resumed.notes.back(), "the map is complete: there is nothing to resume");
+  EXPECT_FALSE(resumed.interrupted);
+  EXPECT_EQ(resumed.points, made.points);
+  EXPECT_EQ(resumed.frames_mapped, made.frames_mapped);
+  EXPECT_EQ(std::filesystem::last_write_time(job.output), written);
+  // It must still be the map of this drive and of these settings.
+  BrokenDrive recalibrated;
+  recalibrated.editable_info().calibration.cameras[0].fx += 1;
+  EXPECT_THROW(map_drive(recalibrated, job, {}), InputError);
+  job.hold_out = HoldOut::parse("4:1");
+  EXPECT_THROW(map_drive(drive_, job, {}), InputError);
 }
 
 /// Leaves a place and comes back to it twice; 100 m lie between the two.

@@ -42,6 +42,11 @@ void DriveFigures::note_flaws(const FrameRecord& record) {
   if (record.has("navigation_jumped")) jumped_.add(record.index);
   if (record.has("registration_degenerate")) degenerate_.add(record.index);
   if (record.has("registration_lost")) lost_.add(record.index);
+  if (record.has("pose_unknown")) {
+    unknown_.add(record.index);
+  } else if (record.has("track_restarted")) {
+    restarted_.add(record.index);
+  }
   if (record.has("images_blank")) blank_.add(record.index);
   if (record.has("exposure_off")) exposed_.add(record.index);
 }
@@ -56,6 +61,9 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
       break;
     case FrameStatus::kSkipped:
       ++summary_.frames_skipped[record.note.substr(0, record.note.find(':'))];
+      if (record.has("damaged") && summary_.frames_damaged++ == 0) {
+        summary_.first_damage = record.note;
+      }
       break;
   }
   if (record.has("registration_failed")) ++summary_.registrations_failed;
@@ -88,6 +96,12 @@ MapSummary DriveFigures::summary() const {
   warn(lost_,
        "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "
        "may be wrong");
+  warn(restarted_,
+       "the recording paused, and the scan shows no place of before; a new part of the map begins "
+       "where navigation has it");
+  warn(unknown_,
+       "the recording paused, and neither navigation nor the scan relates the pose to those "
+       "before; a new part of the map begins at the last pose, where it may overlap the others");
   note(degenerate_,
        "the scan leaves a direction of motion open, which is taken from the first guess");
   note(exposed_,

@@ -28,6 +28,8 @@ bool is_late(const FrameRecord& record, double rate);
 struct MapSummary : Messages {
   int frames_mapped = 0, frames_held_out = 0;
   std::map<std::string, int> frames_skipped;  ///< by reason
+  int frames_damaged = 0;                     ///< skipped frames whose files cannot be used
+  std::string first_damage;                   ///< one line: what and which file
   std::map<int, int> images_missing;          ///< by camera; of frames that were not skipped
   int registrations_failed = 0;
   int loops_closed = 0;  ///< scans registered to a place seen before
@@ -73,7 +75,7 @@ class DriveFigures {
   const DriveInfo& drive_;
   MapSummary summary_;
   std::map<std::string, std::vector<float>> by_stage_;  // ms
-  Flaw absent_, jumped_, degenerate_, lost_, blank_, exposed_;
+  Flaw absent_, jumped_, degenerate_, lost_, restarted_, unknown_, blank_, exposed_;
   std::map<int, Flaw> missing_;  // by camera
 };
 

@@ -29,9 +29,15 @@ class Mapper {
       const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
       BringNear bring_near = [](TileMap&, const Eigen::Vector3d&, double) {});
 
-  /// Tells the LiDAR's velocity at the first frame, before it, where the drive's navigation does
-  /// not (initial_velocity); without either it is taken to be at rest, and its sweep left as it is.
-  void begin_with(const Twist& velocity) { tracker_.begin_with(velocity); }
+  /// Sets the LiDAR's velocity at the first frame, and at the first one after a pause, before that
+  /// frame is tracked, where navigation does not measure it (initial_velocity). Without either the
+  /// LiDAR counts as at rest, and its sweep stays as it is.
+  void begin_with(const std::optional<Twist>& velocity) { tracker_.begin_with(velocity); }
+  /// Whether a frame follows a pause of the recording (MotionModel::follows_pause). In the thread
+  /// of track().
+  bool follows_pause(TimeNs stamp) const { return tracker_.follows_pause(stamp); }
+  /// Whether the last frame tracked is the first of all or the first after a pause.
+  bool begins() const { return tracker_.begins(); }
 
   /// Maps one frame and returns what is to be kept of it.
   /// @param held_out    registered like any other, but adds no point, colour or registration target

@@ -48,6 +48,9 @@ void RefinementOptions::validate() const {
 }
 
 void MapperOptions::validate() const {
+  if (!(max_damaged_share >= 0 && max_damaged_share <= 1)) {
+    reject("a share is out of range", "input.max_damaged_share", "give 0 to 1");
+  }
   refinement.validate();
   foveal.validate();
   for (const auto& [camera, slices] : camera_slices) {

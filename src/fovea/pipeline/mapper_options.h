@@ -45,6 +45,8 @@ struct RefinementOptions {
 };
 
 struct MapperOptions {
+  /// Share of a drive's frames that may be damaged, 0 to 1.
+  double max_damaged_share = 0.5;
   bool compensate_motion = true;  ///< sweep motion, where the drive's scans are raw
   /// Navigation at a scan's own stamp; false (ablation): the record nearest in time.
   bool interpolate_navigation = true;

@@ -12,6 +12,11 @@ namespace {
 constexpr double kAcceleration = 10, kShift = 0.2;                  // m/s^2, m
 constexpr double kTurnRate = 100 * kDegree, kTurn = 1.5 * kDegree;  // rad/s^2, rad
 
+/// A pause of the recording is a step between frames of more than this, and of more than so many
+/// usual steps.
+constexpr TimeNs kPause = kNsPerSecond;
+constexpr int kPauseSteps = 3;
+
 /// What a velocity is taken to err by before anything is known of it, and what a single error
 /// counts at most: a moment without satellites is not held against a receiver for long.
 constexpr double kFirstWay = 0.1, kFirstTurn = 0.5 * kDegree;  // m/s, rad/s
@@ -113,7 +118,29 @@ SweepMotion MotionModel::weighed(const SweepMotion& by_navigation,
           mean(by_navigation.acceleration, by_motion.acceleration)};
 }
 
+bool MotionModel::follows_pause(TimeNs stamp) const {
+  if (!last_) return false;
+  const TimeNs step = stamp - last_->time;
+  return step > kPause && (!usual_step_ || step > kPauseSteps * *usual_step_);
+}
+
+MotionPrediction MotionModel::predict_after_pause(TimeNs stamp) const {
+  MotionPrediction prediction;
+  prediction.after_pause = true;
+  prediction.T_local_lidar_navigation = navigation_at(stamp);
+  auto guess = by_navigation(stamp);
+  if (guess) {
+    guess->sigma.reset();  // the error of navigation over the pause is not known
+  } else {
+    guess = MotionGuess{last_->T_local_body, navigation_motion(stamp), false, std::nullopt};
+    if (!guess->motion && initial_velocity_) guess->motion = SweepMotion{*initial_velocity_};
+  }
+  prediction.guesses = {*guess};
+  return prediction;
+}
+
 MotionPrediction MotionModel::predict(TimeNs stamp) const {
+  if (follows_pause(stamp)) return predict_after_pause(stamp);
   MotionPrediction prediction;
   prediction.T_local_lidar_navigation = navigation_at(stamp);
   auto by_nav = by_navigation(stamp);
@@ -139,6 +166,12 @@ MotionPrediction MotionModel::predict(TimeNs stamp) const {
 
 void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar) {
   const StampedPose now{stamp, T_odom_lidar};
+  const bool is_after_pause = follows_pause(stamp);
+  if (last_ && !(is_after_pause && usual_step_)) usual_step_ = stamp - last_->time;
+  if (is_after_pause) {
+    last_.reset();
+    before_last_.reset();
+  }
   if (before_last_) {
     const Twist actual = velocity_between(*before_last_, now);  // at last_, between the two
     if (last_by_navigation_) navigation_error_.add(last_by_navigation_->velocity, actual);
@@ -148,6 +181,7 @@ void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar) {
   last_by_motion_ = motion_velocity();
   before_last_ = last_;
   last_ = now;
+  if (before_last_) initial_velocity_.reset();
 }
 
 }  // namespace fovea

@@ -25,6 +25,9 @@ struct MotionPrediction {
   std::vector<MotionGuess> guesses;
   /// Pose by navigation alone.
   std::optional<RigidMotion> T_local_lidar_navigation;
+  /// The frame follows a pause: no velocity from before it counts. The guess is by navigation, or
+  /// else the last pose.
+  bool after_pause = false;
 };
 
 struct MotionModelOptions {
@@ -63,16 +66,24 @@ class MotionModel {
   explicit MotionModel(const Trajectory* navigation, const MotionModelOptions& options = {})
       : navigation_(navigation), options_(options) {}
 
-  /// The velocity (of the LiDAR, its own frame, a second) that the motion begins with, where it is
-  /// known and navigation does not tell it: before the first update().
-  void begin_with(const Twist& velocity) { initial_velocity_ = velocity; }
+  /// The velocity (of the LiDAR, in its own frame, per second) at the beginning or after a pause,
+  /// where it is known and navigation does not measure it. Counts until a second pose is known.
+  void begin_with(const std::optional<Twist>& velocity) { initial_velocity_ = velocity; }
 
   MotionPrediction predict(TimeNs stamp) const;
+
+  /// Whether a frame follows a pause of the recording: over 1 s after the last frame, and over
+  /// three of the drive's usual steps.
+  bool follows_pause(TimeNs stamp) const;
+  /// Whether the model has no velocity of its own, because it has one pose since the beginning or
+  /// the last pause.
+  bool begins() const { return last_ && !before_last_; }
 
   /// Tells the pose that the frame got in the end. All else that the model knows is of these calls.
   void update(TimeNs stamp, const RigidMotion& T_odom_lidar);
 
  private:
+  MotionPrediction predict_after_pause(TimeNs stamp) const;
   std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
   std::optional<SweepMotion> navigation_motion(TimeNs stamp) const;
   std::optional<Twist> motion_velocity() const;
@@ -86,6 +97,7 @@ class MotionModel {
   MotionModelOptions options_;
   std::optional<Twist> initial_velocity_;
   std::optional<StampedPose> last_, before_last_;
+  std::optional<TimeNs> usual_step_;  // from frame to frame, without pauses
   // What was foretold for last_.
   std::optional<SweepMotion> last_by_navigation_;
   std::optional<Twist> last_by_motion_;

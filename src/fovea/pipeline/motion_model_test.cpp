@@ -167,6 +167,54 @@ TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
   EXPECT_FALSE(late.T_local_lidar_navigation);
 }
 
+TEST(MotionModel, NoVelocityOutlivesAPause) {
+  MotionModel model(nullptr);
+  for (int i = 0; i < 4; ++i) model.update(i * kTenth, at_x(i));
+  EXPECT_FALSE(model.follows_pause(4 * kTenth));
+  EXPECT_FALSE(model.follows_pause(13 * kTenth));  // nine frames are missing
+  const TimeNs after = 60 * kNsPerSecond;
+  ASSERT_TRUE(model.follows_pause(after));
+  const MotionPrediction first = model.predict(after);
+  EXPECT_TRUE(first.after_pause);
+  EXPECT_NEAR(first.guesses[0].T_odom_lidar.translation().x(), 3, 1e-12);
+  EXPECT_FALSE(first.guesses[0].motion);
+  model.update(after, at_x(50));
+  EXPECT_TRUE(model.begins());
+  const MotionPrediction second = model.predict(after + kTenth);
+  EXPECT_FALSE(second.after_pause);
+  EXPECT_NEAR(second.guesses[0].T_odom_lidar.translation().x(), 50, 1e-12);
+  EXPECT_FALSE(second.guesses[0].motion);
+  model.update(after + kTenth, at_x(52));
+  EXPECT_FALSE(model.begins());
+  EXPECT_NEAR(model.predict(after + 2 * kTenth).guesses[0].T_odom_lidar.translation().x(), 54,
+              1e-12);
+}
+
+TEST(MotionModel, NavigationNearAPauseBridgesIt) {
+  // 1 m a frame; records lie 4 ms behind the frames, and none in the pause of 60 s.
+  std::vector<StampedPose> poses;
+  const auto stamp = [](int i) { return i * kTenth + (i >= 5 ? 60 * kNsPerSecond : 0); };
+  const TimeNs late = kNsPerSecond / 250;
+  for (int i = 0; i < 10; ++i) poses.push_back({stamp(i) + late, at_x(i + 0.04)});
+  const Trajectory navigation(poses);
+  MotionModel model(&navigation, {.sweep_rest = kTenth / 2});
+  for (int i = 0; i < 5; ++i) model.update(stamp(i), at_x(i));
+  const MotionPrediction first = model.predict(stamp(5));
+  ASSERT_EQ(first.guesses.size(), 1u);
+  EXPECT_TRUE(first.after_pause);
+  EXPECT_TRUE(first.guesses[0].by_navigation);
+  EXPECT_NEAR(first.guesses[0].T_odom_lidar.translation().x(), 5, 1e-9);
+  EXPECT_NEAR(first.guesses[0].motion->velocity[3], 10, 1e-9);
+}
+
+TEST(MotionModel, ASlowDriveDoesNotPause) {
+  MotionModel model(nullptr);
+  for (int i = 0; i < 3; ++i) model.update(2 * i * kNsPerSecond, at_x(i));
+  EXPECT_FALSE(model.follows_pause(6 * kNsPerSecond));
+  EXPECT_NEAR(model.predict(6 * kNsPerSecond).guesses[0].T_odom_lidar.translation().x(), 3, 1e-12);
+  EXPECT_TRUE(model.follows_pause(11 * kNsPerSecond));
+}
+
 TEST(MotionModel, AThousandGuessesInARowStayRigid) {
   MotionModel model(nullptr);
   RigidMotion T = RigidMotion::Identity();

@@ -25,6 +25,13 @@ class NavigationCheck {
   /// @return what is wrong with the navigation at this frame; empty if nothing is
   std::string observe(TimeNs stamp, const RigidMotion& T_local_lidar);
 
+  /// The next frame's pose says nothing of the motion since the last one.
+  void restart() {
+    last_.reset();
+    last_position_.reset();
+    path_ = 0;
+  }
+
   /// What navigation says of a node's pose, with the deviations that it deserves; empty in an
   /// outage.
   std::optional<AbsolutePose> measurement(std::size_t node, TimeNs stamp) const;

@@ -7,6 +7,7 @@
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/ground.h"
+#include "fovea/mapping/registration/place_search.h"
 
 namespace fovea {
 
@@ -152,6 +153,8 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
   if (to_map) {
     const double overlap = double(result.pairs) / double(refined.cloud.points.size());
     refined.lost = fit.contradicts() || overlap < kLeastOverlap;
+    refined.is_confirmed =
+        refined.note.empty() && !refined.lost && place_score(fit, overlap) > kLeastPlaceScore;
     refined.figures["registration_vertical_fit"] = fit.share;
   }
   refined.figures["registration_iterations"] = result.iterations;
@@ -166,41 +169,26 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
 
 RefinedPose PoseRefiner::search(RefinedPose lost, const RigidMotion& guess, double reach,
                                 StageClock& clock) const {
-  // Registration with pairs of up to 4 m finds a scan from half as far.
-  constexpr double kStep = 2.5, kMostReach = 20;  // m
-  RegistrationOptions far = options_.registration;
-  far.max_distance = 4;
-  far.robust_width = 1;
-  far.max_iterations = 30;
-  RefinedPose best = std::move(lost);
-  best.T_odom_lidar = guess;
-  best.note = "the scan fits nowhere around its first guess";
-  double best_share = 0;
-  const auto try_from = [&](const Eigen::Vector3d& offset) {
-    const RigidMotion start = guess * Eigen::Translation3d(offset);
-    const RigidMotion near = register_to(local_map_, best.cloud, start, far).T_target_source;
-    const RegistrationResult result =
-        register_to(local_map_, best.cloud, near, options_.registration);
-    const VerticalFit fit = vertical_fit(local_map_, best.cloud, result.T_target_source);
-    const bool fits = fit.points >= VerticalFit::kLeastPoints && !fit.contradicts();
-    if (!result.converged || !fits || fit.share <= best_share) return;
-    best_share = fit.share;
-    best.lost = false;
-    best.T_odom_lidar = result.T_target_source;
-    best.fit = fit_of(result, options_.registration);
-    best.note = "the scan was found again by a search";
-    best.figures["registration_vertical_fit"] = fit.share;
-  };
-  clock.time("register", [&] {
-    for (double way = 0; way <= std::min(reach, kMostReach); way += kStep) {
-      for (const Eigen::Vector3d& offset :
-           {Eigen::Vector3d(way, 0, 0), {-way, 0, 0}, {0, way, 0}, {0, -way, 0}}) {
-        try_from(offset);
-        if (way == 0) break;
-      }
-    }
+  RefinedPose refined = std::move(lost);
+  refined.T_odom_lidar = guess;
+  refined.note = "the scan fits nowhere around its first guess";
+  if (local_map_.empty()) return refined;
+  const auto found = clock.time("register", [&] {
+    return search_place(local_map_, refined.cloud, guess, reach, options_.registration);
   });
-  return best;
+  if (!found) return refined;
+  refined.lost = false;
+  refined.is_confirmed = true;
+  refined.T_odom_lidar = found->registration.T_target_source;
+  refined.fit = fit_of(found->registration, options_.registration);
+  refined.note = "the scan was found again by a search";
+  refined.figures["registration_vertical_fit"] = found->fit.share;
+  return refined;
+}
+
+void PoseRefiner::restart() {
+  local_map_.clear();
+  previous_.reset();
 }
 
 void PoseRefiner::keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar,

@@ -21,8 +21,9 @@ struct RefinedPose {
   RigidMotion T_odom_lidar = RigidMotion::Identity();
   /// How well the scan fits: points with a counterpart, each the less the further it lies.
   double fit = 0;
-  std::string note;   ///< why the first guess was kept; empty if it was not
-  bool lost = false;  ///< the scan does not lie on the surfaces of the local map
+  std::string note;           ///< why the first guess was kept; empty if it was not
+  bool lost = false;          ///< the scan does not lie on the surfaces of the local map
+  bool is_confirmed = false;  ///< vertical surfaces of the local map confirm the pose
   std::map<std::string, double> figures;  ///< registration_iterations, _pairs, _rms, ...
 };
 
@@ -46,14 +47,22 @@ class PoseRefiner {
   RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_odom_lidar,
                      StageClock& clock, const std::optional<Twist>& sigma = std::nullopt) const;
 
-  /// Registers a scan that is lost, from guesses all around its first guess.
-  /// @param reach  m, of these guesses; at most 20
-  /// @return the pose that fits best, or else the first guess and `lost`
+  /// Searches for a scan that is lost around its first guess, see search_place().
+  /// @param reach  m
+  /// @return the pose that fits best, or else the first guess and what `lost` says
   RefinedPose search(RefinedPose lost, const RigidMotion& guess_T_odom_lidar, double reach,
                      StageClock& clock) const;
 
   /// Lets later scans be registered against this one, where it is.
   void keep(RegistrationCloud cloud_lidar, const RigidMotion& T_odom_lidar, StageClock& clock);
+
+  /// Forgets all scans: later ones are elsewhere.
+  void restart();
+  /// Whether refine() can confirm poses: only the local map has planes to compare with.
+  bool confirms_poses() const {
+    return options_.target == RegistrationTarget::kLocalMap &&
+           options_.registration.method != RegistrationMethod::kPointToPoint;
+  }
 
   /// Chooses the scans that are to be kept, from the first on.
   Keyframes keyframes() const;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kMargin = 1;
 
 /// What fusion takes for a point that no view has shown.
-void forget_colors(TilePoints& tile) {
+void forget_colors(int drive, TilePoints& tile) {
   const auto count = static_cast<std::uint32_t>(tile.size());
   std::fill(tile.colors.begin(), tile.colors.end(), FusedColor{});
   tile.camera = {};
@@ -29,19 +29,20 @@ void forget_colors(TilePoints& tile) {
   tile.reason = RunColumn<std::uint8_t>(reasons);
   tile.saturated = {};
   tile.session = {};
+  if (drive > 0) tile.session.push_back(static_cast<std::uint16_t>(drive), count);
 }
 
 /// The map without its colours; its tiles are in the file alone.
-TileMap copy_uncolored(const MapReader& map, const MapperOptions& options, MapWriter& writer) {
+TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& writer) {
   const auto held_state = map.hold_state();
-  TileMap copy(options.tile_size);
+  TileMap copy(job.options.tile_size);
   for (const RigidMotion& T_local_submap : copy_all_but_tiles(map, writer)) {
     copy.add_submap(T_local_submap);
   }
-  writer.put_meta(meta_key::kConfig, to_toml(options));
+  writer.put_meta(meta_key::kConfig, to_toml(job.options));
   map.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
     TilePoints uncolored = tile;
-    if (!tile.empty()) forget_colors(uncolored);
+    if (!tile.empty()) forget_colors(job.drive, uncolored);
     writer.put_tile(id, uncolored);
     copy.declare_stored(id, tile.size());
   });
@@ -110,7 +111,7 @@ RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, cons
   RecolorFigures figures;
   {
     auto writer = MapWriter::create(job.output, job.force);
-    TileMap uncolored = copy_uncolored(map, job.options, *writer);
+    TileMap uncolored = copy_uncolored(map, job, *writer);
     MapKeeper keeper(std::move(writer),
                      {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     Recolorer recolorer(source.info(), job.options, std::move(uncolored), keeper);

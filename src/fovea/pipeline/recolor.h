@@ -14,6 +14,7 @@ struct RecolorJob {
   std::filesystem::path output;
   MapperOptions options;  ///< of which those of foveal region, texture and sampling are used
   bool force = false;     ///< overwrite `output`
+  int drive = 0;          ///< number of the drive in the map, for the points' column `session`
   std::size_t memory = std::size_t{1} << 30;  ///< as MapJob::memory
 };
 

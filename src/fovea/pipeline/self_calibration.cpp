@@ -27,7 +27,7 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
 /// Up to kCalibrationFrames of the drive's frames that may be looked at, spread evenly.
 std::vector<int> chosen_frames(const DriveInfo& drive, const CalibrationJob& job) {
   std::vector<int> usable;
-  for (int index = drive.begin; index < drive.end; ++index) {
+  for (const int index : drive.frame_indices()) {
     if (job.usable(index)) usable.push_back(index);
   }
   if (usable.size() <= std::size_t(kCalibrationFrames)) return usable;
@@ -83,7 +83,7 @@ CalibrationEstimate joined(const CalibrationEstimate& first, CalibrationEstimate
 CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate)
     : drive_(drive),
       compensate_(compensate),
-      stride_(std::max(kMinStride, (drive.end - drive.begin + kFrames - 1) / kFrames)),
+      stride_(std::max(kMinStride, (int(drive.frame_count()) + kFrames - 1) / kFrames)),
       next_(drive.begin + stride_ / 2),
       profiles_(drive.calibration.cameras.size()) {}
 

@@ -1,5 +1,7 @@
 #include "fovea/pipeline/tracker.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -27,6 +29,10 @@ FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_sourc
 constexpr int kLostFrames = 3;
 /// Fastest vehicle, m/s.
 constexpr double kFastest = 60;
+/// Largest error of navigation, in its standard deviations.
+constexpr double kSigmas = 5;
+/// Largest error of navigation's motion over a pause, m.
+constexpr double kNavigationReach = 5;
 
 /// Median of the accuracy that navigation states where it has a fix (m); 0 if it states none.
 double stated_accuracy(const DriveInfo& drive) {
@@ -86,7 +92,11 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
 
   // Pose refinement, and what needs no pose.
   Placed placed = place(frame, motion, given_pose, clock, held_out ? View() : view);
-  if (placed.refined.lost) find_again(placed, motion, record, clock);
+  if (motion.after_pause && registers() && refiner_.confirms_poses()) {
+    find_after_pause(placed, motion.guesses.front(), record, clock);
+  } else if (placed.refined.lost) {
+    find_again(placed, motion, record, clock);
+  }
   if (compensates() || drive_.has_image_delays()) record.motion = placed.motion;
   record.note = placed.refined.note;
   record.figures.merge(placed.refined.figures);
@@ -117,12 +127,35 @@ void Tracker::find_again(Placed& placed, const MotionPrediction& motion, FrameRe
   constexpr int kEvery = 10;
   if (lost_frames_ < kLostFrames || lost_frames_ % kEvery == 0) {
     const double elapsed = last_stamp_ ? seconds(*record.stamp - *last_stamp_) : 0;
-    placed.refined =
-        refiner_.search(std::move(placed.refined), guess.T_odom_lidar, kFastest * elapsed, clock);
+    const double reach =
+        guess.sigma ? kSigmas * guess.sigma->tail<3>().maxCoeff() : kFastest * elapsed;
+    placed.refined = refiner_.search(std::move(placed.refined), guess.T_odom_lidar, reach, clock);
   }
   if (!placed.refined.lost) return;
   record.figures["registration_lost"] = 1;
   placed.refined.T_odom_lidar = guess.T_odom_lidar;
+}
+
+void Tracker::find_after_pause(Placed& placed, const MotionGuess& guess, FrameRecord& record,
+                               StageClock& clock) {
+  if (placed.refined.is_confirmed) return;
+  const double paused = seconds(*record.stamp - *last_stamp_);
+  const double reach = guess.by_navigation ? kNavigationReach : kFastest * paused;
+  placed.refined = refiner_.search(std::move(placed.refined), guess.T_odom_lidar, reach, clock);
+  if (placed.refined.is_confirmed) return;
+  placed.refined.lost = false;
+  placed.refined.T_odom_lidar = guess.T_odom_lidar;
+  placed.refined.note = fmt::format(
+      "the track restarts after a pause of {:.1f} s, {}", paused,
+      guess.by_navigation ? "where navigation has it" : "at the last pose before the pause");
+  record.figures["track_restarted"] = 1;
+  if (!guess.by_navigation) record.figures["pose_unknown"] = 1;
+  restart();
+}
+
+void Tracker::restart() {
+  refiner_.restart();
+  keyframes_.restart();
 }
 
 void Tracker::count_lost(const FrameRecord& record) {
@@ -141,7 +174,9 @@ PointCloud Tracker::compensated(const PointCloud& scan,
                                 const std::optional<SweepMotion>& motion) const {
   PointCloud scan_lidar = scan;
   if (motion && compensates()) compensate_sweep(scan_lidar, *motion, drive_.sweep);
-  scan_lidar.time.clear();  // of no use to any stage
+  // No stage uses these. Interpolated points have neither.
+  scan_lidar.time.clear();
+  scan_lidar.ring.clear();
   return scan_lidar;
 }
 
@@ -187,6 +222,7 @@ bool Tracker::registers() const {
 
 void Tracker::follow(const FrameRecord& record) {
   motion_model_.update(record.stamp.value(), record.T_odom_lidar);
+  if (record.has("track_restarted")) restart();
   FrameRecord tracked = record;
   fusion_.track(tracked);
   is_target_ = record.status == FrameStatus::kMapped && registers() &&
@@ -198,7 +234,13 @@ int Tracker::first_target(const std::vector<FrameRecord>& records) const {
   Keyframes keyframes = refiner_.keyframes();
   std::vector<int> targets;
   int lost = 0;
+  int restart_index = 0;
   for (const FrameRecord& record : records) {
+    if (record.has("track_restarted")) {
+      keyframes.restart();
+      targets.clear();
+      restart_index = record.index;
+    }
     if (record.status == FrameStatus::kMapped && takes(keyframes, record, lost)) {
       targets.push_back(record.index);
     }
@@ -206,7 +248,7 @@ int Tracker::first_target(const std::vector<FrameRecord>& records) const {
       lost = record.has("registration_lost") ? lost + 1 : 0;
   }
   const auto memory = static_cast<std::size_t>(refiner_.memory());
-  return targets.size() <= memory ? 0 : targets[targets.size() - memory];
+  return targets.size() <= memory ? restart_index : targets[targets.size() - memory];
 }
 
 void Tracker::replay(const PointCloud& scan_lidar, const FrameRecord& record) {

@@ -46,7 +46,10 @@ class Tracker {
   Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source);
 
   /// See Mapper::begin_with.
-  void begin_with(const Twist& velocity) { motion_model_.begin_with(velocity); }
+  void begin_with(const std::optional<Twist>& velocity) { motion_model_.begin_with(velocity); }
+  /// See Mapper::follows_pause and Mapper::begins.
+  bool follows_pause(TimeNs stamp) const { return motion_model_.follows_pause(stamp); }
+  bool begins() const { return motion_model_.begins(); }
 
   /// What is to be made of a scan that needs no pose.
   using View = std::function<ScanViews(const PointCloud& scan_lidar,
@@ -96,7 +99,13 @@ class Tracker {
   /// whether it was found.
   void find_again(Placed& placed, const MotionPrediction& motion, FrameRecord& record,
                   StageClock& clock);
+  /// The pose of the first scan after a pause, where registration around the guess has not
+  /// confirmed one: by a search in the local map, or else the guess, from which the track restarts.
+  void find_after_pause(Placed& placed, const MotionGuess& guess, FrameRecord& record,
+                        StageClock& clock);
   void count_lost(const FrameRecord& record);
+  /// Later scans are elsewhere: forgets those so far.
+  void restart();
   bool compensates() const;
   bool registers() const;
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
-
 #include "fovea/base/errors.h"
+#include "fovea/base/file_format.h"
+#include "fovea/base/input_file.h"
 #include "fovea/rosbag/decompress.h"
 #include "fovea/rosbag/mcap_file.h"
 #include "fovea/rosbag/sqlite_bag.h"
@@ -16,14 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string beginning_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes(16, '\0');
-  if (stream) stream.read(bytes.data(), std::streamsize(bytes.size()));
-  if (!stream && !stream.eof()) {
-    throw InputError("the file cannot be read", file.string(), "check the path");
-  }
-  bytes.resize(std::size_t(stream.gcount()));
-  return bytes;
+  return InputFile(file, kStreamedFile).beginning(kSniffedBytes);
 }
 
 std::vector<fs::path> listed_files(const fs::path& folder) {
@@ -35,7 +28,9 @@ std::vector<fs::path> listed_files(const fs::path& folder) {
   }
   std::vector<fs::path> files;
   try {
-    const YAML::Node bag = YAML::LoadFile(file.string())["rosbag2_bagfile_information"];
+    const std::vector<std::uint8_t> text = InputFile(file, kSettingsFile).bytes();
+    const YAML::Node bag =
+        YAML::Load(std::string(text.begin(), text.end()))["rosbag2_bagfile_information"];
     const std::string format = bag["compression_format"].as<std::string>("");
     if (!format.empty() && format != "zstd") {
       throw InputError(fmt::format("the bag is compressed by '{:.40}'", format), file.string(),
@@ -79,17 +74,18 @@ class Unpacker : public BagSink {
 
 /// @param shown  the file that the user knows of
 void read_plain(const fs::path& file, const fs::path& shown, BagSink& sink) {
-  const std::string beginning = beginning_of(file);
-  if (is_mcap(beginning)) {
-    read_mcap(file, shown, sink);
-  } else if (is_sqlite(beginning)) {
-    read_sqlite_bag(file, shown, sink);
-  } else if (beginning.starts_with("#ROSBAG V")) {
-    throw InputError("this is a recording of ROS 1", shown.string(),
-                     "turn it into one of ROS 2 ('rosbags-convert', 'mcap convert')");
-  } else {
-    throw InputError("this is no recording of ROS 2", shown.string(),
-                     "give an .mcap file, a .db3 file or a bag's folder");
+  const SniffedFormat found = sniff_format(beginning_of(file));
+  switch (found.format) {
+    case FileFormat::kMcap:
+      return read_mcap(file, shown, sink);
+    case FileFormat::kSqlite:
+      return read_sqlite_bag(file, shown, sink);
+    case FileFormat::kRosBag1:
+      throw InputError("this is a recording of ROS 1", shown.string(),
+                       "turn it into one of ROS 2 ('rosbags-convert', 'mcap convert')");
+    default:
+      throw InputError(fmt::format("this is no recording of ROS 2, but {}", found.name),
+                       shown.string(), "give an .mcap file, a .db3 file or a bag's folder");
   }
 }
 
@@ -104,7 +100,7 @@ std::vector<fs::path> bag_files(const fs::path& path) {
 
 void read_bag_file(const fs::path& file, const fs::path& scratch, BagSink& sink) {
   Unpacker unpacker(sink);
-  if (is_zstd(beginning_of(file))) {
+  if (sniff_format(beginning_of(file)).format == FileFormat::kZstd) {
     const DecompressedFile plain(file, scratch);
     read_plain(plain.path(), file, unpacker);
   } else {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/output_file.h"
 
 namespace fovea {
@@ -96,8 +97,8 @@ std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const s
 
 DecompressedFile::DecompressedFile(const std::filesystem::path& file,
                                    const std::filesystem::path& folder) {
-  std::ifstream source(file, std::ios::binary);
-  if (!source) throw InputError("the file cannot be read", file.string(), "check the path");
+  InputFile input(file, kStreamedFile);
+  std::istream& source = input.stream();
   std::string name = (folder / "decompressed_XXXXXX").string();
   const int fd = mkstemp(name.data());
   if (fd < 0) throw_output_error(name, errno);

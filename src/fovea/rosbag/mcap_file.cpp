@@ -4,11 +4,11 @@
 #include <libdeflate.h>
 
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <optional>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/printable.h"
 #include "fovea/rosbag/decompress.h"
 
@@ -56,11 +56,11 @@ class Fields {
 class McapReader {
  public:
   McapReader(const std::filesystem::path& file, const std::filesystem::path& shown, BagSink& sink)
-      : name_(shown.string()), stream_(file, std::ios::binary), sink_(sink) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(file, error);
-    if (!stream_ || error) throw InputError("the file cannot be read", name_, "check the path");
-  }
+      : name_(shown.string()),
+        input_(file, kStreamedFile),
+        stream_(input_.stream()),
+        sink_(sink),
+        size_(input_.size()) {}
 
   void read() {
     if (take(std::min<std::uint64_t>(kMagic.size(), size_)) != kMagic) {
@@ -193,9 +193,10 @@ class McapReader {
   }
 
   std::string name_;
-  std::ifstream stream_;
+  InputFile input_;
+  std::istream& stream_;
   BagSink& sink_;
-  std::uint64_t size_ = 0, at_ = 0;
+  std::uint64_t size_, at_ = 0;
   std::string buffer_;
   bool ended_ = false;
   std::map<std::uint16_t, std::string> schemas_;
@@ -203,8 +204,6 @@ class McapReader {
 };
 
 }  // namespace
-
-bool is_mcap(std::string_view beginning) { return beginning.starts_with(kMagic); }
 
 void read_mcap(const std::filesystem::path& file, const std::filesystem::path& shown,
                BagSink& sink) {

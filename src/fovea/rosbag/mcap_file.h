@@ -8,9 +8,6 @@
 
 namespace fovea {
 
-/// Whether a file that begins so is one.
-bool is_mcap(std::string_view beginning);
-
 /// Reads a file from its beginning to its end, with chunks or without; attachments, indices and
 /// meta data are passed over. Topics of encodings that are not read are told to the sink, too.
 /// InputError that says where for a file that is damaged, cut short, or whose chunks are compressed

@@ -31,10 +31,6 @@ void check_tables(sqlite::Database& database) {
 
 }  // namespace
 
-bool is_sqlite(std::string_view beginning) {
-  return beginning.starts_with(std::string_view("SQLite format 3\0", 16));
-}
-
 void read_sqlite_bag(const std::filesystem::path& file, const std::filesystem::path& shown,
                      BagSink& sink) {
   sqlite::Database database(file, access_of(file), shown, kBagWords);

@@ -8,9 +8,6 @@
 
 namespace fovea {
 
-/// Whether a file that begins so is an SQLite database.
-bool is_sqlite(std::string_view beginning);
-
 /// Reads a file's messages in the order in which they were recorded. InputError
 /// for a file that is damaged or has no topics and messages.
 /// @param shown  name of the file in errors

@@ -8,8 +8,6 @@
 namespace fovea {
 namespace {
 
-constexpr std::size_t kMaxLine = 1 << 16;
-
 template <class T>
 double read_as(const char* bytes) {
   T value;
@@ -67,32 +65,33 @@ double decode(Scalar type, const char* bytes) {
   return 0;
 }
 
-LineReader::LineReader(const std::filesystem::path& file)
-    : name_(file.string()), stream_(file, std::ios::binary), buffer_(kMaxLine, '\0') {
-  std::error_code error;
-  size_ = std::filesystem::file_size(file, error);
-  if (!stream_ || error) throw InputError("the file cannot be read", name_, "check the path");
+bool is_column_name(std::string_view in_file, std::string_view lower_case) {
+  return std::equal(in_file.begin(), in_file.end(), lower_case.begin(), lower_case.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
 std::optional<std::string> LineReader::next() {
-  stream_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  const auto count = static_cast<std::size_t>(stream_.gcount());
-  if (count == 0 && !stream_) return std::nullopt;
+  stream().getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  const auto count = static_cast<std::size_t>(stream().gcount());
+  if (count == 0 && !stream()) return std::nullopt;
   ++line_number_;
-  if (stream_.fail()) {
-    throw InputError("a line is longer than 64 KiB", name_ + ":" + std::to_string(line_number_),
+  if (stream().fail()) {
+    throw InputError("a line is longer than 64 KiB",
+                     file_.path().string() + ":" + std::to_string(line_number_),
                      "write the file anew");
   }
   // The line end counts among the characters read, but the end of the file does not.
-  std::string line(buffer_.data(), stream_.eof() ? count : count - 1);
+  std::string line(buffer_.data(), stream().eof() ? count : count - 1);
   if (!line.empty() && line.back() == '\r') line.pop_back();
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of UTF-8
+  if (line_number_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
   return line;
 }
 
 std::uintmax_t LineReader::rest() {
-  if (stream_.eof()) return 0;
-  const std::streamoff at = stream_.tellg();
-  return at < 0 ? 0 : size_ - std::min(size_, static_cast<std::uintmax_t>(at));
+  if (stream().eof()) return 0;
+  const std::streamoff at = stream().tellg();
+  return at < 0 ? 0 : file_.size() - std::min(file_.size(), static_cast<std::uintmax_t>(at));
 }
 
 }  // namespace fovea

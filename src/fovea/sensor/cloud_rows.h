@@ -4,10 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <istream>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+
+#include "fovea/base/input_file.h"
 
 namespace fovea {
 
@@ -28,6 +31,9 @@ std::size_t size_of(Scalar type);
 bool is_real(Scalar type);
 /// The number at `bytes`, little endian.
 double decode(Scalar type, const char* bytes);
+
+/// Whether the name of a column in a file is the one that is wanted, in any case.
+bool is_column_name(std::string_view in_file, std::string_view lower_case);
 
 /// Who wants the points of a file: which columns, and what becomes of each point.
 class CloudRows {
@@ -56,21 +62,21 @@ inline constexpr int kMaxHeaderLines = 1000;
 /// Lines of a file that may be anything: none is longer than 64 KiB.
 class LineReader {
  public:
-  /// InputError if the file cannot be read.
-  explicit LineReader(const std::filesystem::path& file);
+  /// @param file  must outlive the reader
+  explicit LineReader(InputFile& file) : file_(file), buffer_(kMaxLine, '\0') {}
 
   /// The next line without its end (LF or CRLF); empty at the end of the file. InputError for a
   /// line that is too long.
   std::optional<std::string> next();
-  int line_number() const { return line_number_; }  ///< of the last line, from 1
-  std::ifstream& stream() { return stream_; }       ///< after the last line
+  int line_number() const { return line_number_; }   ///< of the last line, from 1
+  std::istream& stream() { return file_.stream(); }  ///< after the last line
   /// Bytes after the last line.
   std::uintmax_t rest();
 
  private:
-  std::string name_;
-  std::ifstream stream_;
-  std::uintmax_t size_ = 0;
+  static constexpr std::size_t kMaxLine = 1 << 16;
+
+  InputFile& file_;
   int line_number_ = 0;
   std::string buffer_;
 };

@@ -39,6 +39,15 @@ TEST_F(CsvRowsTest, ReadsColumnsByNameInAnyOrder) {
   EXPECT_TRUE(rows.malformed.empty());
 }
 
+TEST_F(CsvRowsTest, AByteOrderMarkIsNoPartOfTheFirstName) {
+  const CsvRows rows = read("\xEF\xBB\xBFtime_ns,x\r\n5,1.5\r\n");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows.at(0, 0), 1.5);
+  EXPECT_EQ(read("\xEF\xBB\xBF# a comment\ntime_ns,x\n5,1.5\n").size(), 1u);
+  const std::string utf16("\xFE\xFF\0t\0i\0m\0e", 10);
+  EXPECT_THAT(error_of<InputError>([&] { read(utf16); }), HasSubstr("UTF-16"));
+}
+
 TEST_F(CsvRowsTest, EmptyCellsAreNotKnownAndInfinityIsANumber) {
   const CsvRows rows = read("time_ns,x,extra\n1,,inf\n2,nan,-inf\n");
   ASSERT_EQ(rows.size(), 2u);

@@ -42,6 +42,19 @@ std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& f
   return std::nullopt;
 }
 
+ScansReached scans_reached(const Trajectory& T_local_lidar, const DriveInfo& info,
+                           const DriveFiles& files) {
+  ScansReached result;
+  for (auto scan = files.scans.lower_bound(info.begin);
+       scan != files.scans.end() && scan->first < info.end; ++scan) {
+    const auto stamp = frame_stamp(info, files.stamps, scan->first);
+    if (!stamp) continue;
+    ++result.stamped;
+    result.reached += T_local_lidar.at(*stamp) ? 1 : 0;
+  }
+  return result;
+}
+
 std::pair<int, int> frame_range(const NumberedFiles& scans, const DriveOptions& options,
                                 const std::filesystem::path& drive) {
   const int first = scans.begin()->first, end = scans.rbegin()->first + 1;

@@ -38,6 +38,13 @@ std::optional<TimeNs> frame_stamp(const DriveInfo& info, const TimeStamps& stamp
 /// without reading them; empty if there is none.
 std::optional<int> first_usable_frame(const DriveInfo& info, const DriveFiles& files);
 
+struct ScansReached {
+  std::size_t stamped = 0;  ///< scans of the range that have a stamp
+  std::size_t reached = 0;  ///< those of them at whose stamp the trajectory has a pose
+};
+ScansReached scans_reached(const Trajectory& T_local_lidar, const DriveInfo& info,
+                           const DriveFiles& files);
+
 /// The frames [first, last] of the scans, cut to the range asked for. ConfigError if nothing is
 /// left.
 std::pair<int, int> frame_range(const NumberedFiles& scans, const DriveOptions& options,

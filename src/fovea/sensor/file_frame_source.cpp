@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <set>
+
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/sensor/drive_files.h"
 #include "fovea/sensor/image_decode.h"
+#include "fovea/sensor/lost_drive.h"
 
 namespace fovea {
 namespace {
@@ -32,6 +35,7 @@ class FileFrameSource : public FrameSource {
       if (info_.sweep_compensated) frame.scan.time.clear();
       frame.dropped_points = scan.dropped;
     } catch (const InputError& error) {
+      require_drive(files_.scans, index, info_.path);
       return SkippedFrame{index, SkipReason::kDamagedScan, error.what()};
     }
     read_images(frame);
@@ -112,6 +116,7 @@ class FileFrameSource : public FrameSource {
       image = rectifier ? rectifier->rectify(read) : std::move(read);
       return std::nullopt;
     } catch (const InputError& error) {
+      require_drive(files_.images[k], index, info_.path);
       return damaged(error.what());
     }
   }
@@ -132,9 +137,26 @@ class FileFrameSource : public FrameSource {
   DriveFiles files_;
 };
 
+/// The frames of the range of which the drive has anything. Numbers may have gaps of any length.
+std::vector<int> present_frames(const DriveInfo& info, const DriveFiles& files) {
+  std::set<int> present;
+  const auto add = [&](int index) {
+    if (index >= info.begin && index < info.end) present.insert(index);
+  };
+  for (const auto& [index, file] : files.scans) add(index);
+  for (const NumberedFiles& images : files.images) {
+    for (const auto& [index, file] : images) add(index);
+  }
+  for (std::size_t i = 0; info.has_time_stamps && i < files.stamps.times.size(); ++i) {
+    if (files.stamps.times[i]) add(static_cast<int>(i));
+  }
+  return {present.begin(), present.end()};
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> make_frame_source(DriveInfo info, DriveFiles files) {
+  info.frames = present_frames(info, files);
   return std::make_unique<FileFrameSource>(std::move(info), std::move(files));
 }
 

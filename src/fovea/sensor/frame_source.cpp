@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "fovea/base/errors.h"
 
@@ -28,6 +29,17 @@ double DriveInfo::image_offset(std::size_t slot, int index) const {
   if (!image_stamps_are_capture_times || slot >= image_offsets.size()) return 0;
   const auto found = image_offsets[slot].find(index);
   return found == image_offsets[slot].end() ? 0 : found->second;
+}
+
+std::vector<int> DriveInfo::frame_indices() const {
+  if (!frames.empty()) return frames;
+  std::vector<int> all(frame_count());
+  std::iota(all.begin(), all.end(), begin);
+  return all;
+}
+
+std::size_t DriveInfo::frame_count() const {
+  return frames.empty() ? static_cast<std::size_t>(std::max(0, end - begin)) : frames.size();
 }
 
 bool DriveInfo::has_image_delays() const {

@@ -75,7 +75,9 @@ struct DriveInfo : Messages {
   std::filesystem::path path;
   std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
   Calibration calibration;
-  int begin = 0, end = 0;          ///< frame indices, half-open; some may turn out to be skipped
+  int begin = 0, end = 0;  ///< frame indices, half-open; some may turn out to be skipped
+  /// The indices in [begin, end) that have a scan, an image or a time stamp, ascending; empty: all.
+  std::vector<int> frames;
   SweepTiming sweep;               ///< of scans whose points have no times
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
@@ -104,6 +106,9 @@ struct DriveInfo : Messages {
   /// A camera with the delay of its own image of one frame. Camera::at_image() then moves the
   /// camera to the place where it took that image.
   Camera camera_at(std::size_t slot, int index) const;
+  /// The indices of all frames, ascending.
+  std::vector<int> frame_indices() const;
+  std::size_t frame_count() const;
   /// Whether any image is taken at another time than its scan's stamp.
   bool has_image_delays() const;
 };
@@ -112,7 +117,8 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
   virtual const DriveInfo& info() const = 0;
-  /// Reads frame `index` of [info().begin, info().end). Thread-safe.
+  /// Reads frame `index` of [info().begin, info().end). Thread-safe. DriveLostError if the drive
+  /// can no longer be read from there on.
   virtual FrameResult load(int index) const = 0;
   /// Has the disk fetch what load(index) will read, of any index, and waits for nothing.
   virtual void expect(int /*index*/) const {}

@@ -46,6 +46,16 @@ NumberedTimes read_stamps(const fs::path& file, Messages& messages) {
   return times;
 }
 
+/// The first and the last of some times.
+std::pair<TimeNs, TimeNs> time_span(const NumberedTimes& times) {
+  std::pair<TimeNs, TimeNs> span(times.begin()->second, times.begin()->second);
+  for (const auto& [number, time] : times) {
+    span.first = std::min(span.first, time);
+    span.second = std::max(span.second, time);
+  }
+  return span;
+}
+
 class GenericDrive {
  public:
   GenericDrive(const fs::path& path, const DriveOptions& options)
@@ -223,6 +233,7 @@ class GenericDrive {
     }
     const ImageMatches matches =
         match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
+    if (matches.image_of_scan.empty()) reject_clock(file, described, scans, times);
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size());
     info_.image_stamps_are_capture_times = true;
@@ -233,6 +244,25 @@ class GenericDrive {
       info_.image_offsets.back()[scan] = delay - matches.median_delay;
     }
     return result;
+  }
+
+  /// InputError: no image of a camera lies near a scan.
+  [[noreturn]] void reject_clock(const fs::path& file, const CameraDescription& camera,
+                                 const NumberedTimes& scans, const NumberedTimes& images) const {
+    if (images.empty()) {
+      throw InputError(fmt::format("no image of camera {} has a stamp", camera.name), file.string(),
+                       "give a line index,time_ns for each image, or remove the file");
+    }
+    const auto [first_scan, last_scan] = time_span(scans);
+    const auto [first_image, last_image] = time_span(images);
+    const bool apart = first_image > last_scan || last_image < first_scan;
+    throw InputError(
+        fmt::format("{} of camera {} lies within {:g} s of a scan: images have stamps from {:.3f} "
+                    "to {:.3f} s, scans from {:.3f} to {:.3f} s",
+                    apart ? "images and scans have different clocks, no image" : "no image",
+                    camera.name, description_.image_tolerance, seconds(first_image),
+                    seconds(last_image), seconds(first_scan), seconds(last_scan)),
+        file.string(), "give stamps of one clock, or leave the camera out (--cameras)");
   }
 
   void note_matches(const CameraDescription& camera, const ImageMatches& matches,
@@ -265,18 +295,12 @@ class GenericDrive {
 
   /// Notes the scans of the range that have no pose; false if none has one.
   bool covers_scans(const Trajectory& T_local_lidar) {
-    std::size_t stamped = 0, without = 0;
-    for (const auto& [scan, file] : files_.scans) {
-      const auto stamp = frame_stamp(info_, files_.stamps, scan);
-      if (scan < info_.begin || scan >= info_.end || !stamp) continue;
-      ++stamped;
-      if (!T_local_lidar.at(*stamp)) ++without;
-    }
-    if (without == 0) return true;
+    const ScansReached reach = scans_reached(T_local_lidar, info_, files_);
+    if (reach.reached == reach.stamped) return true;
     info_.warn(
-        fmt::format("poses or positions reach {} of {} scans{}", stamped - without, stamped,
-                    without == stamped ? ", are their times of one clock? No navigation" : ""));
-    return without < stamped;
+        fmt::format("poses or positions reach {} of {} scans{}", reach.reached, reach.stamped,
+                    reach.reached == 0 ? ", are their times of one clock? No navigation" : ""));
+    return reach.reached > 0;
   }
 
   DriveOptions options_;

@@ -246,6 +246,31 @@ TEST_F(GenericDrive, ImagesWithStampsBelongToTheScanNearestInTime) {
   EXPECT_EQ(std::get<SkippedFrame>(drive->load(4)).reason, SkipReason::kMissingImage);
 }
 
+TEST_F(GenericDrive, ImagesAndScansOfDifferentClocksAreAnError) {
+  const auto file = folder_ / "images/left/stamps.csv";
+  // Seconds since the camera began, an hour of summer time, GPS time.
+  for (const TimeNs shift : {-kStart + kStep, 3600 * kNsPerSecond, 18 * kNsPerSecond}) {
+    write_text(file, stamps(kFrames, shift));
+    EXPECT_THAT(error<InputError>(),
+                AllOf(HasSubstr("different clocks, no image of camera left"),
+                      HasSubstr("scans from 1700000000.000 to 1700000000.500 s"),
+                      HasSubstr("images/left/stamps.csv"), HasSubstr("give stamps of one clock")))
+        << shift;
+  }
+  options_.cameras = {4};
+  EXPECT_NO_THROW(open());
+}
+
+TEST_F(GenericDrive, ImagesBetweenScansBeyondTheToleranceAreAnError) {
+  test::edit(toml_, "[body]\n", "[images]\ntolerance = 0.01\n[body]\n");
+  write_text(folder_ / "images/left/stamps.csv", stamps(kFrames, kStep / 2));
+  EXPECT_THAT(error<InputError>(),
+              AllOf(HasSubstr("no image of camera left lies within 0.01 s of a scan"),
+                    testing::Not(HasSubstr("different clocks"))));
+  write_text(folder_ / "images/left/stamps.csv", "index,time_ns\n");
+  EXPECT_THAT(error<InputError>(), HasSubstr("no image of camera left has a stamp"));
+}
+
 TEST_F(GenericDrive, ImagesBelongToTheSweepThatTheyLieIn) {
   // Scans that are stamped at their beginning; images half-way through.
   for (int i = 0; i < kFrames; ++i) {
@@ -446,6 +471,87 @@ TEST_F(GenericNavigation, VelocitiesAreTheBodysAndBecomeTheLidars) {
   }
   write_text(folder_ / "poses.csv", text);
   expect_velocity({10, 1.5, 0});
+}
+
+TEST_F(GenericNavigation, AnAccuracyThatIsNotPositiveIsNotStated) {
+  const std::array<const char*, kFrames> cells = {"0", "-1", "nan", "", "-inf", "0.3"};
+  write_text(folder_ / "gnss.csv",
+             gnss(",accuracy", [&](int i) { return "," + std::string(cells.at(std::size_t(i))); }));
+  const auto drive = open();
+  EXPECT_THAT(drive->info().navigation_accuracy, ElementsAre(0, 0, 0, 0, 0, 0.3));
+  EXPECT_TRUE(drive->info().origin);
+}
+
+TEST_F(GenericNavigation, PositionsWithoutAFixGeoreferenceNothing) {
+  for (const auto& [column, cell] : {std::pair(",accuracy", ",inf"), std::pair(",satellites", ",0"),
+                                     std::pair(",status", ",-1")}) {
+    write_text(folder_ / "gnss.csv", gnss(column, [&](int) { return cell; }));
+    const auto drive = open();
+    EXPECT_FALSE(drive->info().origin) << column;
+    EXPECT_TRUE(drive->info().navigation) << column;
+    EXPECT_THAT(drive->info().navigation_accuracy,
+                testing::Each(std::numeric_limits<double>::infinity()));
+    EXPECT_THAT(notes_of(*drive), testing::Contains(HasSubstr("no position with a fix"))) << column;
+    // One fix is enough.
+    write_text(folder_ / "gnss.csv", gnss(column, [&](int i) { return i == 4 ? ",7" : cell; }));
+    EXPECT_TRUE(open()->info().origin) << column;
+  }
+}
+
+TEST_F(GenericNavigation, PositionsThatAReceiverStatesWithoutAFixAreLeftOut) {
+  const std::string right = gnss();
+  write_text(folder_ / "gnss.csv", right);
+  const GeodeticPoint origin = *open()->info().origin;
+  // The first two positions: null, null with noise, a factory's position, the wrong hemisphere.
+  for (const char* position : {"0,0,0", "0.0002,-0.0003,17", "37.39,-122.03,30", "-49,-8.4,100"}) {
+    std::string text = "time_ns,latitude,longitude,altitude\n";
+    for (const TimeNs time : {-kStep / 2, -kStep / 4}) {
+      text += fmt::format("{},{}\n", kStart + time, position);
+    }
+    text += right.substr(right.find('\n') + 1);
+    write_text(folder_ / "gnss.csv", text);
+    const auto drive = open();
+    EXPECT_NEAR(drive->info().origin->latitude, origin.latitude, 1e-9) << position;
+    EXPECT_NEAR(drive->info().origin->longitude, origin.longitude, 1e-9) << position;
+    EXPECT_EQ(drive->info().navigation->poses().size(), std::size_t(kFrames)) << position;
+    const bool null = position[0] == '0';
+    EXPECT_THAT(
+        notes_of(*drive),
+        testing::Contains(AllOf(HasSubstr("2 lines of"), HasSubstr("(the first: 2)"),
+                                HasSubstr(null ? "without a fix" : "too far from the others"))));
+  }
+}
+
+TEST_F(GenericNavigation, NothingButNullPositionsIsNoNavigation) {
+  std::string text = "time_ns,latitude,longitude,altitude\n";
+  for (int i = 0; i < kFrames; ++i) text += fmt::format("{},0,0,0\n", kStart + i * kStep);
+  write_text(folder_ / "gnss.csv", text);
+  EXPECT_FALSE(open()->info().navigation);
+  EXPECT_THAT(notes(),
+              ElementsAre(HasSubstr("6 without a fix"), HasSubstr("no position that can be")));
+}
+
+TEST_F(GenericNavigation, LatitudesOverNinetyDegreesAreLikelySwapped) {
+  std::string text = "time_ns,longitude,latitude,altitude\n";  // Tokyo
+  for (int i = 0; i < kFrames; ++i) {
+    text += fmt::format("{},35.68,{},40\n", kStart + i * kStep, 139.69 + 1e-5 * i);
+  }
+  write_text(folder_ / "gnss.csv", text);
+  EXPECT_THAT(notes(), ElementsAre(HasSubstr("6 with a latitude over 90 degrees, likely swapped"),
+                                   HasSubstr("no navigation")));
+}
+
+TEST_F(GenericNavigation, AnglesOfOverATurnAreLikelyDegrees) {
+  const auto write = [&](const std::function<std::string(int)>& angles) {
+    write_text(folder_ / "gnss.csv", gnss(",roll,pitch,yaw", angles));
+  };
+  write([](int) { return ",0.2,-0.1,30"; });
+  EXPECT_THAT(error<InputError>(), AllOf(HasSubstr("6 lines"), HasSubstr("likely degrees"),
+                                         HasSubstr("gnss.csv"), HasSubstr("give radians")));
+  write([](int i) { return fmt::format(",12.5,0,{}", 0.1 * i); });
+  EXPECT_THAT(error<InputError>(), HasSubstr("up to 12.5"));
+  write([](int i) { return fmt::format(",0,0,{}", 6.1 + 0.1 * i); });
+  EXPECT_NO_THROW(open());
 }
 
 TEST_F(GenericNavigation, BadLinesAreNotedAndNotUsed) {

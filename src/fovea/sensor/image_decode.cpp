@@ -1,9 +1,10 @@
 #include "fovea/sensor/image_decode.h"
 
-#include <array>
+#include <algorithm>
 #include <stdexcept>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/file_format.h"
 #include "fovea/sensor/jpeg_decode.h"
 #include "fovea/sensor/png_decode.h"
 #include "fovea/sensor/read_file.h"
@@ -11,23 +12,18 @@
 namespace fovea {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kPngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::array<std::uint8_t, 3> kJpegMagic{0xff, 0xd8, 0xff};
-
-template <std::size_t N>
-bool starts_with(const std::vector<std::uint8_t>& bytes, const std::array<std::uint8_t, N>& magic) {
-  return bytes.size() >= N && std::equal(magic.begin(), magic.end(), bytes.begin());
-}
-
 constexpr const char* kRemedy = "restore the file from the drive's archive";
 
 }  // namespace
 
 Image read_image(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_bytes(file);
-  const bool png = starts_with(bytes, kPngMagic);
-  if (!png && !starts_with(bytes, kJpegMagic)) {
-    throw InputError("the file is neither a PNG nor a JPEG image", file.string(), kRemedy);
+  const std::vector<std::uint8_t> bytes = read_bytes(file, kImageFile);
+  const SniffedFormat found = sniff_format(
+      {reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kSniffedBytes)});
+  const bool png = found.format == FileFormat::kPng;
+  if (!png && found.format != FileFormat::kJpeg) {
+    throw InputError("the file is neither a PNG nor a JPEG image, but " + std::string(found.name),
+                     file.string(), kRemedy);
   }
   try {
     return png ? decode_png(bytes) : decode_jpeg(bytes);
@@ -39,7 +35,7 @@ Image read_image(const std::filesystem::path& file) {
 }
 
 DepthImage read_depth_image(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::vector<std::uint8_t> bytes = read_bytes(file, kImageFile);
   DepthImage image;
   try {
     const Samples16 samples = decode_png_16(bytes);

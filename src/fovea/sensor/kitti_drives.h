@@ -13,4 +13,9 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
 std::unique_ptr<FrameSource> open_kitti_odometry(const std::filesystem::path& path,
                                                  const DriveOptions& options);
 
+/// How far the stamps of a drive of this kind (DriveInfo::kind) are ahead of UTC. KITTI recorded in
+/// September and October 2011 by the clock of Karlsruhe, which is summer time. The stamps of other
+/// kinds are Unix time, which is UTC.
+TimeNs utc_offset_of(std::string_view kind);
+
 }  // namespace fovea

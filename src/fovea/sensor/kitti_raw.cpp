@@ -9,6 +9,8 @@
 namespace fovea {
 namespace {
 
+constexpr TimeNs kSummerTime = TimeNs{2} * 3600 * kNsPerSecond;
+
 /// The folder above the drive's, for "." and "drive/", too.
 std::filesystem::path date_folder(const std::filesystem::path& drive) {
   const auto absolute = std::filesystem::absolute(drive / "").lexically_normal();
@@ -57,6 +59,23 @@ void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const
                         without.front()));
 }
 
+/// The poses of records, without positions that are far from the others, which a note counts.
+std::vector<GeodeticPose> consistent_poses(const std::vector<StampedOxts>& records,
+                                           DriveInfo& info) {
+  const std::vector<GeodeticPose> all = geodetic_poses(records);
+  const std::vector<bool> far = far_positions(all);
+  std::vector<GeodeticPose> poses;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!far[i]) poses.push_back(all[i]);
+  }
+  if (poses.size() < all.size()) {
+    info.warn(
+        fmt::format("{} of {} GPS/INS records cannot be used: a position too far from the others",
+                    all.size() - poses.size(), all.size()));
+  }
+  return poses;
+}
+
 /// Fills info.navigation and info.origin, or notes why there is none.
 void find_navigation(const KittiCalibration& calibration, DriveInfo& info, DriveFiles& files) {
   const std::filesystem::path folder = info.path / "oxts";
@@ -79,11 +98,17 @@ void find_navigation(const KittiCalibration& calibration, DriveInfo& info, Drive
         "no GPS/INS record can be used (the first: " + records.why_unusable.begin()->second + ")");
   }
   note_bad_records(oxts, records, files, info);
-  info.calibration.T_imu_lidar = calibration.T_imu_lidar;
+  const std::vector<GeodeticPose> poses = consistent_poses(records.records, info);
+  if (poses.empty()) return without("positions of the GPS/INS records contradict each other");
   const std::optional<int> first = first_usable_frame(info, files);
   const TimeNs origin_time =
       first ? *frame_stamp(info, files.stamps, *first) : records.records.front().time;
-  Navigation navigation = make_navigation(records.records, *calibration.T_imu_lidar, origin_time);
+  Navigation navigation = navigation_of(poses, *calibration.T_imu_lidar, origin_time);
+  if (scans_reached(navigation.trajectory, info, files).reached == 0) {
+    return without("GPS/INS records reach no scan, are their times of one clock?");
+  }
+  if (!navigation.origin) info.warn(no_fix_note(folder / "data"));
+  info.calibration.T_imu_lidar = calibration.T_imu_lidar;
   info.navigation = std::move(navigation.trajectory);
   info.navigation_accuracy = std::move(navigation.accuracy);
   info.origin = navigation.origin;
@@ -110,5 +135,7 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
   if (options.use_navigation) find_navigation(calibration, info, files);
   return make_frame_source(std::move(info), std::move(files));
 }
+
+TimeNs utc_offset_of(std::string_view kind) { return kind.starts_with("kitti") ? kSummerTime : 0; }
 
 }  // namespace fovea

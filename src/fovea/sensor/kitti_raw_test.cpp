@@ -276,6 +276,25 @@ TEST_F(KittiRaw, BadRecordsAreNotedAndNotUsed) {
   EXPECT_EQ(drive->info().navigation->poses().size(), 12u);
   EXPECT_EQ(drive->info().navigation_accuracy.size(), 12u);
 }
+TEST_F(KittiRaw, ARecordWithoutAFixDoesNotGeoreference) {
+  const GeodeticPoint origin = *open()->info().origin;
+  for (const int frame : {0, 1}) write_text(oxts(frame), "0 0 0" + test::oxts_record(0).substr(23));
+  const auto drive = open();
+  EXPECT_THAT(drive->info().notes,
+              testing::Contains(HasSubstr("latitude and longitude 0: no fix")));
+  EXPECT_NEAR(drive->info().origin->latitude, origin.latitude, 1e-4);
+}
+
+TEST_F(KittiRaw, RecordsOfAnotherClockAreNoNavigation) {
+  std::string stamps;
+  for (int i = 0; i < 13; ++i) stamps += "2011-09-26 15:00:0" + std::to_string(i % 10) + ".5\n";
+  write_text(drive_ / "oxts/timestamps.txt", stamps);
+  const auto drive = open();
+  EXPECT_FALSE(drive->info().navigation);
+  EXPECT_FALSE(drive->info().origin);
+  EXPECT_THAT(drive->info().notes, testing::Contains(HasSubstr("are their times of one clock?")));
+}
+
 TEST_F(KittiRaw, RecordsWithoutATimeAreNotUsed) {
   edit(drive_ / "oxts/timestamps.txt", test::stamp(5, 20), "");
   EXPECT_THAT(open()->info().notes, ElementsAre(HasSubstr("no usable time stamp")));

@@ -1,14 +1,16 @@
-// KITTI's LiDAR scans: float32 x y z reflectance a point, nothing else.
+// LiDAR scans without a header: float32 values and nothing else.
 #pragma once
 
-#include <filesystem>
-
+#include "fovea/base/input_file.h"
 #include "fovea/sensor/lidar_scan.h"
 
 namespace fovea {
 
-/// Reads a .bin scan. InputError if the file is empty, its size is no multiple of 16 bytes, or none
-/// of its points is usable.
+/// Reads a .bin scan: x y z reflectance (KITTI, 16 bytes per point) or x y z intensity ring
+/// (nuScenes, 20 bytes). The content decides which, see numbers_per_point(); a file with too few
+/// points to decide is KITTI's if its size fits. InputError if the file is empty, has points of
+/// another size, is cut short, or none of its points is usable.
+LidarScan read_kitti_scan(const InputFile& file);
 LidarScan read_kitti_scan(const std::filesystem::path& file);
 
 }  // namespace fovea

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/file_format.h"
+#include "fovea/base/input_file.h"
 #include "fovea/sensor/kitti_scan.h"
 #include "fovea/sensor/pcd_rows.h"
 #include "fovea/sensor/ply_rows.h"
@@ -20,6 +22,12 @@ constexpr auto kColumns = [] {
   std::copy(kPointTimeNames.begin(), kPointTimeNames.end(), names.begin() + kFirstTime);
   return names;
 }();
+
+bool has_ending(const std::filesystem::path& file, std::string_view lower_case) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == lower_case;
+}
 
 }  // namespace
 
@@ -91,23 +99,38 @@ double ScanRows::seconds_from_stamp(double time) const {
   return (time - static_cast<double>(stamp_) * 1e-9 / unit_) * unit_;
 }
 
+FileFormat scan_format(const InputFile& file) {
+  const SniffedFormat found = sniff_format(file.beginning(kSniffedBytes));
+  switch (found.format) {
+    case FileFormat::kPcd:
+    case FileFormat::kPly:
+      return found.format;
+    case FileFormat::kUnknown:
+      // Their readers report the line in which a damaged header is wrong.
+      if (has_ending(file.path(), ".pcd")) return FileFormat::kPcd;
+      if (has_ending(file.path(), ".ply")) return FileFormat::kPly;
+      return FileFormat::kUnknown;
+    default:
+      throw InputError("this is " + std::string(found.name) + ", no scan", file.path().string(),
+                       "convert it to PCD, PLY or .bin (docs/drives.md)");
+  }
+}
+
 LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,
                           TimeNs stamp) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (ending == ".bin") {
-    LidarScan scan = read_kitti_scan(file);
+  InputFile input(file, kScanFile);
+  const FileFormat found = scan_format(input);
+  if (found == FileFormat::kUnknown) {
+    LidarScan scan = read_kitti_scan(input);
     const auto scale = static_cast<float>(format.intensity_max);
     for (float& intensity : scan.points.intensity) intensity /= scale;
     return scan;
   }
   ScanRows rows(format, stamp);
-  if (ending == ".pcd") {
-    read_pcd_rows(file, rows);
-  } else if (ending == ".ply") {
-    read_ply_rows(file, rows);
+  if (found == FileFormat::kPcd) {
+    read_pcd_rows(input, rows);
   } else {
-    throw InputError("a scan of this ending is not read", file.string(), "give .bin, .pcd or .ply");
+    read_ply_rows(input, rows);
   }
   return rows.take(file);
 }

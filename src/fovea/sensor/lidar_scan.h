@@ -9,6 +9,8 @@
 #include <optional>
 #include <span>
 
+#include "fovea/base/file_format.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/time.h"
 #include "fovea/sensor/cloud_rows.h"
@@ -113,9 +115,14 @@ class ScanRows : public CloudRows {
   std::optional<ScanBuilder> scan_;
 };
 
-/// Reads a scan: .bin as read_kitti_scan, .pcd (ascii, binary, binary_compressed) or .ply (ascii,
-/// binary little endian) with the fields that ScanRows knows; others are passed over. InputError if
-/// the file is damaged, of another ending, or has no usable point.
+/// Format of a scan by its content: PCD, PLY, or unknown for values without a header. InputError
+/// that names the format of any other file.
+FileFormat scan_format(const InputFile& file);
+
+/// Reads a scan of any name: PCD (ascii, binary, binary_compressed) or PLY (ascii, binary little
+/// endian) with the fields that ScanRows knows, or values without a header as read_kitti_scan. The
+/// content decides which. InputError if the file has another format, is damaged or has no usable
+/// point.
 /// @param stamp  of the scan
 LidarScan read_lidar_scan(const std::filesystem::path& file, const ScanFormat& format,
                           TimeNs stamp);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <limits>
 
@@ -119,9 +120,76 @@ TEST_F(LidarScanTest, UnusableFilesAreErrorsThatNameThem) {
   EXPECT_THAT(error("a.pcd", pcd("x y", "4 4", "F F", 1, "ascii\n1 2\n")), HasSubstr("no field z"));
   EXPECT_THAT(error("a.pcd", "nonsense"), HasSubstr("no PCD file"));
   EXPECT_THAT(error("a.ply", "nonsense"), HasSubstr("no PLY file"));
-  EXPECT_THAT(error("a.xyz", "1 2 3"), HasSubstr("give .bin, .pcd or .ply"));
+  EXPECT_THAT(error("a.xyz", "1 2 3"), HasSubstr("no multiple of the 16"));
   EXPECT_THAT(error_of<InputError>([&] { read_lidar_scan(folder_ / "none.pcd", {}, 0); }),
               HasSubstr("none.pcd"));
+}
+
+TEST_F(LidarScanTest, TheContentDecidesTheFormat) {
+  const std::string pcd_text = pcd("x y z", "4 4 4", "F F F", 1, "ascii\n1 2 3\n");
+  const std::string ply_text =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n4 5 6\n";
+  std::string bin;
+  for (const float value : {7.0f, 8.0f, 9.0f, 0.5f}) put(bin, value);
+  for (const char* name : {"a.bin", "a.BIN", "a.pcd", "a.ply", "a.dat", "a"}) {
+    EXPECT_EQ(read(name, pcd_text).points.position[0], Eigen::Vector3f(1, 2, 3)) << name;
+    EXPECT_EQ(read(name, ply_text).points.position[0], Eigen::Vector3f(4, 5, 6)) << name;
+  }
+  for (const char* name : {"a.bin", "a.BIN", "a.dat", "a"}) {
+    EXPECT_EQ(read(name, bin).points.position[0], Eigen::Vector3f(7, 8, 9)) << name;
+  }
+}
+
+TEST_F(LidarScanTest, BlanksAndUpperCaseInHeadersDoNotMatter) {
+  const char* const head = "format ascii 1.0 \nelement vertex 1 \n";
+  const std::string properties =
+      "property float X \nproperty float Y\nproperty float Z\nproperty float Intensity\n"
+      "end_header \n4 5 6 0.5 \n";
+  for (const char* first : {"ply \n", "ply\t\r\n", "ply  \n", "\xef\xbb\xbfply\n"}) {
+    const LidarScan scan = read("a.ply", first + (head + properties));
+    EXPECT_EQ(scan.points.position[0], Eigen::Vector3f(4, 5, 6)) << first;
+    EXPECT_THAT(scan.points.intensity, ElementsAre(0.5f)) << first;
+  }
+  const LidarScan scan =
+      read("a.pcd", pcd("X Y Z INTENSITY", "4 4 4 4", "F F F F", 1, "ascii\n1 2 3 0.25\n"));
+  EXPECT_EQ(scan.points.position[0], Eigen::Vector3f(1, 2, 3));
+  EXPECT_THAT(scan.points.intensity, ElementsAre(0.25f));
+}
+
+TEST_F(LidarScanTest, OtherFormatsAreNamed) {
+  const auto error = [&](const std::string& content) {
+    return error_of<InputError>([&] { read("a.bin", content); });
+  };
+  using namespace std::string_literals;
+  // Each as long as some points of 16 bytes.
+  const auto filled = [](std::string bytes) {
+    bytes.resize(480, '\x41');
+    return bytes;
+  };
+  EXPECT_THAT(error(filled("LASF"s + std::string(100, '\0') + "\3")), HasSubstr("a LAS point"));
+  EXPECT_THAT(error(filled("LASF"s + std::string(100, '\0') + "\x83")), HasSubstr("LAZ"));
+  EXPECT_THAT(error(filled("ASTM-E57\1\0\0\0"s)), HasSubstr("an E57 point cloud, no scan"));
+  EXPECT_THAT(error(filled("\x89PNG\r\n\x1a\n")), HasSubstr("a PNG image"));
+  EXPECT_THAT(error(filled("\xff\xd8\xff\xe0")), HasSubstr("a JPEG image"));
+  EXPECT_THAT(error(filled("\x1f\x8b\x08\0"s)), HasSubstr("gzip"));
+  EXPECT_THAT(error(filled("\x93NUMPY\1\0"s)), HasSubstr("a NumPy array"));
+  EXPECT_THAT(error(filled("SQLite format 3\0"s)), HasSubstr("an SQLite database"));
+  EXPECT_THAT(error("1.5 2.5 3.5 0.25\n1.5 2.5 3.5 0.25\n"), HasSubstr("a text file"));
+}
+
+TEST_F(LidarScanTest, APipeInPlaceOfAScanIsRefused) {
+  ASSERT_EQ(mkfifo((folder_ / "a.bin").c_str(), 0600), 0);
+  EXPECT_THAT(error_of<InputError>([&] { read_lidar_scan(folder_ / "a.bin", {}, 0); }),
+              HasSubstr("it is a pipe"));
+}
+
+TEST_F(LidarScanTest, AFileLargerThanAnyScanIsRefused) {
+  write_text(folder_ / "a.bin", "");
+  test::fs::resize_file(folder_ / "a.bin", 6'000'000'000);  // sparse
+  EXPECT_THAT(
+      error_of<InputError>([&] { read_lidar_scan(folder_ / "a.bin", {}, 0); }),
+      testing::AllOf(HasSubstr("6000000000 bytes, more than any scan"), HasSubstr("a.bin")));
 }
 
 }  // namespace fovea::lidar_scan_test

@@ -48,9 +48,9 @@ TEST(Navigation, OriginIsTheLidarAtTheTimeAskedFor) {
   const Navigation navigation = make_navigation(drive_north(), T_imu_lidar, half);
   EXPECT_LT(navigation.trajectory.at(half)->translation().norm(), 1e-6);
   const Curvature radius;
-  EXPECT_NEAR(navigation.origin.altitude, 102, 1e-4);
-  EXPECT_NEAR(navigation.origin.latitude, 49 + 0.5e-4 + 1 / (radius.M + 100) / kDegree, 1e-9);
-  EXPECT_NEAR(navigation.origin.longitude,
+  EXPECT_NEAR(navigation.origin->altitude, 102, 1e-4);
+  EXPECT_NEAR(navigation.origin->latitude, 49 + 0.5e-4 + 1 / (radius.M + 100) / kDegree, 1e-9);
+  EXPECT_NEAR(navigation.origin->longitude,
               8.4 + 0.5 / (radius.N + 100) / std::cos(49 * kDegree) / kDegree, 1e-9);
   // Forward of the LiDAR points north (y), its left west.
   const Eigen::Matrix3d R = navigation.trajectory.at(half)->rotation();
@@ -61,7 +61,7 @@ TEST(Navigation, OriginIsTheLidarAtTheTimeAskedFor) {
 TEST(Navigation, OriginBeyondTheRecordsIsTheFirst) {
   const Navigation navigation =
       make_navigation(drive_north(), RigidMotion::Identity(), 10 * kNsPerSecond);
-  EXPECT_NEAR(navigation.origin.latitude, 49, 1e-12);
+  EXPECT_NEAR(navigation.origin->latitude, 49, 1e-12);
 }
 
 TEST(Navigation, MeasuredVelocityIsThatOfTheLidar) {
@@ -87,6 +87,37 @@ TEST(Navigation, AFrozenUnitMeasuresNoVelocity) {
   EXPECT_TRUE(poses[1].velocity);
   EXPECT_FALSE(poses[2].velocity);
   EXPECT_FALSE(poses[3].velocity);
+}
+
+TEST(Navigation, WithoutAFixThereIsNoOrigin) {
+  std::vector<StampedOxts> records = drive_north();
+  for (StampedOxts& record : records) record.record.satellites = 0;
+  EXPECT_FALSE(make_navigation(records, RigidMotion::Identity(), 0).origin);
+  records[1].record.satellites = 5;
+  EXPECT_TRUE(make_navigation(records, RigidMotion::Identity(), 0).origin);
+}
+
+TEST(Navigation, PositionsOutOfReachAreFar) {
+  std::vector<GeodeticPose> poses;
+  for (int i = 0; i < 20; ++i) {
+    GeodeticPose pose;
+    pose.time = i * kNsPerSecond;
+    pose.position = {49 + 1e-4 * i, 179.9999 + 2e-5 * i, 100};  // 11 m a second
+    if (pose.position.longitude > 180) pose.position.longitude -= 360;
+    poses.push_back(pose);
+  }
+  EXPECT_EQ(far_positions(poses), std::vector<bool>(20, false));
+  poses[3].position.latitude += 0.1;  // 11 km, with 19 s to get there
+  poses[7].position.longitude = 0;
+  const std::vector<bool> far = far_positions(poses);
+  for (std::size_t i = 0; i < far.size(); ++i) EXPECT_EQ(far[i], i == 3 || i == 7) << i;
+  // Most positions lack a fix: those with one count.
+  for (std::size_t i = 0; i < 15; ++i) {
+    poses[i].accuracy = std::numeric_limits<double>::infinity();
+    poses[i].position = {10, 10, 0};
+  }
+  for (std::size_t i = 0; i < far.size(); ++i) EXPECT_EQ(far_positions(poses)[i], i < 15) << i;
+  EXPECT_TRUE(far_positions({}).empty());
 }
 
 TEST(Navigation, NeedsARecord) {

@@ -1,6 +1,7 @@
 // Which kind of drive a folder holds.
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fovea/base/errors.h"
@@ -43,6 +44,21 @@ std::string list_drives(const std::vector<fs::path>& drives, const fs::path& roo
   return text + (drives.size() > kShown ? ", ..." : "");
 }
 
+/// Names a data set that has scans but no drive, for an error. Empty for any other folder.
+std::string_view data_set_without_drives(const fs::path& folder) {
+  for (const char* part : {"", "training", "testing"}) {
+    const fs::path root = folder / part;
+    const bool has_parts = fs::is_directory(root / "calib") || fs::is_directory(root / "label_2");
+    if (has_parts && fs::is_directory(root / "velodyne") && !fs::exists(root / "calib.txt")) {
+      return "KITTI's object data set, whose scans are of different places";
+    }
+  }
+  for (const char* part : {"samples", "sweeps"}) {
+    if (fs::is_directory(folder / part / "LIDAR_TOP")) return "the nuScenes data set";
+  }
+  return {};
+}
+
 std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOptions& options) {
   constexpr const char* kRemedy =
       "give a folder with a drive.toml (docs/drives.md), a KITTI raw drive "
@@ -50,6 +66,9 @@ std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOp
   if (!fs::exists(path)) throw InputError("the drive does not exist", path.string(), kRemedy);
   if (!fs::is_directory(path)) throw InputError("the drive is no folder", path.string(), kRemedy);
   if (fs::exists(path / "drive.toml")) return open_generic_drive(path, options);
+  if (const std::string_view data_set = data_set_without_drives(path); !data_set.empty()) {
+    throw InputError("the folder is of " + std::string(data_set), path.string(), kRemedy);
+  }
   if (fs::is_directory(path / "velodyne_points")) return open_kitti_raw(path, options);
   if (fs::is_directory(path / "velodyne")) return open_kitti_odometry(path, options);
   if (fs::is_empty(path)) throw InputError("the drive's folder is empty", path.string(), kRemedy);

@@ -48,4 +48,21 @@ TEST(OpenDrive, AFolderWithoutADriveIsRefused) {
               HasSubstr("neither drive.toml"));
 }
 
+TEST(OpenDrive, ADataSetWithoutDrivesIsNamed) {
+  const auto message = [](const path& folder) {
+    return error_of<InputError>([&] { open_drive(folder, {}); });
+  };
+  const TemporaryFolder root;
+  test::write_scan(root / "object/training/velodyne/000000.bin", {{1, 2, 3, 0.5f}});
+  test::write_text(root / "object/training/calib/000000.txt", "P0: 1\n");
+  test::write_text(root / "object/training/image_2/000000.png", "");
+  EXPECT_THAT(message(root / "object/training"), HasSubstr("KITTI's object data set"));
+  EXPECT_THAT(message(root / "object"), HasSubstr("KITTI's object data set"));
+  test::write_scan(root / "labels/velodyne/000000.bin", {{1, 2, 3, 0.5f}});
+  test::write_text(root / "labels/label_2/000000.txt", "Car 0 0 0\n");
+  EXPECT_THAT(message(root / "labels"), HasSubstr("KITTI's object data set"));
+  test::write_text(root / "nuscenes/samples/LIDAR_TOP/a.pcd.bin", "");
+  EXPECT_THAT(message(root / "nuscenes"), HasSubstr("the nuScenes data set"));
+}
+
 }  // namespace fovea::open_drive_test

@@ -37,18 +37,29 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
     if (!std::isfinite(number)) return "has an entry that is not finite";
   }
   const std::vector<double>& n = *numbers;
-  if (std::abs(n[0]) > 90) return "has latitude " + std::to_string(n[0]);
+  if (std::abs(n[0]) > 90) {
+    const bool swapped = std::abs(n[0]) <= 180 && std::abs(n[1]) <= 90;
+    return "has latitude " + std::to_string(n[0]) + (swapped ? " (swapped with longitude?)" : "");
+  }
   if (std::abs(n[1]) > 180) return "has longitude " + std::to_string(n[1]);
   if (std::abs(n[2]) > kMaxAltitude) return "has altitude " + std::to_string(n[2]);
   for (std::size_t i = 3; i < 6; ++i) {
-    if (std::abs(n[i]) > kMaxAngle) return "has angle " + std::to_string(n[i]) + " (rad)";
+    if (std::abs(n[i]) > kMaxAngle) {
+      return "has angle " + std::to_string(n[i]) + ", over a turn: likely degrees, not radians";
+    }
   }
-  OxtsRecord record{{n[0], n[1], n[2]},
-                    n[3],
-                    n[4],
-                    n[5],
-                    std::max(0.0, n[kPositionAccuracy]),
-                    static_cast<int>(std::clamp(n[kSatellites], 0.0, 1000.0))};
+  if (is_null_position(n[0], n[1])) return "has latitude and longitude 0: no fix";
+  OxtsRecord record;
+  record.position = {n[0], n[1], n[2]};
+  record.roll = n[3];
+  record.pitch = n[4];
+  record.yaw = n[5];
+  record.position_accuracy = std::max(0.0, n[kPositionAccuracy]);
+  // Other programs that write the format often leave all fields of the quality zero.
+  const auto is_zero = [](double number) { return number == 0; };
+  if (!std::all_of(n.begin() + kPositionAccuracy, n.end(), is_zero)) {
+    record.satellites = static_cast<int>(std::clamp(n[kSatellites], 0.0, 1000.0));
+  }
   // The level frame is turned as east-north-up is, but heads where the imu does.
   const Eigen::AngleAxisd R_level_enu(-record.yaw, Eigen::Vector3d::UnitZ());
   const Eigen::Matrix3d R_level_imu = R_level_enu * record.R_enu_imu();
@@ -59,10 +70,9 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
 
 std::variant<OxtsRecord, std::string> read_oxts(const std::filesystem::path& file) {
   try {
-    const auto bytes = read_bytes(file);
-    return parse_oxts(std::string(bytes.begin(), bytes.end()));
-  } catch (const InputError&) {
-    return "cannot be read";
+    return parse_oxts(read_text(file));
+  } catch (const InputError& error) {
+    return "cannot be read: " + error.problem();
   }
 }
 

@@ -17,8 +17,8 @@ struct OxtsRecord {
   /// rad. Roll: positive = left side up; pitch: positive = front down; yaw: 0 = east, positive =
   /// counter-clockwise seen from above.
   double roll = 0, pitch = 0, yaw = 0;
-  double position_accuracy = 0;  ///< m, as the unit estimates it; 0: it says nothing
-  int satellites = 0;            ///< in use
+  double position_accuracy = 0;        ///< m, as the unit estimates it; 0: it does not state any
+  std::optional<int> satellites = {};  ///< in use; absent: the record states no quality at all
   /// Of the imu in its own frame (forward, left, up), a second; see measured_velocity().
   std::optional<Twist> velocity = {};
 

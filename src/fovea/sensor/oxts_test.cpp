@@ -8,7 +8,7 @@
 
 namespace fovea::oxts_test {
 
-// 24 more fields, which are not used but must be there.
+// 24 more fields, most of which are not used but must be there.
 const std::string kRest = " 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 4 7 4 4 0\n";
 
 std::string why(const std::string& text) {
@@ -29,6 +29,17 @@ TEST(Oxts, ReadsPositionAndAttitude) {
   EXPECT_EQ(record.yaw, -0.26);
   EXPECT_EQ(record.position_accuracy, 18);
   EXPECT_EQ(record.satellites, 7);
+}
+
+TEST(Oxts, ARecordThatStatesNoQualityHasNoNumberOfSatellites) {
+  const std::string velocities = " 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17";
+  const auto satellites = [&](const std::string& quality) {
+    return std::get<OxtsRecord>(parse_oxts("49 8 100 0 0 0" + velocities + quality)).satellites;
+  };
+  EXPECT_EQ(satellites(" 0 0 0 0 0 0 0"), std::nullopt);
+  EXPECT_EQ(satellites(" 0 0 4 0 0 0 0"), 0);
+  EXPECT_EQ(satellites(" 3.2 0 0 0 0 0 0"), 0);
+  EXPECT_EQ(satellites(" 0.1 0.1 4 9 5 5 6"), 9);
 }
 
 /// A record that is turned so, with a velocity in its level frame and rates about its own axes.
@@ -71,12 +82,29 @@ TEST(Oxts, SaysWhyARecordCannotBeUsed) {
   EXPECT_NE(why("49 188 100 0 0 0" + kRest).find("longitude 188"), std::string::npos);
   EXPECT_NE(why("49 8 1e9 0 0 0" + kRest).find("altitude"), std::string::npos);
   EXPECT_NE(why("49 8 100 0 0 270" + kRest).find("angle 270"), std::string::npos);
+  EXPECT_NE(why("49 8 100 0 0 270" + kRest).find("likely degrees"), std::string::npos);
+  EXPECT_NE(why("139 35 100 0 0 0" + kRest).find("swapped"), std::string::npos);
+  EXPECT_EQ(why("189 35 100 0 0 0" + kRest).find("swapped"), std::string::npos);
+  EXPECT_EQ(why("0 0 0 0 0 0" + kRest), "has latitude and longitude 0: no fix");
+  EXPECT_EQ(why("0.0001 -0.0004 30 0 0 0" + kRest), "has latitude and longitude 0: no fix");
 }
 
 TEST(Oxts, UnreadableFilesAreUnusableRecords) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(std::get<std::string>(read_oxts(folder.path() / "none.txt")), "cannot be read");
-  EXPECT_EQ(std::get<std::string>(read_oxts(folder.path())), "cannot be read");
+  const auto reason = [&](const std::filesystem::path& file) {
+    return std::get<std::string>(read_oxts(file));
+  };
+  EXPECT_NE(reason(folder.path() / "none.txt").find("No such file"), std::string::npos);
+  EXPECT_NE(reason(folder.path()).find("it is a folder"), std::string::npos);
+  test::write_text(folder.path() / "a.txt", std::string("\xFF\xFE"
+                                                        "4\0",
+                                                        4));
+  EXPECT_EQ(reason(folder.path() / "a.txt"), "cannot be read: the text is UTF-16");
+  test::write_text(folder.path() / "a.txt",
+                   "\xEF\xBB\xBF"
+                   "49 8.4 100 0 0 0" +
+                       kRest);
+  EXPECT_TRUE(std::holds_alternative<OxtsRecord>(read_oxts(folder.path() / "a.txt")));
 }
 
 TEST(Oxts, AnglesTurnAsTheFormatSays) {

@@ -47,12 +47,14 @@ std::optional<Scalar> parse_scalar(std::string_view type, std::size_t size) {
 }
 
 /// Whether the field is four bytes of colour, which may be declared as a float.
-bool is_packed_color(std::string_view name) { return name == "rgb" || name == "rgba"; }
+bool is_packed_color(std::string_view name) {
+  return is_column_name(name, "rgb") || is_column_name(name, "rgba");
+}
 
 class PcdFile {
  public:
-  PcdFile(const std::filesystem::path& file, CloudRows& rows)
-      : name_(file.string()), lines_(file), rows_(rows), row_(rows.columns().size()) {
+  PcdFile(InputFile& file, CloudRows& rows)
+      : name_(file.path().string()), lines_(file), rows_(rows), row_(rows.columns().size()) {
     read_header();
     lay_out_fields();
     resolve_columns();
@@ -199,7 +201,7 @@ class PcdFile {
 
   const Field* find(std::string_view name) const {
     for (const Field& field : fields_) {
-      if (field.name != name) continue;
+      if (!is_column_name(field.name, name)) continue;
       if (field.count != 1) reject("the field " + field.name + " must have COUNT 1");
       return &field;
     }
@@ -252,7 +254,7 @@ class PcdFile {
 
   /// One LZF stream of all values of the first field, then all of the second, ...
   void read_compressed() {
-    std::ifstream& stream = lines_.stream();
+    std::istream& stream = lines_.stream();
     const std::uintmax_t begin_of_data = static_cast<std::uintmax_t>(stream.tellg());
     std::array<char, 8> sizes;
     if (!stream.read(sizes.data(), sizes.size())) {
@@ -326,8 +328,6 @@ class PcdFile {
 
 }  // namespace
 
-void read_pcd_rows(const std::filesystem::path& file, CloudRows& rows) {
-  PcdFile(file, rows).read();
-}
+void read_pcd_rows(InputFile& file, CloudRows& rows) { PcdFile(file, rows).read(); }
 
 }  // namespace fovea

@@ -1,8 +1,6 @@
 // Point clouds in PCD, the Point Cloud Library's format (version 0.7).
 #pragma once
 
-#include <filesystem>
-
 #include "fovea/sensor/cloud_rows.h"
 
 namespace fovea {
@@ -14,6 +12,6 @@ namespace fovea {
 ///
 /// VIEWPOINT says where the sensor stood and moves no point, as in the library itself. InputError
 /// that names line or offset for anything else.
-void read_pcd_rows(const std::filesystem::path& file, CloudRows& rows);
+void read_pcd_rows(InputFile& file, CloudRows& rows);
 
 }  // namespace fovea

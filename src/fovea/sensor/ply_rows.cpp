@@ -39,8 +39,8 @@ struct Header {
 
 class PlyFile {
  public:
-  PlyFile(const std::filesystem::path& file, CloudRows& rows)
-      : name_(file.string()), lines_(file), rows_(rows), row_(rows.columns().size()) {
+  PlyFile(InputFile& file, CloudRows& rows)
+      : name_(file.path().string()), lines_(file), rows_(rows), row_(rows.columns().size()) {
     read_header();
     resolve_columns();
     const std::uintmax_t rest = lines_.rest();
@@ -77,7 +77,9 @@ class PlyFile {
   }
 
   void read_header() {
-    if (lines_.next() != "ply") reject("this is no PLY file");
+    std::string first = lines_.next().value_or("");
+    first.erase(first.find_last_not_of(" \t") + 1);
+    if (first != "ply") reject("this is no PLY file");
     bool format_seen = false, vertices_seen = false, in_vertices = false;
     while (lines_.line_number() < kMaxHeaderLines) {
       std::istringstream words(next_line());
@@ -120,8 +122,9 @@ class PlyFile {
     constexpr std::size_t kAxes = 3;
     const auto& properties = header_.properties;
     for (const char* name : rows_.columns()) {
-      const auto found = std::find_if(properties.begin(), properties.end(),
-                                      [&](const Property& p) { return p.name == name; });
+      const auto found = std::find_if(properties.begin(), properties.end(), [&](const Property& p) {
+        return is_column_name(p.name, name);
+      });
       const bool axis = header_.columns.size() < kAxes;
       if (found == properties.end()) {
         if (axis) reject(std::string("the vertices have no ") + name);
@@ -176,8 +179,6 @@ class PlyFile {
 
 }  // namespace
 
-void read_ply_rows(const std::filesystem::path& file, CloudRows& rows) {
-  PlyFile(file, rows).read();
-}
+void read_ply_rows(InputFile& file, CloudRows& rows) { PlyFile(file, rows).read(); }
 
 }  // namespace fovea

@@ -3,13 +3,10 @@
 #include <fcntl.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/text_encoding.h"
 
 namespace fovea {
 namespace {
@@ -38,41 +35,32 @@ std::string lower_case(std::string text) {
 
 }  // namespace
 
-std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
-  const auto fail = [&](std::string_view reason) {
-    throw InputError("the file cannot be read (" + std::string(reason) + ")", file.string(),
-                     "restore it or make it readable");
-  };
-  std::error_code unknown;
-  if (std::filesystem::is_directory(file, unknown)) fail("it is a folder");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
-                                                               &std::fclose);
-  if (!stream) fail(std::strerror(errno));
-  std::setvbuf(stream.get(), nullptr, _IONBF, 0);  // all in one go, not the tail by a buffer
-
-  std::error_code size_error;
-  const auto size = std::filesystem::file_size(file, size_error);
-  if (size_error) fail(size_error.message());
-  std::vector<std::uint8_t> bytes(size);
-  const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), stream.get());
-  if (got != bytes.size()) fail("only " + std::to_string(got) + " bytes could be read");
-  return bytes;
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file, const FileKind& kind) {
+  return InputFile(file, kind).bytes();
 }
 
 void expect_file(const std::filesystem::path& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
-                                                               &std::fclose);
-  if (stream) static_cast<void>(posix_fadvise(fileno(stream.get()), 0, 0, POSIX_FADV_WILLNEED));
+  try {
+    const InputFile expected(file, kStreamedFile);
+    static_cast<void>(posix_fadvise(expected.descriptor(), 0, 0, POSIX_FADV_WILLNEED));
+  } catch (const InputError&) {  // reported where the file is read
+  }
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::string text(bytes.begin(), bytes.end());
+  return std::string(without_byte_order_mark(text, file.string()));
 }
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::string text = read_text(file);
   std::vector<std::string> lines;
-  for (auto begin = bytes.begin(); begin != bytes.end();) {
-    const auto end = std::find(begin, bytes.end(), '\n');
+  for (auto begin = text.begin(); begin != text.end();) {
+    const auto end = std::find(begin, text.end(), '\n');
     lines.emplace_back(begin, end);
     if (!lines.back().empty() && lines.back().back() == '\r') lines.back().pop_back();
-    begin = end == bytes.end() ? end : end + 1;
+    begin = end == text.end() ? end : end + 1;
   }
   return lines;
 }

@@ -10,16 +10,23 @@
 #include <string_view>
 #include <vector>
 
+#include "fovea/base/input_file.h"
+
 namespace fovea {
 
-/// Whole content of a file; InputError if it cannot be read.
-std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file);
+/// Whole content of a file; InputError if it cannot be read or is too large (InputFile).
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file,
+                                     const FileKind& kind = kDataFile);
 
-/// Has the system fetch a file that will be read, and waits for nothing. Of a file that cannot be
-/// read nothing is said: who reads it will be told.
+/// Makes the system fetch a file that will be read, without waiting. Ignores a file that cannot be
+/// read: its reader reports it.
 void expect_file(const std::filesystem::path& file);
 
-/// Lines of a text file without their line ends (LF or CRLF); InputError if it cannot be read.
+/// Text of a UTF-8 file without a byte order mark. InputError if the file cannot be read or has
+/// another encoding.
+std::string read_text(const std::filesystem::path& file);
+
+/// Lines of read_text() without their line ends (LF or CRLF).
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 
 /// All numbers of a text, separated by white space; empty if anything in it is no number. "nan" and

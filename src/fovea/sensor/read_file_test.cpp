@@ -21,6 +21,20 @@ TEST(ReadFile, LinesOfEitherLineEnd) {
   EXPECT_TRUE(lines("").empty());
 }
 
+TEST(ReadFile, AByteOrderMarkIsNoText) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "a.txt",
+             "\xEF\xBB\xBF"
+             "a\r\nb\r\n");
+  EXPECT_EQ(read_lines(folder.path() / "a.txt"), (std::vector<std::string>{"a", "b"}));
+  write_text(folder.path() / "a.txt", std::string("\xFF\xFE"
+                                                  "a\0\r\0\n\0",
+                                                  8));
+  const auto error = test::error_of<InputError>([&] { read_lines(folder.path() / "a.txt"); });
+  EXPECT_NE(error.find("the text is UTF-16"), std::string::npos) << error;
+  EXPECT_NE(error.find("a.txt"), std::string::npos) << error;
+}
+
 TEST(ReadFile, FailuresNameTheFile) {
   const TemporaryFolder folder;
   const auto message = [](const test::fs::path& file) {

@@ -89,7 +89,7 @@ std::optional<std::filesystem::path> find_tracklets(const std::filesystem::path&
 }
 
 std::vector<Tracklet> read_tracklets(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_bytes(file);
+  const std::vector<std::uint8_t> bytes = read_bytes(file, kDescriptionFile);
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer(bytes.data(), bytes.size());
   if (!parsed) reject(parsed.description(), file, parsed.offset);

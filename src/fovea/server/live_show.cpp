@@ -55,7 +55,7 @@ LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
       page_(page),
       description_(describe_run(images_->info(), job)),
       board_(job.output, job.resume, job.options.tile_size,
-             images_->info().end - images_->info().begin),
+             static_cast<int>(images_->info().frame_count())),
       server_(options,
               [this](const std::string& path, WebServer::Reply reply) {
                 answer(path, std::move(reply));

@@ -68,9 +68,6 @@ std::map<std::string, std::string> viewer_files(const MapReader& map,
   return files;
 }
 
-DriveImages::DriveImages(std::shared_ptr<const FrameSource> drive, const Frames& frames)
-    : drive_(std::move(drive)), frames_(frames) {}
-
 WebResponse DriveImages::response(std::string_view path) const {
   constexpr std::string_view kEnding = ".jpg";
   if (!has(path)) return not_found();
@@ -80,10 +77,8 @@ WebResponse DriveImages::response(std::string_view path) const {
   const std::optional<int> frame = number(path.substr(0, slash));
   const std::optional<int> camera =
       number(path.substr(slash + 1, path.size() - slash - 1 - kEnding.size()));
-  if (!frame || !camera || *frame < frames_.first || *frame >= frames_.end) return not_found();
-  const std::int64_t index = *frame - frames_.shift;
-  if (index < info().begin || index >= info().end) return not_found();
-  const FrameResult loaded = drive_->load(static_cast<int>(index));
+  if (!frame || !camera || *frame < info().begin || *frame >= info().end) return not_found();
+  const FrameResult loaded = drive_->load(*frame);
   const auto* of_drive = std::get_if<Frame>(&loaded);
   if (of_drive == nullptr) return not_found();
   const std::vector<Camera>& cameras = info().calibration.cameras;

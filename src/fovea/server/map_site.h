@@ -1,9 +1,7 @@
 // A finished map as a web site: the viewer's page, the map's tiles and frames, the drive's images.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -34,19 +32,11 @@ WebResponse page_response(std::span<const PageFile> page, const std::string& pat
 std::map<std::string, std::string> viewer_files(const MapReader& map,
                                                 std::span<const PageFile> page, bool mesh);
 
-/// A drive's images as JPEG, by the frames' numbers in the map.
+/// The images of a drive as JPEG.
 class DriveImages {
  public:
-  /// Which frames of the map are the drive's.
-  struct Frames {
-    int first = 0, end = std::numeric_limits<int>::max();  ///< by their numbers in the map
-    std::int64_t shift = 0;  ///< a frame's number in the map less that in the drive
-  };
-  /// @param drive  with the cameras that the map shows
-  DriveImages(std::shared_ptr<const FrameSource> drive, const Frames& frames);
-  /// A map of that drive alone.
-  explicit DriveImages(std::shared_ptr<const FrameSource> drive)
-      : DriveImages(std::move(drive), Frames()) {}
+  /// @param drive  with the cameras that the map shows and the map's numbers of its frames
+  explicit DriveImages(std::shared_ptr<const FrameSource> drive) : drive_(std::move(drive)) {}
   const DriveInfo& info() const { return drive_->info(); }
   /// Whether a path of the site is an image's.
   static bool has(std::string_view path) { return path.starts_with(kFolder); }
@@ -56,7 +46,6 @@ class DriveImages {
  private:
   static constexpr std::string_view kFolder = "images/";
   std::shared_ptr<const FrameSource> drive_;
-  Frames frames_;
 };
 
 /// docs/viewer-protocol.md, what there is over HTTP. For several threads.

@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
@@ -81,19 +83,43 @@ TEST_F(MapShowTest, EveryTileOfTheTilesetIsThere) {
   EXPECT_EQ(get("tiles/r9.glb").status, 404);
 }
 
-TEST_F(MapShowTest, ImagesByTheFramesNumbersInTheMap) {
+TEST_F(MapShowTest, TheWriterOfAMapThatIsShownEndsItAsOneFile) {
+  const TileMap tiles = sample_tile_map();
+  const auto writer = MapWriter::create(folder_ / "a.fovea", false);
+  put_sample_map(*writer, tiles);
+  writer->commit();
+  show();
+  const auto statuses = [&] {
+    std::set<int> seen;
+    const std::function<void(const json&)> visit = [&](const json& tile) {
+      seen.insert(get("tiles/" + std::string(tile["content"]["uri"])).status);
+      if (!tile.contains("children")) return;
+      for (const json& child : tile["children"]) visit(child);
+    };
+    visit(get_json("tiles/tileset.json")["root"]);
+    return seen;
+  };
+  EXPECT_THAT(statuses(), ElementsAre(200));
+  writer->remove_tile({0, tiles.submaps()[0].tiles.begin()->first});
+  writer->finish(std::chrono::milliseconds(50));
+  EXPECT_TRUE(log_of_map(folder_ / "a.fovea").empty());
+  std::filesystem::copy_file(folder_ / "a.fovea", folder_ / "alone.fovea");
+  EXPECT_EQ(MapReader(folder_ / "alone.fovea").check(), MapReader(folder_ / "a.fovea").check());
+  EXPECT_THAT(statuses(), ElementsAre(200)) << "a tile that is gone is shown as empty";
+}
+
+TEST_F(MapShowTest, ImagesOfADrive) {
   write_sample_map(folder_ / "a.fovea");
-  show(std::make_shared<DriveImages>(std::make_shared<TestDrive>(),
-                                     DriveImages::Frames{.first = 107, .end = 110, .shift = 100}));
+  show(std::make_shared<DriveImages>(std::make_shared<TestDrive>()));
   const json map = get_json("map.json");
   EXPECT_EQ(map["images"], true);
   EXPECT_EQ(map["cameras"][0]["index"], 3);
   EXPECT_EQ(map["cameras"][0]["T_cam_lidar"], json({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
-  EXPECT_EQ(get("images/107/3.jpg").body.substr(0, 2), "\xff\xd8");
+  EXPECT_EQ(get("images/7/3.jpg").body.substr(0, 2), "\xff\xd8");
   for (const char* path :
-       {"images/7/3.jpg", "images/107/2.jpg", "images/108/3.jpg", "images/109/3.jpg",
-        "images/107/3.png", "images/107", "images/-1/3.jpg", "images/107/x.jpg",
-        "images/99999999999999/3.jpg", "images/107/3/3.jpg", "images/107/.jpg"}) {
+       {"images/6/3.jpg", "images/7/2.jpg", "images/8/3.jpg", "images/9/3.jpg",
+        "images/7/3.png", "images/7", "images/-1/3.jpg", "images/7/x.jpg",
+        "images/99999999999999/3.jpg", "images/7/3/3.jpg", "images/7/.jpg"}) {
     EXPECT_EQ(get(path).status, 404) << path;
   }
 }

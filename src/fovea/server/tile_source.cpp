@@ -20,7 +20,10 @@ const PointChoice& all_points() {
 
 /// What one thread needs to read points.
 struct TileSource::Reader {
-  explicit Reader(const std::filesystem::path& path) : map(path), points(map, all_points()) {}
+  explicit Reader(const std::filesystem::path& path) : map(path), points(map, all_points()) {
+    // The program that writes the map could not end it while an earlier state is held.
+    points.release_state();
+  }
   MapReader map;
   PointStream points;
   LeafReader leaves{points};

@@ -5,9 +5,9 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/output_file.h"
 
 namespace fovea {
@@ -70,11 +70,7 @@ void write_elements(std::ostream& stream, std::size_t count, std::size_t bytes,
 class MeshFile {
  public:
   explicit MeshFile(const std::filesystem::path& file)
-      : name_(file.string()), stream_(file, std::ios::binary) {
-    std::error_code error;
-    bytes_ = std::filesystem::file_size(file, error);
-    if (!stream_ || error) throw InputError("the mesh cannot be read", name_, kWorldRemedy);
-  }
+      : name_(file.string()), input_(file, kStreamedFile), stream_(input_.stream()) {}
 
   TriangleMesh read() {
     const auto [vertices, faces] = read_counts();
@@ -84,8 +80,8 @@ class MeshFile {
     stream_.read(found.data(), static_cast<std::streamsize>(found.size()));
     if (found != expected) reject("the header is not that of a world's mesh");
     // Before anything is allocated: the counts of a damaged header can be anything.
-    if (vertices > bytes_ / kVertexBytes || faces > bytes_ / kFaceBytes ||
-        bytes_ != expected.size() + vertices * kVertexBytes + faces * kFaceBytes) {
+    if (vertices > input_.size() / kVertexBytes || faces > input_.size() / kFaceBytes ||
+        input_.size() != expected.size() + vertices * kVertexBytes + faces * kFaceBytes) {
       reject(fmt::format("the file's size does not fit {} vertices and {} faces", vertices, faces));
     }
     read_vertices(vertices);
@@ -156,8 +152,8 @@ class MeshFile {
   }
 
   std::string name_;
-  std::ifstream stream_;
-  std::uintmax_t bytes_ = 0;
+  InputFile input_;
+  std::istream& stream_;
   TriangleMesh mesh_;
 };
 

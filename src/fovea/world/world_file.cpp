@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/input_file.h"
 #include "fovea/base/output_file.h"
 #include "fovea/world/mesh_ply.h"
 
@@ -76,12 +76,9 @@ std::uint32_t surface_id(const std::string& key) {
 }
 
 void read_lists(const fs::path& file, World& world) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || fs::is_directory(file)) {
-    throw InputError("the world's materials cannot be read", file.string(), kWorldRemedy);
-  }
+  const std::vector<std::uint8_t> bytes = InputFile(file, kDescriptionFile).bytes();
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(bytes);
     for (const Json& material : json.at("materials")) {
       world.materials.push_back(material_of(material));
     }

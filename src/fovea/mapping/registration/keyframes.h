@@ -20,6 +20,9 @@ class Keyframes {
  public:
   explicit Keyframes(const KeyframeOptions& options) : options_(options) {}
 
+  /// The next scan is one, wherever it is.
+  void restart() { last_.reset(); }
+
   /// Whether the next scan is one.
   /// @param overlap  the share of its points that have a counterpart in the target
   bool takes(const RigidMotion& T_odom_lidar, double overlap) {

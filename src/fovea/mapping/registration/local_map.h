@@ -56,6 +56,9 @@ class LocalMap {
   /// the scans before it were present.
   static int memory(const LocalMapOptions& options) { return 2 * options.max_keyframes - 1; }
 
+  /// Forgets all scans.
+  void clear() { keyframes_.clear(); }
+
   bool empty() const { return keyframes_.empty(); }
   /// How many points the target has.
   std::size_t size() const { return target_.cloud.points.size() - empty_.size(); }
@@ -107,6 +110,8 @@ struct VerticalFit {
   /// A pose is wrong if enough points can tell, and too few of them fit. Right poses have a share
   /// of 0.5 (16 rings, moving cars) to 0.98, wrong ones of 0.1 to 0.5.
   bool contradicts() const { return points >= kLeastPoints && share < kLeastShare; }
+  /// Enough points can tell, and enough of them fit.
+  bool confirms() const { return points >= kLeastPoints && share >= kLeastShare; }
 
   static constexpr std::size_t kLeastPoints = 30;
   static constexpr double kLeastShare = 0.45;

@@ -1,0 +1,32 @@
+// What a file is, by its content and not by its name.
+#pragma once
+
+#include <filesystem>
+
+namespace fovea::app {
+
+enum class FileKind {
+  kEmpty,
+  kMap,
+  kReport,  ///< JSON of `map --report`, `evaluate --json`, `localize --report`, `reproduce`
+  kHtml,
+  kPly,
+  kPcd,
+  kLas,
+  kGlb,
+  kPng,
+  kPoses,      ///< 12 numbers a line
+  kPoseTable,  ///< CSV of `localize`
+  kMarkdown,   ///< of `reproduce`
+  kSqlite,     ///< a database that is no map
+  kJson,       ///< no report of Fovea
+  kOther,
+};
+
+/// The kind of an existing file; kOther if it cannot be read.
+FileKind kind_of_file(const std::filesystem::path& file);
+
+/// "a Fovea map", "a PLY file", ...
+const char* describe(FileKind kind);
+
+}  // namespace fovea::app

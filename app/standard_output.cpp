@@ -1,0 +1,38 @@
+#include "app/standard_output.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <system_error>
+
+#include "fovea/base/errors.h"
+
+namespace fovea::app {
+
+void prepare_standard_streams() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(fd, F_GETFD) >= 0 || errno != EBADF) continue;
+    // Opened the wrong way round, so that its use still fails. It gets the lowest free number.
+    static_cast<void>(::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
+bool standard_output_failed() { return std::ferror(stdout) != 0; }
+
+void finish_standard_output() {
+  const bool failed_before = standard_output_failed();
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !failed_before) return;
+  const std::string reason =
+      errno != 0 ? fmt::format(" ({})", std::generic_category().message(errno)) : std::string();
+  throw OutputError(fmt::format("the output cannot be written{}", reason), "standard output",
+                    "check the disk or the program that reads it; --quiet writes none");
+}
+
+}  // namespace fovea::app

@@ -1,0 +1,56 @@
+#include "fovea/mapping/registration/place_search.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace fovea {
+namespace {
+
+/// A coarse registration with pairs of up to 4 m finds a scan from half as far.
+constexpr double kStep = 2.5, kLongestReach = 20;  // m
+constexpr double kCoarsePairs = 4, kCoarseWidth = 1;
+constexpr int kCoarseIterations = 30;
+
+/// The center and the steps along the four arms of a cross, the nearest first.
+std::vector<Eigen::Vector3d> cross(double reach) {
+  std::vector<Eigen::Vector3d> offsets{Eigen::Vector3d::Zero()};
+  for (double way = kStep; way <= std::min(reach, kLongestReach); way += kStep) {
+    for (const Eigen::Vector3d& offset :
+         {Eigen::Vector3d(way, 0, 0), {-way, 0, 0}, {0, way, 0}, {0, -way, 0}}) {
+      offsets.push_back(offset);
+    }
+  }
+  return offsets;
+}
+
+}  // namespace
+
+double place_score(const VerticalFit& fit, double overlap) {
+  return fit.confirms() ? fit.share * overlap : 0;
+}
+
+std::optional<FoundPlace> search_place(const LocalMap& map, const RegistrationCloud& source_lidar,
+                                       const RigidMotion& guess_T_local_lidar, double reach,
+                                       const RegistrationOptions& options) {
+  RegistrationOptions coarse = options;
+  coarse.max_distance = kCoarsePairs;
+  coarse.robust_width = kCoarseWidth;
+  coarse.max_iterations = kCoarseIterations;
+  std::optional<FoundPlace> best;
+  double best_score = kLeastPlaceScore;
+  for (const Eigen::Vector3d& offset : cross(reach)) {
+    const RigidMotion start = guess_T_local_lidar * Eigen::Translation3d(offset);
+    const RigidMotion near = register_to(map, source_lidar, start, coarse).T_target_source;
+    const RegistrationResult result = register_to(map, source_lidar, near, options);
+    if (!result.converged) continue;
+    const VerticalFit fit = vertical_fit(map, source_lidar, result.T_target_source);
+    const double overlap = double(result.pairs) / double(source_lidar.points.size());
+    const double score = place_score(fit, overlap);
+    if (score <= best_score) continue;
+    best = FoundPlace{result, fit};
+    best_score = score;
+  }
+  return best;
+}
+
+}  // namespace fovea

@@ -1,0 +1,280 @@
+#include "fovea/pipeline/drive_match.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "fovea/base/errors.h"
+#include "fovea/base/path_name.h"
+#include "fovea/map/drive_fingerprint.h"
+
+namespace fovea {
+namespace {
+
+constexpr const char* kRemedy =
+    "give the drive that 'fovea info' names, or use this one all the same with --foreign";
+
+using Frames = std::vector<FrameRecord>;
+/// Numbers of frames by stamp.
+using Stamps = std::map<TimeNs, int>;
+/// Numbers of frames in the drive by those in the map.
+using Numbers = std::map<int, int>;
+
+Stamps stamps_of(const FrameSource& drive) {
+  Stamps stamps;
+  for (int index = drive.info().begin; index < drive.info().end; ++index) {
+    if (const auto stamp = drive.stamp(index)) stamps.emplace(*stamp, index);
+  }
+  return stamps;
+}
+
+Stamps stamps_of(const Frames& frames) {
+  Stamps stamps;
+  for (const FrameRecord& frame : frames) {
+    if (frame.stamp) stamps.emplace(*frame.stamp, frame.index);
+  }
+  return stamps;
+}
+
+/// The smaller number of stamps that the two have within their common time.
+std::size_t comparable_stamps(const Stamps& a, const Stamps& b) {
+  if (a.empty() || b.empty()) return 0;
+  const TimeNs first = std::max(a.begin()->first, b.begin()->first),
+               last = std::min(a.rbegin()->first, b.rbegin()->first);
+  if (first > last) return 0;
+  const auto count = [&](const Stamps& stamps) {
+    return static_cast<std::size_t>(
+        std::distance(stamps.lower_bound(first), stamps.upper_bound(last)));
+  };
+  return std::min(count(a), count(b));
+}
+
+Numbers common_frames(const Stamps& in_map, const Stamps& in_drive) {
+  Numbers numbers;
+  for (const auto& [stamp, index] : in_map) {
+    if (const auto found = in_drive.find(stamp); found != in_drive.end()) {
+      numbers.emplace(index, found->second);
+    }
+  }
+  return numbers;
+}
+
+/// Compares the numbers of points of some scans: drives with regular stamps, or without stamps,
+/// have the same stamps. Returns how they differ; nothing if half of them are equal or none can be
+/// read.
+std::optional<std::string> scan_difference(const Frames& frames, const Numbers& numbers,
+                                           const FrameSource& drive) {
+  constexpr const char* kPoints = "points_scan";
+  std::vector<const FrameRecord*> candidates;
+  for (const FrameRecord& frame : frames) {
+    if (numbers.contains(frame.index) && frame.has(kPoints)) candidates.push_back(&frame);
+  }
+  // Of a thinned drive most frames may be missing.
+  constexpr std::size_t kCompared = 3, kTried = 100;
+  int compared = 0, equal = 0;
+  std::optional<std::string> difference;
+  for (std::size_t k = 0; k < kCompared; ++k) {
+    const std::size_t begin = k * candidates.size() / kCompared,
+                      end = std::min((k + 1) * candidates.size() / kCompared, begin + kTried);
+    for (std::size_t i = begin; i < end; ++i) {
+      const FrameResult loaded = drive.load(numbers.at(candidates[i]->index));
+      const auto* frame = std::get_if<Frame>(&loaded);
+      if (frame == nullptr) continue;
+      const double in_map = candidates[i]->figures.at(kPoints);
+      ++compared;
+      if (in_map == double(frame->scan.size())) {
+        ++equal;
+      } else {
+        difference = fmt::format("its scan {} has {} points, that of the map has {}", frame->index,
+                                 frame->scan.size(), in_map);
+      }
+      break;
+    }
+  }
+  return 2 * equal >= compared ? std::nullopt : difference;
+}
+
+/// Delays of single images of a camera after their scans. The fingerprint of a camera contains the
+/// median, which changes if images are removed.
+std::set<TimeNs> image_delays(const Frames& frames, const DriveInfo& drive, std::size_t slot) {
+  const Camera& camera = drive.calibration.cameras[slot];
+  std::set<TimeNs> delays;
+  for (const FrameRecord& frame : frames) {
+    for (const ViewRecord& view : frame.views) {
+      if (view.camera == camera.index && view.stamp && frame.stamp) {
+        delays.insert(*view.stamp - *frame.stamp);
+      }
+    }
+  }
+  if (slot < drive.image_offsets.size()) {
+    for (const auto& [index, offset] : drive.image_offsets[slot]) {
+      delays.insert(from_seconds(camera.image_delay + offset));
+    }
+  }
+  return delays;
+}
+
+/// Whether a camera has the fingerprint "2:HASH", with its median delay or that of any image.
+bool has_fingerprint(const std::string& fingerprint, const Frames& frames, const DriveInfo& drive,
+                     std::size_t slot) {
+  Calibration one;
+  one.cameras = {drive.calibration.cameras[slot]};
+  if (calibration_fingerprint(one) == fingerprint) return true;
+  const std::set<TimeNs> delays = image_delays(frames, drive, slot);
+  return std::any_of(delays.begin(), delays.end(), [&](TimeNs delay) {
+    one.cameras[0].image_delay = seconds(delay);
+    return calibration_fingerprint(one) == fingerprint;
+  });
+}
+
+/// Names what differs of the parts of the calibration that both have; nothing if they are equal.
+std::optional<std::string> different_calibration(const std::string& stored, const Frames& frames,
+                                                 const DriveInfo& drive) {
+  const std::vector<Camera>& cameras = drive.calibration.cameras;
+  const auto in_drive = fingerprint_parts(calibration_fingerprint(drive.calibration));
+  std::string mapped, now;
+  for (const auto& [name, hash] : fingerprint_parts(stored)) {
+    const auto found = in_drive.find(name);
+    if (found == in_drive.end()) continue;
+    const auto camera = std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) {
+      return fmt::to_string(c.index) == name;
+    });
+    const auto slot = static_cast<std::size_t>(camera - cameras.begin());
+    if (camera != cameras.end() && has_fingerprint(name + hash, frames, drive, slot)) continue;
+    mapped += fmt::format("{}{} ", name, hash);
+    now += fmt::format("{}{} ", name, found->second);
+  }
+  return calibration_difference(mapped, now);
+}
+
+/// The frames of one drive of a map.
+Frames frames_of(const Frames& frames, const DriveRecord& drive) {
+  Frames of_drive;
+  std::copy_if(frames.begin(), frames.end(), std::back_inserter(of_drive),
+               [&](const FrameRecord& frame) {
+                 return frame.index >= drive.first_frame && frame.index < drive.end_frame;
+               });
+  return of_drive;
+}
+
+/// The drives of a map. A repaired one may have lost them: then all frames count as one drive.
+std::vector<DriveRecord> drives_of(const MapReader& map) {
+  std::vector<DriveRecord> drives = map.drives();
+  if (!drives.empty()) return drives;
+  DriveRecord& any = drives.emplace_back();
+  any.end_frame = std::numeric_limits<int>::max();
+  return drives;
+}
+
+/// Whether the frames of a map have the stamps of the drive's frames of the same numbers.
+bool has_same_numbers(const Frames& frames, const FrameSource& drive) {
+  return std::all_of(frames.begin(), frames.end(), [&](const FrameRecord& frame) {
+    const DriveInfo& info = drive.info();
+    if (!frame.stamp || frame.index < info.begin || frame.index >= info.end) return true;
+    const std::optional<TimeNs> stamp = drive.stamp(frame.index);
+    return !stamp || *stamp == *frame.stamp;
+  });
+}
+
+/// A drive under other numbers of its frames.
+class RenumberedDrive : public FrameSource {
+ public:
+  RenumberedDrive(std::unique_ptr<FrameSource> drive, Numbers numbers)
+      : drive_(std::move(drive)), numbers_(std::move(numbers)), info_(drive_->info()) {
+    info_.begin = numbers_.empty() ? 0 : numbers_.begin()->first;
+    info_.end = numbers_.empty() ? 0 : numbers_.rbegin()->first + 1;
+    info_.reference_poses.clear();
+    for (std::map<int, double>& offsets : info_.image_offsets) {
+      const std::map<int, double> of_drive = std::exchange(offsets, {});
+      for (const auto& [number, in_drive] : numbers_) {
+        const auto found = of_drive.find(in_drive);
+        if (found != of_drive.end()) offsets.emplace(number, found->second);
+      }
+    }
+  }
+  const DriveInfo& info() const override { return info_; }
+  FrameResult load(int index) const override {
+    const auto found = numbers_.find(index);
+    if (found == numbers_.end()) {
+      return SkippedFrame{index, SkipReason::kMissingScan,
+                          fmt::format("frame {} of the map is not in the drive", index)};
+    }
+    FrameResult result = drive_->load(found->second);
+    std::visit([&](auto& frame) { frame.index = index; }, result);
+    return result;
+  }
+  void expect(int index) const override {
+    if (const auto found = numbers_.find(index); found != numbers_.end()) {
+      drive_->expect(found->second);
+    }
+  }
+  std::optional<TimeNs> stamp(int index) const override {
+    const auto found = numbers_.find(index);
+    if (found == numbers_.end()) return std::nullopt;
+    return drive_->stamp(found->second);
+  }
+
+ private:
+  std::unique_ptr<FrameSource> drive_;
+  Numbers numbers_;
+  DriveInfo info_;
+};
+
+}  // namespace
+
+DriveMatch match_drive(const MapReader& map, const FrameSource& drive,
+                       const std::filesystem::path& path) {
+  const Frames all_frames = map.frames();
+  const std::vector<DriveRecord> drives = drives_of(map);
+  const Stamps in_drive = stamps_of(drive);
+  DriveMatch match;
+  std::string calibration, difference;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    const Frames frames = frames_of(all_frames, drives[k]);
+    const Stamps in_map = stamps_of(frames);
+    const Numbers numbers = common_frames(in_map, in_drive);
+    const std::size_t comparable = comparable_stamps(in_map, in_drive);
+    if (numbers.empty() || double(numbers.size()) < kMinCommonStamps * double(comparable)) {
+      difference = fmt::format("{} of {} stamps within their common time are equal", numbers.size(),
+                               comparable);
+      continue;
+    }
+    if (!drives[k].calibration_fingerprint) {
+      match.notes = {
+          "the map has no fingerprint of its drive: only the stamps of the frames are compared"};
+    } else if (const auto scans = scan_difference(frames, numbers, drive)) {
+      difference = *scans;
+      continue;
+    } else if (const auto cameras = different_calibration(*drives[k].calibration_fingerprint,
+                                                          frames, drive.info())) {
+      calibration = *cameras;
+      continue;
+    }
+    match.drives.push_back(static_cast<int>(k));
+    match.number_in_drive.insert(numbers.begin(), numbers.end());
+  }
+  if (match.drives.empty()) {
+    const std::string name = name_of(drive.info().path);
+    throw InputError(
+        calibration.empty()
+            ? fmt::format("the map was not made of the drive '{}': {}", name, difference)
+            : fmt::format("the drive '{}' has another calibration than the map: {}", name,
+                          calibration),
+        path.string(), kRemedy);
+  }
+  match.keeps_numbers = drives.size() == 1 && has_same_numbers(all_frames, drive);
+  return match;
+}
+
+std::unique_ptr<FrameSource> with_map_numbers(std::unique_ptr<FrameSource> drive,
+                                              const DriveMatch& match) {
+  if (match.keeps_numbers) return drive;
+  return std::make_unique<RenumberedDrive>(std::move(drive), match.number_in_drive);
+}
+
+}  // namespace fovea

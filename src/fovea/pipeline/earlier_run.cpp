@@ -1,0 +1,90 @@
+#include "fovea/pipeline/earlier_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "fovea/base/errors.h"
+#include "fovea/map/drive_fingerprint.h"
+#include "fovea/map/map_meta.h"
+#include "fovea/map/meta_keys.h"
+
+namespace fovea {
+namespace {
+
+/// Their values contain the path of the drive.
+constexpr std::array kNames{meta_key::kDriveName, meta_key::kNotes};
+
+/// " (8:4, now 8:3)" if both values are short.
+std::string change(const std::string& before, const std::string& now) {
+  constexpr std::size_t kLongest = 30;
+  if (std::max(before.size(), now.size()) > kLongest) return "";
+  return fmt::format(" ('{}', now '{}')", before, now);
+}
+
+void require_resumable(const MapReader& map, const MapMeta& meta, const std::string& path) {
+  if (meta.contains(meta_key::kCrop)) {
+    throw InputError("the map is a part of another one", path,
+                     "resume the whole map, or start a new one");
+  }
+  if (meta.contains(meta_key::kRepair)) {
+    throw InputError("the map was repaired and lacks parts", path, "start a new map");
+  }
+  if (!merged_drives(map).empty()) {
+    throw InputError("the map is of several drives", path,
+                     "resume the map of one drive, and merge it when it is whole");
+  }
+}
+
+void require_same_drive(const DriveRecord& before, const DriveRecord& now,
+                        const std::string& path) {
+  std::string difference;
+  const auto calibration = calibration_difference(*before.calibration_fingerprint,
+                                                  now.calibration_fingerprint.value_or(""));
+  if (calibration) difference = fmt::format("another calibration ({})", *calibration);
+  if (before.stamps_fingerprint != now.stamps_fingerprint) difference = "other stamps";
+  if (difference.empty()) return;
+  throw InputError(fmt::format("the map was made of a drive with {}", difference), path,
+                   "resume with the drive of the first run, or start a new map");
+}
+
+}  // namespace
+
+bool is_complete(const MapMeta& meta) {
+  const auto stated = meta.find(meta_key::kComplete);
+  return stated != meta.end() && stated->second == "1";
+}
+
+void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& drive,
+                      const std::filesystem::path& path) {
+  const MapMeta before = map.meta();
+  require_resumable(map, before, path.string());
+  for (const auto& [key, value] : meta) {
+    if (std::count(kNames.begin(), kNames.end(), key) > 0) continue;
+    const auto found = before.find(key);
+    if (found != before.end() && found->second == value) continue;
+    const std::string values = found == before.end() ? "" : change(found->second, value);
+    throw InputError(fmt::format("the map was made with another '{}'{}", key, values),
+                     path.string(),
+                     "resume with the drive and settings of the first run, or start a new map");
+  }
+  const std::vector<DriveRecord> drives = map.drives();
+  if (drives.size() != 1 || !drives[0].calibration_fingerprint || !drives[0].stamps_fingerprint) {
+    throw InputError("the map does not state which drive it is of", path.string(),
+                     "start a new map");
+  }
+  require_same_drive(drives[0], drive, path.string());
+}
+
+void keep_names(const MapReader& map, MapMeta& meta, DriveRecord& drive) {
+  const MapMeta before = map.meta();
+  for (const char* key : kNames) {
+    const auto found = before.find(key);
+    if (found != before.end()) meta[key] = found->second;
+  }
+  for (const DriveRecord& stored : map.drives()) drive.name = stored.name;
+}
+
+}  // namespace fovea

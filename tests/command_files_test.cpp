@@ -1,0 +1,184 @@
+// What a command may write: no input, no other output, no file of another kind.
+#include "app/command_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "fovea/base/errors.h"
+#include "fovea/map/map_store.h"
+#include "tests/program.h"
+
+namespace fovea::command_files_test {
+
+using app::CommandFiles;
+using app::FileKind;
+using app::FolderUse;
+using app::kind_of_file;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* kAccepted = "accepted";
+constexpr const char* kPly = "ply\nformat ascii 1.0\n";
+constexpr const char* kPose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+
+class CommandFilesTest : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& name, const std::string& content) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return path(name);
+  }
+  std::string map(const std::string& name) const {
+    MapWriter::create(folder_ / name, true)->finish();
+    return path(name);
+  }
+  static std::string answer(const CommandFiles& files) {
+    try {
+      check_files(files);
+    } catch (const OutputError& error) {
+      return error.what();
+    }
+    return kAccepted;
+  }
+  const TemporaryFolder folder_;
+};
+
+TEST_F(CommandFilesTest, ContentTellsTheKindOfAFile) {
+  using namespace std::string_literals;
+  const std::pair<std::string, FileKind> cases[] = {
+      {"", FileKind::kEmpty},
+      {"SQLite format 3\0"s + std::string(52, 'x') + "FVEA", FileKind::kMap},
+      {"SQLite format 3\0"s + std::string(84, '\0'), FileKind::kSqlite},
+      {"SQLite format 3\0"s, FileKind::kSqlite},
+      {"ply\r\nformat", FileKind::kPly},
+      {"ply \nformat", FileKind::kPly},
+      {"plywood\n", FileKind::kOther},
+      {"# .PCD v0.7 - Point Cloud Data\n", FileKind::kPcd},
+      {"LASF\0"s, FileKind::kLas},
+      {"glTF\2"s, FileKind::kGlb},
+      {"\x89PNG\r\n", FileKind::kPng},
+      {"\n<!DOCTYPE HTML>", FileKind::kHtml},
+      {"{\n  \"map\": {}}", FileKind::kReport},
+      {"{\"protocol\": \"truth\"}", FileKind::kReport},
+      {"{\"name\": \"a package\"}", FileKind::kJson},
+      {"{not json", FileKind::kOther},
+      {"[registration]\nmethod = 1\n", FileKind::kOther},
+      {kPose, FileKind::kPoses},
+      {"nan nan nan nan nan nan nan nan nan nan nan nan\n", FileKind::kPoses},
+      {"1 2 3 4 5 6 7 8 9 10 11\n", FileKind::kOther},
+      {"1 2 3 4 5 6 7 8 9 10 11 12 13\n", FileKind::kOther},
+      {"frame,time_ns,state\n", FileKind::kPoseTable},
+      {"time_ns,x\n", FileKind::kOther},
+      {"P0: 1 0 0 0 0 1 0 0 0 0 1 0\n", FileKind::kOther},
+  };
+  for (const auto& [content, kind] : cases) {
+    EXPECT_EQ(kind_of_file(file("a", content)), kind) << content;
+  }
+  EXPECT_EQ(kind_of_file(map("a.fovea")), FileKind::kMap);
+  EXPECT_EQ(kind_of_file(folder_ / "none"), FileKind::kOther);
+}
+
+TEST_F(CommandFilesTest, NoOutputIsAnInputUnderWhateverName) {
+  const std::string input = map("m.fovea");
+  std::filesystem::create_symlink(input, folder_ / "link.fovea");
+  std::filesystem::create_hard_link(input, folder_ / "hard.fovea");
+  for (const std::string& output :
+       {input, path("link.fovea"), path("hard.fovea"), path("./m.fovea")}) {
+    for (const FileKind kind : {FileKind::kMap, FileKind::kReport, FileKind::kPly}) {
+      EXPECT_THAT(answer({{input}, {{output, kind, true}}}), HasSubstr("the command reads"));
+    }
+  }
+  EXPECT_EQ(answer({{input}, {{path("other.fovea"), FileKind::kMap}}}), kAccepted);
+}
+
+// A name that the output only uses while it grows.
+TEST_F(CommandFilesTest, NoPartialFileIsAnInput) {
+  const std::string input = map("out.fovea.partial");
+  EXPECT_THAT(answer({{input}, {{path("out.fovea"), FileKind::kMap}}}), HasSubstr("reads"));
+  const std::string scan = file("out.ply.partial", kPly);
+  EXPECT_THAT(answer({{scan}, {{path("out.ply"), FileKind::kPly}}}), HasSubstr("reads"));
+  const std::string log = file("a.fovea-wal", "log");
+  EXPECT_THAT(answer({{log}, {{path("a.fovea"), FileKind::kMap}}}), HasSubstr("reads"));
+}
+
+TEST_F(CommandFilesTest, NoOutputIsTheLogOfAMapThatIsRead) {
+  const std::string input = map("m.fovea");
+  file("m.fovea-wal", "");
+  EXPECT_THAT(answer({{input}, {{path("m.fovea-wal"), FileKind::kReport, true}}}),
+              HasSubstr("a part of"));
+}
+
+TEST_F(CommandFilesTest, NoOutputIsAFileOfAnInputFolder) {
+  const std::string scan = file("drive/scans/0.ply", kPly);
+  const std::string elsewhere = file("archive/1.ply", kPly);
+  std::filesystem::create_symlink(elsewhere, folder_ / "drive/scans/1.ply");
+  std::filesystem::create_symlink(folder_ / "drive", folder_ / "drive/scans/loop");
+  const std::string other = file("archive/2.ply", kPly);
+  for (const std::string& output : {scan, elsewhere, path("archive/../drive/scans/1.ply")}) {
+    EXPECT_THAT(answer({{path("drive")}, {{output, FileKind::kPly, true}}}),
+                HasSubstr("a file of the folder"));
+  }
+  EXPECT_EQ(answer({{path("drive")}, {{other, FileKind::kPly, true}}}), kAccepted);
+  EXPECT_EQ(answer({{path("drive")}, {{map("drive/a.fovea"), FileKind::kMap, true}}}), kAccepted)
+      << "no drive has a map";
+}
+
+TEST_F(CommandFilesTest, TwoOutputsAreTwoFiles) {
+  const auto both = [&](const std::string& a, const std::string& b) {
+    return answer({{}, {{a, FileKind::kReport, true}, {b, FileKind::kHtml, true}}});
+  };
+  EXPECT_THAT(both(path("a"), path("a")), HasSubstr("one file"));
+  EXPECT_THAT(both(path("a"), path("./a")), HasSubstr("one file"));
+  EXPECT_THAT(both(path("a"), path("a.partial")), HasSubstr("one file"));
+  EXPECT_EQ(both(path("a"), path("b")), kAccepted);
+  EXPECT_EQ(both("", ""), kAccepted);
+}
+
+TEST_F(CommandFilesTest, OnlyAFileOfTheSameKindIsReplaced) {
+  const std::string a_map = map("m.fovea");
+  EXPECT_THAT(answer({{}, {{path("m.fovea"), FileKind::kMap, false}}}), HasSubstr("--force"));
+  EXPECT_EQ(answer({{}, {{path("m.fovea"), FileKind::kMap, true}}}), kAccepted);
+  std::filesystem::rename(a_map, folder_ / "m");
+  EXPECT_THAT(answer({{}, {{path("m"), FileKind::kReport, true}}}),
+              AllOf(HasSubstr("is a Fovea map"), HasSubstr("another name")));
+  const std::string json = file("package.json", "{\"name\": 1}");
+  EXPECT_THAT(answer({{}, {{json, FileKind::kReport, true}}}), HasSubstr("no report"));
+  const std::string notes = file("notes", "something dear");
+  EXPECT_THAT(answer({{}, {{notes, FileKind::kMap, true}}}), HasSubstr("of another kind"));
+  const std::string report = file("r.json", "{\"map\": {}}"), empty = file("e.json", "");
+  for (const std::string& output : {report, empty}) {
+    EXPECT_EQ(answer({{}, {{output, FileKind::kReport, true}}}), kAccepted);
+  }
+  EXPECT_THAT(answer({{}, {{"/dev/null", FileKind::kReport, true}}}), HasSubstr("ordinary"));
+}
+
+TEST_F(CommandFilesTest, AMapHasNoNameOfAnotherFormat) {
+  for (const char* name : {"a.ply", "a.LAS", "a.json", "a.html"}) {
+    EXPECT_THAT(answer({{}, {{path(name), FileKind::kMap}}}), HasSubstr("ends in")) << name;
+  }
+  for (const char* name : {"a.fovea", "a", "a.db", "a.map", "2011.09.26"}) {
+    EXPECT_EQ(answer({{}, {{path(name), FileKind::kMap}}}), kAccepted) << name;
+  }
+  EXPECT_THAT(answer({{}, {{path("a.fovea"), FileKind::kPly}}}), HasSubstr(".fovea"));
+}
+
+TEST_F(CommandFilesTest, NoOutputFolderLiesInAnInputOrReplacesOne) {
+  file("drive/a", "");
+  std::filesystem::create_symlink(folder_ / "drive", folder_ / "link");
+  const auto folder = [&](const std::string& name, FolderUse use = FolderUse::kReplace) {
+    return answer({{path("drive")}, {}, {path(name), use}});
+  };
+  for (const char* inside : {"drive", "drive/", "drive/out", "drive/../drive/out", "link/out"}) {
+    EXPECT_THAT(folder(inside), HasSubstr("lies in")) << inside;
+    EXPECT_THAT(folder(inside, FolderUse::kAddTo), HasSubstr("lies in")) << inside;
+  }
+  EXPECT_THAT(folder("."), HasSubstr("contains"));
+  EXPECT_EQ(folder(".", FolderUse::kAddTo), kAccepted);
+  EXPECT_EQ(folder("drive-2"), kAccepted) << "a name that only begins alike";
+  EXPECT_EQ(folder("out"), kAccepted);
+}
+
+}  // namespace fovea::command_files_test
