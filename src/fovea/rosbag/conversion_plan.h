@@ -15,7 +15,8 @@ struct ConversionPlan {
   std::string lidar;  ///< topic of the scans
   std::vector<PlannedCamera> cameras;
   RecordedDrive drive;
-  std::vector<std::string> notes;  ///< what was chosen, what is left out and why
+  std::vector<std::string> navigation_topics;  ///< that are used
+  std::vector<std::string> notes;              ///< what was chosen, what is left out and why
 };
 
 /// InputError for a recording that is no drive: without scans or cameras, without their calibration
