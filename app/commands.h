@@ -10,16 +10,16 @@ namespace fovea::app {
 
 void add_map_command(CLI::App& app, Session& session);
 void add_info_command(CLI::App& app);
-void add_evaluate_command(CLI::App& app);
-void add_convert_command(CLI::App& app);
+void add_evaluate_command(CLI::App& app, Session& session);
+void add_convert_command(CLI::App& app, Session& session);
 void add_crop_command(CLI::App& app);
 void add_export_command(CLI::App& app);
-void add_localize_command(CLI::App& app);
+void add_localize_command(CLI::App& app, Session& session);
 void add_merge_command(CLI::App& app);
-void add_render_command(CLI::App& app);
-void add_recolor_command(CLI::App& app);
-void add_repair_command(CLI::App& app);
-void add_reproduce_command(CLI::App& app);
+void add_render_command(CLI::App& app, Session& session);
+void add_recolor_command(CLI::App& app, Session& session);
+void add_repair_command(CLI::App& app, Session& session);
+void add_reproduce_command(CLI::App& app, Session& session);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);

@@ -51,7 +51,7 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
   return cameras;
 }
 
-void run(const ConvertArguments& arguments) {
+void run(const ConvertArguments& arguments, Warnings& warnings) {
   check_files({arguments.bags, {}, {arguments.output}});
   ConvertOptions options = arguments.options;
   options.cameras = parse_camera_topics(arguments.cameras);
@@ -64,15 +64,15 @@ void run(const ConvertArguments& arguments) {
       return true;
     });
   }();
+  warnings.add(figures, "", arguments.quiet);
   if (arguments.quiet) return;
-  for (const std::string& note : figures.notes) print_out("{}\n", note);
   print_out("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
-            figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
+             figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
 }
 
 }  // namespace
 
-void add_convert_command(CLI::App& app) {
+void add_convert_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ConvertArguments>();
   ConvertOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand(
@@ -110,7 +110,7 @@ void add_convert_command(CLI::App& app) {
                     "Convert scans even if over 10 % of their points cannot be used");
   command->add_flag("--force", arguments->force, "Replace DIR");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

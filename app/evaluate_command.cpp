@@ -13,6 +13,7 @@
 #include "app/html_report/report_page.h"
 #include "app/html_report/truth_page.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
@@ -53,12 +54,13 @@ void check(const EvaluateArguments& arguments) {
 }
 
 template <class Report>
-void put_report(const Report& report, std::optional<OutputFile>& json) {
+void put_report(const Report& report, std::optional<OutputFile>& json, Warnings& warnings) {
   if (json) {
     json->stream() << to_json(report);
     json->commit();
   }
   print_lines(to_text(report));
+  warnings.add(report.warnings);
 }
 
 /// Whose calibration to score under: the drive's or a map's.
@@ -67,7 +69,7 @@ std::string calibration_of(const EvaluateArguments& arguments, const ScoredMap& 
   return has_stored_calibration(map.meta) ? arguments.map : kDrive;
 }
 
-void run(EvaluateArguments arguments) {
+void run(EvaluateArguments arguments, Warnings& warnings) {
   arguments.truth = arguments.truth || arguments.protocol == kTruth;
   if (arguments.truth) arguments.protocol = kTruth;
   check(arguments);
@@ -117,9 +119,9 @@ void run(EvaluateArguments arguments) {
     drive = with_stored_calibration(std::move(drive), meta, calibration);
   }
   if (arguments.truth) {
-    const TruthEvaluation evaluation =
-        evaluate_truth_points(map, *drive, {.align = !arguments.no_align});
-    put_report(evaluation.report, json);
+    TruthEvaluation evaluation = evaluate_truth_points(map, *drive, {.align = !arguments.no_align});
+    evaluation.report.warnings = drive->info().warnings;
+    put_report(evaluation.report, json, warnings);
     if (html) {
       html->stream() << truth_page(
           {map, *drive, evaluation, name_of(arguments.map), name_of(drive->info().path)});
@@ -129,7 +131,9 @@ void run(EvaluateArguments arguments) {
     EvaluationReport report = evaluate(map, *drive, options);
     report.calibration = calibration;
     if (arguments.color_rules) report.color_rules = compare_color_rules(map, *drive, options);
-    put_report(report, json);
+    const std::vector<std::string>& of_drive = drive->info().warnings;
+    report.warnings.insert(report.warnings.end(), of_drive.begin(), of_drive.end());
+    put_report(report, json, warnings);
     if (html) {
       html->stream() << report_page(
           {map, *drive, options, report, name_of(arguments.map), name_of(drive->info().path)});
@@ -140,7 +144,7 @@ void run(EvaluateArguments arguments) {
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app) {
+void add_evaluate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand("evaluate", "Score a map against a drive");
   command
@@ -168,7 +172,7 @@ void add_evaluate_command(CLI::App& app) {
       ->add_option("--first-frame", arguments->first_frame,
                    "Frame index of the first line of --poses")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0));
   command->add_option("--cameras", arguments->drive.cameras, "Scored cameras (default: the map's)")
       ->type_name("K,...");
   command
@@ -189,8 +193,8 @@ void add_evaluate_command(CLI::App& app) {
                    "Write a page with pictures and charts, one file that needs no network")
       ->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
-      ->check(CLI::NonNegativeNumber);
-  command->callback([arguments] { run(*arguments); });
+      ->check(whole_number(0, kMaxThreads));
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

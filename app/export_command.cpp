@@ -12,8 +12,8 @@
 
 #include "app/command_files.h"
 #include "app/commands.h"
-#include "app/finite_range.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/viewer_page.h"
 #include "fovea/exporting/las_writer.h"

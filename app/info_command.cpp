@@ -152,6 +152,16 @@ void print_text(const Contents& c, const std::string& path) {
   print_lines(meta(meta_key::kConfig));
 }
 
+std::vector<std::string> warnings_of(const Contents& c) {
+  std::vector<std::string> warnings;
+  const auto complete = c.meta.find(meta_key::kComplete);
+  if (complete == c.meta.end() || complete->second != "1") {
+    warnings.emplace_back("the map is unfinished: 'fovea map --resume' continues it");
+  }
+  if (c.skipped > 0) warnings.push_back(fmt::format("{} frames were skipped", c.skipped));
+  return warnings;
+}
+
 void print_json(const Contents& c) {
   nlohmann::ordered_json json{{"meta", c.meta},
                               {"complete", nullptr},
@@ -180,6 +190,7 @@ void print_json(const Contents& c) {
     json["bounds_local"] = {{"min", corner(c.bounds_local.min())},
                             {"max", corner(c.bounds_local.max())}};
   }
+  json["warnings"] = warnings_of(c);
   print_json_value(json);
 }
 

@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -152,17 +153,25 @@ nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::strin
 }
 
 void print_summary(const LocalizeArguments& arguments, const LocalizedDrive& localized) {
-  for (const std::string& note : localized.notes) print_out("note: {}\n", note);
   print_out("{}: {} of {} frames localised (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
-            arguments.output, localized.count(LocalizationState::kLocalized),
-            localized.frames.size(), arguments.guess, localized.frames_per_second,
-            localized.peak_rss_mb);
+             arguments.output, localized.count(LocalizationState::kLocalized),
+             localized.frames.size(), arguments.guess, localized.frames_per_second,
+             localized.peak_rss_mb);
+}
+
+/// What the drive and the run say, with a warning of frames without a pose.
+Messages messages_of(const FrameSource& drive, const LocalizedDrive& localized) {
+  Messages messages = drive.info();
+  messages.append(localized);
   for (const auto& [state, meaning] :
        {std::pair(LocalizationState::kLost, "lost: the scan fits nowhere that was tried"),
         {LocalizationState::kOutside, "outside: the map has nothing there"}}) {
     const int count = localized.count(state);
-    if (count > 0) print_out("{} frame{} {}\n", count, count == 1 ? "" : "s", meaning);
+    if (count > 0) {
+      messages.warn(fmt::format("{} frame{} {}", count, count == 1 ? "" : "s", meaning));
+    }
   }
+  return messages;
 }
 
 /// A pose file without any pose is none.
@@ -193,7 +202,7 @@ CommandFiles files_of(const LocalizeArguments& arguments) {
   return files;
 }
 
-void run(LocalizeArguments arguments) {
+void run(LocalizeArguments arguments, Warnings& warnings) {
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
@@ -219,6 +228,9 @@ void run(LocalizeArguments arguments) {
     write_pose_lines(localized.frames, drive->info().begin, drive->info().end, output.stream());
   }
   nlohmann::ordered_json figures = to_json(localized, arguments.guess);
+  const Messages messages = messages_of(*drive, localized);
+  figures["warnings"] = messages.warnings;
+  warnings.add(messages, "note: ", arguments.quiet);
   if (!arguments.quiet) print_summary(arguments, localized);
   if (truth) {
     const TruthErrors errors = truth_errors(*truth, localized);
@@ -241,7 +253,7 @@ void run(LocalizeArguments arguments) {
 
 }  // namespace
 
-void add_localize_command(CLI::App& app) {
+void add_localize_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<LocalizeArguments>();
   CLI::App* command =
       app.add_subcommand("localize", "Find where a drive's scans were taken in a map made before");
@@ -265,10 +277,10 @@ void add_localize_command(CLI::App& app) {
       ->type_name("MAP_DRIVE");
   command->add_option("--report", arguments->report, "Write figures as JSON")->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command->add_flag("--force", arguments->force, "Overwrite the output");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

@@ -3,16 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
-#include <new>
 #include <string>
 #include <string_view>
 
 #include "app/commands.h"
+#include "app/error_line.h"
 #include "app/standard_output.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/printable.h"
 #include "fovea/base/process_memory.h"
+#include "fovea/base/unfinished_output.h"
 #include "fovea/base/version.h"
 
 namespace {
@@ -39,6 +41,8 @@ void print_error(const char* message, const char* where_and_remedy = "") noexcep
 /// Of addresses: about what a map of a short drive takes while it is made (docs/performance.md).
 constexpr std::size_t kReserved = std::size_t{256} << 20;
 
+constexpr const char* kStrictHelp = "Warnings are errors: the exit code is 1 (outputs are kept)";
+
 int run(int argc, char** argv, fovea::app::Session& session) {
   fovea::reserve_memory(kReserved);
   CLI::App app(
@@ -49,23 +53,30 @@ int run(int argc, char** argv, fovea::app::Session& session) {
   app.get_formatter()->column_width(36);
   fovea::app::add_map_command(app, session);
   fovea::app::add_info_command(app);
-  fovea::app::add_evaluate_command(app);
-  fovea::app::add_convert_command(app);
+  fovea::app::add_evaluate_command(app, session);
+  fovea::app::add_convert_command(app, session);
   fovea::app::add_crop_command(app);
   fovea::app::add_export_command(app);
-  fovea::app::add_localize_command(app);
+  fovea::app::add_localize_command(app, session);
   fovea::app::add_merge_command(app);
-  fovea::app::add_render_command(app);
-  fovea::app::add_recolor_command(app);
-  fovea::app::add_repair_command(app);
-  fovea::app::add_reproduce_command(app);
+  fovea::app::add_render_command(app, session);
+  fovea::app::add_recolor_command(app, session);
+  fovea::app::add_repair_command(app, session);
+  fovea::app::add_reproduce_command(app, session);
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);
   fovea::app::add_simulate_command(app);
   fovea::app::add_view_command(app, session);
+  app.add_flag("--strict", session.warnings.strict, kStrictHelp);
+  for (CLI::App* subcommand : app.get_subcommands({})) {
+    subcommand->add_flag("--strict", session.warnings.strict, kStrictHelp);
+  }
   try {
     app.parse(argc, argv);
-    return 0;
+    const std::string warnings = session.warnings.error();
+    if (warnings.empty()) return 0;
+    print_error(warnings.c_str());
+    return kFailed;
   } catch (const CLI::Success& help) {
     return app.exit(help);  // --help, --version
   } catch (const CLI::ParseError& error) {
@@ -74,21 +85,45 @@ int run(int argc, char** argv, fovea::app::Session& session) {
   }
 }
 
+/// The first argument that is no option.
+std::string_view command_of(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (argv[i][0] != '-') return argv[i];
+  }
+  return "";
+}
+
+std::string_view command;  // that runs
+
+/// For an error in a thread or a destructor, which no function can catch.
+[[noreturn]] void end_with_error() {
+  try {
+    fovea::discard_unfinished_outputs();
+    if (std::current_exception() != nullptr) throw;
+    print_error("the program ended, inside fovea, please report this with the command");
+  } catch (const std::exception& error) {
+    print_error(fovea::app::error_line(error, command).c_str());
+  } catch (...) {
+    print_error("an unknown error, inside fovea, please report this with the command");
+  }
+  std::_Exit(kFailed);
+}
+
 /// The exit code of `body`; each error is one line.
 template <class Body>
 int report_errors(Body&& body) noexcept {
   try {
-    return body();
-  } catch (const fovea::Error& error) {
-    print_error(error.what());
-  } catch (const std::bad_alloc&) {
-    print_error("out of memory, this machine, map fewer frames or at a lower upsampling rate");
-  } catch (const std::exception& error) {
-    if (fovea::app::standard_output_failed()) {
-      print_error(error.what(), ", standard output, check the disk or the program that reads it");
-      return kFailed;
+    try {
+      return body();
+    } catch (const std::exception& error) {
+      if (fovea::app::standard_output_failed()) {
+        print_error(error.what(), ", standard output, check the disk or the program that reads it");
+      } else {
+        print_error(fovea::app::error_line(error, command).c_str());
+      }
     }
-    print_error(error.what(), ", inside fovea, please report this with the command that caused it");
+  } catch (...) {  // of the line itself
+    print_error("out of memory, this machine, end other programs");
   }
   return kFailed;
 }
@@ -96,6 +131,8 @@ int report_errors(Body&& body) noexcept {
 }  // namespace
 
 int main(int argc, char** argv) {
+  command = command_of(argc, argv);
+  std::set_terminate(end_with_error);
   fovea::app::prepare_standard_streams();
   return report_errors([&] {
     fovea::app::Session session;  // before any thread starts: it blocks signals for all threads

@@ -13,7 +13,7 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/finite_range.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -62,30 +62,21 @@ MapperOptions resolve_options(const MapArguments& arguments) {
 }
 
 void print_summary(const MapSummary& summary, const MapArguments& arguments) {
-  for (const std::string& note : summary.notes) print_out("note: {}\n", note);
   print_out("{}: {} points from {} frames", arguments.output, summary.points,
-            summary.frames_mapped);
+             summary.frames_mapped);
   if (summary.frames_held_out > 0) print_out(", {} held out", summary.frames_held_out);
   print_out(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
   if (summary.rate > 0) {
     print_out("at {} Hz: {} frame{} late: not yet in the map when the next one was due\n",
               summary.rate, summary.late_frames, summary.late_frames == 1 ? "" : "s");
   }
-  for (const auto& [reason, count] : summary.frames_skipped) {
-    print_out("skipped: {} frame{} ({})\n", count, count == 1 ? "" : "s", reason);
-  }
   if (!summary.first_damage.empty()) {
     print_out("the first damaged frame: {}\n", summary.first_damage);
-  }
-  if (summary.registrations_failed > 0) {
-    print_out("registration failed on {} frames: their first guess was kept\n",
-              summary.registrations_failed);
   }
   if (summary.loops_closed > 0) {
     print_out("loops closed: {} scans were registered to places seen before\n",
               summary.loops_closed);
   }
-  for (const std::string& line : calibration_lines(summary)) print_out("{}\n", line);
 }
 
 /// What an interrupted run keeps. It is an error line of a quiet run.
@@ -192,8 +183,15 @@ void run(const MapArguments& arguments, Session& session) {
       throw with_log_remedy(error, arguments.output);
     }
   }();
-  if (report) write_json(*report, {{"map", to_json(summary)}});
+  const Messages calibration = calibration_messages(summary);
+  if (report) {
+    MapSummary reported = summary;
+    reported.append(calibration);
+    write_json(*report, {{"map", to_json(reported)}});
+  }
+  session.warnings.add(summary, "note: ", arguments.quiet);
   if (!arguments.quiet) print_summary(summary, arguments);
+  session.warnings.add(calibration, "", arguments.quiet);
   if (job.stop.stop_requested()) print_interruption(summary, arguments);
   if (show) go_on_showing(std::move(show), arguments, job.stop);
 }
@@ -239,7 +237,7 @@ void add_map_command(CLI::App& app, Session& session) {
   command
       ->add_option("--threads", arguments->threads,
                    "Threads that a stage may use (default: all); with 1, one stage at a time")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command
       ->add_option("--rate", arguments->rate,
                    "Play the drive as a live sensor would, and count late frames; none is dropped")
@@ -250,7 +248,7 @@ void add_map_command(CLI::App& app, Session& session) {
                    "Memory to keep to (default: 1GiB): the map's parts out of reach are in the "
                    "file alone")
       ->type_name("SIZE")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false));
+      ->transform(memory_size());
   command->add_flag("--calibrate", arguments->calibrate,
                     "First estimate rotation and delay of the cameras from the drive's edges, and "
                     "map under them");

@@ -8,6 +8,7 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "fovea/base/parallel.h"
 #include "fovea/merging/merge_maps.h"
@@ -66,10 +67,10 @@ void add_merge_command(CLI::App& app) {
       ->required()
       ->type_name("OUT.fovea");
   command->add_option("--memory", arguments->memory, "As of 'fovea map'")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/false))
+      ->transform(memory_size())
       ->type_name("SIZE");
   command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command->add_flag("--force", arguments->force,
                     "Overwrite OUT, and merge also what does not overlap or has no georeference");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
@@ -43,7 +44,7 @@ MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta)
   return options;
 }
 
-void run(RecolorArguments arguments) {
+void run(RecolorArguments arguments, Warnings& warnings) {
   check_files({{arguments.map, arguments.drive.drive, arguments.config},
                {{arguments.output, FileKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
@@ -69,6 +70,11 @@ void run(RecolorArguments arguments) {
     ProgressBar bar(arguments.quiet);
     return recolor_map(map, *drive, job, [&](int done, int total) { bar.draw(done, total); });
   }();
+  Messages messages = drive->info();
+  if (figures.unread > 0) {
+    messages.warn(fmt::format("{} frames of the map cannot be read in the drive", figures.unread));
+  }
+  warnings.add(messages, "note: ", arguments.quiet);
   if (arguments.quiet) return;
   print_out("{}: {} points coloured by {} frames\n", arguments.output,
             figures.points - figures.uncolored, figures.frames);
@@ -76,7 +82,6 @@ void run(RecolorArguments arguments) {
   if (map.drives().size() > 1) {
     print_out("note: the map is of several drives: only the images of this one are used\n");
   }
-  if (figures.unread > 0) print_out("not to be read: {} frames of the map\n", figures.unread);
   if (figures.images_left_out > 0) {
     print_out("left out: {} images, blank or exposed otherwise than the others\n",
               figures.images_left_out);
@@ -85,7 +90,7 @@ void run(RecolorArguments arguments) {
 
 }  // namespace
 
-void add_recolor_command(CLI::App& app) {
+void add_recolor_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RecolorArguments>();
   CLI::App* command = app.add_subcommand(
       "recolor", "Colour a map anew from its drive: points and poses stay as they are");
@@ -102,11 +107,11 @@ void add_recolor_command(CLI::App& app) {
       ->type_name("key=value")
       ->allow_extra_args(false);
   command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   add_foreign_option(*command, arguments->foreign);
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "app/finite_range.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "fovea/base/errors.h"
 #include "fovea/geometry/pose_file.h"

@@ -15,9 +15,9 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
-#include "app/finite_range.h"
 #include "app/html_report/viewpoint.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/render_drive.h"
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
@@ -165,7 +165,7 @@ void run(const RenderArguments& arguments) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app) {
+void add_render_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand("render", "Draw a picture of a map");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();
@@ -183,13 +183,13 @@ void add_render_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::IsMember({"driver", "behind", "above"}));
   command->add_option("--frame", arguments->frame, "From where the vehicle was (default: half way)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0));
   command->add_option("--width", arguments->width, "Pixels")
       ->capture_default_str()
-      ->check(CLI::Range(16, 8192));
+      ->check(whole_number(16, 8192));
   command->add_option("--height", arguments->height, "Pixels")
       ->capture_default_str()
-      ->check(CLI::Range(16, 8192));
+      ->check(whole_number(16, 8192));
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   add_foreign_option(*command, arguments->foreign);
   RenderDriveArguments& path = arguments->path;
@@ -210,9 +210,9 @@ void add_render_command(CLI::App& app) {
       ->capture_default_str()
       ->check(finite_range(1, 1000));
   command->add_option("--threads", path.threads, "At most this many threads (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command->add_flag("--quiet", path.quiet, "Say nothing but errors");
-  command->callback([arguments, command] {
+  command->callback([arguments, command, &session] {
     check_options(*command);
     check_files(files_of(*arguments));
     RenderDriveArguments& drive = arguments->path;
@@ -223,7 +223,7 @@ void add_render_command(CLI::App& app) {
     drive.drive = arguments->drive;
     drive.force = arguments->force;
     drive.foreign = arguments->foreign;
-    render_drive_command(drive);
+    render_drive_command(drive, session.warnings);
   });
 }
 

@@ -129,7 +129,7 @@ std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) 
 
 }  // namespace
 
-void render_drive_command(const RenderDriveArguments& arguments) {
+void render_drive_command(const RenderDriveArguments& arguments, Warnings& warnings) {
   const ThreadLimit threads(arguments.threads);
   check_drive(arguments);
   RenderJob job;
@@ -148,6 +148,14 @@ void render_drive_command(const RenderDriveArguments& arguments) {
     ProgressBar bar(arguments.quiet);
     return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
+  if (figures->blank > 0) {
+    warnings.add({fmt::format("{} images are black: the map has nothing there", figures->blank)},
+                 arguments.quiet);
+  }
+  if (figures->empty > 0) {
+    warnings.add({fmt::format("{} scans have no point and were not written", figures->empty)},
+                 arguments.quiet);
+  }
   if (arguments.quiet) return;
   print_out("{}: {} frames", arguments.output, figures->frames);
   if (!job.cameras.empty()) {
@@ -159,10 +167,6 @@ void render_drive_command(const RenderDriveArguments& arguments) {
   if (job.cameras.empty() || !job.lidar || figures->empty == figures->frames) {
     print_out("note: it takes both images and scans to be a drive that fovea map reads\n");
   }
-  if (figures->blank > 0)
-    print_out("{} images are black: the map has nothing there\n", figures->blank);
-  if (figures->empty > 0)
-    print_out("{} scans have no point and were not written\n", figures->empty);
 }
 
 }  // namespace fovea::app

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "app/warnings.h"
+
 namespace fovea::app {
 
 struct RenderDriveArguments {
@@ -18,6 +20,6 @@ struct RenderDriveArguments {
   bool force = false, quiet = false, foreign = false;
 };
 
-void render_drive_command(const RenderDriveArguments& arguments);
+void render_drive_command(const RenderDriveArguments& arguments, Warnings& warnings);
 
 }  // namespace fovea::app

@@ -22,7 +22,7 @@ struct RepairArguments {
   bool force = false, quiet = false;
 };
 
-void run(const RepairArguments& arguments) {
+void run(const RepairArguments& arguments, Warnings& warnings) {
   check_files({{arguments.map}, {{arguments.output, FileKind::kMap, arguments.force}}});
   // Before a file is made: whether this is a map at all.
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
@@ -30,6 +30,11 @@ void run(const RepairArguments& arguments) {
   const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
     if (!arguments.quiet) print_out("{}\n", damage);
   });
+  if (figures.damages > 0) {
+    warnings.add({fmt::format("{} lacks {} parts of {}, which cannot be read", arguments.output,
+                              figures.damages, arguments.map)},
+                 arguments.quiet);
+  }
   if (arguments.quiet) return;
   print_out("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
              figures.left_out);
@@ -49,7 +54,7 @@ void run(const RepairArguments& arguments) {
 
 }  // namespace
 
-void add_repair_command(CLI::App& app) {
+void add_repair_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RepairArguments>();
   CLI::App* command = app.add_subcommand(
       "repair",
@@ -60,7 +65,7 @@ void add_repair_command(CLI::App& app) {
       ->type_name("OUT.fovea");
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

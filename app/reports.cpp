@@ -35,7 +35,7 @@ std::string remedy_of(const CalibrationEstimate& e, bool can_calibrate) {
 std::string calibration_line(int camera, const CalibrationEstimate& e, const MapSummary& summary) {
   if (e.disagrees) {
     return fmt::format(
-        "warning: camera {}: camera and LiDAR do not agree ({} edges in {} frames): {}", camera,
+        "camera {}: camera and LiDAR do not agree ({} edges in {} frames): {}", camera,
         e.edges, e.frames, kCheckCalibration);
   }
   if (!e.rotation_observable) {
@@ -48,18 +48,28 @@ std::string calibration_line(int camera, const CalibrationEstimate& e, const Map
       fmt::format("edges {} {:.1f} pixels off the LiDAR's", applied ? "lay" : "lie", e.pixels);
   if (applied) return fmt::format("camera {}: corrected, {}: {}", camera, edges, figures_of(e));
   if (!e.off_by_a_pixel()) return fmt::format("camera {}: {}: {}", camera, edges, figures_of(e));
-  return fmt::format("warning: camera {}: {}: {}; camera and LiDAR do not agree, {}", camera, edges,
+  return fmt::format("camera {}: {}: {}; camera and LiDAR do not agree, {}", camera, edges,
                      figures_of(e), remedy_of(e, summary.can_calibrate));
+}
+
+/// Whether the drive's calibration is wrong and stays so.
+bool is_warning(const CalibrationEstimate& e, bool applied) {
+  return e.disagrees || (e.rotation_observable && !applied && e.off_by_a_pixel());
 }
 
 }  // namespace
 
-std::vector<std::string> calibration_lines(const MapSummary& summary) {
-  std::vector<std::string> lines;
+Messages calibration_messages(const MapSummary& summary) {
+  Messages messages;
   for (const auto& [camera, estimate] : summary.calibration) {
-    lines.push_back(calibration_line(camera, estimate, summary));
+    std::string line = calibration_line(camera, estimate, summary);
+    if (is_warning(estimate, summary.calibrated)) {
+      messages.warn(std::move(line));
+    } else {
+      messages.notes.push_back(std::move(line));
+    }
   }
-  return lines;
+  return messages;
 }
 
 void write_json(OutputFile& file, const nlohmann::ordered_json& json) {

@@ -10,6 +10,7 @@
 #include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -92,7 +93,7 @@ CommandFiles files_of(const ReproduceArguments& arguments) {
   return files;
 }
 
-void run(const ReproduceArguments& arguments) {
+void run(const ReproduceArguments& arguments, Warnings& warnings) {
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   const std::vector<std::string> rows = wanted_rows(arguments);
@@ -133,12 +134,13 @@ void run(const ReproduceArguments& arguments) {
   page.stream() << write_results_page(results, mls, command_line(arguments), output);
   write_json(json, results_json(results));
   page.commit();
+  warnings.add(results_warnings(results), arguments.quiet);
   if (!arguments.quiet) print_out("{}\n", (output / "results.md").string());
 }
 
 }  // namespace
 
-void add_reproduce_command(CLI::App& app) {
+void add_reproduce_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ReproduceArguments>();
   CLI::App* command =
       app.add_subcommand("reproduce", "The paper's tables and figures on drives of your own");
@@ -160,9 +162,9 @@ void add_reproduce_command(CLI::App& app) {
                    "Times of PCL's moving least squares for Table I, from upsampling_bench --json")
       ->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

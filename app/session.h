@@ -2,11 +2,13 @@
 #pragma once
 
 #include "app/interrupt.h"
+#include "app/warnings.h"
 
 namespace fovea::app {
 
 struct Session {
   InterruptGuard interrupt;
+  Warnings warnings;
 };
 
 }  // namespace fovea::app

@@ -9,6 +9,7 @@
 
 #include "app/command_files.h"
 #include "app/commands.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
@@ -69,10 +70,10 @@ void add_simulate_command(CLI::App& app) {
       ->check(CLI::IsMember(scene_names()));
   command->add_option("--seed", arguments->seed, "Another seed, another drive")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0));
   command->add_option("--frames", arguments->frames, "How many sweeps")
       ->capture_default_str()
-      ->check(CLI::Range(1, SimulationOptions::kMaxFrames));
+      ->check(whole_number(1, SimulationOptions::kMaxFrames));
   command
       ->add_option("--noise", arguments->noise,
                    fmt::format("Of all sensors: {}", fmt::join(noise_names(), ", ")))
@@ -89,7 +90,7 @@ void add_simulate_command(CLI::App& app) {
       ->type_name("key=value")
       ->allow_extra_args(false);
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kMaxThreads));
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });
 }

@@ -7,6 +7,7 @@
 
 #include "app/command_files.h"
 #include "app/commands.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "fovea/base/errors.h"
 #include "fovea/exporting/cloud_ply.h"
@@ -67,11 +68,13 @@ void add_upsample_command(CLI::App& app) {
   command->add_option("OUT.ply", arguments->output, "Points in the LiDAR frame")->required();
   command->add_option("--rate", arguments->options.rate, "How often centroids are inserted")
       ->capture_default_str()
-      ->check(CLI::Range(0, 5));
-  command->add_option("--camera", arguments->camera, "Camera number")->capture_default_str();
+      ->check(whole_number(0, 5));
+  command->add_option("--camera", arguments->camera, "Camera number")
+      ->capture_default_str()
+      ->check(whole_number(0));
   command->add_option("--tau", arguments->options.max_edge, "Longest edge of a filled triangle, m")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(finite_range(1e-6, 1e6));
   command->add_flag("--force", arguments->force, "Overwrite OUT.ply");
   command->callback([arguments] { run(*arguments); });
 }

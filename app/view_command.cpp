@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
+#include "app/number_checks.h"
 #include "app/print.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
@@ -79,7 +80,7 @@ void add_view_command(CLI::App& app, Session& session) {
   command
       ->add_option("--port", arguments->port,
                    fmt::format("Port (default: {}, or another if it is taken; 0: any)", kUsualPort))
-      ->check(CLI::Range(0, 65535));
+      ->check(whole_number(0, 65535));
   command
       ->add_option("--address", arguments->server.address,
                    "Address to serve at: 0.0.0.0 shows the map to all that reach this machine")

@@ -88,8 +88,8 @@ void expect_planted(const nlohmann::json& camera) {
 TEST_F(Calibrate, WarnsOfAFaultAndNotWithoutOne) {
   const ProgramRun run = map("faulty", "a.fovea", "");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("warning: camera 2: edges lie "));
-  EXPECT_THAT(run.out, HasSubstr("--calibrate corrects this"));
+  EXPECT_THAT(run.err, HasSubstr("warning: camera 2: edges lie "));
+  EXPECT_THAT(run.err, HasSubstr("--calibrate corrects this"));
   expect_planted(told());
   EXPECT_EQ(told().at("applied"), false);
 

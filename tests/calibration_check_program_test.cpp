@@ -65,7 +65,7 @@ class CalibrationCheck : public testing::Test {
       report_ =
           nlohmann::json::parse(read_text(own_ / "report.json")).at("map").at("calibration").at(0);
     }
-    return run.out;
+    return run.out + run.err;
   }
 
   static TemporaryFolder* scratch_;

@@ -61,9 +61,9 @@ TEST_F(MissingImages, FramesAreMappedWithTheCamerasThatRemain) {
   const auto report = own_ / "report.json";
   const ProgramRun run = map("--cameras 2,3 --report '" + report.string() + "'");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("4 frames (the first: 6): camera 3 has no image"));
-  EXPECT_THAT(run.out, HasSubstr("1 frame (the first: 2): camera 2 has no image"));
-  EXPECT_THAT(run.out, HasSubstr("skipped: 1 frame (missing image)"));
+  EXPECT_THAT(run.err, HasSubstr("4 frames (the first: 6): camera 3 has no image"));
+  EXPECT_THAT(run.err, HasSubstr("1 frame (the first: 2): camera 2 has no image"));
+  EXPECT_THAT(run.err, HasSubstr("skipped: 1 frame (missing image)"));
   const auto figures = nlohmann::json::parse(read_text(report)).at("map");
   EXPECT_EQ(figures.at("frames"), kFrames - 1);
   EXPECT_EQ(figures.at("images_missing"), (nlohmann::json{{"2", 1}, {"3", kFrames - kStops}}));
@@ -96,8 +96,8 @@ TEST_F(MissingImages, FramesAreMappedWithTheCamerasThatRemain) {
 TEST_F(MissingImages, OneCameraAloneSkipsItsMissingFrames) {
   const ProgramRun run = map("--cameras 3");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("skipped: 5 frames (missing image)"));
-  EXPECT_THAT(run.out, Not(HasSubstr("has no image")));
+  EXPECT_THAT(run.err, HasSubstr("skipped: 5 frames (missing image)"));
+  EXPECT_THAT(run.err, Not(HasSubstr("has no image")));
 }
 
 TEST_F(MissingImages, WhatIsHeldOutIsScoredInTheCamerasThatRemain) {
@@ -159,7 +159,7 @@ TEST_F(MissingImages, ShortStampFiles) {
   shorten(drive_ / "velodyne_points/timestamps.txt");
   const ProgramRun run = map("--cameras 2,3");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("skipped: 2 frames (missing time stamp)"));
+  EXPECT_THAT(run.err, HasSubstr("skipped: 2 frames (missing time stamp)"));
 }
 
 }  // namespace fovea::missing_images_test

@@ -345,7 +345,7 @@ TEST_F(Program, DamagedFramesAreSkippedAndCounted) {
   const auto report = own_ / "report.json";
   const ProgramRun run = map(drive, "--report " + report.string());
   ASSERT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.out, HasSubstr("1 of 6 GPS/INS records cannot be used"));
+  EXPECT_THAT(run.err, HasSubstr("1 of 6 GPS/INS records cannot be used"));
   const auto figures = nlohmann::json::parse(read_text(report)).at("map");
   EXPECT_EQ(figures.at("frames"), 4);  // one without its record is mapped all the same
   EXPECT_EQ(figures.at("frames_skipped").at("damaged scan"), 1);
@@ -378,7 +378,7 @@ TEST_F(Program, BadStamps) {
   std::filesystem::remove(file);
   const ProgramRun run = map(drive, "--force");
   ASSERT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.out, HasSubstr("10 Hz"));
+  EXPECT_THAT(run.err, HasSubstr("10 Hz"));
 }
 
 TEST_F(Program, WithoutNavigationItSaysSo) {
@@ -386,7 +386,7 @@ TEST_F(Program, WithoutNavigationItSaysSo) {
   std::filesystem::remove_all(drive / "oxts");
   const ProgramRun run = map(drive);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("navigation"));
+  EXPECT_THAT(run.err, HasSubstr("navigation"));
   EXPECT_EQ(info().at("meta").at("georeferenced"), "0");
   const ProgramRun nav = map(drive, "--force --poses navigation");
   EXPECT_EQ(nav.exit_code, 1);

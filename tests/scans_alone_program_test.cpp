@@ -251,7 +251,7 @@ class SweepsWithoutTimes : public ScansAloneProgram {
   std::string map_note() const {
     const ProgramRun run =
         succeed("map " + quoted("street") + " --force -o " + quoted("street.fovea"));
-    std::stringstream lines(run.out);
+    std::stringstream lines(run.out + run.err);
     std::string line, notes;
     int count = 0;
     while (std::getline(lines, line)) {

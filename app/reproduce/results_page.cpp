@@ -236,6 +236,26 @@ constexpr const char* kAblations =
 
 std::string report_file(const std::string& drive) { return "report-" + drive + ".html"; }
 
+std::vector<std::string> results_warnings(const std::vector<DriveResults>& drives) {
+  std::vector<std::string> warnings;
+  for (const DriveResults& drive : drives) {
+    for (const Json& row : drive.rows) {
+      for (const char* run : {"/all/map/warnings", "/held_out/map/warnings"}) {
+        const nlohmann::ordered_json::json_pointer path(run);
+        if (!row.contains(path)) continue;
+        for (const Json& warning : row.at(path)) {
+          std::string text = fmt::format("{}, {}: {}", drive.name, row.at("row").get<std::string>(),
+                                         warning.get<std::string>());
+          if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) {
+            warnings.push_back(std::move(text));
+          }
+        }
+      }
+    }
+  }
+  return warnings;
+}
+
 Json results_json(const std::vector<DriveResults>& drives) {
   Json json;
   json["fovea"] = version();
@@ -255,6 +275,7 @@ Json results_json(const std::vector<DriveResults>& drives) {
                               {"upsampling", upsampling},
                               {"rows", drive.rows}});
   }
+  json["warnings"] = results_warnings(drives);
   return json;
 }
 

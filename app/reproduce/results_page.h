@@ -23,6 +23,9 @@ struct DriveResults {
 /// Name of the file beside the page that shows the default row's held-out evaluation in pictures.
 std::string report_file(const std::string& drive);
 
+/// Warnings of all maps, each once.
+std::vector<std::string> results_warnings(const std::vector<DriveResults>& drives);
+
 /// Everything as JSON.
 nlohmann::ordered_json results_json(const std::vector<DriveResults>& drives);
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/path_remedy.h"
 #include "fovea/base/unfinished_output.h"
 
 namespace fovea {
@@ -58,8 +59,13 @@ fs::path check_output_path(const fs::path& path, bool force) {
     throw OutputError("the output is not a file name", fmt::format("'{}'", path.string()),
                       "give the name of the file to make");
   }
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
+  std::error_code error, ignored;
+  const fs::file_status status = fs::status(path, error);
+  // Otherwise such a path would be taken for a new file.
+  if (error.value() == ELOOP || error.value() == ENAMETOOLONG) {
+    throw OutputError(fmt::format("cannot be written ({})", error.message()), path.string(),
+                      path_remedy(error.value(), ""));
+  }
   if (fs::is_directory(status)) {
     throw OutputError("the output is a folder", path.string(), "give the name of a file in it");
   }

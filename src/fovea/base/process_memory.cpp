@@ -1,5 +1,6 @@
 #include "fovea/base/process_memory.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -16,6 +17,12 @@ extern "C" [[gnu::weak]] int mallctl(const char* name, void* old_value, std::siz
                                      void* new_value, std::size_t new_size);
 
 namespace fovea {
+namespace {
+
+/// Of the limit of addresses: a reservation must leave the rest for memory of other sizes.
+constexpr std::size_t kMaxShare = 8;
+
+}  // namespace
 
 std::size_t resident_memory() {
   std::ifstream statm("/proc/self/statm");
@@ -39,6 +46,9 @@ std::size_t peak_resident_memory() {
 
 void reserve_memory(std::size_t bytes) {
   if (mallctl == nullptr) return;
+  rlimit limit{};
+  const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur / kMaxShare < bytes;
+  if (limited) return;
   void* volatile memory = std::malloc(bytes);  // volatile: the compiler must not leave both out
   std::free(memory);
 }

@@ -1,5 +1,6 @@
 #include "fovea/base/unfinished_output.h"
 
+#include <chrono>
 #include <mutex>
 #include <system_error>
 #include <utility>
@@ -10,8 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Register {
-  std::shared_mutex steps;  // shared: a step that must not be cut; exclusive: discarding
-  std::mutex guard;         // of the entries
+  std::shared_timed_mutex steps;  // shared: a step that must not be cut; exclusive: discarding
+  std::mutex guard;               // of the entries
   std::list<UnfinishedOutput::Entry> entries;
   std::vector<fs::path> finished;
 };
@@ -58,7 +59,7 @@ OutputStep::OutputStep() : lock_(outputs().steps) {}
 
 OutputNames discard_unfinished_outputs() {
   Register& all = outputs();
-  all.steps.lock();  // and never unlocked
+  static_cast<void>(all.steps.try_lock_for(std::chrono::seconds(1)));  // and never unlocked
   const std::lock_guard lock(all.guard);
   OutputNames names{std::move(all.finished), {}};
   for (const UnfinishedOutput::Entry& entry : all.entries) {

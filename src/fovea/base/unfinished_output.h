@@ -39,7 +39,7 @@ class OutputStep {
   OutputStep();
 
  private:
-  std::shared_lock<std::shared_mutex> lock_;
+  std::shared_lock<std::shared_timed_mutex> lock_;
 };
 
 /// Outputs of this process, as the user named them.
@@ -48,7 +48,8 @@ struct OutputNames {
 };
 
 /// Removes the files of all unfinished outputs. From then on every thread that begins, finishes or
-/// gives up an output stops there for ever: the caller must end the process.
+/// gives up an output stops there for ever: the caller must end the process. It waits a second for
+/// steps that must not be cut, not longer: a disk may hang.
 OutputNames discard_unfinished_outputs();
 
 }  // namespace fovea

@@ -150,7 +150,6 @@ std::string uncolored_text(const EvaluationReport& report) {
   row("F-score 5 / 10 / 20 cm", report.scan_scores.f_score[0], 3,
       fmt::format("{:.3f}, {:.3f}", report.scan_scores.f_score[1], report.scan_scores.f_score[2]));
   row("points per m^2", report.density_per_m2, 0, fmt::format("{} points", report.map_points));
-  for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
   return text + explanation(report.protocol) + "\n";
 }
 

@@ -293,7 +293,6 @@ std::string to_text(const EvaluationReport& report) {
   row("paper-like ME / TE", number(p.me_mean, 4),
       fmt::format("TE {:.2f} ({:.2f}%), MTME {:.3f}; uncoloured points count as black", p.te_mean,
                   p.te_percent, p.mtme));
-  for (const std::string& warning : report.warnings) text += "  warning: " + warning + "\n";
   return text + explanation(report.protocol) + "\n" + to_text(report.color_rules);
 }
 

@@ -117,6 +117,7 @@ std::string to_json(const TruthReport& report) {
   json["worst_frame"] = worst != nullptr ? frame_json(*worst) : Json(nullptr);
   json["frames"] = Json::array();
   for (const TruthFrame& f : report.frames) json["frames"].push_back(frame_json(f));
+  json["warnings"] = report.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

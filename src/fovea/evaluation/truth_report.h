@@ -56,6 +56,7 @@ struct TruthReport {
   std::optional<std::size_t> ghosts;  ///< unknown where points do not name their frame
   UpsamplingFigures upsampling;
   std::vector<TruthFrame> frames;
+  std::vector<std::string> warnings;  ///< the caller's, of the drive
 };
 
 /// Share of the scored map points that are ghosts; NaN where that is not known.

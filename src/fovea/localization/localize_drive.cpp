@@ -83,9 +83,8 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
                      drive.info().path.string(), "choose other frames");
   }
   if (skipped) {
-    localized.notes.push_back(fmt::format("{} frames without a scan (the first: {})",
-                                          localized.count(LocalizationState::kSkipped),
-                                          skipped->detail));
+    localized.warn(fmt::format("{} frames without a scan (the first: {})",
+                               localized.count(LocalizationState::kSkipped), skipped->detail));
   }
   localized.frames_per_second = 1000 * double(scans) / milliseconds_since(start);
   localized.peak_rss_mb = double(peak_resident_memory()) / (1 << 20);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/base/messages.h"
 #include "fovea/localization/localizer.h"
 #include "fovea/pipeline/map_summary.h"
 #include "fovea/sensor/hold_out.h"
@@ -20,10 +21,9 @@ struct LocalizationJob {
   std::stop_token stop;  ///< ends after the frame at hand
 };
 
-struct LocalizedDrive {
+struct LocalizedDrive : Messages {
   /// Of every frame of the drive's range that was asked for, in order.
   std::vector<Localization> frames;
-  std::vector<std::string> notes;  ///< what a user must be told: why frames were skipped
   double frames_per_second = 0;
   double peak_rss_mb = 0;
   /// "decode": the scan; "localize"; "frame": both, as if one waited for the other.

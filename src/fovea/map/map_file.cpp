@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
 #include <utility>
 #include <vector>
 
 #include "fovea/base/file_format.h"
 #include "fovea/base/input_file.h"
+#include "fovea/base/path_remedy.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/row_scan.h"
 
@@ -21,8 +23,12 @@ using sqlite::Statement;
 constexpr const char* kGiveMap = "give a map that 'fovea map' wrote";
 
 void require_file(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
+  std::error_code error, ignored;
+  const fs::file_status status = fs::status(path, error);
+  if (error && error.value() != ENOENT && error.value() != ENOTDIR) {
+    throw InputError(fmt::format("the map cannot be read ({})", error.message()), path.string(),
+                     path_remedy(error.value(), "check its permissions and its disk"));
+  }
   if (!fs::exists(status)) {
     throw InputError("the map does not exist", path.string(), "check the name");
   }

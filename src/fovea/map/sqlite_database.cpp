@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <cerrno>
+#include <new>
 #include <sstream>
 #include <system_error>
 #include <thread>
@@ -136,6 +137,7 @@ void Database::throw_busy() const {
 
 void Database::fail(int code) const {
   const int primary = code & 0xff;
+  if (primary == SQLITE_NOMEM) throw std::bad_alloc();
   const std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
   if (is_reading(access_)) {
     if (primary == SQLITE_NOTADB) {

@@ -359,10 +359,10 @@ MapSummary MapRun::summary() const {
         fmt::format("{} poses for {} frames: the frames after them are registered",
                     job_.given_poses.size(), drive_.end - drive_.begin));
   }
-  for (std::string& note : views_.notes()) summary.notes.push_back(std::move(note));
+  for (std::string& note : views_.notes()) summary.warn(std::move(note));
   const double limit_mb = double(job_.memory) / (1024 * 1024);
   if (summary.peak_rss_mb > limit_mb) {
-    summary.notes.push_back(fmt::format(
+    summary.warn(fmt::format(
         "{:.0f} MB of memory were needed at the peak, more than the {:.0f} MB given: what lies "
         "within the cameras' reach takes so much",
         summary.peak_rss_mb, limit_mb));

@@ -33,11 +33,8 @@ void DriveFigures::Flaw::add(int index) {
   if (frames++ == 0) first = index;
 }
 
-void DriveFigures::note(const Flaw& flaw, const std::string& what,
-                        std::vector<std::string>& notes) {
-  if (flaw.frames == 0) return;
-  notes.push_back(fmt::format("{} frame{} (the first: {}): {}", flaw.frames,
-                              flaw.frames == 1 ? "" : "s", flaw.first, what));
+std::string DriveFigures::Flaw::text(std::string_view what) const {
+  return fmt::format("{} frame{} (the first: {}): {}", frames, frames == 1 ? "" : "s", first, what);
 }
 
 void DriveFigures::note_flaws(const FrameRecord& record) {
@@ -91,39 +88,41 @@ MapSummary DriveFigures::summary() const {
   for (const auto& [stage, times] : by_stage_) summary.latency_ms[stage] = latency_of(times);
   summary.points_dropped = points_.dropped();
   summary.points_read = points_.used() + points_.dropped().total();
-  // What a user must know of scans, poses and images.
-  summary.notes = drive_.notes;
-  if (std::string note = points_.note(); !note.empty()) summary.notes.push_back(std::move(note));
-  note(absent_, "no GPS/INS, the scans alone tell the motion", summary.notes);
-  note(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on",
-       summary.notes);
-  if (const auto cause = navigation_.likely_cause()) summary.notes.push_back(*cause);
-  note(lost_,
+  summary.append(drive_);
+  if (std::string note = points_.note(); !note.empty()) summary.warn(std::move(note));
+  const auto note = [&](const Flaw& flaw, std::string_view what) {
+    if (flaw.frames > 0) summary.notes.push_back(flaw.text(what));
+  };
+  const auto warn = [&](const Flaw& flaw, std::string_view what) {
+    if (flaw.frames > 0) summary.warn(flaw.text(what));
+  };
+  warn(absent_, "no GPS/INS, the scans alone tell the motion");
+  warn(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on");
+  if (const auto cause = navigation_.likely_cause()) summary.warn(*cause);
+  warn(lost_,
        "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "
-       "may "
-       "be wrong",
-       summary.notes);
-  note(restarted_,
+       "may be wrong");
+  warn(restarted_,
        "the recording paused, and the scan shows no place of before; a new part of the map begins "
-       "where navigation has it",
-       summary.notes);
-  note(
-      unknown_,
-      "the recording paused, and neither navigation nor the scan relates the pose to those before; "
-      "a new part of the map begins at the last pose, where it may overlap the others",
-      summary.notes);
+       "where navigation has it");
+  warn(unknown_,
+       "the recording paused, and neither navigation nor the scan relates the pose to those "
+       "before; a new part of the map begins at the last pose, where it may overlap the others");
   note(degenerate_,
-       "the scan leaves a direction of motion open, which is taken from the first guess",
-       summary.notes);
+       "the scan leaves a direction of motion open, which is taken from the first guess");
   note(exposed_,
-       "an image is exposed otherwise than the map by over 40 % and colours new points only",
-       summary.notes);
-  note(blank_, "an image shows nothing but black or white and colours no point", summary.notes);
+       "an image is exposed otherwise than the map by over 40 % and colours new points only");
+  warn(blank_, "an image shows nothing but black or white and colours no point");
   for (const auto& [camera, flaw] : missing_) {
-    note(flaw,
-         fmt::format("camera {} has no image that can be read, the frame is used without it",
-                     camera),
-         summary.notes);
+    warn(flaw, fmt::format("camera {} has no image that can be read, the frame is used without it",
+                           camera));
+  }
+  for (const auto& [reason, count] : summary.frames_skipped) {
+    summary.warn(fmt::format("skipped: {} frame{} ({})", count, count == 1 ? "" : "s", reason));
+  }
+  if (summary.registrations_failed > 0) {
+    summary.warn(fmt::format("registration failed on {} frames: their first guess was kept",
+                             summary.registrations_failed));
   }
   summary.peak_rss_mb = double(peak_resident_memory()) / (1024 * 1024);
   return summary;

@@ -3,8 +3,10 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "fovea/base/messages.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/pipeline/navigation_faults.h"
 #include "fovea/pipeline/point_counts.h"
@@ -25,7 +27,7 @@ StageLatency latency_of(std::vector<float> milliseconds);
 /// @param rate  frames a second; 0: none is due
 bool is_late(const FrameRecord& record, double rate);
 
-struct MapSummary {
+struct MapSummary : Messages {
   int frames_mapped = 0, frames_held_out = 0;
   std::map<std::string, int> frames_skipped;  ///< by reason
   int frames_damaged = 0;                     ///< skipped frames whose files cannot be used
@@ -44,7 +46,6 @@ struct MapSummary {
   double peak_rss_mb = 0;
   std::map<std::string, StageLatency> latency_ms;
   bool interrupted = false;
-  std::vector<std::string> notes;
   /// What the calibration lacks, a camera each; `calibrated`: what has been added to it.
   std::vector<CameraCalibration> calibration;
   bool calibrated = false;
@@ -75,8 +76,9 @@ class DriveFigures {
   struct Flaw {
     int frames = 0, first = 0;
     void add(int index);
+    /// "3 frames (the first: 7): WHAT".
+    std::string text(std::string_view what) const;
   };
-  static void note(const Flaw& flaw, const std::string& what, std::vector<std::string>& notes);
   void note_flaws(const FrameRecord& record);
 
   const DriveInfo& drive_;

@@ -79,7 +79,8 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"interrupted", summary.interrupted},
           {"latency_ms", latency},
           {"calibration", to_json(summary.calibration, summary.calibrated)},
-          {"notes", summary.notes}};
+          {"notes", summary.notes},
+          {"warnings", summary.warnings}};
 }
 
 }  // namespace fovea

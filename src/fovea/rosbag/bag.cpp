@@ -67,6 +67,7 @@ class Unpacker : public BagSink {
     }
     return sink_.add(topic, unpacked);
   }
+  void skip(const BagTopic& topic) override { sink_.skip(topic); }
 
  private:
   BagSink& sink_;

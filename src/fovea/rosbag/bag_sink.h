@@ -25,6 +25,8 @@ class BagSink {
   /// @param message  valid during the call
   /// @return whether to go on reading
   virtual bool add(const BagTopic& topic, std::string_view message) = 0;
+  /// Called for each message of the other topics.
+  virtual void skip(const BagTopic& /*topic*/) {}
 };
 
 }  // namespace fovea

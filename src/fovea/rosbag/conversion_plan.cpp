@@ -101,7 +101,7 @@ ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& op
                                      survey.images.at(planned.topic).stamps.size(), planned.topic));
     plan.drive.cameras.push_back(planned.camera);
   }
-  plan_navigation(survey, options, lidar.frame, plan.drive, plan.notes);
+  plan.navigation_topics = plan_navigation(survey, options, lidar.frame, plan.drive, plan.notes);
   check_sensors(survey, plan);
   return plan;
 }

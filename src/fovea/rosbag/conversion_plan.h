@@ -17,7 +17,8 @@ struct ConversionPlan {
   ScanFormat scan_format;
   std::vector<PlannedCamera> cameras;
   RecordedDrive drive;
-  std::vector<std::string> notes;  ///< what was chosen, what is left out and why
+  std::vector<std::string> navigation_topics;  ///< that are used
+  std::vector<std::string> notes;              ///< what was chosen, what is left out and why
 };
 
 /// InputError for a recording that is no drive: without scans or cameras, without their calibration

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "fovea/base/errors.h"
 #include "fovea/recording/generic_drive_writer.h"
 #include "fovea/rosbag/bag.h"
@@ -22,6 +24,20 @@ auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
                      fmt::format("{} in {}{}", error.where(), bags.front().string(),
                                  bags.size() > 1 ? " and others" : ""),
                      error.remedy());
+  }
+}
+
+/// Notes each topic without use, with the number of its messages.
+void note_unused_topics(const BagSurvey& survey, const ConversionPlan& plan,
+                        ConvertFigures& figures) {
+  std::set<std::string> used(plan.navigation_topics.begin(), plan.navigation_topics.end());
+  used.insert(plan.lidar);
+  for (const PlannedCamera& camera : plan.cameras) used.insert(camera.topic);
+  for (const auto& [name, messages] : survey.messages) {
+    const std::string& type = survey.topics.at(name).type;
+    if (type == ros::kTransforms || type == ros::kCameraInfo || used.contains(name)) continue;
+    figures.notes.push_back(fmt::format("not used: {} message{} of {} ({})", messages,
+                                        messages == 1 ? "" : "s", name, type));
   }
 }
 
@@ -57,8 +73,9 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   }
   figures.notes = plan.notes;
   naming(bags, [&] { recorder.finish(plan.drive, figures); });
+  note_unused_topics(survey, plan, figures);
   for (const auto& [topic, unusable] : survey.unusable) {
-    figures.notes.push_back(unusable.note(topic));
+    figures.warn(unusable.note(topic));
   }
   writer.finish(plan.drive);
   return figures;

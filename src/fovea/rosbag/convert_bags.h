@@ -6,16 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "fovea/base/messages.h"
 #include "fovea/rosbag/convert_options.h"
 
 namespace fovea {
 
-struct ConvertFigures {
+/// Its notes say what was chosen, what is left out and why.
+struct ConvertFigures : Messages {
   std::size_t scans = 0;
   std::size_t images = 0;  ///< of all cameras
   std::size_t cameras = 0;
-  bool stopped = false;            ///< nothing was kept
-  std::vector<std::string> notes;  ///< what was chosen, what is left out and why
+  bool stopped = false;  ///< nothing was kept
 };
 
 /// Reads the recordings, which belong together, twice: what calibration and poses they have, and

@@ -20,6 +20,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr int kSecond = 1'700'000'000;
 constexpr std::uint32_t kStep = 100'000'000, kMiddle = kStep / 2;  // ns, of a sweep
@@ -178,6 +179,34 @@ TEST_F(ConvertBags, OneBadScanDoesNotDecideForAll) {
   EXPECT_EQ(figures.scans, 3u);
   EXPECT_THAT(figures.notes, Contains(HasSubstr("points have times")));
   EXPECT_THAT(figures.notes, Contains(HasSubstr("4 messages of /points cannot be used")));
+}
+
+// Topics of types that are not read, and those that were not chosen.
+TEST_F(ConvertBags, TopicsWithoutUseAreCounted) {
+  records_ += mcap::channel(17, "/diagnostics", "cdr", "diagnostic_msgs/msg/DiagnosticArray");
+  records_ += mcap::channel(18, "/odom", "cdr", std::string(ros::kOdometry));
+  records_ += mcap::channel(19, "/silent", "cdr", "std_msgs/msg/String");
+  add_frames();
+  for (int i = 0; i < 7; ++i) records_ += mcap::message(17, "any");
+  options_.poses = NavigationSource::kNone;
+  const auto odometry = CdrWriter()
+                            .header(kSecond, 0, "odom")
+                            .text("base_link")
+                            .motion({})
+                            .doubles(36)
+                            .doubles(6)
+                            .doubles(36)
+                            .message();
+  records_ += mcap::message(18, odometry);
+  add(kCompressed, compressed_image(kMiddle, "rgb8; jpeg compressed bgr8", "\xff\xd8\xff-jpeg"));
+  const ConvertFigures figures = convert();
+  EXPECT_THAT(figures.notes, Contains("not used: 7 messages of /diagnostics "
+                                      "(diagnostic_msgs/msg/DiagnosticArray)"));
+  EXPECT_THAT(figures.notes, Contains("not used: 1 message of /odom (nav_msgs/msg/Odometry)"));
+  EXPECT_THAT(figures.notes, Contains(HasSubstr("not used: 1 message of /front/image_raw/comp")));
+  EXPECT_THAT(figures.notes, Not(Contains(HasSubstr("/silent"))));
+  EXPECT_THAT(figures.notes, Not(Contains(HasSubstr("not used: 3"))));
+  EXPECT_THAT(figures.warnings, IsEmpty());
 }
 
 TEST_F(ConvertBags, CompressedImagesAreWrittenByteForByte) {

@@ -169,7 +169,8 @@ class McapReader {
                          "restore the recording from a copy");
       }
       record.block(20);  // sequence, times of receipt and of publishing
-      if (channel->second) return sink_.add(*channel->second, record.rest());
+      if (channel->second.wanted) return sink_.add(channel->second.topic, record.rest());
+      sink_.skip(channel->second.topic);
     }
     return true;
   }
@@ -189,8 +190,13 @@ class McapReader {
     topic.name = record.text();
     topic.encoding = record.text();
     const bool wanted = sink_.wants(topic) && topic.encoding == kCdrEncoding;
-    channels_.emplace(id, wanted ? std::optional(std::move(topic)) : std::nullopt);
+    channels_.emplace(id, Channel{std::move(topic), wanted});
   }
+
+  struct Channel {
+    BagTopic topic;
+    bool wanted;
+  };
 
   std::string name_;
   InputFile input_;
@@ -200,7 +206,7 @@ class McapReader {
   std::string buffer_;
   bool ended_ = false;
   std::map<std::uint16_t, std::string> schemas_;
-  std::map<std::uint16_t, std::optional<BagTopic>> channels_;  // empty: not wanted
+  std::map<std::uint16_t, Channel> channels_;
 };
 
 }  // namespace

@@ -25,6 +25,9 @@ class NavigationPlanner {
         drive_(drive),
         notes_(notes) {}
 
+  /// Topics of which messages are used.
+  const std::vector<std::string>& used() const { return used_; }
+
   void plan() {
     for (const std::string& frame : survey_.transforms.ambiguous()) {
       notes_.push_back(
@@ -122,6 +125,7 @@ class NavigationPlanner {
                                   std::nullopt});
     }
     if (drive_.positions.empty()) return false;
+    used_.push_back(topic);
     notes_.push_back(fmt::format("positions: {} of {}, {} without a fix left out",
                                  drive_.positions.size(), topic, without));
     take_inertia();
@@ -165,6 +169,7 @@ class NavigationPlanner {
           {imu.header.stamp, imu.orientation, imu.angular_velocity, imu.acceleration});
     }
     if (!ever_turned) drive_.inertia.clear();
+    if (ever_turned) used_.push_back(topic);
     notes_.push_back(fmt::format("orientations: {} of {} messages of {} have one",
                                  drive_.inertia.size(), imus.size(), topic));
   }
@@ -180,6 +185,7 @@ class NavigationPlanner {
     const std::string& child = odometries.front().child_frame;
     const bool from_child = options_.body.empty() && !child.empty();
     drive_.T_body_lidar = T_body_lidar(from_child ? child : usual_body());
+    used_.push_back(topic);
     notes_.push_back(fmt::format("poses: {} of {}", drive_.poses.size(), topic));
     return true;
   }
@@ -204,14 +210,17 @@ class NavigationPlanner {
   const std::string& lidar_frame_;
   RecordedDrive& drive_;
   std::vector<std::string>& notes_;
+  std::vector<std::string> used_;
 };
 
 }  // namespace
 
-void plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
-                     const std::string& lidar_frame, RecordedDrive& drive,
-                     std::vector<std::string>& notes) {
-  NavigationPlanner(survey, options, lidar_frame, drive, notes).plan();
+std::vector<std::string> plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+                                         const std::string& lidar_frame, RecordedDrive& drive,
+                                         std::vector<std::string>& notes) {
+  NavigationPlanner planner(survey, options, lidar_frame, drive, notes);
+  planner.plan();
+  return planner.used();
 }
 
 }  // namespace fovea

@@ -15,8 +15,9 @@ namespace fovea {
 /// InputError for what the options name and the recording does not have, and for several topics
 /// that might be meant.
 /// @param notes  what was chosen, and what is left out
-void plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
-                     const std::string& lidar_frame, RecordedDrive& drive,
-                     std::vector<std::string>& notes);
+/// @return the topics of positions, orientations and poses that are used; tf is not among them
+std::vector<std::string> plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+                                         const std::string& lidar_frame, RecordedDrive& drive,
+                                         std::vector<std::string>& notes);
 
 }  // namespace fovea

@@ -131,7 +131,7 @@ void Recorder::account_for(const Numbered& sensor, ConvertFigures& figures) {
                      sensor.topic,
                      "restore it from a copy, or see docs/drives.md for what is read");
   }
-  if (unusable.count > 0) figures.notes.push_back(unusable.note(sensor.topic));
+  if (unusable.count > 0) figures.warn(unusable.note(sensor.topic));
 }
 
 }  // namespace fovea

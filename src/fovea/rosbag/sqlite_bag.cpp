@@ -35,23 +35,31 @@ void read_sqlite_bag(const std::filesystem::path& file, const std::filesystem::p
                      BagSink& sink) {
   sqlite::Database database(file, access_of(file), shown, kBagWords);
   check_tables(database);
-  std::map<std::int64_t, BagTopic> wanted;
+  struct Channel {
+    BagTopic topic;
+    bool wanted;
+  };
+  std::map<std::int64_t, Channel> channels;
   sqlite::Statement topics(database,
                            "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   while (topics.step()) {
     BagTopic topic{std::string(topics.text(1)), std::string(topics.text(2)),
                    std::string(topics.text(3))};
-    if (!sink.wants(topic) || topic.encoding != kCdrEncoding) continue;
-    wanted.emplace(topics.integer(0), std::move(topic));
+    const bool wanted = sink.wants(topic) && topic.encoding == kCdrEncoding;
+    channels.emplace(topics.integer(0), Channel{std::move(topic), wanted});
   }
   // By their ids: in the file's own order, without sorting what may be a hundred gigabytes.
   sqlite::Statement messages(database, "SELECT topic_id, data FROM messages ORDER BY id");
   while (messages.step()) {
-    const auto topic = wanted.find(messages.integer(0));
-    if (topic == wanted.end()) continue;
+    const auto channel = channels.find(messages.integer(0));
+    if (channel == channels.end()) continue;
+    if (!channel->second.wanted) {
+      sink.skip(channel->second.topic);
+      continue;
+    }
     const std::span<const std::byte> data = messages.blob(1);
     const std::string_view message(reinterpret_cast<const char*>(data.data()), data.size());
-    if (!sink.add(topic->second, message)) return;
+    if (!sink.add(channel->second.topic, message)) return;
   }
 }
 

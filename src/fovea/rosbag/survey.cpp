@@ -44,7 +44,10 @@ class Surveyor : public BagSink {
     return readers().contains(topic.type);
   }
 
+  void skip(const BagTopic& topic) override { ++survey_.messages[topic.name]; }
+
   bool add(const BagTopic& topic, std::string_view bytes) override {
+    ++survey_.messages[topic.name];
     try {
       CdrReader message(bytes, topic.name);
       (this->*readers().at(topic.type))(topic.name, message);

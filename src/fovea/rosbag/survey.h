@@ -38,7 +38,8 @@ struct SensorTopic {
 
 /// By topics' names. In order of stamps, as far as the messages have any.
 struct BagSurvey {
-  std::map<std::string, BagTopic> topics;  ///< all
+  std::map<std::string, BagTopic> topics;       ///< all
+  std::map<std::string, std::size_t> messages;  ///< their numbers, of all topics
   std::map<std::string, SensorTopic> clouds, images;
   std::map<std::string, ros::CameraInfo> camera_infos;  ///< the first of each that has a K
   std::map<std::string, std::vector<ros::NavSatFix>> fixes;

@@ -129,17 +129,16 @@ void find_stamps(const std::filesystem::path& file,
   const TimeStamps& stamps = files.stamps;
   info.has_time_stamps = stamps.any();
   if (!info.has_time_stamps) {
-    info.notes.push_back(fmt::format("{} {}: frames are counted as 10 Hz", file.string(),
-                                     exists ? "has no usable line" : "is missing"));
+    info.warn(fmt::format("{} {}: frames are counted as 10 Hz", file.string(),
+                          exists ? "has no usable line" : "is missing"));
     return;
   }
   if (!stamps.malformed.empty()) {
-    info.notes.push_back(fmt::format("{} has {} malformed lines ({}): their frames are skipped",
-                                     file.string(), stamps.malformed.size(),
-                                     first_lines(stamps.malformed)));
+    info.warn(fmt::format("{} has {} malformed lines ({}): their frames are skipped", file.string(),
+                          stamps.malformed.size(), first_lines(stamps.malformed)));
   }
   if (!stamps.out_of_order.empty()) {
-    info.notes.push_back(
+    info.warn(
         fmt::format("{} has {} stamps out of order (lines {}): their frames are "
                     "skipped",
                     file.string(), stamps.out_of_order.size(), first_lines(stamps.out_of_order)));
@@ -161,7 +160,7 @@ bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stam
     info.sweep.period = period;
     return true;
   }
-  info.notes.push_back(
+  info.warn(
       fmt::format("{} steps by {:.3f} s, no LiDAR's turn: a sweep is taken as "
                   "{} s",
                   file.string(), period, info.sweep.period));

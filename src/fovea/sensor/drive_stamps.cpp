@@ -19,8 +19,8 @@ CsvRows read_rows(const fs::path& file) {
   return read_csv(file, kColumns);
 }
 
-/// Notes lines without a usable number.
-NumberedTimes numbered(const CsvRows& rows, const fs::path& file, std::vector<std::string>& notes) {
+/// Warns of lines without a usable number.
+NumberedTimes numbered(const CsvRows& rows, const fs::path& file, Messages& messages) {
   std::vector<int> unusable = rows.malformed;
   NumberedTimes times;
   for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -31,26 +31,26 @@ NumberedTimes numbered(const CsvRows& rows, const fs::path& file, std::vector<st
     }
   }
   if (!unusable.empty()) {
-    notes.push_back(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
-                                file.string(),
-                                *std::min_element(unusable.begin(), unusable.end())));
+    messages.warn(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
+                              file.string(),
+                              *std::min_element(unusable.begin(), unusable.end())));
   }
   return times;
 }
 
 }  // namespace
 
-NumberedTimes read_scan_stamps(const fs::path& file, std::vector<std::string>& notes) {
+NumberedTimes read_scan_stamps(const fs::path& file, Messages& messages) {
   CsvRows rows = read_rows(file);
-  set_scan_time_unit(rows, file, notes);
-  return numbered(rows, file, notes);
+  set_scan_time_unit(rows, file, messages.notes);
+  return numbered(rows, file, messages);
 }
 
 NumberedTimes read_image_stamps(const fs::path& file, const NumberedTimes& scans,
-                                std::vector<std::string>& notes) {
+                                Messages& messages) {
   CsvRows rows = read_rows(file);
-  set_time_unit_by_scans(rows, {scans.begin()->second, scans.rbegin()->second}, file, notes);
-  return numbered(rows, file, notes);
+  set_time_unit_by_scans(rows, {scans.begin()->second, scans.rbegin()->second}, file, messages.notes);
+  return numbered(rows, file, messages);
 }
 
 }  // namespace fovea

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
+#include "fovea/base/messages.h"
 #include "fovea/sensor/nearest_images.h"
 
 namespace fovea {
@@ -12,13 +11,14 @@ namespace fovea {
 /// A number of a scan or image is below: a day at 10 Hz.
 inline constexpr int kMaxFileNumber = 1'000'000;
 
-/// Stamps of scans. Notes the unit where it is not ns, and lines that cannot be used. InputError
+/// Stamps of scans. Notes the unit where it is not ns. Warns of lines that cannot be
+/// used. InputError
 /// for a table that cannot be read, or whose stamps are no scans'.
-NumberedTimes read_scan_stamps(const std::filesystem::path& file, std::vector<std::string>& notes);
+NumberedTimes read_scan_stamps(const std::filesystem::path& file, Messages& messages);
 
 /// The same of images.
 /// @param scans  stamps of the scans, whose clock the images have; not empty
 NumberedTimes read_image_stamps(const std::filesystem::path& file, const NumberedTimes& scans,
-                                std::vector<std::string>& notes);
+                                Messages& messages);
 
 }  // namespace fovea

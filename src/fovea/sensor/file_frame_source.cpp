@@ -158,7 +158,7 @@ std::vector<int> present_frames(const DriveInfo& info, const DriveFiles& files) 
 void note_scans_left_out(const NumberedFiles& scans, DriveInfo& info) {
   const std::vector<std::filesystem::path> others = files_left_out(scans);
   if (others.empty()) return;
-  info.notes.push_back(fmt::format(
+  info.warn(fmt::format(
       "{} scan{} left out: the name is no number below {}, or a number that another "
       "scan has (the first: {})",
       others.size(), others.size() == 1 ? " is" : "s are", kEndOfNames, others.front().string()));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fovea/base/image.h"
+#include "fovea/base/messages.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/base/time.h"
 #include "fovea/geometry/camera.h"
@@ -71,7 +72,7 @@ struct DriveOptions {
 };
 
 /// What is known of a drive before any frame is read.
-struct DriveInfo {
+struct DriveInfo : Messages {
   std::filesystem::path path;
   std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
   Calibration calibration;
@@ -100,9 +101,6 @@ struct DriveInfo {
   /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame
   /// index each from 0; empty if none. Never used by the mapper.
   std::vector<RigidMotion> reference_poses;
-  /// What a user must be told: no time stamps, 4 bad records, ...
-  std::vector<std::string> notes;
-
   /// Seconds from Camera::image_delay to the delay of the camera's image of one frame.
   /// @param slot  place of the camera in the calibration
   double image_offset(std::size_t slot, int index) const;

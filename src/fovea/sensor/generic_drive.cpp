@@ -62,19 +62,19 @@ class GenericDrive {
     files_.stamps_name_scans = true;
     if (fs::exists(file)) {
       files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
-      for (const auto& [scan, time] : read_scan_stamps(file, info_.notes)) {
+      for (const auto& [scan, time] : read_scan_stamps(file, info_)) {
         if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
       }
       remove_out_of_order(files_.stamps);
     }
     info_.has_time_stamps = files_.stamps.any();
     if (!info_.has_time_stamps) {
-      info_.notes.push_back(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
-                                        fs::exists(file) ? "has no usable line" : "is missing"));
+      info_.warn(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
+                             fs::exists(file) ? "has no usable line" : "is missing"));
       return;
     }
     if (const std::size_t count = files_.stamps.out_of_order.size(); count > 0) {
-      info_.notes.push_back(
+      info_.warn(
           fmt::format("{} stamps of {} are out of order (the first of scan {}): "
                       "these scans are skipped",
                       count, file.string(), files_.stamps.out_of_order.front()));
@@ -97,7 +97,7 @@ class GenericDrive {
     const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
     sweep_middle_ = middle.value_or(info_.sweep.middle_time());
     if (!numbers.empty() && !middle) {
-      info_.notes.push_back(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
+      info_.warn(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
     }
   }
 
@@ -108,8 +108,8 @@ class GenericDrive {
       const fs::path folder = info_.path / camera.folder;
       NumberedFiles files = list_numbered_files(folder, {".png", ".jpg", ".jpeg"});
       if (files.empty()) {
-        info_.notes.push_back(fmt::format("camera {} ({}) has no image in {}: it is left out",
-                                          camera.index, camera.name, folder.string()));
+        info_.warn(fmt::format("camera {} ({}) has no image in {}: it is left out", camera.index,
+                               camera.name, folder.string()));
       } else {
         images.emplace(camera.index, std::move(files));
       }
@@ -185,14 +185,14 @@ class GenericDrive {
     const fs::path file = info_.path / described.folder / "stamps.csv";
     if (!fs::exists(file)) return images;
     if (!info_.has_time_stamps) {
-      info_.notes.push_back(file.string() + " is not used: the scans have no stamps");
+      info_.warn(file.string() + " is not used: the scans have no stamps");
       return images;
     }
     NumberedTimes scans;
     for (const auto& [scan, path] : files_.scans) {
       if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
     }
-    NumberedTimes times = read_image_stamps(file, scans, info_.notes);
+    NumberedTimes times = read_image_stamps(file, scans, info_);
     std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     const ImageMatches matches =
         match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
@@ -217,9 +217,9 @@ class GenericDrive {
   void note_matches(const CameraDescription& camera, const ImageMatches& matches,
                     std::size_t scans) {
     if (matches.image_of_scan.size() < scans) {
-      info_.notes.push_back(fmt::format(
-          "camera {} ({}) has no image within {:g} s of {} of {} scans", camera.index, camera.name,
-          description_.image_tolerance, scans - matches.image_of_scan.size(), scans));
+      info_.warn(fmt::format("camera {} ({}) has no image within {:g} s of {} of {} scans",
+                             camera.index, camera.name, description_.image_tolerance,
+                             scans - matches.image_of_scan.size(), scans));
     }
     if (matches.max_delay - matches.min_delay > kNotableSpread) {
       info_.notes.push_back(fmt::format(
@@ -235,7 +235,7 @@ class GenericDrive {
         frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
     GenericNavigation navigation =
         read_generic_navigation(info_.path, description_, origin_time, period_of(files_.stamps));
-    info_.notes.insert(info_.notes.end(), navigation.notes.begin(), navigation.notes.end());
+    info_.append(navigation);
     if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
     info_.calibration.T_imu_lidar = description_.T_body_lidar;
     info_.navigation = std::move(navigation.T_local_lidar);
@@ -247,7 +247,7 @@ class GenericDrive {
   bool covers_scans(const Trajectory& T_local_lidar) {
     const ScansReached reach = scans_reached(T_local_lidar, info_, files_);
     if (reach.reached == reach.stamped) return true;
-    info_.notes.push_back(
+    info_.warn(
         fmt::format("poses or positions reach {} of {} scans{}", reach.reached, reach.stamped,
                     reach.reached == 0 ? ", are their times of one clock? No navigation" : ""));
     return reach.reached > 0;

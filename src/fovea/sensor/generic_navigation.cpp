@@ -87,9 +87,9 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
     poses.push_back({rows.times[row], T_world_body, velocity_of(rows, row, kVelocity)});
     result.accuracy.push_back(accuracy_of(rows, row, kAccuracy));
   }
-  left_out.note(result.notes);
+  left_out.warn(result);
   if (poses.empty()) {
-    result.notes.push_back(file.string() + " has no pose that can be used: no navigation");
+    result.warn(file.string() + " has no pose that can be used: no navigation");
     return result;
   }
   require_vehicle_speed(poses, file);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/base/messages.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/trajectory.h"
 #include "fovea/sensor/drive_description.h"
@@ -14,11 +15,10 @@
 namespace fovea {
 
 /// What poses.csv, or else gnss.csv with or without imu.csv, give.
-struct GenericNavigation {
+struct GenericNavigation : Messages {
   std::optional<Trajectory> T_local_lidar;  ///< absent: none of the files is there or of use
   std::vector<double> accuracy;             ///< see DriveInfo::navigation_accuracy
   std::optional<GeodeticPoint> origin;      ///< of `local`; absent with poses.csv
-  std::vector<std::string> notes;
 };
 
 /// Reads the files of a drive's folder. With poses.csv, local has the axes of the poses' world and

@@ -22,14 +22,14 @@ namespace fs = std::filesystem;
 class ImuOrientations {
  public:
   ImuOrientations(const fs::path& file, const RigidMotion& T_body_imu,
-                  const std::optional<ScanPeriod>& scans, std::vector<std::string>& notes)
+                  const std::optional<ScanPeriod>& scans, Messages& messages)
       : R_imu_body_(T_body_imu.linear().transpose()) {
     constexpr std::array<CsvColumn, 4> kColumns = {
         {{"qx", false}, {"qy", false}, {"qz", false}, {"qw", false}}};
-    rows_ = read_timed_csv(file, kColumns, scans, notes);
+    rows_ = read_timed_csv(file, kColumns, scans, messages.notes);
     LeftOut left_out(file, rows_);
     left_out.add_out_of_order(rows_.drop_out_of_order());
-    left_out.note(notes);
+    left_out.warn(messages);
   }
 
   /// Rotation from the body to east-north-up; empty if the file has none near that time.
@@ -219,7 +219,7 @@ std::string what_lacks(const std::vector<GnssLine>& lines) {
 /// The poses of lines with an attitude. If no line has one, the vehicle heads along its way; a note
 /// states that. Empty if it never moves then.
 std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, const fs::path& file,
-                                         LeftOut& left_out, std::vector<std::string>& notes) {
+                                         LeftOut& left_out, Messages& messages) {
   std::vector<GeodeticPose> poses;
   for (const GnssLine& line : lines) {
     if (line.has_attitude) poses.push_back(line.pose);
@@ -232,8 +232,8 @@ std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, con
   }
   for (const GnssLine& line : lines) poses.push_back(line.pose);
   if (poses.empty() || !take_courses(poses)) return {};
-  notes.push_back(file.string() +
-                  " has no attitude: headings are those of the way, roll and pitch 0");
+  messages.warn(file.string() +
+                " has no attitude: headings are those of the way, roll and pitch 0");
   return poses;
 }
 
@@ -248,21 +248,21 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::optional<ImuOrientations> imu;
-  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, scans, result.notes);
+  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, scans, result);
   std::vector<GnssLine> lines = lines_with_position(rows, drive, imu, left_out);
   leave_out_far_positions(lines, left_out);
   const std::string lack = what_lacks(lines);
-  const auto poses = oriented_poses(lines, file, left_out, result.notes);
-  left_out.note(result.notes);
+  const auto poses = oriented_poses(lines, file, left_out, result);
+  left_out.warn(result);
   if (poses.empty()) {
-    result.notes.push_back(fmt::format(
+    result.warn(fmt::format(
         "{} has no {}: no navigation, the map will not be georeferenced", file.string(), lack));
     return result;
   }
   const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body));
   Navigation navigation =
       navigation_of(poses, T_body_antenna.inverse() * drive.T_body_lidar, origin_time);
-  if (!navigation.origin) result.notes.push_back(no_fix_note(file));
+  if (!navigation.origin) result.warn(no_fix_note(file));
   result.T_local_lidar = std::move(navigation.trajectory);
   result.accuracy = std::move(navigation.accuracy);
   result.origin = navigation.origin;

@@ -48,7 +48,7 @@ void find_reference_poses(const RigidMotion& T_cam0_lidar, DriveInfo& info) {
   try {
     info.reference_poses = read_poses(*file);
   } catch (const InputError& error) {
-    info.notes.push_back(fmt::format("{}: the reference poses are not used", error.what()));
+    info.warn(fmt::format("{}: the reference poses are not used", error.what()));
     return;
   }
   const RigidMotion T_first_world = (info.reference_poses.front() * T_cam0_lidar).inverse();

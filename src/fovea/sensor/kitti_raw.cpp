@@ -45,9 +45,9 @@ OxtsFolder read_oxts_folder(const NumberedFiles& files, const std::optional<Time
 void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const DriveFiles& files,
                       DriveInfo& info) {
   if (!folder.why_unusable.empty()) {
-    info.notes.push_back(fmt::format("{} of {} GPS/INS records cannot be used (the first: {})",
-                                     folder.why_unusable.size(), oxts.size(),
-                                     folder.why_unusable.begin()->second));
+    info.warn(fmt::format("{} of {} GPS/INS records cannot be used (the first: {})",
+                          folder.why_unusable.size(), oxts.size(),
+                          folder.why_unusable.begin()->second));
   }
   std::vector<int> without;
   for (auto scan = files.scans.lower_bound(info.begin);
@@ -55,8 +55,8 @@ void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const
     if (!oxts.contains(scan->first)) without.push_back(scan->first);
   }
   if (without.empty()) return;
-  info.notes.push_back(fmt::format("{} frames have no GPS/INS record (the first: {})",
-                                   without.size(), without.front()));
+  info.warn(fmt::format("{} frames have no GPS/INS record (the first: {})", without.size(),
+                        without.front()));
 }
 
 /// The poses of records, without positions that are far from the others, which a note counts.
@@ -69,7 +69,7 @@ std::vector<GeodeticPose> consistent_poses(const std::vector<StampedOxts>& recor
     if (!far[i]) poses.push_back(all[i]);
   }
   if (poses.size() < all.size()) {
-    info.notes.push_back(
+    info.warn(
         fmt::format("{} of {} GPS/INS records cannot be used: a position too far from the others",
                     all.size() - poses.size(), all.size()));
   }
@@ -80,7 +80,7 @@ std::vector<GeodeticPose> consistent_poses(const std::vector<StampedOxts>& recor
 void find_navigation(const KittiCalibration& calibration, DriveInfo& info, DriveFiles& files) {
   const std::filesystem::path folder = info.path / "oxts";
   const auto without = [&](const std::string& why) {
-    info.notes.push_back(why + ": no navigation, the map will not be georeferenced");
+    info.warn(why + ": no navigation, the map will not be georeferenced");
   };
   const NumberedFiles oxts = list_numbered_files(folder / "data", {".txt"});
   if (oxts.empty()) return without((folder / "data").string() + " has no record");
@@ -107,7 +107,7 @@ void find_navigation(const KittiCalibration& calibration, DriveInfo& info, Drive
   if (scans_reached(navigation.trajectory, info, files).reached == 0) {
     return without("GPS/INS records reach no scan, are their times of one clock?");
   }
-  if (!navigation.origin) info.notes.push_back(no_fix_note(folder / "data"));
+  if (!navigation.origin) info.warn(no_fix_note(folder / "data"));
   info.calibration.T_imu_lidar = calibration.T_imu_lidar;
   info.navigation = std::move(navigation.trajectory);
   info.navigation_accuracy = std::move(navigation.accuracy);

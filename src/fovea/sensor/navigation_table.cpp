@@ -31,18 +31,18 @@ double accuracy_of(const CsvRows& rows, std::size_t row, std::size_t column) {
   return std::isnan(accuracy) ? 0 : std::max(0.0, accuracy);
 }
 
-void LeftOut::note(std::vector<std::string>& notes) const {
+void LeftOut::warn(Messages& messages) const {
   if (!lines_.empty()) {
     std::vector<std::string> reasons;
     for (const auto& [reason, count] : count_by_reason_) {
       reasons.push_back(fmt::format("{} {}", count, reason));
     }
-    notes.push_back(fmt::format("{} lines of {} cannot be used (the first: {}): {}", lines_.size(),
-                                file_.string(), *std::min_element(lines_.begin(), lines_.end()),
-                                fmt::join(reasons, ", ")));
+    messages.warn(fmt::format("{} lines of {} cannot be used (the first: {}): {}", lines_.size(),
+                              file_.string(), *std::min_element(lines_.begin(), lines_.end()),
+                              fmt::join(reasons, ", ")));
   }
   if (out_of_order_ > 0) {
-    notes.push_back(
+    messages.warn(
         fmt::format("{} lines of {} are out of order and not used", out_of_order_, file_.string()));
   }
 }

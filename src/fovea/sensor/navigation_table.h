@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/base/messages.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/sensor/csv_rows.h"
 
@@ -33,7 +34,7 @@ constexpr std::array<CsvColumn, N + 6> with_velocity(const std::array<CsvColumn,
   return all;
 }
 
-/// Lines that cannot be used, for a note.
+/// Lines that cannot be used, for a warning.
 class LeftOut {
  public:
   LeftOut(const std::filesystem::path& file, const CsvRows& rows)
@@ -47,7 +48,7 @@ class LeftOut {
     ++count_by_reason_[reason];
   }
   void add_out_of_order(std::size_t count) { out_of_order_ = count; }
-  void note(std::vector<std::string>& notes) const;
+  void warn(Messages& messages) const;
 
  private:
   std::filesystem::path file_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/path_remedy.h"
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/generic_drive.h"
 #include "fovea/sensor/kitti_drives.h"
@@ -89,7 +90,8 @@ std::unique_ptr<FrameSource> open_drive(const fs::path& path, const DriveOptions
     return open_recognised(path, options);
   } catch (const fs::filesystem_error& error) {  // no permission, a broken disk
     throw InputError("the drive cannot be read (" + error.code().message() + ")",
-                     error.path1().string(), "check its permissions and its disk");
+                     error.path1().string(),
+                     path_remedy(error.code().value(), "check its permissions and its disk"));
   }
 }
 
