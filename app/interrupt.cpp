@@ -63,6 +63,8 @@ bool is_ignored(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
+  // A shell starts background jobs with SIGINT ignored; they shall end by it all the same.
+  std::signal(SIGINT, SIG_DFL);
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);

@@ -39,12 +39,13 @@ void run(const RepairArguments& arguments, Warnings& warnings) {
   print_out("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
              figures.left_out);
   if (!figures.restored.empty()) {
-    print_out("restored from other tables: {}\n", fmt::join(figures.restored, ", "));
+    print_out("restored from other tables: {}\n",
+              fmt::format("{}", fmt::join(figures.restored, ", ")));
   }
   if (!figures.lost.empty()) {
     const bool has_calibration =
         std::count(figures.lost.begin(), figures.lost.end(), meta_key::kCalibration) == 0;
-    print_out("lost: {}{}\n", fmt::join(figures.lost, ", "),
+    print_out("lost: {}{}\n", fmt::format("{}", fmt::join(figures.lost, ", ")),
                has_calibration ? "" : ", and a corrected calibration, if the map had one");
   }
   if (format != kMapFormatVersion) {

@@ -11,9 +11,8 @@ namespace fovea {
 /// A number of a scan or image is below: a day at 10 Hz.
 inline constexpr int kMaxFileNumber = 1'000'000;
 
-/// Stamps of scans. Notes the unit where it is not ns. Warns of lines that cannot be
-/// used. InputError
-/// for a table that cannot be read, or whose stamps are no scans'.
+/// Stamps of scans. Notes the unit where it is not ns. Warns of lines that cannot be used.
+/// InputError for a table that cannot be read, or whose stamps are no scans'.
 NumberedTimes read_scan_stamps(const std::filesystem::path& file, Messages& messages);
 
 /// The same of images.
