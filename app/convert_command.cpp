@@ -67,7 +67,7 @@ void run(const ConvertArguments& arguments, Warnings& warnings) {
   warnings.add(figures, "", arguments.quiet);
   if (arguments.quiet) return;
   print_out("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
-             figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
+            figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -154,9 +154,9 @@ nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::strin
 
 void print_summary(const LocalizeArguments& arguments, const LocalizedDrive& localized) {
   print_out("{}: {} of {} frames localised (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
-             arguments.output, localized.count(LocalizationState::kLocalized),
-             localized.frames.size(), arguments.guess, localized.frames_per_second,
-             localized.peak_rss_mb);
+            arguments.output, localized.count(LocalizationState::kLocalized),
+            localized.frames.size(), arguments.guess, localized.frames_per_second,
+            localized.peak_rss_mb);
 }
 
 /// What the drive and the run say, with a warning of frames without a pose.

@@ -63,7 +63,7 @@ MapperOptions resolve_options(const MapArguments& arguments) {
 
 void print_summary(const MapSummary& summary, const MapArguments& arguments) {
   print_out("{}: {} points from {} frames", arguments.output, summary.points,
-             summary.frames_mapped);
+            summary.frames_mapped);
   if (summary.frames_held_out > 0) print_out(", {} held out", summary.frames_held_out);
   print_out(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
   if (summary.rate > 0) {

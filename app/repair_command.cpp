@@ -37,7 +37,7 @@ void run(const RepairArguments& arguments, Warnings& warnings) {
   }
   if (arguments.quiet) return;
   print_out("{}: {} points; {} parts could not be read\n", arguments.output, figures.points,
-             figures.left_out);
+            figures.left_out);
   if (!figures.restored.empty()) {
     print_out("restored from other tables: {}\n",
               fmt::format("{}", fmt::join(figures.restored, ", ")));
@@ -46,7 +46,7 @@ void run(const RepairArguments& arguments, Warnings& warnings) {
     const bool has_calibration =
         std::count(figures.lost.begin(), figures.lost.end(), meta_key::kCalibration) == 0;
     print_out("lost: {}{}\n", fmt::format("{}", fmt::join(figures.lost, ", ")),
-               has_calibration ? "" : ", and a corrected calibration, if the map had one");
+              has_calibration ? "" : ", and a corrected calibration, if the map had one");
   }
   if (format != kMapFormatVersion) {
     print_out("rewritten from format {} in format {}\n", format, kMapFormatVersion);

@@ -34,9 +34,8 @@ std::string remedy_of(const CalibrationEstimate& e, bool can_calibrate) {
 
 std::string calibration_line(int camera, const CalibrationEstimate& e, const MapSummary& summary) {
   if (e.disagrees) {
-    return fmt::format(
-        "camera {}: camera and LiDAR do not agree ({} edges in {} frames): {}", camera,
-        e.edges, e.frames, kCheckCalibration);
+    return fmt::format("camera {}: camera and LiDAR do not agree ({} edges in {} frames): {}",
+                       camera, e.edges, e.frames, kCheckCalibration);
   }
   if (!e.rotation_observable) {
     return fmt::format(

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <set>
 
-#include "fovea/base/printable.h"
+#include "app/print.h"
 
 namespace fovea::app {
 
@@ -13,13 +13,13 @@ void Warnings::add(const std::vector<std::string>& texts, bool quiet) {
   count_ += texts.size();
   if (quiet && !strict) return;
   std::fflush(stdout);  // the terminal shows lines in the order of printing
-  for (const std::string& text : texts) fmt::print(stderr, "warning: {}\n", printable(text));
+  for (const std::string& text : texts) print_err("warning: {}\n", text);
 }
 
 void Warnings::add(const Messages& messages, std::string_view note_prefix, bool quiet) {
   const std::set<std::string_view> warnings(messages.warnings.begin(), messages.warnings.end());
   for (const std::string& note : messages.notes) {
-    if (!quiet && !warnings.contains(note)) fmt::print("{}{}\n", note_prefix, printable(note));
+    if (!quiet && !warnings.contains(note)) print_out("{}{}\n", note_prefix, note);
   }
   add(messages.warnings, quiet);
 }

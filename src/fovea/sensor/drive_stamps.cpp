@@ -32,8 +32,7 @@ NumberedTimes numbered(const CsvRows& rows, const fs::path& file, Messages& mess
   }
   if (!unusable.empty()) {
     messages.warn(fmt::format("{} lines of {} are no stamps (the first: {})", unusable.size(),
-                              file.string(),
-                              *std::min_element(unusable.begin(), unusable.end())));
+                              file.string(), *std::min_element(unusable.begin(), unusable.end())));
   }
   return times;
 }
@@ -49,7 +48,8 @@ NumberedTimes read_scan_stamps(const fs::path& file, Messages& messages) {
 NumberedTimes read_image_stamps(const fs::path& file, const NumberedTimes& scans,
                                 Messages& messages) {
   CsvRows rows = read_rows(file);
-  set_time_unit_by_scans(rows, {scans.begin()->second, scans.rbegin()->second}, file, messages.notes);
+  set_time_unit_by_scans(rows, {scans.begin()->second, scans.rbegin()->second}, file,
+                         messages.notes);
   return numbered(rows, file, messages);
 }
 

@@ -255,8 +255,8 @@ GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& driv
   const auto poses = oriented_poses(lines, file, left_out, result);
   left_out.warn(result);
   if (poses.empty()) {
-    result.warn(fmt::format(
-        "{} has no {}: no navigation, the map will not be georeferenced", file.string(), lack));
+    result.warn(fmt::format("{} has no {}: no navigation, the map will not be georeferenced",
+                            file.string(), lack));
     return result;
   }
   const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body));
