@@ -30,9 +30,9 @@ void run(const RepairArguments& arguments, Warnings& warnings) {
   const RepairFigures figures = repair_map(arguments.map, *writer, [&](const std::string& damage) {
     if (!arguments.quiet) print_out("{}\n", damage);
   });
-  if (figures.damages > 0) {
+  if (figures.left_out > 0) {
     warnings.add({fmt::format("{} lacks {} parts of {}, which cannot be read", arguments.output,
-                              figures.damages, arguments.map)},
+                              figures.left_out, arguments.map)},
                  arguments.quiet);
   }
   if (arguments.quiet) return;
