@@ -22,6 +22,7 @@
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
+#include "fovea/base/stable_order.h"
 #include "fovea/evaluation/cloud_format.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
@@ -77,10 +78,9 @@ LoadedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
   if (arguments.frame < 0) {
     const int middle = records.front().index;
     records = map.frames;
-    std::stable_sort(records.begin(), records.end(),
-                     [&](const FrameRecord& a, const FrameRecord& b) {
-                       return std::abs(a.index - middle) < std::abs(b.index - middle);
-                     });
+    sort_stably(records, [&](const FrameRecord& a, const FrameRecord& b) {
+      return std::abs(a.index - middle) < std::abs(b.index - middle);
+    });
   }
   std::optional<SkippedFrame> first;
   for (FrameRecord& record : records) {

@@ -92,7 +92,7 @@ std::string turned(const std::string& toml, double degrees, const Eigen::Vector3
 }
 
 TEST_F(CalibrationCheck, TheRightCalibrationGivesNoWarning) {
-  EXPECT_THAT(map(*scratch_ / "street"), Not(HasSubstr("warning")));
+  EXPECT_THAT(map(*scratch_ / "street"), Not(HasSubstr("do not agree")));
   EXPECT_EQ(report_.at("disagrees"), false);
   EXPECT_EQ(report_.at("off_by_a_pixel"), false);
 }

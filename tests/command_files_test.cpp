@@ -59,7 +59,7 @@ TEST_F(CommandFilesTest, ContentTellsTheKindOfAFile) {
       {"# .PCD v0.7 - Point Cloud Data\n", FileKind::kPcd},
       {"LASF\0"s, FileKind::kLas},
       {"glTF\2"s, FileKind::kGlb},
-      {"\x89PNG\r\n", FileKind::kPng},
+      {"\x89PNG\r\n\x1a\n", FileKind::kPng},
       {"\n<!DOCTYPE HTML>", FileKind::kHtml},
       {"{\n  \"map\": {}}", FileKind::kReport},
       {"{\"protocol\": \"truth\"}", FileKind::kReport},

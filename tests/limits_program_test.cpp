@@ -79,7 +79,7 @@ TEST_F(LimitsProgram, PipesInPlaceOfADrivesFilesDoNotHang) {
   replace_by_pipe(drive() / "image_02/data/0000000001.png");
   const ProgramRun image = map();
   EXPECT_EQ(image.exit_code, 0) << image.err;
-  EXPECT_THAT(image.out, HasSubstr("skipped: 1 frame"));
+  EXPECT_THAT(image.err, HasSubstr("skipped: 1 frame"));
   for (const char* file : {"velodyne_points/timestamps.txt", "../calib_velo_to_cam.txt"}) {
     replace_by_pipe(drive() / file);
     expect_error(map(), "it is a pipe");
@@ -91,7 +91,7 @@ TEST_F(LimitsProgram, PipesInPlaceOfADrivesFilesDoNotHang) {
   replace_by_pipe(drive() / "oxts/data/0000000001.txt");
   const ProgramRun scan = map();
   EXPECT_EQ(scan.exit_code, 0) << scan.err;
-  EXPECT_THAT(scan.out, HasSubstr("skipped: 1 frame"));
+  EXPECT_THAT(scan.err, HasSubstr("skipped: 1 frame"));
 }
 
 TEST_F(LimitsProgram, PipesAndDevicesAsArgumentsDoNotHang) {
@@ -122,8 +122,9 @@ TEST_F(LimitsProgram, FilesOfGigabytesAreNamedAndTakeNoMemory) {
       run_fovea("map '" + drive().string() + "' -o " + quoted("m.fovea") + " --report " + report,
                 std::string("ulimit -v 3000000; ") + kLimit);
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("skipped: 1 frame"), HasSubstr("more than any scan"),
-                             HasSubstr("0000000001.bin")));
+  EXPECT_THAT(run.err + run.out,
+              AllOf(HasSubstr("skipped: 1 frame"), HasSubstr("more than any scan"),
+                    HasSubstr("0000000001.bin")));
   expect_error(run_fovea("register '" + scan.string() + "' '" + scan.string() + "'", kLimit),
                "6000000000 bytes, more than any scan");
   write_text(folder_ / "c.toml", "");
@@ -180,7 +181,7 @@ TEST_F(LimitsProgram, ControlCharactersFromFilesDoNotReachTheTerminal) {
   const ProgramRun run =
       run_fovea("map '" + renamed.string() + "' -o " + quoted("m.fovea") + " --force");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, AllOf(HasSubstr("d?[31m?_sync"), Not(HasSubstr("\x1b"))));
+  EXPECT_THAT(run.err, AllOf(HasSubstr("d?[31m?_sync"), Not(HasSubstr("\x1b"))));
 }
 
 }  // namespace fovea::limits_program_test

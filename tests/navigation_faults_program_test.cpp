@@ -78,13 +78,13 @@ TemporaryFolder* NavigationFaultsProgram::scratch_ = nullptr;
 
 TEST_F(NavigationFaultsProgram, RightPositionsGiveNoNote) {
   const ProgramRun run = map(*scratch_ / "street");
-  EXPECT_THAT(run.out, Not(HasSubstr("navigation")));
+  EXPECT_THAT(run.out + run.err, Not(HasSubstr("navigation")));
   EXPECT_THAT(info(), Not(HasSubstr("not georeferenced")));
 }
 
 TEST_F(NavigationFaultsProgram, PositionsOfAWrongFormNameTheCause) {
   const auto swapped = street_with([](auto& cells) { std::swap(cells[1], cells[2]); });
-  EXPECT_THAT(map(swapped).out, HasSubstr("likely cause: latitude and longitude are swapped"));
+  EXPECT_THAT(map(swapped).err, HasSubstr("likely cause: latitude and longitude are swapped"));
   fs::remove_all(own_ / "drive");
   const auto radians = street_with([](auto& cells) {
     for (const int column : {1, 2}) {
@@ -92,17 +92,17 @@ TEST_F(NavigationFaultsProgram, PositionsOfAWrongFormNameTheCause) {
           fmt::format("{:.15g}", std::stod(cells[std::size_t(column)]) * std::numbers::pi / 180);
     }
   });
-  EXPECT_THAT(map(radians).out,
+  EXPECT_THAT(map(radians).err,
               HasSubstr("likely cause: latitude and longitude are in radians, not in degrees"));
 }
 
 TEST_F(NavigationFaultsProgram, PositionsWithoutAFixDoNotGeoreference) {
   const auto no_fix = street_with([](auto& cells) { cells[4] = "inf"; });
-  EXPECT_THAT(map(no_fix).out, HasSubstr("no position with a fix"));
+  EXPECT_THAT(map(no_fix).err, HasSubstr("no position with a fix"));
   EXPECT_THAT(info(), HasSubstr("not georeferenced"));
   fs::remove_all(own_ / "drive");
   const auto null = street_with([](auto& cells) { cells[1] = cells[2] = cells[3] = "0"; });
-  EXPECT_THAT(map(null).out, HasSubstr("without a fix (latitude and longitude 0)"));
+  EXPECT_THAT(map(null).err, HasSubstr("without a fix (latitude and longitude 0)"));
   EXPECT_THAT(info(), HasSubstr("not georeferenced"));
 }
 

@@ -106,7 +106,7 @@ TEST_F(ScansAloneProgram, ADriveWithoutCamerasBecomesAMapWithoutColors) {
 TEST_F(ScansAloneProgram, TheSmallestDriveIsScansAlone) {
   write_yard("yard", "version = 1\n");
   const ProgramRun mapped = succeed("map " + quoted("yard") + " -o " + quoted("yard.fovea"));
-  EXPECT_THAT(mapped.out, AllOf(HasSubstr("stamps.csv is missing: scans are counted as 10 Hz"),
+  EXPECT_THAT(mapped.err, AllOf(HasSubstr("stamps.csv is missing: scans are counted as 10 Hz"),
                                 HasSubstr("the points have no times; assumed: a sweep takes 0.1 s "
                                           "(default)")));
   const std::vector<FrameRecord> frames = frames_of("yard.fovea");

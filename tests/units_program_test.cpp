@@ -230,7 +230,8 @@ TEST_F(UnitsProgram, ManyDroppedPointsAreAnErrorUnlessAllowed) {
                             HasSubstr("--allow-dropped")));
   const ProgramRun allowed = map("nan", "--allow-dropped --report " + quoted("r.json"));
   ASSERT_EQ(allowed.exit_code, 0) << allowed.err;
-  EXPECT_THAT(allowed.out, HasSubstr("note: 2304 of 11520 points of the scans are dropped (20 %)"));
+  EXPECT_THAT(allowed.err,
+              HasSubstr("warning: 2304 of 11520 points of the scans are dropped (20 %)"));
   const auto report = nlohmann::json::parse(read_text(folder_ / "r.json")).at("map");
   EXPECT_EQ(report.at("points_read"), kPoints);
   EXPECT_EQ(report.at("points_dropped").at("not_finite"), kPoints / 5);
@@ -246,7 +247,7 @@ TEST_F(UnitsProgram, FewDroppedPointsAndMissingReturnsAreCounted) {
   write_drive("few", 1, kUsual, spoiled(20, [](Point& p) { p.time = -3; }));
   const ProgramRun few = map("few");
   EXPECT_EQ(few.exit_code, 0) << few.err;
-  EXPECT_THAT(few.out,
+  EXPECT_THAT(few.err,
               HasSubstr("576 of 11520 points of the scans are dropped (5 %): 576 over 1 s"));
   write_drive("sky", 1, kUsual, spoiled(3, [](Point& p) { p.position.setZero(); }));
   const ProgramRun sky = map("sky");

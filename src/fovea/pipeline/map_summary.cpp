@@ -89,7 +89,11 @@ MapSummary DriveFigures::summary() const {
   summary.points_dropped = points_.dropped();
   summary.points_read = points_.used() + points_.dropped().total();
   summary.append(drive_);
-  if (std::string note = points_.note(); !note.empty()) summary.warn(std::move(note));
+  if (points_.is_notable()) {
+    summary.warn(points_.note());
+  } else if (std::string note = points_.note(); !note.empty()) {
+    summary.notes.push_back(std::move(note));
+  }
   const auto note = [&](const Flaw& flaw, std::string_view what) {
     if (flaw.frames > 0) summary.notes.push_back(flaw.text(what));
   };

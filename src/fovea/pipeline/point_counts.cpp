@@ -37,6 +37,12 @@ void PointCounts::add(const FrameRecord& record) {
   for (const auto& [figure, reason] : kReasons) dropped_.*reason += count_of(record, figure);
 }
 
+bool PointCounts::is_notable() const {
+  constexpr double kNotable = 0.01;
+  const std::size_t lost = dropped_.total() - dropped_.no_return;
+  return double(lost) > kNotable * double(used_ + lost);
+}
+
 std::string PointCounts::note() const {
   const std::size_t dropped = dropped_.total(), all = used_ + dropped;
   if (dropped == 0) return "";

@@ -18,6 +18,8 @@ class PointCounts {
 
   std::size_t used() const { return used_; }
   const DroppedPoints& dropped() const { return dropped_; }
+  /// Whether over 1 % of the points are dropped for other reasons than a missing return.
+  bool is_notable() const;
   /// One line with count, share and reasons; empty if no point was dropped.
   std::string note() const;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "fovea/base/errors.h"
+#include "fovea/base/stable_order.h"
 #include "fovea/rosbag/bag.h"
 #include "fovea/rosbag/pixels.h"
 #include "fovea/rosbag/point_cloud_rows.h"
@@ -169,7 +170,7 @@ class Surveyor : public BagSink {
   static void sort(std::map<std::string, std::vector<Message>>& topics) {
     std::erase_if(topics, [](const auto& topic) { return topic.second.empty(); });
     for (auto& [name, messages] : topics) {
-      std::stable_sort(messages.begin(), messages.end(), [](const Message& a, const Message& b) {
+      sort_stably(messages, [](const Message& a, const Message& b) {
         return a.header.stamp < b.header.stamp;
       });
     }
