@@ -25,7 +25,8 @@ Json full_report() {
 std::map<std::string, std::string> figures(const Json& json) {
   std::map<std::string, std::string> all;
   for (const auto& [name, value] : json.items()) {
-    if (name == "frames" || name == "cameras" || value.is_string()) continue;
+    const bool is_figure = name != "frames" && name != "cameras" && name != "warnings";
+    if (!is_figure || value.is_string()) continue;
     if (!value.is_object()) {
       all[name] = value.dump();
       continue;

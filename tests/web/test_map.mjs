@@ -12,8 +12,8 @@ export function programNamedBy(variable) {
 }
 
 export const origin = { latitude: 49.011212804408, longitude: 8.4228850417969, altitude: 112.83492279053 };
-// 26 September 2011, 14:14:13 in Karlsruhe, as GPS seconds less 1e9: two hours, 15 leap seconds.
-export const firstGpsTime = 1317046453 - 7200 - 315964800 + 15 - 1e9;
+// 26 September 2011, 14:14:13 UTC, as GPS seconds less 1e9: 15 leap seconds.
+export const firstGpsTime = 1317046453 - 315964800 + 15 - 1e9;
 
 export class TestMap {
   constructor() {

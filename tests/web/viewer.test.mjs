@@ -32,8 +32,8 @@ before(async () => {
 
 after(async () => {
   await browser?.close();
-  assert.equal(await server?.stop(), 0);
-  assert.equal(await plainServer?.stop(), 0);
+  assert.equal(await server?.stop(), 130);
+  assert.equal(await plainServer?.stop(), 130);
   plain?.remove();
   rmSync(folder, { recursive: true });
 });
