@@ -84,9 +84,10 @@ void note_columns(const ScanNumbers& scan, Notes& notes) {
   constexpr std::array kUsual = {"channel", "t", "timestamp", "offset_time"};
   std::vector<std::string> renamed, missing, others;
   std::set<std::string> read;
-  for (const char* wanted : kScanColumns) {
+  for (std::size_t column = 0; column < kScanColumns.size(); ++column) {
+    const std::string_view wanted = kScanColumns[column];
     const auto place = find_column(scan.columns, wanted);
-    if (!place && wanted != kScanColumns[kScanRing]) missing.emplace_back(wanted);
+    if (!place && column != kScanRing) missing.emplace_back(wanted);
     if (!place) continue;
     const std::string& name = scan.columns[*place];
     read.insert(name);

@@ -270,9 +270,8 @@ TEST(RecognizedFormat, ColumnsOfOtherNamesAndColumnsThatAreNotRead) {
   EXPECT_THAT(notes_of(recognize_format(std::vector{scan}, {})),
               ElementsAre(HasSubstr("X as x, Y as y, Z as z, scalar_Intensity as intensity")));
   scan.columns = {"x", "y", "z", "strength", "when"};
-  EXPECT_THAT(
-      notes_of(recognize_format(std::vector{scan}, {})),
-      ElementsAre(HasSubstr("known as intensity or ring or time; not read: strength, when")));
+  EXPECT_THAT(notes_of(recognize_format(std::vector{scan}, {})),
+              ElementsAre(HasSubstr("known as intensity or time; not read: strength, when")));
   scan.columns = {"x", "y", "z", "intensity", "ring", "time", "label"};
   EXPECT_THAT(recognize_format(std::vector{scan}, {}).notes, IsEmpty());
 }
