@@ -138,9 +138,9 @@ std::optional<std::string> different_calibration(const std::string& stored, cons
   for (const auto& [name, hash] : fingerprint_parts(stored)) {
     const auto found = in_drive.find(name);
     if (found == in_drive.end()) continue;
-    const auto camera = std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) {
-      return fmt::to_string(c.index) == name;
-    });
+    const auto camera =
+        std::find_if(cameras.begin(), cameras.end(),
+                     [&part = name](const Camera& c) { return fmt::to_string(c.index) == part; });
     const auto slot = static_cast<std::size_t>(camera - cameras.begin());
     if (camera != cameras.end() && has_fingerprint(name + hash, frames, drive, slot)) continue;
     mapped += fmt::format("{}{} ", name, hash);
