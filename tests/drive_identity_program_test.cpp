@@ -66,9 +66,22 @@ class DriveIdentity : public testing::Test {
     }
     const std::string view = fmt::format("view '{}' --drive '{}' --no-browser --port 0 {}",
                                          map().string(), drive.string(), more);
-    const ProgramRun run = run_fovea(view, "timeout -s INT 1 ");
-    // `timeout` ends a view that is open.
-    f({run.err.empty() ? 0 : run.exit_code, run.out, run.err}, view);
+    f(run_view(view), view);
+  }
+  /// Ends a view once it shows the map. Its exit code is 0 then.
+  static ProgramRun run_view(const std::string& arguments) {
+    constexpr int kEndedBySigint = 130;
+    const TemporaryFolder scratch;
+    const std::string out = (scratch / "out").string(), err = (scratch / "err").string();
+    const int status =
+        std::system(fmt::format("'{}' {} >'{}' 2>'{}' & view=$!; "
+                                "for i in $(seq 600); do grep -q http: '{}' && break; "
+                                "kill -0 $view 2>/dev/null || break; sleep 0.1; done; "
+                                "kill -INT $view 2>/dev/null; wait $view",
+                                FOVEA_PROGRAM, arguments, out, err, out)
+                        .c_str());
+    const int code = WEXITSTATUS(status);
+    return {code == kEndedBySigint ? 0 : code, read_text(out), read_text(err)};
   }
   void expect_accepted(const fs::path& drive, const std::string& more = "") const {
     for_each_command(drive, more, [](const ProgramRun& run, const std::string& command) {

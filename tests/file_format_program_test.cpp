@@ -79,7 +79,7 @@ class FormatProgram : public testing::Test {
     EXPECT_NEAR(pose[7], 0, 0.1);
   }
   static void expect_error(const std::string& arguments, const std::string& says) {
-    const ProgramRun run = run_fovea(arguments, "timeout 20");
+    const ProgramRun run = run_fovea(arguments, "timeout 60");
     EXPECT_EQ(run.exit_code, 1) << run.err;
     EXPECT_THAT(run.err, AllOf(testing::StartsWith("fovea: error: "), HasSubstr(says)));
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;

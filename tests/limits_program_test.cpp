@@ -21,7 +21,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kLimit = "timeout -s KILL 10 ";
+constexpr const char* kLimit = "timeout -s KILL 60 ";
 
 std::string repeated(const std::string& part, int count) {
   std::string text;

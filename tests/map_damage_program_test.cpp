@@ -68,7 +68,7 @@ class MapDamageProgram : public testing::Test {
       commands.push_back("localize " + drive + " " + map + " -o " + path("o.txt"));
     }
     for (const std::string& command : commands) {
-      const ProgramRun run = run_fovea(command, "timeout 20 ");
+      const ProgramRun run = run_fovea(command, "timeout 60 ");
       EXPECT_EQ(run.exit_code, 1) << command;
       EXPECT_THAT(run.err, StartsWith("fovea: error: ")) << command;
       EXPECT_THAT(run.err + run.out, HasSubstr(names)) << command;
