@@ -13,31 +13,31 @@ namespace fovea::app {
 
 inline constexpr int kMaxThreads = 4096;
 
-/// A finite number from `low` to `high`.
-inline CLI::Validator finite_range(double low, double high) {
-  return {[=](const std::string& text) {
-            double value = 0;
-            const char* const end = text.data() + text.size();
-            const auto [after, error] = std::from_chars(text.data(), end, value);
-            const bool good = error == std::errc() && after == end && value >= low && value <= high;
-            return good ? std::string()
-                        : fmt::format("'{}' is not a number from {} to {}", text, low, high);
-          },
-          fmt::format("[{} - {}]", low, high)};
-}
-
-/// A whole number from `low` to `high`.
+/// A number from `low` to `high`, without anything behind it. NaN is none.
+/// @param noun  what the number is, for the message
+/// @param help  the range in the text of --help
 template <class Number>
-CLI::Validator whole_number(Number low, Number high = std::numeric_limits<Number>::max()) {
+CLI::Validator number_in_range(Number low, Number high, const char* noun, const std::string& help) {
   return {[=](const std::string& text) {
             Number value = 0;
             const char* const end = text.data() + text.size();
             const auto [after, error] = std::from_chars(text.data(), end, value);
             const bool good = error == std::errc() && after == end && value >= low && value <= high;
             return good ? std::string()
-                        : fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
+                        : fmt::format("'{}' is not a {} from {} to {}", text, noun, low, high);
           },
-          ""};
+          help};
+}
+
+/// A finite number from `low` to `high`.
+inline CLI::Validator finite_range(double low, double high) {
+  return number_in_range(low, high, "number", fmt::format("[{} - {}]", low, high));
+}
+
+/// A whole number from `low` to `high`.
+template <class Number>
+CLI::Validator whole_number(Number low, Number high = std::numeric_limits<Number>::max()) {
+  return number_in_range(low, high, "whole number", "");
 }
 
 /// Replaces a size with a unit ("512MiB") by its number of bytes.
