@@ -78,8 +78,8 @@ class MapKeeper {
   /// Waits until all checkpoints are written and committed.
   void finish();
   /// The last checkpoint, of a map that changes no more: finish() with what has changed, and
-  /// MapWriter::finish(). One that is still being written becomes part of it, unless somebody is
-  /// told of each.
+  /// MapWriter::finish(). A checkpoint that is still being written becomes part of it, unless
+  /// `on_checkpoint` reports each one.
   void finish(TileMap& map, MapRows rows);
 
  private:

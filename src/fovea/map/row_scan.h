@@ -15,7 +15,7 @@ namespace fovea {
 class RowLimit {
  public:
   RowLimit(const std::filesystem::path& map, const Table& table);
-  /// Counts a row. InputError if the file cannot hold so many.
+  /// Counts a row. InputError if the file cannot hold that number of rows.
   void count();
 
  private:

@@ -12,8 +12,8 @@ namespace {
 constexpr double kAcceleration = 10, kShift = 0.2;                  // m/s^2, m
 constexpr double kTurnRate = 100 * kDegree, kTurn = 1.5 * kDegree;  // rad/s^2, rad
 
-/// A pause of the recording is a step between frames of more than this, and of more than so many
-/// usual steps.
+/// A pause of the recording is a step between frames of more than kPause, and of more than
+/// kPauseSteps usual steps.
 constexpr TimeNs kPause = kNsPerSecond;
 constexpr int kPauseSteps = 3;
 

@@ -44,8 +44,8 @@ class CsvRows {
   };
   /// Empty without rows; the step is 0 of a single time.
   std::optional<RawTimes> raw_times() const;
-  /// Reads the times anew as of a unit of so many nanoseconds. Rows whose time is none in this unit
-  /// become malformed.
+  /// Reads the times again in another unit. Rows whose time is none in this unit become malformed.
+  /// @param unit  ns
   void set_time_unit(TimeNs unit);
 
   /// Takes out the fewest rows that leave strictly increasing times. Returns how many.

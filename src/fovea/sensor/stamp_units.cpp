@@ -23,7 +23,7 @@ const char* name_of(TimeNs unit) {
       ->name;
 }
 
-/// Whether a number of so many ns since 1970 is a date of 2000 to 2100.
+/// Whether a time since 1970 (ns) is a date of 2000 to 2100.
 bool is_date(double ns) {
   constexpr double kYear = 365.25 * 86'400e9;
   return ns >= 30 * kYear && ns <= 130 * kYear;
