@@ -52,6 +52,7 @@ MapperOptions suited_to(const SensorProfile& profile, MapperOptions options) {
   // A margin: rings scatter about their elevations once the sweep's motion is undone.
   const double spacing = ring_spacing_at(profile, elevation_on_ground(profile, kRange));
   options.moving.row_height = std::max(RangeImage::kLeastRowHeight, 1.1 * spacing);
+  options.refinement.max_edge = options.upsample.max_edge;
   options.refinement.range_noise = std::max(kLeastRangeNoise, profile.range_noise);
   return options;
 }

@@ -30,6 +30,7 @@ struct RefinementOptions {
   RegistrationTarget target = RegistrationTarget::kLocalMap;
   bool visible_only = false;  ///< register only points that a camera sees (the paper's 0xUp..3xUp)
   int upsample_rate = 0;      ///< constrained upsampling of the non-ground points, 0-5
+  double max_edge = 0.3;      ///< m, tau of that upsampling; set by upsample.max_edge
   double voxel = 0.25;        ///< m, at most one registered point a voxel; 0: no thinning
   /// A result further than this from the first guess has failed: the guess is kept and said so.
   double max_correction_translation = 2.0;               ///< m

@@ -239,6 +239,18 @@ TEST(Mapper, RegistrationUsesWhatNoCameraSees) {
   }
 }
 
+// Tau holds wherever upsampling runs: also for the points that are registered.
+TEST(Mapper, TauLimitsTheUpsamplingBeforeRegistration) {
+  const auto registered_points = [](double max_edge) {
+    MapperOptions options;
+    apply_variant("E1", options);
+    options.upsample.max_edge = max_edge;
+    Mapper mapper(street().info(), options, PoseSource::kRefine);
+    return map_frames(mapper, street(), 0, 1).front().figures.at("registration_points");
+  };
+  EXPECT_LT(registered_points(0.05), registered_points(0.3));
+}
+
 TEST(Mapper, WithoutNavigationItStartsFromRest) {
   SyntheticDrive drive(street_scene(), 8, 0.8);
   drive.editable_info().navigation.reset();

@@ -49,7 +49,7 @@ int PoseRefiner::memory() const {
 
 PointCloud PoseRefiner::visible_upsampled(const PointCloud& scan_lidar) const {
   const std::vector<std::uint8_t> ground = segment_ground(scan_lidar.position, options_.ground);
-  const UpsampleOptions upsampling{.rate = options_.upsample_rate};
+  const UpsampleOptions upsampling{.rate = options_.upsample_rate, .max_edge = options_.max_edge};
   std::vector<std::uint8_t> taken(scan_lidar.size(), 0);
   PointCloud result;
   for (const Camera& camera : cameras_) {
