@@ -84,7 +84,7 @@ LoadedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
   }
   std::optional<SkippedFrame> first;
   for (FrameRecord& record : records) {
-    FrameResult loaded = drive.load(record.index);
+    LoadedFrame loaded = drive.load(record.index);
     if (auto* frame = std::get_if<Frame>(&loaded)) return {std::move(record), std::move(*frame)};
     if (!first) first = std::get<SkippedFrame>(loaded);
   }

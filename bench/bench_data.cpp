@@ -29,7 +29,7 @@ BenchData data_of(const fs::path& folder) {
   data.png = read_bytes(files.begin()->second);
   const int last = (drive->info().begin + drive->info().end) / 2;
   for (int k = std::max(drive->info().begin, last - kScansBefore); k <= last; ++k) {
-    FrameResult frame = drive->load(k);
+    LoadedFrame frame = drive->load(k);
     if (!std::holds_alternative<Frame>(frame)) continue;
     data.frames.push_back(std::move(std::get<Frame>(frame)));
   }

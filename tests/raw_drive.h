@@ -23,9 +23,9 @@ class RawDrive : public SyntheticDrive {
     info.sweep.period = 0.1;
   }
 
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (dropped.contains(index)) return SkippedFrame{index, SkipReason::kMissingScan, "no scan"};
-    FrameResult result = SyntheticDrive::load(index);
+    LoadedFrame result = SyntheticDrive::load(index);
     if (info().sweep_compensated) return result;
     PointCloud& scan = std::get<Frame>(result).scan;
     for (Eigen::Vector3f& p : scan.position) {

@@ -102,7 +102,7 @@ class SyntheticDrive : public FrameSource {
   std::optional<TimeNs> stamp(int index) const override {
     return stamp_of(index) + (index >= paused_frame ? pause : 0);
   }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     Frame frame;
     frame.index = index;
     frame.stamp = *stamp(index);

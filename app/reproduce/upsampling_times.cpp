@@ -23,7 +23,7 @@ PointCloud scan_in_view(const FrameSource& drive) {
   const DriveInfo& info = drive.info();
   const Camera& camera = info.calibration.cameras.at(0);
   for (int index = (info.begin + info.end) / 2; index < info.end; ++index) {
-    const FrameResult loaded = drive.load(index);
+    const LoadedFrame loaded = drive.load(index);
     if (std::holds_alternative<SkippedFrame>(loaded)) continue;
     PointCloud scan = std::get<Frame>(loaded).scan;
     scan.intensity.clear();

@@ -24,7 +24,7 @@ Drive open(const std::filesystem::path& path, const std::vector<int>& cameras,
   return {open_drive(path, options)};
 }
 
-FrameResult load_result(const Drive& drive, int index) {
+LoadedFrame load_result(const Drive& drive, int index) {
   const DriveInfo& info = drive.source->info();
   if (index < info.begin || index >= info.end) {
     throw py::index_error("the drive has no frame " + std::to_string(index));
@@ -42,7 +42,7 @@ std::string reason_of(const SkippedFrame& skipped) {
 }
 
 DriveFrame load(const Drive& drive, int index) {
-  FrameResult result = load_result(drive, index);
+  LoadedFrame result = load_result(drive, index);
   if (const auto* skipped = std::get_if<SkippedFrame>(&result)) {
     throw InputError(reason_of(*skipped), skipped->detail, "go on with the next one");
   }
@@ -56,7 +56,7 @@ class FrameIterator {
 
   DriveFrame next() {
     while (next_ < drive_.source->info().end) {
-      FrameResult result = load_result(drive_, next_++);
+      LoadedFrame result = load_result(drive_, next_++);
       if (auto* frame = std::get_if<Frame>(&result)) return frame_of(drive_, std::move(*frame));
       warn(std::get<SkippedFrame>(result));
     }

@@ -64,7 +64,7 @@ std::vector<HeldOutView> load_held_out(const Comparison& c) {
   parallel_for(c.scored.size(), 1, [&](std::size_t i) {
     const PlacedFrame& placed = c.scored[i];
     if (placed.index < info.begin || placed.index >= info.end) return;
-    const FrameResult loaded = c.drive.load(placed.index);
+    const LoadedFrame loaded = c.drive.load(placed.index);
     if (!std::holds_alternative<Frame>(loaded)) return;
     const Frame& frame = std::get<Frame>(loaded);
     const PointCloud scan = compensated_scan(frame.scan, placed, info);
@@ -219,7 +219,7 @@ std::map<ColorRule, GradientSums> compare_sharpness(const Comparison& c, RuleCol
     parallel_for(count, 1, [&](std::size_t i) {
       const int index = c.scored[begin + i].index;
       if (index < info.begin || index >= info.end) return;
-      FrameResult loaded = c.drive.load(index);
+      LoadedFrame loaded = c.drive.load(index);
       if (auto* frame = std::get_if<Frame>(&loaded)) images[i] = std::move(frame->images);
     });
     for (auto& [rule, color] : colors.color) {

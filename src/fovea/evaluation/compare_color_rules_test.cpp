@@ -38,7 +38,7 @@ class PanelDrive : public FrameSource {
 
   const DriveInfo& info() const override { return info_; }
   std::optional<TimeNs> stamp(int index) const override { return index * (kNsPerSecond / 10); }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     const double y = T_local_lidar(index).translation().y();
     Frame frame;
     frame.index = index;

@@ -20,7 +20,7 @@ ScoredMap keep_every_point(const FrameSource& drive) {
     record.index = index;
     record.stamp = drive.stamp(index);
     record.status = hold_out.contains(index) ? FrameStatus::kHeldOut : FrameStatus::kMapped;
-    const FrameResult loaded = drive.load(index);
+    const LoadedFrame loaded = drive.load(index);
     const auto* frame = std::get_if<Frame>(&loaded);
     const auto pose = record.stamp ? info.navigation->at(*record.stamp) : std::nullopt;
     if (frame == nullptr || !pose) {

@@ -16,7 +16,7 @@ constexpr float kMaxDistance = 1.0f;  // m: farther neighbours are not pairs
 std::vector<Eigen::Vector3f> frame_points(const FrameRecord& record, const FrameSource& drive) {
   const DriveInfo& info = drive.info();
   if (record.index < info.begin || record.index >= info.end) return {};
-  const FrameResult loaded = drive.load(record.index);
+  const LoadedFrame loaded = drive.load(record.index);
   if (std::holds_alternative<SkippedFrame>(loaded)) return {};
   const PlacedFrame placed{record.index, record.T_local_lidar, record.motion};
   return matched_points(compensated_scan(std::get<Frame>(loaded).scan, placed, info),

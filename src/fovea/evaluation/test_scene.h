@@ -104,7 +104,7 @@ class WallDrive : public FrameSource {
 
   const DriveInfo& info() const override { return info_; }
   std::optional<TimeNs> stamp(int index) const override { return index * (kNsPerSecond / 10); }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (lost_.contains(index)) return SkippedFrame{index, SkipReason::kMissingScan, "no file"};
     Frame frame;
     frame.index = index;

@@ -33,7 +33,7 @@ std::vector<TrainingView> load_training_views(const FrameSource& drive, const Fr
                                               const std::vector<std::size_t>& cameras,
                                               const ColouredPoints& points,
                                               const std::vector<float>& spacing, TimeNs first) {
-  FrameResult loaded = drive.load(record.index);
+  LoadedFrame loaded = drive.load(record.index);
   if (!std::holds_alternative<Frame>(loaded)) return {};
   Frame& frame = std::get<Frame>(loaded);
   SplatOptions options;

@@ -15,9 +15,9 @@
 namespace fovea {
 namespace {
 
-struct LoadedFrame {
+struct TimedFrame {
   int index = 0;
-  FrameResult result;
+  LoadedFrame result;
   double milliseconds = 0;
 };
 
@@ -47,19 +47,19 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
   const std::vector<int> wanted = wanted_frames(drive.info(), job.only);
   Localizer localizer(map, drive.info(), job.guess, job.options);
   std::size_t next = 0;
-  Prefetch<LoadedFrame> loader(true, [&]() -> std::optional<LoadedFrame> {
+  Prefetch<TimedFrame> loader(true, [&]() -> std::optional<TimedFrame> {
     if (next == wanted.size()) return std::nullopt;
     const auto start = WallClock::now();
     const int index = wanted[next++];
-    FrameResult result = drive.load(index);
-    return LoadedFrame{index, std::move(result), milliseconds_since(start)};
+    LoadedFrame result = drive.load(index);
+    return TimedFrame{index, std::move(result), milliseconds_since(start)};
   });
   LocalizedDrive localized;
   std::map<std::string, std::vector<float>> times;
   std::optional<SkippedFrame> skipped;
   const auto start = WallClock::now();
   while (!job.stop.stop_requested()) {
-    const std::optional<LoadedFrame> loaded = loader.next();
+    const std::optional<TimedFrame> loaded = loader.next();
     if (!loaded) break;
     if (const auto* frame = std::get_if<Frame>(&loaded->result)) {
       const auto began = WallClock::now();

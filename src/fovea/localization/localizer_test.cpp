@@ -34,8 +34,8 @@ class Visit : public SyntheticDrive {
     }
     editable_info().navigation = Trajectory(navigation);  // off, as GPS is
   }
-  FrameResult load(int index) const override {
-    FrameResult result = SyntheticDrive::load(index);
+  LoadedFrame load(int index) const override {
+    LoadedFrame result = SyntheticDrive::load(index);
     Random random(static_cast<std::uint64_t>(index));
     for (Eigen::Vector3f& p : std::get<Frame>(result).scan.position) {
       p *= 1 + float(noise * random.normal()) / p.norm();
@@ -178,8 +178,8 @@ TEST_F(Localize, ScansThatSayLittleGiveNoPose) {
    public:
     using Visit::Visit;
     std::size_t points = 0;
-    FrameResult load(int index) const override {
-      FrameResult result = Visit::load(index);
+    LoadedFrame load(int index) const override {
+      LoadedFrame result = Visit::load(index);
       PointCloud& scan = std::get<Frame>(result).scan;
       std::vector<std::uint32_t> kept;
       for (std::uint32_t i = 0; i < points; ++i) kept.push_back(i * 97 % 20'000);
@@ -202,8 +202,8 @@ TEST_F(Localize, WhatTheSceneLeavesOpenTheCovarianceSays) {
   class Blinkered : public Visit {
    public:
     using Visit::Visit;
-    FrameResult load(int index) const override {
-      FrameResult result = Visit::load(index);
+    LoadedFrame load(int index) const override {
+      LoadedFrame result = Visit::load(index);
       PointCloud& scan = std::get<Frame>(result).scan;
       std::vector<std::uint32_t> kept;
       for (std::uint32_t i = 0; i < scan.size(); ++i) {
@@ -284,7 +284,7 @@ TEST_F(Localize, FramesWithoutAScanAreToldOf) {
   class Gappy : public Visit {
    public:
     using Visit::Visit;
-    FrameResult load(int index) const override {
+    LoadedFrame load(int index) const override {
       if (index != 1) return Visit::load(index);
       return SkippedFrame{index, SkipReason::kMissingScan, "no scan 1 in the drive"};
     }

@@ -42,8 +42,8 @@ class Pass : public SyntheticDrive {
         kOrigin.altitude + gps_error.z()};
   }
 
-  FrameResult load(int index) const override {
-    FrameResult result = SyntheticDrive::load(index);
+  LoadedFrame load(int index) const override {
+    LoadedFrame result = SyntheticDrive::load(index);
     for (Image& image : std::get<Frame>(result).images) {
       for (int v = 0; v < image.height; ++v) {
         for (int k = 0; k < 3 * image.width; ++k) {

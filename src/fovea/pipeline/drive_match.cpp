@@ -197,7 +197,7 @@ std::optional<std::string> scan_difference(const std::vector<FrameRecord>& frame
     const std::size_t begin = k * candidates.size() / kCompared,
                       end = std::min((k + 1) * candidates.size() / kCompared, begin + kTried);
     for (std::size_t i = begin; i < end; ++i) {
-      const FrameResult loaded = drive.load(number_in_drive.at(candidates[i]->index));
+      const LoadedFrame loaded = drive.load(number_in_drive.at(candidates[i]->index));
       const auto* frame = std::get_if<Frame>(&loaded);
       if (frame == nullptr) continue;
       const double in_map = candidates[i]->figures.at(kPoints), now = as_figure(frame->scan.size());

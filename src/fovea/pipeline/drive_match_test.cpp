@@ -44,7 +44,7 @@ class TestDrive : public FrameSource {
     const auto found = stamps.find(index);
     return found == stamps.end() ? std::nullopt : std::optional(found->second);
   }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (missing.contains(index)) return SkippedFrame{index, SkipReason::kMissingScan, "gone"};
     Frame frame;
     frame.index = index;
@@ -62,7 +62,7 @@ void put_drive(MapWriter& writer, std::size_t id, const TestDrive& drive, int sh
   record.frame_shift = shift;
   writer.put_drive(id, record);
   for (int index = drive.info_.begin; index < drive.info_.end; ++index) {
-    const FrameResult loaded = drive.load(index);
+    const LoadedFrame loaded = drive.load(index);
     FrameRecord frame;
     frame.index = index + shift;
     frame.stamp = drive.stamp(index);

@@ -15,7 +15,7 @@ SensorProfile lidar_profile(const FrameSource& source) {
   std::vector<PointCloud> scans;
   for (const int index : drive.frame_indices()) {
     if (scans.size() == kScans) break;
-    FrameResult result = source.load(index);
+    LoadedFrame result = source.load(index);
     if (auto* frame = std::get_if<Frame>(&result)) scans.push_back(std::move(frame->scan));
   }
   SensorProfile stated;

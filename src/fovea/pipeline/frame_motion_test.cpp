@@ -23,7 +23,7 @@ class Stamps : public FrameSource {
     info_.navigation.emplace(poses);
   }
   const DriveInfo& info() const override { return info_; }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     return SkippedFrame{index, SkipReason::kMissingScan, ""};
   }
   std::optional<TimeNs> stamp(int index) const override {

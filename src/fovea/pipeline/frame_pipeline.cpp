@@ -71,7 +71,7 @@ std::optional<FramePipeline::Arrived> FramePipeline::arrive(const std::stop_toke
     options_.gate->wait(*due - periods(kInTime), stop);
   }
   const TimePoint start = WallClock::now();
-  FrameResult result = source_.load(indices_[place]);
+  LoadedFrame result = source_.load(indices_[place]);
   const TimePoint loaded = WallClock::now();
   if (at_rate && is_first) due = first_arrival_ = loaded;
   if (due && !wait_until(*due, stop)) return std::nullopt;

@@ -33,7 +33,7 @@ struct FramePipelineOptions {
 /// A frame that has been tracked, or was skipped.
 struct LocatedFrame {
   using TimePoint = WallClock::time_point;
-  FrameResult result;
+  LoadedFrame result;
   std::optional<TrackedFrame> tracked;  ///< absent: skipped
   /// When the frame could be tracked: at a rate, when it was due, be it decoded or not; otherwise
   /// when it was decoded and tracking took it, since a drive's files arrive as they are wanted.
@@ -58,7 +58,7 @@ class FramePipeline {
  private:
   using TimePoint = WallClock::time_point;
   struct Arrived {
-    FrameResult result;
+    LoadedFrame result;
     double decode_ms;
     std::optional<TimePoint> due;
   };

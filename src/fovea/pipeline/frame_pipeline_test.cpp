@@ -26,7 +26,7 @@ class Numbers : public FrameSource {
   const DriveInfo& info() const override { return info_; }
   std::optional<TimeNs> stamp(int index) const override { return index; }
   void expect(int index) const override { expected.emplace_back(index, loaded); }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     ++loaded;
     if (index == error_at) throw InputError("no such frame", "numbers", "ask for another");
     if (index == kSkipped) return SkippedFrame{index, SkipReason::kMissingScan, ""};

@@ -31,7 +31,7 @@ constexpr int kMostRegistrations = 8;
 std::optional<Frame> usable_frame(const FrameSource& source, int begin) {
   for (const int index : source.info().frame_indices()) {
     if (index < begin) continue;
-    FrameResult result = source.load(index);
+    LoadedFrame result = source.load(index);
     if (auto* frame = std::get_if<Frame>(&result)) return std::move(*frame);
   }
   return std::nullopt;

@@ -21,7 +21,7 @@ class BrokenDrive : public SyntheticDrive {
   TimeNs shift = 0;  ///< of all stamps
   std::optional<TimeNs> stamp(int index) const override { return stamp_of(index) + shift; }
   BrokenDrive() : SyntheticDrive(street_scene(), 8, 0.8) {}
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (index == error_at) throw InputError("cannot be read", "frame", "repair it");
     return SyntheticDrive::load(index);
   }

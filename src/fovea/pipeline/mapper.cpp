@@ -308,7 +308,7 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
     const bool looked_at = record.index >= first_looked_at;
     const bool is_target = record.index >= first_target && tracker_.is_target();
     if (!looked_at && !is_target && !tracker_.wants_scan()) continue;
-    const FrameResult frame = source.load(record.index);
+    const LoadedFrame frame = source.load(record.index);
     if (!std::holds_alternative<Frame>(frame)) continue;
     replay(std::get<Frame>(frame).scan, record, looked_at);
   }

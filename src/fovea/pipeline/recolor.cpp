@@ -116,7 +116,7 @@ RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, cons
                      {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     Recolorer recolorer(source.info(), job.options, std::move(uncolored), keeper);
     for (std::size_t i = 0; i < records.size(); ++i) {
-      const FrameResult loaded = source.load(records[i].index);
+      const LoadedFrame loaded = source.load(records[i].index);
       const auto* frame = std::get_if<Frame>(&loaded);
       if (frame != nullptr) recolorer.see(*frame, records[i], figures);
       ++(frame != nullptr ? figures.frames : figures.unread);

@@ -106,9 +106,9 @@ TEST_F(Recolor, OtherSettingsGiveOtherColours) {
 class Worn : public SyntheticDrive {
  public:
   Worn() : SyntheticDrive(street_scene(), 8, 0.8) {}
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (index == 5) return SkippedFrame{index, SkipReason::kMissingScan, ""};
-    FrameResult result = SyntheticDrive::load(index);
+    LoadedFrame result = SyntheticDrive::load(index);
     if (index == 6) std::ranges::fill(std::get<Frame>(result).images[0].data, std::uint8_t{0});
     return result;
   }
@@ -116,7 +116,7 @@ class Worn : public SyntheticDrive {
 
 TEST_F(Recolor, ADriveWithoutTheFramesIsRefusedAndNothingIsWritten) {
   class Gone : public Worn {
-    FrameResult load(int index) const override {
+    LoadedFrame load(int index) const override {
       return SkippedFrame{index, SkipReason::kMissingScan, ""};
     }
   };

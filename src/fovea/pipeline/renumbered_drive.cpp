@@ -23,13 +23,13 @@ RenumberedDrive::RenumberedDrive(std::unique_ptr<FrameSource> drive,
   }
 }
 
-FrameResult RenumberedDrive::load(int index) const {
+LoadedFrame RenumberedDrive::load(int index) const {
   const auto found = number_in_drive_.find(index);
   if (found == number_in_drive_.end()) {
     return SkippedFrame{index, SkipReason::kMissingScan,
                         fmt::format("frame {} of the map is not in the drive", index)};
   }
-  FrameResult result = drive_->load(found->second);
+  LoadedFrame result = drive_->load(found->second);
   std::visit([&](auto& frame) { frame.index = index; }, result);
   return result;
 }

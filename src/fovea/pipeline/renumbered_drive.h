@@ -16,7 +16,7 @@ class RenumberedDrive : public FrameSource {
   RenumberedDrive(std::unique_ptr<FrameSource> drive, std::map<int, int> number_in_drive);
 
   const DriveInfo& info() const override { return info_; }
-  FrameResult load(int index) const override;
+  LoadedFrame load(int index) const override;
   void expect(int index) const override;
   std::optional<TimeNs> stamp(int index) const override;
 

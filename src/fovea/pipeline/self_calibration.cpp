@@ -48,7 +48,7 @@ std::vector<std::vector<EdgeProfile>> gather(const FrameSource& source, const Ca
     if (job.stop.stop_requested()) return;
     const std::optional<FrameMotion> motion = job.motion(frames[i]);
     if (!motion) return;
-    const FrameResult loaded = source.load(frames[i]);
+    const LoadedFrame loaded = source.load(frames[i]);
     if (!std::holds_alternative<Frame>(loaded)) return;
     const Frame& frame = std::get<Frame>(loaded);
     for (std::size_t k = 0; k < cameras.size(); ++k) {

@@ -21,7 +21,7 @@ class RecalibratedSource : public FrameSource {
     info_.calibration = std::move(calibration);
   }
   const DriveInfo& info() const override { return info_; }
-  FrameResult load(int index) const override { return drive_->load(index); }
+  LoadedFrame load(int index) const override { return drive_->load(index); }
   void expect(int index) const override { drive_->expect(index); }
   std::optional<TimeNs> stamp(int index) const override { return drive_->stamp(index); }
 

@@ -18,7 +18,7 @@ std::unique_ptr<FrameSource> two_cameras() {
       }
     }
     const DriveInfo& info() const override { return info_; }
-    FrameResult load(int index) const override {
+    LoadedFrame load(int index) const override {
       return SkippedFrame{index, SkipReason::kMissingScan, ""};
     }
     std::optional<TimeNs> stamp(int index) const override { return TimeNs(index); }

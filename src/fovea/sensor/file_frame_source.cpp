@@ -25,7 +25,7 @@ class FileFrameSource : public FrameSource {
     return frame_stamp(info_, files_.stamps, index);
   }
 
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (const auto missing = missing_part(index)) return *missing;
     Frame frame;
     frame.index = index;

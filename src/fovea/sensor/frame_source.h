@@ -58,7 +58,7 @@ struct SkippedFrame {
   std::string detail;  ///< one line: what and which file
 };
 
-using FrameResult = std::variant<Frame, SkippedFrame>;
+using LoadedFrame = std::variant<Frame, SkippedFrame>;
 
 struct DriveOptions {
   /// Camera numbers in the order in which they take turns; empty: camera 2, or else the first
@@ -120,7 +120,7 @@ class FrameSource {
   virtual const DriveInfo& info() const = 0;
   /// Reads frame `index` of [info().begin, info().end). Thread-safe. DriveLostError if the drive
   /// can no longer be read from there on.
-  virtual FrameResult load(int index) const = 0;
+  virtual LoadedFrame load(int index) const = 0;
   /// Has the disk fetch what load(index) will read, of any index, and waits for nothing.
   virtual void expect(int /*index*/) const {}
   /// Time of a frame without reading it; empty if it has none.

@@ -70,7 +70,7 @@ class GenericDrive : public testing::Test {
     return notes;
   }
   void expect_skipped(int index, SkipReason reason, const std::string& detail) const {
-    const FrameResult result = open()->load(index);
+    const LoadedFrame result = open()->load(index);
     ASSERT_TRUE(std::holds_alternative<SkippedFrame>(result));
     EXPECT_EQ(std::get<SkippedFrame>(result).reason, reason);
     EXPECT_THAT(std::get<SkippedFrame>(result).detail, HasSubstr(detail));

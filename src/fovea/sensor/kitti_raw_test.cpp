@@ -38,7 +38,7 @@ class KittiRaw : public testing::Test {
   static SkippedFrame only_skipped(const FrameSource& drive) {
     std::vector<SkippedFrame> skipped;
     for (int i = drive.info().begin; i < drive.info().end; ++i) {
-      const FrameResult result = drive.load(i);
+      const LoadedFrame result = drive.load(i);
       if (const auto* bad = std::get_if<SkippedFrame>(&result)) skipped.push_back(*bad);
     }
     EXPECT_EQ(skipped.size(), 1u);
@@ -315,7 +315,7 @@ TEST_F(KittiRaw, ScansAloneNeedNoImages) {
   const auto drive = open();
   EXPECT_TRUE(drive->info().calibration.cameras.empty());
   EXPECT_TRUE(drive->info().navigation && drive->info().origin);
-  const FrameResult loaded = drive->load(5);
+  const LoadedFrame loaded = drive->load(5);
   ASSERT_TRUE(std::holds_alternative<Frame>(loaded));
   EXPECT_GT(std::get<Frame>(loaded).scan.size(), 0u);
   EXPECT_TRUE(std::get<Frame>(loaded).images.empty());

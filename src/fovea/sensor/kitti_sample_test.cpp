@@ -29,7 +29,7 @@ TEST(KittiSample, AllFramesLoadWithBothColourCameras) {
   EXPECT_FALSE(info.sweep_compensated);
   EXPECT_NEAR(info.sweep.period, 0.1034, 0.0002);
   for (int index = info.begin; index < info.end; ++index) {
-    const FrameResult result = drive->load(index);
+    const LoadedFrame result = drive->load(index);
     ASSERT_TRUE(std::holds_alternative<Frame>(result)) << std::get<SkippedFrame>(result).detail;
     const Frame& frame = std::get<Frame>(result);
     EXPECT_EQ(frame.index, index);

@@ -78,7 +78,7 @@ WebResponse DriveImages::response(std::string_view path) const {
   const std::optional<int> camera =
       number(path.substr(slash + 1, path.size() - slash - 1 - kEnding.size()));
   if (!frame || !camera || *frame < info().begin || *frame >= info().end) return not_found();
-  const FrameResult loaded = drive_->load(*frame);
+  const LoadedFrame loaded = drive_->load(*frame);
   const auto* of_drive = std::get_if<Frame>(&loaded);
   if (of_drive == nullptr) return not_found();
   const std::vector<Camera>& cameras = info().calibration.cameras;

@@ -22,7 +22,7 @@ class TestDrive : public FrameSource {
     info_.end = end;
   }
   const DriveInfo& info() const override { return info_; }
-  FrameResult load(int index) const override {
+  LoadedFrame load(int index) const override {
     if (index == 8) return SkippedFrame{8, SkipReason::kMissingImage, "gone"};
     Frame frame;
     frame.index = index;
