@@ -69,10 +69,10 @@ SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_
 }
 
 /// A frame of the map with its scan and image.
-using LoadedFrame = std::pair<FrameRecord, Frame>;
+using RecordedFrame = std::pair<FrameRecord, Frame>;
 
 /// The frame asked for, or the one next to the middle that can be read.
-LoadedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
+RecordedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
                        const FrameSource& drive) {
   std::vector<FrameRecord> records = {find_frame(map, arguments.frame, arguments.map)};
   if (arguments.frame < 0) {

@@ -83,7 +83,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
                            const std::vector<PlacedFrame>& training) {
   if (training.empty()) return excuse("No frame was mapped.");
   const PlacedFrame& placed = training[training.size() / 2];
-  const std::optional<LoadedFrame> loaded = load_frame(drive, placed);
+  const std::optional<TrainingFrame> loaded = load_frame(drive, placed);
   if (!loaded) return excuse("The frame could not be loaded again.");
   const std::vector<Image>& images = loaded->frame.images;
   const auto shot =

@@ -142,7 +142,7 @@ std::string distance(const ScanMatching& matching) {
 
 /// Both frames and what of them does not depend on the rate.
 struct Scans {
-  LoadedFrame target, source;
+  TrainingFrame target, source;
   std::vector<Eigen::Vector3f> target_matched, source_matched;
   RigidMotion T_target_guess;
   Window window;

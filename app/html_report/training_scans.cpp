@@ -27,12 +27,12 @@ std::vector<PlacedFrame> training_scans(const ScoredMap& map, const FrameSource&
   return frames;
 }
 
-std::optional<LoadedFrame> load_frame(const FrameSource& drive, const PlacedFrame& placed) {
+std::optional<TrainingFrame> load_frame(const FrameSource& drive, const PlacedFrame& placed) {
   const DriveInfo& info = drive.info();
   if (placed.index < info.begin || placed.index >= info.end) return std::nullopt;
   LoadedFrame loaded = drive.load(placed.index);
   if (std::holds_alternative<SkippedFrame>(loaded)) return std::nullopt;
-  LoadedFrame result{std::move(std::get<Frame>(loaded)), {}};
+  TrainingFrame result{std::move(std::get<Frame>(loaded)), {}};
   result.scan_lidar = compensated_scan(result.frame.scan, placed, info);
   return result;
 }

@@ -17,12 +17,12 @@ std::vector<PlacedFrame> training_scans(const ScoredMap& map, const FrameSource&
                                         const std::vector<PlacedFrame>& scored);
 
 /// A frame with its scan motion compensated.
-struct LoadedFrame {
+struct TrainingFrame {
   Frame frame;
   PointCloud scan_lidar;
 };
 /// Empty if the drive cannot load it.
-std::optional<LoadedFrame> load_frame(const FrameSource& drive, const PlacedFrame& placed);
+std::optional<TrainingFrame> load_frame(const FrameSource& drive, const PlacedFrame& placed);
 
 /// The settings that the map was made with; of a cloud, or where they are not known, the default's.
 MapperOptions options_of(const ScoredMap& map);
