@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <new>
 #include <sstream>
@@ -50,6 +51,18 @@ int open_flags(Access access) {
       return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   }
   return 0;
+}
+
+/// Whether the machine can give SQLite more memory than any row of a file needs. If it can, a
+/// SQLITE_NOMEM means damage: a row of almost 2^32 bytes makes SQLite allocate 0 bytes.
+bool has_memory_for_rows(sqlite3* database) {
+  constexpr std::uintmax_t kLongestRow = 1'000'000'000, kForPages = 16'000'000;
+  std::error_code error;
+  const std::uintmax_t size =
+      std::filesystem::file_size(sqlite3_db_filename(database, "main"), error);
+  void* memory = sqlite3_malloc64(std::min(error ? kLongestRow : size, kLongestRow) + kForPages);
+  sqlite3_free(memory);
+  return memory != nullptr;
 }
 
 bool is_reading(Access access) {
@@ -136,9 +149,13 @@ void Database::throw_busy() const {
 }
 
 void Database::fail(int code) const {
-  const int primary = code & 0xff;
-  if (primary == SQLITE_NOMEM) throw std::bad_alloc();
-  const std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
+  int primary = code & 0xff;
+  std::string message = handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code);
+  if (primary == SQLITE_NOMEM) {
+    if (handle_ == nullptr || !has_memory_for_rows(handle_)) throw std::bad_alloc();
+    primary = SQLITE_CORRUPT;
+    message = "the length of a row is impossible";
+  }
   if (is_reading(access_)) {
     if (primary == SQLITE_NOTADB) {
       throw NoDatabase(words_.not_one, where(), words_.what_to_give);
