@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -62,6 +63,16 @@ class BackgroundProgram {
     while (!has_ended() && std::chrono::steady_clock::now() < latest) {
       if (reached()) return true;
       std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    return false;
+  }
+
+  /// Whether the program waits for signals itself: it blocks SIGTERM.
+  bool waits_for_signals() const {
+    std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (!line.starts_with("SigBlk:")) continue;
+      return (std::stoull(line.substr(7), nullptr, 16) >> (SIGTERM - 1) & 1) != 0;
     }
     return false;
   }

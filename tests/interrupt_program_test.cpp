@@ -6,8 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "fovea/map/map_store.h"
+#include "fovea/rosbag/ros_messages.h"
 #include "tests/background_program.h"
+#include "tests/cdr_writer.h"
 #include "tests/kitti_writer.h"
+#include "tests/mcap_writer.h"
 #include "tests/sample_map.h"
 
 namespace fovea::interrupt_program_test {
@@ -22,6 +25,38 @@ using Clock = std::chrono::steady_clock;
 /// 2 s on an idle machine; tests run next to others.
 constexpr double kLatest = 10;
 
+/// A recording of scans alone, with as many points as real ones.
+void write_recording(const fs::path& file) {
+  constexpr std::uint32_t kScans = 100, kPoints = 20'000, kBytes = 12;
+  std::string records = mcap::channel(1, "/points", "cdr", std::string(ros::kPointCloud));
+  std::string points;
+  for (std::uint32_t i = 0; i < 3 * kPoints; ++i) points += mcap::number(1 + float(i % 50));
+  for (std::uint32_t scan = 0; scan < kScans; ++scan) {
+    CdrWriter message;
+    message.header(1'700'000'000 + int(scan), 0, "lidar").number(1u).number(kPoints).number(3u);
+    std::uint32_t offset = 0;
+    for (const char* name : {"x", "y", "z"}) {
+      message.text(name).number(offset).number(std::uint8_t{7}).number(1u);
+      offset += 4;
+    }
+    message.number(std::uint8_t{0}).number(kBytes).number(kBytes * kPoints).bytes(points);
+    records += mcap::message(1, message.number(std::uint8_t{1}).message());
+  }
+  std::ofstream(file, std::ios::binary) << mcap::file_of(records);
+}
+
+/// A scan that takes long to register or upsample: a curved wall in front of the vehicle.
+void write_large_scan(const fs::path& file) {
+  std::string bytes;
+  for (int row = 0; row < 400; ++row) {
+    for (int column = 0; column < 1000; ++column) {
+      const float y = 0.01f * float(column - 500), z = 0.005f * float(row - 200);
+      for (const float value : {10 + 0.1f * std::sin(y), y, z, 0.5f}) bytes += mcap::number(value);
+    }
+  }
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
 class Interrupt : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -35,6 +70,8 @@ class Interrupt : public testing::Test {
     writer->commit();
     std::ofstream poses(input("poses.txt"));
     for (int i = 0; i < 2000; ++i) poses << "1 0 0 1 0 1 0 0 0 0 1 0\n";
+    write_recording(input("drive.mcap"));
+    write_large_scan(input("scan.bin"));
   }
   static void TearDownTestSuite() { delete inputs_; }
 
@@ -56,25 +93,39 @@ class Interrupt : public testing::Test {
     return false;
   }
 
-  enum class At { kOpen, kContents };
+  /// What a program has reached: it runs, its output is open, or has contents.
+  enum class At { kRunning, kOpen, kContents };
 
-  /// Sends the signal once the output is open, or has contents. A fast command may end before: then
-  /// once more.
+  bool has_reached(At at, const BackgroundProgram& program) const {
+    switch (at) {
+      case At::kRunning:
+        return program.waits_for_signals();
+      case At::kOpen:
+        return has_partial_output();
+      case At::kContents:
+        return has_partial_contents();
+    }
+    return false;
+  }
+
+  /// Sends the signal once the program has reached this. A fast command may end before: then once
+  /// more.
   ProgramRun interrupted(const std::vector<std::string>& arguments, int signal, At at) const {
+    ProgramRun run;
     for (int attempt = 0; attempt < 10; ++attempt) {
       BackgroundProgram program(arguments);
-      if (program.wait_until(
-              [&] { return at == At::kOpen ? has_partial_output() : has_partial_contents(); })) {
+      if (program.wait_until([&] { return has_reached(at, program); })) {
         const Clock::time_point start = Clock::now();
         program.kill(signal);
-        const ProgramRun run = program.wait();
+        run = program.wait();
         EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), kLatest);
         if (run.exit_code != 0) return run;
       }
+      run = program.wait();
       for (const std::string& name : own_.names()) fs::remove_all(own_ / name);
     }
-    ADD_FAILURE() << arguments.front() << " was never interrupted";
-    return {};
+    ADD_FAILURE() << arguments.front() << " was never interrupted: " << run.err;
+    return run;
   }
 
   void expect_nothing_left(const std::vector<std::string>& arguments, int signal,
@@ -83,7 +134,7 @@ class Interrupt : public testing::Test {
     const ProgramRun run = interrupted(arguments, signal, at);
     EXPECT_EQ(run.exit_code, 128 + signal) << run.err;
     EXPECT_THAT(run.err, StartsWith("fovea: error: interrupted by SIG"));
-    EXPECT_THAT(run.err, HasSubstr("not written: "));
+    EXPECT_THAT(run.err, HasSubstr(at == At::kRunning ? "no output was left" : "not written: "));
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_THAT(own_.names(), IsEmpty());
   }
@@ -124,6 +175,23 @@ TEST_F(Interrupt, CommandsThatMakeADriveLeaveNothing) {
         {"simulate", "-o", own("a"), "--frames", "1000", "--format", format, "--set",
          "camera.width=96", "--set", "camera.height=32", "--set", "lidar.columns=90"},
         SIGTERM);
+  }
+}
+
+TEST_F(Interrupt, CommandsThatReadScansOrARecordingLeaveNothing) {
+  const std::string scan = input("scan.bin"), calibration = input("2011_09_26");
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    expect_nothing_left({"convert", input("drive.mcap"), "-o", own("a")}, signal);
+    expect_nothing_left({"upsample", scan, calibration, own("a.ply")}, signal, At::kRunning);
+    expect_nothing_left({"upsample", scan, calibration, own("a.ply")}, signal, At::kOpen);
+  }
+}
+
+TEST_F(Interrupt, CommandsWithoutOutputEnd) {
+  const std::string scan = input("scan.bin");
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    expect_nothing_left({"info", input("large.fovea")}, signal, At::kRunning);
+    expect_nothing_left({"register", scan, scan, "--voxel", "0"}, signal, At::kRunning);
   }
 }
 
