@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/recording/camera_name.h"
 #include "fovea/rosbag/convert_bags.h"
 

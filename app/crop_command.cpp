@@ -5,11 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "fovea/map/crop.h"
+#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {
@@ -20,7 +20,7 @@ struct CropArguments {
 };
 
 void run(const CropArguments& arguments) {
-  check_files({{arguments.map}, {{arguments.output, FileKind::kMap, arguments.force}}});
+  check_files({{arguments.map}, {{arguments.output, ContentKind::kMap, arguments.force}}});
   const CropRegion region = arguments.box.empty() ? CropRegion::polygon(arguments.polygon)
                                                   : CropRegion::box(arguments.box);
   const MapReader map = open_map(arguments.map);

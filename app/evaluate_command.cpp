@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/report_page.h"
@@ -25,6 +24,7 @@
 #include "fovea/evaluation/evaluate_truth.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/map/map_store.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/stored_calibration.h"
 
 namespace fovea::app {
@@ -76,8 +76,8 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
   CommandFiles files;
   files.inputs = {arguments.map, arguments.drive.drive, arguments.poses};
   if (arguments.calibration != kDrive) files.inputs.push_back(arguments.calibration);
-  files.outputs = {{arguments.json, FileKind::kReport, /*force=*/true},
-                   {arguments.html, FileKind::kHtml, /*force=*/true}};
+  files.outputs = {{arguments.json, ContentKind::kReport, /*force=*/true},
+                   {arguments.html, ContentKind::kHtml, /*force=*/true}};
   check_files(files);
   const ThreadLimit threads(arguments.threads);
   ProtocolOptions options;

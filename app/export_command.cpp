@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
@@ -24,6 +23,7 @@
 #include "fovea/exporting/pose_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
 #include "fovea/map/map_store.h"
+#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {
@@ -126,11 +126,11 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
 CommandFiles files_of(const ExportArguments& arguments, const std::string& format) {
   CommandFiles files;
   files.inputs = {arguments.map};
-  const std::map<std::string, FileKind> kinds{{"ply", FileKind::kPly},
-                                              {"pcd", FileKind::kPcd},
-                                              {"las", FileKind::kLas},
-                                              {"glb", FileKind::kGlb},
-                                              {"kitti-poses", FileKind::kPoses}};
+  const std::map<std::string, ContentKind> kinds{{"ply", ContentKind::kPly},
+                                                 {"pcd", ContentKind::kPcd},
+                                                 {"las", ContentKind::kLas},
+                                                 {"glb", ContentKind::kGlb},
+                                                 {"kitti-poses", ContentKind::kPoses}};
   if (const auto kind = kinds.find(format); kind != kinds.end()) {
     files.outputs = {{arguments.output, kind->second, arguments.force}};
   } else {

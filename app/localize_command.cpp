@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
@@ -22,6 +21,7 @@
 #include "fovea/localization/localize_drive.h"
 #include "fovea/localization/pose_table.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/summary_json.h"
 
 namespace fovea::app {
@@ -196,9 +196,9 @@ CommandFiles files_of(const LocalizeArguments& arguments) {
   if (arguments.guess != kNavigation && arguments.guess != kFirst) {
     files.inputs.push_back(arguments.guess);
   }
-  const FileKind kind = writes_table(arguments) ? FileKind::kPoseTable : FileKind::kPoses;
+  const ContentKind kind = writes_table(arguments) ? ContentKind::kPoseTable : ContentKind::kPoses;
   files.outputs = {{arguments.output, kind, arguments.force},
-                   {arguments.report, FileKind::kReport, /*force=*/true}};
+                   {arguments.report, ContentKind::kReport, /*force=*/true}};
   return files;
 }
 

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/number_checks.h"
@@ -23,6 +22,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/base/process_memory.h"
 #include "fovea/geometry/pose_file.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/summary_json.h"
@@ -137,8 +137,8 @@ CommandFiles files_of(const MapArguments& arguments) {
   if (arguments.poses != kRefinedPoses && arguments.poses != kNavigationPoses) {
     files.inputs.push_back(arguments.poses);
   }
-  files.outputs = {{arguments.output, FileKind::kMap, arguments.force || arguments.resume},
-                   {arguments.report, FileKind::kReport, /*force=*/true}};
+  files.outputs = {{arguments.output, ContentKind::kMap, arguments.force || arguments.resume},
+                   {arguments.report, ContentKind::kReport, /*force=*/true}};
   return files;
 }
 

@@ -5,13 +5,13 @@
 #include <memory>
 #include <string>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "fovea/base/parallel.h"
 #include "fovea/merging/merge_maps.h"
+#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {
@@ -43,7 +43,8 @@ void print(const MergeFigures& figures, const std::string& output) {
 }
 
 void run(const MergeArguments& arguments) {
-  check_files({{arguments.a, arguments.b}, {{arguments.output, FileKind::kMap, arguments.force}}});
+  check_files(
+      {{arguments.a, arguments.b}, {{arguments.output, ContentKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
   const MapReader a = open_map(arguments.a), b = open_map(arguments.b);
   MergeJob job;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/map_arguments.h"
@@ -16,6 +15,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/recolor.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -46,7 +46,7 @@ MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta)
 
 void run(RecolorArguments arguments, Warnings& warnings) {
   check_files({{arguments.map, arguments.drive.drive, arguments.config},
-               {{arguments.output, FileKind::kMap, arguments.force}}});
+               {{arguments.output, ContentKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
   const MapReader map = open_map(arguments.map);
   const MapMeta meta = map.meta();

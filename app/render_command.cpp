@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/html_report/viewpoint.h"
@@ -28,6 +27,7 @@
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
 #include "fovea/geometry/lidar_data_sheet.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/recording/png_encode.h"
 
@@ -145,7 +145,7 @@ CommandFiles files_of(const RenderArguments& arguments) {
   CommandFiles files;
   files.inputs = {arguments.map, arguments.drive, arguments.path.poses, arguments.camera};
   if (arguments.path.poses.empty()) {
-    files.outputs = {{arguments.output, FileKind::kPng, arguments.force}};
+    files.outputs = {{arguments.output, ContentKind::kPng, arguments.force}};
   } else {
     files.folder = {arguments.output};
   }

@@ -7,12 +7,12 @@
 #include <memory>
 #include <string>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/repair.h"
+#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {
@@ -23,7 +23,7 @@ struct RepairArguments {
 };
 
 void run(const RepairArguments& arguments, Warnings& warnings) {
-  check_files({{arguments.map}, {{arguments.output, FileKind::kMap, arguments.force}}});
+  check_files({{arguments.map}, {{arguments.output, ContentKind::kMap, arguments.force}}});
   // Before a file is made: whether this is a map at all.
   const int format = MapReader(arguments.map, [](const std::string&) {}).format_version();
   const auto writer = MapWriter::create(arguments.output, arguments.force);

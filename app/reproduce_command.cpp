@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/number_checks.h"
@@ -19,6 +18,7 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/path_name.h"
+#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {
@@ -87,8 +87,8 @@ CommandFiles files_of(const ReproduceArguments& arguments) {
   files.folder = {arguments.output, FolderUse::kAddTo};
   const std::filesystem::path folder = arguments.output;
   if (std::filesystem::is_directory(folder)) {
-    files.outputs = {{folder / "results.json", FileKind::kReport, /*force=*/true},
-                     {folder / "results.md", FileKind::kMarkdown, /*force=*/true}};
+    files.outputs = {{folder / "results.json", ContentKind::kReport, /*force=*/true},
+                     {folder / "results.md", ContentKind::kMarkdown, /*force=*/true}};
   }
   return files;
 }

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/simulation/simulate.h"
 #include "fovea/simulation/simulation_config.h"
 

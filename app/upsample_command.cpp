@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "app/command_files.h"
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "app/print.h"
@@ -13,6 +12,7 @@
 #include "fovea/exporting/cloud_ply.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/upsample.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/sensor/kitti_calibration.h"
 #include "fovea/sensor/lidar_scan.h"
 
@@ -47,7 +47,7 @@ PointCloud in_view(const PointCloud& points_cam, const Camera& camera) {
 
 void run(const UpsampleArguments& arguments) {
   check_files({{arguments.scan, arguments.calibration},
-               {{arguments.output, FileKind::kPly, arguments.force}}});
+               {{arguments.output, ContentKind::kPly, arguments.force}}});
   const Camera camera = find_camera(arguments);
   const PointCloud scan_lidar = read_lidar_scan(arguments.scan, {}, 0).points;
   const PointCloud visible_cam = in_view(transform_cloud(scan_lidar, camera.T_cam_lidar), camera);

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "app/file_kind.h"
+#include "fovea/base/content_kind.h"
 
-namespace fovea::app {
+namespace fovea {
 
 struct OutputPath {
   std::string path;  ///< empty: the command does not write it
-  FileKind kind = FileKind::kOther;
+  ContentKind kind = ContentKind::kOther;
   bool force = false;  ///< an existing file of the same kind may be replaced
 };
 
@@ -37,4 +37,4 @@ struct CommandFiles {
 /// if an output folder lies in an input or would replace one.
 void check_files(const CommandFiles& files);
 
-}  // namespace fovea::app
+}  // namespace fovea

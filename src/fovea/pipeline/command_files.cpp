@@ -1,4 +1,4 @@
-#include "app/command_files.h"
+#include "fovea/pipeline/command_files.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -15,7 +15,7 @@
 #include "fovea/base/output_file.h"
 #include "fovea/sensor/kitti_drives.h"
 
-namespace fovea::app {
+namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,15 +71,15 @@ bool has_file(const fs::path& folder, const FileIdentity& file) {
 std::vector<fs::path> names_of(const OutputPath& output) {
   const fs::path file = resolved(output.path);
   std::vector<fs::path> names{output.path, partial_path(file)};
-  if (output.kind != FileKind::kMap) return names;
+  if (output.kind != ContentKind::kMap) return names;
   for (const char* ending : {"-wal", "-shm", "-journal"}) names.push_back(fs::path(file) += ending);
   return names;
 }
 
 /// Whether a drive or recording can have files of this kind.
-bool can_be_in_a_drive(FileKind kind) {
-  constexpr std::array kKinds{FileKind::kPly, FileKind::kPcd, FileKind::kPng, FileKind::kPoses,
-                              FileKind::kPoseTable};
+bool can_be_in_a_drive(ContentKind kind) {
+  constexpr std::array kKinds{ContentKind::kPly, ContentKind::kPcd, ContentKind::kPng,
+                              ContentKind::kPoses, ContentKind::kPoseTable};
   return std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
 
@@ -141,13 +141,13 @@ void check_ending(const OutputPath& output) {
   const std::string ending = ending_of(output.path);
   const bool is_other =
       std::find(kOtherFormats.begin(), kOtherFormats.end(), ending) != kOtherFormats.end();
-  if (output.kind == FileKind::kMap && is_other) {
+  if (output.kind == ContentKind::kMap && is_other) {
     throw OutputError(fmt::format("a map cannot have a name that ends in '{}', as another format "
                                   "does",
                                   ending),
                       output.path, "give a name that ends in .fovea; 'fovea export' writes others");
   }
-  if (output.kind != FileKind::kMap && ending == ".fovea") {
+  if (output.kind != ContentKind::kMap && ending == ".fovea") {
     throw OutputError(fmt::format("only a map has a name that ends in .fovea, and this is {}",
                                   describe(output.kind)),
                       output.path, kOtherName);
@@ -159,9 +159,9 @@ void check_partial(const OutputPath& output) {
   const fs::path partial = partial_path(resolved(output.path));
   std::error_code ignored;
   if (!fs::is_regular_file(partial, ignored)) return;
-  const FileKind kind = kind_of_file(partial);
-  const bool can_be_left = kind == output.kind || kind == FileKind::kEmpty ||
-                           kind == FileKind::kOther || kind == FileKind::kSqlite;
+  const ContentKind kind = content_kind_of(partial);
+  const bool can_be_left = kind == output.kind || kind == ContentKind::kEmpty ||
+                           kind == ContentKind::kOther || kind == ContentKind::kSqlite;
   if (can_be_left) return;
   throw OutputError(
       fmt::format("the output grows under a name that exists and is {}", describe(kind)),
@@ -171,8 +171,8 @@ void check_partial(const OutputPath& output) {
 void check_existing(const OutputPath& output) {
   std::error_code ignored;
   if (fs::is_regular_file(output.path, ignored)) {
-    const FileKind kind = kind_of_file(output.path);
-    if (kind != output.kind && kind != FileKind::kEmpty) {
+    const ContentKind kind = content_kind_of(output.path);
+    if (kind != output.kind && kind != ContentKind::kEmpty) {
       throw OutputError(fmt::format("the output exists and is {}, which {} does not replace",
                                     describe(kind), describe(output.kind)),
                         output.path, "give another name, or remove the file first");
@@ -218,4 +218,4 @@ void check_files(const CommandFiles& files) {
   }
 }
 
-}  // namespace fovea::app
+}  // namespace fovea

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-namespace fovea::app {
+namespace fovea {
 
-enum class FileKind {
+enum class ContentKind {
   kEmpty,
   kMap,
   kReport,  ///< JSON of `map --report`, `evaluate --json`, `localize --report`, `reproduce`
@@ -24,9 +24,9 @@ enum class FileKind {
 };
 
 /// The kind of an existing file; kOther if it cannot be read.
-FileKind kind_of_file(const std::filesystem::path& file);
+ContentKind content_kind_of(const std::filesystem::path& file);
 
 /// "a Fovea map", "a PLY file", ...
-const char* describe(FileKind kind);
+const char* describe(ContentKind kind);
 
-}  // namespace fovea::app
+}  // namespace fovea

@@ -1,4 +1,4 @@
-#include "app/file_kind.h"
+#include "fovea/base/content_kind.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "fovea/base/file_format.h"
 #include "fovea/base/input_file.h"
 
-namespace fovea::app {
+namespace fovea {
 namespace {
 
 constexpr std::size_t kHead = 4096;  // bytes: more than the longest line of a pose file
@@ -57,88 +57,88 @@ bool is_pose_file(std::string_view text) {
 }
 
 /// Kind of a text that begins with '{', by its first key.
-FileKind kind_of_json_object(std::string_view text) {
+ContentKind kind_of_json_object(std::string_view text) {
   const std::string_view body = without_blanks(text.substr(1));
-  if (body.starts_with('}')) return FileKind::kReport;  // of no figures
-  if (!body.starts_with('"')) return FileKind::kOther;
+  if (body.starts_with('}')) return ContentKind::kReport;  // of no figures
+  if (!body.starts_with('"')) return ContentKind::kOther;
   const std::string_view key = body.substr(1, body.find('"', 1) - 1);
   constexpr std::array kReportKeys{"map", "protocol", "localize", "fovea", "warnings"};
   const bool is_report =
       std::find(kReportKeys.begin(), kReportKeys.end(), key) != kReportKeys.end();
-  return is_report ? FileKind::kReport : FileKind::kJson;
+  return is_report ? ContentKind::kReport : ContentKind::kJson;
 }
 
-FileKind kind_of_sqlite(std::string_view head) {
+ContentKind kind_of_sqlite(std::string_view head) {
   constexpr std::size_t kApplicationId = 68;  // offset in SQLite's header
   const bool is_map =
       head.size() > kApplicationId && head.substr(kApplicationId).starts_with("FVEA");
-  return is_map ? FileKind::kMap : FileKind::kSqlite;
+  return is_map ? ContentKind::kMap : ContentKind::kSqlite;
 }
 
 }  // namespace
 
-FileKind kind_of_file(const std::filesystem::path& file) {
+ContentKind content_kind_of(const std::filesystem::path& file) {
   std::error_code error;
-  if (std::filesystem::file_size(file, error) == 0 && !error) return FileKind::kEmpty;
+  if (std::filesystem::file_size(file, error) == 0 && !error) return ContentKind::kEmpty;
   const std::string head = head_of(file);
   const std::string_view text = without_blanks(head);
   switch (sniff_format(head).format) {
     case FileFormat::kSqlite:
       return kind_of_sqlite(head);
     case FileFormat::kPly:
-      return FileKind::kPly;
+      return ContentKind::kPly;
     case FileFormat::kPcd:
-      return FileKind::kPcd;
+      return ContentKind::kPcd;
     case FileFormat::kLas:
-      return FileKind::kLas;
+      return ContentKind::kLas;
     case FileFormat::kPng:
-      return FileKind::kPng;
+      return ContentKind::kPng;
     default:
       break;
   }
-  if (head.starts_with("glTF")) return FileKind::kGlb;
+  if (head.starts_with("glTF")) return ContentKind::kGlb;
   if (begins_with_tag(text, "<!doctype html") || begins_with_tag(text, "<html"))
-    return FileKind::kHtml;
+    return ContentKind::kHtml;
   if (text.starts_with('{')) return kind_of_json_object(text);
-  if (text.starts_with("frame,time_ns,")) return FileKind::kPoseTable;
-  if (text.starts_with("# Results\n\n    fovea reproduce")) return FileKind::kMarkdown;
-  return is_pose_file(text) ? FileKind::kPoses : FileKind::kOther;
+  if (text.starts_with("frame,time_ns,")) return ContentKind::kPoseTable;
+  if (text.starts_with("# Results\n\n    fovea reproduce")) return ContentKind::kMarkdown;
+  return is_pose_file(text) ? ContentKind::kPoses : ContentKind::kOther;
 }
 
-const char* describe(FileKind kind) {
+const char* describe(ContentKind kind) {
   switch (kind) {
-    case FileKind::kEmpty:
+    case ContentKind::kEmpty:
       return "an empty file";
-    case FileKind::kMap:
+    case ContentKind::kMap:
       return "a Fovea map";
-    case FileKind::kReport:
+    case ContentKind::kReport:
       return "a report of Fovea";
-    case FileKind::kHtml:
+    case ContentKind::kHtml:
       return "an HTML page";
-    case FileKind::kPly:
+    case ContentKind::kPly:
       return "a PLY file";
-    case FileKind::kPcd:
+    case ContentKind::kPcd:
       return "a PCD file";
-    case FileKind::kLas:
+    case ContentKind::kLas:
       return "a LAS file";
-    case FileKind::kGlb:
+    case ContentKind::kGlb:
       return "a glTF file";
-    case FileKind::kPng:
+    case ContentKind::kPng:
       return "a PNG image";
-    case FileKind::kPoses:
+    case ContentKind::kPoses:
       return "a pose file";
-    case FileKind::kPoseTable:
+    case ContentKind::kPoseTable:
       return "a table of poses";
-    case FileKind::kMarkdown:
+    case ContentKind::kMarkdown:
       return "a results page";
-    case FileKind::kSqlite:
+    case ContentKind::kSqlite:
       return "an SQLite database, but no map";
-    case FileKind::kJson:
+    case ContentKind::kJson:
       return "JSON, but no report of Fovea";
-    case FileKind::kOther:
+    case ContentKind::kOther:
       break;
   }
   return "a file of another kind";
 }
 
-}  // namespace fovea::app
+}  // namespace fovea
