@@ -59,10 +59,8 @@ void run(const ConvertArguments& arguments, Warnings& warnings) {
   const std::vector<std::filesystem::path> bags(arguments.bags.begin(), arguments.bags.end());
   const ConvertFigures figures = [&] {
     ProgressBar bar(arguments.quiet, "messages");
-    return convert_bags(bags, arguments.output, arguments.force, options, [&](int done, int total) {
-      if (total > 0) bar.draw(done, total);
-      return true;
-    });
+    return convert_bags(bags, arguments.output, arguments.force, options,
+                        [&](int done, int total) { bar.draw(done, total); });
   }();
   warnings.add(figures, "", arguments.quiet);
   if (arguments.quiet) return;

@@ -144,27 +144,27 @@ void render_drive_command(const RenderDriveArguments& arguments, Warnings& warni
   job.period = from_seconds(1 / arguments.rate);
   job.reach = arguments.reach;
   const MapReader map = open_map(arguments.map);
-  const auto figures = [&] {
+  const RenderFigures figures = [&] {
     ProgressBar bar(arguments.quiet);
     return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });
   }();
-  if (figures->blank > 0) {
-    warnings.add({fmt::format("{} images are black: the map has nothing there", figures->blank)},
+  if (figures.blank > 0) {
+    warnings.add({fmt::format("{} images are black: the map has nothing there", figures.blank)},
                  arguments.quiet);
   }
-  if (figures->empty > 0) {
-    warnings.add({fmt::format("{} scans have no point and were not written", figures->empty)},
+  if (figures.empty > 0) {
+    warnings.add({fmt::format("{} scans have no point and were not written", figures.empty)},
                  arguments.quiet);
   }
   if (arguments.quiet) return;
-  print_out("{}: {} frames", arguments.output, figures->frames);
+  print_out("{}: {} frames", arguments.output, figures.frames);
   if (!job.cameras.empty()) {
     print_out(", {} images each, {:.0f} % of their pixels show something", job.cameras.size(),
-              100 * figures->covered);
+              100 * figures.covered);
   }
-  if (job.lidar) print_out(", {:.0f} points a scan", figures->points);
+  if (job.lidar) print_out(", {:.0f} points a scan", figures.points);
   print_out("\n");
-  if (job.cameras.empty() || !job.lidar || figures->empty == figures->frames) {
+  if (job.cameras.empty() || !job.lidar || figures.empty == figures.frames) {
     print_out("note: it takes both images and scans to be a drive that fovea map reads\n");
   }
 }

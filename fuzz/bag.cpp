@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::filesystem::path file = folder / "a.bag";
   std::ofstream(file, std::ios::binary) << as_text(data, size);
   BagSurvey survey;
-  if (!read_or_refuse([&] { survey = survey_bags({file}, folder.path(), [] { return true; }); })) {
+  if (!read_or_refuse([&] { survey = survey_bags({file}, folder.path()); })) {
     return 0;
   }
   std::string lidar_frame = "lidar";

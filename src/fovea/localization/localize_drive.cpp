@@ -58,9 +58,7 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
   std::map<std::string, std::vector<float>> times;
   std::optional<SkippedFrame> skipped;
   const auto start = WallClock::now();
-  while (!job.stop.stop_requested()) {
-    const std::optional<TimedFrame> loaded = loader.next();
-    if (!loaded) break;
+  while (const std::optional<TimedFrame> loaded = loader.next()) {
     if (const auto* frame = std::get_if<Frame>(&loaded->result)) {
       const auto began = WallClock::now();
       localized.frames.push_back(localizer.localize(*frame));
@@ -77,7 +75,7 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
     progress(int(localized.frames.size()), int(wanted.size()));
   }
   const std::size_t scans = times["frame"].size();
-  if (scans == 0 && !job.stop.stop_requested()) {
+  if (scans == 0) {
     throw InputError(skipped ? fmt::format("no frame has a scan (the first: {})", skipped->detail)
                              : "no frame was asked for",
                      drive.info().path.string(), "choose other frames");

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <map>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,7 @@ namespace fovea {
 struct LocalizationJob {
   LocalizationGuess guess;
   LocalizerOptions options;
-  HoldOut only;          ///< frames to localise; of none: all
-  std::stop_token stop;  ///< ends after the frame at hand
+  HoldOut only;  ///< frames to localise; of none: all
 };
 
 struct LocalizedDrive : Messages {

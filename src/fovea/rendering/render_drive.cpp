@@ -128,13 +128,12 @@ class DriveRenderer {
 
 }  // namespace
 
-std::optional<RenderFigures> render_drive(const MapReader& map, const RenderJob& job,
-                                          const std::function<void(int, int)>& progress) {
+RenderFigures render_drive(const MapReader& map, const RenderJob& job,
+                           const std::function<void(int, int)>& progress) {
   const auto held = map.hold_state();
   DriveRenderer renderer(map, job);
   const int frames = static_cast<int>(job.T_local_lidar.size());
   for (int frame = 0; frame < frames; ++frame) {
-    if (job.stop.stop_requested()) return std::nullopt;
     renderer.render(frame);
     progress(frame + 1, frames);
   }

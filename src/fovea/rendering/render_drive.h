@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -27,8 +26,7 @@ struct RenderJob {
   TimeNs period = kNsPerSecond / 10;       ///< from frame to frame
   std::vector<RenderedCamera> cameras;
   std::optional<LidarPattern> lidar;
-  double reach = 80;     ///< m, how far is seen
-  std::stop_token stop;  ///< ends without an output
+  double reach = 80;  ///< m, how far is seen
 };
 
 struct RenderFigures {
@@ -42,10 +40,10 @@ struct RenderFigures {
 /// Writes a drive as docs/drives.md describes it: images/NAME/, lidar/ (KITTI's .bin), poses.csv,
 /// drive.toml; and depth/NAME/NNNNNN.png: 16 bits, metres along the optical axis x 256, 0 where
 /// nothing is (the form of KITTI's depth maps; nothing beyond 255 m). Images are the map's coloured
-/// points as discs (evaluation/splat.h), black where it has none. Returns figures; nothing if it
-/// was stopped. InputError if the map is damaged, OutputError as GenericDriveWriter.
+/// points as discs (evaluation/splat.h), black where it has none. InputError if the map is damaged,
+/// OutputError as GenericDriveWriter.
 /// @param progress  called after each frame with how many are done, of how many
-std::optional<RenderFigures> render_drive(const MapReader& map, const RenderJob& job,
-                                          const std::function<void(int, int)>& progress);
+RenderFigures render_drive(const MapReader& map, const RenderJob& job,
+                           const std::function<void(int, int)>& progress);
 
 }  // namespace fovea

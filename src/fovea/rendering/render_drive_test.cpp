@@ -43,7 +43,7 @@ class RenderDrive : public testing::Test {
     return job;
   }
   static RenderFigures render(const RenderJob& job) {
-    return *render_drive(MapReader(*folder_ / "map.fovea"), job, [](int, int) {});
+    return render_drive(MapReader(*folder_ / "map.fovea"), job, [](int, int) {});
   }
 
   static TemporaryFolder* folder_;
@@ -125,15 +125,6 @@ TEST_F(RenderDrive, WhereTheMapHasNothingNothingIsShownAndThatIsTold) {
   EXPECT_EQ(figures.empty, 1u);
   EXPECT_EQ(figures.covered, 0);
   EXPECT_FALSE(fs::exists(away.output / "lidar/000000.bin"));
-}
-
-TEST_F(RenderDrive, StoppedIsAsIfNothingHadBeen) {
-  RenderJob stopped = job();
-  std::stop_source stop;
-  stop.request_stop();
-  stopped.stop = stop.get_token();
-  EXPECT_FALSE(render_drive(MapReader(*folder_ / "map.fovea"), stopped, [](int, int) {}));
-  EXPECT_FALSE(fs::exists(stopped.output));
 }
 
 TEST_F(RenderDrive, ReplacesAnotherDriveIfAskedAndNothingElse) {

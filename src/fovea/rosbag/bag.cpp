@@ -57,7 +57,7 @@ class Unpacker : public BagSink {
   explicit Unpacker(BagSink& sink) : sink_(sink) {}
 
   bool wants(const BagTopic& topic) override { return sink_.wants(topic); }
-  bool add(const BagTopic& topic, std::string_view message) override {
+  void add(const BagTopic& topic, std::string_view message) override {
     if (!is_zstd(message)) return sink_.add(topic, message);
     std::string unpacked;
     try {
@@ -65,7 +65,7 @@ class Unpacker : public BagSink {
     } catch (const InputError&) {
       return sink_.add(topic, message);  // as it is: no message of ROS 2 to whom it reads
     }
-    return sink_.add(topic, unpacked);
+    sink_.add(topic, unpacked);
   }
   void skip(const BagTopic& topic) override { sink_.skip(topic); }
 

@@ -23,8 +23,7 @@ class BagSink {
   virtual bool wants(const BagTopic& topic) = 0;
   /// Called for each message that is wanted, in the file's order.
   /// @param message  valid during the call
-  /// @return whether to go on reading
-  virtual bool add(const BagTopic& topic, std::string_view message) = 0;
+  virtual void add(const BagTopic& topic, std::string_view message) = 0;
   /// Called for each message of the other topics.
   virtual void skip(const BagTopic& /*topic*/) {}
 };

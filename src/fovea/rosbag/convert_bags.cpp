@@ -46,7 +46,7 @@ void note_unused_topics(const BagSurvey& survey, const ConversionPlan& plan,
 ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
                             const std::filesystem::path& output, bool force,
                             const ConvertOptions& options,
-                            const std::function<bool(int, int)>& progress) {
+                            const std::function<void(int, int)>& progress) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& bag : bags) {
     const auto parts = bag_files(bag);
@@ -55,22 +55,10 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   ConvertFigures figures;
   GenericDriveWriter writer(output, force);
   const std::filesystem::path scratch = writer.folder();
-  bool stopped = false;
-  const BagSurvey survey =
-      survey_bags(files, scratch, [&] { return !(stopped = !progress(0, 0)); });
-  if (stopped) {
-    figures.stopped = true;
-    return figures;
-  }
+  const BagSurvey survey = survey_bags(files, scratch);
   ConversionPlan plan = naming(bags, [&] { return plan_conversion(survey, options); });
   Recorder recorder(survey, plan, writer, options.allow_dropped, progress);
-  for (const std::filesystem::path& file : files) {
-    if (!recorder.stopped()) read_bag_file(file, scratch, recorder);
-  }
-  if (recorder.stopped()) {
-    figures.stopped = true;
-    return figures;
-  }
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, recorder);
   figures.notes = plan.notes;
   naming(bags, [&] { recorder.finish(plan.drive, figures); });
   note_unused_topics(survey, plan, figures);

@@ -16,7 +16,6 @@ struct ConvertFigures : Messages {
   std::size_t scans = 0;
   std::size_t images = 0;  ///< of all cameras
   std::size_t cameras = 0;
-  bool stopped = false;  ///< nothing was kept
 };
 
 /// Reads the recordings, which belong together, twice: what calibration and poses they have, and
@@ -25,10 +24,10 @@ struct ConvertFigures : Messages {
 /// InputError for recordings that cannot be read or are no drive; OutputError as
 /// GenericDriveWriter. Nothing is kept of what was not finished.
 /// @param bags      files or folders, as bag_files()
-/// @param progress  called with messages done and in all; false ends it
+/// @param progress  called with messages done and in all
 ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
                             const std::filesystem::path& output, bool force,
                             const ConvertOptions& options,
-                            const std::function<bool(int, int)>& progress);
+                            const std::function<void(int, int)>& progress);
 
 }  // namespace fovea

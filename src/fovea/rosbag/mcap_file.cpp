@@ -66,8 +66,7 @@ class McapReader {
     if (take(std::min<std::uint64_t>(kMagic.size(), size_)) != kMagic) {
       throw InputError("this is no MCAP file", name_, "give a recording of ROS 2");
     }
-    while (!ended_ && next()) {
-    }
+    while (!ended_) next();
   }
 
  private:
@@ -91,8 +90,8 @@ class McapReader {
     return buffer_;
   }
 
-  /// Reads a record. False where the sink has enough.
-  bool next() {
+  /// Reads a record.
+  void next() {
     const std::string where = fmt::format("{}, byte {}", name_, at_);
     Fields head(take(9), where);
     const auto opcode = head.number<std::uint8_t>();
@@ -108,16 +107,15 @@ class McapReader {
         take(size);
         if (take(kMagic.size()) != kMagic) throw_cut_short();
         ended_ = true;
-        return true;
+        return;
       default:  // of no interest, or of a later version
         if (size > size_ - at_) throw_cut_short();
         at_ += size;
         stream_.seekg(std::streamoff(at_));
-        return true;
     }
   }
 
-  bool read_chunk(std::string_view bytes, const std::string& where) {
+  void read_chunk(std::string_view bytes, const std::string& where) {
     Fields chunk(bytes, where);
     chunk.block(16);  // times of the first and the last message
     const auto size = chunk.number<std::uint64_t>();
@@ -150,12 +148,11 @@ class McapReader {
     Fields fields(records, where);
     while (!fields.at_end()) {
       const auto opcode = fields.number<std::uint8_t>();
-      if (!read_record(opcode, fields.block(fields.number<std::uint64_t>()), where)) return false;
+      read_record(opcode, fields.block(fields.number<std::uint64_t>()), where);
     }
-    return true;
   }
 
-  bool read_record(std::uint8_t opcode, std::string_view bytes, const std::string& where) {
+  void read_record(std::uint8_t opcode, std::string_view bytes, const std::string& where) {
     Fields record(bytes, where);
     if (opcode == kSchema) {
       const auto id = record.number<std::uint16_t>();
@@ -172,7 +169,6 @@ class McapReader {
       if (channel->second.wanted) return sink_.add(channel->second.topic, record.rest());
       sink_.skip(channel->second.topic);
     }
-    return true;
   }
 
   void add_channel(Fields record, const std::string& where) {

@@ -39,20 +39,17 @@ class Listener : public BagSink {
     types.push_back(topic.type);
     return topic.name != "/other";
   }
-  bool add(const BagTopic& topic, std::string_view bytes) override {
+  void add(const BagTopic& topic, std::string_view bytes) override {
     heard.push_back(topic.name + ":" + std::string(bytes));
-    return heard.size() < most;
   }
   std::vector<std::string> heard, types;
-  std::size_t most = 1000;
 };
 
 class McapFile : public testing::Test {
  protected:
-  std::vector<std::string> read(const std::string& bytes, std::size_t most = 1000) {
+  std::vector<std::string> read(const std::string& bytes) {
     std::ofstream(folder_ / "bag.mcap", std::ios::binary) << bytes;
     Listener listener;
-    listener.most = most;
     read_bag_file(folder_ / "bag.mcap", folder_ / "", listener);
     return listener.heard;
   }
@@ -78,7 +75,6 @@ TEST_F(McapFile, ReadsMessagesInChunksOfEveryCompressionAndOutside) {
   EXPECT_THAT(read(file_of(chunk(kRecords, "", kRecords) + more)), all);
   EXPECT_THAT(read(file_of(chunk(kRecords, "zstd", zstd(kRecords)) + chunk(more, "", more))), all);
   EXPECT_THAT(read(file_of(chunk(kRecords, "lz4", lz4(kRecords)) + more)), all);
-  EXPECT_THAT(read(file_of(kRecords + more), 2), ElementsAre("/a:one", "/a:two"));
 }
 
 TEST_F(McapFile, MessagesThatWereCompressedOneByOneAreRead) {

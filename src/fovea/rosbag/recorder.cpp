@@ -11,7 +11,7 @@
 namespace fovea {
 
 Recorder::Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
-                   bool allow_dropped, const std::function<bool(int, int)>& progress)
+                   bool allow_dropped, const std::function<void(int, int)>& progress)
     : lidar_(plan.lidar, survey.clouds.at(plan.lidar)),
       format_(plan.scan_format),
       allow_dropped_(allow_dropped),
@@ -33,7 +33,7 @@ bool Recorder::wants(const BagTopic& topic) {
           (topic.type == ros::kImage || topic.type == ros::kCompressedImage));
 }
 
-bool Recorder::add(const BagTopic& topic, std::string_view bytes) {
+void Recorder::add(const BagTopic& topic, std::string_view bytes) {
   Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
   try {
     CdrReader message(bytes, topic.name);
@@ -48,8 +48,7 @@ bool Recorder::add(const BagTopic& topic, std::string_view bytes) {
     // The survey has counted it.
   }
   done_ = std::min(done_ + 1, total_);
-  stopped_ = !progress_(int(done_), int(total_));
-  return !stopped_;
+  progress_(int(done_), int(total_));
 }
 
 void Recorder::finish(RecordedDrive& drive, ConvertFigures& figures) const {

@@ -22,14 +22,12 @@ namespace fovea {
 class Recorder : public BagSink {
  public:
   /// @param allow_dropped  whether many points may be left out
-  /// @param progress  called with messages done and in all; false ends it
+  /// @param progress  called with messages done and in all
   Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
-           bool allow_dropped, const std::function<bool(int, int)>& progress);
+           bool allow_dropped, const std::function<void(int, int)>& progress);
 
   bool wants(const BagTopic& topic) override;
-  bool add(const BagTopic& topic, std::string_view bytes) override;
-
-  bool stopped() const { return stopped_; }
+  void add(const BagTopic& topic, std::string_view bytes) override;
 
   /// Counts what was written and left out; sets the scale of the intensities. InputError if nothing
   /// could be used of a sensor, or, unless allowed, if too many points were left out.
@@ -62,12 +60,11 @@ class Recorder : public BagSink {
   bool allow_dropped_;
   std::map<std::string, Numbered> cameras_;  // by topic
   GenericDriveWriter& writer_;
-  const std::function<bool(int, int)>& progress_;
+  const std::function<void(int, int)>& progress_;
   std::size_t done_ = 0, total_ = 0;
   std::size_t kept_ = 0;  // points
   DroppedPoints dropped_;
   IntensityScale scale_;
-  bool stopped_ = false;
 };
 
 }  // namespace fovea

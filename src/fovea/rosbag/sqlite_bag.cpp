@@ -59,7 +59,7 @@ void read_sqlite_bag(const std::filesystem::path& file, const std::filesystem::p
     }
     const std::span<const std::byte> data = messages.blob(1);
     const std::string_view message(reinterpret_cast<const char*>(data.data()), data.size());
-    if (!sink.add(channel->second.topic, message)) return;
+    sink.add(channel->second.topic, message);
   }
 }
 

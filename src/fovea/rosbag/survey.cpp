@@ -38,8 +38,6 @@ std::string why_unread(const ros::CompressedImage& image) {
 
 class Surveyor : public BagSink {
  public:
-  explicit Surveyor(const std::function<bool()>& go_on) : go_on_(go_on) {}
-
   bool wants(const BagTopic& topic) override {
     survey_.topics.insert_or_assign(topic.name, topic);
     return readers().contains(topic.type);
@@ -47,7 +45,7 @@ class Surveyor : public BagSink {
 
   void skip(const BagTopic& topic) override { ++survey_.messages[topic.name]; }
 
-  bool add(const BagTopic& topic, std::string_view bytes) override {
+  void add(const BagTopic& topic, std::string_view bytes) override {
     ++survey_.messages[topic.name];
     try {
       CdrReader message(bytes, topic.name);
@@ -55,10 +53,7 @@ class Surveyor : public BagSink {
     } catch (const InputError& error) {
       survey_.unusable[topic.name].add(error.problem());
     }
-    stopped_ = !go_on_();
-    return !stopped_;
   }
-  bool stopped() const { return stopped_; }
 
   BagSurvey finish() {
     sort(survey_.fixes);
@@ -185,9 +180,7 @@ class Surveyor : public BagSink {
     stamps.erase(end, stamps.end());
   }
 
-  const std::function<bool()>& go_on_;
   BagSurvey survey_;
-  bool stopped_ = false;
 };
 
 }  // namespace
@@ -198,11 +191,9 @@ std::string UnusableMessages::note(const std::string& topic) const {
 }
 
 BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
-                      const std::filesystem::path& scratch, const std::function<bool()>& go_on) {
-  Surveyor surveyor(go_on);
-  for (const std::filesystem::path& file : files) {
-    if (!surveyor.stopped()) read_bag_file(file, scratch, surveyor);
-  }
+                      const std::filesystem::path& scratch) {
+  Surveyor surveyor;
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, surveyor);
   return surveyor.finish();
 }
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -53,8 +52,7 @@ struct BagSurvey {
 /// or image with the stamp of another, is counted as unusable. InputError as read_bag_file.
 /// @param files    as bag_files() gives them
 /// @param scratch  as for read_bag_file
-/// @param go_on    asked at each message; false ends it, and what was found is not all
 BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
-                      const std::filesystem::path& scratch, const std::function<bool()>& go_on);
+                      const std::filesystem::path& scratch);
 
 }  // namespace fovea
