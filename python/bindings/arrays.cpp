@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "fovea/geometry/pose_file.h"
+
 namespace fovea::python {
 namespace py = pybind11;
 
@@ -35,17 +37,14 @@ RigidMotion motion_from(const py::array_t<double>& array) {
   if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4) {
     throw std::invalid_argument("a rigid motion is an array of shape (4, 4)");
   }
-  RigidMotion T = RigidMotion::Identity();
+  Eigen::Matrix4d matrix;
   for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) T.matrix()(row, column) = array.at(row, column);
+    for (int column = 0; column < 4; ++column) matrix(row, column) = array.at(row, column);
   }
-  constexpr double kTolerance = 1e-6;  // of what was written down with seven digits
-  if (!T.matrix().allFinite() || !is_rotation(T.linear(), kTolerance) ||
-      T.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw std::invalid_argument(
-        "the matrix is no rigid motion: a rotation, a translation, 0 0 0 1");
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw std::invalid_argument("the last row of a rigid motion is 0 0 0 1");
   }
-  return T;
+  return checked_pose(matrix.topRows<3>());
 }
 
 }  // namespace fovea::python

@@ -32,7 +32,7 @@ pybind11::array_t<double> matrix_array(const Eigen::Matrix<double, Rows, Columns
 pybind11::array_t<double> motion_array(const RigidMotion& T);
 /// N x 4 x 4.
 pybind11::array_t<double> motion_arrays(const std::vector<RigidMotion>& motions);
-/// std::invalid_argument unless 4x4, finite and a rigid motion.
+/// std::invalid_argument unless 4x4, with the last row 0 0 0 1, and a pose (checked_pose()).
 RigidMotion motion_from(const pybind11::array_t<double>& array);
 
 }  // namespace fovea::python

@@ -8,6 +8,7 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
+#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/summary_json.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/drive.h"
@@ -31,6 +32,7 @@ py::object map_drive(const std::filesystem::path& drive, const std::filesystem::
                      const std::string& hold_out, const FrameRange& frames,
                      const std::vector<int>& cameras, int threads, bool calibrate, bool resume,
                      bool force, const py::object& callback) {
+  check_files({{drive.string()}, {{output.string(), ContentKind::kMap, force || resume}}});
   DriveOptions wanted;
   wanted.cameras = cameras;
   std::tie(wanted.begin, wanted.end) = frames;
@@ -87,6 +89,8 @@ void bind_map_drive(py::module_& module) {
              "callback(progress) is called after each frame, in order. What it raises, or Ctrl-C, "
              "ends the run after the frames at hand: what was mapped is in the file, which "
              "resume=True goes on with.\n\n"
+             "OutputError if the output is an input, a file of another kind or no ordinary file, "
+             "also with force=True (docs/outputs.md).\n\n"
              "Returns the figures that `fovea map --report` writes, as a dict.");
 }
 

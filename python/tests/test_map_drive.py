@@ -1,4 +1,5 @@
 """fovea.map_drive: the mapper with a callback."""
+import os
 import signal
 import unittest
 
@@ -71,6 +72,21 @@ class MapDriveTest(unittest.TestCase):
         with self.assertRaises(fovea.OutputError):
             fovea.map_drive(sample.drive(), sample.map_file())
         self.assertFalse((sample.folder() / "wrong.fovea").exists())
+
+    def test_no_output_replaces_an_input_or_another_kind_of_file(self):
+        notes = sample.folder() / "notes.fovea"
+        notes.write_text("notes")
+        pipe = sample.folder() / "pipe.fovea"
+        os.mkfifo(pipe)
+        link = sample.folder() / "link.fovea"
+        link.symlink_to(sample.drive())
+        for output, problem in [(notes, "is a file of another kind"), (pipe, "ordinary file"),
+                                (link, "file that the command reads"),
+                                (sample.folder() / "map.ply", "ends in '.ply'")]:
+            with self.assertRaisesRegex(fovea.OutputError, problem):
+                fovea.map_drive(sample.drive(), output, force=True)
+        self.assertEqual(notes.read_text(), "notes")
+        self.assertFalse((sample.folder() / "map.ply").exists())
 
 
 if __name__ == "__main__":

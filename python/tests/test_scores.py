@@ -45,8 +45,22 @@ class LocalizerTest(unittest.TestCase):
         localizer = fovea.Localizer(sample.map_file(), drive, use_navigation=False,
                                     T_local_lidar=guess)
         self.assertEqual(localizer.localize(drive.load(0)).state, "localized")
-        with self.assertRaises(ValueError):
-            fovea.Localizer(sample.map_file(), drive, T_local_lidar=2 * np.eye(4))
+
+    def test_a_pose_is_checked_as_one_of_a_file_is(self):
+        drive = fovea.Drive(sample.drive(), frames=(0, 1), use_images=False)
+        few_digits = np.round(fovea.Map(sample.map_file()).frames[0].T_local_lidar, 4)
+        localizer = fovea.Localizer(sample.map_file(), drive, use_navigation=False,
+                                    T_local_lidar=few_digits)
+        self.assertEqual(localizer.localize(drive.load(0)).state, "localized")
+        far, unknown, moved = np.eye(4), np.eye(4), np.eye(4)
+        far[0, 3] = 1e8
+        unknown[1, 3] = np.nan
+        moved[3, 0] = 1
+        for pose, problem in [(np.diag([2, 2, 2, 1]), "no rotation"), (far, "10000 km"),
+                              (unknown, "not finite"), (moved, "last row"),
+                              (np.eye(3), "shape")]:
+            with self.assertRaisesRegex(ValueError, problem):
+                fovea.Localizer(sample.map_file(), drive, T_local_lidar=pose)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <sstream>
+#include <stdexcept>
 
 #include "fovea/base/errors.h"
 #include "fovea/base/input_file.h"
@@ -38,20 +39,12 @@ RigidMotion parse_pose(const std::string& line, const std::string& where) {
   if (numbers.size() != 12) {
     throw InputError(fmt::format("a pose has {} numbers", numbers.size()), where, kRemedy);
   }
-  RigidMotion pose = RigidMotion::Identity();
-  pose.affine() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
-  if (!is_possible_position(pose.translation())) {
-    throw InputError(fmt::format("a pose lies over {:.0f} km from the origin", kMaxPosition / 1000),
-                     where, kRemedy);
+  try {
+    return checked_pose(
+        Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data()));
+  } catch (const std::invalid_argument& error) {
+    throw InputError(error.what(), where, kRemedy);
   }
-  if (!is_rotation(pose.linear(), kRotationTolerance)) {
-    throw InputError("a pose has no rotation matrix", where, kRemedy);
-  }
-  // Full digits are kept as they are, so that what we write reads back to the same bits.
-  if (!is_rotation(pose.linear(), kRotationRounding)) {
-    pose.linear() = nearest_rotation(pose.linear());
-  }
-  return pose;
 }
 
 /// Of frames [begin, end), see read_poses.
@@ -86,6 +79,24 @@ void for_each_line(const std::filesystem::path& file, F&& f) {
 }
 
 }  // namespace
+
+RigidMotion checked_pose(const Eigen::Matrix<double, 3, 4>& matrix) {
+  RigidMotion pose = RigidMotion::Identity();
+  pose.affine() = matrix;
+  if (!matrix.allFinite()) throw std::invalid_argument("a pose has a number that is not finite");
+  if (!is_possible_position(pose.translation())) {
+    throw std::invalid_argument(
+        fmt::format("a pose lies over {:.0f} km from the origin", kMaxPosition / 1000));
+  }
+  if (!is_rotation(pose.linear(), kRotationTolerance)) {
+    throw std::invalid_argument("a pose has no rotation matrix");
+  }
+  // Full digits are kept as they are, so that what we write reads back to the same bits.
+  if (!is_rotation(pose.linear(), kRotationRounding)) {
+    pose.linear() = nearest_rotation(pose.linear());
+  }
+  return pose;
+}
 
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file) {
   std::vector<RigidMotion> poses;

@@ -10,6 +10,11 @@
 
 namespace fovea {
 
+/// The pose with this 3x4 matrix, which a file or another program gives. A rotation of few digits
+/// becomes the nearest one; full digits stay as they are. std::invalid_argument if a number is not
+/// finite, a position is impossible (kMaxPosition), or there is no rotation.
+RigidMotion checked_pose(const Eigen::Matrix<double, 3, 4>& matrix);
+
 /// The poses of a file, in order. InputError naming file and line if the file cannot be read or is
 /// empty, and for a line that has not 12 finite numbers or no rotation.
 std::vector<RigidMotion> read_poses(const std::filesystem::path& file);
