@@ -91,8 +91,10 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
   ScoredMapOptions loading;
   if (!arguments.poses.empty()) loading.poses = arguments.poses;
   loading.first_frame = arguments.first_frame;
-  if (!cloud_format(arguments.map)) open_map(arguments.map);
-  ScoredMap map = load_scored_map(arguments.map, loading);
+  std::optional<MapReader> reader;  // of a map; a cloud has none
+  if (!cloud_format(arguments.map)) reader.emplace(open_map(arguments.map));
+  ScoredMap map =
+      reader && !loading.poses ? load_scored_map(*reader) : load_scored_map(arguments.map, loading);
   if (!has_colors(map) && !arguments.html.empty()) {
     throw InputError("the map has no colors, of which the page makes pictures", arguments.map,
                      "evaluate it without --html");
@@ -109,8 +111,8 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
     arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));
   }
   auto drive = arguments.drive.open();
-  if (!cloud_format(arguments.map)) {
-    const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign);
+  if (reader) {
+    const auto match = find_drive_in_map(*reader, arguments.map, *drive, arguments.foreign);
     if (match && !match->keeps_numbers) choose_frames(match->number_in_drive, map);
   }
   const std::string calibration = calibration_of(arguments, map);

@@ -33,10 +33,10 @@ void add_foreign_option(CLI::App& command, bool& foreign) {
   command.add_flag("--foreign", foreign, "Accept a drive that the map was not made of");
 }
 
-std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameSource& drive,
-                                            bool foreign, bool quiet) {
+std::optional<DriveMatch> find_drive_in_map(const MapReader& map, const std::string& path,
+                                            const FrameSource& drive, bool foreign, bool quiet) {
   if (foreign) return std::nullopt;
-  DriveMatch match = match_drive(MapReader(map), drive, map);
+  DriveMatch match = match_drive(map, drive, path);
   if (!quiet) {
     for (const std::string& note : match.notes) print_out("note: {}\n", note);
   }

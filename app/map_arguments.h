@@ -23,8 +23,10 @@ void add_foreign_option(CLI::App& command, bool& foreign);
 
 /// The frames of a map that are the drive's (match_drive()). InputError if the map was not made of
 /// the drive; nothing for a `foreign` drive. Prints what could not be compared.
+/// @param path   of the map, for errors
 /// @param drive  under its own calibration
-std::optional<DriveMatch> find_drive_in_map(const std::string& map, const FrameSource& drive,
-                                            bool foreign, bool quiet = false);
+std::optional<DriveMatch> find_drive_in_map(const MapReader& map, const std::string& path,
+                                            const FrameSource& drive, bool foreign,
+                                            bool quiet = false);
 
 }  // namespace fovea::app

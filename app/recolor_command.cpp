@@ -58,7 +58,8 @@ void run(RecolorArguments arguments, Warnings& warnings) {
     arguments.drive.cameras = meta.at(meta_key::kCameras);
   }
   auto drive = arguments.drive.open();
-  const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign, arguments.quiet);
+  const auto match =
+      find_drive_in_map(map, arguments.map, *drive, arguments.foreign, arguments.quiet);
   if (has_stored_calibration(meta)) {
     drive = with_stored_calibration(std::move(drive), meta, arguments.map);
   }

@@ -22,7 +22,6 @@
 #include "fovea/base/errors.h"
 #include "fovea/base/output_file.h"
 #include "fovea/base/stable_order.h"
-#include "fovea/evaluation/cloud_format.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/splat.h"
@@ -93,10 +92,11 @@ RecordedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
 }
 
 /// The map as one of the drive's cameras sees it, above the photograph that it took.
-Image beside_photograph(const RenderArguments& arguments, ScoredMap& map) {
+Image beside_photograph(const RenderArguments& arguments, const MapReader& reader, ScoredMap& map) {
   const DriveArguments drive_arguments{arguments.drive, "", arguments.camera};
   auto drive = drive_arguments.open();
-  const auto match = find_drive_in_map(arguments.map, *drive, arguments.foreign, /*quiet=*/true);
+  const auto match =
+      find_drive_in_map(reader, arguments.map, *drive, arguments.foreign, /*quiet=*/true);
   if (match) choose_frames(match->number_in_drive, map);
   if (has_stored_calibration(map.meta)) {
     drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
@@ -154,10 +154,11 @@ CommandFiles files_of(const RenderArguments& arguments) {
 
 void run(const RenderArguments& arguments) {
   OutputFile output(arguments.output, arguments.force);
-  if (!cloud_format(arguments.map)) open_map(arguments.map);
-  ScoredMap map = load_scored_map(arguments.map, {});
-  const std::vector<std::uint8_t> png = encode_png(
-      arguments.drive.empty() ? from_view(arguments, map) : beside_photograph(arguments, map));
+  const MapReader reader = open_map(arguments.map);
+  ScoredMap map = load_scored_map(reader);
+  const std::vector<std::uint8_t> png =
+      encode_png(arguments.drive.empty() ? from_view(arguments, map)
+                                         : beside_photograph(arguments, reader, map));
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));
   output.commit();

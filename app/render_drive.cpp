@@ -68,7 +68,7 @@ bool uses_cameras_of_drive(const RenderDriveArguments& arguments) {
 }
 
 /// InputError if the map was not made of DRIVE.
-void check_drive(const RenderDriveArguments& arguments) {
+void check_drive(const MapReader& map, const RenderDriveArguments& arguments) {
   if (arguments.drive.empty()) return;
   DriveOptions options;
   options.use_images = uses_cameras_of_drive(arguments);
@@ -76,7 +76,7 @@ void check_drive(const RenderDriveArguments& arguments) {
     options.cameras = parse_cameras(arguments.cameras);
   }
   const auto drive = open_drive(arguments.drive, options);
-  find_drive_in_map(arguments.map, *drive, arguments.foreign, arguments.quiet);
+  find_drive_in_map(map, arguments.map, *drive, arguments.foreign, arguments.quiet);
 }
 
 std::vector<Camera> calibrated_cameras(const std::string& path, const std::vector<int>& wanted) {
@@ -131,7 +131,8 @@ std::vector<RenderedCamera> find_cameras(const RenderDriveArguments& arguments) 
 
 void render_drive_command(const RenderDriveArguments& arguments, Warnings& warnings) {
   const ThreadLimit threads(arguments.threads);
-  check_drive(arguments);
+  const MapReader map = open_map(arguments.map);
+  check_drive(map, arguments);
   RenderJob job;
   job.output = arguments.output;
   job.force = arguments.force;
@@ -143,7 +144,6 @@ void render_drive_command(const RenderDriveArguments& arguments, Warnings& warni
   job.T_local_lidar = read_poses(arguments.poses);
   job.period = from_seconds(1 / arguments.rate);
   job.reach = arguments.reach;
-  const MapReader map = open_map(arguments.map);
   const RenderFigures figures = [&] {
     ProgressBar bar(arguments.quiet);
     return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });

@@ -28,15 +28,16 @@ struct ViewArguments {
   bool no_browser = false, quiet = false, foreign = false;
 };
 
-std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
+std::shared_ptr<const DriveImages> open_images(const MapReader& map,
+                                               const ViewArguments& arguments) {
   if (arguments.drive.drive.empty()) return nullptr;
-  const MapReader map(arguments.map);
   const MapMeta meta = map.meta();
   DriveArguments drive = arguments.drive;
   if (drive.cameras.empty() && meta.contains(meta_key::kCameras))
     drive.cameras = meta.at(meta_key::kCameras);
   std::unique_ptr<FrameSource> source = drive.open();
-  const auto match = find_drive_in_map(arguments.map, *source, arguments.foreign, arguments.quiet);
+  const auto match =
+      find_drive_in_map(map, arguments.map, *source, arguments.foreign, arguments.quiet);
   if (has_stored_calibration(meta)) {
     source = with_stored_calibration(std::move(source), meta, arguments.map);
   }
@@ -45,8 +46,8 @@ std::shared_ptr<const DriveImages> open_images(const ViewArguments& arguments) {
 }
 
 void run(const ViewArguments& arguments, Session& session) {
-  open_map(arguments.map);
-  const auto images = open_images(arguments);
+  // The map is not kept open: its writer could not merge the log.
+  const auto images = open_images(open_map(arguments.map), arguments);
   std::optional<MapShow> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
     show.emplace(arguments.map, viewer_page(), images, options);

@@ -42,30 +42,6 @@ void show_intensity(const PointCloud& tile, std::vector<Rgb>& color) {
   }
 }
 
-ScoredMap load_fovea_map(const std::filesystem::path& path) {
-  const MapReader reader(path);
-  ScoredMap map;
-  map.frames = reader.frames();
-  map.meta = reader.meta();
-  map.points_local.origin = center_of(map.frames);
-  const std::vector<RigidMotion> submaps = reader.submaps();
-  reader.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
-    PointCloud part;  // only what is scored: a map may be as large as memory allows
-    part.origin = tile.origin;
-    part.position = tile.position;
-    part.color = tile.color;
-    if (!tile.intensity.empty()) show_intensity(tile, part.color);
-    part.camera = tile.camera;
-    part.frame = tile.frame;
-    part.interpolated = tile.interpolated;
-    part.reason = tile.reason;
-    map.points_local.append(
-        transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
-  });
-  map.cameras = cameras_of(map.points_local);
-  return map;
-}
-
 /// Records without stamp and of no particular status, one a pose.
 std::vector<FrameRecord> pose_records(const std::filesystem::path& file, int first_frame) {
   std::vector<FrameRecord> records;
@@ -101,7 +77,30 @@ ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOpti
   if (options.poses) {
     throw ConfigError("a Fovea map has poses of its own", path.string(), "leave out --poses");
   }
-  return load_fovea_map(path);
+  return load_scored_map(MapReader(path));
+}
+
+ScoredMap load_scored_map(const MapReader& reader) {
+  ScoredMap map;
+  map.frames = reader.frames();
+  map.meta = reader.meta();
+  map.points_local.origin = center_of(map.frames);
+  const std::vector<RigidMotion> submaps = reader.submaps();
+  reader.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
+    PointCloud part;  // only what is scored: a map may be as large as memory allows
+    part.origin = tile.origin;
+    part.position = tile.position;
+    part.color = tile.color;
+    if (!tile.intensity.empty()) show_intensity(tile, part.color);
+    part.camera = tile.camera;
+    part.frame = tile.frame;
+    part.interpolated = tile.interpolated;
+    part.reason = tile.reason;
+    map.points_local.append(
+        transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
+  });
+  map.cameras = cameras_of(map.points_local);
+  return map;
 }
 
 void choose_frames(const std::map<int, int>& number_in_drive, ScoredMap& map) {

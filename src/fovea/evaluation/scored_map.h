@@ -34,6 +34,8 @@ struct ScoredMapOptions {
 /// ending. InputError if a file is missing, damaged or of a format that is not read (LAZ);
 /// ConfigError for poses that are missing or not wanted.
 ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options);
+/// The same of a map that is open.
+ScoredMap load_scored_map(const MapReader& reader);
 
 /// Leaves the frames of one drive, under their numbers in the drive. Points of other frames then
 /// are of frame -1. If a merged map has a frame twice, it counts as mapped if either is mapped.
