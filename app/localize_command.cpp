@@ -89,6 +89,28 @@ struct Truth {
   DriveTruth drive;
 };
 
+/// The frames of the map under their numbers in the drive of the truth. InputError if the map was
+/// not made of that drive. Prints what could not be compared.
+std::vector<FrameRecord> frames_of_truth(const MapReader& map, const FrameSource& map_drive,
+                                         const LocalizeArguments& arguments) {
+  std::map<int, int> numbers;
+  try {
+    numbers = find_drive_in_map(map, arguments.map, map_drive, /*foreign=*/false, arguments.quiet)
+                  ->number_in_drive;
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), error.where(),
+                     "give --truth the drive that 'fovea info' names");
+  }
+  std::vector<FrameRecord> frames;
+  for (FrameRecord& frame : map.frames()) {
+    const auto number = numbers.find(frame.index);
+    if (number == numbers.end()) continue;
+    frame.index = number->second;
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
 Truth open_truth(const LocalizeArguments& arguments, const FrameSource& drive,
                  const MapReader& map) {
   if (!merged_drives(map).empty()) {
@@ -97,8 +119,10 @@ Truth open_truth(const LocalizeArguments& arguments, const FrameSource& drive,
   }
   DriveOptions scans;
   scans.use_images = false;
-  const DriveTruth map_truth(open_drive(arguments.truth, scans)->info().path);
-  return {pose_pairs(map.frames(), map_truth), DriveTruth(drive.info().path)};
+  const auto map_drive = open_drive(arguments.truth, scans);
+  return {
+      pose_pairs(frames_of_truth(map, *map_drive, arguments), DriveTruth(map_drive->info().path)),
+      DriveTruth(drive.info().path)};
 }
 
 TruthErrors truth_errors(const Truth& truth, const LocalizedDrive& localized) {

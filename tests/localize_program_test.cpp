@@ -101,6 +101,9 @@ TEST_F(LocalizeProgram, WrongUsageSaysWhatToDo) {
   EXPECT_THAT(error("--only 2:5"), HasSubstr("--only"));
   EXPECT_THAT(error("--frames 90:95"), HasSubstr("hold none of the drive's"));
   EXPECT_THAT(error("--truth '" + path("a.fovea") + "'"), HasSubstr("a.fovea"));
+  const std::string other_drive = error("--truth '" + path("b") + "'");
+  EXPECT_THAT(other_drive, HasSubstr("the map was not made of the drive"));
+  EXPECT_THAT(other_drive, HasSubstr("give --truth the drive"));
   EXPECT_FALSE(std::filesystem::exists(path("x.txt")));
 }
 
