@@ -81,14 +81,11 @@ void print_figures(const ExportArguments& arguments, const ExportFigures& figure
   }
 }
 
-void print_times(const LasFigures& figures) {
-  if (!figures.dated) {
-    print_out("the drive's stamps have no date: LAS has them in seconds, as GPS week time\n");
-  }
-  if (figures.points_without_time > 0) {
-    print_out("{} points are of frames without a stamp and have time 0\n",
-              figures.points_without_time);
-  }
+/// A warning if the times of points are missing.
+std::vector<std::string> warnings_of(const LasFigures& figures) {
+  if (figures.points_without_time == 0) return {};
+  return {fmt::format("{} points are of frames without a stamp and have time 0",
+                      figures.points_without_time)};
 }
 
 void print_mesh(const MeshFigures& figures) {
@@ -99,16 +96,22 @@ void print_mesh(const MeshFigures& figures) {
   if (figures.uncolored_vertices > 0) {
     print_out("{} vertices are grey: no coloured point is near\n", figures.uncolored_vertices);
   }
-  if (figures.without_frame > 0) {
-    print_out("left out: {} points of frames that the map does not have\n", figures.without_frame);
-  }
+}
+
+/// A warning if points were left out.
+std::vector<std::string> warnings_of(const MeshFigures& figures) {
+  if (figures.without_frame == 0) return {};
+  return {fmt::format("left out: {} points of frames that the map does not have",
+                      figures.without_frame)};
 }
 
 /// A surface, as levels of detail in a folder or as one file.
-void write_mesh(const MapReader& map, const ExportArguments& arguments, bool levels) {
+void write_mesh(const MapReader& map, const ExportArguments& arguments, bool levels,
+                Warnings& warnings) {
   const MeshOptions options{arguments.points, arguments.voxel, arguments.force};
   if (!levels) {
     const MeshFigures figures = write_mesh_file(map, arguments.output, options);
+    warnings.add(warnings_of(figures), arguments.quiet);
     if (arguments.quiet) return;
     print_figures(arguments, figures);
     print_mesh(figures);
@@ -117,6 +120,7 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
   std::map<std::string, std::string> beside;
   if (arguments.viewer) beside = viewer_files(map, viewer_page(), /*mesh=*/true);
   const MeshTilesetFigures figures = write_mesh_tileset(map, arguments.output, options, beside);
+  warnings.add(warnings_of(figures), arguments.quiet);
   if (arguments.quiet) return;
   print_figures(arguments, figures);
   print_mesh(figures);
@@ -139,11 +143,8 @@ CommandFiles files_of(const ExportArguments& arguments, const std::string& forma
   return files;
 }
 
-void run(ExportArguments& arguments, const CLI::App& command) {
-  const std::string format = format_of(arguments);
-  check_options(command, arguments, format);
-  check_files(files_of(arguments, format));
-  const MapReader map = open_map(arguments.map);
+void write(const MapReader& map, ExportArguments& arguments, const std::string& format,
+           Warnings& warnings) {
   if (format == "kitti-poses") {
     map.check();  // poses need no tile
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
@@ -163,7 +164,10 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     if (arguments.utc_offset) options.utc_offset = from_seconds(3600 * *arguments.utc_offset);
     const LasFigures figures = write_las(map, arguments.output, options);
     report(figures);
-    if (!arguments.quiet) print_times(figures);
+    if (!arguments.quiet && !figures.dated) {
+      print_out("the drive's stamps have no date: LAS has them in seconds, as GPS week time\n");
+    }
+    warnings.add(warnings_of(figures), arguments.quiet);
     return;
   }
   if (format == "3dtiles") {
@@ -177,15 +181,26 @@ void run(ExportArguments& arguments, const CLI::App& command) {
     if (!arguments.quiet) print_out("{} tiles\n", figures.tiles);
     return;
   }
-  if (format == "mesh" || format == "glb") return write_mesh(map, arguments, format == "mesh");
-  const auto write = format == "pcd" ? write_pcd : write_ply;
-  report(write(map, arguments.output,
-               {arguments.points, arguments.double_positions, arguments.force}));
+  if (format == "mesh" || format == "glb") {
+    return write_mesh(map, arguments, format == "mesh", warnings);
+  }
+  const auto write_points = format == "pcd" ? write_pcd : write_ply;
+  report(write_points(map, arguments.output,
+                      {arguments.points, arguments.double_positions, arguments.force}));
+}
+
+void run(ExportArguments& arguments, const CLI::App& command, Warnings& warnings) {
+  const std::string format = format_of(arguments);
+  check_options(command, arguments, format);
+  check_files(files_of(arguments, format));
+  const MapReader map = open_map(arguments.map);
+  write(map, arguments, format, warnings);
+  warnings.add(warnings_of_map(map.meta()), arguments.quiet);
 }
 
 }  // namespace
 
-void add_export_command(CLI::App& app) {
+void add_export_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command =
       app.add_subcommand("export", "Write a map in a form that other programs read");
@@ -227,7 +242,8 @@ void add_export_command(CLI::App& app) {
       "planar, centroid), matched (exposure, 0 or 1), interpolated, intensity");
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments, command] { run(*arguments, *command); });
+  command->callback(
+      [arguments, command, &session] { run(*arguments, *command, session.warnings); });
 }
 
 }  // namespace fovea::app

@@ -153,11 +153,7 @@ void print_text(const Contents& c, const std::string& path) {
 }
 
 std::vector<std::string> warnings_of(const Contents& c) {
-  std::vector<std::string> warnings;
-  const auto complete = c.meta.find(meta_key::kComplete);
-  if (complete == c.meta.end() || complete->second != "1") {
-    warnings.emplace_back("the map is unfinished: 'fovea map --resume' continues it");
-  }
+  std::vector<std::string> warnings = warnings_of_map(c.meta);
   if (c.skipped > 0) warnings.push_back(fmt::format("{} frames were skipped", c.skipped));
   return warnings;
 }

@@ -56,9 +56,9 @@ int run(int argc, char** argv, fovea::app::Session& session) {
   fovea::app::add_evaluate_command(app, session);
   fovea::app::add_convert_command(app, session);
   fovea::app::add_crop_command(app);
-  fovea::app::add_export_command(app);
+  fovea::app::add_export_command(app, session);
   fovea::app::add_localize_command(app, session);
-  fovea::app::add_merge_command(app);
+  fovea::app::add_merge_command(app, session);
   fovea::app::add_render_command(app, session);
   fovea::app::add_recolor_command(app, session);
   fovea::app::add_repair_command(app, session);

@@ -16,6 +16,18 @@ MapReader open_map(const std::string& map) {
   return reader;
 }
 
+std::vector<std::string> warnings_of_map(const MapMeta& meta) {
+  const bool is_repaired = meta.contains(meta_key::kRepair);
+  const auto complete = meta.find(meta_key::kComplete);
+  std::vector<std::string> warnings;
+  if (is_repaired) warnings.emplace_back("the map was repaired and lacks parts");
+  // A repaired map may have lost the key.
+  if (complete == meta.end() ? !is_repaired : complete->second != "1") {
+    warnings.emplace_back("the map is unfinished: 'fovea map --resume' continues it");
+  }
+  return warnings;
+}
+
 MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
   const auto stored = meta.find(meta_key::kConfig);
   if (stored == meta.end()) {

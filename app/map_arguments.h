@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/drive_match.h"
@@ -14,6 +15,9 @@ namespace fovea::app {
 /// Opens a map. InputError if its structure or any row but those of tiles is damaged; tiles are
 /// checked when they are read. So all commands accept and refuse the same maps.
 MapReader open_map(const std::string& map);
+
+/// Warnings of a map that may lack parts: it was repaired, or is unfinished.
+std::vector<std::string> warnings_of_map(const MapMeta& meta);
 
 /// The settings that a map was made with; InputError if it does not tell them.
 MapperOptions stored_options(const MapMeta& meta, const std::string& map);

@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/map_arguments.h"
@@ -32,17 +34,30 @@ void print(const MergeFigures& figures, const std::string& output) {
   const MapAlignment& alignment = figures.alignment;
   print_out("submaps registered: {} of {} that have the other map around them, moved by {:.2f} m\n",
             alignment.registered, alignment.met, alignment.moved);
-  if (alignment.registered == 0) {
-    print_out("not registered: the maps lie to each other as {}\n",
-              figures.georeferenced ? "their georeference says" : "if they had one local frame");
-  }
   print_out("points added: {}, known already: {}, coloured by both: {}\n", figures.merged.added,
             figures.merged.known, figures.merged.fused);
   print_out("brightness of the second map: x {:.2f} {:.2f} {:.2f}\n", figures.gain[0],
             figures.gain[1], figures.gain[2]);
 }
 
-void run(const MergeArguments& arguments) {
+/// Of the two maps and of their alignment.
+std::vector<std::string> warnings_of(const MapReader& a, const MapReader& b,
+                                     const MergeArguments& arguments, const MergeFigures& figures) {
+  std::vector<std::string> warnings;
+  for (const auto& [map, path] : {std::pair(&a, arguments.a), {&b, arguments.b}}) {
+    for (const std::string& warning : warnings_of_map(map->meta())) {
+      warnings.push_back(fmt::format("{}: {}", path, warning));
+    }
+  }
+  if (figures.drives_added > 0 && figures.alignment.registered == 0) {
+    warnings.push_back(fmt::format(
+        "not registered: the maps lie to each other as {}",
+        figures.georeferenced ? "their georeference says" : "if they had one local frame"));
+  }
+  return warnings;
+}
+
+void run(const MergeArguments& arguments, Warnings& warnings) {
   check_files(
       {{arguments.a, arguments.b}, {{arguments.output, ContentKind::kMap, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
@@ -54,11 +69,12 @@ void run(const MergeArguments& arguments) {
   job.spacing = stored_options(a.meta(), arguments.a).surface.spacing;
   const MergeFigures figures = merge_maps(a, b, job);
   if (!arguments.quiet) print(figures, arguments.output);
+  warnings.add(warnings_of(a, b, arguments, figures), arguments.quiet);
 }
 
 }  // namespace
 
-void add_merge_command(CLI::App& app) {
+void add_merge_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<MergeArguments>();
   CLI::App* command =
       app.add_subcommand("merge", "Put two maps of one place together, in the first one's frame");
@@ -75,7 +91,7 @@ void add_merge_command(CLI::App& app) {
   command->add_flag("--force", arguments->force,
                     "Overwrite OUT, and merge also what does not overlap or has no georeference");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, &session] { run(*arguments, session.warnings); });
 }
 
 }  // namespace fovea::app

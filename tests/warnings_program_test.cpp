@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fovea/map/map_store.h"
 #include "tests/kitti_writer.h"
 #include "tests/program.h"
 
@@ -117,6 +118,36 @@ TEST_F(WarningsProgram, OfOtherCommandsAreErrorsWithStrict) {
       "recolor '{}' '{}' -o '{}' --strict", path("a.fovea"), bad_.string(), path("b.fovea")));
   EXPECT_EQ(recolored.exit_code, 1);
   EXPECT_THAT(recolored.err, HasSubstr("warning: "));
+}
+
+// export and merge read maps alone: a map that was repaired or is unfinished may lack parts.
+TEST_F(WarningsProgram, OfAMapThatMayLackPartsAreErrorsWithStrict) {
+  ASSERT_EQ(map(good_).exit_code, 0);
+  const auto run = [&](const std::string& command, const std::string& more) {
+    return run_fovea(
+        fmt::format(fmt::runtime(command), path("a.fovea"), path("part.fovea"), path("out")) +
+        " --force --quiet " + more);
+  };
+  for (const auto& [key, value, warning] :
+       {std::tuple("complete", "0", "the map is unfinished"),
+        {"repair", "1 of 2 tiles", "the map was repaired and lacks parts"}}) {
+    std::filesystem::copy_file(path("a.fovea"), path("part.fovea"),
+                               std::filesystem::copy_options::overwrite_existing);
+    const auto part = MapWriter::open(path("part.fovea"));
+    part->put_meta(key, value);
+    part->finish();
+    for (const char* command :
+         {"export '{1}' '{2}.ply'", "export '{1}' '{2}.glb'", "merge '{0}' '{1}' -o '{2}.fovea'"}) {
+      const ProgramRun quiet = run(command, "");
+      EXPECT_EQ(quiet.exit_code, 0) << command << quiet.err;
+      EXPECT_EQ(quiet.err, "") << command;
+      const ProgramRun strict = run(command, "--strict");
+      EXPECT_EQ(strict.exit_code, 1) << command;
+      EXPECT_THAT(strict.err, HasSubstr(warning)) << command;
+    }
+  }
+  const ProgramRun whole = run("export '{0}' '{2}.ply'", "--strict");
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
 }
 
 }  // namespace fovea::warnings_program_test
