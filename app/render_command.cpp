@@ -72,7 +72,7 @@ using RecordedFrame = std::pair<FrameRecord, Frame>;
 
 /// The frame asked for, or the one next to the middle that can be read.
 RecordedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
-                       const FrameSource& drive) {
+                         const FrameSource& drive) {
   std::vector<FrameRecord> records = {find_frame(map, arguments.frame, arguments.map)};
   if (arguments.frame < 0) {
     const int middle = records.front().index;
