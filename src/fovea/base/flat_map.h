@@ -37,9 +37,6 @@ class FlatMap {
     return {&slots_[place].value, is_new};
   }
 
-  /// Has the key's place brought into the cache, for who will ask for it soon.
-  void prefetch(std::uint64_t key) const { __builtin_prefetch(&slots_[home_of(key)]); }
-
   /// Forgets a key that is there.
   void erase(std::uint64_t key) {
     const std::size_t mask = slots_.size() - 1;

@@ -55,7 +55,7 @@ bool takes(Keyframes& keyframes, const FrameRecord& record, int lost_before) {
   const auto pairs = record.figures.find("registration_pairs");
   const bool registered = pairs != record.figures.end() && record.has("registration_points");
   const double overlap = registered ? pairs->second / record.figures.at("registration_points") : 1;
-  return keyframes.takes(record.T_odom_lidar, overlap);
+  return keyframes.is_keyframe(record.T_odom_lidar, overlap);
 }
 
 }  // namespace

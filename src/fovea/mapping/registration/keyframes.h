@@ -1,4 +1,4 @@
-// Which scans later ones are registered against (docs/method.md 2.5).
+// Selection of the scans that later scans are registered against (docs/method.md 2.5).
 #pragma once
 
 #include <optional>
@@ -8,24 +8,24 @@
 namespace fovea {
 
 struct KeyframeOptions {
-  /// m, and rad, from the keyframe before, of which one suffices; 0: all scans are keyframes
+  /// m and rad from the last keyframe; reaching one of them suffices. 0: each scan is a keyframe
   double distance = 0, rotation = 0;
-  double overlap = 0;  ///< a scan of which less than this share is in the target is one anywhere
+  double overlap = 0;  ///< a scan with a smaller share of its points in the target is a keyframe
 };
 
-/// Chooses keyframes among scans that follow each other: the first, and each whose sensor is far
-/// enough from the one chosen before, or which sees what those before do not. What lies between
-/// tells the target little, and a vehicle that stands keeps what it saw on its way.
+/// Selects keyframes in a sequence of scans: the first scan, each scan far enough from the last
+/// keyframe, and each scan with a low overlap. A scan between keyframes adds little to the target.
+/// A standing vehicle adds no keyframes, so the target keeps the surfaces along its way.
 class Keyframes {
  public:
   explicit Keyframes(const KeyframeOptions& options) : options_(options) {}
 
-  /// The next scan is one, wherever it is.
+  /// The next scan is a keyframe at any pose.
   void restart() { last_.reset(); }
 
-  /// Whether the next scan is one.
-  /// @param overlap  the share of its points that have a counterpart in the target
-  bool takes(const RigidMotion& T_odom_lidar, double overlap) {
+  /// Whether the next scan is a keyframe. If so, it becomes the last keyframe.
+  /// @param overlap  share of the scan's points that have a counterpart in the target
+  bool is_keyframe(const RigidMotion& T_odom_lidar, double overlap) {
     if (last_ && overlap >= options_.overlap && !is_far(last_->inverse() * T_odom_lidar)) {
       return false;
     }

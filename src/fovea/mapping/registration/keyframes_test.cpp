@@ -10,39 +10,39 @@ RigidMotion at(double x, double yaw = 0) {
   return Eigen::Translation3d(x, 0, 0) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
 }
 
-std::vector<double> chosen(Keyframes keyframes, const std::vector<double>& places) {
+std::vector<double> chosen(Keyframes keyframes, const std::vector<double>& positions) {
   std::vector<double> result;
-  for (const double x : places) {
-    if (keyframes.takes(at(x), 1)) result.push_back(x);
+  for (const double x : positions) {
+    if (keyframes.is_keyframe(at(x), 1)) result.push_back(x);
   }
   return result;
 }
 
-TEST(Keyframes, AreFarFromTheOneBefore) {
+TEST(Keyframes, AreFarFromTheLastOne) {
   const Keyframes keyframes({1.5, 0.04});
   EXPECT_EQ(chosen(keyframes, {0, 1, 2, 3, 4, 5}), (std::vector<double>{0, 2, 4}));
   EXPECT_EQ(chosen(keyframes, {7, 7, 7, 7}), std::vector<double>{7});
-  // There and back: how long the way was does not count.
+  // Distances are straight, not along the path.
   EXPECT_EQ(chosen(keyframes, {0, 1, 0, -1, 0, 1, 2}), (std::vector<double>{0, 2}));
   EXPECT_EQ(chosen(Keyframes({0, 0.04}), {7, 7, 7}), (std::vector<double>{7, 7, 7}));
 }
 
-TEST(Keyframes, AreTurnedFromTheOneBefore) {
+TEST(Keyframes, AreTurnedFromTheLastOne) {
   Keyframes keyframes({1.5, 0.04});
-  EXPECT_TRUE(keyframes.takes(at(0), 1));
-  EXPECT_FALSE(keyframes.takes(at(0.1, 0.03), 1));
-  EXPECT_TRUE(keyframes.takes(at(0.2, -0.05), 1));
-  EXPECT_FALSE(keyframes.takes(at(0.2, -0.02), 1));
+  EXPECT_TRUE(keyframes.is_keyframe(at(0), 1));
+  EXPECT_FALSE(keyframes.is_keyframe(at(0.1, 0.03), 1));
+  EXPECT_TRUE(keyframes.is_keyframe(at(0.2, -0.05), 1));
+  EXPECT_FALSE(keyframes.is_keyframe(at(0.2, -0.02), 1));
 }
 
-TEST(Keyframes, SeeWhatTheTargetDoesNot) {
+TEST(Keyframes, IncludeScansOfLowOverlap) {
   Keyframes keyframes({1.5, 0.04, 0.9});
-  EXPECT_TRUE(keyframes.takes(at(0), 1));
-  EXPECT_FALSE(keyframes.takes(at(1), 0.9));
-  EXPECT_TRUE(keyframes.takes(at(1), 0.8));
-  // From there on.
-  EXPECT_FALSE(keyframes.takes(at(2), 1));
-  EXPECT_TRUE(keyframes.takes(at(2.5), 1));
+  EXPECT_TRUE(keyframes.is_keyframe(at(0), 1));
+  EXPECT_FALSE(keyframes.is_keyframe(at(1), 0.9));
+  EXPECT_TRUE(keyframes.is_keyframe(at(1), 0.8));
+  // Distances count from this keyframe.
+  EXPECT_FALSE(keyframes.is_keyframe(at(2), 1));
+  EXPECT_TRUE(keyframes.is_keyframe(at(2.5), 1));
 }
 
 }  // namespace fovea::keyframes_test

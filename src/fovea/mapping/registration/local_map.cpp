@@ -11,10 +11,9 @@
 namespace fovea {
 namespace {
 
-/// The origin moves in steps of this (m): a whole number of any voxels that divide it, and seldom.
+/// The origin moves in steps (m) of a whole number of voxels: voxel borders stay in place. A long
+/// step makes rebuilds rare.
 constexpr double kOriginStep = 64;
-/// How many points ahead of the one at hand voxels are fetched: all of them are megabytes.
-constexpr std::size_t kAhead = 8;
 
 Eigen::Vector3d origin_near(const Eigen::Vector3d& p_local) {
   return (p_local.array() / kOriginStep).round() * kOriginStep;
@@ -31,7 +30,7 @@ void LocalMapOptions::validate() const {
   }
   if (!(keyframe_distance >= 0 && keyframe_distance <= 1000)) {
     reject("a distance is out of range", "local_map.keyframe_distance",
-           "give 0 (every scan) or metres up to 1000");
+           "give 0 (every scan) or meters up to 1000");
   }
   if (!(keyframe_rotation > 0 && keyframe_rotation <= std::numbers::pi)) {
     reject("an angle is out of range", "local_map.keyframe_rotation",
@@ -41,11 +40,11 @@ void LocalMapOptions::validate() const {
     reject("a share is out of range", "local_map.keyframe_overlap", "give 0 (off) to 1");
   }
   if (!(max_range > 0 && max_range <= 1000)) {
-    reject("a range is out of range", "local_map.max_range", "give metres above 0 and up to 1000");
+    reject("a range is out of range", "local_map.max_range", "give meters above 0 and up to 1000");
   }
   if (!(voxel == 0 || (voxel >= 0.01 && voxel <= 10))) {
     reject("a voxel size is out of range", "local_map.voxel",
-           "give 0 (off) or metres from 0.01 to 10");
+           "give 0 (off) or meters from 0.01 to 10");
   }
 }
 
@@ -60,24 +59,24 @@ LocalMap::LocalMap(const LocalMapOptions& options, std::optional<NormalOptions> 
 
 auto LocalMap::next_of() {
   return [this](const VoxelQueues::Item& item) -> VoxelQueues::Item& {
-    return keyframes_[item.owner - keyframes_.front().number].next[item.index];
+    return keyframes_[item.scan - keyframes_.front().number].next[item.index];
   };
 }
 
 void LocalMap::add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_local_lidar) {
-  if (keyframes_.size() == static_cast<std::size_t>(options_.max_keyframes)) forget_oldest();
+  if (keyframes_.size() == static_cast<std::size_t>(options_.max_keyframes)) remove_oldest();
   keyframes_.push_back({next_number_++, std::move(points_lidar), T_local_lidar, {}, {}, {}});
   const Eigen::Vector3d origin = origin_near(T_local_lidar.translation());
-  // Without voxels nothing tells which points to keep up to date.
+  // Without voxels the target cannot be updated point by point.
   if (origin != target_.origin_local || keyframes_.size() == 1 || options_.voxel == 0) {
-    start_at(origin);
+    rebuild(origin);
   } else {
-    place(keyframes_.back());
+    insert(keyframes_.back());
   }
-  if (normals_) find_planes();
+  if (normals_) fit_normals();
 }
 
-void LocalMap::place(Keyframe& keyframe) {
+void LocalMap::insert(Keyframe& keyframe) {
   const std::vector<Eigen::Vector3f>& source = keyframe.points_lidar;
   const Eigen::Matrix3f R = keyframe.T_local_lidar.linear().cast<float>();
   const Eigen::Vector3f t =
@@ -86,75 +85,72 @@ void LocalMap::place(Keyframe& keyframe) {
   keyframe.points.resize(n);
   for (std::size_t i = 0; i < n; ++i) keyframe.points[i] = R * source[i] + t;
   keyframe.next.resize(n);
-  keyframe.place.assign(n, kNoPlace);
+  keyframe.slot.assign(n, kNoSlot);
   const auto max_range2 = static_cast<float>(options_.max_range * options_.max_range);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (i + kAhead < n) voxels_.prefetch(keyframe.points[i + kAhead]);
     if (source[i].squaredNorm() > max_range2) continue;
     const bool is_first =
         options_.voxel == 0 || voxels_.push(keyframe.points[i], {keyframe.number, i}, next_of());
-    if (is_first) stand(keyframe, i);
+    if (is_first) insert_target(keyframe, i);
   }
 }
 
-void LocalMap::stand(Keyframe& keyframe, std::uint32_t index) {
+void LocalMap::insert_target(Keyframe& keyframe, std::uint32_t index) {
   RegistrationCloud& cloud = target_.cloud;
-  if (empty_.empty()) {
-    empty_.push_back(static_cast<std::uint32_t>(cloud.points.size()));
+  if (free_slots_.empty()) {
+    free_slots_.push_back(static_cast<std::uint32_t>(cloud.points.size()));
     cloud.points.emplace_back();
     if (normals_) cloud.normals.emplace_back();
   }
-  const std::uint32_t place = keyframe.place[index] = empty_.back();
-  empty_.pop_back();
-  cloud.points[place] = keyframe.points[index];
-  if (normals_) cloud.normals[place].setZero();
-  if (options_.voxel > 0) target_.index.insert(place, cloud.points[place]);
+  const std::uint32_t slot = keyframe.slot[index] = free_slots_.back();
+  free_slots_.pop_back();
+  cloud.points[slot] = keyframe.points[index];
+  if (normals_) cloud.normals[slot].setZero();
+  if (options_.voxel > 0) target_.index.insert(slot, cloud.points[slot]);
 }
 
-void LocalMap::forget_oldest() {
+void LocalMap::remove_oldest() {
   const Keyframe& oldest = keyframes_.front();
-  const std::size_t n = options_.voxel > 0 ? oldest.place.size() : 0;
+  const std::size_t n = options_.voxel > 0 ? oldest.slot.size() : 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (i + kAhead < n) voxels_.prefetch(oldest.points[i + kAhead]);
-    if (oldest.place[i] == kNoPlace) continue;  // a second one in its voxel
+    if (oldest.slot[i] == kNoSlot) continue;
     const Eigen::Vector3f& p = oldest.points[i];
-    target_.index.erase(oldest.place[i], p);
-    empty_.push_back(oldest.place[i]);
-    const VoxelQueues::Item heir = voxels_.pop(p, next_of());
-    if (heir.owner == VoxelQueues::kNobody) continue;
-    stand(keyframes_[heir.owner - oldest.number], heir.index);
+    target_.index.erase(oldest.slot[i], p);
+    free_slots_.push_back(oldest.slot[i]);
+    const std::optional<VoxelQueues::Item> successor = voxels_.pop(p, next_of());
+    if (successor) insert_target(keyframes_[successor->scan - oldest.number], successor->index);
   }
   keyframes_.pop_front();
 }
 
-void LocalMap::find_planes() {
-  // In the order of scans: the order of places depends on scans that are gone.
+void LocalMap::fit_normals() {
+  // Points in the order of scans. The order of slots would depend on removed scans.
   std::vector<Eigen::Vector3f> points;
-  std::vector<std::uint32_t> places, without_plane;
+  std::vector<std::uint32_t> slots, without_normal;
   points.reserve(size());
-  places.reserve(size());
+  slots.reserve(size());
   for (const Keyframe& keyframe : keyframes_) {
-    for (std::size_t i = 0; i < keyframe.place.size(); ++i) {
-      const std::uint32_t place = keyframe.place[i];
-      if (place == kNoPlace) continue;
-      if (target_.cloud.normals[place].isZero(0)) {
-        without_plane.push_back(static_cast<std::uint32_t>(points.size()));
+    for (std::size_t i = 0; i < keyframe.slot.size(); ++i) {
+      const std::uint32_t slot = keyframe.slot[i];
+      if (slot == kNoSlot) continue;
+      if (target_.cloud.normals[slot].isZero(0)) {
+        without_normal.push_back(static_cast<std::uint32_t>(points.size()));
       }
       points.push_back(keyframe.points[i]);
-      places.push_back(place);
+      slots.push_back(slot);
     }
   }
-  const std::vector<Eigen::Vector3f> normals = estimate_normals(points, without_plane, *normals_);
+  const std::vector<Eigen::Vector3f> normals = estimate_normals(points, without_normal, *normals_);
   for (std::size_t k = 0; k < normals.size(); ++k) {
-    target_.cloud.normals[places[without_plane[k]]] = normals[k];
+    target_.cloud.normals[slots[without_normal[k]]] = normals[k];
   }
 }
 
-void LocalMap::start_at(const Eigen::Vector3d& origin_local) {
+void LocalMap::rebuild(const Eigen::Vector3d& origin_local) {
   voxels_ = VoxelQueues(static_cast<float>(options_.voxel));
-  empty_.clear();
+  free_slots_.clear();
   target_ = {origin_local, {}, PointIndex({}, options_.voxel)};
-  for (Keyframe& keyframe : keyframes_) place(keyframe);
+  for (Keyframe& keyframe : keyframes_) insert(keyframe);
   if (options_.voxel == 0) target_.index = PointIndex(target_.cloud.points);
 }
 
@@ -167,7 +163,7 @@ VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_li
                          const RigidMotion& T_local_lidar) {
   constexpr std::size_t kPoints = 1500;
   constexpr float kReach = 1, kOnSurface = 0.1f;  // m
-  constexpr float kUpright = 0.5f;                // most of a vertical surface's normal along z
+  constexpr float kMaxNormalZ = 0.5f;             // of a vertical surface
   const LocalMap::Target& target = map.target();
   VerticalFit fit;
   if (target.cloud.normals.empty()) return fit;
@@ -175,15 +171,15 @@ VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_li
   const Eigen::Vector3f ahead = T_local_lidar.linear().col(0).cast<float>(),
                         left = T_local_lidar.linear().col(1).cast<float>();
   const std::size_t step = std::max<std::size_t>(1, source_lidar.points.size() / kPoints);
-  std::array<std::size_t, 2> points{},
-      fitting{};  // of surfaces across and along the LiDAR's x axis
+  // Surfaces across and along the LiDAR's x axis.
+  std::array<std::size_t, 2> points{}, fitting{};
   for (std::size_t i = 0; i < source_lidar.points.size(); i += step) {
     const Eigen::Vector3f p =
         (T_origin_lidar * source_lidar.points[i].cast<double>()).cast<float>();
     const Neighbor nearest = target.index.nearest(p, kReach);
     if (!std::isfinite(nearest.squared_distance)) continue;
     const Eigen::Vector3f& normal = target.cloud.normals[nearest.index];
-    if (normal.isZero(0) || std::abs(normal.z()) > kUpright) continue;
+    if (normal.isZero(0) || std::abs(normal.z()) > kMaxNormalZ) continue;
     const std::size_t kind = std::abs(normal.dot(ahead)) > std::abs(normal.dot(left)) ? 0 : 1;
     ++points[kind];
     const float away = normal.dot(p - target.cloud.points[nearest.index]);

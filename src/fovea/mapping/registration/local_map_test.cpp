@@ -23,7 +23,7 @@ std::vector<Eigen::Vector3f> scan(std::uint64_t seed, const RigidMotion& T_local
                            test::sample(test::room_corner(), 20, seed, 0.005));
 }
 
-/// Ready to be registered.
+/// A prepared scan.
 RegistrationCloud source(std::uint64_t seed, const RigidMotion& T_local_lidar) {
   return prepare_cloud(scan(seed, T_local_lidar), RegistrationOptions());
 }
@@ -34,7 +34,7 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
   LocalMapOptions options;
   options.max_keyframes = 4;
   LocalMap whole(options), resumed(options);
-  // 10 m a step: the origin moves, too.
+  // Steps of 10 m: the origin moves, too.
   const auto pose = [](int i) { return motion(0, 0, 0.02 * i, 10.0 * i, -i, 0); };
   const auto scan = [&](int i, const RigidMotion& T) {
     return local_map_test::scan(static_cast<std::uint64_t>(i), pose(9).inverse() * T);
@@ -62,7 +62,7 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
             register_to(resumed, source, guess, {}).T_target_source.matrix());
 }
 
-TEST(LocalMap, ForgetsOldScans) {
+TEST(LocalMap, RemovesOldScans) {
   LocalMapOptions options;
   options.max_keyframes = 1;
   LocalMap map(options);
@@ -71,7 +71,7 @@ TEST(LocalMap, ForgetsOldScans) {
   EXPECT_EQ(map.size(), 1u);
 }
 
-TEST(LocalMap, HoldsOnePointAVoxelWithinReach) {
+TEST(LocalMap, HoldsOnePointPerVoxelWithinMaxRange) {
   LocalMapOptions options;
   options.max_range = 5;
   options.voxel = 0.5;
@@ -88,8 +88,8 @@ TEST(LocalMap, HoldsOnePointAVoxelWithinReach) {
   EXPECT_GT(voxels.size(), 300u);
 }
 
-TEST(LocalMap, PlanesComeFromAllScansAroundAPoint) {
-  // A ring meets a wall higher up with each step away from it.
+TEST(LocalMap, NormalsComeFromAllScansAroundAPoint) {
+  // With each step away from the wall, a ring moves up the wall.
   const std::vector<test::Rectangle> wall = {{{30, -12, -3}, {0, 24, 0}, {0, 0, 12}}};
   const auto ring = [&](const RigidMotion& T) {
     return voxel_thinned(test::ring_scan(wall, T, {4 * std::numbers::pi / 180}, 1, 0.02), 0.25f);
@@ -113,7 +113,7 @@ TEST(LocalMap, PlanesComeFromAllScansAroundAPoint) {
   EXPECT_GT(known(map), 0.9);
 }
 
-// The rings on the ground are the same wherever the sensor is. They must not hold a scan back.
+// The rings on the ground look the same from any position. They must not pull toward no motion.
 TEST(LocalMap, SparseRingsInAnOpenPlaceDoNotPull) {
   RegistrationOptions options;
   options.method = RegistrationMethod::kPointToPlane;
@@ -142,7 +142,7 @@ TEST(LocalMap, SparseRingsInAnOpenPlaceDoNotPull) {
 }
 
 TEST(LocalMap, RegistersFarFromTheOriginOfItsFrame) {
-  // 50 km out, floats in `local` itself would be good to 4 mm only.
+  // At 50 km, floats in `local` have a resolution of 4 mm only.
   const RigidMotion far = motion(0, 0, 0.5, 50000, -30000, 200);
   LocalMap map{LocalMapOptions()};
   for (int i = 0; i < 4; ++i) map.add(scan(i, pose(i)), far * pose(i));

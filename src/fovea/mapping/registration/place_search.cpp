@@ -6,17 +6,17 @@
 namespace fovea {
 namespace {
 
-/// A coarse registration with pairs of up to 4 m finds a scan from half as far.
-constexpr double kStep = 2.5, kLongestReach = 20;  // m
+/// The coarse registration with pairs of up to 4 m converges from about 2 m.
+constexpr double kStep = 2.5, kMaxReach = 20;  // m
 constexpr double kCoarsePairs = 4, kCoarseWidth = 1;
 constexpr int kCoarseIterations = 30;
 
-/// The center and the steps along the four arms of a cross, the nearest first.
+/// Offsets of the cross: the center, then the four arms, nearest first.
 std::vector<Eigen::Vector3d> cross(double reach) {
   std::vector<Eigen::Vector3d> offsets{Eigen::Vector3d::Zero()};
-  for (double way = kStep; way <= std::min(reach, kLongestReach); way += kStep) {
+  for (double arm = kStep; arm <= std::min(reach, kMaxReach); arm += kStep) {
     for (const Eigen::Vector3d& offset :
-         {Eigen::Vector3d(way, 0, 0), {-way, 0, 0}, {0, way, 0}, {0, -way, 0}}) {
+         {Eigen::Vector3d(arm, 0, 0), {-arm, 0, 0}, {0, arm, 0}, {0, -arm, 0}}) {
       offsets.push_back(offset);
     }
   }

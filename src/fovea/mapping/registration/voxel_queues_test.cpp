@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "fovea/base/random.h"
@@ -12,8 +13,8 @@ namespace fovea::voxel_queues_test {
 
 using Item = VoxelQueues::Item;
 
-/// Scans that come and go, against the plain way of looking through all of them.
-TEST(VoxelQueues, TheOldestOfAVoxelComesFirst) {
+/// Compares the queues with a search through all scans while scans are added and removed.
+TEST(VoxelQueues, TheOldestPointOfAVoxelIsFirst) {
   constexpr float kVoxel = 0.5f;
   constexpr std::size_t kScans = 4;
   Random random(1);
@@ -26,27 +27,25 @@ TEST(VoxelQueues, TheOldestOfAVoxelComesFirst) {
   };
   std::deque<Scan> scans;
   const auto next_of = [&](const Item& item) -> Item& {
-    return scans[item.owner - scans.front().number].next[item.index];
+    return scans[item.scan - scans.front().number].next[item.index];
   };
   for (std::uint32_t number = 0; number < 60; ++number) {
     if (scans.size() == kScans) {
       const Scan& oldest = scans.front();
       for (std::size_t i = 0; i < oldest.points.size(); ++i) {
         if (!oldest.first[i]) continue;
-        const Item heir = queues.pop(oldest.points[i], next_of);
-        if (heir.owner != VoxelQueues::kNobody) {
-          scans[heir.owner - oldest.number].first[heir.index] = true;
-        }
+        const std::optional<Item> successor = queues.pop(oldest.points[i], next_of);
+        if (successor) scans[successor->scan - oldest.number].first[successor->index] = true;
       }
       scans.pop_front();
     }
     Scan& scan = scans.emplace_back();
     scan.number = number;
-    // The place wanders, so that voxels come and go; the table grows and is emptied.
-    const double centre = 0.4 * number;
+    // The center moves, so voxels become occupied and empty.
+    const double center = 0.4 * number;
     scan.points.resize(number % 7 == 6 ? 0 : 700);
     for (Eigen::Vector3f& p : scan.points) {
-      p = {static_cast<float>(random.uniform(centre - 2, centre + 2)),
+      p = {static_cast<float>(random.uniform(center - 2, center + 2)),
            static_cast<float>(random.uniform(-2, 2)), static_cast<float>(random.uniform(-1, 1))};
     }
     scan.next.resize(scan.points.size());
