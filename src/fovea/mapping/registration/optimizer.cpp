@@ -6,15 +6,15 @@
 namespace fovea {
 namespace {
 
-/// Steps on one set of pairs: the pairs are about to change, so that more would be wasted.
+/// Steps on one set of pairs. The pairs change afterwards, so more steps have little effect.
 constexpr int kMaxSteps = 3;
-/// Damping, as a share of the information of a fully observed direction.
+/// Damping, relative to the information of a fully observed direction.
 constexpr double kFirstDamping = 1e-4;
 constexpr double kMaxDamping = 1e3;
 
-/// The well-observed directions of some normal equations.
+/// Eigenvectors of the information, and which of them are observed.
 struct Directions {
-  Eigen::Matrix<double, 6, 6> vectors;   // columns, in units where a radian is kRotationArm metres
+  Eigen::Matrix<double, 6, 6> vectors;   // columns; a radian is kRotationArm meters
   Eigen::Matrix<double, 6, 1> observed;  // 1 or 0
   int degenerate = 0;
 };
@@ -58,14 +58,14 @@ class PriorTerm {
   /// The diagonal of H.
   const Twist& weight() const { return weight_; }
   Twist b(const RigidMotion& T_target_source) const {
-    return weight_.cwiseProduct(away(T_target_source));
+    return weight_.cwiseProduct(difference(T_target_source));
   }
   double error(const RigidMotion& T_target_source) const {
-    return exists() ? away(T_target_source).dot(b(T_target_source)) : 0;
+    return exists() ? difference(T_target_source).dot(b(T_target_source)) : 0;
   }
 
  private:
-  Twist away(const RigidMotion& T_target_source) const {
+  Twist difference(const RigidMotion& T_target_source) const {
     return log_se3(T_source_target_ * T_target_source);
   }
 
@@ -75,7 +75,7 @@ class PriorTerm {
   Twist weight_ = Twist::Zero();
 };
 
-/// Solves (H + damping) step = -b. Pairs count in the observed directions only, the prior in all.
+/// Solves (H + damping) step = -b. Pairs contribute in observed directions only, the prior in all.
 Twist solve(const PairEquations& equations, const PriorTerm& prior, const RigidMotion& T,
             const Directions& directions, double damping) {
   const Twist scale = unit_scale();
@@ -100,12 +100,13 @@ Twist solve(const PairEquations& equations, const PriorTerm& prior, const RigidM
   return scale.asDiagonal() * (V * H.ldlt().solve(-b));
 }
 
-bool is_small(const Twist& step, const OptimizerOptions& options) {
-  return step.head<3>().norm() < options.converged_rotation &&
-         step.tail<3>().norm() < options.converged_translation;
-}
-
 }  // namespace
+
+RigidMotion moved_by(const RigidMotion& T, const Twist& step) {
+  RigidMotion moved = T * exp_se3(step);
+  moved.linear() = nearest_rotation(moved.linear());
+  return moved;
+}
 
 OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
                          const OptimizerOptions& options) {
@@ -118,14 +119,11 @@ OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
   for (int step_count = 0; step_count < kMaxSteps && damping <= kMaxDamping;) {
     const Twist step = solve(best.equations, prior, best.T_target_source, directions, damping);
     if (!step.allFinite()) break;
-    RigidMotion T = best.T_target_source * exp_se3(step);
-    // A caller that extrapolates from poses doubles their rounding every frame, unless it is taken
-    // out.
-    T.linear() = nearest_rotation(T.linear());
+    const RigidMotion T = moved_by(best.T_target_source, step);
     PairEquations equations = accumulate(pairs, T, options.robust_width);
     const double error = equations.error + prior.error(T);
     if (!(error <= best_error)) {
-      if (is_small(step, options)) break;
+      if (options.converged.contains(step)) break;
       damping = std::max(kFirstDamping, damping * 10);
       continue;
     }
@@ -136,7 +134,7 @@ OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
     best.degenerate_directions = directions.degenerate;
     damping = damping > kFirstDamping ? damping / 10 : 0;
     ++step_count;
-    if (is_small(step, options)) break;
+    if (options.converged.contains(step)) break;
   }
   return best;
 }

@@ -1,13 +1,14 @@
-// The optimiser of all registration methods: Gauss-Newton / Levenberg-Marquardt on SE(3).
+// The optimizer of all registration methods: Gauss-Newton / Levenberg-Marquardt on SE(3).
 #pragma once
 
 #include <optional>
 
 #include "fovea/mapping/registration/pair_equations.h"
+#include "fovea/mapping/registration/registration_policies.h"
 
 namespace fovea {
 
-/// What is known of a pose without the scan.
+/// An estimate of the pose that does not use the scan.
 struct PosePrior {
   RigidMotion T_target_source = RigidMotion::Identity();
   /// Standard deviations of a twist of the source about its own origin: rad, m.
@@ -16,16 +17,19 @@ struct PosePrior {
 
 struct OptimizerOptions {
   double robust_width = 0;           ///< Geman-McClure width (m), 0: off
-  double degenerate_eigenvalue = 0;  ///< information a pair below which a direction is left alone
-  bool judge_by_planes = false;      ///< that information is H_planes (pairs have normals), not H
-  double converged_rotation = 1e-4;  ///< rad
-  double converged_translation = 1e-3;  ///< m
+  double degenerate_eigenvalue = 0;  ///< information per pair below which a direction is degenerate
+  bool judge_by_planes = false;      ///< information is H_planes (pairs have normals), not H
+  StepLimit converged;               ///< smaller steps end the iteration
   std::optional<PosePrior> prior = std::nullopt;
 };
 
-/// Unit of rotations beside translations: one radian counts like this many metres, the distance at
-/// which a LiDAR's points typically lie, so that the eigenvalues of both can share one threshold.
+/// Meters that one radian is equal to, so that one threshold serves the eigenvalues of rotations
+/// and translations. It is the typical distance of a LiDAR's points.
 inline constexpr double kRotationArm = 10.0;
+
+/// T * exp(step). Removes the rounding error of the rotation, which would otherwise grow in callers
+/// that extrapolate poses.
+RigidMotion moved_by(const RigidMotion& T, const Twist& step);
 
 struct OptimizerResult {
   RigidMotion T_target_source = RigidMotion::Identity();
@@ -35,10 +39,10 @@ struct OptimizerResult {
 
 /// Minimizes the error of fixed pairs and of the prior.
 ///
-/// A step that raises the error is not taken but damped and tried again. Pairs do not count in
-/// directions of too little information ("solution remapping", Zhang, Kaess, Singh, ICRA 2016):
-/// there the pose follows the prior, or keeps its first value without one. The errors of pairs have
-/// much in common: all pairs together count as a hundred independent ones beside the prior.
+/// Levenberg-Marquardt: a step that raises the error is damped and tried again. Pairs are ignored
+/// in degenerate directions ("solution remapping", Zhang, Kaess, Singh, ICRA 2016): the pose
+/// follows the prior there, or keeps its value without a prior. Errors of pairs are correlated:
+/// against the prior, all pairs together have the weight of a hundred independent pairs.
 OptimizerResult minimize(const PairBlocks& pairs, const RigidMotion& guess,
                          const OptimizerOptions& options);
 

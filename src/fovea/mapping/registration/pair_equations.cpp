@@ -17,8 +17,8 @@ inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Sums of the pairs' terms, lane by lane. The rows stand for the perturbation expressed in target
-/// axes, which costs no rotation of M a pair.
+/// Sums of the pairs' terms, lane by lane. The perturbation is in target axes, which saves a
+/// rotation of M for each pair.
 struct Sums {
   std::array<Lanes, 21> H{}, H_planes{};  // upper triangles, row by row
   std::array<Lanes, 6> b{};
@@ -33,7 +33,7 @@ class Accumulator {
         width2_(static_cast<float>(robust_width * robust_width)) {}
 
   void add(const PairBlock& pair, Sums& sums) const {
-    Lanes3 arm, d;  // T_target_source's rotation times the source point; error
+    Lanes3 arm, d;  // rotated source point; error
     for (int i = 0; i < 3; ++i) {
       const auto k = static_cast<std::size_t>(i);
       arm[k] = R_(i, 0) * pair.source[0] + R_(i, 1) * pair.source[1] + R_(i, 2) * pair.source[2];
@@ -44,16 +44,16 @@ class Accumulator {
     const Lanes3 Md{dot(M[0], d), dot(M[1], d), dot(M[2], d)};
     const Lanes squared_error = dot(d, Md);
 
-    // Geman-McClure: rho(e^2) = w^2 e^2 / (w^2 + e^2), its derivative weighs the pair.
+    // Geman-McClure: rho(e^2) = w^2 e^2 / (w^2 + e^2). Its derivative is the weight of the pair.
     Lanes share = all_lanes(1);
     if (width2_ > 0) share = width2_ / (width2_ + squared_error);
-    const Lanes robust = share * share * pair.counts;
-    sums.error += share * squared_error * pair.counts;
-    sums.squared_distance += dot(d, d) * pair.counts;
+    const Lanes robust = share * share * pair.valid;
+    sums.error += share * squared_error * pair.valid;
+    sums.squared_distance += dot(d, d) * pair.valid;
     sums.weight += robust;
 
-    // Jacobian of d in target axes: [-hat(arm), I]; so the columns of J^T M are:
-    std::array<Lanes3, 3> AM;  // AM[j] = arm x M's column j
+    // Jacobian J of d in target axes: [-hat(arm), I]. H += J^T M J and b += J^T M d.
+    std::array<Lanes3, 3> AM;  // AM[j]: arm x column j of M
     for (std::size_t j = 0; j < 3; ++j) AM[j] = cross(arm, M[j]);
     const Lanes3 torque = cross(arm, Md);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -63,17 +63,18 @@ class Accumulator {
     std::size_t k = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Lanes3 row{AM[0][i], AM[1][i], AM[2][i]};
-      const Lanes3 turned = cross(arm, row);  // row i of hat(arm) M hat(arm)^T
-      for (std::size_t j = i; j < 3; ++j) sums.H[k++] += robust * turned[j];
+      const Lanes3 rotated = cross(arm, row);  // row i of hat(arm) M hat(arm)^T
+      for (std::size_t j = i; j < 3; ++j) sums.H[k++] += robust * rotated[j];
       for (std::size_t j = 0; j < 3; ++j) sums.H[k++] += robust * row[j];
     }
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = i; j < 3; ++j) sums.H[k++] += robust * M[i][j];
     }
 
-    const Lanes3 slope_turning = cross(arm, pair.normal);  // of the distance to the target's plane
-    const std::array<Lanes, 6> slope{slope_turning[0], slope_turning[1], slope_turning[2],
-                                     pair.normal[0],   pair.normal[1],   pair.normal[2]};
+    const Lanes3 rotation_slope = cross(arm, pair.normal);
+    // Gradient of the distance to the target's plane.
+    const std::array<Lanes, 6> slope{rotation_slope[0], rotation_slope[1], rotation_slope[2],
+                                     pair.normal[0],    pair.normal[1],    pair.normal[2]};
     k = 0;
     for (std::size_t i = 0; i < 6; ++i) {
       const Lanes weighted = robust * slope[i];
@@ -113,9 +114,9 @@ struct Totals {
   }
 };
 
-/// Turns rows from target axes into source axes: the right perturbation.
-Eigen::Matrix<double, 6, 6> turned(const std::array<double, 21>& triangle,
-                                   const Eigen::Matrix3d& R) {
+/// Rotates the equations from target axes to source axes, those of the right perturbation.
+Eigen::Matrix<double, 6, 6> to_source_axes(const std::array<double, 21>& triangle,
+                                           const Eigen::Matrix3d& R) {
   Eigen::Matrix<double, 6, 6> m;
   std::size_t k = 0;
   for (int i = 0; i < 6; ++i) {
@@ -142,7 +143,7 @@ PairBlocks::PairBlocks(std::span<const Pair> all) {
     put(block.target, lane, pair.target);
     put(block.normal, lane, pair.normal);
     put(block.information, lane, pair.information);
-    block.counts[lane] = 1;
+    block.valid[lane] = 1;
   }
 }
 
@@ -157,8 +158,8 @@ PairEquations accumulate(const PairBlocks& pairs, const RigidMotion& T_target_so
       });
   const Eigen::Matrix3d R = T_target_source.linear();
   PairEquations equations;
-  equations.H = turned(totals.H, R);
-  equations.H_planes = turned(totals.H_planes, R);
+  equations.H = to_source_axes(totals.H, R);
+  equations.H_planes = to_source_axes(totals.H_planes, R);
   const Eigen::Map<const Twist> b(totals.b.data());
   equations.b.head<3>() = R.transpose() * b.head<3>();
   equations.b.tail<3>() = R.transpose() * b.tail<3>();

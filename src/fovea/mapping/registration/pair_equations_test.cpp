@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <vector>
 
 #include "fovea/base/random.h"
 #include "fovea/mapping/registration/gicp_factor.h"
@@ -38,7 +39,7 @@ PairEquations equations_at(const Pair& pair, const RigidMotion& T, double robust
 template <class Factor>
 class FactorTest : public testing::Test {
  protected:
-  /// A pair with the factor's weight, a few metres apart at T.
+  /// A pair with the factor's weight, up to a meter apart at T.
   Pair random_pair(const RigidMotion& T) {
     Pair pair;
     pair.source = random_vector(random_, 20).cast<float>();
@@ -97,6 +98,44 @@ TYPED_TEST(FactorTest, HessianIsTheSquareOfTheNumericalJacobian) {
   }
 }
 
+/// Plain version of accumulate(): one pair at a time, in doubles.
+PairEquations plain_equations(const std::vector<Pair>& pairs, const RigidMotion& T,
+                              double robust_width) {
+  PairEquations sum;
+  for (const Pair& pair : pairs) {
+    const Eigen::Vector3d source = pair.source.cast<double>();
+    const Eigen::Vector3d d = T * source - pair.target.cast<double>();
+    Eigen::Matrix<double, 3, 6> J;
+    const Eigen::Matrix3d R = T.linear();
+    for (int i = 0; i < 3; ++i) J.col(i) = R * Eigen::Vector3d::Unit(i).cross(source);
+    J.rightCols<3>() = R;
+    const Eigen::Matrix3d M = unpack_symmetric(pair.information);
+    const double e2 = d.dot(M * d), w2 = robust_width * robust_width, share = w2 / (w2 + e2);
+    const Eigen::Matrix<double, 1, 6> slope = pair.normal.cast<double>().transpose() * J;
+    sum.H += share * share * J.transpose() * M * J;
+    sum.b += share * share * J.transpose() * M * d;
+    sum.H_planes += share * share * slope.transpose() * slope;
+    sum.error += share * e2;
+    sum.squared_distance += d.squaredNorm();
+    sum.weight += share * share;
+  }
+  return sum;
+}
+
+TYPED_TEST(FactorTest, VectorizedSumsAreThePlainSums) {
+  const RigidMotion T = random_pose(this->random_);
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 2500; ++i) pairs.push_back(this->random_pair(T));  // the last block has four
+  const PairEquations sums = accumulate(PairBlocks(pairs), T, 0.3);
+  const PairEquations plain = plain_equations(pairs, T, 0.3);
+  EXPECT_LT((sums.H - plain.H).norm(), 1e-5 * plain.H.norm());
+  EXPECT_LT((sums.H_planes - plain.H_planes).norm(), 1e-5 * plain.H_planes.norm());
+  EXPECT_LT((sums.b - plain.b).norm(), 1e-4 * (1 + plain.b.norm()));
+  EXPECT_NEAR(sums.error / plain.error, 1, 1e-5);
+  EXPECT_NEAR(sums.squared_distance / plain.squared_distance, 1, 1e-5);
+  EXPECT_NEAR(sums.weight / plain.weight, 1, 1e-5);
+}
+
 TEST(GicpFactor, InformationIsTheInverseOfTheSummedCovariances) {
   Random random(3);
   RegistrationOptions options;
@@ -104,7 +143,7 @@ TEST(GicpFactor, InformationIsTheInverseOfTheSummedCovariances) {
     options.plane_epsilon = epsilon;
     for (int trial = 0; trial < 20; ++trial) {
       const Eigen::Vector3d n = random_vector(random, 1).normalized();
-      // Every second pair has parallel normals, where two of the closed form's terms meet.
+      // Every second pair has parallel normals, a special case of the closed form.
       const Eigen::Vector3d m = trial % 2 == 0 ? n : random_vector(random, 1).normalized();
       const Eigen::Matrix3d sum =
           2 * Eigen::Matrix3d::Identity() - (1 - epsilon) * (n * n.transpose() + m * m.transpose());

@@ -6,13 +6,13 @@
 
 namespace fovea {
 
-/// Only the distance to the target's plane counts: the error is (n^T d)^2. A target point without
-/// a normal gives no pair.
+/// The error is the squared distance to the target's plane, (n^T d)^2. A target point without a
+/// normal gives no pair.
 struct PointToPlaneFactor {
   static constexpr bool kNeedsNormals = true;
   static constexpr bool kNeedsSourceNormals = false;
-  /// Along a wall no pair tells anything, so that it may be of points a little off the nearest.
-  static constexpr double kKeepsPairFor = 0.01;  // m
+  /// Another target point on the same plane gives nearly the same equations.
+  static constexpr double kMaxPairMove = 0.01;  // m, see PairCache
 
   /// @param n  unit normal of the target point, or zero
   static Symmetric3 information(const Eigen::Vector3f& n, const Eigen::Vector3f&,

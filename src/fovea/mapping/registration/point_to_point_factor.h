@@ -6,13 +6,13 @@
 
 namespace fovea {
 
-/// Every direction counts alike: the error is |d|^2. Normals are not looked at, so that a wall says
-/// where along itself it lies (wrongly: by its sampling), and no direction ever looks degenerate.
+/// The error is |d|^2. Without normals, the sampling of a wall pulls along the wall, and no
+/// direction is degenerate.
 struct PointToPointFactor {
   static constexpr bool kNeedsNormals = false;
   static constexpr bool kNeedsSourceNormals = false;
-  /// Every pair tells of all directions: it must be of the nearest.
-  static constexpr double kKeepsPairFor = 0;  // m
+  /// Another target point changes the equations: pairs are never reused.
+  static constexpr double kMaxPairMove = 0;  // m, see PairCache
 
   static Symmetric3 information(const Eigen::Vector3f&, const Eigen::Vector3f&,
                                 const RegistrationOptions&) {

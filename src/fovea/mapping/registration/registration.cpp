@@ -18,171 +18,149 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// A pair is looked for again once its points have moved by this share of how far pairs are apart.
-constexpr double kKeepsPairShare = 0.1;
-
-/// How many points say enough of where to go while the kernel is wide, and until they move less
-/// than kNearlyThere times what ends the iteration. Should they not agree on a place, all are asked
-/// after so many rounds.
-constexpr std::size_t kCoarsePoints = 2000;
-constexpr double kNearlyThere = 20;
-constexpr int kCoarseRounds = 30;
-
-/// Steps by which a scan that lies off creeps along a road: under a narrow kernel the few pairs
-/// that are right already draw it, a little at a time.
-class CreepingSteps {
- public:
-  /// How many of the latest step to take at once: as many as follow it if steps go on as they do
-  /// (Aitken's extrapolation), and one where it has another direction than the one before.
-  double take(const Twist& step) {
-    const Eigen::Vector3d now = step.tail<3>(), before = std::exchange(last_, now);
-    const double along = now.dot(before);
-    // Back again: it went too far, and must not do so for ever.
-    if (along < 0) most_ = std::max(1.0, most_ * kFewer);
-    if (along <= kSameDirection * now.norm() * before.norm()) return 1;
-    const double ratio = now.norm() / before.norm();
-    return ratio < 1 ? std::min(most_, 1 / (1 - ratio)) : most_;
-  }
-
- private:
-  static constexpr double kSameDirection = 0.9;  // cosine
-  static constexpr double kFewer = 0.75;
-  double most_ = 4;
-  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
-};
-
-/// Steps of less than so many times what ends the iteration do not creep.
-constexpr double kCreeps = 5;
-
-/// Fewer pairs than this are no evidence of six numbers.
+/// Fewer pairs do not determine the six degrees of freedom reliably.
 constexpr std::size_t kMinPairs = 50;
 
-/// Item i of `some` that stand at even steps among `all`.
-std::size_t at_even_step(std::size_t i, std::size_t some, std::size_t all) {
-  return i * all / some;
-}
-
-/// Indices of at most max_points of so many points (0: all of them), at even steps.
-std::vector<std::uint32_t> chosen_of(std::size_t points, int max_points) {
-  const std::size_t most =
-      max_points > 0 ? std::min(static_cast<std::size_t>(max_points), points) : points;
-  std::vector<std::uint32_t> chosen(most);
-  for (std::size_t i = 0; i < most; ++i) {
-    chosen[i] = static_cast<std::uint32_t>(at_even_step(i, most, points));
+/// Indices of `count` items at even steps among `all`.
+std::vector<std::uint32_t> even_sample(std::size_t count, std::size_t all) {
+  std::vector<std::uint32_t> sample(std::min(count, all));
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    sample[i] = static_cast<std::uint32_t>(i * all / sample.size());
   }
-  return chosen;
+  return sample;
 }
 
-/// Gives each source point its nearest target point and the factor's weight of the two. A pair is
-/// kept while its source point moves by less than `keep_within` (m); otherwise it bounds the
-/// search, which then ends early.
-/// @param pairs  of source points at even steps
-template <class Factor>
-void find_pairs(const RegistrationCloud& target, const PointIndex& target_index,
-                const RegistrationCloud& source, const RigidMotion& T_target_source,
-                const RegistrationOptions& options, float keep_within, std::vector<Pair>& pairs) {
-  const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
-  const Eigen::Vector3f t = T_target_source.translation().cast<float>();
-  const float max_distance = static_cast<float>(options.max_distance);
-  parallel_for(pairs.size(), kGrain, [&](std::size_t i) {
-    Pair& pair = pairs[i];
-    const Eigen::Vector3f p = R * pair.source + t;
-    if ((p - pair.looked_at).squaredNorm() < keep_within * keep_within) return;
-    pair.looked_at = p;
-    float bound = max_distance;
-    if (pair.target_index != Pair::kNone) {
-      // A little wider, so that rounding does not lose the previous neighbour itself.
-      bound = std::min(bound, (p - pair.target).norm() * 1.001f + 1e-4f);
-    }
-    const Neighbor nearest = target_index.nearest(p, bound);
-    pair.target_index = Pair::kNone;
-    if (!std::isfinite(nearest.squared_distance)) return;
-    Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
-    if constexpr (Factor::kNeedsNormals) {
-      n = target.normals[nearest.index];
-      if constexpr (Factor::kNeedsSourceNormals) {
-        m = R * source.normals[at_even_step(i, pairs.size(), source.points.size())];
-      }
-      if (n.isZero() && m.isZero()) return;
-    }
-    pair.target_index = nearest.index;
-    pair.target = target.points[nearest.index];
-    pair.information = Factor::information(n, m, options);
-    pair.normal = n;
-  });
+/// @param max_points  0: all
+std::vector<std::uint32_t> selected(std::size_t points, int max_points) {
+  return even_sample(max_points > 0 ? static_cast<std::size_t>(max_points) : points, points);
 }
 
-/// Pairs of at most so many source points, as yet without target.
-std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t most) {
-  std::vector<Pair> pairs(std::min(most, source.points.size()));
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[i].source = source.points[at_even_step(i, pairs.size(), source.points.size())];
+/// The clouds of one registration.
+struct Clouds {
+  const RegistrationCloud& target;
+  const PointIndex& target_index;
+  const RegistrationCloud& source;
+};
+
+/// Pairs of `count` source points, without targets yet.
+std::vector<Pair> pairs_of(const RegistrationCloud& source, std::size_t count) {
+  std::vector<Pair> pairs;
+  pairs.reserve(count);
+  for (const std::uint32_t i : even_sample(count, source.points.size())) {
+    Pair& pair = pairs.emplace_back();
+    pair.source = source.points[i];
+    if (!source.normals.empty()) pair.source_normal = source.normals[i];
   }
   return pairs;
 }
 
+/// Pairs a source point with the nearest target point. The pair gets no target if none is within
+/// max_distance, or if the factor needs normals and both are unknown.
+/// @param p  the source point at the present pose
+/// @param R  rotation of the present pose
 template <class Factor>
-RegistrationResult align(const RegistrationCloud& target, const PointIndex& target_index,
-                         const RegistrationCloud& source, const RigidMotion& guess,
+void find_pair(const Clouds& clouds, const Eigen::Vector3f& p, const Eigen::Matrix3f& R,
+               const RegistrationOptions& options, Pair& pair) {
+  pair.searched_at = p;
+  pair.target_index = Pair::kNone;
+  const Neighbor nearest = clouds.target_index.nearest(p, static_cast<float>(options.max_distance));
+  if (!std::isfinite(nearest.squared_distance)) return;
+  Eigen::Vector3f n = Eigen::Vector3f::Zero(), m = Eigen::Vector3f::Zero();
+  if constexpr (Factor::kNeedsNormals) n = clouds.target.normals[nearest.index];
+  if constexpr (Factor::kNeedsSourceNormals) m = R * pair.source_normal;
+  if (Factor::kNeedsNormals && n.isZero() && m.isZero()) return;
+  pair.target_index = nearest.index;
+  pair.target = clouds.target.points[nearest.index];
+  pair.normal = n;
+  pair.information = Factor::information(n, m, options);
+}
+
+/// Updates all pairs for a pose, except those that the cache keeps.
+/// @return number of searches
+template <class Factor>
+std::size_t find_pairs(const Clouds& clouds, const RigidMotion& T_target_source,
+                       const RegistrationOptions& options, const PairCache& cache,
+                       std::vector<Pair>& pairs) {
+  const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
+  const Eigen::Vector3f t = T_target_source.translation().cast<float>();
+  return parallel_sum(pairs.size(), kGrain, std::size_t{0},
+                      [&](std::size_t begin, std::size_t end) {
+                        std::size_t searches = 0;
+                        for (std::size_t i = begin; i < end; ++i) {
+                          const Eigen::Vector3f p = R * pairs[i].source + t;
+                          if (cache.is_valid(pairs[i], p)) continue;
+                          find_pair<Factor>(clouds, p, R, options, pairs[i]);
+                          ++searches;
+                        }
+                        return searches;
+                      });
+}
+
+/// Statistics of the last round.
+template <class Factor>
+void set_statistics(const OptimizerResult& solution, RegistrationResult& result) {
+  const PairEquations& equations = solution.equations;
+  result.degenerate_directions = solution.degenerate_directions;
+  result.rms_distance =
+      std::sqrt(equations.squared_distance / static_cast<double>(equations.pairs));
+  // The scatter of the pairs gives the variance of one pair.
+  const double error = std::max(equations.error, std::numeric_limits<double>::min());
+  result.information =
+      (Factor::kNeedsNormals ? equations.H_planes : equations.H) * (equations.weight / error);
+}
+
+/// Iterative closest point. Each round pairs source points p_i with target points q_i and minimizes
+///   E(T) = sum_i rho(d_i^T M_i d_i),  d_i = T p_i - q_i.
+/// M_i is the factor's information matrix:
+///   point to point  M_i = I                              (Besl, McKay 1992)
+///   point to plane  M_i = n_i n_i^T                      (Chen, Medioni 1992)
+///   GICP            M_i = (C_i^B + R C_i^A R^T)^-1       (Segal, Haehnel, Thrun 2009, Sec. III)
+/// rho is the Geman-McClure kernel, or the identity without a robust width.
+template <class Factor>
+RegistrationResult align(const Clouds& clouds, const RigidMotion& guess,
                          const RegistrationOptions& options,
                          const std::optional<PosePrior>& prior) {
-  OptimizerOptions optimizer{options.robust_width,          options.degenerate_eigenvalue,
-                             Factor::kNeedsNormals,         options.converged_rotation,
-                             options.converged_translation, prior};
-  const bool narrows = options.robust_width > 0 && options.robust_width < options.max_distance;
-  std::vector<Pair> pairs = pairs_of(source, narrows ? kCoarsePoints : source.points.size());
+  const RegistrationPolicies& use = options.policies;
+  const bool is_robust = options.robust_width > 0 && options.robust_width < options.max_distance;
+  const StepLimit limit{options.converged_rotation, options.converged_translation};
+  const NarrowingKernel kernel(use.narrowing_kernel, options.max_distance, options.robust_width);
+  CoarsePhase coarse(use.coarse_phase && is_robust, clouds.source.points.size());
+  AitkenAcceleration acceleration(use.aitken_acceleration && is_robust, limit);
+  OptimizerOptions optimizer{0, options.degenerate_eigenvalue, Factor::kNeedsNormals, limit, prior};
 
+  std::vector<Pair> pairs = pairs_of(clouds.source, coarse.points());
   RegistrationResult result;
-  result.T_target_source = guess;
-  bool nearly_there = false;
-  CreepingSteps creeping;
-  while (result.iterations < options.max_iterations && !result.converged) {
-    // The kernel narrows step by step: from a poor guess the true pairs are far apart, too.
-    if (options.robust_width > 0) {
-      optimizer.robust_width =
-          std::max(options.robust_width, std::ldexp(options.max_distance, -result.iterations));
-    }
-    const bool narrow = optimizer.robust_width <= options.robust_width;
-    if (narrow && (nearly_there || result.iterations >= kCoarseRounds) &&
-        pairs.size() < source.points.size()) {
-      pairs = pairs_of(source, source.points.size());
-    }
-    const auto keep_within =
-        static_cast<float>(std::min(Factor::kKeepsPairFor, kKeepsPairShare * result.rms_distance));
-    find_pairs<Factor>(target, target_index, source, result.T_target_source, options, keep_within,
-                       pairs);
-    auto [T, degenerate, equations] =
-        minimize(PairBlocks(pairs), result.T_target_source, optimizer);
-    ++result.iterations;
-    result.pairs = equations.pairs;
-    if (equations.pairs < kMinPairs) {
-      result.T_target_source = guess;
+  RigidMotion& T = result.T_target_source = guess;
+  while (!result.converged && result.iterations < options.max_iterations) {
+    const int round = result.iterations++;
+
+    // Find pairs: q_i is the target point nearest to T p_i.
+    const PairCache cache(use.pair_cache, Factor::kMaxPairMove, result.rms_distance);
+    result.searches += find_pairs<Factor>(clouds, T, options, cache, pairs);
+
+    // Linearize and solve: Gauss-Newton steps H x = -b on E (optimizer.h).
+    optimizer.robust_width = kernel.width(round);
+    const OptimizerResult solution = minimize(PairBlocks(pairs), T, optimizer);
+    result.pairs = solution.equations.pairs;
+    if (result.pairs < kMinPairs) {
+      T = guess;
       result.degenerate_directions = 6;
       return result;
     }
-    const Twist step = log_se3(result.T_target_source.inverse() * T);
-    const auto moves_less_than = [&](double times) {
-      return step.head<3>().norm() < times * options.converged_rotation &&
-             step.tail<3>().norm() < times * options.converged_translation;
-    };
-    nearly_there = moves_less_than(kNearlyThere);
-    result.converged = narrow && pairs.size() == source.points.size() && moves_less_than(1);
-    if (narrows && narrow) {
-      const double steps = creeping.take(step);
-      // Not the last time: nobody would look whether it fits there.
-      if (steps > 1 && !moves_less_than(kCreeps) && result.iterations < options.max_iterations) {
-        T = result.T_target_source * exp_se3(steps * step);
-        T.linear() = nearest_rotation(T.linear());
-      }
+
+    // Converged?
+    const Twist step = log_se3(T.inverse() * solution.T_target_source);
+    const bool is_final = kernel.is_final(round);
+    result.converged = is_final && !coarse.is_active() && limit.contains(step);
+
+    // Update. The last round is not accelerated: no later round would correct the pose.
+    const double factor = is_final ? acceleration.factor(step) : 1;
+    const bool accelerates = factor > 1 && result.iterations < options.max_iterations;
+    T = accelerates ? moved_by(T, factor * step) : solution.T_target_source;
+    set_statistics<Factor>(solution, result);
+    if (kernel.is_final(round + 1) && coarse.ends(step, round + 1, limit)) {
+      pairs = pairs_of(clouds.source, coarse.points());
     }
-    result.T_target_source = T;
-    result.degenerate_directions = degenerate;
-    result.rms_distance =
-        std::sqrt(equations.squared_distance / static_cast<double>(equations.pairs));
-    // The pairs' own scatter says how much one of them is worth.
-    result.information =
-        (Factor::kNeedsNormals ? equations.H_planes : equations.H) *
-        (equations.weight / std::max(equations.error, std::numeric_limits<double>::min()));
   }
   return result;
 }
@@ -202,7 +180,7 @@ void RegistrationOptions::validate() const {
   }
   if (!(max_distance > 0 && max_distance <= 100)) {
     reject("a pair distance is out of range", "registration.max_distance",
-           "give metres above 0 and up to 100");
+           "give meters above 0 and up to 100");
   }
   if (!(converged_rotation > 0 && converged_rotation < 1)) {
     reject("a threshold is out of range", "registration.converged_rotation",
@@ -210,18 +188,18 @@ void RegistrationOptions::validate() const {
   }
   if (!(converged_translation > 0 && converged_translation < 10)) {
     reject("a threshold is out of range", "registration.converged_translation",
-           "give metres above 0 and below 10");
+           "give meters above 0 and below 10");
   }
   if (neighbors < 4 || neighbors > 100) {
-    reject("a neighbour count is out of range", "registration.neighbors", "give 4 to 100");
+    reject("a neighbor count is out of range", "registration.neighbors", "give 4 to 100");
   }
   if (!(plane_epsilon > 0 && plane_epsilon <= 1)) {
-    reject("a regularisation is out of range", "registration.plane_epsilon",
+    reject("a regularization is out of range", "registration.plane_epsilon",
            "give a ratio above 0 and up to 1");
   }
   if (!(robust_width >= 0 && robust_width <= 100)) {
     reject("a kernel width is out of range", "registration.robust_width",
-           "give metres from 0 (off) to 100");
+           "give meters from 0 (off) to 100");
   }
   if (!(degenerate_eigenvalue >= 0 && degenerate_eigenvalue < 1)) {
     reject("a threshold is out of range", "registration.degenerate_eigenvalue",
@@ -232,7 +210,7 @@ void RegistrationOptions::validate() const {
 RegistrationCloud select_points(std::vector<Eigen::Vector3f> points, int max_points) {
   std::erase_if(points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
   RegistrationCloud cloud;
-  for (const std::uint32_t i : chosen_of(points.size(), max_points)) {
+  for (const std::uint32_t i : selected(points.size(), max_points)) {
     cloud.points.push_back(points[i]);
   }
   return cloud;
@@ -244,7 +222,7 @@ RegistrationCloud prepare_cloud(std::vector<Eigen::Vector3f> points,
     return select_points(std::move(points), options.max_points);
   }
   std::erase_if(points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });
-  const std::vector<std::uint32_t> chosen = chosen_of(points.size(), options.max_points);
+  const std::vector<std::uint32_t> chosen = selected(points.size(), options.max_points);
   RegistrationCloud cloud;
   cloud.normals = estimate_normals(points, chosen, {options.neighbors, spacing});
   cloud.points.reserve(chosen.size());
@@ -256,13 +234,14 @@ RegistrationResult register_clouds(const RegistrationCloud& target, const PointI
                                    const RegistrationCloud& source, const RigidMotion& guess,
                                    const RegistrationOptions& options,
                                    const std::optional<PosePrior>& prior) {
+  const Clouds clouds{target, target_index, source};
   switch (options.method) {
     case RegistrationMethod::kGicp:
-      return align<GicpFactor>(target, target_index, source, guess, options, prior);
+      return align<GicpFactor>(clouds, guess, options, prior);
     case RegistrationMethod::kPointToPoint:
-      return align<PointToPointFactor>(target, target_index, source, guess, options, prior);
+      return align<PointToPointFactor>(clouds, guess, options, prior);
     case RegistrationMethod::kPointToPlane:
-      return align<PointToPlaneFactor>(target, target_index, source, guess, options, prior);
+      return align<PointToPlaneFactor>(clouds, guess, options, prior);
   }
   throw std::invalid_argument("unknown registration method");
 }

@@ -45,7 +45,7 @@ RegistrationResult align(const Scans& scans, const RigidMotion& guess,
 }
 
 struct PoseError {
-  double metres, radians;
+  double meters, radians;
 };
 PoseError error_of(const RigidMotion& estimate, const RigidMotion& truth) {
   const Twist difference = log_se3(truth.inverse() * estimate);
@@ -76,12 +76,12 @@ TEST_P(EveryMethod, IdenticalPointsAreAlignedExactly) {
   EXPECT_EQ(result.degenerate_directions, 0);
   EXPECT_EQ(result.pairs, target.size());
   EXPECT_LT(result.rms_distance, 1e-5);
-  EXPECT_LT(error_of(result.T_target_source, truth).metres, 1e-5);
+  EXPECT_LT(error_of(result.T_target_source, truth).meters, 1e-5);
   EXPECT_LT(error_of(result.T_target_source, truth).radians, 1e-5);
 }
 
 TEST_P(EveryMethod, RecoversKnownMotionsOfSeparatelySampledScans) {
-  // Point to point is the weakest: its error is the chance pattern of the samples.
+  // Point to point has the largest error: the random pattern of the samples.
   const bool point_to_point = GetParam() == RegistrationMethod::kPointToPoint;
   const RigidMotion truths[] = {motion(0, 0, 0, 0.5, 0, 0), motion(0, 0, 0.08, 0.3, -0.2, 0.05),
                                 motion(0.03, -0.04, -0.05, -0.3, 0.3, -0.1)};
@@ -93,13 +93,13 @@ TEST_P(EveryMethod, RecoversKnownMotionsOfSeparatelySampledScans) {
       const PoseError error = error_of(result.T_target_source, truth);
       EXPECT_TRUE(result.converged) << "sigma " << sigma;
       EXPECT_EQ(result.degenerate_directions, 0);
-      EXPECT_LT(error.metres, point_to_point ? 0.02 : 0.003) << "sigma " << sigma;
+      EXPECT_LT(error.meters, point_to_point ? 0.02 : 0.003) << "sigma " << sigma;
       EXPECT_LT(error.radians, point_to_point ? 0.004 : 0.0006) << "sigma " << sigma;
     }
   }
 }
 
-TEST_P(EveryMethod, SomeOfThePointsTellWhatAllDo) {
+TEST_P(EveryMethod, ASampleOfThePointsGivesThePoseOfAll) {
   const RigidMotion truth = motion(0.01, -0.02, 0.04, 0.15, -0.1, 0.05);
   const Scans scans = two_scans(test::room_corner(), test::room_corner(), truth, 0.01);
   RegistrationOptions options = options_for(GetParam());
@@ -111,8 +111,8 @@ TEST_P(EveryMethod, SomeOfThePointsTellWhatAllDo) {
                       RigidMotion::Identity(), options);
   EXPECT_TRUE(some.converged);
   EXPECT_LE(some.pairs, scans.source.size() / 3);
-  EXPECT_LT(error_of(some.T_target_source, truth).metres,
-            error_of(all.T_target_source, truth).metres + 0.005);
+  EXPECT_LT(error_of(some.T_target_source, truth).meters,
+            error_of(all.T_target_source, truth).meters + 0.005);
   EXPECT_NEAR(some.information.trace() / all.information.trace(), 1. / 3, 0.1);
 }
 
@@ -174,11 +174,11 @@ TEST_P(EveryMethod, NonFinitePointsAreLeftOut) {
   scans.source.insert(scans.source.begin() + 100, {{nan, 0, 0}, {0, infinity, 0}});
   scans.target.insert(scans.target.begin() + 50, {{0, nan, nan}, {-infinity, 0, 0}});
   const RegistrationResult result = align(scans, RigidMotion::Identity(), options_for(GetParam()));
-  EXPECT_LT(error_of(result.T_target_source, truth).metres, 0.02);
+  EXPECT_LT(error_of(result.T_target_source, truth).meters, 0.02);
 }
 
 TEST_P(EveryMethod, ResultIsARotationHoweverOftenItIsExtrapolated) {
-  // Constant-velocity guesses double the rounding of the poses behind them with every frame.
+  // Constant-velocity guesses double the rounding errors of the poses with every frame.
   const std::vector<Eigen::Vector3f> room = test::sample(test::room_corner(), 5, 1);
   RegistrationOptions options = options_for(GetParam());
   const RegistrationCloud cloud = prepare_cloud(room, options);
@@ -200,7 +200,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, MethodsWithNormals,
 TEST_P(MethodsWithNormals, CorridorKeepsTheGuessAlongItsAxis) {
   const RigidMotion truth = motion(0, 0, 0.03, 0.4, 0.15, 0.05);
   for (const double sigma : {0.0, 0.005, 0.015}) {
-    // The source sees no end of the target, which would tell where along the axis it is.
+    // The source does not see the ends of the target, which would determine the axial position.
     const Scans scans = two_scans(test::corridor(15), test::corridor(10), truth, sigma);
     const RigidMotion guess = motion(0, 0, 0, 0.7, 0, 0);
     const RegistrationResult result = align(scans, guess, options_for(GetParam()));
@@ -223,19 +223,19 @@ TEST_P(MethodsWithNormals, PlaneHasThreeDegenerateDirections) {
       align(two_scans(floor, inner, truth, 0), guess, options_for(GetParam()));
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.degenerate_directions, 3);
-  // The floor is met ...
+  // The pose of the floor is found ...
   EXPECT_LT((result.T_target_source.linear().row(2) - truth.linear().row(2)).norm(), 0.05);
   const Eigen::Vector3d under =
       result.T_target_source * (truth.inverse() * Eigen::Vector3d(0, 0, -1.7));
   EXPECT_NEAR(under.z(), -1.7, 0.005);
-  // ... and turning on it and moving along it are as guessed.
+  // ... and the motion in the plane of the floor is that of the guess.
   EXPECT_NEAR(log_se3(result.T_target_source)[2], 0.2, 0.01);
   EXPECT_NEAR(result.T_target_source.translation().x(), 0.5, 0.1);
   EXPECT_NEAR(result.T_target_source.translation().y(), -0.3, 0.1);
 }
 
 TEST_P(EveryMethod, RobustKernelResistsAMovingBlock) {
-  // A block that moved 0.4 m between the scans makes a fifth of each.
+  // A fifth of each scan is a block that moves by 0.4 m.
   const std::vector<test::Rectangle> room = test::room_corner();
   std::vector<test::Rectangle> block;
   test::add_box(block, {2, 1, -1.7}, {2.5, 2.5, 3.2});
@@ -250,16 +250,16 @@ TEST_P(EveryMethod, RobustKernelResistsAMovingBlock) {
 
   RegistrationOptions options = options_for(GetParam());
   const double plain =
-      error_of(align(scans, RigidMotion::Identity(), options).T_target_source, truth).metres;
+      error_of(align(scans, RigidMotion::Identity(), options).T_target_source, truth).meters;
   options.robust_width = 0.1;
   const double robust =
-      error_of(align(scans, RigidMotion::Identity(), options).T_target_source, truth).metres;
+      error_of(align(scans, RigidMotion::Identity(), options).T_target_source, truth).meters;
   EXPECT_LT(robust, 0.01);
   EXPECT_LT(robust, 0.5 * plain);
 }
 
 TEST(Registration, ResultDoesNotDependOnTheTargetsOrigin) {
-  // Degeneracy and conditioning are judged about the sensor, so an offset target changes nothing.
+  // Degeneracy and conditioning refer to the sensor, so an offset of the target has no effect.
   const RigidMotion truth = motion(0.01, 0.02, 0.05, 0.2, 0.1, 0);
   Scans scans = two_scans(test::room_corner(), test::room_corner(), truth, 0.01);
   const RegistrationOptions options = options_for(RegistrationMethod::kGicp);
@@ -267,7 +267,7 @@ TEST(Registration, ResultDoesNotDependOnTheTargetsOrigin) {
   const RigidMotion shift = motion(0, 0, 0, 60, -40, 2);
   scans.target = test::transformed(shift, scans.target);
   const RegistrationResult far = align(scans, shift, options);
-  EXPECT_LT(error_of(far.T_target_source, shift * near).metres, 1e-4);
+  EXPECT_LT(error_of(far.T_target_source, shift * near).meters, 1e-4);
 }
 
 TEST(RegistrationOptions, ValidateNamesTheField) {
