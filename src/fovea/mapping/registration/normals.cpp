@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// Normals of planes, towards the origin; eight are worked out at a time.
+/// Computes normals of planes, toward the origin, in batches of eight.
 class PlaneNormals {
  public:
   explicit PlaneNormals(std::vector<Eigen::Vector3f>& normals) : normals_(normals) {}
 
-  /// @param point, center  whose normal it is; zero where there is no plane
+  /// @param point, center  index and position of the point; its normal stays zero without a plane
   void put(std::size_t point, const PlaneMoments& moments, const Eigen::Vector3f& center) {
     if (moments.count < 3) return;
     moments_.put(count_, moments);
@@ -63,7 +63,7 @@ float middle_moment(const PlaneMoments& moments) {
   const Eigen::Vector3f products =
       moments.products / moments.count -
       Eigen::Vector3f(mean.y() * mean.z(), mean.x() * mean.z(), mean.x() * mean.y());
-  // The least eigenvalue counts as zero: the others then have this sum and this product.
+  // With a least eigenvalue of zero, the other two have this sum and this product.
   const float sum = squares.sum();
   const float product = squares.x() * squares.y() + squares.x() * squares.z() +
                         squares.y() * squares.z() - products.squaredNorm();
@@ -71,7 +71,7 @@ float middle_moment(const PlaneMoments& moments) {
   return moments.count * (sum - difference) / 2;
 }
 
-/// Of the points within a radius.
+/// Moments of the points within a radius.
 PlaneMoments moments_around(const Eigen::Vector3f& center, float radius, const PointRows& points,
                             const RowSurroundings& surroundings) {
   Lanes count{}, sx{}, sy{}, sz{}, sxx{}, syy{}, szz{}, syz{}, sxz{}, sxy{};
@@ -82,7 +82,7 @@ PlaneMoments moments_around(const Eigen::Vector3f& center, float radius, const P
     for (std::size_t i = range.begin; i < range.end; i += kLanes) {
       const Lanes x = lanes_at(row[0] + i) - center.x(), y = lanes_at(row[1] + i) - center.y(),
                   z = lanes_at(row[2] + i) - center.z();
-      // What follows the last of a range is another's.
+      // Lanes beyond the end of the range hold other points.
       const LaneMask inside = (x * x + y * y + z * z <= radius2) & first_lanes(range.end - i);
       const Lanes in_x = where(inside, x), in_y = where(inside, y), in_z = where(inside, z);
       count += where(inside, one);
@@ -106,27 +106,28 @@ PlaneMoments moments_around(const Eigen::Vector3f& center, float radius, const P
           {second[3], third[0], third[1]}};
 }
 
-/// Radii over the points' spacing: where points are far apart, wider ones are tried.
-constexpr float kFirstRadius = 2, kWider = 1.5f;
+/// Radii in spacings. Wider radii serve points that the narrower ones leave without a plane.
+constexpr float kFirstRadius = 2, kRadiusRatio = 1.5f;
 constexpr std::size_t kRadii = 8;
-/// The first radii serve most points and have cells of their own; those after them, for the few
-/// that lie far apart, share a grid of the edge of this one.
-constexpr std::size_t kShared = 3;
-/// From radius to radius a surface's points become 2.25 times as many: of at least this share of k,
-/// they are k in the mean.
-constexpr float kFewest = 0.6f;
+/// The first two radii serve most points and have grids of their own. The other radii serve few
+/// points and share a grid with the edge of this radius.
+constexpr std::size_t kSharedGrid = 3;
+/// The number of points of a surface grows by 2.25 from radius to radius. With at least this share
+/// of k, the mean number is k.
+constexpr float kMinCountShare = 0.6f;
 constexpr std::size_t kRowGrain = 64;
 
-/// What a plane needs: points, and their middle_moment().
+/// Least number of points of a plane and their least middle_moment().
 struct PlaneLimits {
   float count = 0, moment = 0;
 };
 
-/// Normals of the points not yet done whose neighbors within the radius determine a plane.
-void look_around(std::span<const Eigen::Vector3f> points, const PointRows& sorted, float radius,
-                 const PlaneLimits& least, std::vector<std::uint8_t>& done,
-                 std::vector<Eigen::Vector3f>& normals) {
-  // A little less, as quotients round; what lies so far out is at the edge of the ball anyway.
+/// Fits normals to the points that are not done, if their neighbors within the radius determine a
+/// plane.
+void fit_within(std::span<const Eigen::Vector3f> points, const PointRows& sorted, float radius,
+                const PlaneLimits& least, std::vector<std::uint8_t>& done,
+                std::vector<Eigen::Vector3f>& normals) {
+  // The small offset absorbs rounding of the quotient.
   const int reach = static_cast<int>(std::ceil(radius / sorted.edge() - 1e-4f));
   const auto open = [&](std::uint32_t first_point, std::uint32_t end) {
     const auto places = sorted.order().subspan(first_point, end - first_point);
@@ -160,7 +161,7 @@ void look_around(std::span<const Eigen::Vector3f> points, const PointRows& sorte
   });
 }
 
-/// By point; zero for points that are not in `of`.
+/// One normal for each point; zero for points that are not in `of`.
 std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> points,
                                                std::span<const std::uint32_t> of,
                                                const NormalOptions& options) {
@@ -169,16 +170,16 @@ std::vector<Eigen::Vector3f> normals_by_radius(std::span<const Eigen::Vector3f> 
   for (const std::uint32_t i : of) done[i] = 0;
   std::array<float, kRadii> radius;
   radius[0] = kFirstRadius * static_cast<float>(options.spacing);
-  for (std::size_t i = 1; i < kRadii; ++i) radius[i] = radius[i - 1] * kWider;
-  // All of them first: each is one thread's work.
-  const std::array<float, 3> edges{radius[0], radius[1], radius[kShared]};
+  for (std::size_t i = 1; i < kRadii; ++i) radius[i] = radius[i - 1] * kRadiusRatio;
+  // Build the grids in parallel, one thread each.
+  const std::array<float, 3> edges{radius[0], radius[1], radius[kSharedGrid]};
   std::array<std::optional<PointRows>, edges.size()> grids;
   parallel_for(grids.size(), 1, [&](std::size_t k) { grids[k].emplace(points, edges[k]); });
   const float tilt_moment = static_cast<float>(options.range_noise) / kMaxTilt;
-  const PlaneLimits least{kFewest * static_cast<float>(options.neighbors),
+  const PlaneLimits least{kMinCountShare * static_cast<float>(options.neighbors),
                           tilt_moment * tilt_moment};
   for (std::size_t i = 0; i < kRadii; ++i) {
-    look_around(points, *grids[std::min(i, grids.size() - 1)], radius[i], least, done, normals);
+    fit_within(points, *grids[std::min(i, grids.size() - 1)], radius[i], least, done, normals);
   }
   return normals;
 }

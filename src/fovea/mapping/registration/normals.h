@@ -9,9 +9,9 @@
 namespace fovea {
 
 struct NormalOptions {
-  int neighbors = 10;  ///< k, at least 3: about how many points a plane is fitted to
-  /// m, the least distance between points of a thinned cloud; 0: the cloud is not thinned. With a
-  /// spacing the search is several times as fast.
+  int neighbors = 10;  ///< k, at least 3: approximate number of points of a plane
+  /// m, the least distance between points of a thinned cloud; 0: the cloud is not thinned. The
+  /// search is several times as fast with a spacing.
   double spacing = 0;
   double range_noise = 0.02;  ///< m, standard deviation of a measured range; used with a spacing
 };
@@ -25,7 +25,7 @@ struct NormalOptions {
 /// ring of a LiDAR lie nearly on one line, which leaves the tilt about this line open.
 ///
 /// @param points  N points (m) in the sensor's frame, the sensor at the origin
-/// @return N unit normals towards the sensor; zero where the plane is not determined
+/// @return N unit normals toward the sensor; zero where the plane is not determined
 std::vector<Eigen::Vector3f> estimate_normals(std::span<const Eigen::Vector3f> points,
                                               const NormalOptions& options);
 

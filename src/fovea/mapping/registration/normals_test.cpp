@@ -12,7 +12,7 @@ namespace fovea::normals_test {
 using test::Rectangle;
 
 TEST(Normals, OfPlanesPointToTheSensor) {
-  // Walls and floor of a corridor, away from their edges.
+  // Walls and floor of a corridor, without the points near edges.
   const std::vector<Eigen::Vector3f> points = test::sample(test::corridor(5), 40, 1);
   const std::vector<Eigen::Vector3f> normals = estimate_normals(points, {10});
   ASSERT_EQ(normals.size(), points.size());
@@ -47,8 +47,8 @@ TEST(Normals, NoiseTiltsThemLittle) {
   EXPECT_GT(sum / static_cast<double>(points.size()), 0.998);  // 3.6 degrees
 }
 
-TEST(Normals, OfThinnedPointsAreTheSurfacesWhereverPointsAreFarApart) {
-  // A dense wall, a sparse one, and one so sparse that only the widest radius has points enough.
+TEST(Normals, OfThinnedPointsAreCorrectAtAnyDensity) {
+  // Walls of three densities. Only the widest radius contains enough points of the sparsest one.
   for (const double density : {16.0, 1.5, 0.12}) {
     const std::vector<Eigen::Vector3f> points =
         test::sample({{{20, -12, -8}, {0, 24, 3}, {1, 0, 16}}}, density, 6, 0.005);
@@ -69,7 +69,7 @@ TEST(Normals, OfThinnedPointsFarFromAllOthersAreUnknown) {
   EXPECT_TRUE(estimate_normals(points, {10, 0.25}).back().isZero());
 }
 
-TEST(Normals, OfSomePointsAreTheirsAmongAll) {
+TEST(Normals, OfSomePointsAreFittedToAllPoints) {
   const std::vector<Eigen::Vector3f> points = test::sample(test::corridor(5), 12, 1);
   for (const double spacing : {0.0, 0.25}) {
     const std::vector<Eigen::Vector3f> all = estimate_normals(points, {10, spacing});
@@ -107,7 +107,7 @@ TEST(Normals, OfOneRingOnAWallAreUnknown) {
   EXPECT_GT(known, two.size() * 9 / 10);
 }
 
-TEST(Normals, NeedMoreOfNoisierRanges) {
+TEST(Normals, NeedMorePointsOfNoisierRanges) {
   const std::vector<Eigen::Vector3f> points =
       test::sample({{{20, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}}}, 12, 6, 0.005);
   const auto known = [&](double range_noise) {

@@ -54,7 +54,7 @@ TEST(Optimizer, PairsWithoutATargetDoNotCount) {
 }
 
 TEST(Optimizer, StepsAreProjectedOffDegenerateDirections) {
-  // Planes that face y and z only: nothing is known of x, whatever the pairs' own x says.
+  // Planes that face y and z only leave x unknown, whatever distance along x the pairs have.
   std::vector<Pair> pairs = true_pairs(test::motion(0, 0, 0, 0.5, 0.2, -0.1));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     pairs[i].normal = i % 2 == 0 ? Eigen::Vector3f::UnitY() : Eigen::Vector3f::UnitZ();
@@ -69,7 +69,7 @@ TEST(Optimizer, StepsAreProjectedOffDegenerateDirections) {
   EXPECT_NEAR(T.translation().y(), 0.2, 0.05);
 }
 
-/// Pairs of a corridor along x: none tells how far along it the source is.
+/// Pairs of a corridor along x. They do not determine the position along x.
 std::vector<Pair> corridor_pairs(std::size_t count) {
   std::vector<Pair> pairs(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ std::vector<Pair> corridor_pairs(std::size_t count) {
   return pairs;
 }
 
-TEST(Optimizer, ThePriorDecidesWhatPairsDoNotTell) {
+TEST(Optimizer, ThePriorDeterminesDegenerateDirections) {
   const PairBlocks pairs(corridor_pairs(4000));
   OptimizerOptions options;
   options.degenerate_eigenvalue = 0.01;
@@ -98,10 +98,10 @@ TEST(Optimizer, ThePriorDecidesWhatPairsDoNotTell) {
   for (int i = 0; i < 10; ++i) T = minimize(pairs, T, options).T_target_source;
   EXPECT_EQ(minimize(pairs, T, options).degenerate_directions, 1);
   EXPECT_NEAR(T.translation().x(), 0.7, 1e-6);  // by the prior alone
-  EXPECT_NEAR(T.translation().y(), 0.2, 0.01);  // by the pairs, whatever the prior says
+  EXPECT_NEAR(T.translation().y(), 0.2, 0.01);  // by the pairs, against the prior
 }
 
-TEST(Optimizer, APriorOfMoreCertaintyMovesThePoseFurther) {
+TEST(Optimizer, AMoreCertainPriorMovesThePoseFurther) {
   const PairBlocks pairs(corridor_pairs(4000));
   const auto y_with = [&](double sigma) {
     OptimizerOptions options;
@@ -112,8 +112,8 @@ TEST(Optimizer, APriorOfMoreCertaintyMovesThePoseFurther) {
     for (int i = 0; i < 20; ++i) T = minimize(pairs, T, options).T_target_source;
     return T.translation().y();
   };
-  // Pairs say 0.2 m, the prior says 0. Half of a hundred independent pairs face y: with their least
-  // deviation of 2 cm, they tell y to 0.02 / sqrt(50) = 3 mm.
+  // The pairs have y = 0.2 m, the prior has 0. Half of a hundred independent pairs face y. Their
+  // least deviation is 2 cm, so the deviation of y is 0.02 / sqrt(50) = 3 mm.
   EXPECT_NEAR(y_with(0.1), 0.2, 0.001);
   EXPECT_GT(y_with(0.02), y_with(0.005));
   EXPECT_GT(y_with(0.005), y_with(0.001));

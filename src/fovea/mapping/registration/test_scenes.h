@@ -22,7 +22,8 @@ inline double gaussian(Random& random) {
   return radius * std::cos(2 * std::numbers::pi * random.uniform());
 }
 
-/// Points at random on the rectangles, `density` a square metre, each axis with noise of `sigma` m.
+/// Points at random on the rectangles, `density` per square meter, each axis with noise of `sigma`
+/// m.
 inline std::vector<Eigen::Vector3f> sample(const std::vector<Rectangle>& scene, double density,
                                            std::uint64_t seed, double sigma = 0) {
   Random random(seed);
@@ -40,7 +41,7 @@ inline std::vector<Eigen::Vector3f> sample(const std::vector<Rectangle>& scene, 
   return points;
 }
 
-/// The upper and the four lateral faces of a box that stands on the floor.
+/// The upper and the four lateral faces of a box on the floor.
 inline void add_box(std::vector<Rectangle>& scene, const Eigen::Vector3d& low,
                     const Eigen::Vector3d& size) {
   const Eigen::Vector3d x(size.x(), 0, 0), y(0, size.y(), 0), z(0, 0, size.z());
@@ -64,7 +65,8 @@ inline std::vector<Rectangle> room_corner() {
   return scene;
 }
 
-/// Floor and two walls along x, `half_length` to either side: nothing tells where along x one is.
+/// Floor and two walls along x, `half_length` to either side. They do not determine a position
+/// along x.
 inline std::vector<Rectangle> corridor(double half_length) {
   const Eigen::Vector3d along(2 * half_length, 0, 0);
   return {{{-half_length, -2, -1.7}, along, {0, 4, 0}},
@@ -91,7 +93,7 @@ inline std::vector<double> sixteen_rings() {
   return elevations;
 }
 
-/// What a LiDAR sees of a scene: the nearest point of each ray, in the LiDAR's frame.
+/// A LiDAR scan of a scene: the nearest point of each ray, in the LiDAR's frame.
 /// @param elevations  of the rings, rad
 /// @param sigma       noise of a range, m
 inline std::vector<Eigen::Vector3f> ring_scan(const std::vector<Rectangle>& scene,
