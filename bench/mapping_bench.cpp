@@ -69,7 +69,7 @@ void bench_recolour(benchmark::State& state, const MappedStreet& street) {
 }
 
 void bench_moving(benchmark::State& state, const MappedStreet& street) {
-  MovingThings moving(street.options.moving);
+  DynamicPointFilter moving(street.options.moving);
   int frame = street.frame().index;
   const RigidMotion T_odom_local = street.last.T_odom_lidar * street.last.T_local_lidar.inverse();
   solo(state, [&] {

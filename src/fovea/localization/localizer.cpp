@@ -56,9 +56,9 @@ double seen_through(const RegistrationCloud& target, const RangeImage& image,
     if (!stands(target.normals[i])) continue;
     const Eigen::Vector3f p_lidar = T_lidar_target * target.points[i];
     if (p_lidar.norm() > kSeenRange) continue;
-    const Sight sight = image.sight(p_lidar);
-    free += sight == Sight::kFree;
-    surface += sight == Sight::kSurface;
+    const Visibility visibility = image.visibility(p_lidar);
+    free += visibility == Visibility::kFree;
+    surface += visibility == Visibility::kSurface;
   }
   return free > 0 ? double(free) / double(free + surface) : 0;
 }

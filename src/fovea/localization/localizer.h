@@ -10,7 +10,7 @@
 #include "fovea/localization/place_candidates.h"
 #include "fovea/localization/prior_map.h"
 #include "fovea/map/map_store.h"
-#include "fovea/mapping/moving/range_image.h"
+#include "fovea/mapping/range_image.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/sensor/frame_source.h"
 

@@ -66,7 +66,7 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       bring_near_(std::move(bring_near)),
       reach_(reach_of(drive, options)),
       tracker_(drive, options_, pose_source),
-      moving_things_(options.moving),
+      dynamic_points_(options.moving),
       map_(options.tile_size) {
   options.validate();
   if (options.surface.spacing > 0) occupancy_.emplace(options.tile_size, options.surface.spacing);
@@ -101,8 +101,8 @@ FrameRecord Mapper::add(const Frame& frame, TrackedFrame tracked) {
   if (record.status != FrameStatus::kHeldOut) {
     if (options_.moving.remove) {
       record.figures["moving_removed"] = as_figure(clock.time("filter", [&] {
-        return moving_things_.observe(map_, *std::move(tracked.views.ranges), record.T_odom_lidar,
-                                      T_odom_local_, frame.index);
+        return dynamic_points_.observe(map_, *std::move(tracked.views.ranges), record.T_odom_lidar,
+                                       T_odom_local_, frame.index);
       }));
     }
     if (options_.foveal_enabled) {
@@ -252,7 +252,7 @@ void Mapper::map_view(ScanView view, const Image& image, FrameRecord& record, St
             transform_cloud(std::move(visible_cam), T_local_cam, T_local_lidar.translation());
         if (!options_.moving.remove) return;
         moving = beside.time("filter", [&] {
-          return added_local.drop(moving_things_.marks(added_local, T_odom_local_));
+          return added_local.drop(dynamic_points_.classify(added_local, T_odom_local_));
         });
       });
   clock.add(beside);
@@ -320,19 +320,19 @@ void Mapper::replay(const PointCloud& scan, const FrameRecord& record, bool look
   follow_submaps(tracker_.submaps());
   if (looked_at) {
     bring_near_(map_, (tracker_.T_local_odom() * record.T_odom_lidar).translation(), reach_);
-    moving_things_.replay(map_, RangeImage(scan_lidar.position, options_.moving.row_height),
-                          record.T_odom_lidar, tracker_.T_local_odom().inverse(), record.index);
+    dynamic_points_.replay(map_, RangeImage(scan_lidar.position, options_.moving.row_height),
+                           record.T_odom_lidar, tracker_.T_local_odom().inverse(), record.index);
   }
 }
 
 int Mapper::first_to_look_through(const std::vector<FrameRecord>& records) {
-  constexpr std::size_t kCount = MovingThings::kJudges;
+  constexpr std::size_t kCount = DynamicPointFilter::kVotingScans;
   std::vector<int> mapped;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kMapped) mapped.push_back(record.index);
   }
   if (mapped.size() <= kCount) return 0;
-  return std::min(mapped[mapped.size() - kCount], mapped.back() - MovingThings::kMemory + 1);
+  return std::min(mapped[mapped.size() - kCount], mapped.back() - DynamicPointFilter::kMemory + 1);
 }
 
 }  // namespace fovea

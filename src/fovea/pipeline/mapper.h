@@ -9,9 +9,9 @@
 #include "fovea/map/occupancy.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/ray_filter.h"
+#include "fovea/pipeline/dynamic_points.h"
 #include "fovea/pipeline/map_colors.h"
 #include "fovea/pipeline/mapper_options.h"
-#include "fovea/pipeline/moving_things.h"
 #include "fovea/pipeline/tracker.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -100,7 +100,7 @@ class Mapper {
   double reach_;
   Tracker tracker_;
   RayFilter ray_filter_;
-  MovingThings moving_things_;
+  DynamicPointFilter dynamic_points_;
   TileMap map_;
   SeenMap seen_map_;
   std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid

@@ -14,8 +14,8 @@
 #include "fovea/mapping/surface.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
+#include "fovea/pipeline/dynamic_points.h"
 #include "fovea/pipeline/fusion.h"
-#include "fovea/pipeline/moving_things.h"
 
 namespace fovea {
 
@@ -63,7 +63,7 @@ struct MapperOptions {
   UpsampleOptions upsample;  ///< where surface.spacing is 0, as in the paper
   RayFilterOptions ray_filter{.mode = RayFilterMode::kScan};
   TextureOptions texture{.views = TextureViews::kMean};
-  MovingOptions moving;
+  DynamicPointOptions moving;
   FusionOptions fusion;
   bool check_calibration = true;  ///< look at edges of a few frames (pipeline/self_calibration.h)
   double tile_size = 4.0;         ///< m

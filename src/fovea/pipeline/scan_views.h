@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fovea/mapping/image_pyramid.h"
-#include "fovea/mapping/moving/range_image.h"
+#include "fovea/mapping/range_image.h"
 #include "fovea/mapping/surface.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/stage_clock.h"

@@ -9,11 +9,11 @@
 
 #include "fovea/base/flat_map.h"
 #include "fovea/map/tile_map.h"
-#include "fovea/mapping/moving/range_image.h"
+#include "fovea/mapping/range_image.h"
 
 namespace fovea {
 
-struct MovingOptions {
+struct DynamicPointOptions {
   bool remove = true;   ///< false: what moves stays, as in the paper
   double range = 25.0;  ///< m from the LiDAR: nearer map points are looked at in every scan
   int free_scans = 4;   ///< see through a place after it was last seen filled, and its points go
@@ -23,18 +23,18 @@ struct MovingOptions {
 
 /// Evidence of free space for the voxels of a map. All evidence is of the last kMemory frame
 /// numbers, so that a run that resumes and looks at those scans again decides alike.
-class MovingThings {
+class DynamicPointFilter {
  public:
-  static constexpr int kMemory = 32;          ///< frames
-  static constexpr std::size_t kJudges = 12;  ///< scans that judge new points: about a second
+  static constexpr int kMemory = 32;               ///< frames
+  static constexpr std::size_t kVotingScans = 12;  ///< scans that judge new points: about a second
 
-  explicit MovingThings(const MovingOptions& options) : options_(options) {}
+  explicit DynamicPointFilter(const DynamicPointOptions& options) : options_(options) {}
 
   /// Marks (1) points of a new scan that lie where most of the latest scans saw through: something
   /// has come there since. Judged by voxels of 0.2 m.
   /// @param T_odom_local  inverse of the motion that puts the latest submap into local
-  std::vector<std::uint8_t> marks(const PointCloud& points_local,
-                                  const RigidMotion& T_odom_local) const;
+  std::vector<std::uint8_t> classify(const PointCloud& points_local,
+                                     const RigidMotion& T_odom_local) const;
 
   /// Looks at the map through a scan and removes the points of voxels that it and the scans before
   /// see through: something was there and has gone; and what came with them within 40 cm beneath.
@@ -75,7 +75,7 @@ class MovingThings {
   std::vector<Tile> gather(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
                            const RigidMotion& T_odom_local, int frame);
 
-  MovingOptions options_;
+  DynamicPointOptions options_;
   std::map<TileId, Block> blocks_;  // of the tiles within reach
   std::deque<Scan> scans_;          // the latest last
 };

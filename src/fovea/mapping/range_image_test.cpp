@@ -1,4 +1,4 @@
-#include "fovea/mapping/moving/range_image.h"
+#include "fovea/mapping/range_image.h"
 
 #include <gtest/gtest.h>
 
@@ -31,13 +31,13 @@ float nothing(float, float) { return 0; }
 
 TEST(RangeImage, SaysFreeSurfaceAndUnknown) {
   const RangeImage image(room_scan(20, nothing));
-  EXPECT_EQ(image.sight({10, 0, -0.5f}), Sight::kFree);
-  EXPECT_EQ(image.sight({-4, -3, -0.3f}), Sight::kFree);
-  EXPECT_EQ(image.sight({20, 0, -0.5f}), Sight::kSurface);
-  EXPECT_EQ(image.sight({-19.8f, 0, -0.5f}), Sight::kSurface);
-  EXPECT_EQ(image.sight({25, 0, -0.5f}), Sight::kUnknown) << "behind the wall";
-  EXPECT_EQ(image.sight({5, 0, 3}), Sight::kUnknown) << "above the highest beam";
-  EXPECT_EQ(image.sight({0.1f, 0, 0}), Sight::kUnknown);
+  EXPECT_EQ(image.visibility({10, 0, -0.5f}), Visibility::kFree);
+  EXPECT_EQ(image.visibility({-4, -3, -0.3f}), Visibility::kFree);
+  EXPECT_EQ(image.visibility({20, 0, -0.5f}), Visibility::kSurface);
+  EXPECT_EQ(image.visibility({-19.8f, 0, -0.5f}), Visibility::kSurface);
+  EXPECT_EQ(image.visibility({25, 0, -0.5f}), Visibility::kUnknown) << "behind the wall";
+  EXPECT_EQ(image.visibility({5, 0, 3}), Visibility::kUnknown) << "above the highest beam";
+  EXPECT_EQ(image.visibility({0.1f, 0, 0}), Visibility::kUnknown);
 }
 
 TEST(RangeImage, RowsAsHighAsTheRingsAreApartSeeWhatSparseRingsSee) {
@@ -47,15 +47,15 @@ TEST(RangeImage, RowsAsHighAsTheRingsAreApartSeeWhatSparseRingsSee) {
   std::size_t places = 0, free_in_narrow = 0;
   for (float y = -6; y < 6; y += 0.5f) {
     const Eigen::Vector3f place(13, y, -0.5f);
-    EXPECT_EQ(image.sight(place), Sight::kFree) << y;
-    free_in_narrow += narrow.sight(place) == Sight::kFree ? 1 : 0;
+    EXPECT_EQ(image.visibility(place), Visibility::kFree) << y;
+    free_in_narrow += narrow.visibility(place) == Visibility::kFree ? 1 : 0;
     ++places;
   }
   EXPECT_LT(free_in_narrow, places / 2);
-  EXPECT_EQ(image.sight({20, 0, -0.5f}), Sight::kSurface);
-  EXPECT_EQ(image.sight({25, 0, -0.5f}), Sight::kUnknown) << "behind the wall";
+  EXPECT_EQ(image.visibility({20, 0, -0.5f}), Visibility::kSurface);
+  EXPECT_EQ(image.visibility({25, 0, -0.5f}), Visibility::kUnknown) << "behind the wall";
   for (float x = 3; x < 25; x += 0.37f) {
-    EXPECT_NE(image.sight({x, 1, -1.7f}), Sight::kFree) << "the floor at " << x;
+    EXPECT_NE(image.visibility({x, 1, -1.7f}), Visibility::kFree) << "the floor at " << x;
   }
 }
 
@@ -63,7 +63,7 @@ TEST(RangeImage, TheFloorIsNeverFree) {
   const RangeImage image(room_scan(60, nothing));
   for (float x = 3; x < 25; x += 0.37f) {
     for (const float z : {-1.7f, -1.6f}) {
-      EXPECT_NE(image.sight({x, 1, z}), Sight::kFree) << x << " " << z;
+      EXPECT_NE(image.visibility({x, 1, z}), Visibility::kFree) << x << " " << z;
     }
   }
 }
@@ -72,19 +72,19 @@ TEST(RangeImage, AThinPoleIsSeenAndItsShadowUnknown) {
   // 2 cm wide at 8 m: one ray in each ring.
   const RangeImage image(room_scan(
       20, [](float azimuth, float) { return std::abs(azimuth) < 0.0016f ? 8.0f : 0.0f; }));
-  EXPECT_EQ(image.sight({8, 0, -0.2f}), Sight::kSurface);
-  EXPECT_EQ(image.sight({8, 0.1f, -0.2f}), Sight::kSurface);
-  EXPECT_EQ(image.sight({12, 0, -0.2f}), Sight::kUnknown);
-  EXPECT_EQ(image.sight({8, 1, -0.2f}), Sight::kFree);
+  EXPECT_EQ(image.visibility({8, 0, -0.2f}), Visibility::kSurface);
+  EXPECT_EQ(image.visibility({8, 0.1f, -0.2f}), Visibility::kSurface);
+  EXPECT_EQ(image.visibility({12, 0, -0.2f}), Visibility::kUnknown);
+  EXPECT_EQ(image.visibility({8, 1, -0.2f}), Visibility::kFree);
 }
 
 TEST(RangeImage, DirectionsWithoutReturnsAreUnknown) {
   std::vector<Eigen::Vector3f> scan = room_scan(20, nothing);
   std::erase_if(scan, [](const Eigen::Vector3f& p) { return p.x() > 0 && std::abs(p.y()) < 6; });
-  EXPECT_EQ(RangeImage(scan).sight({10, 0, -0.5f}), Sight::kUnknown);
-  EXPECT_EQ(RangeImage({}).sight({10, 0, -0.5f}), Sight::kUnknown);
+  EXPECT_EQ(RangeImage(scan).visibility({10, 0, -0.5f}), Visibility::kUnknown);
+  EXPECT_EQ(RangeImage({}).visibility({10, 0, -0.5f}), Visibility::kUnknown);
   scan.assign(3, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
-  EXPECT_EQ(RangeImage(scan).sight({10, 0, -0.5f}), Sight::kUnknown);
+  EXPECT_EQ(RangeImage(scan).visibility({10, 0, -0.5f}), Visibility::kUnknown);
 }
 
 }  // namespace fovea::range_image_test

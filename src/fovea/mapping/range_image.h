@@ -11,7 +11,7 @@
 namespace fovea {
 
 /// What a scan says of a place.
-enum class Sight : std::uint8_t {
+enum class Visibility : std::uint8_t {
   kUnknown,  ///< hidden, out of the scan's field of view, or without returns around it
   kSurface,  ///< a return lies there
   kFree,     ///< every return around its ray lies behind it
@@ -35,14 +35,14 @@ class RangeImage {
                       double row_height = kLeastRowHeight);
 
   /// @param p_lidar  m, frame of the scan's LiDAR
-  Sight sight(const Eigen::Vector3f& p_lidar) const;
+  Visibility visibility(const Eigen::Vector3f& p_lidar) const;
   /// The same of many places.
-  /// @param sights  one for each
-  void look(std::span<const Eigen::Vector3f> p_lidar, std::span<Sight> sights) const;
+  /// @param visibilities  one for each
+  void classify(std::span<const Eigen::Vector3f> p_lidar, std::span<Visibility> visibilities) const;
 
  private:
   /// @param row, column  of the place's direction, as of returns
-  Sight sight_at(float range, float row, float column) const;
+  Visibility visibility_at(float range, float row, float column) const;
   /// Nearest range and number of cells with a return in a window around each cell.
   struct Level {
     std::vector<std::uint16_t> nearest;  // steps

@@ -1,4 +1,4 @@
-#include "fovea/pipeline/moving_things.h"
+#include "fovea/pipeline/dynamic_points.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "fovea/base/errors.h"
 
-namespace fovea::moving_things_test {
+namespace fovea::dynamic_points_test {
 
 /// What a standing LiDAR sees: a wall all around at 20 m, and a box face at x = `thing` (0: none),
 /// 2 m wide.
@@ -52,8 +52,8 @@ PointCloud face_points(float x, int frame) {
 
 const RigidMotion kHere = RigidMotion::Identity();
 
-TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
-  MovingThings things({});
+TEST(DynamicPointFilter, WhatHasGoneIsRemovedAndWhatStandsStays) {
+  DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
   map.add(face_points(10, 0));
@@ -61,24 +61,24 @@ TEST(MovingThings, WhatHasGoneIsRemovedAndWhatStandsStays) {
   map.add(face_points(20, 0));  // the wall itself
   const std::size_t all = map.size();
   for (int frame = 1; frame <= 3; ++frame) {
-    EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, frame), 0u) << "too few scans yet";
+    EXPECT_EQ(filter.observe(map, seen(0), kHere, kHere, frame), 0u) << "too few scans yet";
   }
-  EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, 4), face);
+  EXPECT_EQ(filter.observe(map, seen(0), kHere, kHere, 4), face);
   EXPECT_EQ(map.size(), all - face);
-  EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, 5), 0u);
+  EXPECT_EQ(filter.observe(map, seen(0), kHere, kHere, 5), 0u);
 }
 
 // In tiles of such sizes a voxel's border has different numbers as a product and as a quotient.
-TEST(MovingThings, WhatStoodOnTheBorderOfAVoxelIsRemoved) {
+TEST(DynamicPointFilter, WhatStoodOnTheBorderOfAVoxelIsRemoved) {
   for (const auto& [tile_size, x] : {std::pair(10.1, 9.696f), {5.9, 2.95f}, {17.5, 8.75f}}) {
-    MovingThings things({});
+    DynamicPointFilter filter({});
     TileMap map(tile_size);
     map.add_submap(kHere);
     map.add(face_points(x, 0));
     const std::size_t all = map.size();
     std::size_t removed = 0;
     for (int frame = 1; frame <= 5; ++frame) {
-      removed += things.observe(map, seen(0), kHere, kHere, frame);
+      removed += filter.observe(map, seen(0), kHere, kHere, frame);
     }
     EXPECT_EQ(removed, all) << tile_size;
   }
@@ -86,12 +86,12 @@ TEST(MovingThings, WhatStoodOnTheBorderOfAVoxelIsRemoved) {
 
 // A road 1 m below the LiDAR: rays graze it, so that the lowest decimetres above it are never seen
 // through. What stood there goes with what stood on it; the road stays.
-TEST(MovingThings, TheFootOfWhatHasGoneGoesToo) {
+TEST(DynamicPointFilter, TheFootOfWhatHasGoneGoesToo) {
   PointCloud scan = scan_of(0);
   for (Eigen::Vector3f& p : scan.position) {
     if (p.z() < -1) p *= -1 / p.z();
   }
-  MovingThings things({});
+  DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
   PointCloud road = face_points(10, 0), face = face_points(10, 1);
@@ -100,69 +100,69 @@ TEST(MovingThings, TheFootOfWhatHasGoneGoesToo) {
   map.add(face);
   std::size_t removed = 0;
   for (int frame = 2; frame < 10; ++frame) {
-    removed += things.observe(map, RangeImage(scan.position), kHere, kHere, frame);
+    removed += filter.observe(map, RangeImage(scan.position), kHere, kHere, frame);
   }
   EXPECT_EQ(removed, face.size());
   EXPECT_EQ(map.size(), road.size());
 }
 
-TEST(MovingThings, WhatIsSeenNowAndThenStays) {
-  MovingThings things({});
+TEST(DynamicPointFilter, WhatIsSeenNowAndThenStays) {
+  DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 40; ++frame) {
-    EXPECT_EQ(things.observe(map, seen(frame % 4 == 0 ? 10.f : 0.f), kHere, kHere, frame), 0u);
+    EXPECT_EQ(filter.observe(map, seen(frame % 4 == 0 ? 10.f : 0.f), kHere, kHere, frame), 0u);
   }
 }
 
-TEST(MovingThings, WhatIsHiddenStays) {
-  MovingThings things({});
+TEST(DynamicPointFilter, WhatIsHiddenStays) {
+  DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 20; ++frame) {
-    EXPECT_EQ(things.observe(map, seen(6), kHere, kHere, frame), 0u);
+    EXPECT_EQ(filter.observe(map, seen(6), kHere, kHere, frame), 0u);
   }
 }
 
-TEST(MovingThings, MarksWhatCameWhereScansSawThrough) {
-  MovingThings things({});
+TEST(DynamicPointFilter, MarksWhatCameWhereScansSawThrough) {
+  DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
   const auto marked = [&](float x) {
-    const auto marks = things.marks(face_points(x, 9), kHere);
+    const auto marks = filter.classify(face_points(x, 9), kHere);
     return std::count(marks.begin(), marks.end(), 1);
   };
   EXPECT_EQ(marked(10), 0) << "nothing is known yet";
-  for (int frame = 0; frame < 6; ++frame) things.observe(map, seen(0), kHere, kHere, frame);
+  for (int frame = 0; frame < 6; ++frame) filter.observe(map, seen(0), kHere, kHere, frame);
   EXPECT_EQ(marked(10), std::int64_t(face_points(10, 9).size()));
   EXPECT_EQ(marked(20), 0);
   // It stays there: after as many scans it is part of the world.
-  for (int frame = 6; frame < 12; ++frame) things.observe(map, seen(10), kHere, kHere, frame);
+  for (int frame = 6; frame < 12; ++frame) filter.observe(map, seen(10), kHere, kHere, frame);
   EXPECT_EQ(marked(10), 0);
 }
 
-TEST(MovingThings, SwitchedOffNothingGoes) {
-  MovingOptions off;
+TEST(DynamicPointFilter, SwitchedOffNothingGoes) {
+  DynamicPointOptions off;
   off.remove = false;
-  MovingThings things(off);
+  DynamicPointFilter filter(off);
   TileMap map(4.0);
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   for (int frame = 1; frame < 20; ++frame) {
-    EXPECT_EQ(things.observe(map, seen(0), kHere, kHere, frame), 0u);
+    EXPECT_EQ(filter.observe(map, seen(0), kHere, kHere, frame), 0u);
   }
-  const auto marks = things.marks(face_points(10, 20), kHere);
+  const auto marks = filter.classify(face_points(10, 20), kHere);
   EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 0);
 }
 
-TEST(MovingThings, ReplayedScansLeadToTheSameDecision) {
+TEST(DynamicPointFilter, ReplayedScansLeadToTheSameDecision) {
   TileMap map(4.0);
   map.add_submap(kHere);
   map.add(face_points(10, 0));
   TileMap again = map;
-  MovingThings first({}), resumed({});
+  DynamicPointFilter first({}), resumed({});
   for (int frame = 1; frame <= 2; ++frame) first.observe(map, seen(0), kHere, kHere, frame);
   for (int frame = 1; frame <= 2; ++frame) resumed.replay(again, seen(0), kHere, kHere, frame);
   for (int frame = 3; frame <= 4; ++frame) {
@@ -173,8 +173,8 @@ TEST(MovingThings, ReplayedScansLeadToTheSameDecision) {
   EXPECT_EQ(again.size(), 0u);
 }
 
-TEST(MovingThings, OptionsAreChecked) {
-  MovingOptions options;
+TEST(DynamicPointFilter, OptionsAreChecked) {
+  DynamicPointOptions options;
   options.free_scans = 0;
   EXPECT_THROW(options.validate(), ConfigError);
   options = {};
@@ -182,4 +182,4 @@ TEST(MovingThings, OptionsAreChecked) {
   EXPECT_THROW(options.validate(), ConfigError);
 }
 
-}  // namespace fovea::moving_things_test
+}  // namespace fovea::dynamic_points_test

@@ -1,4 +1,4 @@
-#include "fovea/pipeline/moving_things.h"
+#include "fovea/pipeline/dynamic_points.h"
 
 #include <algorithm>
 #include <array>
@@ -65,7 +65,7 @@ Eigen::Vector3f center_of(std::uint32_t cell, float size, int edge) {
 }
 
 std::uint32_t aged(std::uint32_t bits, int frames) {
-  return frames < MovingThings::kMemory ? bits << frames : 0;
+  return frames < DynamicPointFilter::kMemory ? bits << frames : 0;
 }
 
 /// Scans that saw through since the last that saw something there.
@@ -116,18 +116,18 @@ struct TileView {
 
 }  // namespace
 
-void MovingOptions::validate() const {
+void DynamicPointOptions::validate() const {
   if (!(range > 0 && range <= 200)) {
     throw ConfigError("a range is out of range", "moving.range",
                       "give metres above 0 and up to 200");
   }
-  if (free_scans < 1 || free_scans > MovingThings::kMemory) {
+  if (free_scans < 1 || free_scans > DynamicPointFilter::kMemory) {
     throw ConfigError("a number of scans is out of range", "moving.free_scans", "give 1 to 32");
   }
 }
 
-std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
-                                              const RigidMotion& T_odom_local) const {
+std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_local,
+                                                       const RigidMotion& T_odom_local) const {
   std::vector<std::uint8_t> marks(points_local.size(), 0);
   if (!options_.remove || scans_.size() < std::size_t(kMinFree)) return marks;
 
@@ -162,7 +162,7 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
       judged.push_back({v, T_odom_local * (points_local.origin + p)});
     }
     std::vector<Eigen::Vector3f> p_lidar;
-    std::array<Sight, kVoxelGrain> sights;
+    std::array<Visibility, kVoxelGrain> visibilities;
     for (int k = judges; k-- > 0;) {
       // Those which the judges that are left cannot make free go; mostly half of them are asked.
       std::erase_if(judged, [&](const Judged& j) {
@@ -172,10 +172,10 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
       for (const Judged& j : judged) {
         p_lidar.push_back((scans_[k].T_lidar_odom * j.p_odom).cast<float>());
       }
-      scans_[k].image.look(p_lidar, sights);
+      scans_[k].image.classify(p_lidar, visibilities);
       for (std::size_t i = 0; i < judged.size(); ++i) {
-        judged[i].free += sights[i] == Sight::kFree;
-        judged[i].filled += sights[i] == Sight::kSurface;
+        judged[i].free += visibilities[i] == Visibility::kFree;
+        judged[i].filled += visibilities[i] == Visibility::kSurface;
       }
     }
     for (const Judged& j : judged) {
@@ -186,8 +186,8 @@ std::vector<std::uint8_t> MovingThings::marks(const PointCloud& points_local,
   return marks;
 }
 
-std::vector<MovingThings::Tile> MovingThings::tiles_near(const TileMap& map,
-                                                         const Eigen::Vector3d& center_local) {
+std::vector<DynamicPointFilter::Tile> DynamicPointFilter::tiles_near(
+    const TileMap& map, const Eigen::Vector3d& center_local) {
   std::vector<Tile> tiles;
   std::map<TileId, Block> within_reach;  // the others are forgotten
   map.for_each_tile_near(center_local, options_.range,
@@ -201,8 +201,8 @@ std::vector<MovingThings::Tile> MovingThings::tiles_near(const TileMap& map,
   return tiles;
 }
 
-void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int frame,
-                        Tile& tile) const {
+void DynamicPointFilter::look(const TileMap& map, const RigidMotion& T_odom_local, int frame,
+                              Tile& tile) const {
   const Scan& scan = scans_.back();
   Block& block = *tile.block;
   const int edge = voxels_per_edge(map);
@@ -238,15 +238,15 @@ void MovingThings::look(const TileMap& map, const RigidMotion& T_odom_local, int
   for (const Voxel& voxel : block.voxels) {
     p_lidar.push_back(view.R * center_of(voxel.cell, size, edge) + view.t);
   }
-  std::vector<Sight> sights(p_lidar.size());
-  scan.image.look(p_lidar, sights);
-  for (std::size_t i = 0; i < sights.size(); ++i) {
-    block.voxels[i].filled |= sights[i] == Sight::kSurface ? 1 : 0;
-    block.voxels[i].free |= sights[i] == Sight::kFree ? 1 : 0;
+  std::vector<Visibility> visibilities(p_lidar.size());
+  scan.image.classify(p_lidar, visibilities);
+  for (std::size_t i = 0; i < visibilities.size(); ++i) {
+    block.voxels[i].filled |= visibilities[i] == Visibility::kSurface ? 1 : 0;
+    block.voxels[i].free |= visibilities[i] == Visibility::kFree ? 1 : 0;
   }
 }
 
-void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
+void DynamicPointFilter::select_kept(const TileMap& map, Tile& tile) const {
   Block& block = *tile.block;
   const auto gone = [&](const Voxel& voxel) {
     return (voxel.free & 1) != 0 &&
@@ -313,18 +313,21 @@ void MovingThings::select_kept(const TileMap& map, Tile& tile) const {
   block.known_points = tile.kept.size();
 }
 
-std::vector<MovingThings::Tile> MovingThings::gather(const TileMap& map, RangeImage scan,
-                                                     const RigidMotion& T_odom_lidar,
-                                                     const RigidMotion& T_odom_local, int frame) {
+std::vector<DynamicPointFilter::Tile> DynamicPointFilter::gather(const TileMap& map,
+                                                                 RangeImage scan,
+                                                                 const RigidMotion& T_odom_lidar,
+                                                                 const RigidMotion& T_odom_local,
+                                                                 int frame) {
   scans_.push_back({std::move(scan), T_odom_lidar.inverse()});
-  if (scans_.size() > kJudges) scans_.pop_front();
+  if (scans_.size() > kVotingScans) scans_.pop_front();
   std::vector<Tile> tiles = tiles_near(map, T_odom_local.inverse() * T_odom_lidar.translation());
   parallel_for(tiles.size(), 1, [&](std::size_t i) { look(map, T_odom_local, frame, tiles[i]); });
   return tiles;
 }
 
-std::size_t MovingThings::observe(TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
-                                  const RigidMotion& T_odom_local, int frame) {
+std::size_t DynamicPointFilter::observe(TileMap& map, RangeImage scan,
+                                        const RigidMotion& T_odom_lidar,
+                                        const RigidMotion& T_odom_local, int frame) {
   if (!options_.remove) return 0;
   std::vector<Tile> tiles = gather(map, std::move(scan), T_odom_lidar, T_odom_local, frame);
   parallel_for(tiles.size(), 1, [&](std::size_t i) { select_kept(map, tiles[i]); });
@@ -336,8 +339,9 @@ std::size_t MovingThings::observe(TileMap& map, RangeImage scan, const RigidMoti
   return before - map.size();
 }
 
-void MovingThings::replay(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
-                          const RigidMotion& T_odom_local, int frame) {
+void DynamicPointFilter::replay(const TileMap& map, RangeImage scan,
+                                const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
+                                int frame) {
   if (options_.remove) gather(map, std::move(scan), T_odom_lidar, T_odom_local, frame);
 }
 

@@ -1,4 +1,4 @@
-#include "fovea/mapping/moving/range_image.h"
+#include "fovea/mapping/range_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -162,42 +162,43 @@ RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
   return result;
 }
 
-Sight RangeImage::sight(const Eigen::Vector3f& p) const {
-  return sight_at(p.norm(), row_of(p.z(), p.head<2>().norm(), row_height_),
-                  column_of(p.x(), p.y()));
+Visibility RangeImage::visibility(const Eigen::Vector3f& p) const {
+  return visibility_at(p.norm(), row_of(p.z(), p.head<2>().norm(), row_height_),
+                       column_of(p.x(), p.y()));
 }
 
-void RangeImage::look(std::span<const Eigen::Vector3f> p_lidar, std::span<Sight> sights) const {
+void RangeImage::classify(std::span<const Eigen::Vector3f> p_lidar,
+                          std::span<Visibility> visibilities) const {
   DirectionBlock block;
   for (std::size_t begin = 0; begin < p_lidar.size(); begin += DirectionBlock::kSize) {
     const std::size_t count = std::min(DirectionBlock::kSize, p_lidar.size() - begin);
     block.compute(p_lidar.subspan(begin, count), row_height_);
     for (std::size_t i = 0; i < count; ++i) {
-      sights[begin + i] = sight_at(block.range[i], block.row[i], block.column[i]);
+      visibilities[begin + i] = visibility_at(block.range[i], block.row[i], block.column[i]);
     }
   }
 }
 
-Sight RangeImage::sight_at(float range, float row_of_place, float column_of_place) const {
-  if (!(range > kMinRange)) return Sight::kUnknown;
+Visibility RangeImage::visibility_at(float range, float row_of_place, float column_of_place) const {
+  if (!(range > kMinRange)) return Visibility::kUnknown;
   const auto window =
       static_cast<std::size_t>(std::find_if(kWindows.begin(), kWindows.end(),
                                             [&](const Window& w) { return range >= w.range; }) -
                                kWindows.begin());
   const int half = kWindows[window].half_width;
   const int row = static_cast<int>(row_of_place) - first_row_;
-  if (row < 0 || row >= rows_) return Sight::kUnknown;
+  if (row < 0 || row >= rows_) return Visibility::kUnknown;
   const std::size_t cell = static_cast<std::size_t>(row) * kColumns + whole_column(column_of_place);
   const std::uint16_t kept = levels_[window].nearest[cell];
   const float nearest =
       kept == kNothing ? std::numeric_limits<float>::infinity() : float(kept) * kStep;
-  if (nearest < range - kMargin) return Sight::kUnknown;  // something stands before it
-  if (nearest <= range + kMargin) return Sight::kSurface;
+  if (nearest < range - kMargin) return Visibility::kUnknown;  // something stands before it
+  if (nearest <= range + kMargin) return Visibility::kSurface;
   const int half_rows = half_height(half);
   const bool above_and_below = row >= half_rows && row + half_rows < rows_;
   const auto cells = static_cast<float>((2 * half + 1) * (2 * half_rows + 1));
   const bool enough = levels_[window].filled[cell] >= kFilledShare * cells;
-  return above_and_below && enough ? Sight::kFree : Sight::kUnknown;
+  return above_and_below && enough ? Visibility::kFree : Visibility::kUnknown;
 }
 
 }  // namespace fovea
