@@ -129,8 +129,8 @@ void add_all(const BenchData& data) {
   add("register/local_map", [&](auto& state) { bench_local_map(state, data); });
   add("sample_surfaces", [&](auto& state) { sample(state, data); });
   const auto street = map_street(data);
-  add("map/look", [street](auto& state) { bench_look(state, *street); });
-  add("map/recolour", [street](auto& state) { bench_recolour(state, *street); });
+  add("map/render", [street](auto& state) { bench_render(state, *street); });
+  add("map/recolor", [street](auto& state) { bench_recolor(state, *street); });
   add("map/moving", [street](auto& state) { bench_moving(state, *street); });
   add("map/paper_filter", [street](auto& state) { bench_paper_filter(state, *street); });
   add("map/store", [street](auto& state) { bench_store(state, *street); });

@@ -5,8 +5,8 @@
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/foveal_query.h"
-#include "fovea/pipeline/map_colors.h"
 #include "fovea/pipeline/mapper.h"
+#include "fovea/pipeline/visible_map.h"
 
 namespace fovea::bench {
 namespace {
@@ -44,25 +44,25 @@ std::shared_ptr<const MappedStreet> map_street(const BenchData& data) {
   return std::make_shared<MappedStreet>(data);
 }
 
-void bench_look(benchmark::State& state, const MappedStreet& street) {
-  SeenMap seen;
+void bench_render(benchmark::State& state, const MappedStreet& street) {
+  VisibleMap seen;
   solo(state, [&] {
-    seen.look(street.map, street.region, street.T_cam_local(), street.options.surface.spacing);
+    seen.render(street.map, street.region, street.T_cam_local(), street.options.surface.spacing);
     return &seen;
   });
   state.counters["map"] = static_cast<double>(street.map.size());
 }
 
-void bench_recolour(benchmark::State& state, const MappedStreet& street) {
+void bench_recolor(benchmark::State& state, const MappedStreet& street) {
   TileMap map = street.map;
-  SeenMap seen;
-  seen.look(map, street.region, street.T_cam_local(), street.options.surface.spacing);
+  VisibleMap seen;
+  seen.render(map, street.region, street.T_cam_local(), street.options.surface.spacing);
   const ImagePyramid image(street.frame().images.front());
   std::size_t points = 0;
   solo(state, [&] {
     const ColorView view = street.view(image);
     benchmark::DoNotOptimize(seen.compare(view).gain);
-    return points = seen.recolour(map, view);
+    return points = seen.recolor(map, view);
   });
   check(points > 1000, "nothing in view");
   state.counters["points"] = static_cast<double>(points);

@@ -14,9 +14,9 @@ struct MappedStreet;
 std::shared_ptr<const MappedStreet> map_street(const BenchData& data);
 
 /// The map as the camera sees it: tiles near it projected, its depth buffer.
-void bench_look(benchmark::State& state, const MappedStreet& street);
+void bench_render(benchmark::State& state, const MappedStreet& street);
 /// The gain of the image to the map, and its colours into all points in view.
-void bench_recolour(benchmark::State& state, const MappedStreet& street);
+void bench_recolor(benchmark::State& state, const MappedStreet& street);
 /// Which of the map's voxels the scan sees through.
 void bench_moving(benchmark::State& state, const MappedStreet& street);
 /// The paper's ray filter: the scan upsampled twice against the map.

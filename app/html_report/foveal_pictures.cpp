@@ -99,7 +99,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
   PointCloud dense_cam = densified(measured_cam, camera, options);
   limit_incidence(dense_cam, foveal.max_incidence);
-  colour_points(dense_cam, {*shot, camera, placed.index});
+  color_points(dense_cam, {*shot, camera, placed.index});
 
   const RigidMotion T_lidar_cam = camera.T_cam_lidar.inverse();
   const PointCloud measured = transform_cloud(measured_cam, T_lidar_cam);

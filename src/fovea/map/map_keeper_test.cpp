@@ -109,7 +109,7 @@ TEST_P(Keeper, EachCheckpointIsCommitted) {
   EXPECT_EQ(MapReader(path_).frames()[1].T_local_lidar.translation(), Eigen::Vector3d(1, 2, 3));
 }
 
-// Points are added and recoloured while what they were before is still to be written, in tiles that
+// Points are added and recolored while what they were before is still to be written, in tiles that
 // are packed and in tiles that are shared.
 TEST_P(Keeper, ACheckpointIsWrittenAsItWasWhateverChangesAfter) {
   const auto keeper = this->keeper();

@@ -19,7 +19,7 @@ std::uint8_t rounded(float value, float chance) {
   return static_cast<std::uint8_t>(static_cast<std::int32_t>(clamped));
 }
 
-// A FusedColor as one number, so that the compiler works on several at a time.
+// A FusedColor as one number, so that loops vectorize.
 static_assert(std::endian::native == std::endian::little && sizeof(FusedColor) == 8);
 static_assert(offsetof(FusedColor, color) == 0 && offsetof(FusedColor, views) == 3 &&
               offsetof(FusedColor, spread) == 4 && offsetof(FusedColor, weight) == 6);
@@ -27,7 +27,7 @@ using Words = std::array<std::uint64_t, ColorBlock::kSize>;
 
 }  // namespace
 
-void FusedColors::take(std::span<const FusedColor> colors) {
+void FusedColors::load(std::span<const FusedColor> colors) {
   Words words;
   const std::size_t count = colors.size();
   if (count > 0) std::memcpy(words.data(), colors.data(), colors.size_bytes());
@@ -39,7 +39,7 @@ void FusedColors::take(std::span<const FusedColor> colors) {
   for (std::size_t i = 0; i < count; ++i) weight[i] = static_cast<std::uint16_t>(words[i] >> 48);
 }
 
-void FusedColors::give(std::span<FusedColor> colors) const {
+void FusedColors::store(std::span<FusedColor> colors) const {
   Words words;
   const std::size_t count = colors.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -50,7 +50,7 @@ void FusedColors::give(std::span<FusedColor> colors) const {
   if (count > 0) std::memcpy(static_cast<void*>(colors.data()), words.data(), colors.size_bytes());
 }
 
-void fuse(FusedColors& points, const SeenColors& seen, std::size_t count) {
+void fuse(FusedColors& points, const ColorObservations& seen, std::size_t count) {
   using Row = std::array<float, ColorBlock::kSize>;
   Row gain, square;
   for (std::size_t i = 0; i < count; ++i) {

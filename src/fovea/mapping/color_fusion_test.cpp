@@ -31,7 +31,7 @@ FusedColor get(const FusedColors& points, std::size_t i) {
           points.weight[i]};
 }
 
-void put(SeenColors& seen, std::size_t i, const SeenView& view, std::uint64_t noise) {
+void put(ColorObservations& seen, std::size_t i, const SeenView& view, std::uint64_t noise) {
   seen.color.red[i] = view.color.x();
   seen.color.green[i] = view.color.y();
   seen.color.blue[i] = view.color.z();
@@ -43,7 +43,7 @@ void put(SeenColors& seen, std::size_t i, const SeenView& view, std::uint64_t no
 FusedColor fuse(const FusedColor& point, const Eigen::Vector3f& color, std::uint16_t weight,
                 std::uint64_t noise) {
   FusedColors points;
-  SeenColors seen;
+  ColorObservations seen;
   put(points, 0, point);
   put(seen, 0, {color, weight}, noise);
   fuse(points, seen, 1);
@@ -197,7 +197,7 @@ TEST(ColorFusion, ABlockIsFusedAsEachPointAlone) {
   constexpr std::size_t kPoints = 251;
   std::vector<FusedColor> alone(kPoints);
   FusedColors points;
-  SeenColors seen;
+  ColorObservations seen;
   for (std::size_t i = 0; i < kPoints; ++i) {
     FusedColor point;
     point = {{byte(), byte(), byte()}, byte(), byte(), static_cast<std::uint16_t>(byte() + 1)};

@@ -7,17 +7,16 @@
 namespace fovea {
 namespace {
 
-/// Radius of a sample in the buffer's pixels: what lies on a pixel covers it, and no sample is near
-/// enough to cover more than the larger.
+/// Bounds of a sample's radius, in the buffer's pixels.
 constexpr float kMinRadius = 0.5f, kMaxRadius = 4.0f;
 
-/// The pixels that samples cover, from the first to the last, along one axis.
-struct Covered {
-  using Row = std::array<float, ViewPlaces::kSize>;
-  std::array<std::int32_t, ViewPlaces::kSize> first, last;
-  void compute(const Row& place, const Row& depth, std::size_t count, float radius, int end) {
+/// First and last pixel that each sample covers along one axis.
+struct CoveredRange {
+  using Row = std::array<float, ProjectedPoints::kSize>;
+  std::array<std::int32_t, ProjectedPoints::kSize> first, last;
+  void compute(const Row& position, const Row& depth, std::size_t count, float radius, int end) {
     for (std::size_t i = 0; i < count; ++i) {
-      const float center = place[i] / 2;
+      const float center = position[i] / 2;
       const float r = std::min(std::max(radius / depth[i] / 2, kMinRadius), kMaxRadius);
       first[i] = std::max(0, static_cast<std::int32_t>(std::ceil(center - r)));
       last[i] = std::min(end - 1, static_cast<std::int32_t>(std::floor(center + r)));
@@ -33,8 +32,8 @@ void DepthBuffer::clear(const Camera& camera) {
   depth_.assign(static_cast<std::size_t>(width_) * height_, std::numeric_limits<float>::infinity());
 }
 
-void DepthBuffer::add(const ViewPlaces& samples, std::size_t count, float radius) {
-  Covered columns, rows;
+void DepthBuffer::add(const ProjectedPoints& samples, std::size_t count, float radius) {
+  CoveredRange columns, rows;
   columns.compute(samples.u, samples.depth, count, radius, width_);
   rows.compute(samples.v, samples.depth, count, radius, height_);
   float* const front = depth_.data();
@@ -44,8 +43,8 @@ void DepthBuffer::add(const ViewPlaces& samples, std::size_t count, float radius
     float* const top = front + rows.first[i] * width_;
     float* const bottom = front + rows.last[i] * width_;
     if (right - left <= 1 && bottom - top <= width_) {
-      // Nearly all samples: no loop, whose length nobody could foresee. A pixel may come twice, and
-      // all are read first, for none to wait until another is written.
+      // At most 2 x 2 pixels, the usual case: no loop, and all reads before all writes. Two of the
+      // four pixels may be the same.
       const float a = std::min(top[left], depth), b = std::min(top[right], depth);
       const float c = std::min(bottom[left], depth), d = std::min(bottom[right], depth);
       top[left] = a;
@@ -60,15 +59,15 @@ void DepthBuffer::add(const ViewPlaces& samples, std::size_t count, float radius
   }
 }
 
-std::size_t DepthBuffer::find_visible(const ViewPlaces& points, std::size_t count,
-                                      std::span<std::uint32_t, ViewPlaces::kSize> visible) const {
-  // Where to look first, on which the compiler works eight wide.
-  std::array<std::uint32_t, ViewPlaces::kSize> place;
-  for (std::size_t i = 0; i < count; ++i) place[i] = place_of({points.u[i], points.v[i]});
+std::size_t DepthBuffer::find_visible(
+    const ProjectedPoints& points, std::size_t count,
+    std::span<std::uint32_t, ProjectedPoints::kSize> visible) const {
+  std::array<std::uint32_t, ProjectedPoints::kSize> cell;
+  for (std::size_t i = 0; i < count; ++i) cell[i] = cell_of({points.u[i], points.v[i]});
   std::size_t found = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     visible[found] = i;
-    found += !is_behind(points.depth[i], depth_[place[i]]);
+    found += !is_behind(points.depth[i], depth_[cell[i]]);
   }
   return found;
 }

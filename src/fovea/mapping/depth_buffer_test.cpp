@@ -13,7 +13,7 @@ Camera camera_of(int width, int height) {
 
 /// @param radius  pixels
 void add(DepthBuffer& buffer, const Eigen::Vector2f& pixel, float depth, float radius) {
-  ViewPlaces samples;
+  ProjectedPoints samples;
   samples.put(0, pixel, depth);
   buffer.add(samples, 1, radius * depth);
 }
@@ -110,15 +110,15 @@ TEST(DepthBuffer, ABlockOfSamplesAndAJoinedBufferAreAsAllOneByOne) {
   const Camera camera = camera_of(101, 51);
   DepthBuffer one_by_one(camera), first(camera), second(camera);
   Random random(1);
-  ViewPlaces samples;
+  ProjectedPoints samples;
   for (int half = 0; half < 2; ++half) {
-    for (std::size_t i = 0; i < ViewPlaces::kSize; ++i) {
+    for (std::size_t i = 0; i < ProjectedPoints::kSize; ++i) {
       const Eigen::Vector2f pixel(float(random.uniform(0, 100)), float(random.uniform(0, 50)));
       const auto depth = static_cast<float>(random.uniform(1, 9));
       samples.put(i, pixel, depth);
       add(one_by_one, pixel, depth, 7 / depth);
     }
-    (half == 0 ? first : second).add(samples, ViewPlaces::kSize, 7);
+    (half == 0 ? first : second).add(samples, ProjectedPoints::kSize, 7);
   }
   first.add(second);
   for (float u = 0; u <= 100; ++u) {
@@ -139,14 +139,14 @@ TEST(DepthBuffer, VisiblePointsAreThoseThatNothingHides) {
   const auto any_depth = [&] { return float(random.uniform(1, 9)); };
   for (int i = 0; i < 300; ++i) add(buffer, any_pixel(), any_depth(), 1);
   for (const std::size_t count : {0, 1, 37, 256}) {
-    ViewPlaces points;
+    ProjectedPoints points;
     std::vector<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < count; ++i) {
       const Eigen::Vector2f pixel = any_pixel();
       points.put(i, pixel, any_depth());
       if (!buffer.hides(pixel, points.depth[i])) expected.push_back(i);
     }
-    std::array<std::uint32_t, ViewPlaces::kSize> visible;
+    std::array<std::uint32_t, ProjectedPoints::kSize> visible;
     const std::size_t found = buffer.find_visible(points, count, visible);
     EXPECT_EQ(std::vector(visible.begin(), visible.begin() + std::ptrdiff_t(found)), expected);
   }

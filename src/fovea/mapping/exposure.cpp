@@ -8,12 +8,14 @@
 namespace fovea {
 namespace {
 
-/// Grey values that tell: darker ones are noise, brighter ones saturated.
+/// Gray values: darker ones are noise, brighter ones are saturated.
 constexpr float kDark = 12, kBright = 240;
 constexpr std::size_t kMinPoints = 150;
-constexpr float kOffGain = 0.34f;  // its logarithm
+constexpr float kMaxLogGain = 0.34f;
+/// Share of a gain, in logarithms, that matching_gain() applies.
+constexpr float kMatchedShare = 0.9f;
 
-bool tells_exposure(const Eigen::Array3f& color) {
+bool is_well_exposed(const Eigen::Array3f& color) {
   return color.minCoeff() > kDark && color.maxCoeff() < kBright;
 }
 
@@ -21,12 +23,16 @@ bool tells_exposure(const Eigen::Array3f& color) {
 
 std::optional<Eigen::Array3f> gain_between(const Eigen::Array3f& known,
                                            const Eigen::Array3f& seen) {
-  if (!tells_exposure(known) || !tells_exposure(seen)) return std::nullopt;
+  if (!is_well_exposed(known) || !is_well_exposed(seen)) return std::nullopt;
   return known / seen;
 }
 
 bool is_exposure_off(const Eigen::Array3f& gain_to_map) {
-  return std::abs(gain_to_map.log().mean()) > kOffGain;
+  return std::abs(gain_to_map.log().mean()) > kMaxLogGain;
+}
+
+Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map) {
+  return gain_to_map.pow(kMatchedShare);
 }
 
 Eigen::Array3f median_gain(const std::vector<Eigen::Array3f>& gains) {

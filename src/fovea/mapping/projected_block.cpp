@@ -12,7 +12,7 @@ ProjectedBlock::ProjectedBlock(const Camera& camera)
 
 void ProjectedBlock::project(std::span<const Eigen::Vector3f> points_b,
                              const Eigen::Matrix3f& R_cam_b, const Eigen::Vector3f& t_cam_b) {
-  place(
+  project_all(
       points_b.size(),
       [&](std::size_t i) {
         return std::array{points_b[i].x(), points_b[i].y(), points_b[i].z()};
@@ -26,7 +26,7 @@ void ProjectedBlock::project(const std::array<std::span<const std::uint16_t>, 3>
   const std::uint16_t* const x = steps_b[0].data();
   const std::uint16_t* const y = steps_b[1].data();
   const std::uint16_t* const z = steps_b[2].data();
-  place(
+  project_all(
       steps_b[0].size(),
       [=](std::size_t i) {
         return std::array{float(x[i]) * step, float(y[i]) * step, float(z[i]) * step};
@@ -35,9 +35,9 @@ void ProjectedBlock::project(const std::array<std::span<const std::uint16_t>, 3>
 }
 
 template <class F>
-void ProjectedBlock::place(std::size_t n, F&& coordinates, const Eigen::Matrix3f& R_cam_b,
-                           const Eigen::Vector3f& t_cam_b) {
-  // Copies: the compiler cannot know that the rows do not overlap what a reference refers to.
+void ProjectedBlock::project_all(std::size_t n, F&& coordinates, const Eigen::Matrix3f& R_cam_b,
+                                 const Eigen::Vector3f& t_cam_b) {
+  // Local copies cannot alias the arrays, so the loops vectorize.
   const Eigen::Matrix3f R = R_cam_b;
   const Eigen::Vector3f t = t_cam_b;
   const float fx = fx_, fy = fy_, cx = cx_, cy = cy_, right = right_, bottom = bottom_;
@@ -50,7 +50,7 @@ void ProjectedBlock::place(std::size_t n, F&& coordinates, const Eigen::Matrix3f
   for (std::size_t i = 0; i < n; ++i) {
     u_[i] = fx * x_[i] / z_[i] + cx;
     v_[i] = fy * y_[i] / z_[i] + cy;
-    // Bits, not conditions: no branch.
+    // Bitwise operators avoid branches.
     in_view_[i] = (z_[i] > float(Camera::kMinDepth)) & (u_[i] >= 0) & (v_[i] >= 0) &
                   (u_[i] <= right) & (v_[i] <= bottom);
   }

@@ -1,5 +1,4 @@
-// Many points as a camera sees them, a block at a time: each coordinate has a row of its own, on
-// which the compiler works eight numbers at once.
+// Projects a block of points: one array for each coordinate, so that loops vectorize.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,17 +17,18 @@ class ProjectedBlock {
 
   explicit ProjectedBlock(const Camera& camera);
 
-  /// Takes up other points.
-  /// @param points_b, T_cam_b  m; as rotation and translation in float: the points are near
+  /// Replaces the points of the block.
+  /// @param points_b          m
+  /// @param R_cam_b, t_cam_b  single precision suffices, since the points are near
   void project(std::span<const Eigen::Vector3f> points_b, const Eigen::Matrix3f& R_cam_b,
                const Eigen::Vector3f& t_cam_b);
-  /// The same of coordinates that are counted in steps, a row for each.
+  /// The same for quantized coordinates, one array for each axis.
   /// @param step  m
   void project(const std::array<std::span<const std::uint16_t>, 3>& steps_b, float step,
                const Eigen::Matrix3f& R_cam_b, const Eigen::Vector3f& t_cam_b);
 
-  /// Whether the camera sees the place of point i: in front of it, and inside the image. Of no
-  /// other point does the pixel mean anything.
+  /// Whether point i is in front of the camera and inside the image. Only then is its pixel
+  /// meaningful.
   bool in_view(std::size_t i) const { return in_view_[i] != 0; }
   Eigen::Vector2f pixel(std::size_t i) const { return {u_[i], v_[i]}; }
   Eigen::Vector3f p_cam(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }  ///< m
@@ -37,8 +37,8 @@ class ProjectedBlock {
  private:
   /// @param coordinates  of point i, as an array
   template <class F>
-  void place(std::size_t count, F&& coordinates, const Eigen::Matrix3f& R_cam_b,
-             const Eigen::Vector3f& t_cam_b);
+  void project_all(std::size_t count, F&& coordinates, const Eigen::Matrix3f& R_cam_b,
+                   const Eigen::Vector3f& t_cam_b);
 
   using Row = std::array<float, kSize>;
   float fx_, fy_, cx_, cy_, right_, bottom_;

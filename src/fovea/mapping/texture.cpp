@@ -17,11 +17,11 @@ Rgb sample(const Image& image, const Eigen::Vector2d& pixel, ImageSampling sampl
 
 void TextureOptions::validate() const {
   if (!(footprint >= 0 && footprint <= 1)) {
-    throw ConfigError("a length is out of range", "texture.footprint", "give metres from 0 to 1");
+    throw ConfigError("a length is out of range", "texture.footprint", "give meters from 0 to 1");
   }
 }
 
-void colour_points(PointCloud& points_cam, const View& view, const TextureOptions& options) {
+void color_points(PointCloud& points_cam, const View& view, const TextureOptions& options) {
   const std::size_t n = points_cam.size();
   points_cam.color.assign(n, Rgb{});
   points_cam.camera.assign(n, kNoCamera);

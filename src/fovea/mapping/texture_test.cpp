@@ -22,7 +22,7 @@ TEST(Texture, ColourIsTheImageAtTheProjection) {
   }
   PointCloud cloud;
   cloud.position = {{0, 0, 8}, {1, 0.5f, 8}, {0, 0, -8}, {100, 0, 8}};
-  colour_points(cloud, {image, camera, 17});
+  color_points(cloud, {image, camera, 17});
   EXPECT_EQ(cloud.color[0], (Rgb{99, 98, 7}));    // 2 * 49.5, 4 * 24.5
   EXPECT_EQ(cloud.color[1], (Rgb{119, 118, 7}));  // u = 59.5, v = 29.5
   EXPECT_EQ(cloud.camera, (std::vector<std::int8_t>{3, 3, kNoCamera, kNoCamera}));
@@ -39,10 +39,10 @@ TEST(Texture, NearestSamplingTakesThePixelWhoseCentreIsNearest) {
   PointCloud cloud;
   cloud.position = {{1.4f, 0, 1}, {1.6f, 0, 1}};
   const TextureOptions nearest{.sampling = ImageSampling::kNearest};
-  colour_points(cloud, {image, camera, 0}, nearest);
+  color_points(cloud, {image, camera, 0}, nearest);
   EXPECT_EQ(cloud.color[0].r, 100);
   EXPECT_EQ(cloud.color[1].r, 200);
-  colour_points(cloud, {image, camera, 0});
+  color_points(cloud, {image, camera, 0});
   EXPECT_EQ(cloud.color[0].r, 140);
 }
 
@@ -53,7 +53,7 @@ TEST(Texture, AnEmptyImageColoursNothing) {
   PointCloud cloud;
   cloud.position = {{1, 1, 4}};
   const Image none;
-  colour_points(cloud, {none, camera, 5});
+  color_points(cloud, {none, camera, 5});
   EXPECT_EQ(cloud.camera[0], kNoCamera);
   EXPECT_EQ(cloud.views[0], 0);
   EXPECT_EQ(cloud.frame[0], 5);
@@ -67,7 +67,7 @@ TEST(Texture, GreyImagesGiveThreeEqualChannels) {
   image.data.assign(image.data.size(), 90);
   PointCloud cloud;
   cloud.position = {{1, 1, 4}};
-  colour_points(cloud, {image, camera, 0});
+  color_points(cloud, {image, camera, 0});
   EXPECT_EQ(cloud.color[0], (Rgb{90, 90, 90}));
 }
 

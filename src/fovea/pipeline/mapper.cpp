@@ -20,7 +20,7 @@ constexpr double kMargin = 1.0;
 
 /// How well the map foretold an image that it had not seen; of several cameras the mean over all
 /// points. Of too few it would be chance.
-void note_texture_error(const SeenMap::Comparison& view, FrameRecord& record) {
+void note_texture_error(const VisibleMap::Comparison& view, FrameRecord& record) {
   constexpr std::size_t kEnough = 100;
   if (view.points < kEnough) return;
   double& points = record.figures["texture_compared"];
@@ -175,15 +175,16 @@ bool Mapper::looks_at_map() const {
 
 void Mapper::look_at_map(const FovealRegion& region, const RigidMotion& T_local_lidar) {
   if (!looks_at_map()) return;
-  seen_map_.look(map_, region, region.camera().T_cam_lidar * T_local_lidar.inverse(),
-                 occupancy_ ? occupancy_->cell() : options_.texture.footprint);
+  visible_map_.render(map_, region, region.camera().T_cam_lidar * T_local_lidar.inverse(),
+                      occupancy_ ? occupancy_->cell() : options_.texture.footprint);
 }
 
 PointCloud Mapper::visible_part(PointCloud dense_cam, const FovealRegion& region,
                                 const RigidMotion& T_local_lidar, FrameRecord& record) {
   std::vector<std::uint8_t> before;
-  if (options_.ray_filter.mode == RayFilterMode::kScan) before = seen_map_.marks_before(dense_cam);
-  if (looks_at_map()) seen_map_.put_in_front(dense_cam);
+  if (options_.ray_filter.mode == RayFilterMode::kScan)
+    before = visible_map_.find_occluding(dense_cam);
+  if (looks_at_map()) visible_map_.add_occluders(dense_cam);
   switch (options_.ray_filter.mode) {
     case RayFilterMode::kPaper:
       return filter_rays(dense_cam, region, T_local_lidar, record);
@@ -199,7 +200,7 @@ PointCloud Mapper::visible_part(PointCloud dense_cam, const FovealRegion& region
 std::optional<ColorView> Mapper::colors_of(const ScanView& view, FrameRecord& record) const {
   if (!view.pyramid) return std::nullopt;
   ColorView colors{*view.pyramid, view.camera, record.index, options_.texture.footprint};
-  const SeenMap::Comparison before = seen_map_.compare(colors);
+  const VisibleMap::Comparison before = visible_map_.compare(colors);
   note_texture_error(before, record);
   if (is_exposure_off(before.gain)) {
     colors.gain = matching_gain(before.gain);
@@ -232,19 +233,19 @@ void Mapper::map_view(ScanView view, const Image& image, FrameRecord& record, St
   // Colours of what is known, and of what is new.
   const std::optional<ColorView> colors =
       clock.time("texture", [&] { return colors_of(view, record); });
-  std::size_t recoloured = 0, moving = 0;
+  std::size_t recolored = 0, moving = 0;
   PointCloud added_local;
   run_both(
       [&] {
         if (!colors || colors->is_exposure_matched()) return;
-        recoloured = clock.time("texture", [&] { return seen_map_.recolour(map_, *colors); });
+        recolored = clock.time("texture", [&] { return visible_map_.recolor(map_, *colors); });
       },
       [&] {
         beside.time("texture", [&] {
           if (colors) {
-            colour_new_points(visible_cam, *colors);
+            color_new_points(visible_cam, *colors);
           } else {  // the paper's one view
-            colour_points(visible_cam, {image, camera, record.index}, options_.texture);
+            color_points(visible_cam, {image, camera, record.index}, options_.texture);
           }
         });
         visible_cam.normal.clear();  // a map has none
@@ -256,7 +257,7 @@ void Mapper::map_view(ScanView view, const Image& image, FrameRecord& record, St
         });
       });
   clock.add(beside);
-  if (colors) record.figures["points_recoloured"] += as_figure(recoloured);
+  if (colors) record.figures["points_recolored"] += as_figure(recolored);
   if (options_.moving.remove) record.figures["filter_moving"] += as_figure(moving);
   clock.time("store", [&] { map_.add(added_local); });
   added_near_ = T_local_cam.translation();
@@ -279,8 +280,8 @@ void Mapper::map_whole_scan(const PointCloud& scan_lidar, const Frame& frame,
       limit_incidence(points_cam, std::numeric_limits<double>::infinity());
       const Image none;
       const bool sees = !last && shows_something(frame.images[slot], record.figures);
-      colour_points(points_cam, {sees ? frame.images[slot] : none, camera, frame.index},
-                    options_.texture);
+      color_points(points_cam, {sees ? frame.images[slot] : none, camera, frame.index},
+                   options_.texture);
       std::vector<std::uint32_t> added, unseen;
       for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
         (last || points_cam.camera[i] != kNoCamera ? added : unseen).push_back(i);

@@ -10,9 +10,9 @@
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/ray_filter.h"
 #include "fovea/pipeline/dynamic_points.h"
-#include "fovea/pipeline/map_colors.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/tracker.h"
+#include "fovea/pipeline/visible_map.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
@@ -102,7 +102,7 @@ class Mapper {
   RayFilter ray_filter_;
   DynamicPointFilter dynamic_points_;
   TileMap map_;
-  SeenMap seen_map_;
+  VisibleMap visible_map_;
   std::optional<Occupancy> occupancy_;  // where surfaces are sampled on a grid
   /// Where points have come of which `occupancy_` does not know yet.
   std::optional<Eigen::Vector3d> added_near_;

@@ -110,7 +110,7 @@ TEST(Mapper, ManyViewsGiveTrueColoursAtOnePointACell) {
   EXPECT_LT(color_error / double(count), 2.0);
   EXPECT_LT(double(wrong), 0.02 * double(count));
   EXPECT_GT(views / double(count), 2.0);
-  EXPECT_GT(records[7].figures.at("points_recoloured"), 10'000);
+  EXPECT_GT(records[7].figures.at("points_recolored"), 10'000);
   EXPECT_GT(records[7].figures.at("texture_compared"), 1000);
   EXPECT_GT(records[7].figures.at("texture_error"), 0);
   EXPECT_LT(records[7].figures.at("texture_error"), 30);

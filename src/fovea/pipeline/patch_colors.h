@@ -1,19 +1,20 @@
-// Colours that an image has for points of a map: means over the patches that the points stand for.
+// Colors of points in one image: means over the patches of surface that the points stand for.
 #pragma once
 
+#include "fovea/base/point_cloud.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/mapping/image_pyramid.h"
-#include "fovea/mapping/view_places.h"
+#include "fovea/mapping/projected_points.h"
 
 namespace fovea {
 
-/// An image that colours points.
+/// An image that colors points.
 struct ColorView {
   const ImagePyramid& image;
   const Camera& camera;
   int frame = 0;
-  double footprint = 0.02;  ///< m: edge of the patch of surface whose mean colour a point gets
-  /// By which the image's colours are multiplied, a channel.
+  double footprint = 0.02;  ///< m: edge of the patch of surface whose mean color a point gets
+  /// Factor of each channel that brings the image to the map's exposure.
   Eigen::Array3f gain = Eigen::Array3f::Ones();
   bool is_exposure_matched() const { return (gain != 1).any(); }
 };
@@ -25,11 +26,11 @@ class PatchColors {
         gain_(view.gain),
         footprint_(static_cast<float>(view.footprint * view.camera.fx)) {}
 
-  /// At the first `count` places.
-  void at(const ViewPlaces& places, std::size_t count, ColorBlock& colors) const {
+  /// Colors of the first `count` points.
+  void at(const ProjectedPoints& points, std::size_t count, ColorBlock& colors) const {
     std::array<float, ColorBlock::kSize> footprint;
-    for (std::size_t i = 0; i < count; ++i) footprint[i] = footprint_ / places.depth[i];
-    image_.colors_at({places.u.data(), count}, {places.v.data(), count}, {footprint.data(), count},
+    for (std::size_t i = 0; i < count; ++i) footprint[i] = footprint_ / points.depth[i];
+    image_.colors_at({points.u.data(), count}, {points.v.data(), count}, {footprint.data(), count},
                      colors);
     for (std::size_t i = 0; i < count; ++i) {
       colors.red[i] *= gain_.x();
@@ -41,7 +42,12 @@ class PatchColors {
  private:
   const ImagePyramid& image_;
   Eigen::Array3f gain_;
-  float footprint_;  // pixels, a metre before the camera
+  float footprint_;  // pixels at a depth of 1 m
 };
+
+/// Colors new points, all in view, from their first view.
+/// @param points_cam  camera frame. Sets frame, camera and the columns of the color. Marks `reason`
+///                    if the view has a gain.
+void color_new_points(PointCloud& points_cam, const ColorView& view);
 
 }  // namespace fovea

@@ -1,5 +1,5 @@
-// Where points of a map lie in a camera's view: half the memory that floats would take, so that
-// those of a view stay in the caches from when they are found to when they are coloured.
+// Quantized projections of map points into a camera. They take half the memory of floats, so that
+// the points of a view stay in the caches between rendering and coloring.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,27 +11,27 @@
 
 namespace fovea {
 
-/// In the steps of the view.
+/// In the steps of a ViewQuantizer.
 struct PointInView {
   std::uint16_t u, v;   ///< pixel
   std::uint16_t depth;  ///< along the optical axis
-  std::uint16_t place;  ///< which point it is
+  std::uint16_t index;  ///< of the point in its chunk
 };
 
-/// Steps of which 65,535 reach across the image and as far as points may lie: a fiftieth of a pixel
-/// of 1,300 in a row, and a third of a millimetre of 20 m.
-class ViewSteps {
+/// 65,535 steps cover the image, and the depths of a view. For an image 1,300 pixels wide a step is
+/// a fiftieth of a pixel; for depths up to 20 m it is a third of a millimeter.
+class ViewQuantizer {
  public:
-  ViewSteps() = default;
+  ViewQuantizer() = default;
   /// @param far  largest depth, m
-  ViewSteps(const Camera& camera, double far)
-      : pixel_(static_cast<float>(std::max(camera.width, camera.height)) / kMost),
-        depth_(static_cast<float>(far) / kMost) {}
+  ViewQuantizer(const Camera& camera, double far)
+      : pixel_(static_cast<float>(std::max(camera.width, camera.height)) / kMaxStep),
+        depth_(static_cast<float>(far) / kMaxStep) {}
 
-  /// What is out of reach becomes the nearest that is not.
-  PointInView seen(const Eigen::Vector2f& pixel, float depth, std::uint16_t place) const {
+  /// Clamps values that are out of range.
+  PointInView quantize(const Eigen::Vector2f& pixel, float depth, std::uint16_t index) const {
     return {steps<std::uint16_t>(pixel.x(), pixel_), steps<std::uint16_t>(pixel.y(), pixel_),
-            steps<std::uint16_t>(depth, depth_), place};
+            steps<std::uint16_t>(depth, depth_), index};
   }
   Eigen::Vector2f pixel(const PointInView& point) const {
     return {float(point.u) * pixel_, float(point.v) * pixel_};
@@ -39,7 +39,7 @@ class ViewSteps {
   float depth(const PointInView& point) const { return float(point.depth) * depth_; }  ///< m
 
  private:
-  static constexpr float kMost = 65535;
+  static constexpr float kMaxStep = 65535;
   float pixel_ = 1, depth_ = 1;  // a step: pixels, m
 };
 

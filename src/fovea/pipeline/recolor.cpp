@@ -9,7 +9,7 @@
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/image_pyramid.h"
 #include "fovea/pipeline/config.h"
-#include "fovea/pipeline/map_colors.h"
+#include "fovea/pipeline/visible_map.h"
 
 namespace fovea {
 namespace {
@@ -69,13 +69,14 @@ class Recolorer {
       if (image.empty()) continue;
       const Camera camera = drive_.camera_at(slot, record.index).at_image(record.motion);
       const FovealRegion region(foveal_options_of(options_, camera.index), camera);
-      seen_map_.look(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(), spacing_);
+      visible_map_.render(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(),
+                          spacing_);
       const ImagePyramid pyramid(image);
       const ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
-      if (is_blank(image) || is_exposure_off(seen_map_.compare(view).gain)) {
+      if (is_blank(image) || is_exposure_off(visible_map_.compare(view).gain)) {
         ++figures.images_left_out;
       } else {
-        seen_map_.recolour(map_, view);
+        visible_map_.recolor(map_, view);
       }
     }
     if (keeper_.needs_memory(map_)) keeper_.checkpoint(map_, {}, position_local_, reach_);
@@ -88,7 +89,7 @@ class Recolorer {
   const MapperOptions& options_;
   TileMap map_;
   MapKeeper& keeper_;
-  SeenMap seen_map_;
+  VisibleMap visible_map_;
   double reach_ = 0, spacing_ = 0;  // m
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();
 };

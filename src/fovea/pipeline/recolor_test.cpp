@@ -25,7 +25,7 @@ class Recolor : public testing::Test {
   }
   static void TearDownTestSuite() { delete folder_; }
 
-  /// A point filled in when the camera is near has not had the far views; recoloured it has.
+  /// A point filled in when the camera is near has not had the far views; recolored it has.
   static MapperOptions options_of_map() {
     MapperOptions options;
     options.surface.max_per_pixel = 0;
@@ -86,7 +86,7 @@ TEST_F(Recolor, IsTheSameAtAnyNumberOfThreadsAndAgain) {
     if (digest.empty()) digest = MapReader(output_).digest();
     EXPECT_EQ(MapReader(output_).digest(), digest) << threads;
   }
-  // A recoloured map recoloured.
+  // A recolored map recolored.
   RecolorJob job;
   job.output = *folder_ / "third.fovea";
   recolor_map(MapReader(output_), street(), job);

@@ -1,0 +1,296 @@
+#include "fovea/pipeline/visible_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fovea/base/parallel.h"
+#include "fovea/base/random.h"
+#include "fovea/mapping/color_fusion.h"
+#include "fovea/mapping/projected_block.h"
+#include "fovea/pipeline/view_frustum.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kChunkSize = 8192, kBlock = ColorBlock::kSize;
+/// Radius of a point's disc over the spacing of the points: discs of neighbors overlap.
+constexpr float kDiscRadius = 0.75f;
+/// Seed of the random rounding of colors.
+constexpr std::uint64_t kRoundingSeed = 0x636f6c6f7572ull;
+/// compare() takes one of this many points.
+constexpr std::size_t kCompareStep = 64;
+
+static_assert(kChunkSize / kCompareStep <= kBlock && kChunkSize <= 1 << 16);
+static_assert(kChunkSize % TilePoints::kBoxed == 0 && TilePoints::kBoxed <= ProjectedBlock::kSize);
+
+}  // namespace
+
+void VisibleMap::collect_chunks(const TileMap& map, const FovealRegion& region,
+                                const RigidMotion& T_cam_local) {
+  chunks_.clear();
+  const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
+  map.for_each_tile_near(
+      lidar_local, region.far_range(), [&](const TileId& id, const TilePoints& points) {
+        const RigidMotion T_cam_tile = T_cam_local * map.submaps()[id.submap].T_local_submap *
+                                       Eigen::Translation3d(points.origin);
+        if (points.empty() || !ViewFrustum(camera_, T_cam_tile).may_contain(points.box)) return;
+        const auto size = static_cast<std::uint32_t>(points.size());
+        for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kChunkSize)) {
+          const std::uint32_t end = std::min(size, begin + std::uint32_t(kChunkSize));
+          chunks_.push_back({id, &points, T_cam_tile, begin, end, chunks_.size() % kShards, 0, 0});
+        }
+      });
+}
+
+void VisibleMap::render(const TileMap& map, const FovealRegion& region,
+                        const RigidMotion& T_cam_local, double spacing) {
+  camera_ = region.camera();
+  quantizer_ =
+      ViewQuantizer(camera_, region.far_range() + camera_.T_cam_lidar.translation().norm());
+  disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
+  collect_chunks(map, region, T_cam_local);
+  parallel_for(kShards, 1, [&](std::size_t shard) {
+    shards_[shard].front.clear(camera_);
+    std::size_t first = 0;
+    for (std::size_t k = shard; k < chunks_.size(); k += kShards) {
+      chunks_[k].first = first;
+      render_chunk(region, chunks_[k]);
+      first += chunks_[k].count;
+    }
+  });
+  std::swap(front_, shards_[0].front);
+  for (std::size_t shard = 1; shard < kShards; ++shard) front_.add(shards_[shard].front);
+}
+
+void VisibleMap::render_chunk(const FovealRegion& region, Chunk& chunk) {
+  const Eigen::Matrix3f R = chunk.T_cam_tile.linear().cast<float>();
+  const Eigen::Vector3f t = chunk.T_cam_tile.translation().cast<float>();
+  const ViewFrustum frustum(camera_, chunk.T_cam_tile);
+  ProjectedBlock block(camera_);
+  std::array<std::int32_t, ProjectedBlock::kSize> in_zone;
+  std::array<PointInView, ProjectedBlock::kSize> quantized;
+  const ViewQuantizer quantizer = quantizer_;
+  ProjectedPoints samples;
+  Shard& shard = shards_[chunk.shard];
+  const std::size_t most = chunk.first + (chunk.end - chunk.begin);
+  if (shard.points.size() < most) shard.points.resize(most + most / 8);
+  PointInView* out = shard.points.data() + chunk.first;
+  constexpr auto kBoxed = static_cast<std::uint32_t>(TilePoints::kBoxed);
+  for (std::uint32_t begin = chunk.begin; begin < chunk.end; begin += kBoxed) {
+    if (!frustum.may_contain(chunk.points->boxes[begin / kBoxed])) continue;
+    const std::uint32_t n = std::min(chunk.end - begin, kBoxed);
+    const auto steps = [&](std::size_t axis) {
+      return std::span(chunk.points->position[axis]).subspan(begin, n);
+    };
+    block.project({steps(0), steps(1), steps(2)}, kPositionStep, R, t);
+    for (std::size_t i = 0; i < in_zone.size(); ++i) {
+      in_zone[i] = region.in_white_zone(block.p_cam(i));
+    }
+    if (region.has_slices()) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        if (in_zone[i] != 0 && !region.in_slices(block.p_cam(i))) in_zone[i] = 0;
+      }
+    }
+    const std::uint32_t first = begin - chunk.begin;
+    for (std::uint32_t i = 0; i < quantized.size(); ++i) {
+      quantized[i] =
+          quantizer.quantize(block.pixel(i), block.depth(i), static_cast<std::uint16_t>(first + i));
+    }
+    // Branch-free compaction.
+    std::size_t in_view = 0, in_region = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      out[in_region] = quantized[i];
+      samples.put(in_view, block.pixel(i), block.depth(i));
+      in_view += block.in_view(i);
+      in_region += block.in_view(i) & (in_zone[i] != 0);
+    }
+    shard.front.add(samples, in_view, disc_radius_);
+    out += in_region;
+    chunk.count += in_region;
+  }
+}
+
+template <class F>
+void VisibleMap::for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
+                                F&& f) const {
+  ProjectedBlock block(camera_);
+  for (; begin < end; begin += kBlock) {
+    const std::size_t block_end = std::min(begin + kBlock, end);
+    block.project(std::span(points_cam.position).subspan(begin, block_end - begin),
+                  Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero());
+    f(begin, block_end, block);
+  }
+}
+
+void VisibleMap::add_occluders(const PointCloud& points_cam) {
+  const std::size_t shard_size = (points_cam.size() + kShards - 1) / kShards;
+  parallel_for(kShards, 1, [&](std::size_t shard) {
+    DepthBuffer& front = shards_[shard].front;
+    front.clear(camera_);
+    const std::size_t end = std::min(points_cam.size(), (shard + 1) * shard_size);
+    ProjectedPoints samples;
+    for_each_block(points_cam, shard * shard_size, end,
+                   [&](std::size_t begin, std::size_t block_end, const ProjectedBlock& block) {
+                     std::size_t count = 0;
+                     for (std::size_t i = 0; i < block_end - begin; ++i) {
+                       if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
+                     }
+                     front.add(samples, count, disc_radius_);
+                   });
+  });
+  for (const Shard& shard : shards_) front_.add(shard.front);
+}
+
+std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_cam) const {
+  std::vector<std::uint8_t> marks(points_cam.size());
+  parallel_chunks(marks.size(), kChunkSize, [&](std::size_t chunk_begin, std::size_t chunk_end) {
+    for_each_block(points_cam, chunk_begin, chunk_end,
+                   [&](std::size_t begin, std::size_t end, const ProjectedBlock& block) {
+                     for (std::size_t i = 0; i < end - begin; ++i) {
+                       marks[begin + i] =
+                           block.in_view(i) && front_.is_in_front(block.pixel(i), block.depth(i));
+                     }
+                   });
+  });
+  return marks;
+}
+
+VisibleMap::Differences VisibleMap::differences_of(const Chunk& chunk,
+                                                   const PatchColors& patches) const {
+  const TilePoints& tile = *chunk.points;
+  const std::span<const PointInView> points = points_of(chunk);
+  ProjectedPoints projected;
+  std::array<Eigen::Array3f, kBlock> known;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < points.size(); i += kCompareStep) {
+    const PointInView& point = points[i];
+    const FusedColor& color = tile.colors[chunk.begin + point.index];
+    if (color.views < 2) continue;
+    const Eigen::Vector2f pixel = quantizer_.pixel(point);
+    if (front_.hides(pixel, quantizer_.depth(point))) continue;
+    known[n] = to_float(color.color).array();
+    projected.put(n++, pixel, quantizer_.depth(point));
+  }
+  ColorBlock seen;
+  patches.at(projected, n, seen);
+  Differences differences;
+  differences.points = n;
+  for (std::size_t j = 0; j < n; ++j) {
+    const Eigen::Array3f color(seen.red[j], seen.green[j], seen.blue[j]);
+    differences.sum += double((known[j] - color).abs().mean());
+    if (const auto gain = gain_between(known[j], color)) differences.gains.push_back(*gain);
+  }
+  return differences;
+}
+
+VisibleMap::Comparison VisibleMap::compare(const ColorView& view) const {
+  const PatchColors patches(view);
+  std::vector<Differences> of_chunk(chunks_.size());
+  parallel_for(chunks_.size(), 1,
+               [&](std::size_t k) { of_chunk[k] = differences_of(chunks_[k], patches); });
+  std::vector<Eigen::Array3f> gains;
+  Comparison comparison;
+  double sum = 0;
+  for (const Differences& chunk : of_chunk) {
+    gains.insert(gains.end(), chunk.gains.begin(), chunk.gains.end());
+    comparison.points += chunk.points;
+    sum += chunk.sum;
+  }
+  comparison.gain = median_gain(gains);
+  if (comparison.points > 0) comparison.error = sum / double(comparison.points);
+  return comparison;
+}
+
+void VisibleMap::find_weights(const ProjectedPoints& points, std::size_t count,
+                              std::span<std::uint16_t, kBlock> weight) const {
+  const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy),
+             cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float right = (points.u[i] - cx) * (1 / fx), down = (points.v[i] - cy) * (1 / fy);
+    weight[i] = view_weight(points.depth[i] * std::sqrt(1 + right * right + down * down));
+  }
+}
+
+std::size_t VisibleMap::recolor_block(std::span<const PointInView> points,
+                                      std::uint32_t chunk_begin, std::span<FusedColor> colors,
+                                      const PatchColors& patches, const NoiseSeeds& seeds,
+                                      std::vector<std::uint32_t>& first_colored) const {
+  ProjectedPoints all;
+  const ViewQuantizer quantizer = quantizer_;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    all.put(i, quantizer.pixel(points[i]), quantizer.depth(points[i]));
+  }
+  std::array<std::uint32_t, kBlock> visible;
+  const std::size_t n = front_.find_visible(all, points.size(), visible);
+  ProjectedPoints projected;
+  ColorObservations seen;
+  std::array<std::uint32_t, kBlock> index;
+  std::array<FusedColor, kBlock> known;
+  for (std::size_t j = 0; j < n; ++j) {
+    const std::uint32_t i = visible[j];
+    projected.put(j, {all.u[i], all.v[i]}, all.depth[i]);
+    index[j] = chunk_begin + points[i].index;
+    known[j] = colors[index[j]];
+    if (known[j].views == 0) first_colored.push_back(index[j]);
+  }
+  find_weights(projected, n, seen.weight);
+  for (std::size_t word = 0; word < seeds.size(); ++word) {
+    for (std::size_t j = 0; j < n; ++j) seen.noise[word][j] = quick_bits(index[j], seeds[word]);
+  }
+  patches.at(projected, n, seen.color);
+  FusedColors fused;
+  fused.load(std::span(known).first(n));
+  fuse(fused, seen, n);
+  fused.store(std::span(known).first(n));
+  for (std::size_t j = 0; j < n; ++j) colors[index[j]] = known[j];
+  return n;
+}
+
+std::vector<std::span<FusedColor>> VisibleMap::colors_of_chunks(TileMap& map) const {
+  std::vector<std::span<FusedColor>> colors(chunks_.size());
+  parallel_for(chunks_.size(), 1, [&](std::size_t first) {
+    if (chunks_[first].begin != 0) return;
+    // One thread handles all chunks of a tile. It skips a tile without points in the region, since
+    // write access may copy the tile.
+    const auto end =
+        std::find_if(chunks_.begin() + static_cast<std::ptrdiff_t>(first), chunks_.end(),
+                     [&](const Chunk& chunk) { return chunk.tile != chunks_[first].tile; });
+    const auto last = static_cast<std::size_t>(end - chunks_.begin());
+    std::size_t count = 0;
+    for (std::size_t k = first; k < last; ++k) count += chunks_[k].count;
+    if (count == 0) return;
+    const std::span<FusedColor> of_tile = map.colors(chunks_[first].tile);
+    std::fill(colors.begin() + static_cast<std::ptrdiff_t>(first),
+              colors.begin() + static_cast<std::ptrdiff_t>(last), of_tile);
+  });
+  return colors;
+}
+
+std::size_t VisibleMap::recolor(TileMap& map, const ColorView& view) const {
+  const auto camera = static_cast<std::uint64_t>(view.camera.index);
+  Random random =
+      Random::of_item(static_cast<std::uint64_t>(view.frame) << 8 | camera, kRoundingSeed, 0);
+  const NoiseSeeds seeds{static_cast<std::uint32_t>(random.next()),
+                         static_cast<std::uint32_t>(random.next())};
+  const PatchColors patches(view);
+  const std::vector<std::span<FusedColor>> colors = colors_of_chunks(map);
+  std::vector<std::vector<std::uint32_t>> first_colored(chunks_.size());
+  const auto recolor_chunk = [&](std::size_t k, std::size_t) {
+    const std::span<const PointInView> points = points_of(chunks_[k]);
+    std::size_t count = 0;
+    for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
+      count += recolor_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),
+                             chunks_[k].begin, colors[k], patches, seeds, first_colored[k]);
+    }
+    return count;
+  };
+  const std::size_t count = parallel_sum(chunks_.size(), 1, std::size_t{0}, recolor_chunk);
+  for (std::size_t k = 0; k < chunks_.size(); ++k) {
+    if (first_colored[k].empty()) continue;
+    map.put_camera(chunks_[k].tile, first_colored[k], static_cast<std::int8_t>(camera_.index));
+  }
+  return count;
+}
+
+}  // namespace fovea

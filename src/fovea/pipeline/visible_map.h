@@ -1,0 +1,106 @@
+// The part of the map that a camera sees: occlusion of new points, and colors of known points
+// (docs/method.md 5, 6).
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "fovea/map/tile_map.h"
+#include "fovea/mapping/depth_buffer.h"
+#include "fovea/mapping/exposure.h"
+#include "fovea/mapping/foveal_region.h"
+#include "fovea/pipeline/patch_colors.h"
+#include "fovea/pipeline/point_in_view.h"
+
+namespace fovea {
+
+/// The points of a map in one view of one camera. Reuse one object for all views: it keeps its
+/// memory.
+class VisibleMap {
+ public:
+  /// Projects a map and discards the former view.
+  /// @param map      points must neither be added nor removed while this view is in use
+  /// @param region   points that may be colored; holds the camera
+  /// @param spacing  of the map's points, m
+  void render(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
+              double spacing);
+
+  /// Marks (1) points that lie in front of a surface of the map: an object has come between. Near
+  /// surfaces enter the foveal region first, so a static surface is in the map before its
+  /// background.
+  std::vector<std::uint8_t> find_occluding(const PointCloud& points_cam) const;
+
+  /// Adds points that are not in the map to the surfaces that hide others.
+  void add_occluders(const PointCloud& points_cam);
+
+  /// Colors of a view compared with those of map points that have at least two views.
+  struct Comparison {
+    /// Median gain of each channel that brings the view to the map; 1 if there are too few points.
+    Eigen::Array3f gain = Eigen::Array3f::Ones();
+    std::size_t points = 0;  ///< compared
+    double error = 0;        ///< mean absolute difference, gray values, without any gain
+  };
+  Comparison compare(const ColorView& view) const;
+
+  /// Fuses a view's colors into the visible points of the region. At most once after render().
+  /// @param map  the rendered one
+  /// @return number of visible points
+  std::size_t recolor(TileMap& map, const ColorView& view) const;
+
+ private:
+  /// A range of a tile's points; chunks of equal size balance the threads' work.
+  struct Chunk {
+    TileId tile;
+    const TilePoints* points;
+    RigidMotion T_cam_tile;
+    std::uint32_t begin, end;  // in the tile
+    std::size_t shard;
+    std::size_t first, count;  // its points in the region, in the shard's `points`
+  };
+  /// Output of one thread.
+  struct Shard {
+    std::vector<PointInView> points;  // in the region
+    DepthBuffer front;                // of all in view
+  };
+  static constexpr std::size_t kShards = 4;
+
+  void collect_chunks(const TileMap& map, const FovealRegion& region,
+                      const RigidMotion& T_cam_local);
+  void render_chunk(const FovealRegion& region, Chunk& chunk);
+  /// Calls f(begin, end, block) for consecutive blocks of projected points.
+  template <class F>
+  void for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
+                      F&& f) const;
+  struct Differences {
+    std::vector<Eigen::Array3f> gains;
+    std::size_t points = 0;
+    double sum = 0;  // of the differences
+  };
+  Differences differences_of(const Chunk& chunk, const PatchColors& patches) const;
+  /// The colors of each chunk's tile; empty if no point of the tile is in the region.
+  std::vector<std::span<FusedColor>> colors_of_chunks(TileMap& map) const;
+  /// Seeds of the two random words that a point takes to its fusion.
+  using NoiseSeeds = std::array<std::uint32_t, 2>;
+  /// @param chunk_begin    of the points' chunk
+  /// @param first_colored  gets the points that had no color
+  /// @return number of visible points
+  std::size_t recolor_block(std::span<const PointInView> points, std::uint32_t chunk_begin,
+                            std::span<FusedColor> colors, const PatchColors& patches,
+                            const NoiseSeeds& seeds,
+                            std::vector<std::uint32_t>& first_colored) const;
+  /// Weights of the view at the first `count` points.
+  void find_weights(const ProjectedPoints& points, std::size_t count,
+                    std::span<std::uint16_t, ColorBlock::kSize> weight) const;
+  std::span<const PointInView> points_of(const Chunk& chunk) const {
+    return {shards_[chunk.shard].points.data() + chunk.first, chunk.count};
+  }
+
+  Camera camera_;
+  ViewQuantizer quantizer_;
+  float disc_radius_ = 0;  // of a point's disc, pixels at a depth of 1 m
+  std::vector<Chunk> chunks_;
+  std::array<Shard, kShards> shards_;
+  DepthBuffer front_;
+};
+
+}  // namespace fovea
