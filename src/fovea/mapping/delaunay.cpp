@@ -10,8 +10,8 @@ namespace fovea {
 void DelaunayTriangulation::clear() {
   points_.clear();
   triangles_.clear();
-  unsplit_.clear();
-  suspects_.clear();
+  whole_triangles_.clear();
+  edges_to_legalize_.clear();
   collinear_.clear();
 }
 
@@ -29,7 +29,7 @@ DelaunayTriangulation::Insertion DelaunayTriangulation::insert_checked(GridPoint
     if (vertex != kInfiniteVertex && at(vertex) == point) return {vertex, false, triangle};
   }
   const std::int32_t vertex = add_vertex(point);
-  split(triangle, vertex);
+  split_triangle(triangle, vertex);
   legalize_star(triangle);
   return {vertex, true, triangle};
 }
@@ -46,7 +46,7 @@ std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoin
   const std::vector<std::uint32_t> order = insertion_order(points);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
-    // The curve is a random walk through the caller's memory.
+    // The order walks randomly through the caller's memory.
     __builtin_prefetch(&points[order[std::min(k + kAhead, order.size() - 1)]]);
     const Insertion insertion = insert_checked(points[i], hint);
     vertex_of[i] = insertion.vertex;
@@ -56,8 +56,8 @@ std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoin
   return vertex_of;
 }
 
-// Renumbers the triangles by their latest vertices, which follow a curve through the plane: what is
-// near in the plane is then near in memory.
+// Renumbers the triangles by their latest vertices, which follow a curve through the plane. Near
+// triangles are then near in memory.
 void DelaunayTriangulation::order_triangles() {
   const auto latest = [](const Triangle& triangle) {
     return static_cast<std::size_t>(std::ranges::max(triangle.vertex));
@@ -110,7 +110,8 @@ DelaunayTriangulation::Insertion DelaunayTriangulation::insert_while_collinear(G
   return {vertex, true, 0};
 }
 
-// The first triangle and the three outside of its edges; then the vertices that had to wait.
+// Creates the first triangle and the three outside of its edges, then inserts the collinear
+// vertices.
 void DelaunayTriangulation::start_with(std::int32_t apex_vertex) {
   const bool left = orientation(at(0), at(1), at(apex_vertex)) > 0;
   const std::int32_t a = left ? 0 : 1, b = left ? 1 : 0, c = apex_vertex;
@@ -126,17 +127,16 @@ void DelaunayTriangulation::start_with(std::int32_t apex_vertex) {
   collinear_.clear();
   for (std::int32_t vertex = 2; vertex < apex_vertex; ++vertex) {
     const std::int32_t triangle = locate(at(vertex), 0);
-    split(triangle, vertex);
+    split_triangle(triangle, vertex);
     legalize_star(triangle);
   }
 }
 
-// Visibility walk: on through any edge that has the point on its far side. In a Delaunay
-// triangulation it cannot run in circles: with each step the point's power with respect to the
-// triangle's circumcircle falls, or stays while the walk crosses a set of cocircular triangles,
-// whose dual graph is a tree.
-// @return the triangle that holds the point, maybe on an edge or a corner; or, of those outside,
-// one whose edge of the hull has the point strictly in front
+// Visibility walk: crosses any edge that has the point on its far side. It terminates in a Delaunay
+// triangulation. Each step reduces the point's power with respect to the triangle's circumcircle,
+// or keeps it among cocircular triangles, whose dual graph is a tree.
+// @return the triangle that contains the point, perhaps on an edge or corner; for a point outside
+// the hull, a triangle outside whose edge of the hull has the point strictly in front
 std::int32_t DelaunayTriangulation::locate(GridPoint point, std::int32_t hint) const {
   Edge entry = 4 * hint;
   for (int corner = 0; corner < 3; ++corner) {
@@ -165,9 +165,9 @@ bool DelaunayTriangulation::strictly_inside(GridPoint point, std::int32_t triang
          orientation(at(c), at(a), point) > 0;
 }
 
-// Three triangles for one. A vertex on an edge makes one of them flat for a moment: that edge is
-// then flipped, for the vertex lies inside the circle beyond it.
-void DelaunayTriangulation::split(std::int32_t triangle, std::int32_t vertex) {
+// Replaces a triangle by three. A vertex on an edge makes one of them flat until that edge is
+// flipped: the vertex lies inside the circle beyond it.
+void DelaunayTriangulation::split_triangle(std::int32_t triangle, std::int32_t vertex) {
   const auto [a, b, c] = triangles_[triangle].vertex;
   const std::array outside = triangles_[triangle].twin;
   const auto count = static_cast<std::int32_t>(triangles_.size());
@@ -179,11 +179,10 @@ void DelaunayTriangulation::split(std::int32_t triangle, std::int32_t vertex) {
   for (int corner = 0; corner < 3; ++corner) twin(outside[corner]) = 4 * part[corner];
 }
 
-// Whether the vertex before the edge lies strictly inside the circumcircle of the triangle beyond
-// it. The circle of a triangle outside is the open half-plane in front of its edge of the hull,
-// with that edge; where the vertex before the edge is the infinite one, the two triangles change
-// sides. (Inlined by force, like the two others that Lawson's algorithm spends its time in: that is
-// a tenth of the time of upsampling.)
+// Whether the vertex before the edge lies strictly inside the circumcircle of the triangle beyond.
+// The circle of a triangle outside is the open half-plane in front of its edge of the hull, plus
+// that edge. If the vertex before the edge is infinite, the two triangles change sides.
+// Forced inlining here and below saves a tenth of the time of upsampling.
 [[gnu::always_inline]] inline bool DelaunayTriangulation::must_flip(Edge edge) const {
   const std::int32_t p = apex(edge), a = apex(next(edge)), b = apex(previous(edge));
   const std::int32_t q = apex(twin(edge));
@@ -193,8 +192,8 @@ void DelaunayTriangulation::split(std::int32_t triangle, std::int32_t vertex) {
   return orientation(at(q), at(b == kInfiniteVertex ? p : b), at(a == kInfiniteVertex ? p : a)) > 0;
 }
 
-// Triangles (p, a, b), (q, b, a) -> (p, a, q), (q, b, p); p and q keep their corners, so that
-// `edge` is then (a, q), still opposite p.
+// Triangles (p, a, b), (q, b, a) -> (p, a, q), (q, b, p). p and q keep their corners: `edge`
+// becomes (a, q), still opposite p.
 [[gnu::always_inline]] inline void DelaunayTriangulation::flip(Edge edge) {
   const Edge beyond = twin(edge);
   const Edge edge_bp = twin(next(edge)), edge_aq = twin(next(beyond));
@@ -205,9 +204,9 @@ void DelaunayTriangulation::split(std::int32_t triangle, std::int32_t vertex) {
   join(next(edge), next(beyond));
 }
 
-// Makes Delaunay again what inserting the vertex in front of `triangle` has disturbed (Lawson).
-// Only edges opposite the vertex can be illegal; they are met in one turn around it, each edge that
-// a flip brings into sight included.
+// Restores the Delaunay property around the new vertex at corner 0 of `triangle` (Lawson). Only
+// edges opposite the vertex can be illegal. One turn around it visits them all, including the edges
+// that flips make opposite to it.
 void DelaunayTriangulation::legalize_star(std::int32_t triangle) {
   Edge edge = 4 * triangle;
   const std::int32_t first = apex(next(edge));
@@ -217,16 +216,17 @@ void DelaunayTriangulation::legalize_star(std::int32_t triangle) {
   } while (apex(next(edge)) != first);
 }
 
-// Lawson's algorithm from any edges: after a flip the four edges around it are suspects. A flip
-// gives some edges new numbers; as it makes suspects of those very edges, none is lost.
-void DelaunayTriangulation::legalize_suspects() {
-  while (!suspects_.empty()) {
-    const Edge edge = suspects_.back();
-    suspects_.pop_back();
+// Lawson's algorithm from any edges: after a flip the four edges around it may be illegal. A flip
+// renumbers only edges that it adds to the list, so none is lost.
+void DelaunayTriangulation::legalize_edges() {
+  while (!edges_to_legalize_.empty()) {
+    const Edge edge = edges_to_legalize_.back();
+    edges_to_legalize_.pop_back();
     if (!must_flip(edge)) continue;
     const Edge beyond = twin(edge);
     flip(edge);
-    for (const Edge e : {edge, previous(edge), beyond, previous(beyond)}) suspects_.push_back(e);
+    for (const Edge e : {edge, previous(edge), beyond, previous(beyond)})
+      edges_to_legalize_.push_back(e);
   }
 }
 

@@ -1,7 +1,7 @@
-// CGAL as an independent oracle, where it is installed. Never linked into the library: it is GPL.
+// CGAL as an independent oracle if it is installed. It is GPL: the library never links it.
 #if __has_include(<CGAL/Delaunay_triangulation_2.h>)
 
-// Headers only: without GMP, CGAL takes its own exact numbers.
+// Headers only: without GMP, CGAL uses its own exact numbers.
 #define CGAL_DISABLE_GMP 1
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -36,8 +36,7 @@ std::set<std::array<GridPoint, 3>> triangle_set(const CgalTriangulation& triangu
   return set;
 }
 
-// Four cocircular points among random ones are all but impossible on a large grid: then there is
-// one Delaunay triangulation.
+// Random points on a large grid are hardly ever cocircular, so the triangulation is unique.
 TEST(DelaunayAgainstCgal, SameTrianglesOfGenericPoints) {
   for (const std::int32_t extent : {1 << 20, 1 << 26, kMaxGridCoordinate}) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
@@ -60,7 +59,8 @@ TEST(DelaunayAgainstCgal, SameTrianglesAfterIncrementalInsertion) {
   EXPECT_EQ(delaunay_test::triangle_set(triangulation), triangle_set(cgal_triangulation(points)));
 }
 
-// With ties the triangles may differ; vertices, triangles and hull edges are as many.
+// With cocircular points the triangles may differ, but not the numbers of vertices, triangles and
+// hull edges.
 TEST(DelaunayAgainstCgal, AsManyTrianglesOfPointsWithTies) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Points points = uniform_points(600, 20, seed);

@@ -1,4 +1,4 @@
-// Insertion of many points at once, each into a triangle of its own.
+// Insertion of many points at once, each into its own triangle.
 #include <array>
 #include <cstddef>
 #include <stdexcept>
@@ -9,21 +9,20 @@
 namespace fovea {
 namespace {
 
-// The corner of a triangle after each, counter-clockwise, and the one before.
+// The next corner of a triangle, counter-clockwise, and the previous one.
 constexpr std::array kAfter{1, 2, 0}, kBefore{2, 0, 1};
 
-// What concerns the three corners of a triangle, side by side; the fourth lane is idle.
+// Values at the three corners of a triangle; the fourth lane is idle.
 using Corners = double __attribute__((vector_size(32)));
 using Integers = std::int32_t __attribute__((vector_size(16)));
 using Mask = std::int64_t __attribute__((vector_size(32)));  // -1 where true
 
-// These are inlined by force: otherwise the points go through memory, which takes a third more
-// time.
+// Forced inlining keeps the points in registers; without it the split takes a third more time.
 [[gnu::always_inline]] inline unsigned bits(const Mask& mask) {
   return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4));
 }
 
-// A point for each corner, relative to the vertex at which the triangle is split.
+// A point for each corner, relative to the vertex that splits the triangle.
 struct Points {
   Corners x, y, square;
 
@@ -52,9 +51,9 @@ struct Points {
   return {of_a ? a.x : b.x, of_a ? a.y : b.y, of_a ? a.square : b.square};
 }
 
-// The sign of the in-circle determinant as far as floating point can tell (in_circle()): positive
-// if the vertex lies strictly inside the circle through a, b, c (counter-clockwise), and if it lies
-// outside of it and they are clockwise.
+// The certain sign of the in-circle determinant in floating point; neither bit is set if uncertain
+// (in_circle()). Positive: the vertex lies strictly inside the circle through a, b, c
+// (counter-clockwise), or outside of it if they are clockwise.
 struct Sign {
   unsigned positive, negative;
 };
@@ -71,91 +70,92 @@ struct Sign {
 std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points,
                                                          std::span<const std::int32_t> triangles) {
   if (points.size() != triangles.size()) {
-    throw std::invalid_argument("Delaunay triangulation: as many triangles as points are needed");
+    throw std::invalid_argument("Delaunay triangulation: each point needs a triangle");
   }
   check_arguments(points, triangles);
   std::vector<std::uint32_t> point_of, to_locate;
   point_of.reserve(points.size());
   points_.reserve(points_.size() + points.size());
-  std::vector<Fan> fans(triangles_.size());
+  std::vector<TriangleSplit> splits(triangles_.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::int32_t triangle = triangles[i];
-    if (triangle != kNoTriangle && !fans[triangle].is_split() &&
+    if (triangle != kNoTriangle && !splits[triangle].is_split() &&
         strictly_inside(points[i], triangle)) {
-      fans[triangle].vertex = add_vertex(points[i]);
+      splits[triangle].vertex = add_vertex(points[i]);
       point_of.push_back(i);
     } else {
       to_locate.push_back(i);
     }
   }
-  split_all(fans);
-  legalize_suspects();
+  split_all(splits);
+  legalize_edges();
   for (const std::uint32_t i : to_locate) {
-    const std::int32_t hint = triangles[i] == kNoTriangle ? kNoTriangle : fans[triangles[i]].first;
+    const std::int32_t hint =
+        triangles[i] == kNoTriangle ? kNoTriangle : splits[triangles[i]].first;
     if (insert_checked(points[i], hint).inserted) point_of.push_back(i);
   }
   return point_of;
 }
 
-// Splits all triangles that have a vertex. The three parts of one take its place in memory, those
-// behind it move up: what was near stays near.
-void DelaunayTriangulation::split_all(std::span<Fan> fans) {
+// Splits all triangles that have a vertex. The three parts replace the triangle in memory and the
+// later triangles move up, so that near triangles stay near.
+void DelaunayTriangulation::split_all(std::span<TriangleSplit> splits) {
   std::int32_t count = 0;
-  for (Fan& fan : fans) {
-    fan.first = count;
-    count += fan.is_split() ? 3 : 1;
+  for (TriangleSplit& split : splits) {
+    split.first = count;
+    count += split.is_split() ? 3 : 1;
   }
-  std::swap(triangles_, unsplit_);
+  std::swap(triangles_, whole_triangles_);
   triangles_.clear();
   triangles_.reserve(static_cast<std::size_t>(count));
-  for (std::size_t t = 0; t < fans.size(); ++t) {
-    const Triangle& whole = unsplit_[t];
+  for (std::size_t t = 0; t < splits.size(); ++t) {
+    const Triangle& whole = whole_triangles_[t];
     std::array<Edge, 3> outside;
-    for (int k = 0; k < 3; ++k) outside[k] = fans[whole.twin[k] >> 2].edge(whole.twin[k] & 3);
-    if (fans[t].is_split()) {
-      put_fan(whole, outside, fans[t], fans);
+    for (int k = 0; k < 3; ++k) outside[k] = splits[whole.twin[k] >> 2].edge(whole.twin[k] & 3);
+    if (splits[t].is_split()) {
+      write_parts(whole, outside, splits[t], splits);
     } else {
       triangles_.push_back({whole.vertex, outside});
     }
   }
 }
 
-// Writes the three parts of a triangle (Fan) with those flips already done that depend on nothing
-// else: of edges between it and another one that is split, too. (Each of the two parts beside such
-// an edge has no other.) Where every triangle is split at its centroid most of them are flipped,
-// and few others: it is known here which, and they become suspects.
+// Writes the three parts of a triangle, with the flips done that are independent of each other: of
+// the edges between two split triangles. If every triangle is split at its centroid, most of these
+// edges flip, and few others. The edges that may still be illegal go to edges_to_legalize_.
 //
-// Part k of the fan of p is (p, a, b), (a, b) the edge opposite corner k. If that is flipped, the
-// part beyond, (q, b, a), becomes (q, b, p), and this one (p, a, q). Edge (p, a) is number 2 of
-// part k either way; edge (b, p) is number 1 of it, or number 0 of the part beyond.
-void DelaunayTriangulation::put_fan(const Triangle& whole, const std::array<Edge, 3>& outside,
-                                    const Fan& fan, std::span<const Fan> fans) {
+// Part k of the split at p is (p, a, b), with (a, b) the edge opposite corner k. A flip of that
+// edge turns the part into (p, a, q), and the part beyond, (q, b, a), into (q, b, p). Edge (p, a)
+// is number 2 of part k either way. Edge (b, p) is number 1 of it, or number 0 of the part beyond.
+void DelaunayTriangulation::write_parts(const Triangle& whole, const std::array<Edge, 3>& outside,
+                                        const TriangleSplit& split,
+                                        std::span<const TriangleSplit> splits) {
   std::array<std::int32_t, 3> beyond;  // the vertex q of each edge
-  unsigned fan_beyond = 0;
+  unsigned split_beyond = 0;
   for (int k = 0; k < 3; ++k) {
-    const Fan& other = fans[whole.twin[k] >> 2];
-    if (other.is_split()) fan_beyond |= 1u << k;
-    beyond[k] =
-        other.is_split() ? other.vertex : unsplit_[whole.twin[k] >> 2].vertex[whole.twin[k] & 3];
-    // An edge of the hull stays, as if the triangle's own third corner lay beyond it.
+    const TriangleSplit& other = splits[whole.twin[k] >> 2];
+    if (other.is_split()) split_beyond |= 1u << k;
+    beyond[k] = other.is_split() ? other.vertex
+                                 : whole_triangles_[whole.twin[k] >> 2].vertex[whole.twin[k] & 3];
+    // An edge of the hull never flips: use the triangle's own third corner as the one beyond.
     if (beyond[k] == kInfiniteVertex) beyond[k] = whole.vertex[k];
   }
-  const GridPoint p = at(fan.vertex);
+  const GridPoint p = at(split.vertex);
   const auto points = [&](const std::array<std::int32_t, 3>& vertex) {
     return relative(at(vertex[0]), at(vertex[1]), at(vertex[2]), p);
   };
   const Points corner = points(whole.vertex), a = corner.after(), b = corner.before();
   const Points q = points(beyond);
   const Sign outer = in_circle_sign(q, b, a);
-  unsigned flips = outer.positive & fan_beyond;
+  unsigned flips = outer.positive & split_beyond;
   for (int k = 0; k < 3; ++k) {
     const unsigned bit = 1u << k;
-    if ((fan_beyond & ~(outer.positive | outer.negative) & bit) != 0 &&
+    if ((split_beyond & ~(outer.positive | outer.negative) & bit) != 0 &&
         in_circle(at(beyond[k]), at(whole.vertex[kBefore[k]]), at(whole.vertex[kAfter[k]]), p)) {
       flips |= bit;
     }
   }
-  // Edge (p, a), seen from part k and from the part before it.
+  // Edge (p, a) in part k and in the part before it.
   const unsigned flips_before = (flips << 1 | flips >> 2) & 7;
   const Points x = either(flips, q, b), y = either(flips_before, q.before(), corner);
   const Sign inner = in_circle_sign(x, a, y);
@@ -163,21 +163,21 @@ void DelaunayTriangulation::put_fan(const Triangle& whole, const std::array<Edge
   for (int k = 0; k < 3; ++k) {
     const int after = kAfter[k], before = kBefore[k];
     const std::int32_t va = whole.vertex[after], vb = whole.vertex[before];
-    const Edge beside_a = flips_before & 1u << k ? outside[before] : 4 * (fan.first + before) + 1;
+    const Edge beside_a = flips_before & 1u << k ? outside[before] : 4 * (split.first + before) + 1;
     if (flips & 1u << k) {
       const Edge twin = whole.twin[k];
       triangles_.push_back(
-          {{fan.vertex, va, beyond[k]},
-           {4 * (fans[twin >> 2].first + kAfter[twin & 3]) + 2, outside[k] + 1, beside_a}});
+          {{split.vertex, va, beyond[k]},
+           {4 * (splits[twin >> 2].first + kAfter[twin & 3]) + 2, outside[k] + 1, beside_a}});
     } else {
       triangles_.push_back(
-          {{fan.vertex, va, vb}, {outside[k], 4 * (fan.first + after) + 2, beside_a}});
+          {{split.vertex, va, vb}, {outside[k], 4 * (split.first + after) + 2, beside_a}});
     }
   }
   for (int k = 0; k < 3; ++k) {
-    const Edge edge = 4 * (fan.first + k);
-    if (~outer.negative & ~fan_beyond & 1u << k) suspects_.push_back(edge);
-    if (~inner.negative & 1u << k) suspects_.push_back(edge + 2);
+    const Edge edge = 4 * (split.first + k);
+    if (~outer.negative & ~split_beyond & 1u << k) edges_to_legalize_.push_back(edge);
+    if (~inner.negative & 1u << k) edges_to_legalize_.push_back(edge + 2);
   }
 }
 

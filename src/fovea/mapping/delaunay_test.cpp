@@ -62,7 +62,7 @@ Points nearly_collinear() {
   return points;
 }
 
-// Rings of a LiDAR: rows of points, equally spaced but for a little noise, row after row.
+// Rings of a LiDAR: rows of points with equal spacing and a little noise, row after row.
 Points scan_lines() {
   Random random(7);
   Points points;
@@ -163,8 +163,8 @@ TEST_P(DelaunayOf, HalfAtOnceThenHalfWithTriangles) {
   }
 }
 
-/// Twice over, inserts a point into each triangle that `weight` gives a positive weight: the mean
-/// of its corners, of which the first has that weight and the others 1.
+/// Twice inserts a point into each triangle with a positive `weight`: the weighted mean of its
+/// corners, in which the first corner has that weight and the others 1.
 template <class F>
 void check_points_in_triangles(Points points, F&& weight) {
   DelaunayTriangulation triangulation;
@@ -192,7 +192,7 @@ TEST_P(DelaunayOf, CentroidsInTheirTriangles) {
   check_points_in_triangles(GetParam().points, [](std::size_t) { return 1; });
 }
 
-// Triangles that are split lie beside others that are not, and many edges of fans stay.
+// Split triangles lie next to whole ones, and many edges between parts stay.
 TEST_P(DelaunayOf, PointsInSomeTrianglesNearACorner) {
   Random random(12);
   check_points_in_triangles(GetParam().points, [&](std::size_t) {

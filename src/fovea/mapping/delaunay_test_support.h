@@ -1,5 +1,4 @@
-// What the tests of the triangulation share: clouds of points, and the check of everything that a
-// Delaunay triangulation must be.
+// Shared by the tests of the triangulation: clouds of points and checks of the Delaunay property.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -86,9 +85,9 @@ inline int corner_opposite(const DelaunayTriangulation& triangulation, std::size
   return -1;
 }
 
-/// Neighbours know each other, triangles are counter-clockwise, and no vertex lies inside the
-/// circle of the triangle beside it (which for a triangulation of the convex hull makes every
-/// circle empty).
+/// Neighbors refer to each other, triangles are counter-clockwise, and no vertex lies inside the
+/// circle of a neighboring triangle. For a triangulation of the convex hull every circle is then
+/// empty.
 inline void check_triangles(const DelaunayTriangulation& triangulation) {
   const auto points = triangulation.points();
   for (std::size_t t = 0; t < triangulation.triangle_count(); ++t) {
@@ -112,8 +111,8 @@ inline void check_triangles(const DelaunayTriangulation& triangulation) {
   }
 }
 
-/// Everything: besides the triangles' own properties, that they cover the convex hull of `input`
-/// without overlap, that every distinct point is a vertex, and Euler's formula.
+/// All of that, and: the triangles cover the convex hull of `input` without overlap, every distinct
+/// point is a vertex, and Euler's formula holds.
 inline void check_delaunay(const DelaunayTriangulation& triangulation, const Points& input) {
   const std::set<GridPoint> distinct(input.begin(), input.end());
   const auto points = triangulation.points();

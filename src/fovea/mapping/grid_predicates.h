@@ -14,8 +14,8 @@ struct GridPoint {
   friend auto operator<=>(const GridPoint&, const GridPoint&) = default;
 };
 
-/// 2^29. Differences then have at most 30 bits, their products and sums of two products 61, and the
-/// in-circle determinant, three products of such sums, 124: all fit their integer types.
+/// 2^29. Differences have at most 30 bits, sums of two products 61 bits, and the in-circle
+/// determinant 124 bits: all fit their integer types.
 inline constexpr std::int32_t kMaxGridCoordinate = 1 << 29;
 
 inline bool on_grid(GridPoint p) {
@@ -42,8 +42,9 @@ inline bool in_circle_exact(GridPoint a, GridPoint b, GridPoint c, GridPoint p) 
          0;
 }
 
-/// The in-circle determinant of three points relative to a fourth, and how far rounding may have
-/// carried it at most. Real: double, or several side by side.
+/// The in-circle determinant of three points relative to a fourth, and the bound of its rounding
+/// error.
+/// @tparam Real  double, or a vector of doubles
 template <class Real>
 struct InCircleDeterminant {
   Real value, bound;
@@ -54,14 +55,14 @@ struct InCircleDeterminant {
                                              const Real& bx, const Real& by, const Real& bb,
                                              const Real& cx, const Real& cy, const Real& cc)
       : value(aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx)),
-        // It is off by at most 10 u (u = 2^-53) times the same sum with absolute values (Shewchuk
-        // 1997, incircle bound A). There |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on:
-        // the sum is at most the one below, and 16 u cover its own rounding.
+        // The error is at most 10 u (u = 2^-53) times the same sum with absolute values (Shewchuk
+        // 1997, incircle bound A). |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on, so the
+        // sum below is larger, and 16 u cover its own rounding.
         bound(0x1.0p-49 * (aa * bb + bb * cc + cc * aa)) {}
 };
 
-/// Whether p lies strictly inside the circle through a, b, c (counter-clockwise). Exact: a
-/// floating-point filter decides all but the nearly cocircular cases, integers those.
+/// Whether p lies strictly inside the circle through a, b, c (counter-clockwise). Exact: integers
+/// decide the nearly cocircular cases that the floating-point filter leaves open.
 inline bool in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
   const double ax = a.x - p.x, ay = a.y - p.y;
   const double bx = b.x - p.x, by = b.y - p.y;

@@ -15,7 +15,7 @@ GridPoint draw(Random& random, std::int32_t extent) {
           static_cast<std::int32_t>(random.below(bound)) - extent};
 }
 
-// Filtered and exact predicate agree on these points, however they are turned.
+// The filtered and the exact predicate agree on all rotations of these points.
 void expect_agreement(std::array<GridPoint, 4> p) {
   for (int turn = 0; turn < 4; ++turn) {
     std::rotate(p.begin(), p.begin() + 1, p.end());
@@ -55,7 +55,7 @@ TEST(GridPredicates, FilterAgreesWithIntegersOnRandomPoints) {
   }
 }
 
-// Four points of one circle: (x, y) -> (-y, x) and reflections about its centre keep the radius.
+// Four points of one circle: (x, y) -> (-y, x) and reflections about its center keep the radius.
 // One of them is then moved by at most one grid line.
 TEST(GridPredicates, FilterAgreesWithIntegersOnNearlyCocircularPoints) {
   Random random(2);

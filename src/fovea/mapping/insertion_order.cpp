@@ -12,13 +12,13 @@ namespace fovea {
 namespace {
 
 constexpr int kLevels =
-    15;  // bits of a cell's coordinate; its place on the curve has twice as many
+    15;  // bits of a cell's coordinate; its position on the curve has twice as many
 constexpr int kStepLevels = 3;  // levels taken at once
 constexpr int kRounds = 3;
 static_assert(kLevels % kStepLevels == 0 && 2 * kLevels + 2 == 32);
 
-// The curve as a state machine. The state is how the curve lies in a square: bit 0 exchanges x and
-// y, bit 1 turns it around.
+// The curve as a state machine. The state is the orientation of the curve in a square: bit 0
+// exchanges x and y, bit 1 rotates by 180 degrees.
 struct Step {
   unsigned place, state;
 };
@@ -26,13 +26,13 @@ struct Step {
 constexpr Step descend(unsigned state, unsigned x, unsigned y) {
   if (state & 2) x ^= 1, y ^= 1;
   if (state & 1) std::swap(x, y);
-  // The curve as it is visits (0,0), (0,1), (1,1), (1,0); in the first of these quadrants it is
-  // transposed, in the last one transposed and turned around.
+  // In state 0 the curve visits (0,0), (0,1), (1,1), (1,0). It is transposed in the first quadrant,
+  // and transposed and rotated in the last one.
   const unsigned place = (3 * x) ^ y;
   return {place, state ^ (place == 0 ? 1u : place == 3 ? 3u : 0u)};
 }
 
-// Of each state, and three bits of x and of y: the place along the curve (6 bits) and the next
+// For each state and three bits of x and of y: the position along the curve (6 bits) and the next
 // state.
 constexpr std::array<std::uint8_t, 256> make_steps() {
   std::array<std::uint8_t, 256> steps{};

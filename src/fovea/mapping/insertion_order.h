@@ -1,4 +1,4 @@
-// The order in which points are best inserted into a triangulation.
+// A fast order for the insertion of points into a triangulation.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,10 @@
 
 namespace fovea {
 
-/// Indices of `points` in a biased randomised insertion order (Amenta, Choi, Rote 2003): a
-/// sixteenth of the points, a further three sixteenths, then the rest, drawn by a fixed hash of the
-/// index, and each of these rounds along a Hilbert curve over the bounding square (2^15 cells a
-/// side). The curve keeps the next point near the last; the sparse rounds before spare the long
-/// thin triangles, and their flips, that come of adding points along the edge of what is there.
+/// Indices of `points` in a biased randomized insertion order (Amenta, Choi, Rote 2003). The rounds
+/// contain 1/16, 3/16 and 12/16 of the points, drawn by a fixed hash of the index. Each round
+/// follows a Hilbert curve over the bounding square (2^15 cells a side), which keeps successive
+/// points near. The sparse rounds avoid long thin triangles along the rim, and their flips.
 /// Linear time.
 std::vector<std::uint32_t> insertion_order(std::span<const GridPoint> points);
 

@@ -30,9 +30,9 @@ TEST(InsertionOrder, HasEveryIndexOnce) {
   }
 }
 
-// The rounds hold 1/16, 3/16 and 12/16 of the points; along a curve that visits every cell of a
-// lattice in steps of one, the points of the last round are 4/3 cells apart in the mean by number,
-// and by distance hardly more.
+// The rounds contain 1/16, 3/16 and 12/16 of the points. The curve visits every cell of a lattice
+// in steps of one, so the points of the last round have a mean distance of 4/3 cells along the
+// curve, and hardly more in the plane.
 TEST(InsertionOrder, FollowsTheCurveInEachRound) {
   const auto points = lattice(256);
   const auto order = insertion_order(points);
@@ -48,7 +48,7 @@ TEST(InsertionOrder, FollowsTheCurveInEachRound) {
   EXPECT_LT(mean_step(0, n * 6 / 100), 5.0);
 }
 
-// A curve of another kind (row by row, Morton's) jumps across the lattice somewhere.
+// Other curves (row by row, Morton's) jump across the lattice somewhere.
 TEST(InsertionOrder, NeverJumpsInTheLastRound) {
   const auto points = lattice(128);
   const auto order = insertion_order(points);

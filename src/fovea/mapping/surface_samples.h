@@ -1,5 +1,5 @@
-// Samples of the surfaces that a camera sees, on a regular grid: as finely as the map is to be
-// (goes past the paper; docs/method.md 3).
+// Samples of the surfaces in a camera's view, on a regular grid with the map's resolution
+// (docs/method.md 3). The paper upsamples instead.
 #pragma once
 
 #include <functional>
@@ -11,32 +11,32 @@
 
 namespace fovea {
 
-/// The grid that samples lie on.
+/// The grid of the samples.
 struct SampleGrid {
   RigidMotion T_grid_cam;
-  double cell = 0;  ///< edge of its cubes, m
-  /// Whether there is a point already in the cell of this one; called from many threads.
+  double cell = 0;  ///< edge of a cell, m
+  /// Whether the cell of a point already has a point; called from several threads.
   std::function<bool(const Eigen::Vector3d& p_grid)> taken;
-  /// Cells that are taken besides, a brick by its number (CellBrick::number_of), nullptr where none
-  /// is; for many cells, of which neighbours share a brick.
+  /// More cells that have a point: a brick by its number (CellBrick::number_of), or nullptr. Faster
+  /// than `taken`, since neighbors share a brick.
   std::function<const CellBrick*(const Eigen::Array3i& brick)> taken_brick =
       [](const Eigen::Array3i&) { return nullptr; };
-  /// Positions will be rounded to multiples of it, m; 0: they will not. A point's cell is where it
-  /// will be, or with each scan it would be added anew.
+  /// Positions will be rounded to multiples of this, m; 0: not rounded. The cell of a point is that
+  /// of its rounded position. Otherwise each scan would add the point again.
   double step = 0;
 };
 
-/// Each triangle is looked at along the axis of the grid nearest to its normal, and sampled where
-/// centres of cells fall onto it: samples of all frames and triangles have the same places.
+/// Samples each triangle where the centers of the grid's cells project onto it along one axis: that
+/// nearest to its normal. Samples of all frames and triangles therefore share the same positions.
 ///
-/// @param points_cam  those whose surface it is
-/// @return the points, in their order, then the samples (intensity: mean of the corners'), without
-///         those in taken cells, and one for each cell; columns as upsample() gives them, and
-///         normals; `reason` says which edges admitted a sample's triangle
+/// @param points_cam  the points of the surface
+/// @return the points in their order, then the samples with the mean intensity of their corners. At
+///         most one for each cell, and none in taken cells. Has the columns of upsample() and
+///         normals; `reason` tells which rule admitted the triangle.
 PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
                           const SampleGrid& grid);
 
-/// Both, one after the other.
+/// find_surface() and sample_surface().
 PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
                            const SurfaceOptions& options, const SampleGrid& grid);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "../../../tests/synthetic_drive.h"
@@ -52,6 +53,25 @@ inline SampleGrid plain_grid() { return grid_at(RigidMotion::Identity()); }
 
 inline std::size_t sample_count(const PointCloud& points) {
   return std::size_t(std::count(points.interpolated.begin(), points.interpolated.end(), 1));
+}
+
+inline RigidMotion random_motion(Random& random) {
+  Twist twist;
+  for (int i = 0; i < 3; ++i) twist[i] = random.uniform(-3, 3);
+  for (int i = 3; i < 6; ++i) twist[i] = random.uniform(-100, 100);
+  return exp_se3(twist);
+}
+
+using CellKey = std::array<int, 3>;
+
+inline CellKey cell_of(const Eigen::Vector3d& p_grid) {
+  const Eigen::Array3i cell = (p_grid.array() / kCell).floor().cast<int>();
+  return {cell.x(), cell.y(), cell.z()};
+}
+
+inline double off_center(double coordinate) {
+  const double cells = coordinate / kCell - 0.5;
+  return std::abs(cells - std::round(cells)) * kCell;
 }
 
 }  // namespace fovea::surface_test

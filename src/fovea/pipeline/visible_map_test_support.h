@@ -67,7 +67,7 @@ inline RigidMotion camera_at(double x, double y, double z) {
 }
 
 inline std::vector<Eigen::Vector3f> wall(double depth, double left, double right, double top,
-                                  double bottom) {
+                                         double bottom) {
   std::vector<Eigen::Vector3f> positions;
   for (double x = left; x < right; x += kSpacing) {
     for (double y = top; y < bottom; y += kSpacing) {
