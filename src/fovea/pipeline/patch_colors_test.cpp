@@ -8,7 +8,7 @@
 
 namespace fovea::visible_map_test {
 
-TEST(NewColors, AreTheViewsAtThePoints) {
+TEST(NewColors, AreThoseOfTheViewAtThePoints) {
   Image ramp(621, 188, 3);
   for (int y = 0; y < ramp.height; ++y) {
     for (int x = 0; x < ramp.width; ++x) {
@@ -36,7 +36,7 @@ TEST(NewColors, AreTheViewsAtThePoints) {
   EXPECT_EQ(points.camera, std::vector<std::int8_t>(3, 3));
 }
 
-TEST(NewColors, SayThatTheirExposureWasMatched) {
+TEST(NewColors, AreMarkedIfTheirExposureWasMatched) {
   Image gray(621, 188, 3);
   std::fill(gray.data.begin(), gray.data.end(), 80);
   TestView view(gray);

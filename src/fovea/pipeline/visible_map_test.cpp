@@ -9,7 +9,7 @@
 
 namespace fovea::visible_map_test {
 
-TEST(Recolor, AWallGetsTheWeightedMeanOfItsViews) {
+TEST(VisibleMap, AWallGetsTheWeightedMeanOfItsViews) {
   TileMap map = map_of(wall(9, -2, 2, -0.5, 0.5));
   const struct {
     Rgb color;
@@ -49,7 +49,7 @@ TEST(Recolor, AWallGetsTheWeightedMeanOfItsViews) {
 
 // A wall behind a board keeps its colors where the board hides it, whether the board is in the map
 // or new.
-TEST(Recolor, HiddenPointsKeepTheirColors) {
+TEST(VisibleMap, HiddenPointsKeepTheirColors) {
   const std::vector<Eigen::Vector3f> behind = wall(8, -2, 2, -0.8, 0.8);
   const std::vector<Eigen::Vector3f> board = wall(5, -0.5, 0.4, -0.3, 0.3);
   for (const bool board_is_new : {false, true}) {
@@ -79,7 +79,7 @@ TEST(Recolor, HiddenPointsKeepTheirColors) {
   }
 }
 
-TEST(Recolor, PointsOutsideTheRegionStayAsTheyAre) {
+TEST(VisibleMap, PointsOutsideTheRegionStayAsTheyAre) {
   std::vector<Eigen::Vector3f> positions;
   Random random(1);
   for (int i = 0; i < 20'000; ++i) {
@@ -109,7 +109,7 @@ TEST(Recolor, PointsOutsideTheRegionStayAsTheyAre) {
 }
 
 // Tiles are left out whole where the camera does not look; none that holds a point in view is.
-TEST(Recolor, FindsEveryPointInViewWhereverItsTileLies) {
+TEST(VisibleMap, FindsEveryPointInViewWhereverItsTileLies) {
   Random random(5);
   std::size_t all_inside = 0;
   for (int trial = 0; trial < 40; ++trial) {
@@ -138,7 +138,7 @@ TEST(Recolor, FindsEveryPointInViewWhereverItsTileLies) {
 }
 
 // Nearer than the near blind zone nothing is colored, but it hides.
-TEST(Recolor, WhatIsOutsideTheRegionHidesToo) {
+TEST(VisibleMap, PointsOutsideTheRegionHideOthers) {
   TileMap map = map_of(wall(8, -1, 1, -0.3, 0.3));
   map.add(new_points(wall(2, -1, 1, -0.3, 0.3)));
   const TestView view(image_of({200, 200, 200}), RigidMotion::Identity(), white_zone(4));
@@ -147,7 +147,7 @@ TEST(Recolor, WhatIsOutsideTheRegionHidesToo) {
 
 // Something comes between the camera and a wall that is in the map: in front of it by more than
 // 30 cm and 5 %.
-TEST(VisibleMap, MarksWhatStandsBeforeTheMap) {
+TEST(VisibleMap, FindsPointsInFrontOfTheMap) {
   const Camera camera = test_camera();
   const FovealRegion region(white_zone(1), camera);
   const TileMap map = map_of(wall(8, -1, 1, -0.5, 0.5));
@@ -162,7 +162,7 @@ TEST(VisibleMap, MarksWhatStandsBeforeTheMap) {
   EXPECT_EQ(seen.find_occluding(points), std::vector<std::uint8_t>(8, 0));
 }
 
-TEST(Recolor, AnEmptyMapAndAViewOfNothingAreNormal) {
+TEST(VisibleMap, AnEmptyMapAndAViewOfNothingAreNormal) {
   TileMap empty;
   const TestView view(image_of({200, 200, 200}));
   EXPECT_EQ(view.recolor(empty), 0u);
@@ -170,7 +170,7 @@ TEST(Recolor, AnEmptyMapAndAViewOfNothingAreNormal) {
   EXPECT_EQ(view.recolor(behind), 0u);
 }
 
-TEST(Recolor, GivesTheSameAtAnyThreadCount) {
+TEST(VisibleMap, GivesTheSameAtAnyThreadCount) {
   const auto run = [](int threads) {
     const ThreadLimit limit(threads);
     TileMap map = map_of(wall(8, -3, 3, -1, 1));
@@ -231,7 +231,7 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
   EXPECT_GT(added.color[0].r, 100);
 }
 
-TEST(Exposure, FewPointsSayNothing) {
+TEST(Exposure, OfTooFewPointsIsUnknown) {
   TileMap map = map_of(wall(8, -0.1, 0.1, -0.1, 0.1));
   const TestView view(image_of({200, 200, 200}));
   EXPECT_EQ(view.render(map).compare(view.view).gain.matrix(), Eigen::Vector3f::Ones());
