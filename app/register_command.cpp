@@ -55,7 +55,7 @@ PlaceFit fit_of(const ScanSurfaces& target, const ScanSurfaces& source,
 void require_fit(const RegisterArguments& arguments, const PlaceFit& fit) {
   constexpr std::size_t kLeastPoints = 50;
   constexpr double kLeastOverlap = 0.5, kLeastOnPlane = 0.6;
-  if (fit.standing < kLeastPoints) {
+  if (fit.vertical < kLeastPoints) {
     print_err("the scans have too few vertical surfaces to confirm the motion\n");
     return;
   }

@@ -53,7 +53,7 @@ double seen_through(const RegistrationCloud& target, const RangeImage& image,
   const Eigen::Isometry3f T_lidar_target = T_target_lidar.inverse().cast<float>();
   std::size_t free = 0, surface = 0;
   for (std::size_t i = 0; i < target.points.size(); ++i) {
-    if (!stands(target.normals[i])) continue;
+    if (!is_vertical(target.normals[i])) continue;
     const Eigen::Vector3f p_lidar = T_lidar_target * target.points[i];
     if (p_lidar.norm() > kSeenRange) continue;
     const Visibility visibility = image.visibility(p_lidar);
@@ -195,7 +195,7 @@ Localizer::Attempt Localizer::follow(const Scan& scan, const RigidMotion& guess)
                    (1 - seen_through(target.cloud, scan.image, result.T_target_source));
   result.T_target_source = T_local_target * result.T_target_source;
   const RigidMotion correction = guess.inverse() * result.T_target_source;
-  attempt.fits = result.converged && fit.standing >= kMinStanding && attempt.health >= kMinHealth &&
+  attempt.fits = result.converged && fit.vertical >= kMinStanding && attempt.health >= kMinHealth &&
                  correction.translation().norm() < kMaxCorrection &&
                  rotation_angle(correction.linear()) < kMaxTurn;
   return attempt;

@@ -12,7 +12,7 @@ Image filled(std::uint8_t value, int channels = 3, int width = 160, int height =
   return image;
 }
 
-/// Gives this share of the image, from its top, the value.
+/// Sets the top share of the image to a value.
 Image with_rows(Image image, double share, std::uint8_t value) {
   std::fill_n(image.data.begin(), static_cast<std::ptrdiff_t>(share * double(image.data.size())),
               value);
@@ -35,7 +35,7 @@ TEST(BlankImage, WhatShowsATenthOfAStreetIsNot) {
   EXPECT_FALSE(is_blank(with_rows(filled(0), 0.5, 255)));  // half black, half white: a pattern
 }
 
-TEST(BlankImage, SaturatedColoursAreNot) {
+TEST(BlankImage, SaturatedColorsAreNot) {
   Image red = filled(0);
   for (std::size_t i = 0; i < red.data.size(); i += 3) red.data[i] = 255;
   EXPECT_FALSE(is_blank(red));

@@ -1,11 +1,11 @@
-// The camera of tests of what is made of a scan's projection.
+// The camera of the tests.
 #pragma once
 
 #include "fovea/geometry/camera.h"
 
 namespace fovea {
 
-/// About KITTI's.
+/// Similar to KITTI's.
 inline Camera test_camera() { return {0, 1242, 375, 720, 720, 610, 170, RigidMotion::Identity()}; }
 
 }  // namespace fovea

@@ -50,7 +50,7 @@ FusedColor fuse(const FusedColor& point, const Eigen::Vector3f& color, std::uint
   return get(points, 0);
 }
 
-/// What no rounding would give.
+/// The fused color without rounding.
 struct Exact {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double deviation = 0;
@@ -79,11 +79,11 @@ FusedColor fuse_all(const std::vector<SeenView>& views, std::uint64_t seed) {
   return fused;
 }
 
-/// Means over many points that see the same.
+/// Means over many points with the same views.
 struct Average {
   Eigen::Vector3d color = Eigen::Vector3d::Zero();
   double spread = 0;
-  double deviation = 0;  // of a point's colour from the average, RMS of channels
+  double deviation = 0;  // of a point's color from the average, RMS of channels
 };
 
 Average average(const std::vector<SeenView>& views, int points) {
@@ -110,12 +110,12 @@ std::vector<SeenView> random_views(std::size_t count, double sigma, std::uint64_
                                 60.5 + sigma * random.normal());
     views.push_back({color.cast<float>(), static_cast<std::uint16_t>(5 + random.below(20))});
   }
-  // The first view's colour is rounded to the nearest: not what is measured here.
+  // The first view's color is rounded to the nearest and does not count here.
   views[0].color = to_float(to_rgb(views[0].color));
   return views;
 }
 
-TEST(ColorFusion, TheFirstViewIsTheColour) {
+TEST(ColorFusion, TheFirstViewIsTheColor) {
   const FusedColor fused = fuse({}, {10.4f, 200.6f, 300.f}, 17, ~std::uint64_t{0});
   EXPECT_EQ(fused.color, (Rgb{10, 201, 255}));
   EXPECT_EQ(fused.views, 1);
@@ -134,7 +134,7 @@ TEST(ColorFusion, TwoViewsGiveTheWeightedMeanAndDeviation) {
   EXPECT_EQ(fuse(first, {140, 50, 160}, 30, ~std::uint64_t{0}).spread, 15);  // ... or up
 }
 
-TEST(ColorFusion, TwoAccountsOfAColourAreOneOfAllTheirViews) {
+TEST(ColorFusion, TwoSetsOfViewsFuseIntoOne) {
   // Weight 40: mean 130 50 170, mean square deviation (300 + 0 + 300) / 3; weight 60: 180 100 90.
   const FusedColor a{{130, 50, 170}, 2, 14, 40}, b{{180, 100, 90}, 3, 5, 60};
   const FusedColor both = fused(a, b);
@@ -167,7 +167,7 @@ TEST(ColorFusion, RoundsUpWithTheProbabilityOfTheFraction) {
   EXPECT_NEAR(up / (3.0 * kDraws), 3.0 / 11, 0.008);  // 4 standard deviations
 }
 
-// Steps of the late views are far below one grey value; rounding to the nearest would lose them.
+// Steps of late views are far below one gray value; rounding to the nearest would lose them.
 TEST(ColorFusion, TheAverageOverPointsIsTheWeightedMean) {
   for (const std::size_t count : {2u, 5u, 20u, 200u}) {
     for (const double sigma : {3.0, 10.0}) {
@@ -180,8 +180,8 @@ TEST(ColorFusion, TheAverageOverPointsIsTheWeightedMean) {
   }
 }
 
-// A step of |d| / n grey values is rounded with a variance of at most that; views after it shrink
-// its error in proportion: |d| / 2 in all, however many views there are.
+// The rounding of a step of |d| / n gray values has at most that variance, and later views reduce
+// its error in proportion. The total variance is |d| / 2 for any number of views.
 TEST(ColorFusion, RoundingNoiseDoesNotGrowWithTheViews) {
   for (const std::size_t count : {5u, 30u, 250u}) {
     const double sigma = 8, mean_difference = sigma * std::sqrt(2 / 3.14159265);
@@ -201,7 +201,7 @@ TEST(ColorFusion, ABlockIsFusedAsEachPointAlone) {
   for (std::size_t i = 0; i < kPoints; ++i) {
     FusedColor point;
     point = {{byte(), byte(), byte()}, byte(), byte(), static_cast<std::uint16_t>(byte() + 1)};
-    if (i % 7 == 0) point.views = 0;  // then the rest means nothing
+    if (i % 7 == 0) point.views = 0;  // the other values are then meaningless
     const SeenView view{{float(byte()), float(byte()), float(byte())},
                         static_cast<std::uint16_t>(1 + random.below(100))};
     const std::uint64_t noise = random.next();
@@ -233,7 +233,7 @@ TEST(ColorFusion, LateChangesStillArrive) {
   EXPECT_NEAR(fused.spread, 20, 0.3);
 }
 
-TEST(ColorFusion, OneColourStays) {
+TEST(ColorFusion, OneColorStays) {
   const FusedColor fused = fuse_all(std::vector<SeenView>(300, {{0, 255, 128}, 13}), 3);
   EXPECT_EQ(fused.color, (Rgb{0, 255, 128}));
   EXPECT_EQ(fused.spread, 0);
@@ -248,7 +248,7 @@ TEST(ColorFusion, ViewsAndWeightsSaturate) {
     ASSERT_EQ(fused.weight, std::min(100 * i, 65535));
   }
   EXPECT_EQ(fused.color, (Rgb{50, 60, 70}));
-  // From there on the latest views count as if all weights before were the most there can be.
+  // From there on later views count as if the former weight were the largest.
   Average average_color;
   constexpr int kPoints = 20'000;
   for (int i = 0; i < kPoints; ++i) {
@@ -258,7 +258,7 @@ TEST(ColorFusion, ViewsAndWeightsSaturate) {
   EXPECT_NEAR(average_color.color.x(), 50 + 200 * 100.0 / 65535, 0.02);
 }
 
-TEST(ColorFusion, ColoursStayInRange) {
+TEST(ColorFusion, ColorsStayInRange) {
   Random random(4);
   for (int i = 0; i < 2000; ++i) {
     const FusedColor before{{255, 0, 255}, 3, 255, 30};

@@ -37,9 +37,9 @@ TEST(DepthBuffer, HidesWhatIsBehindAndNotWhatIsBesideOrInFront) {
        {Eigen::Vector2f(45, 20), {35, 20}, {40, 25}, {40, 15}, {45, 25}}) {
     EXPECT_TRUE(buffer.hides(inside, 8)) << inside.transpose();
   }
-  for (const Eigen::Vector2f& beside :
+  for (const Eigen::Vector2f& outside :
        {Eigen::Vector2f(48, 20), {32, 20}, {40, 28}, {40, 12}, {90, 40}}) {
-    EXPECT_FALSE(buffer.hides(beside, 8)) << beside.transpose();
+    EXPECT_FALSE(buffer.hides(outside, 8)) << outside.transpose();
   }
 }
 
@@ -78,8 +78,8 @@ TEST(DepthBuffer, CornersOfEvenAndOddImagesAreInside) {
   }
 }
 
-// A ground seen at a grazing angle, sampled every 2 cm: it does not hide itself, though discs of
-// near samples reach over farther ones; and it hides what lies under it.
+// Ground at a grazing angle, sampled every 2 cm. It does not hide itself, although discs of near
+// samples overlap farther ones. It hides points below it.
 TEST(DepthBuffer, ASlantSurfaceDoesNotHideItself) {
   Camera camera = camera_of(1242, 375);
   camera.fx = camera.fy = 720;

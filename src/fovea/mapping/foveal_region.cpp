@@ -18,10 +18,10 @@ void FovealOptions::validate() const {
   const auto reject = [](const char* what, const char* field, const char* remedy) {
     throw ConfigError(what, field, remedy);
   };
-  if (!(near_range >= 0)) reject("a range is negative", "foveal.near_range", "give metres >= 0");
+  if (!(near_range >= 0)) reject("a range is negative", "foveal.near_range", "give meters >= 0");
   if (!(far_range > near_range && far_range <= 1000)) {
     reject("the white zone is empty or too large", "foveal.far_range",
-           "give metres above near_range and up to 1000");
+           "give meters above near_range and up to 1000");
   }
   constexpr double quarter = std::numbers::pi / 2;
   if (!(max_incidence > 0 && max_incidence <= quarter)) {

@@ -1,4 +1,5 @@
-// The foveal region (paper: Foveal Processing; docs/method.md 4): where texture is mapped at all.
+// The foveal region: the part of the view that is mapped (paper: Foveal Processing; docs/method.md
+// 4).
 #pragma once
 
 #include <string>
@@ -17,13 +18,12 @@ struct AngularSlice {
 };
 
 struct FovealOptions {
-  double near_range =
-      3.0;  ///< m from the LiDAR: nearer is the near blind zone (the vehicle itself)
-  double far_range = 18.0;  ///< m from the LiDAR: from here on is the far blind zone
-  /// Union of slices that is processed; empty: the whole view of the camera.
+  double near_range = 3.0;  ///< m from the LiDAR: end of the near blind zone (the vehicle)
+  double far_range = 18.0;  ///< m from the LiDAR: start of the far blind zone
+  /// Slices whose union is processed; empty: the whole view of the camera.
   std::vector<AngularSlice> slices;
   /// Largest angle between view ray and surface normal (paper: "beyond about 70 degrees no fine
-  /// texture"), rad; pi / 2 switches it off. Points of unknown normal pass.
+  /// texture"), rad; pi / 2: no limit. Points without a normal pass.
   double max_incidence = 1.5707963267948966;
   void validate() const;  ///< ConfigError that names the field
 };
@@ -37,21 +37,21 @@ class FovealRegion {
   double far_range() const { return options_.far_range; }
 
   /// Whether a point in the camera's frame lies in the white zone, the image and a slice.
-  /// @param pixel  receives the projection where the answer is yes
+  /// @param pixel  the projection, if the result is true
   bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
 
   /// Whether a point in the camera's frame lies in the white zone.
   bool in_white_zone(const Eigen::Vector3f& p_cam) const {
     const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
-    return (range2 > near_range2_) & (range2 < far_range2_);  // no branch, in loops
+    return (range2 > near_range2_) & (range2 < far_range2_);  // & avoids a branch
   }
   /// Whether a point in front of the camera lies in one of its slices.
   bool in_slices(const Eigen::Vector3f& p_cam) const;
-  /// False: the whole view is one.
+  /// False: the region is the whole view.
   bool has_slices() const { return !slices_.empty(); }
 
  private:
-  /// Slices as bounds on the ray's slopes, so that no point costs an arc tangent.
+  /// Bounds of a slice as slopes of rays, which avoids an arc tangent for each point.
   struct SlopeBounds {
     float right_min, right_max;  // tan(azimuth) = x / z
     float up_min, up_max;        // tan(elevation) = -y / hypot(x, z)
@@ -67,10 +67,10 @@ class FovealRegion {
 /// @param scan_lidar  LiDAR frame
 PointCloud foveal_points(const PointCloud& scan_lidar, const FovealRegion& region);
 
-/// Fills range (m from the camera) and incidence (rad between view ray and normal; NaN where the
-/// normal is unknown), and drops the points that look away by more than `max_incidence` (rad).
-/// Returns how many.
+/// Sets range (m from the camera) and incidence (rad between view ray and normal; NaN without a
+/// normal). Removes points whose incidence exceeds `max_incidence` (rad).
 /// @param points_cam  camera frame, origin 0, with normals
+/// @return number of removed points
 std::size_t limit_incidence(PointCloud& points_cam, double max_incidence);
 
 }  // namespace fovea

@@ -10,7 +10,7 @@ namespace fovea::foveal_region_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A camera that looks along the LiDAR's x axis from its place, 90 degrees wide.
+/// A camera at the LiDAR's position, along its x axis, 90 degrees wide.
 Camera forward_camera() {
   Camera camera{0, 1001, 801, 500, 500, 500, 400, RigidMotion::Identity()};
   camera.T_cam_lidar.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;

@@ -13,10 +13,10 @@
 namespace fovea {
 namespace {
 
-/// The plane passes under the sensor at its known height, give or take this (m): what keeps RANSAC
-/// off roofs, embankments and retaining walls.
+/// Tolerance of the height of the plane below the sensor (m). It excludes roofs, embankments and
+/// retaining walls.
 constexpr float kMaxHeightError = 0.5f;
-/// A road is near: beyond this (m) it may bend away from any one plane.
+/// Beyond this range (m) the road may leave the plane.
 constexpr float kMaxGroundRange = 40.0f;
 constexpr std::size_t kMaxSamples = 4000;
 constexpr std::size_t kMinSupport = 50;
@@ -35,7 +35,7 @@ bool is_plausible(const Plane& plane, const GroundOptions& options) {
              kMaxHeightError;
 }
 
-/// Points that some plausible plane could pass through: a double cone about the nominal ground.
+/// Points that may be on a plausible plane: a double cone about the nominal ground.
 std::vector<Eigen::Vector3f> candidates(std::span<const Eigen::Vector3f> points,
                                         const GroundOptions& options) {
   const float slope =
@@ -48,7 +48,7 @@ std::vector<Eigen::Vector3f> candidates(std::span<const Eigen::Vector3f> points,
       found.push_back(p);
     }
   }
-  if (found.size() > kMaxSamples) {  // evenly thinned: enough to tell planes apart
+  if (found.size() > kMaxSamples) {  // thinned evenly
     const std::size_t stride = (found.size() + kMaxSamples - 1) / kMaxSamples;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < found.size(); i += stride) found[kept++] = found[i];
@@ -66,7 +66,7 @@ std::optional<Plane> plane_through(const Eigen::Vector3f& a, const Eigen::Vector
   return Plane{normal, -normal.dot(a)};
 }
 
-/// MSAC (Torr, Zisserman 2000): squared heights, cut off at the tolerance; less is better.
+/// MSAC (Torr, Zisserman 2000): sum of squared heights, truncated at the tolerance.
 float cost(const Plane& plane, std::span<const Eigen::Vector3f> samples, float tolerance) {
   float sum = 0;
   for (const Eigen::Vector3f& p : samples) {
@@ -102,7 +102,7 @@ std::optional<Plane> find_ground_plane(std::span<const Eigen::Vector3f> points,
                                        const GroundOptions& options) {
   const std::vector<Eigen::Vector3f> samples = candidates(points, options);
   if (samples.size() < kMinSupport) return std::nullopt;
-  // Half the tolerance: the plane is to fit the road, not road and kerb together.
+  // Half the tolerance: the plane should fit the road alone, not the road and the curb.
   const float tolerance = static_cast<float>(options.tolerance) / 2;
   Random random(options.seed);
   const auto draw = [&]() -> const Eigen::Vector3f& {
@@ -112,7 +112,7 @@ std::optional<Plane> find_ground_plane(std::span<const Eigen::Vector3f> points,
   std::optional<Plane> best;
   float best_cost = std::numeric_limits<float>::infinity();
   for (int i = 0; i < options.ransac_iterations; ++i) {
-    // Drawn one by one: the order in which arguments are evaluated is the compiler's own.
+    // One statement each: the evaluation order of arguments is unspecified.
     const Eigen::Vector3f& a = draw();
     const Eigen::Vector3f& b = draw();
     const Eigen::Vector3f& c = draw();
@@ -132,7 +132,7 @@ std::optional<Plane> find_ground_plane(std::span<const Eigen::Vector3f> points,
 }  // namespace
 
 std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lidar) {
-  constexpr double kStep = 0.6;         // m, between heights that are tried; each reaches 0.5 m
+  constexpr double kStep = 0.6;         // m, between trial heights; each covers 0.5 m
   constexpr float kLeastHeight = 0.4f;  // m
   constexpr double kLeastShare = 0.05;  // of all points
   GroundOptions options{
@@ -163,7 +163,7 @@ void GroundOptions::validate() const {
            "give meters above 0 and up to 10, or 0 for the height of the LiDAR's profile");
   }
   if (!(tolerance > 0 && tolerance <= 5)) {
-    reject("a tolerance is out of range", "ground.tolerance", "give metres above 0 and up to 5");
+    reject("a tolerance is out of range", "ground.tolerance", "give meters above 0 and up to 5");
   }
   if (ransac_iterations < 1 || ransac_iterations > 100000) {
     reject("an iteration count is out of range", "ground.ransac_iterations", "give 1 to 100000");

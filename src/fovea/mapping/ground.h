@@ -22,12 +22,12 @@ struct GroundOptions {
 };
 
 /// Mask, 1 for ground, of points in the LiDAR frame (m, relative to the LiDAR). RANSAC falls back
-/// to the height threshold where no plane within ransac_max_tilt is found.
+/// to the height threshold if no plane within ransac_max_tilt is found.
 std::vector<std::uint8_t> segment_ground(std::span<const Eigen::Vector3f> points_lidar,
                                          const GroundOptions& options);
 
-/// Height of the LiDAR above the plane under it that most points lie on (m): 0.3 to 4.5 m, tilted
-/// by at most 25 degrees. Nothing where no such plane is in view.
+/// Height of the LiDAR above the plane below it with the most points (m): 0.3 to 4.5 m, tilted
+/// by at most 25 degrees. Empty if no such plane is in view.
 std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lidar);
 
 }  // namespace fovea

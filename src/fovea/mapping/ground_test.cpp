@@ -18,8 +18,7 @@ struct Street {
   std::vector<std::uint8_t> is_road;
 };
 
-/// A road under the sensor that climbs along x by `slope` (rad), between house fronts, with cars on
-/// it.
+/// A road below the sensor with a `slope` along x (rad), between house fronts, with cars on it.
 Street street(double slope, double sigma = 0.01) {
   const Eigen::Vector3d up(-std::sin(slope), 0, std::cos(slope));
   const Eigen::Vector3d ahead(std::cos(slope), 0, std::sin(slope));

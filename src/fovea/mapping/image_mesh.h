@@ -1,4 +1,4 @@
-// The Delaunay triangulation of a cloud's projection into an image: what upsampling fills.
+// The Delaunay triangulation of a cloud's projection into an image.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace fovea {
 
-/// Projection of a cloud in the camera's frame onto the grid that is triangulated: 1/1024 pixel,
-/// far finer than a LiDAR measures, and 2^19 pixels still are on it.
+/// Projects a cloud in the camera's frame onto the grid of the triangulation. A step is 1/1024
+/// pixel, far below the noise of a LiDAR; the grid covers 2^19 pixels.
 class GridProjection {
  public:
   /// @param origin  of the cloud
@@ -21,7 +21,7 @@ class GridProjection {
   Eigen::Vector3d from_camera(const Eigen::Vector3f& position) const {
     return origin_ + position.cast<double>();
   }
-  /// Empty for what is not in front of the camera or beyond the grid.
+  /// Empty for a point behind the camera or beyond the grid.
   std::optional<GridPoint> operator()(const Eigen::Vector3f& position) const;
 
  private:
@@ -29,7 +29,7 @@ class GridProjection {
   Eigen::Vector3d origin_;
 };
 
-/// Columns are by vertex: measured ones first, then those that a user inserts.
+/// Columns by vertex: measured ones first, then those that a user inserts.
 struct ImageMesh {
   static constexpr std::int32_t kNoVertex = -1;
 
@@ -38,7 +38,7 @@ struct ImageMesh {
   std::vector<std::int32_t> vertex_of_point;   ///< by point of the cloud; kNoVertex off the grid
   std::vector<std::uint32_t> point_of_vertex;  ///< by measured vertex
 
-  /// Triangulates the projection. Of points that share a grid point the nearest to the camera is
+  /// Triangulates the projection. If points share a grid point, the nearest to the camera becomes
   /// the vertex. std::invalid_argument if a point is not in front of the camera.
   ImageMesh(const PointCloud& points_cam, const GridProjection& project);
 
@@ -49,7 +49,7 @@ struct ImageMesh {
                               const GridProjection& project) const;
 };
 
-/// Of a vector of length zero: itself.
+/// A vector of length zero stays zero.
 inline Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
   const float length = v.norm();
   return length > 0 ? Eigen::Vector3f(v / length) : Eigen::Vector3f::Zero();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRowGrain = 64;
 
-/// Means of 2 x 2 pixels, halves up; two bytes of each at a time, with room for their sums.
+/// Mean of 2 x 2 pixels, rounded half up; two channels at a time.
 std::uint32_t mean_of_four(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   constexpr std::uint32_t kBytes = 0x00ff00ff, kHalf = 0x00020002;
   const auto mean = [](std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
@@ -27,17 +27,16 @@ ImagePyramid::ImagePyramid(const Image& image) : width_(image.width), height_(im
   for (int level = 0; level <= kLevels; ++level) {
     first_[std::size_t(level)] = size;
     if (level < kLevels && std::min(width_ >> level, height_ >> level) > 0) levels = level + 1;
-    // A row and a column more than it has: of the one that is never weighed, something is read,
-    // too.
+    // One more row and column, including the level of weight 0, which is read too.
     size += ((width_ >> level) + 2) * ((height_ >> level) + 2);
   }
   pixels_.resize(static_cast<std::size_t>(size));
   coarsest_ = static_cast<float>(1 << (levels - 1));
-  take_in(image);
+  pack(image);
   for (int level = 1; level < levels; ++level) halve(level);
 }
 
-void ImagePyramid::take_in(const Image& image) {
+void ImagePyramid::pack(const Image& image) {
   const int green = image.channels == 3 ? 1 : 0, blue = image.channels == 3 ? 2 : 0;
   parallel_for(static_cast<std::size_t>(height_), kRowGrain, [&](std::size_t i) {
     const int y = static_cast<int>(i);
@@ -57,7 +56,7 @@ void ImagePyramid::halve(int level) {
     const int y = static_cast<int>(i);
     const std::uint32_t *above = row(level - 1, 2 * y), *below = row(level - 1, 2 * y + 1);
     std::uint32_t* const to = row(level, y);
-    const int columns = width;  // its own: what is written might be the captured one
+    const int columns = width;  // a local copy cannot alias the output
     for (int x = 0; x < columns; ++x) {
       to[x] = mean_of_four(above[2 * x], above[2 * x + 1], below[2 * x], below[2 * x + 1]);
     }
@@ -75,7 +74,7 @@ void ImagePyramid::bilinear_at(std::span<const float> u, std::span<const float> 
                                std::span<const std::int32_t> level, ColorBlock& colors) const {
   const std::size_t n = u.size();
   const std::int32_t width = width_, height = height_;
-  std::array<std::int32_t, ColorBlock::kSize> place, stride;
+  std::array<std::int32_t, ColorBlock::kSize> index, stride;
   std::array<float, ColorBlock::kSize> right, down;  // weights of the pixels there
   for (std::size_t i = 0; i < n; ++i) {
     const std::int32_t columns = width >> level[i], rows = height >> level[i];
@@ -86,15 +85,15 @@ void ImagePyramid::bilinear_at(std::span<const float> u, std::span<const float> 
     const auto column = static_cast<std::int32_t>(inner_x);
     const auto line = static_cast<std::int32_t>(inner_y);
     stride[i] = columns + 1;
-    place[i] = line * (columns + 1) + column;
+    index[i] = line * (columns + 1) + column;
     right[i] = inner_x - static_cast<float>(column);
     down[i] = inner_y - static_cast<float>(line);
   }
-  // What lies all over memory is fetched alone.
+  // Random access to memory in a loop of its own.
   using Pair = std::array<std::uint32_t, 2>;
   std::array<Pair, ColorBlock::kSize> above, below;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t* const pixel = pixels_.data() + first_[std::size_t(level[i])] + place[i];
+    const std::uint32_t* const pixel = pixels_.data() + first_[std::size_t(level[i])] + index[i];
     std::memcpy(&above[i], pixel, sizeof(Pair));
     std::memcpy(&below[i], pixel + stride[i], sizeof(Pair));
   }
@@ -120,8 +119,8 @@ void ImagePyramid::colors_at(std::span<const float> u, std::span<const float> v,
   std::array<std::int32_t, ColorBlock::kSize> level;
   std::array<float, ColorBlock::kSize> share;
   for (std::size_t i = 0; i < n; ++i) {
-    // The base-2 logarithm of the footprint: of its exponent, which is the level, and of its
-    // mantissa by a parabola, which errs by less than a hundredth of a level.
+    // Base-2 logarithm of the footprint: the exponent is the level; a parabola approximates the
+    // logarithm of the mantissa to within a hundredth of a level.
     const float clamped = std::min(std::max(footprint[i], 1.0f), coarsest);
     const auto bits = std::bit_cast<std::int32_t>(clamped);
     level[i] = (bits >> 23) - 127;

@@ -41,7 +41,7 @@ TEST(ImagePyramid, AConstantImageIsConstant) {
   }
 }
 
-// Half a pixel of shift between levels would be 2^level / 2 pixels here: 8 grey values at 16.
+// Half a pixel of shift between levels would be 2^level / 2 pixels here: 8 gray values at 16.
 TEST(ImagePyramid, ARampHasItsValueAtEveryFootprint) {
   const ImagePyramid pyramid(painted(200, 120, 3, [](int x, int y, int c) {
     return c == 0 ? x : c == 1 ? y : x / 2 + y;
@@ -51,7 +51,7 @@ TEST(ImagePyramid, ARampHasItsValueAtEveryFootprint) {
     const double u = random.uniform(32, 150), v = random.uniform(32, 80);
     const auto footprint = static_cast<float>(random.uniform(0.5, 32));
     const Eigen::Vector3f color = color_at(pyramid, u, v, footprint);
-    // 2 x 2 means are rounded: halves up, half a grey value a level at worst.
+    // 2 x 2 means are rounded: halves up, at most half a gray value a level.
     ASSERT_NEAR(color.x(), u, 2.6) << footprint;
     ASSERT_NEAR(color.y(), v, 2.6) << footprint;
   }
@@ -66,7 +66,7 @@ TEST(ImagePyramid, RampsAreExactWhereNothingIsRounded) {
   }
 }
 
-TEST(ImagePyramid, ACheckerboardIsGreyFromTwoPixelsOn) {
+TEST(ImagePyramid, ACheckerboardIsGrayFromTwoPixelsOn) {
   const ImagePyramid pyramid(
       painted(64, 48, 3, [](int x, int y, int) { return (x + y) % 2 == 0 ? 0 : 200; }));
   Random random(3);
@@ -92,7 +92,7 @@ TEST(ImagePyramid, ASmallFootprintIsBilinear) {
   }
 }
 
-// At the centre of a coarse pixel: the mean of what it covers, to the rounding of the levels.
+// At the center of a coarse pixel: the mean of its pixels, up to the rounding of the levels.
 TEST(ImagePyramid, ACoarsePixelIsTheMeanOfItsPixels) {
   const Image image = noise_image(96, 64, 1, 6);
   const ImagePyramid pyramid(image);
@@ -120,7 +120,7 @@ TEST(ImagePyramid, IsContinuousInTheFootprint) {
   }
 }
 
-TEST(ImagePyramid, ABlockHasTheColoursOfEachAlone) {
+TEST(ImagePyramid, ABlockHasTheColorsOfEachAlone) {
   const ImagePyramid pyramid(noise_image(57, 43, 3, 9));
   Random random(10);
   for (const std::size_t count : {std::size_t{0}, std::size_t{3}, ColorBlock::kSize}) {

@@ -16,9 +16,9 @@ namespace fovea {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-/// Nearer points are the vehicle's own.
+/// Nearer points are on the vehicle.
 constexpr float kMinRange = 0.5f;  // m
-/// A pattern of fewer rings, or a scan of fewer points, is no evidence.
+/// Least number of rings and of points of a scan.
 constexpr std::size_t kMinRings = 4, kMinPoints = 200;
 
 LidarSweep directions_of(const PointCloud& scan) {
@@ -43,13 +43,12 @@ std::vector<LidarRing> rings_by_column(const LidarSweep& sweep) {
   return result;
 }
 
-/// Change of azimuth from the point before, in (-pi, pi].
+/// Change of azimuth from the previous point, in (-pi, pi].
 double step_to(const std::vector<LidarDirection>& directions, std::size_t i) {
   return std::remainder(directions[i].azimuth - directions[i - 1].azimuth, kTurn);
 }
 
-/// Azimuth at which the rings of a scan begin that lists ring after ring: there the elevation
-/// jumps.
+/// Azimuth at which rings begin in a scan that lists ring after ring: the elevation jumps there.
 double start_azimuth(const std::vector<LidarDirection>& d) {
   double turned = 0;
   std::vector<std::pair<double, double>> jumps;  // of elevation; azimuth
@@ -61,7 +60,7 @@ double start_azimuth(const std::vector<LidarDirection>& d) {
   const std::size_t count = std::clamp<std::size_t>(turns, 1, jumps.size());
   std::partial_sort(jumps.begin(), jumps.begin() + std::ptrdiff_t(count), jumps.end(),
                     std::greater<>());
-  // The median azimuth of the jumps in the sector that has the most.
+  // Median azimuth of the jumps in the sector with the most.
   constexpr int kSectors = 36;
   std::array<std::vector<double>, kSectors> sectors;
   for (std::size_t i = 0; i < count; ++i) {
@@ -78,12 +77,12 @@ double start_azimuth(const std::vector<LidarDirection>& d) {
                         [](const auto& a, const auto& b) { return a.size() < b.size(); }));
 }
 
-/// Rings of points that are listed ring after ring.
+/// Splits points that are listed ring after ring.
 /// @param start  azimuth at which rings begin
 std::vector<LidarRing> rings_from(const std::vector<LidarDirection>& d, double start,
                                   bool turns_left) {
   constexpr double kLeastShare = 0.05;  // of the points of a mean ring
-  // Angle turned since the start of a ring.
+  // Angle since the start of a ring.
   const auto along = [&](const LidarDirection& direction) {
     const double since = (turns_left ? 1 : -1) * (direction.azimuth - start);
     return since - kTurn * std::floor(since / kTurn);
@@ -93,7 +92,7 @@ std::vector<LidarRing> rings_from(const std::vector<LidarDirection>& d, double s
     if (i > 0 && along(d[i]) < along(d[i - 1]) - kTurn / 2) rings.emplace_back();
     rings.back().push_back(d[i]);
   }
-  // Where the end of a ring overlaps the start of the next, a few points are taken for a ring.
+  // If the end of a ring overlaps the start of the next, a few points form a false ring.
   const double least = kLeastShare * double(d.size()) / double(rings.size());
   std::erase_if(rings, [&](const LidarRing& ring) { return double(ring.size()) < least; });
   return rings;
@@ -111,10 +110,10 @@ double spread_of(const std::vector<LidarRing>& rings) {
   return sum / double(rings.size());
 }
 
-/// Rings of a scan that lists ring after ring, each by azimuth. Empty if its points do not follow
-/// each other that way.
+/// Rings of a scan that lists ring after ring, each by azimuth. Empty if the scan has another
+/// order.
 std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
-  constexpr double kNear = 2 * kDegree;  // between points that follow each other on a ring
+  constexpr double kNear = 2 * kDegree;  // between consecutive points of a ring
   constexpr double kFollowShare = 0.9;   // of the points
   constexpr double kTurningShare = 0.8;  // of steps that turn the same way
   const std::vector<LidarDirection>& d = sweep.directions;
@@ -128,7 +127,8 @@ std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
   const double turning = double(std::max(forward, d.size() - forward)) / double(d.size());
   if (turning < kTurningShare) return {};
   const bool turns_left = forward > d.size() / 2;
-  // Ahead, behind, or where elevations jump: objects near the sensor make elevations jump, too.
+  // Trial starts: ahead, behind, and the jump of elevation. Objects near the sensor cause jumps,
+  // too.
   std::vector<LidarRing> best;
   double least_spread = std::numeric_limits<double>::infinity();
   for (const double start : {0.0, kTurn / 2, start_azimuth(d)}) {
@@ -141,10 +141,10 @@ std::vector<LidarRing> rings_by_order(const LidarSweep& sweep) {
   return best;
 }
 
-/// Rings as runs of elevations with gaps between them. Empty if elevations do not gather.
+/// Rings as runs of elevations with gaps between them. Empty if elevations form no runs.
 std::vector<LidarRing> rings_by_elevation(const std::vector<LidarSweep>& sweeps) {
   constexpr double kBin = 0.02 * kDegree;
-  constexpr double kLeastCount = 0.05;   // of the mean of bins that have points
+  constexpr double kLeastCount = 0.05;   // of the mean of the occupied bins
   constexpr double kMostOccupied = 0.5;  // of the bins between the outermost rings
   std::map<int, std::size_t> bins;
   std::size_t points = 0;
@@ -158,7 +158,7 @@ std::vector<LidarRing> rings_by_elevation(const std::vector<LidarSweep>& sweeps)
   std::erase_if(bins, [&](const auto& bin) { return double(bin.second) < least; });
   const int span = bins.rbegin()->first - bins.begin()->first + 1;
   if (double(bins.size()) > kMostOccupied * span) return {};
-  // Bins that follow each other, but for one empty bin, are one ring.
+  // Consecutive bins, with at most one empty bin between them, form one ring.
   std::map<int, std::size_t> ring_of_bin;
   std::size_t count = 0;
   int last = bins.begin()->first;
@@ -177,7 +177,7 @@ std::vector<LidarRing> rings_by_elevation(const std::vector<LidarSweep>& sweeps)
   return rings;
 }
 
-/// The rings of one sweep, of as many rings as most sweeps have.
+/// The rings of one sweep with the most frequent number of rings.
 std::vector<LidarRing> usual_rings(const std::vector<LidarSweep>& sweeps,
                                    std::vector<LidarRing> (*rings_of)(const LidarSweep&)) {
   std::map<std::size_t, std::vector<std::vector<LidarRing>>> by_count;

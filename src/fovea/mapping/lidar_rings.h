@@ -18,16 +18,16 @@ struct LidarDirection {
 /// Points of one ring, by azimuth.
 using LidarRing = std::vector<LidarDirection>;
 
-/// A scan in the order of its file, without the points on the vehicle itself.
+/// A scan in the order of its file, without points on the vehicle.
 struct LidarSweep {
   std::vector<LidarDirection> directions;
-  std::vector<std::uint16_t> ring;  ///< numbers of rings; empty if the scan does not state them
+  std::vector<std::uint16_t> ring;  ///< ring numbers; empty if the scan has none
 };
 
-/// Scans of too few points to find rings in are left out.
+/// Skips scans with too few points for rings.
 std::vector<LidarSweep> sweeps_of(std::span<const PointCloud> scans);
 
-/// Rings of one sweep, highest first. Empty if there are none (see estimate_sensor_profile).
+/// Rings of one sweep from top to bottom. Empty if there are none (see estimate_sensor_profile).
 std::vector<LidarRing> find_rings(const std::vector<LidarSweep>& sweeps);
 
 /// Median elevation of a ring, rad.

@@ -14,20 +14,19 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kColumns = 720;      // half a degree
-constexpr float kMinRange = 0.5f;  // m; nearer is the vehicle, or no return at all
-/// Ranges are kept in steps, finer than what is asked of them: half the memory that floats take.
+constexpr float kMinRange = 0.5f;  // m; nearer returns are on the vehicle or invalid
+/// Ranges are stored in steps, in half the memory of floats.
 constexpr float kStep = 0.005f;             // m
 constexpr std::uint16_t kFarthest = 65534;  // or beyond
 constexpr std::uint16_t kNothing = 65535;
 
-/// Cells to either side that a ball of about 0.15 m covers, from each range on; of rows as high as
-/// kLeastRowHeight.
+/// Columns to either side that a ball of about 0.15 m covers, from each range on.
 struct Window {
   float range;  // m
   int half_width;
 };
 constexpr std::array<Window, 3> kWindows{{{12, 1}, {6, 2}, {0, 4}}};
-/// Share of a window's cells that must hold a return for its silence to mean anything.
+/// Least share of a window's cells with a return that free space requires.
 constexpr float kFilledShare = 0.4f;
 
 float column_of(float x, float y) {  // with a fraction
@@ -43,7 +42,7 @@ struct Return {
   std::uint16_t range;  // steps
 };
 
-/// Directions and ranges of some points, a row for each, on which the compiler works eight wide.
+/// Directions and ranges of a block of points: one array for each value, so that loops vectorize.
 struct DirectionBlock {
   static constexpr std::size_t kSize = 256;
   using Row = std::array<float, kSize>;
@@ -65,7 +64,7 @@ struct DirectionBlock {
   }
 };
 
-/// Whatever is far enough and finite, a chunk behind the other.
+/// All finite returns beyond kMinRange, by chunks.
 std::vector<std::vector<Return>> returns_of(std::span<const Eigen::Vector3f> scan_lidar,
                                             float row_height) {
   constexpr std::size_t kGrain = 32 * DirectionBlock::kSize;
@@ -117,7 +116,7 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> scan_lidar, double row_h
   for (std::size_t i = 0; i < cells.filled.size(); ++i)
     cells.filled[i] = cells.nearest[i] < kNothing;
   parallel_for(kLevels, 1,
-               [&](std::size_t k) { levels_[k] = widened(cells, kWindows[k].half_width); });
+               [&](std::size_t k) { levels_[k] = widen(cells, kWindows[k].half_width); });
 }
 
 int RangeImage::half_height(int half_width) const {
@@ -125,8 +124,8 @@ int RangeImage::half_height(int half_width) const {
   return std::max(1, static_cast<int>(std::lround(rows)));
 }
 
-void RangeImage::take_in(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
-                         std::size_t count) {
+void RangeImage::merge(const Level& from, std::size_t from_cell, Level& to, std::size_t to_cell,
+                       std::size_t count) {
   const std::uint16_t* const nearest = from.nearest.data() + from_cell;
   const std::uint8_t* const filled = from.filled.data() + from_cell;
   std::uint16_t* const to_nearest = to.nearest.data() + to_cell;
@@ -137,26 +136,26 @@ void RangeImage::take_in(const Level& from, std::size_t from_cell, Level& to, st
   }
 }
 
-RangeImage::Level RangeImage::widened(const Level& cells, int half) const {
+RangeImage::Level RangeImage::widen(const Level& cells, int half) const {
   const int half_rows = half_height(half);
-  // Along rows, which close to a ring, and then along columns.
+  // Along rows, which are closed rings, then along columns.
   Level wide = cells;
   for (int row = 0; row < rows_; ++row) {
     const std::size_t begin = static_cast<std::size_t>(row) * kColumns;
     for (int k = -half; k <= half; ++k) {
       if (k == 0) continue;
-      // From each cell on to the right, and past the last on from the first: no remainder a cell.
-      const auto turn = static_cast<std::size_t>((k + kColumns) % kColumns);
-      take_in(cells, begin + turn, wide, begin, kColumns - turn);
-      take_in(cells, begin, wide, begin + kColumns - turn, turn);
+      // Two runs of cells instead of a remainder for each cell.
+      const auto shift = static_cast<std::size_t>((k + kColumns) % kColumns);
+      merge(cells, begin + shift, wide, begin, kColumns - shift);
+      merge(cells, begin, wide, begin + kColumns - shift, shift);
     }
   }
   Level result = wide;
   for (int row = 0; row < rows_; ++row) {
     for (int k = std::max(0, row - half_rows); k <= std::min(rows_ - 1, row + half_rows); ++k) {
       if (k == row) continue;
-      take_in(wide, static_cast<std::size_t>(k) * kColumns, result,
-              static_cast<std::size_t>(row) * kColumns, kColumns);
+      merge(wide, static_cast<std::size_t>(k) * kColumns, result,
+            static_cast<std::size_t>(row) * kColumns, kColumns);
     }
   }
   return result;
@@ -179,20 +178,22 @@ void RangeImage::classify(std::span<const Eigen::Vector3f> p_lidar,
   }
 }
 
-Visibility RangeImage::visibility_at(float range, float row_of_place, float column_of_place) const {
+Visibility RangeImage::visibility_at(float range, float row_of_position,
+                                     float column_of_position) const {
   if (!(range > kMinRange)) return Visibility::kUnknown;
   const auto window =
       static_cast<std::size_t>(std::find_if(kWindows.begin(), kWindows.end(),
                                             [&](const Window& w) { return range >= w.range; }) -
                                kWindows.begin());
   const int half = kWindows[window].half_width;
-  const int row = static_cast<int>(row_of_place) - first_row_;
+  const int row = static_cast<int>(row_of_position) - first_row_;
   if (row < 0 || row >= rows_) return Visibility::kUnknown;
-  const std::size_t cell = static_cast<std::size_t>(row) * kColumns + whole_column(column_of_place);
-  const std::uint16_t kept = levels_[window].nearest[cell];
+  const std::size_t cell =
+      static_cast<std::size_t>(row) * kColumns + whole_column(column_of_position);
+  const std::uint16_t range_steps = levels_[window].nearest[cell];
   const float nearest =
-      kept == kNothing ? std::numeric_limits<float>::infinity() : float(kept) * kStep;
-  if (nearest < range - kMargin) return Visibility::kUnknown;  // something stands before it
+      range_steps == kNothing ? std::numeric_limits<float>::infinity() : float(range_steps) * kStep;
+  if (nearest < range - kMargin) return Visibility::kUnknown;  // something is in front of it
   if (nearest <= range + kMargin) return Visibility::kSurface;
   const int half_rows = half_height(half);
   const bool above_and_below = row >= half_rows && row + half_rows < rows_;

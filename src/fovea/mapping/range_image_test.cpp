@@ -7,8 +7,8 @@
 
 namespace fovea::range_image_test {
 
-/// A scan of 64 rings, or fewer as far apart, in a round room of `radius` m with its floor 1.7 m
-/// below the sensor, and nearer returns where `nearer` has them (m; 0: none).
+/// A scan of 64 rings, or fewer with a larger spacing, in a round room of `radius` m, with its
+/// floor 1.7 m below the sensor. `nearer` gives nearer returns (m; 0: none).
 template <class Nearer>
 std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer, int every = 1) {
   std::vector<Eigen::Vector3f> scan;
@@ -20,8 +20,8 @@ std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer, int every 
                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
       float range = radius / std::cos(elevation);
       if (elevation < 0) range = std::min(range, 1.7f / -std::sin(elevation));
-      const float thing = nearer(azimuth, elevation);
-      scan.push_back(ray * (thing > 0 ? std::min(thing, range) : range));
+      const float object = nearer(azimuth, elevation);
+      scan.push_back(ray * (object > 0 ? std::min(object, range) : range));
     }
   }
   return scan;
@@ -41,7 +41,7 @@ TEST(RangeImage, SaysFreeSurfaceAndUnknown) {
 }
 
 TEST(RangeImage, RowsAsHighAsTheRingsAreApartSeeWhatSparseRingsSee) {
-  // Sixteen rings, 1.7 degrees apart. In rows of 0.6 degrees, two of three hold no return.
+  // Sixteen rings, 1.7 degrees apart. Of rows of 0.6 degrees, two of three have no return.
   const std::vector<Eigen::Vector3f> scan = room_scan(20, nothing, 4);
   const RangeImage narrow(scan), image(scan, 1.85 * std::numbers::pi / 180);
   std::size_t places = 0, free_in_narrow = 0;

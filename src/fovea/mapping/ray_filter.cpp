@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int32_t kMapOwner = -1;
 constexpr float kNoRay = std::numeric_limits<float>::infinity();
-// docs/method.md 5, step 2: where all rays are alike a deviation of millimetres means nothing.
+// docs/method.md 5, step 2: minimum deviations, for windows of equal rays.
 constexpr double kFlatSigma = 1e-3;   // m
 constexpr double kFlatOffset = 1e-2;  // m
 constexpr std::size_t kGrain = 4096;
@@ -26,7 +26,7 @@ Pixel pixel_of(const Ray& ray) {
           static_cast<int>(std::floor(ray.pixel.y() + 0.5f))};
 }
 
-/// Running mean and deviation about a reference length, so that float lengths lose nothing.
+/// Running mean and deviation about a reference length, for precision.
 struct WindowStatistics {
   int count = 0;
   double sum = 0, square = 0;

@@ -11,42 +11,42 @@ namespace fovea {
 
 enum class RayFilterMode {
   kPaper,  ///< both tests, as in the paper
-  kScan,   ///< scan points that the camera cannot see go (scan_projection.h); new detail stays
-  kOff,    ///< every point is kept
+  kScan,   ///< removes scan points that the camera cannot see (scan_projection.h); keeps new detail
+  kOff,    ///< keeps every point
 };
 
 struct RayFilterOptions {
   RayFilterMode mode = RayFilterMode::kPaper;
   int window = 5;              ///< M: edge of the pixel window, odd
   double outlier_rate = 2.0;   ///< c: smaller rejects more
-  bool occluding_test = true;  ///< step 1's verdict; false: a point may hide the map (ablation)
-  bool occluded_test = true;   ///< step 2's verdict; false: outliers are kept (ablation)
+  bool occluding_test = true;  ///< step 1; false: a point may hide the map (ablation)
+  bool occluded_test = true;   ///< step 2; false: keeps outliers (ablation)
   void validate() const;       ///< ConfigError that names the field
 };
 
-/// What became of a scan point.
+/// Verdict on a scan point.
 enum class RayVerdict : std::uint8_t {
-  kVisible,    ///< new surface: to be coloured and added
-  kOccluding,  ///< it would hide a map point
-  kOccluded,   ///< its length is an outlier among the rays around it
-  kShared,     ///< a nearer point of the same scan has its pixel
+  kVisible,    ///< new surface: is colored and added
+  kOccluding,  ///< hides a map point
+  kOccluded,   ///< its length is an outlier among the neighboring rays
+  kShared,     ///< a nearer point of the scan owns the pixel
 };
 
-/// A ray from a point to the camera centre, as the filter sees it.
+/// A ray from a point to the camera center.
 struct Ray {
   Eigen::Vector2f pixel;  ///< projection, inside the image
-  float length;           ///< m, from the point to the camera centre
+  float length;           ///< m
 };
 
-/// The ray filter of one camera; its pixel grids are kept between frames.
+/// The ray filter of one camera. Keeps its pixel grids between frames.
 ///
 /// Step 1 (paper: "we assign p to a ray having shortest ray-length d"): the shortest ray owns a
-/// pixel; a scan point that owns a pixel to which a map point also projects is occluding. Step 2
+/// pixel; a scan point is occluding if it owns a pixel to which a map point projects. Step 2
 /// (paper Eq. 1-2): a scan point is visible if its length lies within c standard deviations of the
-/// mean over the owners in the M x M window around it. Of equally short rays the map's comes first,
-/// then the lower index.
+/// mean over the owners in the M x M window around it. Ties go to the map, then to the lower
+/// index.
 ///
-/// A value can lie at most (N - 1) / sqrt(N) deviations off the mean of N values: with c = 2,
+/// A value differs from the mean of N values by at most (N - 1) / sqrt(N) deviations: with c = 2,
 /// windows of five or fewer rays reject nothing.
 class RayFilter {
  public:

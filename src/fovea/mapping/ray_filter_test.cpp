@@ -41,7 +41,7 @@ TEST(RayFilter, FirstScanOfAWallIsAllVisible) {
 TEST(RayFilter, ScanPointInFrontOfAMapPointIsOccluding) {
   const Camera camera = test_camera();
   const auto map = wall(10, camera, 0, 200, 0, 100);
-  const auto scan = wall(9, camera, 50, 60, 50, 60);  // hangs 1 m before the mapped wall
+  const auto scan = wall(9, camera, 50, 60, 50, 60);  // 1 m in front of the mapped wall
   const auto verdicts = RayFilter().filter(scan, map, camera, {});
   EXPECT_EQ(count(verdicts, RayVerdict::kOccluding), scan.size());
 }
@@ -70,9 +70,9 @@ TEST(RayFilter, NewSurfaceBesideTheMapIsKept) {
   EXPECT_EQ(count(verdicts, RayVerdict::kVisible), scan.size());
 }
 
-// The paper's case: a box in front of a wall, the map seeded from another pose. The wall behind the
-// box is in the map; the scan sees the box (new, in front of mapped wall) and, by parallax between
-// LiDAR and camera, wall points that the box hides from the camera.
+// The paper's case: a box in front of a wall, with a map from another pose that contains the wall
+// behind the box. The scan contains the box (new, in front of the mapped wall), and wall points
+// that the box hides from the camera, due to the parallax between LiDAR and camera.
 TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
   const Camera camera = test_camera();
   const auto box = wall(5, camera, 80, 120, 30, 70);  // in the map
@@ -90,8 +90,8 @@ TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
 }
 
 TEST(RayFilter, OccludersStillOwnTheirPixelsInTheSecondTest) {
-  // A scan patch that occludes the map is discarded, but a lone far scan point in the midst of it
-  // must still be seen against it: docs/method.md 5, "discarded occluders still count as owners in
+  // The filter discards a scan patch that occludes the map, but still compares a lone far scan
+  // point in its middle with it: docs/method.md 5, "discarded occluders still count as owners in
   // step 2".
   const Camera camera = test_camera();
   auto map = wall(10, camera, 0, 200, 0, 100);
@@ -121,12 +121,12 @@ TEST(RayFilter, OfOneScanTheNearestKeepsThePixel) {
 TEST(RayFilter, PixelLostToTheMapGoesOnToTheSecondTest) {
   const Camera camera = test_camera();
   const std::vector<Ray> map{{{50, 50}, 9.0f}};
-  // Just behind a lone map point of the same surface: sigma 0, within a centimetre: visible.
+  // Just behind a lone map point of the same surface: sigma 0, within a centimeter: visible.
   EXPECT_EQ(RayFilter().filter(std::vector<Ray>{{{50, 50}, 9.005f}}, map, camera, {})[0],
             RayVerdict::kVisible);
   EXPECT_EQ(RayFilter().filter(std::vector<Ray>{{{50, 50}, 9.02f}}, map, camera, {})[0],
             RayVerdict::kOccluded);
-  // Equally short rays: the map's comes first, so nothing is hidden.
+  // Equally short rays: the map's ray comes first, so nothing is hidden.
   EXPECT_EQ(RayFilter().filter(std::vector<Ray>{{{50, 50}, 9.0f}}, map, camera, {})[0],
             RayVerdict::kVisible);
 }
@@ -136,16 +136,16 @@ TEST(RayFilter, ALonePointIsVisible) {
             RayVerdict::kVisible);
 }
 
-// A value can lie at most (N - 1) / sqrt(N) deviations off the mean of N values.
+// A value differs from the mean of N values by at most (N - 1) / sqrt(N) deviations.
 TEST(RayFilter, OutlierNeedsMoreThanFiveRaysAtTwoDeviations) {
   const Camera camera = test_camera();
-  const auto with_neighbours = [&](int n) {
+  const auto with_neighbors = [&](int n) {
     std::vector<Ray> scan{{{50, 50}, 14.0f}};
     for (int i = 0; i < n; ++i) scan.push_back({{float(48 + i % 5), float(48 + i / 5)}, 7.0f});
     return RayFilter().filter(scan, {}, camera, {})[0];
   };
-  EXPECT_EQ(with_neighbours(4), RayVerdict::kVisible);   // 5 rays: 1.79 deviations at most
-  EXPECT_EQ(with_neighbours(5), RayVerdict::kOccluded);  // 6 rays: 2.04
+  EXPECT_EQ(with_neighbors(4), RayVerdict::kVisible);   // 5 rays: 1.79 deviations at most
+  EXPECT_EQ(with_neighbors(5), RayVerdict::kOccluded);  // 6 rays: 2.04
 }
 
 TEST(RayFilter, SmallerOutlierRateRejectsMore) {
@@ -216,7 +216,7 @@ TEST(RayFilter, ImageBordersAndReuseOfTheGrid) {
   const std::vector<Ray> corners{{{0, 0}, 5}, {{199, 0}, 5}, {{0, 99}, 5}, {{199, 99}, 5}};
   const auto first = filter.filter(corners, {}, camera, {});
   EXPECT_EQ(count(first, RayVerdict::kVisible), 4u);
-  EXPECT_EQ(filter.filter(corners, {}, camera, {}), first);  // nothing is left of the last frame
+  EXPECT_EQ(filter.filter(corners, {}, camera, {}), first);  // independent of the last frame
   Camera larger = camera;
   larger.width = 400;
   EXPECT_EQ(count(filter.filter(corners, {}, larger, {}), RayVerdict::kVisible), 4u);

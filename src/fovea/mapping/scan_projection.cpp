@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCell = 8;  // pixels
 constexpr std::size_t kGrain = 8192;
-constexpr double kMargin = 8;  // what lies just outside the image may hide, and be an edge
+constexpr double kMargin = 8;  // points outside the image may hide others and form edges
 
 }  // namespace
 

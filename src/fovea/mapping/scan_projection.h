@@ -1,5 +1,5 @@
-// A whole scan as a camera sees it, for questions about what lies around a pixel: which points are
-// hidden, and which stand at an edge of depth. The map has no say in it.
+// A whole scan projected into a camera: finds points that other points hide, and points at an edge
+// of depth. Does not use the map.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,29 +13,28 @@ namespace fovea {
 
 class ScanProjection {
  public:
-  /// A point this much nearer to the camera hides what lies behind it: the larger of the two.
+  /// A point hides others that are this much farther from the camera: the larger of the two.
   static constexpr double kHidingStep = 0.3;    ///< m
   static constexpr double kHidingShare = 0.05;  ///< of the nearer point's distance
-  /// ... within this many degrees of its ray. Rings of common LiDARs stand 1/3 to 1/2 degree apart:
-  /// half of that reaches every gap between two rings of what hides, and stays on a ring of the
-  /// ground, whose next ring is nearer too and hides nothing.
+  /// ... within this many degrees of its ray. Common LiDARs have rings 1/3 to 1/2 degree apart.
+  /// Half of that closes every gap between two rings of an object. On the ground it does not reach
+  /// the next ring, which is nearer and must hide nothing.
   static constexpr double kHidingDegrees = 0.25;
 
-  /// Distances (from the camera) of two points at an edge of depth differ by more than this: the
-  /// larger of the two. The ground at 15 m falls off by 5% from ring to ring, so 5% would find
-  /// edges in it.
+  /// Two points at an edge of depth differ in their distance from the camera by more than this: the
+  /// larger of the two. The ground at 15 m differs by 5 % from ring to ring.
   static constexpr double kEdgeStep = 0.5;    ///< m
   static constexpr double kEdgeShare = 0.10;  ///< of the nearer one's
   static constexpr double kEdgePixels = 5;    ///< and their projections by less than this
 
-  /// @param scan_lidar  the whole scan, motion compensated: points at any range hide
+  /// @param scan_lidar  the whole scan, motion compensated: points at any range hide others
   ScanProjection(const PointCloud& scan_lidar, const Camera& camera);
 
-  /// Whether the camera cannot see this point of the scan, because another point hides it: LiDAR
-  /// and camera stand apart. @param pixel, distance  of the point (distance from the camera, m)
+  /// Whether another point hides this point of the scan from the camera.
+  /// @param pixel, distance  of the point (distance from the camera, m)
   bool hidden(const Eigen::Vector2d& pixel, double distance) const;
 
-  /// Whether it stands at an edge of depth, on either side of it.
+  /// Whether the point is at an edge of depth, on either side of it.
   bool near_edge(const Eigen::Vector2d& pixel, double distance) const;
 
  private:

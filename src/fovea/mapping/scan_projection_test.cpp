@@ -1,4 +1,4 @@
-// A box before a wall, seen by a LiDAR and by a camera beside it: which points the camera sees is
+// A box in front of a wall, seen by a LiDAR and by a camera next to it: the visible points are
 // known exactly.
 #include "fovea/mapping/scan_projection.h"
 
@@ -12,7 +12,7 @@ namespace fovea::scan_projection_test {
 constexpr double kWall = 12, kBox = 6, kHalf = 0.8;  // m: x of wall and box front, half its size
 constexpr double kGround = -1.7;
 
-/// Where a ray from `start` (LiDAR frame) ends: the thin box (a board), the ground, or the wall.
+/// End of a ray from `start` (LiDAR frame): on the thin box (a board), the ground, or the wall.
 Eigen::Vector3d trace(const Eigen::Vector3d& start, const Eigen::Vector3d& ray) {
   const Eigen::Vector3d on_box = start + (kBox - start.x()) / ray.x() * ray;
   if (std::abs(on_box.y()) < kHalf && std::abs(on_box.z()) < kHalf) return on_box;
@@ -37,7 +37,7 @@ PointCloud scan() {
   return scan;
 }
 
-/// KITTI's size and focal length, at `center` (LiDAR frame), looking along x.
+/// Has KITTI's size and focal length, at `center` (LiDAR frame), along x.
 Camera camera_at(const Eigen::Vector3d& center) {
   Camera camera{2, 1242, 375, 721, 721, 609, 172, RigidMotion::Identity()};
   Eigen::Matrix3d R;
@@ -48,7 +48,7 @@ Camera camera_at(const Eigen::Vector3d& center) {
 }
 
 struct Counts {
-  int hidden = 0, seen = 0, found = 0, wrong = 0;  // wrong: seen, but said to be hidden
+  int hidden = 0, seen = 0, found = 0, wrong = 0;  // wrong: visible, but classified as hidden
 };
 
 Counts judge(const Eigen::Vector3d& center) {

@@ -15,9 +15,9 @@
 namespace fovea {
 namespace {
 
-/// Median angle between points that follow each other on a ring.
+/// Median angle between consecutive points of a ring.
 double spacing_along(const std::vector<LidarRing>& rings) {
-  constexpr double kSame = 1e-4;  // rad: further returns of one beam
+  constexpr double kSame = 1e-4;  // rad: multiple returns of one beam
   constexpr double kGap = 3 * kDegree;
   std::vector<double> steps;
   for (const LidarRing& ring : rings) {
@@ -29,8 +29,8 @@ double spacing_along(const std::vector<LidarRing>& rings) {
   return median_of(std::move(steps));
 }
 
-/// Standard deviation of ranges: of a range against the mean of its neighbors on the ring, which
-/// lies on the surface, if that is smooth. Nothing if too few ranges can be compared.
+/// Standard deviation of a range from the mean of its neighbors on the ring, which is on the
+/// surface if that is smooth. Empty if there are too few comparisons.
 std::optional<double> range_noise_of(const std::vector<LidarRing>& rings, double spacing) {
   constexpr std::size_t kLeastDifferences = 200;
   constexpr double kStep = 0.3;                // m: more is an edge of depth
@@ -64,8 +64,8 @@ double spacing_without_rings(const LidarSweep& sweep) {
   return std::sqrt(solid_angle / double(sweep.directions.size()));
 }
 
-/// Height above the ground of a LiDAR that stands upright or upside down, by the first scan that
-/// shows ground.
+/// Height above the ground of an upright or inverted LiDAR, from the first scan with visible
+/// ground.
 std::optional<double> height_of(std::span<const PointCloud> scans) {
   for (const PointCloud& scan : scans) {
     if (const auto height = sensor_height(scan.position)) return height;

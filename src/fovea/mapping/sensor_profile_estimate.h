@@ -1,4 +1,4 @@
-// How a LiDAR scans, by its first scans: for drives that do not state it.
+// Estimates the scan pattern of a LiDAR from its first scans, for drives that do not state it.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@ namespace fovea {
 
 /// Estimates rings, spacing, range noise and height of a LiDAR.
 ///
-/// Rings come from the column `ring` of the scans. Without it, they come from the order of points,
-/// where the scans list ring after ring, or else from the elevations, which gather at those of the
-/// rings in scans as measured. Scans without rings, such as those of a Livox, give a profile
-/// without rings; both spacings are then the mean angle between neighboring points.
+/// Rings come from the column `ring` of the scans. Without it they come from the order of points if
+/// the scans list ring after ring, or else from clusters of elevations. Scans without rings, such
+/// as those of a Livox, give a profile without rings; both spacings are then the mean angle between
+/// neighboring points.
 ///
 /// @param scans   LiDAR frame, as measured; a few suffice
-/// @param stated  what the drive states: its name and sweep are kept
+/// @param stated  from the drive: its name and sweep are kept
 SensorProfile estimate_sensor_profile(std::span<const PointCloud> scans,
                                       const SensorProfile& stated);
 

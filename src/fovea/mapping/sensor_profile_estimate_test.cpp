@@ -27,7 +27,7 @@ PointCloud scan(std::uint64_t seed, const std::vector<double>& elevations) {
 }
 
 void expect_sixteen_rings(const SensorProfile& profile) {
-  // The upper eight rings meet nothing in an open place but the boxes; all are seen.
+  // In an open place the upper eight rings hit only the boxes; all have returns.
   const std::vector<double> truth = test::sixteen_rings();
   ASSERT_GE(profile.ring_elevations.size(), 8u);
   for (const double elevation : profile.ring_elevations) {
@@ -60,7 +60,7 @@ TEST(SensorProfileEstimate, OfScansInAnyOrderByTheirElevations) {
 }
 
 TEST(SensorProfileEstimate, OfAColumnOfRings) {
-  // Elevations that scatter, as those of a motion-compensated scan: only the column tells rings.
+  // Scattered elevations, as in a motion-compensated scan: only the column identifies rings.
   PointCloud cloud;
   Random random(1);
   for (int column = 0; column < 900; ++column) {

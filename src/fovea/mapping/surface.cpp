@@ -10,15 +10,15 @@ namespace fovea {
 namespace {
 
 using Vertices = DelaunayTriangulation::Vertices;
-/// Rounds of averaging normals over neighbours: ranges are noisy, and triangles small.
+/// Rounds of averaging normals over neighbors, against the noise of ranges.
 constexpr int kSmoothing = 2;
 
 std::size_t neighbor(const ImageMesh& mesh, std::size_t triangle, int corner) {
   return static_cast<std::size_t>(mesh.triangulation.neighbor(triangle, corner));
 }
 
-/// Normal of a triangle together with its neighbours but one: of areas as vectors, whose noise is
-/// that of the rim alone.
+/// Normal of a triangle and its neighbors except one, as a sum of area vectors: only the noise of
+/// the rim remains.
 Eigen::Vector3f patch_normal(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area,
                              std::size_t triangle, std::size_t without) {
   Eigen::Vector3f sum = area[triangle];
@@ -29,9 +29,9 @@ Eigen::Vector3f patch_normal(const ImageMesh& mesh, const std::vector<Eigen::Vec
   return unit_or_zero(sum);
 }
 
-/// Whether the surface goes on straight across each edge of a triangle. The patches on either side
-/// have no triangle in common: across a gap in depth triangles are large, and would outweigh the
-/// small ones of the surface at its rim.
+/// Whether the surface continues straight across each edge of a triangle. The patches on both sides
+/// share no triangle, since the large triangles across a gap in depth would outweigh the small ones
+/// at its rim.
 bool is_flat(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area, std::size_t triangle,
              float cos_angle) {
   for (int corner = 0; corner < 3; ++corner) {
@@ -44,12 +44,11 @@ bool is_flat(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area, st
   return true;
 }
 
-/// How often the samples of a piece of surface are to be halved, that no more than `max_per_pixel`
-/// of them show in a pixel.
+/// Number of halvings of the samples after which at most `max_per_pixel` project to a pixel.
 /// @param normal  of length 1
 std::uint8_t halvings_for(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& normal,
                           const Camera& camera, const SurfaceOptions& options) {
-  // What a pixel sees of a plane: depth^3 / (fx fy |normal . p|).
+  // Area of a plane in a pixel: depth^3 / (fx fy |normal . p|).
   const double limit = options.max_per_pixel * options.spacing * options.spacing * camera.fx *
                        camera.fy * std::abs(normal.dot(p_cam));
   double shown = p_cam.z() * p_cam.z() * p_cam.z();
@@ -58,7 +57,7 @@ std::uint8_t halvings_for(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& n
   return halvings;
 }
 
-/// @return by triangle found: its normal, as long as twice its area
+/// @return the normal of each triangle, with the length of twice its area
 std::vector<Eigen::Vector3f> find_triangles(const GridProjection& project,
                                             const SurfaceOptions& options, Surface& surface) {
   const ImageMesh& mesh = surface.mesh;
@@ -123,7 +122,7 @@ void find_halvings(const GridProjection& project, const Camera& camera,
 void SurfaceOptions::validate() const {
   if (!(spacing == 0 || (spacing >= 0.005 && spacing <= 1))) {
     throw ConfigError("the spacing of samples is out of range", "surface.spacing",
-                      "give metres from 0.005 to 1, or 0 for the paper's upsampling");
+                      "give meters from 0.005 to 1, or 0 for the paper's upsampling");
   }
   for (const auto& [edge, key] :
        {std::pair(max_edge, "surface.max_edge"), std::pair(planar_edge, "surface.planar_edge")}) {

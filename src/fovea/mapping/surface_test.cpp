@@ -29,7 +29,7 @@ TEST(Surface, GroundBetweenDistantRingsIsFilled) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       ASSERT_NEAR(points.position[i].y(), kHeight, noise == 0 ? 1e-5 : 0.05);
     }
-    // Rings are 0.43 m apart at 10 m, 1 m at 15 m: beyond that it is not known to be flat.
+    // Rings are 0.43 m apart at 10 m, 1 m at 15 m: beyond that it is not measured as flat.
     EXPECT_NEAR(density(points, 8.5, 10), 1, noise == 0 ? 0.002 : 0.05) << noise;
     EXPECT_NEAR(density(points, 12, 14), 1, noise == 0 ? 0.002 : 0.05) << noise;
     EXPECT_LT(density(points, 16, 18), 0.05) << noise;
@@ -39,9 +39,9 @@ TEST(Surface, GroundBetweenDistantRingsIsFilled) {
   }
 }
 
-// Rings 0.3 to 1 m apart: a sample says whether short edges let it in, or only the ground's being
-// flat. The rings that a point of the ground lies between are known, and so are their triangles'
-// edges: at least as long as the gap, at most its diagonal with a step along the ring.
+// Rings 0.3 to 1 m apart: a sample states whether short edges or flat ground admitted it. The
+// edges of triangles between two known rings are at least as long as the gap, and at most as long
+// as its diagonal with a step along the ring.
 TEST(Surface, SayWhyTheyAreThere) {
   constexpr double kHeight = 1.653, kMaxEdge = 0.55;
   const Rings rings;
@@ -61,7 +61,7 @@ TEST(Surface, SayWhyTheyAreThere) {
     const auto radius = [&](double ring) {
       return height / std::tan((ring * rings.step - rings.first) * kDegree);
     };
-    // Chords of a ring lie inside its circle: a little beyond a ring's points are its triangles.
+    // Skips points near a ring, since its chords are inside its circle.
     if (std::abs(below - std::round(below)) < 0.02) continue;
     const double gap = radius(std::floor(below)) - radius(std::ceil(below));
     const double along = radius(std::floor(below)) * rings.azimuth_step * kDegree;
@@ -78,7 +78,7 @@ TEST(Surface, SayWhyTheyAreThere) {
   EXPECT_EQ(count[reason_of(PointRule::kCentroid)], 0u);
 }
 
-// What lies between a board and the wall behind it was never measured.
+// The space between a board and the wall behind it was never measured.
 TEST(Surface, NothingIsSampledBetweenABoardAndTheWallBehind) {
   for (const double azimuth_step : {0.17, 0.09, 0.4}) {
     for (double gap = 0.42; gap < 1.1; gap += 0.06) {
@@ -91,14 +91,14 @@ TEST(Surface, NothingIsSampledBetweenABoardAndTheWallBehind) {
       for (const Eigen::Vector3f& p : points.position) {
         between += std::abs(p.z() - 6) > 0.005f && std::abs(p.z() - 6 - gap) > 0.005f;
       }
-      // At the board's corners the gap itself turns: a small triangle there may pass for flat.
+      // The gap bends at the board's corners, where a small triangle may count as flat.
       EXPECT_LE(between, 2u) << "gap " << gap << " m, azimuth step " << azimuth_step << ", of "
                              << points.size();
     }
   }
 }
 
-// Chords cut corners by less than tau; beyond them samples are on the surfaces.
+// Chords cut corners by less than tau; elsewhere samples are on the surfaces.
 TEST(Surface, ABoxOnTheGroundKeepsItsShape) {
   const BoxScene scene{{{{-50, 1.653, -5}, {50, 3, 60}}, {{-1.31, 0.4, 8.2}, {1.12, 1.653, 12}}}};
   const PointCloud points = sample_surfaces(scan(scene), test_camera(), {}, plain_grid());
@@ -162,7 +162,7 @@ TEST(Surface, FewCollinearAndEqualPointsAreNormalInput) {
   }
 }
 
-// Two points of one pixel: the nearer is the surface's corner, the other stays as it is.
+// Two points of one pixel: the nearer is a corner of the surface, the other stays unchanged.
 TEST(Surface, TheNearestPointOfAPixelIsItsCorner) {
   PointCloud cloud;
   for (const double depth : {9.0, 5.0}) {
@@ -198,7 +198,8 @@ TEST(SurfaceOptions, NameTheBadField) {
   for (const double bad : {-0.02, 0.001, 1.5, kInfinite, kNaN}) {
     EXPECT_NE(message({.spacing = bad}).find("surface.spacing"), std::string::npos) << bad;
   }
-  EXPECT_NO_THROW((SurfaceOptions{.max_edge = 0, .planar_edge = 0}.validate()));  // by the rings
+  EXPECT_NO_THROW(
+      (SurfaceOptions{.max_edge = 0, .planar_edge = 0}.validate()));  // derived from the rings
   for (const double bad : {-0.3, 101.0, kInfinite, kNaN}) {
     EXPECT_NE(message({.max_edge = bad}).find("surface.max_edge"), std::string::npos) << bad;
     EXPECT_NE(message({.planar_edge = bad}).find("surface.planar_edge"), std::string::npos) << bad;

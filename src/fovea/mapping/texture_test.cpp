@@ -4,7 +4,7 @@
 
 namespace fovea::texture_test {
 
-TEST(Texture, ColourIsTheImageAtTheProjection) {
+TEST(Texture, ColorIsTheImageAtTheProjection) {
   Camera camera;
   camera.index = 3;
   camera.width = 100;
@@ -29,7 +29,7 @@ TEST(Texture, ColourIsTheImageAtTheProjection) {
   EXPECT_EQ(cloud.frame, (std::vector<std::int32_t>{17, 17, 17, 17}));
 }
 
-TEST(Texture, NearestSamplingTakesThePixelWhoseCentreIsNearest) {
+TEST(Texture, NearestSamplingUsesTheNearestPixelCenter) {
   Camera camera;
   camera.width = 4;
   camera.height = 1;
@@ -46,7 +46,7 @@ TEST(Texture, NearestSamplingTakesThePixelWhoseCentreIsNearest) {
   EXPECT_EQ(cloud.color[0].r, 140);
 }
 
-TEST(Texture, AnEmptyImageColoursNothing) {
+TEST(Texture, AnEmptyImageColorsNothing) {
   Camera camera;
   camera.width = camera.height = 10;
   camera.fx = camera.fy = 10;
@@ -59,7 +59,7 @@ TEST(Texture, AnEmptyImageColoursNothing) {
   EXPECT_EQ(cloud.frame[0], 5);
 }
 
-TEST(Texture, GreyImagesGiveThreeEqualChannels) {
+TEST(Texture, GrayImagesGiveThreeEqualChannels) {
   Camera camera;
   camera.width = camera.height = 10;
   camera.fx = camera.fy = 10;

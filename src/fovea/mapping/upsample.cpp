@@ -13,15 +13,14 @@
 namespace fovea {
 namespace {
 
-// A point that is not its pixel's vertex has that vertex's normal if it is at most this far away
-// (m).
+// A point that shares a grid point has the normal of the vertex up to this distance (m).
 constexpr float kSameSurface = 0.05f;
 
-// The mesh with what upsampling adds to it; columns are by vertex.
+// The mesh with the columns of upsampling, by vertex.
 struct DenseMesh : ImageMesh {
   using ImageMesh::ImageMesh;
   std::vector<Eigen::Vector3f> normal;
-  std::vector<DelaunayTriangulation::Vertices> corners;  // by interpolated vertex: of its triangle
+  std::vector<DelaunayTriangulation::Vertices> corners;  // by interpolated vertex
 };
 
 void find_normals(DenseMesh& mesh, const GridProjection& project, float max_edge_squared) {
@@ -40,7 +39,7 @@ Eigen::Vector3f centroid(const DenseMesh& mesh, const DelaunayTriangulation::Ver
   return (mesh.position[corners[0]] + mesh.position[corners[1]] + mesh.position[corners[2]]) / 3.f;
 }
 
-// One rate: the centroids of all triangles that there are now.
+// One rate: the centroids of all present triangles.
 void insert_centroids(DenseMesh& mesh, const GridProjection& project, float max_edge_squared) {
   std::vector<GridPoint> pixels;
   std::vector<std::int32_t> triangles;
@@ -73,8 +72,8 @@ void insert_centroids(DenseMesh& mesh, const GridProjection& project, float max_
   }
 }
 
-// Gives a column its interpolated entries: the mean of the three corners' for quantities, and the
-// first corner's for what has no mean.
+// Adds the interpolated entries of a column: the mean of three corners for quantities, otherwise
+// the value of the first corner.
 template <class T>
 void extend(std::vector<T>& column, const std::vector<std::array<std::uint32_t, 3>>& corners) {
   if (column.empty()) return;

@@ -13,25 +13,24 @@ struct UpsampleOptions {
   void validate() const;
 };
 
-/// Densifies a cloud on the triangles of its image projection.
+/// Adds points on the triangles of a cloud's image projection.
 ///
-/// The points are projected into `camera` and their pixels, on a grid of 1/1024 pixel, triangulated
-/// (2D Delaunay). Every triangle whose three 3D edges are shorter than max_edge gets its 3D
-/// centroid as a new point, whose own pixel becomes a new vertex; repeated `rate` times. Of points
-/// that share a grid point the nearest to the camera is the vertex; the others are kept in the
-/// cloud as they are, and so are points more than 2^19 pixels outside the image. A centroid on the
-/// grid point of a vertex is not added.
+/// Projects the points into `camera` and triangulates their pixels on a grid of 1/1024 pixel (2D
+/// Delaunay). Each triangle whose three 3D edges are shorter than max_edge gets its 3D centroid as
+/// a new point, whose pixel becomes a new vertex. This repeats `rate` times. If points share a grid
+/// point, the nearest to the camera is the vertex. The others stay in the cloud unchanged, as do
+/// points more than 2^19 pixels outside the image. A centroid at an existing vertex is not added.
 ///
 /// @param points_cam  points in the camera's frame, all more than Camera::kMinDepth in front of it
-///                    (std::invalid_argument otherwise); they need not be inside the image. Of the
-///                    columns present, intensity, range and incidence are averaged; color, frame
-///                    and camera are those of one of the triangle's corners
+///                    (std::invalid_argument otherwise), inside or outside the image. New points
+///                    have the mean intensity, range and incidence of the triangle's corners, and
+///                    color, frame and camera of one of them
 /// @return the input points in their order, then the new ones, with three columns set:
-///         `interpolated` (1 for new points, as it was for the others), `reason` likewise
-///         (PointRule::kCentroid), and `normal` (camera frame, unit, towards
-///         the camera): of a new point, its triangle's; of an input point, the area-weighted mean
-///         of the triangles of input points below max_edge around it, or zero without any; of one
-///         that shares a grid point, the vertex's if that is within 5 cm, or zero
+///         `interpolated` (1 for new points), `reason` (PointRule::kCentroid for new points), and
+///         `normal` (camera frame, unit, towards the camera). A new point has the normal of its
+///         triangle. An input point has the area-weighted mean of the triangles of input points
+///         below max_edge around it, or zero without any. A point that shares a grid point has the
+///         normal of the vertex if that is within 5 cm, or zero
 PointCloud upsample(const PointCloud& points_cam, const Camera& camera,
                     const UpsampleOptions& options);
 

@@ -9,7 +9,7 @@
 
 namespace fovea::upsample_kitti_test {
 
-// This folder may not use the reader in sensor/: the little that is needed of KITTI's files.
+// Minimal readers of KITTI's files, since this folder may not use the reader in sensor/.
 Eigen::MatrixXd calibration(const std::filesystem::path& file, const std::string& key, int rows,
                             int columns) {
   std::ifstream stream(file);

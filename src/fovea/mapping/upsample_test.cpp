@@ -20,7 +20,7 @@ Eigen::Vector3f at_pixel(const Camera& camera, double u, double v, double depth)
       .cast<float>();
 }
 
-// Where the pixel's ray meets the plane normal . x = offset.
+// Intersection of the pixel's ray with the plane normal . x = offset.
 Eigen::Vector3f on_plane(const Camera& camera, double u, double v, const Eigen::Vector3d& normal,
                          double offset) {
   const Eigen::Vector3d ray((u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1);
@@ -89,8 +89,8 @@ TEST(Upsample, InterpolatesNothingBetweenSurfacesFurtherApartThanTau) {
                           [](const Eigen::Vector3f& p) { return std::abs(p.z() - 6.1) < 0.05; }));
 }
 
-// The Delaunay triangles of a few points, by definition: no point inside their circle. From them
-// the centroids that rate 1 has to add, no more and no less.
+// The Delaunay triangles of a few points, by definition: no point is inside their circle. Rate 1
+// must add exactly their centroids.
 TEST(Upsample, AddsTheCentroidsOfTheTrianglesBelowTau) {
   const Camera camera = test_camera();
   Random random(4);
@@ -132,8 +132,8 @@ TEST(Upsample, AddsTheCentroidsOfTheTrianglesBelowTau) {
   }
 }
 
-// Each point inside triples its triangle: T triangles become 3 T. With four points on the hull
-// there are T = 2 n - 6 of them.
+// Each point inside splits its triangle in three: T triangles become 3 T. With four points on the
+// hull T = 2 n - 6.
 TEST(Upsample, GrowsByItsTriangles) {
   const Camera camera = test_camera();
   Random random(5);

@@ -18,39 +18,41 @@ namespace {
 
 using Vector = CalibrationVector;
 using Matrix = CalibrationMatrix;
-using Free = std::array<bool, 6>;  // what is estimated; the others are held at 0
+using Free = std::array<bool, 6>;  // parameters to estimate; the others are fixed at 0
 
-// Standard deviations of the Gaussian that image edges are seen through, pixels: coarse to fine.
+// Standard deviations of the Gaussian that smooths image edges, pixels: coarse to fine.
 constexpr std::array<double, 5> kWidths{8, 4, 2, 1, 0.5};
 constexpr int kMaxIterations = 60;
 constexpr double kConverged = 1e-3;   // pixels
 constexpr double kNearEnough = 0.02;  // of a coarse Gaussian's width
 constexpr int kDelay = 3;
-// A parameter with less than this share of the best one's curvature moves no edge.
+// A parameter with less than this share of the largest curvature moves no edge.
 constexpr double kLeastCurvature = 1e-4;
 
 constexpr int kMinFrames = 5, kMinFramesJudged = 3;
 constexpr std::size_t kMinEdges = 200;
 constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxDelaySigma = 0.004;
-// A vehicle that hardly moves shows no delay: pixels a second that edges move, RMS.
+// RMS speed of edges, pixels per second, that a delay needs to be observable.
 constexpr double kMinFlow = 40;
-constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // beyond it is a wrong maximum
-// What is found from any frames (docs/calibration.md).
+constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // larger is a wrong maximum
+// Estimates below these limits do not depend on the choice of frames (docs/calibration.md).
 constexpr double kSureRotation = 1.7 * kDegree, kSureDelay = 0.08;
 constexpr double kSurePixels = EdgeProfile::kReach - 4;
-// Rings up to this spacing (an HDL-64E's) give no shift, wider ones a standard deviation of this
-// share of the rest: KITTI with half of the rings is off by 0.15 degrees in one of two cameras.
+// Rings up to this spacing (an HDL-64E's) do not bias a rotation. Wider rings add a standard
+// deviation of this share of the excess: KITTI with half of the rings is off by 0.15 degrees in one
+// of two cameras.
 constexpr double kDenseRings = 0.5 * kDegree, kGapShare = 1.0 / 6;
-// What an unknown delay may be (s): it turns a rotation that is estimated without it.
+// Standard deviation of an unknown delay (s), which biases a rotation that is estimated without it.
 constexpr double kLikelyDelay = 0.02;
-// By how much edges must be seen better (mean logarithm of their strength) than by a camera that
-// looks elsewhere: 0.7 to 1.3 on drives, up to 0.13 in clutter's own maximum and 0.46 in that of
-// edges out of the profiles' reach (docs/calibration.md).
+// Minimum gain in the mean logarithm of edge strength over rotated cameras. Drives have 0.7 to 1.3,
+// the maximum of clutter up to 0.13, and edges beyond the ends of the profiles up to 0.46
+// (docs/calibration.md).
 constexpr double kMinContrast = 0.5;
 constexpr double kElsewhere = 8;  // pixels
-constexpr double kConfirmed = 2;  // standard deviations, of what one half gains by the other's
+constexpr double kConfirmed =
+    2;  // standard deviations of the gain of one half by the correction of the other
 
-/// Rows and columns of parameters that are held are taken out of a system of equations.
+/// Removes the rows and columns of fixed parameters from a system of equations.
 Matrix only(const Free& free, Matrix m) {
   const double largest = m.diagonal().maxCoeff();
   for (int k = 0; k < 6; ++k) {
@@ -74,9 +76,9 @@ bool positive(const Matrix& m) {
   return eigen.eigenvalues()[0] > 1e-6 * eigen.eigenvalues()[5];
 }
 
-/// Climbs from no correction to the maximum of the score, coarse to fine. Newton's steps; where
-/// they lead down or the score is not concave, the maximum of the paraboloid below it, which never
-/// lies lower.
+/// Finds the maximum of the score from no correction, coarse to fine, with Newton steps. If a step
+/// leads down or the score is not concave, it steps to the maximum of the paraboloid below the
+/// score, which never leads down.
 Vector climb(const std::vector<EdgeProfile>& profiles, const Free& free) {
   Vector x = Vector::Zero();
   for (const double width : kWidths) {
@@ -106,8 +108,8 @@ Vector climb(const std::vector<EdgeProfile>& profiles, const Free& free) {
   return x;
 }
 
-/// Scatter of the sums of gradients over groups of edges that err together; enlarged as the
-/// variance of a mean of few is.
+/// Scatter of the sums of gradients over groups of edges with common errors, corrected for the
+/// number of groups.
 template <class Key>
 Matrix scatter_by(const std::vector<EdgeProfile>& profiles, const Free& free, const Vector& x,
                   Key&& key) {
@@ -123,7 +125,8 @@ Matrix scatter_by(const std::vector<EdgeProfile>& profiles, const Free& free, co
 }
 
 /// Covariance of the maximum, H^-1 S H^-1 (H: curvature, S: scatter of the gradients there). Edges
-/// of one frame err together, and so do those of one thing in all frames: S is the sum of both.
+/// of one frame have common errors, and so do edges of one object in all frames: S is the sum of
+/// both.
 Matrix covariance(const std::vector<EdgeProfile>& profiles, const Free& free, const Vector& x,
                   const Matrix& curvature) {
   const Matrix inverse = only(free, curvature).inverse();
@@ -139,10 +142,11 @@ Matrix covariance(const std::vector<EdgeProfile>& profiles, const Free& free, co
   return result;
 }
 
-/// Variance of a rotation across sparse rings. Where between two rings a thing ends is known by the
-/// rings alone, and things favor one side: wide gaps shift the edges of a whole drive alike.
+/// Variance of a rotation across sparse rings. An object ends somewhere between two rings, and most
+/// objects end near the same side: wide gaps bias all edges of a drive in one direction.
 Matrix gap_covariance(const std::vector<EdgeProfile>& profiles) {
-  double spacing = 0, across = 0;  // across: that a turn about x moves edges between rings, not y
+  double spacing = 0, across = 0;  // across: > 0 if a rotation about x moves edges between rings
+                                   // more than one about y
   for (const EdgeProfile& profile : profiles) {
     spacing = std::max(spacing, double(profile.ring_spacing));
     const bool between_rings = profile.J_along[4] == 0;
@@ -157,18 +161,18 @@ Matrix gap_covariance(const std::vector<EdgeProfile>& profiles) {
 
 void describe_pixels(const std::vector<EdgeProfile>& profiles, const Vector& x, const Matrix& cov,
                      CalibrationEstimate& estimate) {
-  std::vector<double> ways, sigmas;
+  std::vector<double> displacements, sigmas;
   for (const EdgeProfile& profile : profiles) {
     const Eigen::Matrix<double, 2, 4> J =
         profile.J.cast<double>() * calibration_unit().head<4>().asDiagonal();
-    ways.push_back((J * x.head<4>()).norm());
+    displacements.push_back((J * x.head<4>()).norm());
     sigmas.push_back(std::sqrt((J * cov.topLeftCorner<4, 4>() * J.transpose()).trace()));
   }
-  estimate.pixels = median_of(std::move(ways));
+  estimate.pixels = median_of(std::move(displacements));
   estimate.pixels_sigma = median_of(std::move(sigmas));
 }
 
-/// Whether edges are seen so much better than elsewhere that chance did not make the maximum.
+/// Whether the edge strength exceeds that of rotated cameras by more than chance.
 bool stands_out(const std::vector<EdgeProfile>& profiles, const Vector& x, double value) {
   double elsewhere = 0;
   for (const auto& [axis, sign] : {std::pair{0, -1}, {0, 1}, {1, -1}, {1, 1}}) {
@@ -180,7 +184,7 @@ bool stands_out(const std::vector<EdgeProfile>& profiles, const Vector& x, doubl
 
 enum class Outcome { kFound, kDelayUnobservable, kNothing };
 
-/// Fills in all but the counts, where found.
+/// If it finds an estimate, sets all but the counts.
 Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
                      CalibrationEstimate& estimate) {
   const Vector x = climb(profiles, free);
@@ -213,8 +217,8 @@ Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
   return Outcome::kFound;
 }
 
-/// Whether the correction of either half of the frames makes the edges of the other half meet
-/// better, beyond chance: a maximum that clutter makes in one half is none in the other.
+/// Whether the correction from each half of the frames improves the agreement of the other half by
+/// more than chance. A maximum from clutter in one half is none in the other.
 bool halves_confirm(const std::vector<EdgeProfile>& profiles, const Free& free) {
   auto middle = profiles.begin() + static_cast<std::ptrdiff_t>(profiles.size() / 2);
   while (middle != profiles.end() && middle->frame == (middle - 1)->frame) ++middle;
@@ -224,7 +228,7 @@ bool halves_confirm(const std::vector<EdgeProfile>& profiles, const Free& free) 
   double gain = 0, variance = 0;
   for (const std::size_t half : {0u, 1u}) {
     const Vector correction = climb(halves[half], free);
-    Vector none = correction;  // but for the shifts that are no calibration
+    Vector none = correction;  // keeps the shifts, which are no calibration
     none.head<4>().setZero();
     const EdgeMean mean = edge_gain(halves[1 - half], correction, none);
     if (mean.mean <= 0) return false;
@@ -234,7 +238,7 @@ bool halves_confirm(const std::vector<EdgeProfile>& profiles, const Free& free) 
   return gain > kConfirmed * std::sqrt(variance);
 }
 
-/// What moves edges at all.
+/// The parameters that move edges.
 Free movable(const std::vector<EdgeProfile>& profiles) {
   const Matrix bound = edge_score(profiles, Vector::Zero(), kWidths.front()).bound;
   Free free{};

@@ -14,15 +14,15 @@ namespace fovea::calibration_estimate_test {
 struct Drive {
   int frames = 20, edges = 100;  ///< a frame
   double speed = 9;              ///< m/s
-  double clutter = 1;            ///< strength of other edges, in that of the right one
+  double clutter = 1;            ///< strength of other edges over that of the right one
   double present = 0.7;          ///< share of edges that the image shows at all
   double left_end = -0.8;        ///< of the view, x / z
-  bool one_place = false;        ///< everything stands at one place beside the road
-  bool same_frames = false;      ///< every frame shows what the first does
+  bool one_place = false;        ///< all objects are at one place next to the road
+  bool same_frames = false;      ///< every frame equals the first
 };
 
-/// Profiles of things spread over the view of a camera that drives forward, whose images show the
-/// edge where `truth` puts it, a pixel wide, and clutter anywhere.
+/// Profiles of objects spread over the view of a camera that drives forward. Images show the edge
+/// at the position given by `truth`, a pixel wide, and clutter anywhere.
 std::vector<EdgeProfile> profiles_of(const Drive& drive, const CalibrationVector& truth,
                                      std::uint64_t seed = 1) {
   Random random(seed);
@@ -91,7 +91,7 @@ TEST(CalibrationEstimate, FindsWhatIsPlantedWithinItsOwnSigmas) {
   }
 }
 
-// Sigmas say how far estimates scatter: over 30 drives their errors, in sigmas, have a spread of 1.
+// Over 30 drives the errors of the estimates, in sigmas, have a spread of 1.
 TEST(CalibrationEstimate, SigmasAreTheScatter) {
   Drive drive;
   drive.frames = 15;
@@ -126,7 +126,7 @@ TEST(CalibrationEstimate, AStandingVehicleShowsNoDelay) {
   }
 }
 
-// On a straight road things at one place move as by yaw: which of both it is stays open.
+// On a straight road a delay moves objects at one place as a yaw does, so the two are ambiguous.
 TEST(CalibrationEstimate, ADelayThatLooksLikeYawIsNotTold) {
   Drive drive;
   drive.one_place = true;
@@ -138,8 +138,8 @@ TEST(CalibrationEstimate, ADelayThatLooksLikeYawIsNotTold) {
   }
 }
 
-// A slow drive with few edges, all on the right: the rotation's deviations allow for the delay that
-// nobody knows.
+// A slow drive with few edges, all on the right: the rotation's deviations include the unknown
+// delay.
 TEST(CalibrationEstimate, AnUnknownDelayMakesTheRotationLessSure) {
   Drive drive;
   drive.speed = 2.2;
@@ -157,10 +157,10 @@ TEST(CalibrationEstimate, AnUnknownDelayMakesTheRotationLessSure) {
     square += std::pow((e.rotation.y() - truth[1]) / e.rotation_sigma.y(), 2);
   }
   EXPECT_GT(unknown, 20);
-  EXPECT_LT(std::sqrt(square / unknown), 1.25);  // 1.8 if the delay were taken for 0
+  EXPECT_LT(std::sqrt(square / unknown), 1.25);  // 1.8 if the delay were assumed to be 0
 }
 
-// Looking twice at the same things makes nothing surer.
+// Two looks at the same objects do not reduce the deviations.
 TEST(CalibrationEstimate, SigmasCountThingsAndNotFrames) {
   Drive once, again;
   again.edges = once.frames * once.edges;
@@ -193,7 +193,7 @@ TEST(CalibrationEstimate, TooLittleShowsNothing) {
   }
 }
 
-// Nothing but clutter: its maximum is no correction, and camera and LiDAR do not agree.
+// Only clutter: its maximum is no correction, and camera and LiDAR disagree.
 TEST(CalibrationEstimate, ClutterAloneDisagrees) {
   Drive drive;
   drive.present = 0;
@@ -228,7 +228,7 @@ TEST(CalibrationEstimate, ACorrectionFarWithinReachIsSure) {
   }
 }
 
-// Three frames are too few for a correction, and enough for that.
+// Three frames are too few for a correction, but enough for a disagreement.
 TEST(CalibrationEstimate, ThreeFramesAreEnoughToDisagree) {
   Drive drive;
   for (const int frames : {2, 3}) {
@@ -240,7 +240,7 @@ TEST(CalibrationEstimate, ThreeFramesAreEnoughToDisagree) {
   }
 }
 
-// Sparse rings leave a pitch open that all their edges share, and nothing else.
+// Sparse rings make only the pitch uncertain, which all their edges share.
 TEST(CalibrationEstimate, SparseRingsMakePitchLessSure) {
   auto dense = profiles_of({}, planted(0.1, 0, 0, 0));
   for (EdgeProfile& profile : dense) profile.ring_spacing = float(0.4 * kDegree);
@@ -254,7 +254,7 @@ TEST(CalibrationEstimate, SparseRingsMakePitchLessSure) {
   EXPECT_FALSE(b.off_by_a_pixel());
 }
 
-// One half of the frames turned, the other one not: no calibration is right for both.
+// One half of the frames is rotated, the other is not: no calibration is right for both.
 TEST(CalibrationEstimate, HalvesThatContradictEachOtherConfirmNothing) {
   auto profiles = profiles_of({}, planted(0, 0.8, 0, 0));
   const auto others = profiles_of({}, planted(0, -0.8, 0, 0), 2);

@@ -11,10 +11,10 @@ namespace fovea {
 namespace {
 
 constexpr double kWidth = 1;  // pixels: standard deviation of the Gaussian
-// Turned cameras that show what chance gives, in calibration_unit()s: about a pixel each. The
-// nearest is beyond any error that the estimate leaves, the farthest within the profiles' reach.
+// Rotations of the cameras that measure chance agreement, in calibration_unit()s of about a pixel.
+// The smallest exceeds any error of the estimate, the largest stays within the profiles.
 constexpr std::array<double, 6> kTurns{-16, -12, -8, 8, 12, 16};
-constexpr float kMinAcross = 0.5f;  // share of an edge's way that is across the edge
+constexpr float kMinAcross = 0.5f;  // share of an edge's displacement that is across the edge
 constexpr float kClearStep = 0.1f;  // of the strength of a profile
 constexpr std::size_t kManyEdges = 60;
 // Right calibrations have a contrast of 1.1 to 3.6, wrong ones of -1 to 0.4 about the axis of the
@@ -22,7 +22,7 @@ constexpr std::size_t kManyEdges = 60;
 constexpr double kLeastContrast = 0.8;
 constexpr double kSignificant = 2;  // standard deviations
 
-/// Sum of the squares of the sums over groups of edges, as the variance of a mean of few is.
+/// Sum of the squares of the sums over groups of edges, corrected for the number of groups.
 template <class Key>
 double scatter_by(const std::vector<const EdgeProfile*>& profiles,
                   const std::vector<double>& deviations, Key&& key) {
@@ -34,7 +34,7 @@ double scatter_by(const std::vector<const EdgeProfile*>& profiles,
   return n / std::max(n - 1, 1.0) * scatter;
 }
 
-/// Whether a turn about an axis moves the edge across itself, not along itself.
+/// Whether a rotation about an axis moves the edge across itself, not along itself.
 bool moves_across(const EdgeProfile& profile, int axis) {
   return std::abs(profile.J_along[axis]) > kMinAcross * profile.J.col(axis).norm();
 }
@@ -43,7 +43,7 @@ bool shows_a_step(const EdgeProfile& profile) {
   return *std::max_element(profile.strength.begin(), profile.strength.end()) > kClearStep;
 }
 
-/// Whether the profile shows what lies around the place of the edge under a correction.
+/// Whether the profile covers the neighborhood of the edge under a correction.
 bool is_in_profile(const EdgeProfile& profile, const CalibrationVector& correction) {
   const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
   return std::abs(J.dot(correction)) <= EdgeProfile::kReach - 2 * kWidth;

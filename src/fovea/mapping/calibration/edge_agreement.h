@@ -1,4 +1,4 @@
-// Whether an image's edges and a LiDAR's meet at all: tests for significance.
+// Significance tests of the agreement between an image's edges and a LiDAR's edges.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace fovea {
 
-/// A mean over edges and its standard deviation. Edges of one frame err together, and so do edges
-/// of one thing in all frames: the deviation is from the scatter over both.
+/// A mean over edges and its standard deviation, from the scatter over frames and over objects.
+/// Edges of one frame have common errors, and so do edges of one object in all frames.
 struct EdgeMean {
   std::size_t edges = 0;
   double mean = 0, sigma = 0;
@@ -16,21 +16,20 @@ struct EdgeMean {
 EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
                          const std::vector<double>& values);
 
-/// By how much edges are seen better (logarithm of their strength) under a correction than by a
-/// camera turned from there by 8 to 16 pixels about one of its axes. Only edges count that such a
-/// turn moves across themselves, and whose image shows a clear step anywhere on their profile.
-/// Turns that lead out of a profile do not count.
+/// Gain in the logarithm of edge strength of a correction over cameras rotated by a further 8 to 16
+/// pixels about one axis. Counts edges that the rotation moves across themselves, with a clear step
+/// of the image on their profile. Rotations that lead out of a profile do not count.
 /// @param axis        0: right (pitch), 1: down (yaw)
-/// @param correction  in calibration_unit()s; zero: the calibration at hand
+/// @param correction  in calibration_unit()s; zero: the present calibration
 EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis,
                        const CalibrationVector& correction = CalibrationVector::Zero());
 
-/// Whether camera and LiDAR do not agree under a correction: about one axis there are many edges,
-/// and their contrast lies significantly below the least contrast of a right calibration.
+/// Whether camera and LiDAR disagree under a correction: about one axis there are many edges, and
+/// their contrast is significantly below the least contrast of a right calibration.
 bool edges_disagree(const std::vector<EdgeProfile>& profiles,
                     const CalibrationVector& correction = CalibrationVector::Zero());
 
-/// By how much edges are seen better under one correction than under another one.
+/// Gain in the logarithm of edge strength of one correction over another.
 EdgeMean edge_gain(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                    const CalibrationVector& other);
 

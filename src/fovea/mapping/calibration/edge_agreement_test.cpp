@@ -8,8 +8,8 @@
 
 namespace fovea::edge_agreement_test {
 
-/// Edges along v (upright) or along u (level), each in its own place, with a step of the image
-/// `off` pixels from where the edge is expected, and clutter of up to the same height.
+/// Edges along v (upright) or along u (level), each of its own object, with a step of the image
+/// `off` pixels from the expected position, and clutter of up to the same height.
 struct Edges {
   int frames = 10, upright = 40, level = 40;  ///< a frame
   double off_upright = 0, off_level = 0;      ///< pixels
@@ -62,7 +62,7 @@ TEST(EdgeAgreement, EdgesThatMeetAgree) {
   EXPECT_FALSE(edges_disagree(profiles));
 }
 
-// A pitch leaves upright edges where they are: only level ones tell.
+// A pitch does not move upright edges: only level ones count.
 TEST(EdgeAgreement, EachAxisIsJudgedByTheEdgesThatItMovesAcross) {
   const auto pitched = profiles_of({.off_level = 40});
   EXPECT_LT(edge_contrast(pitched, 0).mean, 0.3);
@@ -83,7 +83,7 @@ TEST(EdgeAgreement, FewEdgesAndImagesWithoutStepsSayNothing) {
   EXPECT_FALSE(edges_disagree(profiles_of({.off_upright = 30, .off_level = 30, .step = 0.05})));
 }
 
-// Ten frames of one scene say no more than one of them.
+// Ten frames of one scene contain no more evidence than one.
 TEST(EdgeAgreement, SigmasCountThings) {
   const auto once = profiles_of({.frames = 1});
   std::vector<EdgeProfile> again;

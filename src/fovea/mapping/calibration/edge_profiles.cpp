@@ -12,19 +12,19 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kBorder = 4;    // pixels between a profile's ends and the image's border
-constexpr float kNoise = 6;      // RGB: a step of less is none
-constexpr float kContrast = 60;  // RGB: profiles whose steps sum up to less count less
+constexpr float kNoise = 6;      // RGB: smaller steps do not count
+constexpr float kContrast = 60;  // RGB: profiles with a smaller sum of steps have a lower weight
 constexpr double kMinGap = 0.2;  // pixels
-// Neighbours along one line: this near in the image (rad) and alike in range (share).
+// Limits between neighbors on one line: distance in the image (rad), difference of range (share).
 constexpr double kNeighborhood = 0.028, kSameRange = 0.03;
 constexpr int kMinNeighbors = 3;  // the edge itself included
 constexpr double kNeighborRings = 1.3;
 constexpr double kMinSpread = 3;       // pixels, along the line
 constexpr double kMaxThickness = 0.3;  // of the spread along the line
-constexpr double kMinFacing = 0.25;    // cosine between the way outwards and the line's normal
-constexpr double kPlace = 2;           // m, a thing's cell
+constexpr double kMinFacing = 0.25;  // cosine between the direction outwards and the line's normal
+constexpr double kObjectCell = 2;    // m, an object's cell
 
-/// Colour between the pixels, mean of three places across the profile.
+/// Interpolated color, mean of three positions across the profile.
 Eigen::Vector3f color_at(const Image& image, const Vector2d& p, const Vector2d& across) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int k = -1; k <= 1; ++k) {
@@ -34,7 +34,7 @@ Eigen::Vector3f color_at(const Image& image, const Vector2d& p, const Vector2d& 
   return sum / 3;
 }
 
-/// Way of a point's pixel by the camera's rotation and delay.
+/// Derivative of a point's pixel by the camera's rotation and delay.
 Eigen::Matrix<double, 2, 4> jacobian(const Camera& camera, const Vector3d& p_lidar,
                                      const Twist& velocity) {
   const Vector3d p_cam = camera.T_cam_lidar * p_lidar;
@@ -49,7 +49,7 @@ Eigen::Matrix<double, 2, 4> jacobian(const Camera& camera, const Vector3d& p_lid
   return projection * motion;
 }
 
-/// An expected edge's place in the image.
+/// The expected position of an edge in the image.
 struct ImageEdge {
   Vector2d middle = Vector2d::Zero(), gap = Vector2d::Zero();  // pixels; from inside to outside
   Vector3d p_lidar = Vector3d::Zero();
@@ -70,7 +70,7 @@ std::vector<ImageEdge> edges_in_view(const LidarEdges& edges_lidar, const Camera
     edges.push_back({0.5 * (*from + *to), *to - *from, p_lidar, p_lidar.norm(),
                      edges_lidar.between_rings[i] != 0});
   }
-  // Neighbours are then found by a walk to either side.
+  // Sorted by u: neighbors are on either side.
   std::stable_sort(edges.begin(), edges.end(), [](const ImageEdge& a, const ImageEdge& b) {
     return a.middle.x() < b.middle.x();
   });
@@ -82,9 +82,9 @@ bool on_one_line(const ImageEdge& a, const ImageEdge& b, double near) {
          std::abs(a.range - b.range) <= kSameRange * a.range;
 }
 
-/// Unit normal, outwards, of the line that an edge and its neighbours on the same side of the same
-/// thing lie on; empty where they lie on none.
-/// @param near  pixels, to a neighbour
+/// Unit normal, outwards, of the line through an edge and its neighbors on the same side of the
+/// same object; empty if they are not on a line.
+/// @param near  largest distance of a neighbor, pixels
 std::optional<Vector2d> line_normal(const std::vector<ImageEdge>& edges, std::size_t own,
                                     double near) {
   const ImageEdge& edge = edges[own];
@@ -93,9 +93,9 @@ std::optional<Vector2d> line_normal(const std::vector<ImageEdge>& edges, std::si
   int count = 0;
   const auto add = [&](const ImageEdge& other) {
     if (!on_one_line(edge, other, near)) return;
-    const Vector2d way = other.middle - edge.middle;
-    sum += way;
-    scatter += way * way.transpose();
+    const Vector2d offset = other.middle - edge.middle;
+    sum += offset;
+    scatter += offset * offset.transpose();
     ++count;
   };
   const double left = edge.middle.x() - near, right = edge.middle.x() + near;
@@ -116,7 +116,7 @@ std::optional<Vector2d> line_normal(const std::vector<ImageEdge>& edges, std::si
 }
 
 std::array<int, 3> place_of(const Vector3d& p_local) {
-  const Eigen::Vector3i cell = (p_local / kPlace).array().floor().cast<int>();
+  const Eigen::Vector3i cell = (p_local / kObjectCell).array().floor().cast<int>();
   return {cell.x(), cell.y(), cell.z()};
 }
 
@@ -143,7 +143,7 @@ std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Imag
                                        const EdgeView& view) {
   const Camera camera = view.camera.at_image(SweepMotion{view.velocity});
   const std::vector<ImageEdge> edges = edges_in_view(edges_lidar, camera);
-  // Edges along a ring lie one a ring on a line: the neighbors are those of the next rings.
+  // A line has one edge along each ring, so the neighbors are on the next rings.
   const double near_along_ring = std::max(kNeighborhood, kNeighborRings * edges_lidar.ring_spacing);
   std::vector<EdgeProfile> profiles;
   for (std::size_t i = 0; i < edges.size(); ++i) {

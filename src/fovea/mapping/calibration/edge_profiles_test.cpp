@@ -23,7 +23,7 @@ Eigen::Vector3d at_pixel(const Camera& camera, double u, double v, double depth)
   return camera.T_cam_lidar.inverse() * (depth * ray);
 }
 
-/// Edges of a thing that ends along u = end + slope * (v - 150), each between beams `gap` apart.
+/// Edges of an object that ends along u = end + slope * (v - 150), each between beams `gap` apart.
 LidarEdges upright_edges(const Camera& camera, double end, double gap, double slope) {
   LidarEdges edges;
   for (int v = 120; v <= 180; v += 4) {
@@ -47,7 +47,7 @@ Image half_bright(double end, double slope) {
   return image;
 }
 
-double centre_of(const EdgeProfile& profile) {
+double center_of(const EdgeProfile& profile) {
   double sum = 0, moment = 0;
   for (int k = 0; k < EdgeProfile::kSize; ++k) {
     sum += profile.strength[std::size_t(k)];
@@ -62,16 +62,17 @@ TEST(EdgeProfiles, ShowHowFarOffTheImagesEdgeLies) {
     const auto profiles = edge_profiles(upright_edges(camera, 180, 3, slope),
                                         half_bright(185.5, slope), {.camera = camera, .frame = 7});
     ASSERT_EQ(profiles.size(), 16u);
-    const double facing = 1 / std::hypot(1, slope);  // of the line's normal and the way outwards
+    const double facing =
+        1 / std::hypot(1, slope);  // of the line's normal and the direction outwards
     for (const EdgeProfile& profile : profiles) {
       EXPECT_EQ(profile.frame, 7);
-      EXPECT_NEAR(centre_of(profile), 5.5 * facing, 0.15);
+      EXPECT_NEAR(center_of(profile), 5.5 * facing, 0.15);
       EXPECT_NEAR(profile.half_gap, 1.5 * facing, 0.01);
     }
   }
 }
 
-// Along a line that each ring meets once, neighbors are as far apart as the rings.
+// Along a line that crosses each ring once, neighbors are as far apart as the rings.
 TEST(EdgeProfiles, RingsMayBeSparse) {
   const Camera camera = forward_camera();
   LidarEdges edges;
@@ -86,7 +87,7 @@ TEST(EdgeProfiles, RingsMayBeSparse) {
   edges.ring_spacing = kSpacing;
   const auto profiles = edge_profiles(edges, half_bright(185.5, 0), {.camera = camera});
   ASSERT_EQ(profiles.size(), 5u);  // those with a ring above and one below
-  for (const EdgeProfile& profile : profiles) EXPECT_NEAR(centre_of(profile), 5.5, 0.15);
+  for (const EdgeProfile& profile : profiles) EXPECT_NEAR(center_of(profile), 5.5, 0.15);
 }
 
 TEST(EdgeProfiles, KnowHowTheyMoveWithTheCalibration) {
@@ -110,7 +111,7 @@ TEST(EdgeProfiles, KnowHowTheyMoveWithTheCalibration) {
       if (k < 3) {
         Twist turn = Twist::Zero();
         turn[k] = kSmall;
-        // The rotation is the camera's own, wherever the vehicle has got to.
+        // The rotation is in the camera's axes, at any pose of the vehicle.
         moved.T_cam_lidar = exp_se3(turn) * camera.T_cam_lidar;
       } else {
         moved.image_delay += kSmall;
@@ -126,7 +127,7 @@ TEST(EdgeProfiles, KnowHowTheyMoveWithTheCalibration) {
   }
 }
 
-TEST(EdgeProfiles, OnlyWhereNeighboursFormALine) {
+TEST(EdgeProfiles, OnlyWhereNeighborsFormALine) {
   const Camera camera = forward_camera();
   const Image image = half_bright(185, 0);
   LidarEdges lone;
@@ -150,7 +151,7 @@ TEST(EdgeProfiles, AStandingVehicleShowsNoDelay) {
   }
 }
 
-// The same edges, seen from a metre further on, are of the same things.
+// The same edges, seen a meter later, are of the same objects.
 TEST(EdgeProfiles, KnowTheirPlace) {
   const Camera camera = forward_camera();
   EdgeView here{.camera = camera}, there{.camera = camera};
@@ -166,7 +167,7 @@ TEST(EdgeProfiles, KnowTheirPlace) {
   ASSERT_EQ(first.size(), second.size());
   ASSERT_FALSE(first.empty());
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].place, second[i].place);
-  // 10 m ahead of the camera, which stands 0.27 m before the LiDAR.
+  // 10 m ahead of the camera, which is 0.27 m in front of the LiDAR.
   EXPECT_EQ(first.front().place[0], 55);
 }
 

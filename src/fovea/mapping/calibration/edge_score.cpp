@@ -8,13 +8,12 @@
 namespace fovea {
 namespace {
 
-// Strength that an edge has where the image shows none: things may end before others of their
-// colour.
+// Strength of an edge that the image does not show: two objects may have the same color.
 constexpr double kFloor = 0.003;
 
-/// What one edge adds to a score, without the products of its derivative.
+/// Contribution of one edge to a score, before the products of its derivative.
 struct EdgeTerms {
-  CalibrationVector J;  ///< of its place along the profile
+  CalibrationVector J;  ///< of its position along the profile
   double value, slope, curvature, bound;
 
   void add_to(EdgeScore& score) const {
@@ -28,25 +27,24 @@ struct EdgeTerms {
 
 EdgeTerms terms_of(const EdgeProfile& profile, const CalibrationVector& correction, double width) {
   const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
-  const double place = J.dot(correction);
-  // The thing ends anywhere in the gap: a uniform distribution's variance.
+  const double position = J.dot(correction);
+  // Plus the variance of a uniform distribution: the object ends anywhere in the gap.
   const double variance = width * width + profile.half_gap * profile.half_gap / 3.0;
   const double reach = 3 * std::sqrt(variance);
-  // A profile that lies out of reach has no pixel between the two.
+  // If the profile is out of reach, first > last.
   constexpr int kReach = EdgeProfile::kReach;
   const auto first =
-      static_cast<int>(std::clamp<double>(std::ceil(place - reach), -kReach, kReach + 1));
+      static_cast<int>(std::clamp<double>(std::ceil(position - reach), -kReach, kReach + 1));
   const auto last =
-      static_cast<int>(std::clamp<double>(std::floor(place + reach), -kReach - 1, kReach));
+      static_cast<int>(std::clamp<double>(std::floor(position + reach), -kReach - 1, kReach));
   double mass = 0, moment = 0, square = 0;
-  // A Gaussian at even steps: from pixel to pixel it changes by a factor that itself changes by one
-  // and the same.
-  const double before = first - place;
+  // The Gaussian from pixel to pixel: its ratio changes by a constant factor.
+  const double before = first - position;
   double gaussian = std::exp(-before * before / (2 * variance));
   double change = std::exp(-(2 * before + 1) / (2 * variance));
   const double change_of_change = std::exp(-1 / variance);
   for (int k = first; k <= last; ++k) {
-    const double away = k - place;
+    const double away = k - position;
     const int pixel = k + kReach;
     const double seen = profile.strength[static_cast<std::size_t>(pixel)] * gaussian;
     gaussian *= change;

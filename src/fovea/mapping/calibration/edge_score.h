@@ -1,4 +1,4 @@
-// How well an image's edges meet a LiDAR's under a correction of the calibration.
+// Agreement of an image's edges with a LiDAR's edges under a correction of the calibration.
 #pragma once
 
 #include <vector>
@@ -9,18 +9,17 @@ namespace fovea {
 
 using CalibrationMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// What each entry of a correction is measured in below, about a pixel's worth: rad, rad, rad of
-/// roll, s, pixels, pixels.
+/// Units of the entries of a correction, each worth about a pixel: rad, rad, rad of roll, s,
+/// pixels, pixels.
 const CalibrationVector& calibration_unit();
 
-/// Sum over edges of the logarithm of the image's edge strength under a Gaussian round where the
-/// edge is expected: edges that the image shows weakly count, too. With derivatives by the
-/// correction in its units.
+/// Sum over edges of the logarithm of the image's edge strength under a Gaussian at the expected
+/// position. The logarithm lets weak edges count. With derivatives by the correction in its units.
 struct EdgeScore {
   double value = 0;
   CalibrationVector gradient = CalibrationVector::Zero();
   CalibrationMatrix curvature = CalibrationMatrix::Zero();  ///< of -value
-  /// Of a paraboloid that touches the value from below.
+  /// Curvature of a paraboloid that touches the value from below.
   CalibrationMatrix bound = CalibrationMatrix::Zero();
 
   EdgeScore& operator+=(const EdgeScore& other);
@@ -33,7 +32,7 @@ EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correc
 EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                      double width);
 
-/// The value alone.
+/// Only the value.
 double edge_value(const EdgeProfile& profile, const CalibrationVector& correction, double width);
 
 }  // namespace fovea

@@ -6,7 +6,7 @@
 
 namespace fovea::edge_score_test {
 
-/// An edge whose image lies at `place` pixels, a pixel wide.
+/// An edge whose image is at `place` pixels, a pixel wide.
 EdgeProfile profile_at(double place, float half_gap) {
   EdgeProfile profile;
   for (int k = 0; k < EdgeProfile::kSize; ++k) {
@@ -53,7 +53,7 @@ TEST(EdgeScore, IsHighestWhereTheImagesEdgeIs) {
 // Its maximum is a step that never leads down: value(x + d) >= value(x) + g d - d B d / 2.
 TEST(EdgeScore, BoundLiesBelow) {
   const EdgeProfile profile = profile_at(-2, 1.0f);
-  // So wide that the Gaussian's ends cut off nothing.
+  // A wide Gaussian, so that its ends do not matter.
   constexpr double kWidth = 8;
   const CalibrationVector x = small_correction();
   const EdgeScore at = edge_score(profile, x, kWidth);

@@ -10,16 +10,16 @@
 namespace fovea {
 namespace {
 
-// Beams further apart say too little about where between them the thing ends.
+// Beams further apart do not locate an edge well enough.
 constexpr float kMaxRingStep = 0.3f * float(kDegree), kMinElevationStep = 0.2f * float(kDegree),
                 kMaxElevationStep = 0.75f * float(kDegree);
-// Points this near in azimuth lie above each other: a firing's width.
+// Points this near in azimuth are above each other: the width of a firing.
 constexpr float kColumn = 0.2f * float(kDegree);
-// A jump: more than this, and more than this share of the near range. Between rings the ground's
-// own spacing grows with the square of the range: r^2 * 0.0058 / 1.73 m, 13 % at 40 m.
+// Minimum jump (m), and as a share of the near range, in a ring and between rings. The spacing of
+// rings on the ground grows with the square of the range: r^2 * 0.0058 / 1.73 m, 13 % at 40 m.
 constexpr float kMinJump = 0.5f, kRelativeJump = 0.1f, kRelativeJumpAbove = 0.2f;
 
-// Of the range at which a plane would continue: less is no jump.
+// Minimum jump as a share of the range at which a plane would continue.
 constexpr float kPlaneTolerance = 0.2f;
 constexpr float kHdl64Spacing = 0.42f * float(kDegree);
 
@@ -47,11 +47,11 @@ void add_if_edge(const Beam& a, const Beam& b, float max_step, float relative_ju
   edges.between_rings.push_back(between_rings ? 1 : 0);
 }
 
-/// Beams to what is in view, in the scan's order.
+/// Beams in and near the view, in the scan's order.
 std::vector<Beam> beams_in_view(const PointCloud& scan_lidar, const Camera& camera) {
   const Eigen::Matrix3f R = camera.T_cam_lidar.linear().cast<float>();
   const Eigen::Vector3f t = camera.T_cam_lidar.translation().cast<float>();
-  // Twice the view: edges move, and what lies beside them must be there.
+  // Twice the view, since the correction moves edges.
   const float right = static_cast<float>(camera.width / camera.fx),
               down = static_cast<float>(camera.height / camera.fy);
   std::vector<Beam> beams;
@@ -73,10 +73,9 @@ void add_edges_along_rings(const std::vector<Beam>& beams, float max_range, Lida
   }
 }
 
-/// Whether the far beam of two neighbors in a column, k - 1 and k, may lie on the same plane as the
-/// near beam and the next ring on the near beam's other side. The ground does, however wide the
-/// rings lie apart and however high the sensor sits. Inverse ranges of a plane are linear in the
-/// angle.
+/// Whether the far one of two neighboring beams in a column, k - 1 and k, may be on one plane with
+/// the near beam and the next ring on the near beam's other side. The ground is such a plane at any
+/// ring spacing and sensor height. Inverse ranges of a plane are linear in the angle.
 bool continues_a_plane(const std::vector<Beam>& beams, const std::vector<std::uint32_t>& column,
                        std::size_t k) {
   const bool near_is_below = beams[column[k]].range < beams[column[k - 1]].range;
@@ -113,7 +112,7 @@ void add_edges_between_rings(const std::vector<Beam>& beams, float max_range, Li
     const auto is_above = [&](std::uint32_t a, std::uint32_t b) {
       return beams[a].direction.z() > beams[b].direction.z();
     };
-    // Most scans come ring by ring, from the upmost down.
+    // Most scans list rings from top to bottom.
     if (!std::is_sorted(above.begin(), above.end(), is_above)) {
       std::stable_sort(above.begin(), above.end(), is_above);
     }

@@ -1,4 +1,4 @@
-// Where things end, as a LiDAR sees it: jumps of range between neighbouring beams.
+// Edges of objects in a LiDAR scan: jumps of range between neighboring beams.
 #pragma once
 
 #include <vector>
@@ -8,24 +8,23 @@
 
 namespace fovea {
 
-/// Edges of a scan, entry i of both clouds one edge: a beam that still met the near thing and the
-/// neighbouring one that passed it, both at the near thing's range. The thing ends somewhere
-/// between the two; the middle is where it is expected to (the near beam alone would lie inside by
-/// half the spacing of beams, on either side of the thing).
+/// Edges of a scan. Entry i of both clouds is one edge: the last beam that hit the near object, and
+/// the neighboring beam that passed it, both at the object's range. The expected edge is in the
+/// middle. (The near beam alone would be inside by half the spacing of beams.)
 struct LidarEdges {
-  PointCloud inside, outside;  ///< with the times of their beams where the scan has them
-  std::vector<std::uint8_t> between_rings;  ///< 1: the beams are of neighbouring rings, 0: of one
+  PointCloud inside, outside;               ///< with the times of their beams if the scan has times
+  std::vector<std::uint8_t> between_rings;  ///< 1: beams of neighboring rings, 0: of one ring
   double ring_spacing = 0;  ///< rad: median angle between neighboring rings in view; 0: of one ring
   std::size_t size() const { return inside.size(); }
 };
 
-/// Finds jumps between points that follow each other in a ring, and between points above each other
-/// in neighbouring rings.
-/// @param scan_lidar  as measured (no motion compensation: directions must be the beams'), each
-///                    ring's points in the order of time, as KITTI's files have them; in any other
-///                    order only jumps between rings are found
-/// @param camera      only what lies before it, and in its view or near that, is looked at
-/// @param max_range   m, of the near thing
+/// Finds jumps between consecutive points of a ring, and between points above each other in
+/// neighboring rings.
+/// @param scan_lidar  without motion compensation, so that directions are those of the beams. Each
+///                    ring in the order of time, as in KITTI's files; otherwise it finds only jumps
+///                    between rings
+/// @param camera      limits the search to its view and the surroundings
+/// @param max_range   m, of the near object
 LidarEdges find_lidar_edges(const PointCloud& scan_lidar, const Camera& camera, double max_range);
 
 }  // namespace fovea

@@ -21,8 +21,8 @@ Camera forward_camera() {
   return camera;
 }
 
-/// A board 10 m ahead, from azimuth -4 to +6 and elevation -5 to +3 degrees, before a wall 30 m
-/// ahead; a ring after the other, each clockwise.
+/// A board 10 m ahead, from azimuth -4 to +6 and elevation -5 to +3 degrees, in front of a wall at
+/// 30 m. Ring after ring, each clockwise.
 PointCloud board_before_a_wall() {
   PointCloud scan;
   for (int ring = 0; ring < 40; ++ring) {
@@ -50,7 +50,7 @@ TEST(LidarEdges, LieOnEitherSideOfWhereTheThingEnds) {
     const auto azimuth = [](const Eigen::Vector3f& p) {
       return std::atan2(p.y(), p.x()) / kDegree;
     };
-    // The elevation that the scene is made of.
+    // The elevation in the scene.
     const auto elevation = [](const Eigen::Vector3f& p) {
       return std::atan(p.z() / p.head<2>().norm()) / kDegree;
     };
@@ -65,7 +65,7 @@ TEST(LidarEdges, LieOnEitherSideOfWhereTheThingEnds) {
       (side > 0 ? top : bottom) += 1;
     }
   }
-  EXPECT_EQ(left, 20);  // rings that meet the board
+  EXPECT_EQ(left, 20);  // rings that hit the board
   EXPECT_EQ(right, 20);
   EXPECT_GT(top, 40);  // columns of 0.2 degrees
   EXPECT_NEAR(top, bottom, 3);
@@ -74,7 +74,7 @@ TEST(LidarEdges, LieOnEitherSideOfWhereTheThingEnds) {
 TEST(LidarEdges, KeepTheTimesOfTheirBeams) {
   PointCloud scan = board_before_a_wall();
   EXPECT_TRUE(find_lidar_edges(scan, forward_camera(), 40).inside.time.empty());
-  // The azimuth tells which beam it was.
+  // The azimuth identifies the beam.
   for (const Eigen::Vector3f& p : scan.position) scan.time.push_back(std::atan2(p.y(), p.x()));
   const LidarEdges edges = find_lidar_edges(scan, forward_camera(), 40);
   ASSERT_GT(edges.size(), 0u);
@@ -95,7 +95,7 @@ TEST(LidarEdges, NoneBeyondTheReachOrBehindTheCamera) {
   EXPECT_EQ(find_lidar_edges({}, forward_camera(), 40).size(), 0u);
 }
 
-// The ground of a scan jumps from ring to ring by more than half a metre from 13 m on.
+// The ground of a scan jumps from ring to ring by more than half a meter from 13 m on.
 TEST(LidarEdges, TheGroundHasNone) {
   PointCloud scan;
   for (int ring = 0; ring < 64; ++ring) {
@@ -108,7 +108,7 @@ TEST(LidarEdges, TheGroundHasNone) {
   EXPECT_EQ(find_lidar_edges(scan, forward_camera(), 40).size(), 0u);
 }
 
-// Neither has that of sparse rings, nor that below a sensor near the ground.
+// The same for sparse rings, and for a sensor near the ground.
 TEST(LidarEdges, TheGroundOfSparseRingsHasNone) {
   for (const double height : {0.4, 1.73}) {
     for (const double spacing : {0.5, 0.7}) {

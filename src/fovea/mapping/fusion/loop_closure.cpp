@@ -13,9 +13,9 @@ namespace {
 
 constexpr float kVoxel = 0.5;     // m
 constexpr float kMaxRange = 60;   // m
-constexpr double kMinPath = 40;   // m: nearer in time, the local map knows the place
-constexpr double kReach = 12;     // m: how far apart two scans of one place may be taken
-constexpr double kDrift = 0.01;   // of the path, at most: where odometry may have strayed
+constexpr double kMinPath = 40;   // m: the local map covers later submaps
+constexpr double kReach = 12;     // m, between two scans of one place
+constexpr double kDrift = 0.01;   // largest share of the path
 constexpr double kMaxDrift = 25;  // m
 constexpr std::size_t kMaxAttempts = 2;
 
@@ -69,8 +69,8 @@ std::optional<LoopClosure> LoopCloser::find(const std::vector<Eigen::Vector3f>& 
     return !has(c.submap) || c.path < kMinPath || distance(c) > kReach + drift_of(c);
   });
   if (candidates.empty()) return std::nullopt;
-  // By distance and, of equally near ones, as they came. Not std::stable_sort: the room it takes
-  // for what it moves is not aligned as motions have to be (libstdc++ 12).
+  // Sorts by distance, then by index. std::stable_sort does not align its buffer as motions require
+  // (libstdc++ 12).
   std::vector<std::pair<double, std::size_t>> nearest;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     nearest.emplace_back(distance(candidates[i]), i);

@@ -1,4 +1,4 @@
-// Recognises places: scans of earlier submaps near the vehicle, and what registration says of them.
+// Loop closure: registers scans to scans of earlier submaps near the vehicle.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +11,24 @@
 
 namespace fovea {
 
-/// A place seen again.
+/// The pose of a scan relative to an earlier submap.
 struct LoopClosure {
   std::size_t submap = 0;  ///< the earlier one
   RigidMotion T_submap_lidar = RigidMotion::Identity();
 };
 
-/// Where an earlier submap is believed to lie, and how wrong that may be.
+/// An earlier submap near the vehicle.
 struct LoopCandidate {
   std::size_t submap = 0;
-  RigidMotion T_submap_lidar = RigidMotion::Identity();  ///< of the new scan, by all poses so far
-  double path = 0;                                       ///< m driven since the submap was made
+  RigidMotion T_submap_lidar = RigidMotion::Identity();  ///< of the new scan, by the poses so far
+  double path = 0;                                       ///< m driven since the submap began
 };
 
-/// One scan a submap, thinned, to register later scans against. The scans lie in a scratch file, so
-/// that memory does not grow with the drive.
+/// Keeps one thinned scan of each submap and registers later scans to them. The scans are in a
+/// scratch file, so that memory does not grow with the drive.
 class LoopCloser {
  public:
-  /// @param registration  of the front end; the method here is always generalised ICP
+  /// @param registration  of the front end, except for the method: generalized ICP
   explicit LoopCloser(const RegistrationOptions& registration);
 
   /// Keeps a scan of a submap.
@@ -37,8 +37,8 @@ class LoopCloser {
            const RigidMotion& T_submap_lidar);
   bool has(std::size_t submap) const { return scans_.contains(submap); }
 
-  /// Registers a scan against the most promising of the candidates: the nearest ones within reach
-  /// of the drift that their paths allow. A closure must fit as well as neighbouring scans do.
+  /// Registers a scan to the nearest candidates within the possible drift. A closure must fit as
+  /// well as consecutive scans.
   /// @param points_lidar  of the new scan, finite
   std::optional<LoopClosure> find(const std::vector<Eigen::Vector3f>& points_lidar,
                                   std::vector<LoopCandidate> candidates) const;

@@ -8,16 +8,17 @@
 
 namespace fovea::loop_closure_test {
 
-/// Walls and poles that stand where the number of the place says, on flat ground, as a LiDAR at
-/// `T_place_lidar` has them.
-std::vector<Eigen::Vector3f> scan_of(int place, const RigidMotion& T_place_lidar, int things = 40) {
+/// Scan from `T_place_lidar`: walls and poles on flat ground, at positions that depend on the
+/// number of the place.
+std::vector<Eigen::Vector3f> scan_of(int place, const RigidMotion& T_place_lidar,
+                                     int objects = 40) {
   std::vector<Eigen::Vector3f> points;
   const RigidMotion T = T_place_lidar.inverse();
   const auto add = [&](double x, double y, double z) {
     points.push_back((T * Eigen::Vector3d(x, y, z)).cast<float>());
   };
-  for (int thing = 0; thing < things; ++thing) {
-    Random random = Random::of_item(3, std::uint64_t(place), std::uint64_t(thing));
+  for (int object = 0; object < objects; ++object) {
+    Random random = Random::of_item(3, std::uint64_t(place), std::uint64_t(object));
     const double x = random.uniform(-35, 35), y = random.uniform(-35, 35);
     const double heading = random.uniform(0, 3), length = random.uniform(0.5, 4);
     for (double s = -length; s < length; s += 0.2) {
@@ -71,7 +72,7 @@ TEST_F(LoopCloserTest, TheNextBestCandidateHasItsTurn) {
 }
 
 TEST_F(LoopCloserTest, GroundAloneIsNoPlace) {
-  closer_.add(5, scan_of(0, first_, /*things=*/0), first_);
+  closer_.add(5, scan_of(0, first_, /*objects=*/0), first_);
   EXPECT_FALSE(closer_.find(scan_of(0, again_, 0), {{5, again_, 500}}));
 }
 

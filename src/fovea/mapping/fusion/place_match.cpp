@@ -6,8 +6,7 @@
 namespace fovea {
 namespace {
 
-/// Of the points that stand on something, at least this share must lie on its plane, and so many
-/// must have a counterpart at all.
+/// Least PlaceFit::on_plane and PlaceFit::overlap.
 constexpr double kMinFit = 0.7, kMinOverlap = 0.6;
 
 }  // namespace
@@ -17,10 +16,10 @@ PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_ind
                    const PlaceFitOptions& options) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
-  std::size_t standing = 0, paired = 0, on_plane = 0;
+  std::size_t vertical = 0, paired = 0, on_plane = 0;
   for (std::size_t i = 0; i < source.points.size(); ++i) {
-    if (!stands(source.normals[i])) continue;
-    ++standing;
+    if (!is_vertical(source.normals[i])) continue;
+    ++vertical;
     const Eigen::Vector3f p = R * source.points[i] + t;
     const Neighbor nearest = target_index.nearest(p, options.pair_distance);
     if (!std::isfinite(nearest.squared_distance)) continue;
@@ -33,7 +32,7 @@ PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_ind
   const auto share = [](std::size_t part, std::size_t of) {
     return of > 0 ? double(part) / double(of) : 0;
   };
-  return {standing, share(paired, standing), share(on_plane, paired)};
+  return {vertical, share(paired, vertical), share(on_plane, paired)};
 }
 
 std::optional<RegistrationResult> match_place(const RegistrationCloud& target,

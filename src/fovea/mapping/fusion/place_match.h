@@ -1,4 +1,4 @@
-// Whether two clouds show one place, and how they lie to each other.
+// Registration of two clouds that may show the same place.
 #pragma once
 
 #include <cmath>
@@ -8,23 +8,23 @@
 
 namespace fovea {
 
-/// How far off a guess may be, m.
+/// Largest error of a guess, m.
 inline constexpr double kPlaceReach = 5;
 
-/// Whether a point is of something that stands, by its normal: the ground says nothing of a place.
-/// @param normal  z up; zero where it is not known
-inline bool stands(const Eigen::Vector3f& normal) {
-  constexpr float kFlat = 0.7f;  // vertical part of the normal of ground
+/// Whether a normal is that of a vertical surface. The ground does not distinguish places.
+/// @param normal  z up; zero if unknown
+inline bool is_vertical(const Eigen::Vector3f& normal) {
+  constexpr float kFlat = 0.7f;  // least |z| of a ground normal
   return !normal.isZero() && std::abs(normal.z()) <= kFlat;
 }
 
-/// How well what stands on the ground fits: ground fits anywhere.
+/// Fit of the vertical surfaces; ground fits anywhere.
 struct PlaceFit {
-  std::size_t standing = 0;  ///< points that stand on something
-  double overlap = 0;        ///< share of those with a counterpart in the target
-  double on_plane = 0;       ///< of those, share on their counterpart's plane
+  std::size_t vertical = 0;  ///< points on vertical surfaces
+  double overlap = 0;        ///< share of them with a counterpart in the target
+  double on_plane = 0;       ///< share of the paired ones on their counterpart's plane
 };
-/// What counts as a counterpart, and as being on its plane.
+/// Limits for a counterpart and for a point on its plane.
 struct PlaceFitOptions {
   float pair_distance = 1;  ///< m
   float on_plane = 0.1f;    ///< m
@@ -35,11 +35,11 @@ PlaceFit place_fit(const RegistrationCloud& target, const PointIndex& target_ind
                    const RegistrationCloud& source, const RigidMotion& T_target_source,
                    const PlaceFitOptions& options = {});
 
-/// Registers a cloud to another one that may show the same place, from a poor guess; nothing unless
-/// all directions are known and what stands on the ground there fits as well as neighbouring scans
-/// do.
+/// Registers a cloud to another one that may show the same place, from a poor guess. Empty unless
+/// all directions are constrained and the vertical surfaces fit as well as those of consecutive
+/// scans.
 /// @param target   with normals; the index is of its points, z up
-/// @param options  of generalised ICP
+/// @param options  of generalized ICP
 std::optional<RegistrationResult> match_place(const RegistrationCloud& target,
                                               const PointIndex& target_index,
                                               const RegistrationCloud& source,

@@ -1,4 +1,4 @@
-// Where there is anything, seen from above.
+// Occupied columns of a map, seen from above.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,21 +9,20 @@
 
 namespace fovea {
 
-/// Maps end a few metres beside the road and above it: what one has and the other has not says
-/// nothing against their being one place.
+/// Restricts a comparison of two maps to the space that both cover. Maps end a few meters beside
+/// and above the road, so points that only one of them has are no evidence against one place.
 class PlanView {
  public:
   /// @param points  m, z up, finite, within some 100 m of the origin
   explicit PlanView(std::span<const Eigen::Vector3f> points);
 
-  /// Those of other points in whose column there is something, not more than `height` m below or
-  /// above all of that.
+  /// The points that are in an occupied column, at most `height` m below or above its extent.
   std::vector<Eigen::Vector3f> covered(std::span<const Eigen::Vector3f> points,
                                        const RigidMotion& T_plan_points, double height) const;
 
  private:
   struct Column {
-    float low = 1, high = 0;  // m; nothing there while low > high
+    float low = 1, high = 0;  // m; empty while low > high
   };
   bool covers(const Eigen::Vector3f& p, float height) const;
 

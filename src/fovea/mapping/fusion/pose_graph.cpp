@@ -11,28 +11,28 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kMaxIterations = 20;
-/// A step below this (rad and m) changes nothing that a map shows; while the kernel is still to be
-/// narrowed, larger ones do not, either.
+/// Steps below this (rad and m) are invisible in a map; the coarse limit holds while the kernel is
+/// still wide.
 constexpr double kConverged = 1e-5, kConvergedCoarsely = 1e-3;
-/// Added to the diagonal, relative to a measurement of 1 rad and 1 m: nodes that nothing holds.
+/// Added to the diagonal for nodes without constraints, relative to a measurement of 1 rad and 1 m.
 constexpr double kLeastInformation = 1e-9;
 constexpr double kMaxDamping = 1e6;
-/// Squared error that one honest measurement in twenty exceeds (chi squared, six degrees).
+/// Squared error that 5 % of the inliers exceed (chi squared, six degrees of freedom).
 constexpr double kRobustWidth = 12.6;
 constexpr double kNarrowing = 4;
-/// What neither is far off nor closes a loop moves no more than so many of the last nodes: what it
-/// takes does not grow with the graph.
-constexpr std::size_t kLately = 64;
+/// A new measurement with a small error that closes no loop moves only this many of the last nodes.
+/// Its cost does not grow with the graph.
+constexpr std::size_t kRecentNodes = 64;
 
-/// A residual in standard deviations, and how it changes with the twists of its nodes: each node's
-/// pose is T * exp(twist).
+/// A residual in standard deviations and its derivatives by the twists of its nodes: the pose of a
+/// node is T * exp(twist).
 struct Term {
   Twist error;
   Matrix6 by_from = Matrix6::Zero(), by_to = Matrix6::Zero();
 };
 
-/// Inverse of SO(3)'s right Jacobian, to second order: residuals of a graph near its solution are
-/// small, and a damped step tolerates the rest.
+/// Inverse of SO(3)'s right Jacobian to second order, which suffices for the small residuals near
+/// the solution.
 Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& w) {
   const Eigen::Matrix3d W = hat(w);
   return Eigen::Matrix3d::Identity() + 0.5 * W + W * W / 12;
@@ -43,8 +43,7 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
-/// Rotation and translation apart (SO(3) x R^3): rotation error in the frame of `to`, translation
-/// error, too.
+/// Separate rotation and translation (SO(3) x R^3), both errors in the frame of `to`.
 Term term_of(const RelativePose& m, const std::vector<RigidMotion>& poses) {
   const RigidMotion T_from_to = poses[m.from].inverse() * poses[m.to];
   const Eigen::Matrix3d R_measured_to = m.T_from_to.linear().transpose() * T_from_to.linear();
@@ -56,7 +55,7 @@ Term term_of(const RelativePose& m, const std::vector<RigidMotion>& poses) {
   const Eigen::Matrix3d J = inverse_right_jacobian(turn);
   term.by_to.topLeftCorner<3, 3>() = J;
   term.by_from.topLeftCorner<3, 3>() = -J * T_from_to.linear().transpose();
-  // Node twists turn first, then shift, in the node's own frame.
+  // A twist rotates first, then translates, in the node's frame.
   term.by_to.bottomRightCorner<3, 3>() = R_to_from * T_from_to.linear();
   term.by_from.bottomLeftCorner<3, 3>() = R_to_from * hat(T_from_to.translation());
   term.by_from.bottomRightCorner<3, 3>() = -R_to_from;
@@ -81,7 +80,7 @@ Term term_of(const AbsolutePose& m, const std::vector<RigidMotion>& poses) {
   return term;
 }
 
-/// Cauchy's kernel of a squared width: the cost of a squared error, and its derivative by it.
+/// Cauchy's kernel of a squared width: the cost of a squared error, and the derivative of the cost.
 double robust_cost(double squared, double width) { return width * std::log1p(squared / width); }
 double robust_weight(double squared, double width) { return 1 / (1 + squared / width); }
 
@@ -99,7 +98,7 @@ RigidMotion moved(const RigidMotion& T, const Twist& twist) {
 
 }  // namespace
 
-/// Normal equations H step = -b of the nodes from `first` on, H by its lower blocks.
+/// Normal equations H step = -b of the nodes from `first` on; H has only its lower blocks.
 struct PoseGraph::Equations {
   Equations(std::size_t first_node, std::size_t end)
       : first(first_node), b(Eigen::VectorXd::Zero(Eigen::Index(6 * (end - first_node)))) {}
@@ -191,11 +190,11 @@ double PoseGraph::worst_new_error() const {
     return measurement.robust ? term_of(measurement, poses_).error.squaredNorm() : 0;
   };
   double worst = 0;
-  for (std::size_t i = heeded_relative_; i < relative_.size(); ++i) {
+  for (std::size_t i = used_relative_; i < relative_.size(); ++i) {
     worst = std::max(worst, squared_error_of(relative_[i]));
   }
-  for (std::size_t i = heeded_absolute_; i < absolute_.size(); ++i) {
-    // Navigation that stays as far off as it was tells nothing new.
+  for (std::size_t i = used_absolute_; i < absolute_.size(); ++i) {
+    // Navigation with a constant error brings no new information.
     const double before = i > 0 ? squared_error_of(absolute_[i - 1]) : 0;
     const double now = squared_error_of(absolute_[i]);
     if (now > kNarrowing * before) worst = std::max(worst, now);
@@ -205,19 +204,19 @@ double PoseGraph::worst_new_error() const {
 
 void PoseGraph::optimize() {
   if (poses_.empty()) return;
-  // A narrow kernel would not see a true measurement that is far off yet: it narrows step by step.
-  // Those heeded before have been seen.
+  // The kernel narrows step by step, since a narrow one ignores an inlier whose error is still
+  // large. Measurements of earlier calls have converged.
   double width = worst_new_error();
   const bool closes_loop =
-      std::any_of(relative_.begin() + std::ptrdiff_t(heeded_relative_), relative_.end(),
+      std::any_of(relative_.begin() + std::ptrdiff_t(used_relative_), relative_.end(),
                   [](const RelativePose& m) { return m.to > m.from + 1; });
-  const bool is_local = width <= kRobustWidth && !closes_loop && poses_.size() > kLately;
+  const bool is_local = width <= kRobustWidth && !closes_loop && poses_.size() > kRecentNodes;
   for (; std::isfinite(width) && width > kRobustWidth; width /= kNarrowing) {
     descend(width, kConvergedCoarsely, 0);
   }
-  descend(kRobustWidth, kConverged, is_local ? poses_.size() - kLately : 0);
-  heeded_relative_ = relative_.size();
-  heeded_absolute_ = absolute_.size();
+  descend(kRobustWidth, kConverged, is_local ? poses_.size() - kRecentNodes : 0);
+  used_relative_ = relative_.size();
+  used_absolute_ = absolute_.size();
 }
 
 void PoseGraph::descend(double width, double converged, std::size_t first) {

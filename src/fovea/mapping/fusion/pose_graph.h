@@ -1,4 +1,4 @@
-// The sparse least-squares problem behind fusion: poses, relative and absolute measurements.
+// Pose graph: sparse least squares over poses, with relative and absolute measurements.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct RelativePose {
   std::size_t from = 0, to = 0;
   RigidMotion T_from_to = RigidMotion::Identity();
   Twist sigma = Twist::Ones();  ///< standard deviations in the frame of `to`: rad, then m
-  bool robust = false;          ///< may be wrong altogether: a Cauchy kernel bounds its pull
+  bool robust = false;          ///< may be an outlier: a Cauchy kernel limits its weight
 };
 
 /// A measured pose.
@@ -25,8 +25,8 @@ struct AbsolutePose {
   bool robust = false;
 };
 
-/// Poses T_local_node that agree best with all measurements: Levenberg-Marquardt on SE(3) with a
-/// sparse Cholesky factorisation. What it finds depends on the order of calls alone.
+/// Finds the poses T_local_node that fit all measurements best: Levenberg-Marquardt on SE(3) with a
+/// sparse Cholesky factorization. The result depends only on the order of calls.
 class PoseGraph {
  public:
   /// @return the new node's number
@@ -34,33 +34,33 @@ class PoseGraph {
   void add(const RelativePose& measurement);
   void add(const AbsolutePose& measurement);
 
-  /// Moves all poses alike.
+  /// Moves all poses by one motion.
   void move(const RigidMotion& T_new_old);
 
   const std::vector<RigidMotion>& poses() const { return poses_; }
-  /// Squared error of a measurement in standard deviations, at the present poses.
+  /// Squared error of a measurement in standard deviations at the present poses.
   double squared_error(const RelativePose& measurement) const;
 
-  /// Improves the poses from where they are, as far back as what is new may move them. Directions
-  /// that no measurement tells stay as they are.
+  /// Improves the poses, as far back as new measurements may move them. Directions without a
+  /// measurement do not change.
   void optimize();
 
  private:
   struct Equations;
   /// @param width  squared, of the robust kernel
-  /// @param first  nodes before it stay, and what is measured of them alone does not count
+  /// @param first  nodes before it are fixed; measurements between fixed nodes do not count
   Equations linearize(double width, std::size_t first) const;
   double cost(const std::vector<RigidMotion>& poses, double width, std::size_t first) const;
-  /// Largest squared error of the robust measurements since the last optimize(), but for navigation
-  /// that is as far off as before.
+  /// Largest squared error of the robust measurements since the last optimize(), without navigation
+  /// whose error has not grown.
   double worst_new_error() const;
-  /// @param converged  a smaller step ends it, rad and m
+  /// @param converged  largest last step, rad and m
   void descend(double width, double converged, std::size_t first);
 
   std::vector<RigidMotion> poses_;
   std::vector<RelativePose> relative_;
   std::vector<AbsolutePose> absolute_;
-  std::size_t heeded_relative_ = 0, heeded_absolute_ = 0;  // at the last optimize()
+  std::size_t used_relative_ = 0, used_absolute_ = 0;  // at the last optimize()
 };
 
 }  // namespace fovea

@@ -45,7 +45,7 @@ double distance(const RigidMotion& a, const RigidMotion& b) {
   return (a.translation() - b.translation()).norm();
 }
 
-/// Adds the chain of noisy motions; nodes start where the chain puts them.
+/// Adds the chain of noisy motions, which also gives the initial poses of the nodes.
 void add_chain(const std::vector<RigidMotion>& truth, const Twist& sigma, Random& random,
                PoseGraph& graph) {
   graph.add_node(truth[0]);
@@ -101,7 +101,7 @@ TEST(PoseGraph, AClosedLoopTakesTheDriftOut) {
     EXPECT_LT(distance(apart, truth[i - 50].inverse() * truth[i]), 0.05) << i;
   }
   EXPECT_LT(distance(graph.poses()[50], truth[50]), 0.05);
-  // In between the error is spread, not pushed elsewhere.
+  // The error is distributed between the measurements.
   for (const std::size_t i : {12u, 25u, 37u}) {
     EXPECT_LT(distance(graph.poses()[i], truth[i]), before) << i;
   }
@@ -134,7 +134,7 @@ TEST(PoseGraph, PositionsBendADriftingChainTowardsThem) {
     for (int axis = 0; axis < 3; ++axis) {
       position.T_local_node.translation()[axis] += 0.5 * random.normal();
     }
-    // A tenth of them are far off.
+    // One in ten is an outlier.
     if (i % 10 == 3) position.T_local_node.translation().y() += 5;
     graph.add(position);
   }
@@ -144,8 +144,8 @@ TEST(PoseGraph, PositionsBendADriftingChainTowardsThem) {
   EXPECT_LT(sum / double(truth.size()), 0.5);
 }
 
-// A road on which positions are measured as it is driven: solving after each node, as a mapper
-// does, leaves what lies far back where it is, and ends where one solution of all ends.
+// A drive with measured positions. Solving after each node, as a mapper does, does not move nodes
+// far back, and gives the same result as one solution of the whole graph.
 TEST(PoseGraph, ALongRoadIsSolvedAsItComes) {
   const std::vector<RigidMotion> truth = laps(200, 1000);
   const Twist odometry = sigmas(0.05 * kDegree, 0.02), navigation = sigmas(2 * kDegree, 0.5);
@@ -170,7 +170,8 @@ TEST(PoseGraph, ALongRoadIsSolvedAsItComes) {
     graph.optimize();
   }
   whole.optimize();
-  whole.add(RelativePose{0, 199, RigidMotion::Identity(), sigmas(1e9, 1e9)});  // look at all again
+  whole.add(RelativePose{0, 199, RigidMotion::Identity(),
+                         sigmas(1e9, 1e9)});  // optimizes all nodes again
   whole.optimize();
   EXPECT_EQ(distance(graph.poses()[100], before[100]), 0);
   EXPECT_GT(distance(graph.poses()[198], before[198]), 0);
@@ -178,7 +179,7 @@ TEST(PoseGraph, ALongRoadIsSolvedAsItComes) {
     EXPECT_LT(distance(graph.poses()[i], whole.poses()[i]), 0.05) << i;
     EXPECT_LT(distance(graph.poses()[i], truth[i]), 0.3) << i;
   }
-  // A loop moves all.
+  // A loop moves all nodes.
   graph.add(RelativePose{0, 199, pose(1, 0, 0) * truth[0].inverse() * truth[199], odometry});
   graph.optimize();
   EXPECT_GT(distance(graph.poses()[100], before[100]), 0.001);
