@@ -6,8 +6,8 @@
 namespace fovea {
 namespace {
 
-/// A pose is written again when it has moved by so much: each new submap moves those before by a
-/// hair, and a long drive has thousands.
+/// Motion after which a pose is written again. Each new submap moves the thousands before it by
+/// very little.
 constexpr double kNoticeable = 1e-3;  // m, and a hundred times that in radians
 
 bool has_moved(const RigidMotion& from, const RigidMotion& to, bool exact) {
@@ -48,7 +48,7 @@ std::vector<RigidMotion> DriveLog::poses(const TileMap& map) const {
   std::vector<RigidMotion> T_local_odom;  // by submap
   for (std::size_t id = 0; id < T_odom_submap_.size(); ++id) {
     const RigidMotion& T_local_submap = map.submaps().at(id).T_local_submap;
-    // Where nothing has moved it, to the bit: poses that were given come out as they were.
+    // An unmoved pose stays bit-identical, so that given poses are returned unchanged.
     const bool stays = T_local_submap.matrix() == T_odom_submap_[id].matrix();
     T_local_odom.push_back(stays ? RigidMotion::Identity()
                                  : T_local_submap * T_odom_submap_[id].inverse());

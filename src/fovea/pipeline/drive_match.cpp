@@ -22,9 +22,9 @@ constexpr const char* kRemedy =
     "give the drive that 'fovea info' names, or use this one all the same with --foreign";
 
 using Frames = std::vector<FrameRecord>;
-/// Numbers of frames by stamp.
+/// Frame numbers by stamp.
 using Stamps = std::map<TimeNs, int>;
-/// Numbers of frames in the drive by those in the map.
+/// Frame numbers in the drive by frame numbers in the map.
 using Numbers = std::map<int, int>;
 
 Stamps stamps_of(const FrameSource& drive) {
@@ -43,7 +43,7 @@ Stamps stamps_of(const Frames& frames) {
   return stamps;
 }
 
-/// The smaller number of stamps that the two have within their common time.
+/// The smaller number of stamps in the common time of both.
 std::size_t comparable_stamps(const Stamps& a, const Stamps& b) {
   if (a.empty() || b.empty()) return 0;
   const TimeNs first = std::max(a.begin()->first, b.begin()->first),
@@ -66,8 +66,8 @@ Numbers common_frames(const Stamps& in_map, const Stamps& in_drive) {
   return numbers;
 }
 
-/// Whether navigation moves the vehicle alike in the map and in the drive, between its first common
-/// frame and two others. False without navigation in either.
+/// Whether the motions by navigation agree in map and drive, between the first common frame and two
+/// others. False if one has no navigation.
 bool has_same_navigation(const Frames& frames, const Numbers& numbers, const FrameSource& drive) {
   if (!drive.info().navigation) return false;
   struct Poses {
@@ -80,7 +80,7 @@ bool has_same_navigation(const Frames& frames, const Numbers& numbers, const Fra
     if (in_drive) poses.push_back({*frame.T_local_lidar_navigation, *in_drive});
   }
   if (poses.size() < 2) return false;
-  // The origins of the two local frames may differ.
+  // The two local frames may have different origins.
   constexpr double kTolerance = 0.005;  // m, rad
   const auto agree = [&](const Poses& a, const Poses& b) {
     const RigidMotion difference =
@@ -90,14 +90,14 @@ bool has_same_navigation(const Frames& frames, const Numbers& numbers, const Fra
   return agree(poses.front(), poses.back()) && agree(poses.front(), poses[poses.size() / 2]);
 }
 
-/// Whether one of two scans can be the other one without some of its rings.
+/// Whether one of two scans may be the other without some of its rings.
 bool may_be_thinned(double points_a, double points_b) {
   constexpr double kLeastShare = 0.1;  // of a ring or more
   return std::abs(points_a - points_b) > kLeastShare * std::max(points_a, points_b);
 }
 
-/// Delays of single images of a camera after their scans. The fingerprint of a camera contains the
-/// median, which changes if images are removed.
+/// Delays of a camera's images after their scans. The camera's fingerprint contains the median,
+/// which changes if images are removed.
 std::set<TimeNs> image_delays(const Frames& frames, const DriveInfo& drive, std::size_t slot) {
   const Camera& camera = drive.calibration.cameras[slot];
   std::set<TimeNs> delays;
@@ -129,7 +129,7 @@ bool has_fingerprint(const std::string& fingerprint, const Frames& frames, const
   });
 }
 
-/// Names what differs of the parts of the calibration that both have; nothing if they are equal.
+/// Names the differences between the common parts of two calibrations; empty if there are none.
 std::optional<std::string> different_calibration(const std::string& stored, const Frames& frames,
                                                  const DriveInfo& drive) {
   const std::vector<Camera>& cameras = drive.calibration.cameras;
@@ -159,7 +159,7 @@ Frames frames_of(const Frames& frames, const DriveRecord& drive) {
   return of_drive;
 }
 
-/// The drives of a map. A repaired one may have lost them: then all frames count as one drive.
+/// The drives of a map. A repaired map without drives counts as one drive.
 std::vector<DriveRecord> drives_of(const MapReader& map) {
   std::vector<DriveRecord> drives = map.drives();
   if (!drives.empty()) return drives;
@@ -168,7 +168,7 @@ std::vector<DriveRecord> drives_of(const MapReader& map) {
   return drives;
 }
 
-/// Whether the frames of a map have the stamps of the drive's frames of the same numbers.
+/// Whether the frames of a map have the same stamps as the drive's frames of the same numbers.
 bool has_same_numbers(const Frames& frames, const FrameSource& drive) {
   return std::all_of(frames.begin(), frames.end(), [&](const FrameRecord& frame) {
     const DriveInfo& info = drive.info();
@@ -188,7 +188,7 @@ std::optional<std::string> scan_difference(const std::vector<FrameRecord>& frame
   for (const FrameRecord& frame : frames) {
     if (number_in_drive.contains(frame.index) && frame.has(kPoints)) candidates.push_back(&frame);
   }
-  // Of a thinned drive most frames may be missing.
+  // A thinned drive may lack most frames.
   constexpr std::size_t kCompared = 3, kTried = 100;
   allow_thinned = allow_thinned && has_same_navigation(frames, number_in_drive, drive);
   int compared = 0, equal = 0;

@@ -1,4 +1,4 @@
-// Whether a map was made of a drive: by stamps, scans and calibration, not by names.
+// Whether a map is of a drive, by stamps, scans and calibration, not by names.
 #pragma once
 
 #include <filesystem>
@@ -13,41 +13,41 @@
 
 namespace fovea {
 
-/// Smallest share of equal stamps. It counts within the common time of map and drive, of the one
-/// that has fewer stamps there: a drive may be thinned, and a map may be of a part of it.
+/// Least share of equal stamps in the common time of map and drive, relative to the smaller number
+/// of stamps there: a drive may be thinned, and a map may be of a part of it.
 inline constexpr double kMinCommonStamps = 0.5;
 
-/// Which frames of a map are frames of a drive.
+/// The frames of a map that are frames of a drive.
 struct DriveMatch {
   std::map<int, int> number_in_drive;  ///< by the number of the frame in the map
-  /// Whether all frames of the map have their numbers in the drive.
+  /// Whether all frames of the map have the same numbers in the drive.
   bool keeps_numbers = true;
   std::vector<int> drives;         ///< numbers of the map's drives that are this drive
-  std::vector<std::string> notes;  ///< what could not be compared
+  std::vector<std::string> notes;  ///< comparisons that were impossible
 };
 
-/// Finds a drive among the drives of a map. It is the same drive if
+/// Finds a drive among the drives of a map. Two drives are the same if
 /// - at least kMinCommonStamps of the stamps are equal, to the nanosecond,
-/// - scans of common frames (three are read) have as many points as when they were mapped, or over
-///   10 % more or less if navigation moves the vehicle alike: rings may be left out,
-/// - each camera in use, and the place of the IMU, has the same fingerprint in both.
-/// The map of a format without fingerprints is compared by stamps alone, and a note says so.
-/// @param drive  under its own calibration, not a corrected one
+/// - the scans of three common frames have the same numbers of points, or over 10 % more or fewer
+/// if
+///   the motions by navigation agree (rings may have been removed),
+/// - each camera in use, and the position of the IMU, has the same fingerprint.
+/// A map whose format has no fingerprints is compared only by stamps; a note states that.
+/// @param drive  with its own calibration, not a corrected one
 /// @param path   of the map, for errors
-/// @throws InputError  if the map was not made of the drive
+/// @throws InputError  if the map is not of the drive
 DriveMatch match_drive(const MapReader& map, const FrameSource& drive,
                        const std::filesystem::path& path);
 
-/// Compares the numbers of points of up to three scans: drives with regular stamps, or without
-/// stamps, have the same stamps. Returns how they differ; nothing if half of them agree or none can
-/// be read.
+/// Compares the numbers of points of up to three scans, since different drives may have the same
+/// regular stamps. Returns the difference; empty if half of them agree or none is readable.
 /// @param number_in_drive  by the number of the frame in the map
-/// @param allow_thinned    whether rings may be left out (see match_drive())
+/// @param allow_thinned    whether rings may have been removed (see match_drive())
 std::optional<std::string> scan_difference(const std::vector<FrameRecord>& frames,
                                            const std::map<int, int>& number_in_drive,
                                            const FrameSource& drive, bool allow_thinned);
 
-/// The drive with the numbers that its frames have in the map; it has no other frames then.
+/// The drive with the frame numbers of the map, without frames that are not in the map.
 std::unique_ptr<FrameSource> with_map_numbers(std::unique_ptr<FrameSource> drive,
                                               const DriveMatch& match);
 

@@ -11,10 +11,10 @@
 namespace fovea {
 namespace {
 
-/// 2000-01-01 in Unix time. Earlier stamps count from some other start.
+/// 2000-01-01 in Unix time. Earlier stamps have another epoch.
 constexpr TimeNs kEarliestDate = 946'684'800 * kNsPerSecond;
 
-/// The day of a stamp in Unix time, or nothing if it is not in Unix time.
+/// The day of a stamp; empty if it is not in Unix time.
 std::optional<std::string> utc_day(std::optional<TimeNs> stamp) {
   if (!stamp || *stamp < kEarliestDate) return std::nullopt;
   const std::chrono::sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(*stamp)};

@@ -1,5 +1,4 @@
-// What the map keeps of the drive that is mapped: its identity, its sensors, the stamps of its
-// images.
+// Records of the mapped drive in the map: its identity, its sensors, the stamps of its images.
 #pragma once
 
 #include <vector>
@@ -10,7 +9,7 @@
 
 namespace fovea {
 
-/// The drive as its source describes it, before any correction of the calibration.
+/// The drive from its source, before any correction of the calibration.
 DriveRecord drive_record(const FrameSource& source);
 
 /// The LiDARs of a drive (DriveInfo::lidars).

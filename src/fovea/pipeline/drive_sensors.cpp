@@ -30,9 +30,9 @@ DriveInfo info_with_lidars(const FrameSource& source) {
 }
 
 MapperOptions suited_to(const SensorProfile& profile, MapperOptions options) {
-  // Range at which surfaces have to be closed between rings: the end of the white zone.
+  // Surfaces must close between rings up to this range: the end of the white zone.
   constexpr double kRange = 15;  // m
-  // Of a LiDAR of 64 rings (HDL-64E), and where the surface between rings is a guess.
+  // Lower limits: 64 rings (HDL-64E). Upper limits: the surface between rings is a guess.
   constexpr double kLeastPlanarEdge = 1, kMostPlanarEdge = 4;  // m
   constexpr double kLeastEdge = 0.4, kMostEdge = 1;            // m
   constexpr double kLeastRangeNoise = 0.02;                    // m
@@ -49,7 +49,7 @@ MapperOptions suited_to(const SensorProfile& profile, MapperOptions options) {
   if (ground.sensor_height == 0) {
     ground.sensor_height = profile.height.value_or(kUsualSensorHeight);
   }
-  // A margin: rings scatter about their elevations once the sweep's motion is undone.
+  // A margin: motion compensation scatters the elevations of a ring.
   const double spacing = ring_spacing_at(profile, elevation_on_ground(profile, kRange));
   options.moving.row_height = std::max(RangeImage::kLeastRowHeight, 1.1 * spacing);
   options.refinement.max_edge = options.upsample.max_edge;

@@ -1,4 +1,4 @@
-// The LiDARs of a drive, and the settings that suit them.
+// The LiDARs of a drive, and settings derived from them.
 #pragma once
 
 #include "fovea/geometry/sensor_profile.h"
@@ -7,16 +7,16 @@
 
 namespace fovea {
 
-/// Profile of the drive's LiDAR: what the drive states, and the rest as estimated from the first
-/// two usable scans. Reads these frames.
+/// Profile of the drive's LiDAR. Estimates values that the drive does not state from the first two
+/// usable scans, and reads these frames.
 SensorProfile lidar_profile(const FrameSource& source);
 
-/// What is known of the drive, with the profiles of its LiDARs.
+/// Description of the drive with the profiles of its LiDARs.
 DriveInfo info_with_lidars(const FrameSource& source);
 
-/// Sets what the options leave to the LiDAR: edges of surface, heights and angles that are 0.
+/// Sets options that are 0 from the LiDAR: edges of surface, heights and angles.
 MapperOptions suited_to(const SensorProfile& profile, MapperOptions options);
-/// The same for the first LiDAR of a drive; of one whose LiDARs are not known, for 64 rings.
+/// The same for the first LiDAR of a drive; for 64 rings if the drive describes none.
 MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options);
 
 }  // namespace fovea

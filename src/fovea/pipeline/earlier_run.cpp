@@ -17,7 +17,7 @@
 namespace fovea {
 namespace {
 
-/// Their values contain the path of the drive.
+/// Keys whose values contain the path of the drive.
 constexpr std::array kNames{meta_key::kDriveName, meta_key::kNotes};
 
 constexpr std::array kOrigin{meta_key::kGeoreferenced, meta_key::kOriginLatitude,
@@ -81,7 +81,7 @@ void require_same_run(const MapReader& map, const MapMeta& meta, const DriveReco
                       const FrameSource& drive, const std::filesystem::path& path) {
   const MapMeta before = map.meta();
   require_resumable(map, before, path.string());
-  MapMeta origin;  // which another drive has, too
+  MapMeta origin;  // other drives may have the same
   for (const char* key : kOrigin) {
     if (const auto found = meta.find(key); found != meta.end()) origin.insert(*found);
   }

@@ -1,4 +1,4 @@
-// The map that a run resumes: it must be of the same drive and settings.
+// Checks of the map that a run resumes: same drive, same settings.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,15 @@ namespace fovea {
 /// Whether all frames are in the map.
 bool is_complete(const MapMeta& meta);
 
-/// InputError if a map was made with other settings or of a drive with another calibration or other
-/// stamps or scans, or if no run can resume it. The names of drives do not count.
+/// Throws InputError if no run can resume the map, or if the settings or the calibration, stamps or
+/// scans of the drive differ. The names of drives do not count.
 /// @param meta    the settings of the present run
 /// @param record  of `drive`, before any correction of the calibration
 void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& record,
                       const FrameSource& drive, const std::filesystem::path& path);
 
-/// Replaces texts that contain the path of the drive by those of the map: the path may differ.
+/// Replaces texts that contain the path of the drive by those of the map, since the path may
+/// differ.
 void keep_names(const MapReader& map, MapMeta& meta, DriveRecord& drive);
 
 }  // namespace fovea

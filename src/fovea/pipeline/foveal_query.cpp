@@ -5,7 +5,7 @@ namespace fovea {
 std::vector<Ray> rays_of(const PointCloud& points_cam, const Camera& camera) {
   std::vector<Ray> rays;
   rays.reserve(points_cam.size());
-  // Interpolated points lie between points in view, but rounding may put them a hair outside.
+  // Interpolated points are between points in view, but rounding may move them slightly outside.
   const Eigen::Vector2f last(float(camera.width - 1), float(camera.height - 1));
   for (const Eigen::Vector3f& p : points_cam.position) {
     rays.push_back({pixel_of(camera, p).cwiseMax(0.0f).cwiseMin(last), p.norm()});

@@ -5,7 +5,7 @@
 namespace fovea {
 namespace {
 
-/// Poses farther apart in time have a pause between them, s.
+/// Longer steps between poses contain a pause, s.
 constexpr double kLongestStep = 1;
 
 std::optional<FrameMotion> between(const RigidMotion& here, TimeNs stamp, const RigidMotion& other,

@@ -1,4 +1,4 @@
-// Where the LiDAR was at a frame and how it moved, for whoever is not the mapper.
+// Pose and motion of the LiDAR at a frame, outside the mapper.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@ struct FrameMotion {
   SweepMotion sweep;  ///< of the LiDAR
 };
 
-/// Of a frame that need not be mapped yet: by navigation, or else by the poses given, one a frame
-/// of the drive's range or of its first frames. Nothing where neither says.
+/// Motion of a frame before it is mapped: by navigation, or else by given poses, one for each of
+/// the drive's (first) frames. Empty without both.
 std::optional<FrameMotion> known_motion(const FrameSource& source,
                                         const std::vector<RigidMotion>& given_poses, int index);
 
-/// Of a frame that was not skipped: its motion is that by which its sweep was compensated, or
-/// else follows from the poses of it and the frame before, if that is known and was not skipped.
+/// Motion of a mapped frame: that of its motion compensation, or else that between its pose and the
+/// pose of the frame before, if that is known and was not skipped.
 std::optional<FrameMotion> mapped_motion(const FrameRecord& record,
                                          const std::optional<FrameRecord>& before);
 

@@ -8,22 +8,22 @@
 namespace fovea {
 namespace {
 
-/// A vehicle that stands goes on with its submap.
-constexpr double kSubmapLength = 5;  // m, at least
-/// Odometry between the origins of neighbouring submaps: deviations of its own, by metre, and by
-/// frame whose registration failed or did not know a direction.
-constexpr double kTranslation = 0.01, kTranslationPerMetre = 0.001, kTranslationPerWeak = 0.1;  // m
-constexpr double kRotation = 0.02 * kDegree, kRotationPerMetre = 0.003 * kDegree,
+/// Least length, so that a standing vehicle stays in its submap.
+constexpr double kSubmapLength = 5;  // m
+/// Standard deviations of the odometry between the origins of consecutive submaps: a constant part,
+/// a part per meter, and a part per frame with degenerate or failed registration.
+constexpr double kTranslation = 0.01, kTranslationPerMeter = 0.001, kTranslationPerWeak = 0.1;  // m
+constexpr double kRotation = 0.02 * kDegree, kRotationPerMeter = 0.003 * kDegree,
                  kRotationPerWeak = 0.1 * kDegree;
-/// Registration of a place seen again.
+/// Standard deviations of a loop closure.
 constexpr double kClosureTranslation = 0.03;  // m
 constexpr double kClosureRotation = 0.05 * kDegree;
-/// From the last submap before a pause to the first one after it, where the track restarts: the
-/// motion is not known. The path counts as so long that loops between the two are searched.
+/// Standard deviations of the unknown motion over a pause after which the track restarts. The path
+/// counts as long enough for loop closures between both sides.
 constexpr double kRestartTranslation = 100, kRestartRotation = 90 * kDegree;  // m, rad
 constexpr double kRestartPath = 2500;                                         // m
-/// Without navigation the first submap stays where it is. If navigation begins later, the first
-/// submap is almost free until then.
+/// Without navigation the first submap is fixed. If navigation begins later, the first submap is
+/// almost free until then.
 constexpr double kAnchor = 1e-4;
 constexpr double kFreeRotation = 10, kFreeTranslation = 1e4;  // rad, m
 
@@ -65,8 +65,8 @@ bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
 Twist Fusion::odometry_deviations(double length, bool restarts) const {
   if (restarts) return deviations(kRestartRotation, kRestartTranslation);
   return deviations(
-      kRotation + kRotationPerMetre * length + kRotationPerWeak * weak_frames_,
-      kTranslation + kTranslationPerMetre * length + kTranslationPerWeak * weak_frames_);
+      kRotation + kRotationPerMeter * length + kRotationPerWeak * weak_frames_,
+      kTranslation + kTranslationPerMeter * length + kTranslationPerWeak * weak_frames_);
 }
 
 void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts) {
@@ -89,15 +89,15 @@ void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool res
   if (!options_.enabled) return;
   if (measured) graph_.add(*measured);
   is_solved_ = false;
-  if (node == 0) settle();
+  if (node == 0) apply_deferred();
 }
 
-void Fusion::settle() {
+void Fusion::apply_deferred() {
   if (!std::exchange(is_solved_, true)) graph_.optimize();
 }
 
 void Fusion::track(FrameRecord& record) {
-  settle();
+  apply_deferred();
   const RigidMotion& T_odom_lidar = record.T_odom_lidar;
   const bool restarts = record.has("track_restarted");
   if (restarts) {
@@ -122,7 +122,7 @@ void Fusion::track(FrameRecord& record) {
   record.T_local_lidar = T_local_lidar(record);
 }
 
-bool Fusion::wants_scan() const {
+bool Fusion::is_scan_requested() const {
   return options_.enabled && options_.loop_closure && !closer_.has(submaps_.size() - 1);
 }
 
@@ -134,8 +134,8 @@ std::vector<LoopCandidate> Fusion::candidates(const RigidMotion& T_local_lidar) 
   return result;
 }
 
-void Fusion::look_around(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
-  if (!wants_scan()) return;
+void Fusion::close_loops(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
+  if (!is_scan_requested()) return;
   if (const auto closure = closer_.find(points_lidar, candidates(record.T_local_lidar))) {
     record.revisit = Revisit{static_cast<int>(closure->submap), closure->T_submap_lidar};
   }
@@ -144,7 +144,7 @@ void Fusion::look_around(FrameRecord& record, const std::vector<Eigen::Vector3f>
 }
 
 void Fusion::replay(const FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
-  if (!wants_scan()) return;
+  if (!is_scan_requested()) return;
   const auto submap = static_cast<std::size_t>(record.submap);
   closer_.add(submap, points_lidar, T_submap_lidar(record));
   if (record.revisit) close_loop(record);
@@ -161,7 +161,7 @@ void Fusion::close_loop(const FrameRecord& record) {
                           record.revisit->T_submap_lidar * T_submap_lidar(record).inverse(),
                           deviations(kClosureRotation, kClosureTranslation), /*robust=*/true});
   is_solved_ = false;
-  settle();
+  apply_deferred();
 }
 
 RigidMotion Fusion::T_local_odom() const {

@@ -1,4 +1,4 @@
-// Registration, navigation and places seen again, joined by moving submaps (docs/method.md 2.6).
+// Fusion of registration, navigation and loop closures in a graph of submaps (docs/method.md 2.6).
 #pragma once
 
 #include <optional>
@@ -13,46 +13,44 @@
 namespace fovea {
 
 struct FusionOptions {
-  bool enabled = true;         ///< false: submaps stay where they were made
-  bool loop_closure = true;    ///< places seen again are registered
-  double submap_duration = 2;  ///< s, at least; points of a submap keep to each other
+  bool enabled = true;         ///< false: submaps never move
+  bool loop_closure = true;    ///< registers revisited places
+  double submap_duration = 2;  ///< s, at least; the points of a submap move together
   void validate() const;       ///< ConfigError that names the field
 };
 
-/// Poses of the submaps. Scans are registered in the frame `odom`, which never jumps; `local` is
-/// where navigation and closed loops put the submaps, and `T_local_odom` follows the latest of
-/// them.
+/// Poses of the submaps. Scans are registered in the frame `odom`, which never jumps. Navigation
+/// and loop closures move the submaps in `local`; `T_local_odom` follows the latest submap.
 ///
-/// Depends on the frames told so far alone: a run that resumes and tells them again goes on alike.
+/// Depends only on the frames so far: a resumed run that replays them has the same result.
 class Fusion {
  public:
   /// @param drive  must outlive the fusion
   Fusion(const FusionOptions& options, const RegistrationOptions& registration,
          const DriveInfo& drive);
 
-  /// Takes the next frame's pose in odom, opens a submap if one is due or the track restarts, and
-  /// sets record.submap and
-  /// record.T_local_lidar; appends to record.note what is wrong with the navigation.
+  /// Adds the next frame by its pose in odom, and opens a submap if one is due or the track
+  /// restarts. Sets record.submap and record.T_local_lidar; appends faults of navigation to
+  /// record.note.
   void track(FrameRecord& record);
-  /// Solves the graph with the submap that the last frame opened: until then that is where odometry
-  /// puts it. The longer the drive, the longer it takes; track() does it first, unless it was done
-  /// while nobody waited.
-  void settle();
+  /// Deferred work: solves the graph with the submap that the last frame opened. The time grows
+  /// with the drive. track() does this first if it was not called.
+  void apply_deferred();
 
-  /// Gives the scan of a frame just tracked, which was not held out: the first of a submap is kept
-  /// and compared with earlier places. Sets record.revisit and record.T_local_lidar if that closes
-  /// a loop.
-  void look_around(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar);
-  /// Whether look_around() waits for a scan of the present submap.
-  bool wants_scan() const;
+  /// Keeps the first scan of a submap and searches a loop closure for it. Sets record.revisit and
+  /// record.T_local_lidar if it finds one.
+  /// @param record  the frame just tracked, not held out
+  void close_loops(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar);
+  /// Whether the present submap has no scan yet for close_loops().
+  bool is_scan_requested() const;
 
-  /// The same as look_around() for a frame of an earlier run: what it found is in the record.
+  /// close_loops() for a frame of an earlier run: the loop closure is in the record.
   void replay(const FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar);
 
   RigidMotion T_local_odom() const;
   /// T_local_submap by number.
   const std::vector<RigidMotion>& submaps() const { return graph_.poses(); }
-  /// Of any frame tracked, by what is known now.
+  /// Present pose of any tracked frame.
   RigidMotion T_local_lidar(const FrameRecord& record) const;
 
  private:
@@ -63,7 +61,7 @@ class Fusion {
   };
   bool is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const;
   void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts);
-  /// Of the odometry from the submap before to a new one.
+  /// Standard deviations of the odometry from the last submap to a new one.
   /// @param length  m driven between their origins
   Twist odometry_deviations(double length, bool restarts) const;
   RigidMotion T_submap_lidar(const FrameRecord& record) const;
@@ -79,7 +77,7 @@ class Fusion {
   std::vector<Submap> submaps_;
   std::optional<RigidMotion> last_T_odom_lidar_;
   double path_ = 0;      // m
-  int weak_frames_ = 0;  // of the present submap: registration knew less than six directions
+  int weak_frames_ = 0;  // of the present submap: registration was degenerate or failed
 };
 
 }  // namespace fovea

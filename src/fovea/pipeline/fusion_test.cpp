@@ -74,7 +74,7 @@ std::vector<FrameRecord> drive(Fusion& fusion, double turn, int frames, bool wit
     record.stamp = i * kTenth;
     record.T_odom_lidar = odometry.T_odom_lidar;
     fusion.track(record);
-    if (with_scans && fusion.wants_scan()) fusion.look_around(record, scan_at(true_pose(i)));
+    if (with_scans && fusion.is_scan_requested()) fusion.close_loops(record, scan_at(true_pose(i)));
     records.push_back(record);
   }
   return records;
@@ -197,7 +197,7 @@ TEST(Fusion, ToldAgainItGoesOnAlike) {
   for (const FrameRecord& record : records) {
     FrameRecord tracked = record;
     again.track(tracked);
-    if (again.wants_scan()) again.replay(record, scan_at(true_pose(record.index)));
+    if (again.is_scan_requested()) again.replay(record, scan_at(true_pose(record.index)));
   }
   ASSERT_EQ(first.submaps().size(), again.submaps().size());
   for (std::size_t i = 0; i < first.submaps().size(); ++i) {

@@ -104,7 +104,7 @@ TrackedFrame Tracker::track(const Frame& frame, bool held_out,
   motion_model_.update(frame.stamp, record.T_odom_lidar);
   clock.time("register", [&] {
     fusion_.track(record);
-    if (!held_out) fusion_.look_around(record, placed.refined.cloud.points);
+    if (!held_out) fusion_.close_loops(record, placed.refined.cloud.points);
   });
   if (!held_out && registers() && takes(keyframes_, record, lost_frames_)) {
     next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
@@ -164,7 +164,7 @@ void Tracker::count_lost(const FrameRecord& record) {
 }
 
 void Tracker::settle() {
-  settling_.time("register", [&] { fusion_.settle(); });
+  settling_.time("register", [&] { fusion_.apply_deferred(); });
   if (!next_target_) return;
   refiner_.keep(std::move(next_target_->cloud_lidar), next_target_->T_odom_lidar, settling_);
   next_target_.reset();

@@ -67,7 +67,7 @@ class Tracker {
   /// Follows the next frame of an earlier run, which was not skipped.
   void follow(const FrameRecord& record);
   /// Whether a frame just followed that was not held out has to be given to replay().
-  bool wants_scan() const { return fusion_.wants_scan(); }
+  bool wants_scan() const { return fusion_.is_scan_requested(); }
   /// Whether it is a target of later scans, for which that has to be, too, from first_target() on.
   bool is_target() const { return is_target_; }
   /// Takes the compensated scan of a frame just followed, as a target and a place to come back to.
