@@ -13,7 +13,7 @@ FrameRecord record_of(int index, int submap) {
   return record;
 }
 
-/// Submaps begin at frames 0 and 4, where odometry is right.
+/// Submaps begin at frames 0 and 4 with right odometry.
 TileMap map_of(double shift) {
   TileMap map;
   map.add_submap(RigidMotion(Eigen::Translation3d(0, 0, 0)));
@@ -21,7 +21,7 @@ TileMap map_of(double shift) {
   return map;
 }
 
-TEST(DriveLog, HandsOnEachRecordOnceUnderItsSubmapsPose) {
+TEST(DriveLog, ReturnsEachRecordOnceWithItsSubmapsPose) {
   DriveLog log;
   EXPECT_FALSE(log.has_mapped());
   for (int i = 0; i < 6; ++i) log.add(record_of(i, i == 2 ? -1 : i / 4));
@@ -41,11 +41,11 @@ TEST(DriveLog, HandsOnEachRecordOnceUnderItsSubmapsPose) {
   EXPECT_TRUE(nothing.frames.empty() && nothing.poses.empty() && nothing.submaps.empty());
 }
 
-TEST(DriveLog, PosesThatMoveAreHandedOnAgain) {
+TEST(DriveLog, MovedPosesAreReturnedAgain) {
   DriveLog log;
   for (int i = 0; i < 6; ++i) log.add(record_of(i, i / 4));
   log.rows(map_of(0), false);
-  EXPECT_TRUE(log.rows(map_of(1e-4), false).poses.empty());  // not worth it yet
+  EXPECT_TRUE(log.rows(map_of(1e-4), false).poses.empty());  // below the threshold
   const MapRows exact = log.rows(map_of(1e-4), true);
   EXPECT_EQ(exact.submaps.size(), 1u);
   ASSERT_EQ(exact.poses.size(), 2u);
@@ -56,7 +56,7 @@ TEST(DriveLog, PosesThatMoveAreHandedOnAgain) {
   EXPECT_EQ(moved.submaps.size(), 1u);
 }
 
-TEST(DriveLog, ASkippedFrameLiesBetweenItsNeighboursOrOnTheirLine) {
+TEST(DriveLog, ASkippedFrameIsInterpolatedOrExtrapolated) {
   DriveLog log;
   for (int i = 0; i < 6; ++i) log.add(record_of(i, i == 0 || i == 2 || i == 5 ? -1 : 0));
   const MapRows rows = log.rows(map_of(0), true);
@@ -73,7 +73,7 @@ TEST(DriveLog, ASkippedFrameLiesBetweenItsNeighboursOrOnTheirLine) {
   EXPECT_EQ(both.frames[0].T_local_lidar.matrix(), both.frames[1].T_local_lidar.matrix());
 }
 
-TEST(DriveLog, GoesOnWithAnEarlierRunsFrames) {
+TEST(DriveLog, ContinuesWithTheFramesOfAnEarlierRun) {
   DriveLog first, second;
   for (int i = 0; i < 4; ++i) first.add(record_of(i, 0));
   for (const FrameRecord& record : first.rows(map_of(0), true).frames) second.add_stored(record);

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pair;
 
-/// Scans of some points, images of two cameras, and whatever a test changes of it.
+/// A drive that tests change: scans of a few points, images of two cameras.
 class TestDrive : public FrameSource {
  public:
   DriveInfo info_;
@@ -54,7 +54,7 @@ class TestDrive : public FrameSource {
   }
 };
 
-/// Puts what `fovea map` keeps of a drive, with other numbers of its frames.
+/// Writes the records that `fovea map` keeps of a drive, with other frame numbers.
 void put_drive(MapWriter& writer, std::size_t id, const TestDrive& drive, int shift) {
   DriveRecord record = drive_record(drive);
   record.first_frame += shift;
@@ -124,7 +124,7 @@ TEST_F(MatchDrive, RefusesOtherStampsUnderTheSameName) {
   EXPECT_THAT(refusal(without_stamps), HasSubstr("it has no stamps"));
 }
 
-// Simulated drives have the same stamps, and so do drives without stamps.
+// Simulated drives have equal stamps, and so do drives without stamps.
 TEST_F(MatchDrive, RefusesOtherScansAtTheSameStamps) {
   write_map(TestDrive());
   TestDrive other;
@@ -166,7 +166,7 @@ TEST_F(MatchDrive, RefusesAnotherCalibrationAndNamesIt) {
               testing::AllOf(HasSubstr("another calibration"), HasSubstr("camera 3,")));
   remounted.info_.calibration.T_imu_lidar->translation().x() += 0.01;
   EXPECT_THAT(refusal(remounted), HasSubstr("the place of the IMU"));
-  // Only what is in use counts.
+  // Only the cameras in use count.
   refocused.info_.calibration.cameras.pop_back();
   EXPECT_EQ(refusal(refocused), "accepted");
   TestDrive uncolored;
@@ -219,7 +219,7 @@ TEST_F(MatchDrive, FindsTheFramesOfAThinnedDriveThatIsNumberedAnew) {
   EXPECT_TRUE(std::holds_alternative<SkippedFrame>(drive->load(8)));
 }
 
-// Half of the stamps within the common time, of the one that has fewer there.
+// Half of the stamps in the common time, relative to the smaller number there.
 TEST_F(MatchDrive, SomeOtherStampsDoNotMatter) {
   write_map(TestDrive());
   TestDrive drive;
@@ -230,7 +230,7 @@ TEST_F(MatchDrive, SomeOtherStampsDoNotMatter) {
   EXPECT_THAT(refusal(drive), HasSubstr("9 of 19 stamps"));
 }
 
-// The fingerprint has the median delay of the images, which changes with the images there are.
+// The fingerprint contains the median delay of the present images.
 TEST_F(MatchDrive, AcceptsAThinnedDriveWhoseImagesHaveDelaysOfTheirOwn) {
   TestDrive drive;
   drive.info_.image_offsets.resize(2);
@@ -238,7 +238,7 @@ TEST_F(MatchDrive, AcceptsAThinnedDriveWhoseImagesHaveDelaysOfTheirOwn) {
   for (int i = 0; i < 20; ++i) drive.info_.image_offsets[0][i] = 1e-4 * (i - 10);
   write_map(drive);
   EXPECT_EQ(refusal(drive), "accepted");
-  TestDrive thinned = drive;  // its frames 0 to 4 are left
+  TestDrive thinned = drive;  // keeps frames 0 to 4
   thinned.info_.calibration.cameras[0].image_delay = 0.0192;
   thinned.info_.image_offsets[0].clear();
   for (int i = 0; i < 5; ++i) thinned.info_.image_offsets[0][i] = 1e-4 * (i - 2);

@@ -14,7 +14,7 @@
 
 namespace fovea::drive_sensors_test {
 
-/// Scans of other sensors lie next to those of KITTI; without both, tests are skipped.
+/// Scans of other sensors, next to those of KITTI; without both, tests are skipped.
 #define FOVEA_OTHER_SENSORS_OR_SKIP(variable)                                  \
   FOVEA_KITTI_SAMPLE_OR_SKIP(variable##_sample);                               \
   const std::filesystem::path variable =                                       \
@@ -32,7 +32,7 @@ SensorProfile of_drive(const std::filesystem::path& drive) {
   return lidar_profile(*open_drive(drive, options));
 }
 
-/// Every elevation found is one of the data sheet.
+/// Expects the elevations of the data sheet.
 void expect_rings(const SensorProfile& profile, const std::vector<double>& degrees,
                   double tolerance_degrees) {
   for (const double elevation : profile.ring_elevations) {
@@ -54,7 +54,7 @@ std::vector<double> even(double highest, double step, int count) {
 TEST(DriveSensors, VelodyneVlp16) {
   FOVEA_OTHER_SENSORS_OR_SKIP(other);
   const SensorProfile profile = of_file(other / "vlp16.pcd");
-  // The lowest ring meets nothing but the vehicle.
+  // The lowest ring hits only the vehicle.
   EXPECT_EQ(profile.ring_elevations.size(), 15u);
   expect_rings(profile, even(15, 2, 16), 0.02);
   EXPECT_NEAR(profile.ring_spacing, 2 * kDegree, 0.01 * kDegree);
@@ -85,7 +85,7 @@ TEST(DriveSensors, HesaiXt32) {
 TEST(DriveSensors, HesaiOt128) {
   FOVEA_OTHER_SENSORS_OR_SKIP(other);
   const SensorProfile profile = of_file(other / "ot128.pcd");
-  // The upper rings of this scan meet nothing.
+  // The upper rings of this scan have no returns.
   EXPECT_GE(profile.ring_elevations.size(), 100u);
   EXPECT_LE(profile.ring_elevations.size(), 128u);
   EXPECT_NEAR(profile.ring_spacing, 0.125 * kDegree, 0.02 * kDegree);
@@ -103,7 +103,7 @@ TEST(DriveSensors, ADriveThatStatesItsRings) {
   FOVEA_OTHER_SENSORS_OR_SKIP(other);
   const SensorProfile hdl32 = of_drive(other / "six-cameras-and-32-rings");
   EXPECT_EQ(hdl32.ring_elevations.size(), 32u);
-  expect_rings(hdl32, even(10.667, 1.333, 32), 0.25);  // the sweep's motion is undone
+  expect_rings(hdl32, even(10.667, 1.333, 32), 0.25);  // motion compensated
   EXPECT_NEAR(hdl32.ring_spacing, 1.333 * kDegree, 0.02 * kDegree);
   EXPECT_NEAR(hdl32.height.value_or(0), 1.84, 0.1);  // of the calibration
   const SensorProfile pandar64 = of_drive(other / "camera-and-64-rings");
@@ -134,12 +134,13 @@ SensorProfile rings(double spacing_degrees) {
 }
 
 TEST(DriveSensors, SettingsFollowFromTheRings) {
-  // Of 64 rings: the settings that were found on KITTI.
+  // 64 rings: the settings from KITTI.
   const MapperOptions dense = suited_to(rings(0.4), MapperOptions());
   EXPECT_EQ(dense.surface.max_edge, 0.4);
   EXPECT_EQ(dense.surface.planar_edge, 1.0);
   EXPECT_EQ(dense.moving.row_height, RangeImage::kLeastRowHeight);
-  // Rings 1.5 degrees apart meet the ground at 15 m 3.5 m apart, and a wall there 0.39 m apart.
+  // Rings 1.5 degrees apart have a spacing of 3.5 m on the ground at 15 m, and 0.39 m on a wall
+  // there.
   const MapperOptions sparse = suited_to(rings(1.5), MapperOptions());
   EXPECT_NEAR(sparse.surface.planar_edge, 1.5 * kDegree * (1.73 + 15 * 15 / 1.73), 1e-9);
   EXPECT_NEAR(sparse.surface.max_edge, 1.2 * 15 * 1.5 * kDegree, 1e-9);
@@ -150,7 +151,7 @@ TEST(DriveSensors, SettingsFollowFromTheRings) {
   EXPECT_EQ(sparsest.surface.max_edge, 1);
 }
 
-TEST(DriveSensors, SettingsThatAreGivenStay) {
+TEST(DriveSensors, GivenSettingsStay) {
   MapperOptions given;
   given.surface.max_edge = 0.3;
   given.surface.planar_edge = 0.7;
@@ -168,7 +169,7 @@ TEST(DriveSensors, HeightAndNoiseComeFromTheProfile) {
   const MapperOptions options = suited_to(profile, MapperOptions());
   EXPECT_EQ(options.refinement.ground.sensor_height, 2.2);
   EXPECT_EQ(options.refinement.range_noise, 0.05);
-  // A drive whose LiDAR is not known.
+  // A drive with an unknown LiDAR.
   EXPECT_EQ(suited_to(DriveInfo(), MapperOptions()).refinement.ground.sensor_height,
             kUsualSensorHeight);
 }

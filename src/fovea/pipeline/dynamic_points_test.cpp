@@ -10,9 +10,8 @@
 
 namespace fovea::dynamic_points_test {
 
-/// What a standing LiDAR sees: a wall all around at 20 m, and a box face at x = `thing` (0: none),
-/// 2 m wide.
-PointCloud scan_of(float thing) {
+/// A scan at rest: a wall all around at 20 m, and a box face at x = `face` (0: none), 2 m wide.
+PointCloud scan_of(float face) {
   PointCloud scan;
   for (int ring = 0; ring < 64; ++ring) {
     const float elevation = (2.0f - 0.42f * float(ring)) * std::numbers::pi_v<float> / 180;
@@ -20,17 +19,17 @@ PointCloud scan_of(float thing) {
       const float azimuth = (float(k) - 900) * std::numbers::pi_v<float> / 900;
       const Eigen::Vector3f ray(std::cos(elevation) * std::cos(azimuth),
                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      const Eigen::Vector3f on_face = ray * (thing / ray.x());
-      const bool hit = thing > 0 && ray.x() > 0 && std::abs(on_face.y()) < 1;
+      const Eigen::Vector3f on_face = ray * (face / ray.x());
+      const bool hit = face > 0 && ray.x() > 0 && std::abs(on_face.y()) < 1;
       scan.position.push_back(hit ? on_face : Eigen::Vector3f(ray * 20));
     }
   }
   return scan;
 }
 
-RangeImage seen(float thing) { return RangeImage(scan_of(thing).position); }
+RangeImage seen(float face) { return RangeImage(scan_of(face).position); }
 
-/// Points of a face at x, as a frame adds them to a map.
+/// Points of a face at x that a frame adds to a map.
 PointCloud face_points(float x, int frame) {
   PointCloud points;
   for (float y = -0.9f; y < 0.9f; y += 0.05f) {
@@ -52,7 +51,7 @@ PointCloud face_points(float x, int frame) {
 
 const RigidMotion kHere = RigidMotion::Identity();
 
-TEST(DynamicPointFilter, WhatHasGoneIsRemovedAndWhatStandsStays) {
+TEST(DynamicPointFilter, RemovesAnObjectThatLeft) {
   DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
@@ -68,8 +67,8 @@ TEST(DynamicPointFilter, WhatHasGoneIsRemovedAndWhatStandsStays) {
   EXPECT_EQ(filter.observe(map, seen(0), kHere, kHere, 5), 0u);
 }
 
-// In tiles of such sizes a voxel's border has different numbers as a product and as a quotient.
-TEST(DynamicPointFilter, WhatStoodOnTheBorderOfAVoxelIsRemoved) {
+// With these tile sizes a voxel border differs between a product and a quotient.
+TEST(DynamicPointFilter, RemovesPointsOnTheBorderOfAVoxel) {
   for (const auto& [tile_size, x] : {std::pair(10.1, 9.696f), {5.9, 2.95f}, {17.5, 8.75f}}) {
     DynamicPointFilter filter({});
     TileMap map(tile_size);
@@ -84,9 +83,9 @@ TEST(DynamicPointFilter, WhatStoodOnTheBorderOfAVoxelIsRemoved) {
   }
 }
 
-// A road 1 m below the LiDAR: rays graze it, so that the lowest decimetres above it are never seen
-// through. What stood there goes with what stood on it; the road stays.
-TEST(DynamicPointFilter, TheFootOfWhatHasGoneGoesToo) {
+// A road 1 m below the LiDAR: no ray sees through the lowest decimeters above it. Points there are
+// removed with those above them; the road stays.
+TEST(DynamicPointFilter, RemovesTheLowestPartOfAnObject) {
   PointCloud scan = scan_of(0);
   for (Eigen::Vector3f& p : scan.position) {
     if (p.z() < -1) p *= -1 / p.z();
@@ -106,7 +105,7 @@ TEST(DynamicPointFilter, TheFootOfWhatHasGoneGoesToo) {
   EXPECT_EQ(map.size(), road.size());
 }
 
-TEST(DynamicPointFilter, WhatIsSeenNowAndThenStays) {
+TEST(DynamicPointFilter, KeepsAnObjectThatIsSeenSometimes) {
   DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
@@ -116,7 +115,7 @@ TEST(DynamicPointFilter, WhatIsSeenNowAndThenStays) {
   }
 }
 
-TEST(DynamicPointFilter, WhatIsHiddenStays) {
+TEST(DynamicPointFilter, KeepsHiddenPoints) {
   DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
@@ -126,7 +125,7 @@ TEST(DynamicPointFilter, WhatIsHiddenStays) {
   }
 }
 
-TEST(DynamicPointFilter, MarksWhatCameWhereScansSawThrough) {
+TEST(DynamicPointFilter, ClassifiesPointsInFreeSpaceAsDynamic) {
   DynamicPointFilter filter({});
   TileMap map(4.0);
   map.add_submap(kHere);
@@ -138,12 +137,12 @@ TEST(DynamicPointFilter, MarksWhatCameWhereScansSawThrough) {
   for (int frame = 0; frame < 6; ++frame) filter.observe(map, seen(0), kHere, kHere, frame);
   EXPECT_EQ(marked(10), std::int64_t(face_points(10, 9).size()));
   EXPECT_EQ(marked(20), 0);
-  // It stays there: after as many scans it is part of the world.
+  // After as many scans with the face it counts as static.
   for (int frame = 6; frame < 12; ++frame) filter.observe(map, seen(10), kHere, kHere, frame);
   EXPECT_EQ(marked(10), 0);
 }
 
-TEST(DynamicPointFilter, SwitchedOffNothingGoes) {
+TEST(DynamicPointFilter, SwitchedOffItRemovesNothing) {
   DynamicPointOptions off;
   off.remove = false;
   DynamicPointFilter filter(off);
@@ -157,7 +156,7 @@ TEST(DynamicPointFilter, SwitchedOffNothingGoes) {
   EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 0);
 }
 
-TEST(DynamicPointFilter, ReplayedScansLeadToTheSameDecision) {
+TEST(DynamicPointFilter, ReplayedScansGiveTheSameDecision) {
   TileMap map(4.0);
   map.add_submap(kHere);
   map.add(face_points(10, 0));

@@ -9,7 +9,7 @@ const Twist kTwist = (Twist() << 0, 0, 0.2, 8, 0, 0).finished();
 
 RigidMotion pose_at(double s) { return exp_se3(s * kTwist); }
 
-/// A drive of frames a tenth of a second apart that has nothing but stamps.
+/// A drive with only stamps, a tenth of a second apart.
 class Stamps : public FrameSource {
  public:
   explicit Stamps(bool with_navigation) {
@@ -69,7 +69,7 @@ TEST(FrameMotion, OfTheLatestMappedFrame) {
   std::optional<FrameRecord> before = record(10);
   FrameRecord latest = record(11);
   expect_motion(mapped_motion(latest, before), 1.1);
-  // That by which its sweep was compensated comes first.
+  // The motion of its motion compensation comes first.
   latest.motion = SweepMotion{2 * kTwist, kTwist};
   EXPECT_EQ(mapped_motion(latest, before)->sweep, *latest.motion);
   latest.motion.reset();

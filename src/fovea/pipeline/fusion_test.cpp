@@ -21,7 +21,7 @@ RigidMotion true_pose(int frame) {
   return T;
 }
 
-/// What a LiDAR sees of pillars that stand, irregularly, along the circle, and of the ground.
+/// A scan of irregular pillars along the circle, and of the ground.
 std::vector<Eigen::Vector3f> scan_at(const RigidMotion& T_local_lidar) {
   std::vector<Eigen::Vector3f> points;
   const RigidMotion T = T_local_lidar.inverse();
@@ -53,7 +53,7 @@ std::vector<Eigen::Vector3f> scan_at(const RigidMotion& T_local_lidar) {
   return points;
 }
 
-/// Odometry that turns a little too far every frame.
+/// Odometry that rotates slightly too far every frame.
 struct Odometry {
   double turn;  // rad a frame too much
   RigidMotion T_odom_lidar = RigidMotion::Identity();
@@ -96,7 +96,7 @@ TEST(Fusion, WithoutNavigationAndLoopsLocalIsOdom) {
   EXPECT_EQ(records.back().submap, 4);
 }
 
-TEST(Fusion, AVehicleThatStandsStaysInItsSubmap) {
+TEST(Fusion, AStandingVehicleStaysInItsSubmap) {
   DriveInfo info;
   Fusion fusion({}, {}, info);
   for (int i = 0; i < 200; ++i) {
@@ -107,7 +107,7 @@ TEST(Fusion, AVehicleThatStandsStaysInItsSubmap) {
   EXPECT_EQ(fusion.submaps().size(), 1u);
 }
 
-TEST(Fusion, APlaceSeenAgainClosesTheLoop) {
+TEST(Fusion, ARevisitedPlaceClosesTheLoop) {
   constexpr double kTurn = 1e-4;  // 1.7 degrees a lap
   DriveInfo info;
   Fusion open({.loop_closure = false}, {}, info), closed({}, {}, info);
@@ -124,7 +124,7 @@ TEST(Fusion, APlaceSeenAgainClosesTheLoop) {
   }
 }
 
-TEST(Fusion, OtherPlacesAreNotTakenForOneSeenBefore) {
+TEST(Fusion, OtherPlacesCloseNoLoop) {
   DriveInfo info;
   Fusion fusion({}, {}, info);
   for (const FrameRecord& record : drive(fusion, 0, kLap * 3 / 4, true)) {
@@ -177,7 +177,7 @@ TEST(Fusion, NavigationThatBeginsLaterMovesTheSubmapsBeforeIt) {
   }
 }
 
-TEST(Fusion, SwitchedOffItLeavesAllPosesAsTheyAre) {
+TEST(Fusion, SwitchedOffItChangesNoPose) {
   DriveInfo info;
   std::vector<StampedPose> poses;
   for (int i = 0; i < 100; ++i) {
@@ -190,7 +190,7 @@ TEST(Fusion, SwitchedOffItLeavesAllPosesAsTheyAre) {
   }
 }
 
-TEST(Fusion, ToldAgainItGoesOnAlike) {
+TEST(Fusion, ReplayedFramesGiveTheSameResult) {
   DriveInfo info;
   Fusion first({}, {}, info), again({}, {}, info);
   const auto records = drive(first, 1e-4, kLap + 30, true);

@@ -14,17 +14,17 @@ namespace {
 constexpr double kLongestGap = 1.0;  // s from the first scan to the second
 constexpr double kFastest = 60;      // m/s
 
-/// The search begins at rest and at steps along each of the LiDAR's axes, either way: at most half
-/// as far apart as pairs may be (m), and at least two steps up to this speed (m/s).
+/// The search starts at rest and at steps along both directions of the LiDAR's axes. A step is at
+/// most kLongestStep (m), and there are at least two up to kStartSpeed (m/s).
 constexpr double kLongestStep = 3;
 constexpr double kStartSpeed = 30;
-/// How far apart its pairs may be, first and then, with their kernels (m).
+/// Maximum distances of pairs, first and then, with the widths of their kernels (m).
 constexpr double kFar = 4, kFarWidth = 1;
 constexpr double kNear = 1, kNearWidth = 0.3;
 
-/// The motion has settled when it changes by less from one registration to the next (m, rad). Each
-/// takes what is wrong to a few hundredths of it.
-constexpr double kSettledWay = 3e-3, kSettledTurn = 3e-4;
+/// The motion has converged if one registration changes it by less than this (m, rad). Each reduces
+/// the error to a few hundredths.
+constexpr double kConvergedTranslation = 3e-3, kConvergedRotation = 3e-4;
 constexpr int kMostRegistrations = 8;
 
 /// The first usable frame from `begin` on.
@@ -42,16 +42,18 @@ std::vector<RigidMotion> first_guesses(double elapsed) {
   const double farthest = kStartSpeed * elapsed;
   const int steps = std::max(2, static_cast<int>(std::ceil(farthest / kLongestStep)));
   for (int i = 1; i <= steps; ++i) {
-    const double way = farthest * i / steps;
-    for (const Eigen::Vector3d& start :
-         {Eigen::Vector3d(way, 0, 0), {-way, 0, 0}, {0, way, 0}, {0, -way, 0}}) {
+    const double distance = farthest * i / steps;
+    for (const Eigen::Vector3d& start : {Eigen::Vector3d(distance, 0, 0),
+                                         {-distance, 0, 0},
+                                         {0, distance, 0},
+                                         {0, -distance, 0}}) {
       guesses.emplace_back(Eigen::Translation3d(start));
     }
   }
   return guesses;
 }
 
-/// Two scans, and how the second lies to the first.
+/// Two scans, for the motion between them.
 class ScanPair {
  public:
   ScanPair(const DriveInfo& drive, const Frame& first, const Frame& second, bool compensate)
@@ -62,14 +64,14 @@ class ScanPair {
         height_(sensor_height(first.scan.position).value_or(kUsualSensorHeight)),
         compensate_(compensate && !drive.sweep_compensated) {
     options_.max_correction_translation = kFastest * elapsed_;
-    // Of two scans, each has its own planes.
+    // Two scans have separate planes.
     options_.registration.method = RegistrationMethod::kGicp;
   }
 
-  /// T_first_second, the sweeps as they are, to some decimetres: by what stands, since the rings of
-  /// a LiDAR on the ground are the same wherever it goes.
-  RigidMotion found() const {
-    const RegistrationCloud first = standing(first_), second = standing(second_);
+  /// T_first_second of the raw sweeps, to a few decimeters. Uses no ground points, since rings on
+  /// the ground look the same everywhere.
+  RigidMotion find_coarse() const {
+    const RegistrationCloud first = without_ground(first_), second = without_ground(second_);
     const PointIndex index(first.points, options_.voxel);
     RegistrationOptions far = options_.registration, near = options_.registration;
     far.max_distance = kFar;
@@ -88,15 +90,15 @@ class ScanPair {
     return best;
   }
 
-  /// T_first_second of the sweeps undone by a guess of it, from that guess; nothing where that
-  /// fails.
-  std::optional<RigidMotion> registered(const RigidMotion& guess) const {
+  /// T_first_second by registration from a guess, after motion compensation by the guess; empty if
+  /// that fails.
+  std::optional<RigidMotion> refine(const RigidMotion& guess) const {
     const Twist velocity = velocity_of(guess);
     StageClock unused;
     PoseRefiner refiner(options_, drive_.calibration.cameras);
-    refiner.keep(refiner.prepare(undone(first_, velocity), unused), RigidMotion::Identity(),
+    refiner.keep(refiner.prepare(compensated(first_, velocity), unused), RigidMotion::Identity(),
                  unused);
-    const RefinedPose refined = refiner.refine(undone(second_, velocity), guess, unused);
+    const RefinedPose refined = refiner.refine(compensated(second_, velocity), guess, unused);
     if (!refined.note.empty()) return std::nullopt;
     return refined.T_odom_lidar;
   }
@@ -106,12 +108,12 @@ class ScanPair {
   }
 
  private:
-  PointCloud undone(PointCloud scan, const Twist& velocity) const {
+  PointCloud compensated(PointCloud scan, const Twist& velocity) const {
     if (compensate_) compensate_sweep(scan, {velocity}, drive_.sweep);
     return scan;
   }
 
-  RegistrationCloud standing(const PointCloud& scan) const {
+  RegistrationCloud without_ground(const PointCloud& scan) const {
     const std::vector<std::uint8_t> ground =
         segment_ground(scan.position, {.method = GroundMethod::kRansac, .sensor_height = height_});
     std::vector<Eigen::Vector3f> points;
@@ -127,19 +129,18 @@ class ScanPair {
   double elapsed_;  // s
   double height_;   // m, of the LiDAR above the ground
   bool compensate_;
-  /// What the mapper registers by unless told otherwise, whatever it is told: this finds the first
-  /// guess, which is not what options compare.
+  /// The mapper's default options, not the given ones: this finds only a first guess.
   RefinementOptions options_;
 };
 
 std::optional<Twist> velocity_by_registration(const ScanPair& scans) {
-  std::optional<RigidMotion> T_first_second = scans.found();
+  std::optional<RigidMotion> T_first_second = scans.find_coarse();
   for (int i = 0; T_first_second && i < kMostRegistrations; ++i) {
-    const auto next = scans.registered(*T_first_second);
+    const auto next = scans.refine(*T_first_second);
     const RigidMotion change = next ? T_first_second->inverse() * *next : RigidMotion::Identity();
     T_first_second = next;
-    if (change.translation().norm() < kSettledWay &&
-        rotation_angle(change.linear()) < kSettledTurn) {
+    if (change.translation().norm() < kConvergedTranslation &&
+        rotation_angle(change.linear()) < kConvergedRotation) {
       break;
     }
   }

@@ -1,4 +1,4 @@
-// How the LiDAR moves when a drive begins that nothing tells of: by its first two scans.
+// Initial LiDAR velocity from the first two scans, used without navigation.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,15 @@
 
 namespace fovea {
 
-/// The LiDAR's velocity at the first usable frame from `begin` on, where navigation does not say
-/// it: by the poses given (see known_motion), or else by registering the next scan with the first
-/// until their sweeps, undone by the motion found, give the same motion again. Without it the first
-/// scan would stay bent by as far as the vehicle moves meanwhile, and above 20 m/s or so the second
-/// would lie beyond registration's reach of "at rest", and so all that follow.
+/// The LiDAR's velocity at the first usable frame from `begin` on: from given poses (known_motion),
+/// or else from registration of the next scan to the first. The registration repeats until motion
+/// compensation by its result gives the same result. Without an initial velocity the first scan
+/// stays distorted, and above about 20 m/s the second scan is out of the range of registration from
+/// rest.
 ///
-/// Nothing where navigation says it, and where no second usable frame comes within 0.3 s or
-/// the two do not fit. Reads two frames.
-/// @param compensate  sweeps, where the drive's scans are raw
+/// Empty with navigation, without a second usable frame within 1 s, or if the two scans do not fit.
+/// Reads two frames.
+/// @param compensate  whether raw sweeps are motion compensated
 std::optional<Twist> initial_velocity(const FrameSource& source,
                                       const std::vector<RigidMotion>& given_poses, int begin,
                                       bool compensate);

@@ -16,7 +16,7 @@ void expect_near(const std::optional<Twist>& velocity, const Twist& truth) {
   EXPECT_LT((*velocity - truth).tail<3>().norm(), 0.1) << velocity->transpose();
 }
 
-TEST(InitialVelocity, IsFoundHoweverFastTheVehicleIs) {
+TEST(InitialVelocity, IsFoundAtAnySpeed) {
   for (const double forward : {-5.0, 0.0, 8.0, 17.0, 30.0, 40.0}) {
     for (const double turn : {0.0, 0.2}) {
       RawDrive drive(2, twist(turn, forward));
@@ -46,7 +46,7 @@ TEST(InitialVelocity, IsThatOfThePosesGiven) {
   expect_near(initial_velocity(drive, {poses[0]}, 0, true), twist(0, 10));  // one pose is no motion
 }
 
-TEST(InitialVelocity, IsOfTheFirstTwoFramesThatCanBeUsed) {
+TEST(InitialVelocity, IsOfTheFirstTwoUsableFrames) {
   RawDrive drive(13, twist(0, 10));
   drive.dropped = {0, 2};
   expect_near(initial_velocity(drive, {}, 0, true), twist(0, 10));  // frames 1 and 3
@@ -55,7 +55,7 @@ TEST(InitialVelocity, IsOfTheFirstTwoFramesThatCanBeUsed) {
   EXPECT_FALSE(initial_velocity(drive, {}, 0, true));  // 1.1 s
 }
 
-TEST(InitialVelocity, IsUnknownWhereScansDoNotFit) {
+TEST(InitialVelocity, IsUnknownIfScansDoNotFit) {
   RawDrive drive(2, twist(0, 10));
   drive.scene.boxes = {{{500, 500, 0}, {501, 501, 1}}};  // out of reach
   EXPECT_FALSE(initial_velocity(drive, {}, 0, true));

@@ -9,7 +9,7 @@
 
 namespace fovea::lidar_views_test {
 
-/// How many views contain a point 10 m away.
+/// Number of views that contain a point 10 m away.
 int views_of(double azimuth_deg, double elevation_deg) {
   const double azimuth = azimuth_deg * kDegree, elevation = elevation_deg * kDegree;
   const Eigen::Vector3d p_lidar =
@@ -33,7 +33,7 @@ TEST(LidarViews, CoverAllAzimuthsAndOverlapAtTheirBorders) {
   for (const int center : {-90, 0, 90, 180}) EXPECT_EQ(views_of(center, 0), 1);
 }
 
-TEST(LidarViews, StandAtTheLidarUprightAndHaveNoNumber) {
+TEST(LidarViews, AreUprightAtTheLidarWithoutNumber) {
   for (const Camera& view : lidar_views()) {
     EXPECT_EQ(view.index, kNoCamera);
     EXPECT_EQ(view.center_lidar().norm(), 0);

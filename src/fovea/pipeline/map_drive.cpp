@@ -255,7 +255,7 @@ void MapRun::take_up_earlier_run() {
 void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record) {
   if (!check_ || record.status != FrameStatus::kMapped) return;
   const Frame& frame = std::get<Frame>(located.result);
-  if (!check_->wants(frame.index)) return;
+  if (!check_->is_due(frame.index)) return;
   const WallClock::time_point start = WallClock::now();
   if (const auto motion = mapped_motion(record, latest_)) check_->add(frame, *motion);
   record.milliseconds["calibration"] = milliseconds_since(start);

@@ -33,8 +33,9 @@ void DriveFigures::Flaw::add(int index) {
   if (frames++ == 0) first = index;
 }
 
-std::string DriveFigures::Flaw::text(std::string_view what) const {
-  return fmt::format("{} frame{} (the first: {}): {}", frames, frames == 1 ? "" : "s", first, what);
+std::string DriveFigures::Flaw::text(std::string_view description) const {
+  return fmt::format("{} frame{} (the first: {}): {}", frames, frames == 1 ? "" : "s", first,
+                     description);
 }
 
 void DriveFigures::note_flaws(const FrameRecord& record) {
@@ -94,13 +95,13 @@ MapSummary DriveFigures::summary() const {
   } else if (std::string note = points_.note(); !note.empty()) {
     summary.notes.push_back(std::move(note));
   }
-  const auto note = [&](const Flaw& flaw, std::string_view what) {
-    if (flaw.frames > 0) summary.notes.push_back(flaw.text(what));
+  const auto note = [&](const Flaw& flaw, std::string_view description) {
+    if (flaw.frames > 0) summary.notes.push_back(flaw.text(description));
   };
-  const auto warn = [&](const Flaw& flaw, std::string_view what) {
-    if (flaw.frames > 0) summary.warn(flaw.text(what));
+  const auto warn = [&](const Flaw& flaw, std::string_view description) {
+    if (flaw.frames > 0) summary.warn(flaw.text(description));
   };
-  warn(absent_, "no GPS/INS, the scans alone tell the motion");
+  warn(absent_, "no GPS/INS: the motion is from the scans alone");
   warn(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on");
   if (const auto cause = navigation_.likely_cause()) summary.warn(*cause);
   warn(lost_,
@@ -115,8 +116,8 @@ MapSummary DriveFigures::summary() const {
   note(degenerate_,
        "the scan leaves a direction of motion open, which is taken from the first guess");
   note(exposed_,
-       "an image is exposed otherwise than the map by over 40 % and colours new points only");
-  warn(blank_, "an image shows nothing but black or white and colours no point");
+       "an image is exposed otherwise than the map by over 40 % and colors new points only");
+  warn(blank_, "an image shows nothing but black or white and colors no point");
   for (const auto& [camera, flaw] : missing_) {
     warn(flaw, fmt::format("camera {} has no image that can be read, the frame is used without it",
                            camera));

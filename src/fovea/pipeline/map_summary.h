@@ -1,4 +1,4 @@
-// What a run of the mapper did, in figures.
+// Figures of a run of the mapper.
 #pragma once
 
 #include <map>
@@ -19,65 +19,65 @@ struct StageLatency {
   double p50 = 0, p95 = 0, max = 0;  ///< ms
 };
 
-/// Of times that were taken, at least one.
+/// Latency of measured times, at least one.
 StageLatency latency_of(std::vector<float> milliseconds);
 
-/// Whether a frame was not yet in the map when the next one was due; a skipped one has nothing to
-/// be late with.
-/// @param rate  frames a second; 0: none is due
+/// Whether a frame was not yet in the map when the next one was due. Skipped frames are never late.
+/// @param rate  frames a second; 0: no frame is due
 bool is_late(const FrameRecord& record, double rate);
 
 struct MapSummary : Messages {
   int frames_mapped = 0, frames_held_out = 0;
   std::map<std::string, int> frames_skipped;  ///< by reason
-  int frames_damaged = 0;                     ///< skipped frames whose files cannot be used
-  std::string first_damage;                   ///< one line: what and which file
+  int frames_damaged = 0;                     ///< skipped frames with unusable files
+  std::string first_damage;                   ///< one line: the fault and the file
   std::map<int, int> images_missing;          ///< by camera; of frames that were not skipped
   int registrations_failed = 0;
-  int loops_closed = 0;  ///< scans registered to a place seen before
+  int loops_closed = 0;  ///< scans registered to an earlier place
   std::size_t points = 0;
-  std::size_t points_read = 0;   ///< of the scans, dropped ones included
+  std::size_t points_read = 0;   ///< of the scans, including dropped ones
   DroppedPoints points_dropped;  ///< of these
-  std::size_t frames_new = 0;    ///< of all kinds, made by this run and not by one that it resumes
+  std::size_t frames_new =
+      0;  ///< of all kinds, by this run and not by an earlier one that it resumes
   double frames_per_second = 0;  ///< mapped and held-out frames over the wall time of the run
-  double rate = 0;  ///< Hz, at which frames were released; 0: as fast as they were mapped
-  /// At a rate: frames whose points and colours were not yet in the map when the next one was due.
+  double rate = 0;               ///< Hz, of the released frames; 0: as fast as possible
+  /// At a rate: frames that were not yet in the map when the next one was due.
   int late_frames = 0;
   double peak_rss_mb = 0;
   std::map<std::string, StageLatency> latency_ms;
   bool interrupted = false;
-  /// What the calibration lacks, a camera each; `calibrated`: what has been added to it.
+  /// Estimated correction of each camera; applied if `calibrated`.
   std::vector<CameraCalibration> calibration;
   bool calibrated = false;
-  bool can_calibrate = false;  ///< the motion that a correction needs is known
+  bool can_calibrate = false;  ///< the motion is known, as a correction requires
   int skipped() const;
 };
 
-/// Gathers a summary, frame by frame.
+/// Accumulates a summary frame by frame.
 class DriveFigures {
  public:
   /// @param drive  must outlive the figures
-  /// @param rate   Hz, at which frames of this run are released, or 0
+  /// @param rate   Hz, of the frames that this run releases, or 0
   DriveFigures(const DriveInfo& drive, double rate) : drive_(drive), navigation_(drive) {
     summary_.rate = rate;
   }
 
-  /// Counts a frame, its skip or its failures; of one that this run has made (not an earlier one,
-  /// which it resumes) latencies and lateness, too.
+  /// Counts a frame with its failures.
+  /// @param is_new  by this run, not an earlier one: latencies and lateness count, too
   void add(const FrameRecord& record, bool is_new);
 
   const PointCounts& points() const { return points_; }
 
-  /// Points, rate of frames, calibration and interruption are the caller's to add.
+  /// The caller adds points, rate of frames, calibration and interruption.
   MapSummary summary() const;
 
  private:
-  /// Frames with a flaw of one kind.
+  /// Frames with one kind of flaw.
   struct Flaw {
     int frames = 0, first = 0;
     void add(int index);
     /// "3 frames (the first: 7): WHAT".
-    std::string text(std::string_view what) const;
+    std::string text(std::string_view description) const;
   };
   void note_flaws(const FrameRecord& record);
 

@@ -7,33 +7,32 @@
 namespace fovea {
 namespace {
 
-/// How far a frame's motion may differ from the last one's: no vehicle accelerates or turns in
-/// faster, and registration and GPS are better than the constants.
-constexpr double kAcceleration = 10, kShift = 0.2;                  // m/s^2, m
-constexpr double kTurnRate = 100 * kDegree, kTurn = 1.5 * kDegree;  // rad/s^2, rad
+/// Largest difference between the motions of two frames. A vehicle's acceleration and yaw
+/// acceleration are lower, and the constant parts exceed the errors of registration and GPS.
+constexpr double kAcceleration = 10, kShift = 0.2;                          // m/s^2, m
+constexpr double kRotationRate = 100 * kDegree, kRotation = 1.5 * kDegree;  // rad/s^2, rad
 
-/// A pause of the recording is a step between frames of more than kPause, and of more than
-/// kPauseSteps usual steps.
+/// A pause of the recording is a step between frames longer than kPause and kPauseSteps usual
+/// steps.
 constexpr TimeNs kPause = kNsPerSecond;
 constexpr int kPauseSteps = 3;
 
-/// What a velocity is taken to err by before anything is known of it, and what a single error
-/// counts at most: a moment without satellites is not held against a receiver for long.
-constexpr double kFirstWay = 0.1, kFirstTurn = 0.5 * kDegree;  // m/s, rad/s
-constexpr double kMostWay = 1, kMostTurn = 5 * kDegree;        // m/s, rad/s
-constexpr int kRemembered = 10;                                // frames
+/// Initial error of a velocity, and the largest value of a single error. The limit keeps a short
+/// loss of satellites from reducing the weight of navigation for long.
+constexpr double kFirstTranslation = 0.1, kFirstRotation = 0.5 * kDegree;  // m/s, rad/s
+constexpr double kMaxTranslation = 1, kMaxRotation = 5 * kDegree;          // m/s, rad/s
+constexpr int kRemembered = 10;                                            // frames
 
-/// The least deviations of navigation's motion from frame to frame, however well it has done. That
-/// of positions is a quarter of their stated accuracy, within limits: errors of neighboring
-/// positions are alike.
-constexpr double kLeastTurnSigma = 0.3 * kDegree;          // rad
-constexpr double kMinWaySigma = 0.03, kMaxWaySigma = 0.1;  // m
-constexpr double kWaySigmaShare = 0.25;                    // of the stated accuracy
+/// Least standard deviations of navigation's motion between frames. That of positions is a quarter
+/// of their stated accuracy, within limits, since errors of consecutive positions are similar.
+constexpr double kLeastRotationSigma = 0.3 * kDegree;                      // rad
+constexpr double kMinTranslationSigma = 0.03, kMaxTranslationSigma = 0.1;  // m
+constexpr double kTranslationSigmaShare = 0.25;                            // of the stated accuracy
 
-Twist squares(double turn, double way) {
+Twist squares(double rotation, double translation) {
   Twist squares;
-  squares.head<3>().setConstant(turn * turn);
-  squares.tail<3>().setConstant(way * way);
+  squares.head<3>().setConstant(rotation * rotation);
+  squares.tail<3>().setConstant(translation * translation);
   return squares;
 }
 
@@ -43,7 +42,7 @@ Twist velocity_between(const StampedPose& a, const StampedPose& b) {
 
 bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
   const double shift = kShift + kAcceleration * elapsed * elapsed;
-  const double turn = kTurn + kTurnRate * elapsed * elapsed;
+  const double turn = kRotation + kRotationRate * elapsed * elapsed;
   const RigidMotion apart = a.T_odom_lidar.inverse() * b.T_odom_lidar;
   if (apart.translation().norm() > shift || rotation_angle(apart.linear()) > turn) return true;
   if (!a.motion || !b.motion) return false;
@@ -53,11 +52,12 @@ bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
 
 }  // namespace
 
-Twist VelocityError::before_any() { return squares(kFirstTurn, kFirstWay); }
+Twist VelocityError::before_any() { return squares(kFirstRotation, kFirstTranslation); }
 
-void VelocityError::add(const Twist& foretold, const Twist& actual) {
+void VelocityError::add(const Twist& predicted, const Twist& actual) {
   count_ = std::min(count_ + 1, kRemembered);
-  const Twist square = (foretold - actual).cwiseAbs2().cwiseMin(squares(kMostTurn, kMostWay));
+  const Twist square =
+      (predicted - actual).cwiseAbs2().cwiseMin(squares(kMaxRotation, kMaxTranslation));
   mean_square_ += (square - mean_square_) / count_;
 }
 
@@ -93,20 +93,21 @@ std::optional<MotionGuess> MotionModel::by_velocity(TimeNs stamp) const {
   MotionGuess guess{RigidMotion::Identity(), SweepMotion{*velocity}, false, std::nullopt};
   if (!last_) return guess;
   guess.T_odom_lidar = last_->T_local_body * exp_se3(*velocity * seconds(stamp - last_->time));
-  // Guesses made of guesses would double their rounding every frame.
+  // Rounding errors would otherwise double every frame.
   guess.T_odom_lidar.linear() = nearest_rotation(guess.T_odom_lidar.linear());
   return guess;
 }
 
 Twist MotionModel::navigation_sigma(double elapsed) const {
   const double stated = options_.stated_accuracy;
-  const double way =
-      stated > 0 ? std::clamp(kWaySigmaShare * stated, kMinWaySigma, kMaxWaySigma) : kMaxWaySigma;
-  const Twist least = squares(kLeastTurnSigma, way);
+  const double translation = stated > 0 ? std::clamp(kTranslationSigmaShare * stated,
+                                                     kMinTranslationSigma, kMaxTranslationSigma)
+                                        : kMaxTranslationSigma;
+  const Twist least = squares(kLeastRotationSigma, translation);
   return (least + navigation_error_.mean_square() * elapsed * elapsed).cwiseSqrt();
 }
 
-/// The best of two independent measurements.
+/// The weighted mean of two independent measurements.
 SweepMotion MotionModel::weighed(const SweepMotion& by_navigation,
                                  const SweepMotion& by_motion) const {
   const Twist &navigation = navigation_error_.mean_square(), &motion = motion_error_.mean_square();
@@ -130,7 +131,7 @@ MotionPrediction MotionModel::predict_after_pause(TimeNs stamp) const {
   prediction.T_local_lidar_navigation = navigation_at(stamp);
   auto guess = by_navigation(stamp);
   if (guess) {
-    guess->sigma.reset();  // the error of navigation over the pause is not known
+    guess->sigma.reset();  // unknown over the pause
   } else {
     guess = MotionGuess{last_->T_local_body, navigation_motion(stamp), false, std::nullopt};
     if (!guess->motion && initial_velocity_) guess->motion = SweepMotion{*initial_velocity_};
@@ -147,7 +148,7 @@ MotionPrediction MotionModel::predict(TimeNs stamp) const {
   const auto by_motion = by_velocity(stamp);
   if (by_nav && by_motion && options_.doubt) {
     if (contradict(*by_nav, *by_motion, seconds(stamp - last_->time))) {
-      by_nav->sigma.reset();  // a guess, until the scan decides
+      by_nav->sigma.reset();  // registration decides
       prediction.guesses = {*by_motion, *by_nav};
       return prediction;
     }

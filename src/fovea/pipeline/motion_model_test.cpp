@@ -28,7 +28,7 @@ TEST(MotionModel, WithoutNavigationStartsAtRestAndThenKeepsItsVelocity) {
   EXPECT_FALSE(next.T_local_lidar_navigation);
 }
 
-TEST(MotionModel, BeginsWithTheVelocityTold) {
+TEST(MotionModel, BeginsWithTheGivenVelocity) {
   Twist velocity = Twist::Zero();
   velocity[3] = 20;
   MotionModel model(nullptr);
@@ -38,7 +38,7 @@ TEST(MotionModel, BeginsWithTheVelocityTold) {
   EXPECT_EQ(first.guesses[0].motion->velocity, velocity);
   model.update(0, at_x(0));
   EXPECT_NEAR(model.predict(kTenth).guesses[0].T_odom_lidar.translation().x(), 2, 1e-12);
-  model.update(kTenth, at_x(1.5));  // from here on it is what the poses say
+  model.update(kTenth, at_x(1.5));  // from here on the velocity of the poses
   EXPECT_NEAR(model.predict(2 * kTenth).guesses[0].T_odom_lidar.translation().x(), 3, 1e-12);
 }
 
@@ -62,7 +62,7 @@ TEST(MotionModel, WithoutInterpolationTheNearestRecordCounts) {
   EXPECT_NEAR(model.predict(kTenth * 4 / 10).guesses[0].T_odom_lidar.translation().x(), 0, 1e-12);
 }
 
-/// Navigation that leaves the true motion (1 m a frame) at frame 5.
+/// Navigation that departs from the true motion (1 m a frame) at frame 5.
 MotionPrediction predict_fifth(const RigidMotion& navigation_at_5, bool doubt) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 5; ++i) poses.push_back({i * kTenth, at_x(i)});
@@ -95,8 +95,8 @@ TEST(MotionModel, BrakingIsNoContradiction) {
   EXPECT_NEAR(prediction.guesses[0].T_odom_lidar.translation().x(), 4.9, 1e-9);
 }
 
-/// What the model makes of a vehicle at x(frame) whose positions are off by jitter(frame): the
-/// largest error of its velocity (m/s) from the fifth frame on.
+/// Largest error of the model's velocity (m/s) from the fifth frame on, for a vehicle at x(frame)
+/// with position errors jitter(frame).
 double worst_velocity(const std::function<double(double)>& x,
                       const std::function<double(int)>& jitter, bool doubt) {
   std::vector<StampedPose> poses;
@@ -115,8 +115,8 @@ double worst_velocity(const std::function<double(double)>& x,
   return worst;
 }
 
-TEST(MotionModel, AccelerationIsNavigationsAsFarAsThatIsTrusted) {
-  // Braking with 4 m/s^2; what is measured is right, or errs by 2 m/s to and fro.
+TEST(MotionModel, TheWeightOfNavigationsAccelerationDependsOnItsErrors) {
+  // Braking with 4 m/s^2; the measured velocity is right, or has alternating errors of 2 m/s.
   const auto acceleration = [](double error) {
     std::vector<StampedPose> poses;
     for (int i = 0; i < 30; ++i) {
@@ -130,17 +130,17 @@ TEST(MotionModel, AccelerationIsNavigationsAsFarAsThatIsTrusted) {
     return model.predict(20 * kTenth).guesses[0].motion->acceleration[3];
   };
   EXPECT_NEAR(acceleration(0), -4, 0.1);
-  EXPECT_LT(std::abs(acceleration(0.9)), 7);  // 14 m/s^2 by what is measured
+  EXPECT_LT(std::abs(acceleration(0.9)), 7);  // 14 m/s^2 by the measured velocity
 }
 
-TEST(MotionModel, VelocityIsOfWhatForetoldItBetter) {
+TEST(MotionModel, VelocityIsThatOfTheBetterPrediction) {
   const auto steady = [](double frame) { return frame; };
   const auto braking = [](double frame) { return 2 * frame - 0.02 * frame * frame; };  // 4 m/s^2
   const auto none = [](int) { return 0.0; };
   const auto two_centimetres = [](int frame) { return frame % 2 == 0 ? 0.01 : -0.01; };
   EXPECT_NEAR(worst_velocity(steady, two_centimetres, /*doubt=*/false), 0.2, 1e-9);
   EXPECT_LT(worst_velocity(steady, two_centimetres, true), 0.04);
-  // By the motion so far it would be 0.6 m/s: three half frames late.
+  // The motion so far has an error of 0.6 m/s: one and a half frames late.
   EXPECT_NEAR(worst_velocity(braking, none, /*doubt=*/false), 0.2, 1e-9);
   EXPECT_LT(worst_velocity(braking, none, true), 0.26);
 }
@@ -157,7 +157,7 @@ TEST(MotionModel, ErrorsOfVelocityAreBoundedAndForgotten) {
   EXPECT_LT(error.mean_square()[3], unknown[3]);
 }
 
-TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
+TEST(MotionModel, BeyondTheNavigationItUsesTheVelocity) {
   const Trajectory navigation({{0, at_x(0)}, {kTenth, at_x(1)}});
   MotionModel model(&navigation);
   model.update(0, at_x(0));
@@ -167,7 +167,7 @@ TEST(MotionModel, BeyondTheNavigationItGoesOnByVelocity) {
   EXPECT_FALSE(late.T_local_lidar_navigation);
 }
 
-TEST(MotionModel, NoVelocityOutlivesAPause) {
+TEST(MotionModel, NoVelocityIsUsedAfterAPause) {
   MotionModel model(nullptr);
   for (int i = 0; i < 4; ++i) model.update(i * kTenth, at_x(i));
   EXPECT_FALSE(model.follows_pause(4 * kTenth));

@@ -10,17 +10,17 @@
 namespace fovea {
 namespace {
 
-/// Navigation that moves otherwise than the scans by more than this between two frames (m), and
-/// this share of the path in an outage, has jumped.
+/// Differences from the motion of the scans that count as a jump: between two frames (m), plus a
+/// share of the path in an outage.
 constexpr double kJump = 0.3;
 constexpr double kJumpOfPath = 0.01;
 constexpr TimeNs kMemory = 60 * kNsPerSecond;
-/// Errors of a unit's positions stay alike for tens of seconds, about ten submaps: together these
-/// count as one.
+/// Factor of standard deviations. Errors of positions are correlated over tens of seconds, about
+/// ten submaps, which together count as one measurement.
 constexpr double kCorrelation = 3;
-constexpr double kLeastAccuracy = 0.05;   // m, whatever the unit says
-constexpr double kUnknownAccuracy = 0.5;  // m, where it says nothing
-constexpr double kHeightFactor = 2;       // GPS knows heights half as well
+constexpr double kLeastAccuracy = 0.05;   // m
+constexpr double kUnknownAccuracy = 0.5;  // m, if the unit states none
+constexpr double kHeightFactor = 2;       // of GPS heights over positions
 constexpr double kTiltAccuracy = 0.3 * kDegree, kHeadingAccuracy = 1 * kDegree;
 
 }  // namespace
@@ -31,12 +31,12 @@ std::string NavigationCheck::observe(TimeNs stamp, const RigidMotion& T_local_li
   last_position_ = T_local_lidar.translation();
   const auto now = navigation_->at(stamp);
   if (!now) return "";
-  // Positions before the first fix are no reason to doubt it.
+  // Ignores positions before the first fix.
   is_located_ = is_located_ || std::isfinite(accuracy_at(stamp));
   if (!is_located_) return "";
   std::string problem;
   if (last_) {
-    // Compared in the axes of navigation, that jumps of it add up there.
+    // In the axes of navigation, in which its jumps add up.
     const Eigen::Vector3d by_scans = last_->T_local_navigation.linear() *
                                      (last_->T_local_lidar.inverse() * T_local_lidar).translation();
     const Eigen::Vector3d jump =
@@ -74,7 +74,7 @@ std::optional<AbsolutePose> NavigationCheck::measurement(std::size_t node, TimeN
   const double stated = accuracy_at(stamp);
   if (!pose || !std::isfinite(stated)) return std::nullopt;
   Eigen::Vector3d jumped = Eigen::Vector3d::Zero();
-  for (const Jump& jump : jumps_) jumped += jump.way;
+  for (const Jump& jump : jumps_) jumped += jump.offset;
   const double accuracy =
       kCorrelation * (stated > 0 ? std::max(stated, kLeastAccuracy) : kUnknownAccuracy) +
       jumped.norm();

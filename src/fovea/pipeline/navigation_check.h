@@ -1,4 +1,4 @@
-// Whether GPS/INS can be believed: its motion beside that of the registered scans.
+// Compares the motion of GPS/INS with that of registered scans.
 #pragma once
 
 #include <deque>
@@ -11,9 +11,9 @@
 
 namespace fovea {
 
-/// Follows navigation frame by frame. Where its position jumps, freezes or comes back elsewhere
-/// after an outage, nobody knows which of its solutions was right: for a minute it counts for less
-/// by the distance it jumped, or until it jumps back.
+/// Checks navigation frame by frame. Its position may jump, freeze, or return elsewhere after an
+/// outage. The standard deviation then includes the distance of the jump for a minute, or until it
+/// jumps back.
 class NavigationCheck {
  public:
   /// @param navigation  T_local_lidar, or null; must outlive the check
@@ -21,11 +21,11 @@ class NavigationCheck {
   NavigationCheck(const Trajectory* navigation, const std::vector<double>& accuracy)
       : navigation_(navigation), accuracy_(accuracy) {}
 
-  /// Tells the pose that registration gave a frame.
-  /// @return what is wrong with the navigation at this frame; empty if nothing is
+  /// Adds the registered pose of a frame.
+  /// @return the fault of navigation at this frame; empty if there is none
   std::string observe(TimeNs stamp, const RigidMotion& T_local_lidar);
 
-  /// The next frame's pose says nothing of the motion since the last one.
+  /// Makes the motion to the next frame unknown.
   void restart() {
     last_.reset();
     last_position_.reset();
@@ -35,8 +35,8 @@ class NavigationCheck {
   /// Whether any position has a fix.
   bool has_fix() const;
 
-  /// What navigation says of a node's pose, with the deviations that it deserves; empty in an
-  /// outage.
+  /// The pose of a node by navigation, with standard deviations that include its faults; empty in
+  /// an outage.
   std::optional<AbsolutePose> measurement(std::size_t node, TimeNs stamp) const;
 
  private:
@@ -53,7 +53,7 @@ class NavigationCheck {
   std::optional<Eigen::Vector3d> last_position_;
   struct Jump {
     TimeNs stamp;
-    Eigen::Vector3d way;  // m
+    Eigen::Vector3d offset;  // m
   };
   std::deque<Jump> jumps_;  // of the last minute
 };

@@ -22,7 +22,7 @@ class NavigationCheckTest : public testing::Test {
     navigation_ = Trajectory(poses_);
     check_.emplace(&navigation_, accuracy_);
   }
-  /// @return frames at which something was wrong
+  /// @return frames with a fault
   std::vector<int> drive(int begin, int end) {
     std::vector<int> wrong;
     for (int i = begin; i < end; ++i) {
@@ -43,12 +43,12 @@ TEST_F(NavigationCheckTest, GoodNavigationCountsByItsAccuracy) {
   start();
   EXPECT_TRUE(drive(0, kFrames).empty());
   EXPECT_NEAR(deviation(50) / deviation(49), 3.5, 1e-9);
-  EXPECT_GT(deviation(49), 0.2);  // neighbours err alike
+  EXPECT_GT(deviation(49), 0.2);  // consecutive errors are similar
   EXPECT_TRUE(check_->measurement(7, 30 * kTenth)->T_local_node.isApprox(at(30)));
   EXPECT_EQ(check_->measurement(7, 30 * kTenth)->node, 7u);
 }
 
-TEST_F(NavigationCheckTest, AJumpCountsUntilItIsTakenBack) {
+TEST_F(NavigationCheckTest, AJumpCountsUntilNavigationJumpsBack) {
   for (int i = 40; i < 60; ++i) poses_[std::size_t(i)].T_local_body.translation().y() += 5;
   start();
   EXPECT_THAT(drive(0, 50), testing::ElementsAre(40));
@@ -75,7 +75,7 @@ TEST_F(NavigationCheckTest, FrozenNavigationCountsLessAndLess) {
   start();
   EXPECT_EQ(drive(0, 50).size(), 10u);
   EXPECT_NEAR(deviation(49), 3 * 0.2 + 10, 1e-6);
-  EXPECT_EQ(drive(50, kFrames).size(), 11u);  // ten more, and the way back
+  EXPECT_EQ(drive(50, kFrames).size(), 11u);  // ten more, and the return
   EXPECT_NEAR(deviation(70), 3 * 0.2, 1e-6);
 }
 
@@ -84,7 +84,7 @@ TEST_F(NavigationCheckTest, AnOutageIsMeasuredByThePathAcrossIt) {
   for (std::size_t i = 20; i < poses_.size(); ++i) poses_[i].T_local_body.translation().y() += 2;
   accuracy_.resize(poses_.size());
   start();
-  // The first record after the outage is of frame 60; its velocity reaches two frames back.
+  // The first record after the outage is of frame 60; its velocity covers the two frames before.
   EXPECT_THAT(drive(0, kFrames), testing::ElementsAre(58));
   EXPECT_FALSE(check_->measurement(0, 40 * kTenth));
   EXPECT_GT(deviation(70), 2);
@@ -97,7 +97,7 @@ TEST_F(NavigationCheckTest, WithoutSatellitesAPositionIsNoMeasurement) {
   EXPECT_TRUE(check_->measurement(0, 11 * kTenth));
 }
 
-TEST(NavigationCheckWithout, SaysNothing) {
+TEST(NavigationCheckWithout, HasNoFaults) {
   const std::vector<double> none;
   NavigationCheck check(nullptr, none);
   EXPECT_EQ(check.observe(0, RigidMotion::Identity()), "");

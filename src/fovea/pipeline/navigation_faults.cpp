@@ -13,33 +13,33 @@ namespace fovea {
 namespace {
 
 constexpr double kStep = 2;  // m, between samples, by navigation or by scans
-/// m, by scans. While a vehicle stands, navigation may drift.
+/// m, by scans. Navigation may drift while a vehicle stands.
 constexpr double kLeastStep = 0.2;
 constexpr std::size_t kMinSteps = 4, kMaxSamples = 2000;
-// Median difference of steps: a share of their length plus a quarter of the share of their turn.
-// Right navigation has under 0.05, wrong units and directions have over 0.5.
+// Median relative difference of steps: that of lengths plus a quarter of that of rotations. Right
+// navigation has below 0.05, wrong units and directions above 0.5.
 constexpr double kTurnWeight = 0.25, kLeastTurn = 2 * kDegree;
 constexpr double kWrong = 0.25, kExplained = 0.12, kTie = 0.02;
-// A wrong place of the LiDAR shows in turns, by the median difference of positions across a turn.
+// A wrong position of the LiDAR affects turns: median difference of positions across a turn.
 constexpr double kTurn = 20 * kDegree, kWrongPlace = 0.3;  // m
-constexpr double kRestOfPlace = 1.0 / 3;                   // of the difference
+constexpr double kPlaceResidual = 1.0 / 3;                 // of the difference
 constexpr std::size_t kFarthestTurn = 50;                  // samples: positions drift over more
 
 double difference(const NavigationSteps& steps) {
   std::vector<double> shares;
   for (const NavigationStep& step : steps) {
     const RigidMotion navigation = step.by_navigation(), &scans = step.T_first_last;
-    const double way = std::max(navigation.translation().norm(), scans.translation().norm()),
+    const double length = std::max(navigation.translation().norm(), scans.translation().norm()),
                  turn = std::max({rotation_angle(navigation.linear()),
                                   rotation_angle(scans.linear()), kLeastTurn});
     const RigidMotion apart = navigation.inverse() * scans;
-    shares.push_back(apart.translation().norm() / way +
+    shares.push_back(apart.translation().norm() / length +
                      kTurnWeight * rotation_angle(apart.linear()) / turn);
   }
   return median_of(std::move(shares));
 }
 
-/// m.
+/// Median, m.
 double difference_of_positions(const NavigationSteps& steps) {
   std::vector<double> differences;
   for (const NavigationStep& step : steps) {
@@ -49,7 +49,7 @@ double difference_of_positions(const NavigationSteps& steps) {
   return median_of(std::move(differences));
 }
 
-/// The errors that explain the difference, the likeliest first; others only if they are as likely.
+/// Errors that explain the difference: the most likely one, and others of similar likelihood.
 std::vector<std::string> likely_errors(const std::vector<NavigationRepair>& repairs) {
   std::vector<std::pair<double, std::string>> errors;
   for (const NavigationRepair& repair : repairs) {
@@ -138,7 +138,7 @@ std::optional<std::string> NavigationFaults::likely_cause() const {
     const double as_given = difference_of_positions(turns);
     const NavigationRepair place = repaired_place(turns, T_body_lidar);
     const double rest = difference_of_positions(place.steps);
-    if (as_given > kWrongPlace && rest < kRestOfPlace * as_given) errors = {place.error};
+    if (as_given > kWrongPlace && rest < kPlaceResidual * as_given) errors = {place.error};
   }
   if (errors.empty()) return std::nullopt;
   return fmt::format("navigation does not fit the scans; likely cause: {}",

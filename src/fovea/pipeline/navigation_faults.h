@@ -1,4 +1,4 @@
-// Why navigation moves otherwise than the scans: errors of units, order and direction.
+// Likely causes of differences between navigation and scans: errors of units, order and direction.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@
 
 namespace fovea {
 
-/// Compares navigation with registered scans over the way of a drive. Where they differ, it applies
-/// each known error to navigation in reverse. An error that makes navigation agree with the scans
-/// is a likely cause.
+/// Compares navigation with registered scans over a drive. If they differ, it removes each known
+/// error from navigation. An error whose removal makes navigation agree with the scans is a likely
+/// cause.
 ///
 ///     NavigationFaults faults(drive);
 ///     for (const FrameRecord& record : records) faults.add(record);
@@ -23,7 +23,7 @@ class NavigationFaults {
   /// @param drive  must outlive the faults
   explicit NavigationFaults(const DriveInfo& drive) : drive_(drive) {}
 
-  /// The next frame, in order.
+  /// Adds the next frame.
   void add(const FrameRecord& record);
 
   /// A note that names the likely causes; empty if navigation agrees with the scans, if the vehicle
@@ -34,12 +34,12 @@ class NavigationFaults {
   struct Sample {
     RigidMotion T_local_lidar;  // by navigation
     RigidMotion T_odom_lidar;   // by registration
-    bool is_joined = false;     // to the sample before, without a gap of either
+    bool is_joined = false;     // to the last sample, without a gap in navigation or scans
   };
   static NavigationStep step_between(const Sample& first, const Sample& last);
-  /// From each sample to the next.
+  /// Steps from each sample to the next.
   NavigationSteps steps() const;
-  /// From samples to the next one that is turned against it.
+  /// Steps from samples to the next one with another direction.
   NavigationSteps turns() const;
 
   const DriveInfo& drive_;

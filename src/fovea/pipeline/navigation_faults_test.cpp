@@ -34,7 +34,7 @@ class NavigationFaultsTest : public testing::Test {
   }
   double way(int frame) const { return speed_ * frame; }
 
-  /// What a drive says if its positions on earth have an error.
+  /// The likely cause for a drive with an error in its positions on earth.
   std::string cause_of_positions(const std::function<void(GeodeticPose&)>& error) {
     const LocalTangentPlane local({49, 8.4, 100});
     std::vector<GeodeticPose> poses;
@@ -55,7 +55,7 @@ class NavigationFaultsTest : public testing::Test {
     return cause(T_local_lidar);
   }
 
-  /// What a drive says if its poses have an error.
+  /// The likely cause for a drive with an error in its poses.
   std::string cause_of_poses(const std::function<RigidMotion(const RigidMotion&)>& error) {
     drive_.origin.reset();
     std::vector<RigidMotion> T_local_lidar;
@@ -146,7 +146,7 @@ TEST_F(NavigationFaultsTest, LatitudeAndLongitudeSwapped) {
     std::swap(pose.position.latitude, pose.position.longitude);
   };
   EXPECT_THAT(cause_of_positions(swap), HasSubstr("cause: latitude and longitude are swapped"));
-  // Headings that were taken from the swapped positions.
+  // Headings computed from the swapped positions.
   bend_ = 1e-6;
   EXPECT_THAT(cause_of_positions([&](GeodeticPose& pose) {
                 const double yaw = yaw_of(pose);
@@ -198,12 +198,12 @@ TEST_F(NavigationFaultsTest, InvertedPoses) {
               HasSubstr("attitudes are of east-north-up in the body"));
 }
 
-TEST_F(NavigationFaultsTest, InvertedPlaceOfTheLidar) {
+TEST_F(NavigationFaultsTest, InvertedPositionOfTheLidar) {
   T_body_lidar_ = turned(0.5 * std::numbers::pi, {0.8, -0.3, 0.9});
   T_body_lidar_given_ = T_body_lidar_.inverse();
   EXPECT_THAT(cause_of_poses(kAsItIs), HasSubstr("cause: T_body_lidar is inverted"));
   EXPECT_THAT(cause_of_positions(kNoError), HasSubstr("cause: T_body_lidar is inverted"));
-  // Hardly turned: the lever shows in turns alone.
+  // Small rotation: only turns show the lever arm.
   T_body_lidar_ = turned(0.01, {0.8, -0.3, 0.9});
   T_body_lidar_given_ = T_body_lidar_.inverse();
   EXPECT_THAT(cause_of_poses(kAsItIs), HasSubstr("cause: T_body_lidar is inverted"));
@@ -221,7 +221,7 @@ TEST_F(NavigationFaultsTest, OtherUnitsAndTurns) {
   EXPECT_THAT(cause_of_poses(kAsItIs), HasSubstr("turned by 70 degrees"));
 }
 
-TEST_F(NavigationFaultsTest, FramesThatAreLostOrWithoutNavigationJoinNothing) {
+TEST_F(NavigationFaultsTest, LostFramesAndFramesWithoutNavigationFormNoStep) {
   NavigationFaults faults(drive_);
   for (int i = 0; i < kFrames; ++i) {
     FrameRecord record;

@@ -14,7 +14,7 @@
 namespace fovea {
 namespace {
 
-/// The steps whose poses T_local_lidar a function changes.
+/// Applies a function to the poses T_local_lidar of all steps.
 template <class F>
 NavigationSteps changed(NavigationSteps steps, F&& change) {
   for (NavigationStep& step : steps) {
@@ -24,13 +24,13 @@ NavigationSteps changed(NavigationSteps steps, F&& change) {
   return steps;
 }
 
-/// Positions whose latitude and longitude were given in radians.
+/// Corrects latitude and longitude in radians.
 Eigen::Vector3d from_radians(const Eigen::Vector3d& p, const GeodeticPoint& origin) {
   const double stretch = std::cos(origin.latitude) / std::cos(origin.latitude * kDegree);
   return {p.x() / kDegree * stretch, p.y() / kDegree, p.z()};
 }
 
-/// Positions whose latitude and longitude were given one for the other.
+/// Swaps latitude and longitude.
 Eigen::Vector3d swapped(const Eigen::Vector3d& p, const GeodeticPoint& origin) {
   return {p.y() * std::cos(origin.longitude * kDegree), p.x() / std::cos(origin.latitude * kDegree),
           p.z()};
@@ -59,14 +59,15 @@ class BodyRepairs {
   BodyRepairs(const NavigationSteps& steps, const RigidMotion& T_body_lidar)
       : steps_(steps), T_body_lidar_(T_body_lidar) {}
 
-  /// Changes positions by a linear function. A heading that was taken from the positions turns with
-  /// the way: that is a second possibility.
+  /// Changes positions by a linear function. Adds a second repair in which the heading, computed
+  /// from positions, changes too.
   template <class F>
   void move(const char* error, F&& change) {
     for (const bool turns_heading : {false, true}) {
       add(error, [&](RigidMotion T_local_body) {
-        const Eigen::Vector3d forward = T_local_body.linear().col(0), way = change(forward);
-        const double turn = std::atan2(way.y(), way.x()) - std::atan2(forward.y(), forward.x());
+        const Eigen::Vector3d forward = T_local_body.linear().col(0), direction = change(forward);
+        const double turn =
+            std::atan2(direction.y(), direction.x()) - std::atan2(forward.y(), forward.x());
         if (turns_heading) {
           T_local_body.linear() =
               Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * T_local_body.linear();
@@ -133,7 +134,7 @@ std::vector<NavigationRepair> repaired_positions(const NavigationSteps& steps,
 
 NavigationRepair repaired_inversion(const NavigationSteps& steps, const RigidMotion& T_body_lidar) {
   const RigidMotion T_lidar_body = T_body_lidar.inverse();
-  std::vector<RigidMotion> motions;  // of the body, if the world's origin is at 0
+  std::vector<RigidMotion> motions;  // of the body, with the world's origin at 0
   Eigen::Matrix3d A = 1e-6 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const NavigationStep& step : steps) {
@@ -185,7 +186,7 @@ NavigationRepair repaired_turn(const NavigationSteps& steps) {
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d R_navigation_scans;
   if (svd.singularValues()[1] < 0.01 * svd.singularValues()[0]) {
-    // A straight way shows one direction: the shortest turn fits.
+    // A straight path determines only one direction: uses the smallest rotation.
     R_navigation_scans =
         Eigen::Quaterniond::FromTwoVectors(svd.matrixV().col(0), svd.matrixU().col(0))
             .toRotationMatrix();

@@ -1,4 +1,4 @@
-// Known errors of navigation, taken out of it.
+// Removes known errors from navigation.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace fovea {
 
-/// The way from one place to another.
+/// A motion between two frames.
 struct NavigationStep {
   RigidMotion T_local_first, T_local_last;  ///< of the LiDAR, by navigation
   RigidMotion T_first_last;                 ///< by the scans
@@ -18,29 +18,27 @@ struct NavigationStep {
 };
 using NavigationSteps = std::vector<NavigationStep>;
 
-/// Navigation as it is without an error.
+/// Navigation without a certain error.
 struct NavigationRepair {
   std::string error;
   NavigationSteps steps;
 };
 
-/// Latitude, longitude or the attitudes that come with them are in other units, of another order or
-/// of another convention.
+/// Latitude, longitude or attitudes have other units, another order or another convention.
 std::vector<NavigationRepair> repaired_positions(const NavigationSteps& steps,
                                                  const GeodeticPoint& origin,
                                                  const RigidMotion& T_body_lidar);
 
-/// Poses were given as T_body_world. They are known up to the origin of their world, which is
-/// estimated.
+/// Poses were given as T_body_world. Estimates the unknown origin of their world.
 NavigationRepair repaired_inversion(const NavigationSteps& steps, const RigidMotion& T_body_lidar);
 
 /// T_body_lidar was given as T_lidar_body.
 NavigationRepair repaired_place(const NavigationSteps& steps, const RigidMotion& T_body_lidar);
 
-/// Lengths are in another unit, which is estimated.
+/// Lengths have another unit, which it estimates.
 NavigationRepair repaired_scale(const NavigationSteps& steps);
 
-/// The LiDAR is turned on the body, by an estimated rotation.
+/// The LiDAR is rotated on the body, by a rotation that it estimates.
 NavigationRepair repaired_turn(const NavigationSteps& steps);
 
 }  // namespace fovea

@@ -1,4 +1,4 @@
-// Ground alone: the scan tells neither how far the vehicle has moved nor how it has turned about z.
+// Only ground: the scan determines neither the translation of the vehicle nor its yaw.
 #include <gtest/gtest.h>
 
 #include "fovea/pipeline/mapper_test_support.h"
@@ -14,7 +14,7 @@ SyntheticDrive ground_drive(int frames, int beams) {
   return drive;
 }
 
-TEST(OpenGround, NavigationDecidesWhatTheScanDoesNotTell) {
+TEST(OpenGround, NavigationDecidesTheDirectionsThatTheScanLeavesOpen) {
   for (const int beams : {48, 16, 8}) {
     const SyntheticDrive drive = ground_drive(12, beams);
     Mapper mapper(drive.info(), {}, PoseSource::kRefine);

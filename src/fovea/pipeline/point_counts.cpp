@@ -9,7 +9,7 @@ namespace fovea {
 namespace {
 
 constexpr const char *kUsed = "points_scan", *kDropped = "points_dropped";
-/// Figures of records, present if above zero.
+/// Figures of records; absent if zero.
 constexpr std::array<std::pair<const char*, std::size_t DroppedPoints::*>, 4> kReasons = {
     {{"points_dropped_no_return", &DroppedPoints::no_return},
      {"points_dropped_not_finite", &DroppedPoints::not_finite},

@@ -1,4 +1,4 @@
-// Points of the scans of a run: used and dropped.
+// Used and dropped points of the scans of a run.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace fovea {
 
-/// Writes the counts of a frame into its record, where PointCounts finds them again.
+/// Writes the counts of a frame into its record, for PointCounts.
 void count_points(const Frame& frame, FrameRecord& record);
 
 class PointCounts {

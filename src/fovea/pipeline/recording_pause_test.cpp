@@ -15,7 +15,7 @@ MapperOptions options() {
 }
 
 /// A drive through the town at 1 m a frame. A minute passes before frame 6, where the vehicle is
-/// `moved` meters farther than where it would be without the pause.
+/// `moved` meters farther than without the pause.
 SyntheticDrive paused_drive(double moved, bool with_navigation) {
   SyntheticDrive drive(town_scene(), kFrames, 1.0);
   drive.beams = 24;
@@ -65,8 +65,8 @@ TEST(RecordingPause, WithoutNavigationTheScanIsFoundInTheLocalMap) {
   }
 }
 
-/// The same drive, continued at a place that none of the scans before shows: another town, which
-/// has the first one's scene at an offset of its own.
+/// The same drive, continued at a place without common scans: another town, a copy of the first one
+/// at an offset.
 class ElsewhereDrive {
  public:
   explicit ElsewhereDrive(bool with_navigation) : drive(paused_drive(0, with_navigation)) {
@@ -82,7 +82,7 @@ class ElsewhereDrive {
   Frame frame(int index) const {
     Frame frame = std::get<Frame>(drive.load(index));
     if (index < kPaused) return frame;
-    // A hall of two walls at 11 and 17 m, which moves by as the vehicle drives.
+    // A hall of two walls at 11 and 17 m, past which the vehicle drives.
     const float x = float(index - kPaused);
     for (std::size_t i = 0; i < frame.scan.size(); ++i) {
       Eigen::Vector3f& p = frame.scan.position[i];
@@ -111,7 +111,7 @@ std::vector<FrameRecord> map_whole(const ElsewhereDrive& drive) {
   return records;
 }
 
-/// Every frame after the pause lies a meter ahead of the one before.
+/// Every frame after the pause is a meter ahead of the one before.
 void expect_steady_motion(const std::vector<FrameRecord>& records) {
   for (std::size_t i = kPaused + 1; i < records.size(); ++i) {
     const RigidMotion moved = records[i - 1].T_local_lidar.inverse() * records[i].T_local_lidar;
@@ -119,7 +119,7 @@ void expect_steady_motion(const std::vector<FrameRecord>& records) {
   }
 }
 
-TEST(RecordingPause, ElsewhereTheTrackRestartsWhereNavigationHasIt) {
+TEST(RecordingPause, ElsewhereTheTrackRestartsAtThePoseOfNavigation) {
   const ElsewhereDrive drive(true);
   const std::vector<FrameRecord> records = map_whole(drive);
   EXPECT_TRUE(records[kPaused].has("track_restarted"));

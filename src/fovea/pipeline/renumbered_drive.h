@@ -1,4 +1,4 @@
-// A drive under other numbers of its frames.
+// A drive with other frame numbers.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace fovea {
 
-/// A drive that has only some of its frames, under other numbers.
+/// Some frames of a drive, with other numbers.
 class RenumberedDrive : public FrameSource {
  public:
   /// @param number_in_drive  by the new number

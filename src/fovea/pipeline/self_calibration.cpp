@@ -8,7 +8,7 @@
 namespace fovea {
 namespace {
 
-constexpr double kMaxRange = 40;  // m: beyond it a beam's spacing is wider than most things
+constexpr double kMaxRange = 40;  // m: beyond it the spacing of beams exceeds most objects
 constexpr int kCalibrationFrames = 60, kPasses = 2;
 
 std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const Camera& camera,
@@ -24,7 +24,7 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
                        {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});
 }
 
-/// Up to kCalibrationFrames of the drive's frames that may be looked at, spread evenly.
+/// Up to kCalibrationFrames of the usable frames, spread evenly.
 std::vector<int> chosen_frames(const DriveInfo& drive, const CalibrationJob& job) {
   std::vector<int> usable;
   for (const int index : drive.frame_indices()) {
@@ -38,7 +38,7 @@ std::vector<int> chosen_frames(const DriveInfo& drive, const CalibrationJob& job
   return chosen;
 }
 
-/// Profiles of all chosen frames, by camera; in the frames' order at any number of threads.
+/// Profiles of all chosen frames by camera, in the order of frames at any number of threads.
 std::vector<std::vector<EdgeProfile>> gather(const FrameSource& source, const CalibrationJob& job,
                                              const std::vector<int>& frames,
                                              const std::vector<Camera>& cameras) {
@@ -66,7 +66,7 @@ std::vector<std::vector<EdgeProfile>> gather(const FrameSource& source, const Ca
   return all;
 }
 
-/// The second estimate, made round the first, as a correction of what the first was made round.
+/// Combines the first estimate with the second, which started from it.
 CalibrationEstimate joined(const CalibrationEstimate& first, CalibrationEstimate second) {
   const auto rotation = [](const CalibrationEstimate& e) {
     return exp_se3((Twist() << e.rotation, 0, 0, 0).finished());

@@ -1,5 +1,5 @@
-// The calibration checked and corrected by the drive itself: glue between frames and
-// mapping/calibration (docs/calibration.md).
+// Checks and corrects the calibration from the drive itself: connects frames to mapping/calibration
+// (docs/calibration.md).
 #pragma once
 
 #include <functional>
@@ -14,25 +14,25 @@
 namespace fovea {
 
 struct CameraCalibration {
-  int camera = 0;  ///< the drive's number for it
+  int camera = 0;  ///< its number in the drive
   CalibrationEstimate estimate;
 };
 
-/// Gathers the edges of a few frames of a drive while it is mapped, for an estimate at the end.
+/// Collects edges of a few frames while a drive is mapped, for an estimate at the end.
 class CalibrationCheck {
  public:
-  /// Frames looked at, at most, and the frames from one to the next, at least: a small share of a
-  /// drive's time, however long or short it is.
+  /// Largest number of used frames, and least number of frames between two of them. Both keep the
+  /// cost small for drives of any length.
   static constexpr int kFrames = 20, kMinStride = 2;
 
   /// @param drive       must outlive the check
-  /// @param compensate  whether the sweep's motion has to be taken out of scans
+  /// @param compensate  whether scans need motion compensation
   CalibrationCheck(const DriveInfo& drive, bool compensate);
 
-  /// Whether enough of the drive has passed since the last frame that was added.
-  bool wants(int index) const { return index >= next_; }
+  /// Whether enough frames have passed since the last added one.
+  bool is_due(int index) const { return index >= next_; }
   void add(const Frame& frame, const FrameMotion& motion);
-  /// One a camera, in the calibration's order.
+  /// One estimate for each camera, in the calibration's order.
   std::vector<CameraCalibration> estimates() const;
 
  private:
@@ -44,19 +44,19 @@ class CalibrationCheck {
 
 struct CalibrationJob {
   bool compensate = true;  ///< as above
-  /// Whether a frame may be looked at: held-out frames must not.
+  /// Whether a frame may be used; held-out frames must not.
   std::function<bool(int index)> usable;
-  /// At a frame; one without is left out.
+  /// Motion at a frame; frames without it are skipped.
   std::function<std::optional<FrameMotion>(int index)> motion;
-  std::stop_token stop;  ///< ends early, with estimates of no use
+  std::stop_token stop;  ///< ends early, with unusable estimates
 };
 
-/// Estimates from up to 60 frames spread over the drive, twice: the second time round the first
-/// result. What is not observable is left as the drive's calibration has it. Each estimate is the
-/// whole correction, `pixels` by how much edges lay off before it.
+/// Estimates from up to 60 frames over the whole drive, twice: the second time from the first
+/// result. Unobservable parameters keep their values. Each estimate is the whole correction;
+/// `pixels` is the displacement of edges before it.
 std::vector<CameraCalibration> calibrate(const FrameSource& source, const CalibrationJob& job);
 
-/// The calibration with the estimates applied to its cameras, which are in the same order.
+/// The calibration with the estimates applied to its cameras, in the same order.
 Calibration corrected(const Calibration& calibration, const std::vector<CameraCalibration>& found);
 
 }  // namespace fovea

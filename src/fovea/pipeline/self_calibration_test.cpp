@@ -16,13 +16,13 @@ DriveInfo drive_of(int frames) {
   return drive;
 }
 
-TEST(CalibrationCheck, LooksAtFewFramesSpreadOverTheDrive) {
+TEST(CalibrationCheck, UsesFewFramesSpreadOverTheDrive) {
   for (const int frames : {1, 7, 40, 400, 10000}) {
     const DriveInfo drive = drive_of(frames);
     CalibrationCheck check(drive, true);
     std::vector<int> looked_at;
     for (int index = drive.begin; index < drive.end; ++index) {
-      if (!check.wants(index)) continue;
+      if (!check.is_due(index)) continue;
       Frame frame;
       frame.index = index;
       frame.images.resize(2);
@@ -33,7 +33,7 @@ TEST(CalibrationCheck, LooksAtFewFramesSpreadOverTheDrive) {
     if (frames < 40) continue;
     EXPECT_GE(looked_at.size(), std::size_t(CalibrationCheck::kFrames - 1));
     EXPECT_GT(looked_at.back(), drive.end - frames / 8);
-    // Frames without edges show nothing.
+    // Frames without edges do not count.
     const auto found = check.estimates();
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[1].camera, 3);

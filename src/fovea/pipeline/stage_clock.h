@@ -11,13 +11,13 @@ namespace fovea {
 
 class StageClock {
  public:
-  /// Runs `work`, adds its wall time to `stage` and returns what it returns.
+  /// Runs `work`, adds its wall time to `stage` and returns its result.
   template <class Work>
   decltype(auto) time(const char* stage, Work&& work) {
     const Timer timer{milliseconds_[stage]};
     return std::forward<Work>(work)();
   }
-  /// Adds what another clock has measured, in another thread perhaps.
+  /// Adds the times of another clock, possibly from another thread.
   void add(const StageClock& other) {
     for (const auto& [stage, milliseconds] : other.milliseconds_) {
       milliseconds_[stage] += milliseconds;

@@ -13,7 +13,7 @@
 namespace fovea {
 namespace {
 
-/// A drive whose calibration is another.
+/// A drive with another calibration.
 class RecalibratedSource : public FrameSource {
  public:
   RecalibratedSource(std::unique_ptr<FrameSource> drive, Calibration calibration)
@@ -34,7 +34,7 @@ std::string key_of(int camera, const char* ending) {
   return fmt::format("{}{}{}", meta_key::kCalibrationPrefix, camera, ending);
 }
 
-/// The numbers of a key; nothing without the key. InputError if they are not of that count.
+/// The numbers of a key; empty without the key. InputError if their count differs.
 std::optional<std::vector<double>> numbers_of(const MapMeta& meta, const std::string& key,
                                               std::size_t count, const std::filesystem::path& map) {
   const auto found = meta.find(key);
@@ -47,7 +47,7 @@ std::optional<std::vector<double>> numbers_of(const MapMeta& meta, const std::st
   return numbers;
 }
 
-/// The correction that the meta data state for a camera; none if they state nothing.
+/// The correction of a camera in the meta data, if any.
 CameraCalibration read_correction(const MapMeta& meta, int camera,
                                   const std::filesystem::path& map) {
   CameraCalibration correction;

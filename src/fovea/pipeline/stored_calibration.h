@@ -1,4 +1,4 @@
-// A corrected calibration in a map's meta data, and a drive seen under it.
+// A corrected calibration in a map's meta data, and its application to a drive.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 
 namespace fovea {
 
-/// Puts the corrections where a reader finds them: `calibration.camera_K`, four numbers: rotation
-/// vector in the camera's axes (rad), delay (s). Deviations are not kept.
+/// Stores the corrections as `calibration.camera_K`, four numbers: rotation vector in the camera's
+/// axes (rad), delay (s). Does not store deviations.
 void store_calibration(const std::vector<CameraCalibration>& found, MapMeta& meta);
 
-/// Whether a map was made under a corrected calibration.
+/// Whether a map was made with a corrected calibration.
 bool has_stored_calibration(const MapMeta& meta);
 
-/// The drive with the corrections that `meta` holds applied to its cameras; those without one stay
-/// as they are.
-/// @param map  whose meta data it is, for errors
-/// @throws InputError  if there is none at all, or one that cannot be read
+/// The drive with the corrections in `meta` applied to its cameras. Cameras without a correction do
+/// not change.
+/// @param map  of the meta data, for errors
+/// @throws InputError  if there is no correction, or an unreadable one
 std::unique_ptr<FrameSource> with_stored_calibration(std::unique_ptr<FrameSource> drive,
                                                      const MapMeta& meta,
                                                      const std::filesystem::path& map);

@@ -53,7 +53,7 @@ TEST(StoredCalibration, ComesBackExactly) {
   EXPECT_TRUE(std::holds_alternative<SkippedFrame>(drive->load(7)));
 }
 
-TEST(StoredCalibration, SaysWhatIsWrong) {
+TEST(StoredCalibration, NamesTheFault) {
   EXPECT_THROW(with_stored_calibration(two_cameras(), {}, "some.fovea"), InputError);
   for (const auto& [key, text] : std::vector<std::pair<std::string, std::string>>{
            {"calibration.camera_2.rotation_rad", ""},

@@ -49,7 +49,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
   nlohmann::ordered_json latency;
   for (const char* stage : {"decode", "upsample", "register", "fovea", "filter", "texture", "store",
                             "calibration", "wait", "frame"}) {
-    // A stage that never ran (say, the filter of a baseline) took no time.
+    // A stage that never ran, such as the filter of a baseline, has the time 0.
     const auto found = summary.latency_ms.find(stage);
     const StageLatency l = found != summary.latency_ms.end() ? found->second : StageLatency{};
     latency[stage] = to_json(l);

@@ -1,4 +1,4 @@
-// A run's figures as JSON, for reports and for other languages.
+// Figures of a run as JSON, for reports and other languages.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// Scans that lie far from where they are expected, without navigation.
+// Scans far from their predicted poses, without navigation.
 #include <gtest/gtest.h>
 
 #include "fovea/pipeline/mapper_test_support.h"
@@ -28,7 +28,7 @@ double position_error(const SyntheticDrive& drive, const FrameRecord& record) {
 
 TEST(TrackingLoss, AScanFarFromItsFirstGuessIsFoundAgain) {
   SyntheticDrive drive = town_drive(10);
-  // 7 m behind the place that constant velocity predicts, and on from there.
+  // 7 m behind the prediction by constant velocity, then onwards.
   for (std::size_t i = 7; i < 10; ++i) drive.T_local_lidar[i] = drive.T_local_lidar[i - 7];
   Mapper mapper(drive.info(), options(), PoseSource::kRefine);
   const std::vector<FrameRecord> records = map_frames(mapper, drive, 0, 10);
@@ -39,7 +39,7 @@ TEST(TrackingLoss, AScanFarFromItsFirstGuessIsFoundAgain) {
   }
 }
 
-/// A frame whose scan is of a round hall: nothing of the town, nor of another such hall.
+/// A frame with a scan of a round hall, which fits neither the town nor another hall.
 Frame frame_in_a_hall(const SyntheticDrive& drive, int index) {
   Frame frame = std::get<Frame>(drive.load(index));
   const float radius = 14 + 4 * static_cast<float>(index - 6);
@@ -47,14 +47,14 @@ Frame frame_in_a_hall(const SyntheticDrive& drive, int index) {
   return frame;
 }
 
-TEST(TrackingLoss, AScanThatFitsNowhereIsReported) {
+TEST(TrackingLoss, AScanWithoutAFitIsReported) {
   const SyntheticDrive drive = town_drive(8);
   Mapper mapper(drive.info(), options(), PoseSource::kRefine);
   map_frames(mapper, drive, 0, 6);
   const FrameRecord lost = mapper.process(frame_in_a_hall(drive, 6), false);
   EXPECT_TRUE(lost.has("registration_lost"));
   EXPECT_NE(lost.note.find("fits nowhere"), std::string::npos) << lost.note;
-  // A lost scan is no target: the next one is where it should be.
+  // A lost scan is no target: the next scan has the right pose.
   const FrameRecord next = mapper.process(std::get<Frame>(drive.load(7)), false);
   EXPECT_FALSE(next.has("registration_lost"));
   EXPECT_LT(position_error(drive, next), 0.05);
@@ -68,7 +68,7 @@ TEST(TrackingLoss, ADriveThatStaysLostStartsAgain) {
     const FrameRecord lost = mapper.process(frame_in_a_hall(drive, i), false);
     EXPECT_TRUE(lost.has("registration_lost")) << i;
   }
-  // After so many lost scans, the next one is a target, wherever it is: later ones fit it.
+  // After that many lost scans, the next one becomes a target, at any pose: later ones fit it.
   SyntheticDrive elsewhere(town_scene(), 14, 0.6);
   elsewhere.beams = 24;
   elsewhere.columns = 360;

@@ -1,4 +1,4 @@
-// Finds calibrations under which cameras see no point of any scan.
+// Detects calibrations with which cameras see no point of any scan.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace fovea {
 
-/// Checks scans until every camera sees a point, or for kMaxScans scans. Images play no part.
+/// Checks scans until every camera sees a point, or for kMaxScans scans. Does not use images.
 class ViewCheck {
  public:
   static constexpr int kMaxScans = 100;
@@ -22,7 +22,7 @@ class ViewCheck {
   void require_view() const;
   /// Whether a camera has seen a point, or the drive has no camera.
   bool passed() const;
-  /// Takes earlier frames, which passed, into account.
+  /// Counts frames of an earlier run, which passed the check.
   void skip();
   /// One note for each camera that has seen no point.
   std::vector<std::string> notes() const;

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A camera at the LiDAR that looks ahead, or up.
+/// A camera at the LiDAR, directed ahead or up.
 Camera camera(int index, bool looks_up) {
   Camera camera;
   camera.index = index;

@@ -41,7 +41,7 @@ TEST(VisibleMap, AWallGetsTheWeightedMeanOfItsViews) {
     error += (found - mean) / double(map.size());
     spread_error += (tile.spread[i] - std::sqrt((squares / weight - mean.squaredNorm()) / 3)) /
                     double(map.size());
-    ASSERT_EQ(tile.frame[i], 0);  // what measured the point stays
+    ASSERT_EQ(tile.frame[i], 0);  // the frame that measured the point
   });
   EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.05);
   EXPECT_LT(std::abs(spread_error), 0.1);
