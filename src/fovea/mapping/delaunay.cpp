@@ -135,8 +135,8 @@ void DelaunayTriangulation::start_with(std::int32_t apex_vertex) {
 // Visibility walk: crosses any edge that has the point on its far side. It terminates in a Delaunay
 // triangulation. Each step reduces the point's power with respect to the triangle's circumcircle,
 // or keeps it among cocircular triangles, whose dual graph is a tree.
-// @return the triangle that contains the point, perhaps on an edge or corner; for a point outside
-// the hull, a triangle outside whose edge of the hull has the point strictly in front
+// @return the triangle that contains the point, perhaps on its edge or corner. Outside the hull,
+// this is a triangle whose edge of the hull has the point strictly in front.
 std::int32_t DelaunayTriangulation::locate(GridPoint point, std::int32_t hint) const {
   Edge entry = 4 * hint;
   for (int corner = 0; corner < 3; ++corner) {

@@ -164,7 +164,7 @@ TEST_P(DelaunayOf, HalfAtOnceThenHalfWithTriangles) {
 }
 
 /// Twice inserts a point into each triangle with a positive `weight`: the weighted mean of its
-/// corners, in which the first corner has that weight and the others 1.
+/// corners. The first corner has that weight, the others 1.
 template <class F>
 void check_points_in_triangles(Points points, F&& weight) {
   DelaunayTriangulation triangulation;

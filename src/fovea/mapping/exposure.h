@@ -17,7 +17,7 @@ std::optional<Eigen::Array3f> gain_between(const Eigen::Array3f& known, const Ei
 bool is_exposure_off(const Eigen::Array3f& gain_to_map);
 
 /// The gain for new points of an image whose exposure is off: nine tenths of the way to the map's
-/// exposure, so that the map follows a lasting change of light within seconds.
+/// exposure. The map therefore follows a lasting change of light within seconds.
 Eigen::Array3f matching_gain(const Eigen::Array3f& gain_to_map);
 
 /// Median of each channel; 1 if there are too few gains.

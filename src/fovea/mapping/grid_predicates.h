@@ -56,8 +56,8 @@ struct InCircleDeterminant {
                                              const Real& cx, const Real& cy, const Real& cc)
       : value(aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx)),
         // The error is at most 10 u (u = 2^-53) times the same sum with absolute values (Shewchuk
-        // 1997, incircle bound A). |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on, so the
-        // sum below is larger, and 16 u cover its own rounding.
+        // 1997, incircle bound A). Since |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on,
+        // the sum below is larger. 16 u cover its own rounding.
         bound(0x1.0p-49 * (aa * bb + bb * cc + cc * aa)) {}
 };
 

@@ -31,8 +31,8 @@ TEST(InsertionOrder, HasEveryIndexOnce) {
 }
 
 // The rounds contain 1/16, 3/16 and 12/16 of the points. The curve visits every cell of a lattice
-// in steps of one, so the points of the last round have a mean distance of 4/3 cells along the
-// curve, and hardly more in the plane.
+// in steps of one. The points of the last round therefore have a mean distance of 4/3 cells along
+// the curve, and hardly more in the plane.
 TEST(InsertionOrder, FollowsTheCurveInEachRound) {
   const auto points = lattice(256);
   const auto order = insertion_order(points);

@@ -17,10 +17,10 @@ enum class Visibility : std::uint8_t {
   kFree,     ///< every return around its ray is behind it
 };
 
-/// The nearest returns of a scan by direction. Classifies balls of about 0.15 m, not points: a ball
-/// is free only if every ray within that distance (or within 0.75 degrees) ends well behind it, and
-/// such rays exist above and below. Thin objects, roofs and the road, whose rays graze them, are
-/// therefore never free.
+/// The nearest returns of a scan by direction. Classifies balls of about 0.15 m, not points. A ball
+/// is free only if every ray within that distance (or within 0.75 degrees) ends well behind it.
+/// Such rays must exist above and below. Thin objects, roofs and the road, whose rays graze them,
+/// are therefore never free.
 class RangeImage {
  public:
   static constexpr float kMargin = 0.3f;  ///< m: a return this near in range is at the position

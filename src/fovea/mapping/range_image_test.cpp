@@ -7,8 +7,8 @@
 
 namespace fovea::range_image_test {
 
-/// A scan of 64 rings, or fewer with a larger spacing, in a round room of `radius` m, with its
-/// floor 1.7 m below the sensor. `nearer` gives nearer returns (m; 0: none).
+/// A scan of 64 rings, or fewer with a larger spacing. The sensor is in a round room of `radius` m,
+/// 1.7 m above the floor. `nearer` gives nearer returns (m; 0: none).
 template <class Nearer>
 std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer, int every = 1) {
   std::vector<Eigen::Vector3f> scan;

@@ -41,10 +41,10 @@ struct Ray {
 /// The ray filter of one camera. Keeps its pixel grids between frames.
 ///
 /// Step 1 (paper: "we assign p to a ray having shortest ray-length d"): the shortest ray owns a
-/// pixel; a scan point is occluding if it owns a pixel to which a map point projects. Step 2
-/// (paper Eq. 1-2): a scan point is visible if its length lies within c standard deviations of the
-/// mean over the owners in the M x M window around it. Ties go to the map, then to the lower
-/// index.
+/// pixel. A scan point is occluding if it owns a pixel to which a map point projects. Step 2 (paper
+/// Eq. 1-2): the M x M window around a scan point gives the mean length of the owners. The point is
+/// visible if its length is within c standard deviations of it. Ties go to the map, then to the
+/// lower index.
 ///
 /// A value differs from the mean of N values by at most (N - 1) / sqrt(N) deviations: with c = 2,
 /// windows of five or fewer rays reject nothing.

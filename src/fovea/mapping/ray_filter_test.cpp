@@ -71,8 +71,8 @@ TEST(RayFilter, NewSurfaceBesideTheMapIsKept) {
 }
 
 // The paper's case: a box in front of a wall, with a map from another pose that contains the wall
-// behind the box. The scan contains the box (new, in front of the mapped wall), and wall points
-// that the box hides from the camera, due to the parallax between LiDAR and camera.
+// behind the box. The scan contains the box (new, in front of the mapped wall). It also contains
+// wall points that the box hides from the camera, due to the parallax between LiDAR and camera.
 TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
   const Camera camera = test_camera();
   const auto box = wall(5, camera, 80, 120, 30, 70);  // in the map
@@ -90,9 +90,9 @@ TEST(RayFilter, PointsSeenThroughAMappedBoxAreOccluded) {
 }
 
 TEST(RayFilter, OccludersStillOwnTheirPixelsInTheSecondTest) {
-  // The filter discards a scan patch that occludes the map, but still compares a lone far scan
-  // point in its middle with it: docs/method.md 5, "discarded occluders still count as owners in
-  // step 2".
+  // The filter discards a scan patch that occludes the map. It still compares a lone far scan point
+  // in the middle of the patch with it: docs/method.md 5, "discarded occluders still count as
+  // owners in step 2".
   const Camera camera = test_camera();
   auto map = wall(10, camera, 0, 200, 0, 100);
   std::erase_if(map, [](const Ray& r) {

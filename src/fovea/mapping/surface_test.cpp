@@ -39,9 +39,9 @@ TEST(Surface, GroundBetweenDistantRingsIsFilled) {
   }
 }
 
-// Rings 0.3 to 1 m apart: a sample states whether short edges or flat ground admitted it. The
-// edges of triangles between two known rings are at least as long as the gap, and at most as long
-// as its diagonal with a step along the ring.
+// Rings 0.3 to 1 m apart: a sample states whether short edges or flat ground admitted it. The edges
+// of triangles between two known rings are at least as long as the gap. They are at most as long as
+// its diagonal with a step along the ring.
 TEST(Surface, SayWhyTheyAreThere) {
   constexpr double kHeight = 1.653, kMaxEdge = 0.55;
   const Rings rings;

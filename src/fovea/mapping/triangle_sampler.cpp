@@ -22,8 +22,8 @@ void TriangleSampler::add_along(const std::array<Eigen::Vector3d, 3>& corner,
   if (!(n[kAxis] * n[kAxis] > 1e-6 * n.squaredNorm())) return;  // parallel to the axis
   const double slope_u = -n[kU] / n[kAxis], slope_v = -n[kV] / n[kAxis];
   const double cell = grid_.cell;
-  // Corners sorted by v: two triangles compute the same line for the edge that they share, and each
-  // row crosses the long edge and one of the others.
+  // Corners sorted by v, so that two triangles compute the same line for a common edge. Each row
+  // crosses the long edge and one of the others.
   const Eigen::Vector3d *low = &corner[0], *middle = &corner[1], *high = &corner[2];
   if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
   if ((*high)[kV] < (*middle)[kV]) std::swap(middle, high);

@@ -24,8 +24,8 @@ class DriveLog {
   bool has_mapped() const;
 
   /// The new records with their present poses, and the poses of earlier frames and submaps that
-  /// have moved since the last call: noticeably, or with `exact` at all. The pose of a skipped
-  /// frame is interpolated between its neighbors by index.
+  /// have moved since the last call. Without `exact`, very small motions do not count. The pose of
+  /// a skipped frame is interpolated between its neighbors by index.
   MapRows rows(const TileMap& map, bool exact);
 
  private:

@@ -14,7 +14,7 @@
 namespace fovea {
 
 /// Least share of equal stamps in the common time of map and drive, relative to the smaller number
-/// of stamps there: a drive may be thinned, and a map may be of a part of it.
+/// of stamps there. A drive may be thinned, and a map may be of a part of it.
 inline constexpr double kMinCommonStamps = 0.5;
 
 /// The frames of a map that are frames of a drive.
@@ -28,9 +28,8 @@ struct DriveMatch {
 
 /// Finds a drive among the drives of a map. Two drives are the same if
 /// - at least kMinCommonStamps of the stamps are equal, to the nanosecond,
-/// - the scans of three common frames have the same numbers of points, or over 10 % more or fewer
-/// if
-///   the motions by navigation agree (rings may have been removed),
+/// - the scans of three common frames have the same numbers of points. They may differ by over 10 %
+/// if the motions by navigation agree, since rings may have been removed,
 /// - each camera in use, and the position of the IMU, has the same fingerprint.
 /// A map whose format has no fingerprints is compared only by stamps; a note states that.
 /// @param drive  with its own calibration, not a corrected one

@@ -19,8 +19,8 @@ struct FrameMotion {
 std::optional<FrameMotion> known_motion(const FrameSource& source,
                                         const std::vector<RigidMotion>& given_poses, int index);
 
-/// Motion of a mapped frame: that of its motion compensation, or else that between its pose and the
-/// pose of the frame before, if that is known and was not skipped.
+/// Motion of a mapped frame: that of its motion compensation, or else that from the pose of the
+/// frame before. Empty if that frame is unknown or skipped.
 std::optional<FrameMotion> mapped_motion(const FrameRecord& record,
                                          const std::optional<FrameRecord>& before);
 

@@ -10,8 +10,8 @@ namespace {
 
 /// Least length, so that a standing vehicle stays in its submap.
 constexpr double kSubmapLength = 5;  // m
-/// Standard deviations of the odometry between the origins of consecutive submaps: a constant part,
-/// a part per meter, and a part per frame with degenerate or failed registration.
+/// Standard deviations of the odometry between the origins of consecutive submaps. They have a
+/// constant part, a part per meter, and a part per frame with degenerate or failed registration.
 constexpr double kTranslation = 0.01, kTranslationPerMeter = 0.001, kTranslationPerWeak = 0.1;  // m
 constexpr double kRotation = 0.02 * kDegree, kRotationPerMeter = 0.003 * kDegree,
                  kRotationPerWeak = 0.1 * kDegree;

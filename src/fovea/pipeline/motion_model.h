@@ -57,8 +57,8 @@ class VelocityError {
 
 /// Predicts by the navigation's motion since the last frame, or else by constant velocity. The
 /// velocity for motion compensation is the mean of those of navigation and of the last frames. The
-/// weight of each coordinate depends on the errors of their latest predictions: a jitter of
-/// positions by 1 cm is an error of 0.14 m/s in 0.1 s; the error of the last frames is the
+/// weight of each coordinate depends on the errors of their latest predictions. A jitter of
+/// positions by 1 cm is an error of 0.14 m/s in 0.1 s. The error of the last frames is the
 /// acceleration.
 class MotionModel {
  public:

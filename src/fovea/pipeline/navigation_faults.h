@@ -26,7 +26,7 @@ class NavigationFaults {
   /// Adds the next frame.
   void add(const FrameRecord& record);
 
-  /// A note that names the likely causes; empty if navigation agrees with the scans, if the vehicle
+  /// A note that names the likely causes. Empty if navigation agrees with the scans, if the vehicle
   /// has hardly moved, or if no known error explains the difference.
   std::optional<std::string> likely_cause() const;
 

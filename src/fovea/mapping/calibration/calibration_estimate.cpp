@@ -77,8 +77,8 @@ bool positive(const Matrix& m) {
 }
 
 /// Finds the maximum of the score from no correction, coarse to fine, with Newton steps. If a step
-/// leads down or the score is not concave, it steps to the maximum of the paraboloid below the
-/// score, which never leads down.
+/// leads down or the score is not concave, it uses the paraboloid below the score instead, whose
+/// maximum never leads down.
 Vector climb(const std::vector<EdgeProfile>& profiles, const Free& free) {
   Vector x = Vector::Zero();
   for (const double width : kWidths) {
@@ -142,8 +142,8 @@ Matrix covariance(const std::vector<EdgeProfile>& profiles, const Free& free, co
   return result;
 }
 
-/// Variance of a rotation across sparse rings. An object ends somewhere between two rings, and most
-/// objects end near the same side: wide gaps bias all edges of a drive in one direction.
+/// Variance of a rotation across sparse rings. An object ends somewhere between two rings, mostly
+/// on the same side. Wide gaps therefore bias all edges of a drive in one direction.
 Matrix gap_covariance(const std::vector<EdgeProfile>& profiles) {
   double spacing = 0, across = 0;  // across: > 0 if a rotation about x moves edges between rings
                                    // more than one about y

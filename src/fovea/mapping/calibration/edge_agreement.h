@@ -24,8 +24,8 @@ EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
 EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis,
                        const CalibrationVector& correction = CalibrationVector::Zero());
 
-/// Whether camera and LiDAR disagree under a correction: about one axis there are many edges, and
-/// their contrast is significantly below the least contrast of a right calibration.
+/// Whether camera and LiDAR disagree under a correction. About one axis there must be many edges,
+/// with a contrast significantly below that of a right calibration.
 bool edges_disagree(const std::vector<EdgeProfile>& profiles,
                     const CalibrationVector& correction = CalibrationVector::Zero());
 

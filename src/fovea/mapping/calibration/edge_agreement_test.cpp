@@ -8,8 +8,8 @@
 
 namespace fovea::edge_agreement_test {
 
-/// Edges along v (upright) or along u (level), each of its own object, with a step of the image
-/// `off` pixels from the expected position, and clutter of up to the same height.
+/// Edges along v (upright) or along u (level), each of its own object. The image has a step `off`
+/// pixels from the expected position, and clutter of up to the same height.
 struct Edges {
   int frames = 10, upright = 40, level = 40;  ///< a frame
   double off_upright = 0, off_level = 0;      ///< pixels

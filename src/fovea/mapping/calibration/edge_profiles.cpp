@@ -82,8 +82,8 @@ bool on_one_line(const ImageEdge& a, const ImageEdge& b, double near) {
          std::abs(a.range - b.range) <= kSameRange * a.range;
 }
 
-/// Unit normal, outwards, of the line through an edge and its neighbors on the same side of the
-/// same object; empty if they are not on a line.
+/// Unit normal, outwards, of the line through an edge and its neighbors on the same side of an
+/// object. Empty if they are not on a line.
 /// @param near  largest distance of a neighbor, pixels
 std::optional<Vector2d> line_normal(const std::vector<ImageEdge>& edges, std::size_t own,
                                     double near) {

@@ -12,7 +12,7 @@
 namespace fovea {
 
 /// Parameters of an edge's position: rotation vector of the camera in its own axes (rad), delay of
-/// the image (s), and two shifts (pixels) that are no calibration. Edges along a ring shift
+/// the image (s), two shifts (pixels). The shifts are no calibration. Edges along a ring shift
 /// outwards, since the width of a beam enlarges objects. Edges between rings shift downwards, since
 /// a roof ends beyond the last beam that hit it, and the camera is not at the LiDAR.
 using CalibrationVector = Eigen::Matrix<double, 6, 1>;

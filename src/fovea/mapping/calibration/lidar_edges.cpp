@@ -73,9 +73,9 @@ void add_edges_along_rings(const std::vector<Beam>& beams, float max_range, Lida
   }
 }
 
-/// Whether the far one of two neighboring beams in a column, k - 1 and k, may be on one plane with
-/// the near beam and the next ring on the near beam's other side. The ground is such a plane at any
-/// ring spacing and sensor height. Inverse ranges of a plane are linear in the angle.
+/// Whether the far beam of two neighbors in a column, k - 1 and k, may be on a plane with the near
+/// beam. The next ring on the near beam's other side defines the plane. The ground is such a plane
+/// at any ring spacing and sensor height. Inverse ranges of a plane are linear in the angle.
 bool continues_a_plane(const std::vector<Beam>& beams, const std::vector<std::uint32_t>& column,
                        std::size_t k) {
   const bool near_is_below = beams[column[k]].range < beams[column[k - 1]].range;

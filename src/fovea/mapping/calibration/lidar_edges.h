@@ -9,7 +9,7 @@
 namespace fovea {
 
 /// Edges of a scan. Entry i of both clouds is one edge: the last beam that hit the near object, and
-/// the neighboring beam that passed it, both at the object's range. The expected edge is in the
+/// the neighboring beam that passed it. Both have the object's range. The expected edge is in the
 /// middle. (The near beam alone would be inside by half the spacing of beams.)
 struct LidarEdges {
   PointCloud inside, outside;               ///< with the times of their beams if the scan has times
