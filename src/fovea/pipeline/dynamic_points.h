@@ -1,5 +1,5 @@
-// Keeps what moves out of the map (the paper leaves it for later; docs/method.md 8): a place
-// through which scans see holds nothing, whatever another scan met there.
+// Removes moving objects from the map (docs/method.md 8; not in the paper). Space that scans see
+// through is free, whatever an earlier scan measured there.
 #pragma once
 
 #include <cstdint>
@@ -14,70 +14,72 @@
 namespace fovea {
 
 struct DynamicPointOptions {
-  bool remove = true;   ///< false: what moves stays, as in the paper
-  double range = 25.0;  ///< m from the LiDAR: nearer map points are looked at in every scan
-  int free_scans = 4;   ///< see through a place after it was last seen filled, and its points go
-  double row_height = RangeImage::kLeastRowHeight;  ///< rad, by the LiDAR's rings; no key
+  bool remove = true;   ///< false: moving objects stay in the map, as in the paper
+  double range = 25.0;  ///< m from the LiDAR: scans observe map points up to this range
+  int free_scans = 4;   ///< a voxel loses its points if this many scans see through it
+  double row_height = RangeImage::kLeastRowHeight;  ///< rad, from the LiDAR's rings; no key
   void validate() const;                            ///< ConfigError that names the field
 };
 
-/// Evidence of free space for the voxels of a map. All evidence is of the last kMemory frame
-/// numbers, so that a run that resumes and looks at those scans again decides alike.
+/// Evidence of free space in the voxels of a map. Covers the last kMemory frame numbers, so that a
+/// resumed run that replays those scans decides alike.
 class DynamicPointFilter {
  public:
   static constexpr int kMemory = 32;               ///< frames
-  static constexpr std::size_t kVotingScans = 12;  ///< scans that judge new points: about a second
+  static constexpr std::size_t kVotingScans = 12;  ///< about a second
 
   explicit DynamicPointFilter(const DynamicPointOptions& options) : options_(options) {}
 
-  /// Marks (1) points of a new scan that lie where most of the latest scans saw through: something
-  /// has come there since. Judged by voxels of 0.2 m.
-  /// @param T_odom_local  inverse of the motion that puts the latest submap into local
+  /// Marks (1) points of a new scan in space that most of the voting scans saw through: an object
+  /// has moved there since. One decision for each voxel of 0.2 m.
+  /// @param T_odom_local  inverse of the pose of the latest submap's odometry in local
   std::vector<std::uint8_t> classify(const PointCloud& points_local,
                                      const RigidMotion& T_odom_local) const;
 
-  /// Looks at the map through a scan and removes the points of voxels that it and the scans before
-  /// see through: something was there and has gone; and what came with them within 40 cm beneath.
-  /// @return how many points were removed
+  /// Adds the evidence of a scan. If this and earlier scans see through a voxel, an object has
+  /// left: removes its points, and points of the same frames up to 40 cm below.
+  /// @return number of removed points
   std::size_t observe(TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
                       const RigidMotion& T_odom_local, int frame);
 
-  /// The same without removing: scans that a map has been built from (resume).
+  /// Adds the evidence of a scan that is already in the map (resume), and removes no points.
   void replay(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
               const RigidMotion& T_odom_local, int frame);
 
  private:
   struct Voxel {
     std::uint32_t cell = 0;  // in its tile
-    /// Bit k: the scan k frames before the block's frame saw the voxel filled, or saw through it.
+    /// Bit k: the scan k frames before the evidence's frame hit the voxel, or saw through it.
     std::uint32_t filled = 0, free = 0;
   };
-  struct Block {  // of a tile
-    int frame = 0;
-    std::size_t known_points = 0;  // of the tile's, the rest is new
+  struct Evidence {                // for a tile
+    int frame = 0;                 // of the last scan
+    std::size_t known_points = 0;  // of the tile; later points are new
     std::vector<Voxel> voxels;
-    FlatMap<std::uint32_t> place;  // of each cell in voxels
+    FlatMap<std::uint32_t> voxel_of_cell;
   };
   struct Tile {
     TileId id;
     const TilePoints* points;
-    Block* block;
-    std::vector<std::uint32_t> kept;  // of the points, where some go
+    Evidence* evidence;
+    std::vector<std::uint32_t> kept;  // points, if any are removed
     bool shrinks = false;
   };
-  struct Scan {  // placed in odom, where the latest scans never move
+  struct Scan {  // in odom, in which scans never move
     RangeImage image;
     RigidMotion T_lidar_odom;
   };
+  std::vector<Tile> add_scan(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
+                             const RigidMotion& T_odom_local, int frame);
   std::vector<Tile> tiles_near(const TileMap& map, const Eigen::Vector3d& center_local);
-  void look(const TileMap& map, const RigidMotion& T_odom_local, int frame, Tile& tile) const;
+  void update_evidence(const TileMap& map, const RigidMotion& T_odom_local, int frame,
+                       Tile& tile) const;
+  bool is_gone(const Voxel& voxel) const;
   void select_kept(const TileMap& map, Tile& tile) const;
-  std::vector<Tile> gather(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
-                           const RigidMotion& T_odom_local, int frame);
 
   DynamicPointOptions options_;
-  std::map<TileId, Block> blocks_;  // of the tiles within reach
-  std::deque<Scan> scans_;          // the latest last
+  std::map<TileId, Evidence> evidence_;  // for the tiles in range
+  std::deque<Scan> scans_;               // voting scans, the latest last
 };
 
 }  // namespace fovea
