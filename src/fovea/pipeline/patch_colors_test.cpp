@@ -6,7 +6,9 @@
 
 #include "fovea/pipeline/visible_map_test_support.h"
 
-namespace fovea::visible_map_test {
+namespace fovea::patch_colors_test {
+
+using namespace visible_map_test;
 
 TEST(NewColors, AreThoseOfTheViewAtThePoints) {
   Image ramp(621, 188, 3);
@@ -65,4 +67,4 @@ TEST(NewColors, AreMeansOverTheFootprint) {
   EXPECT_EQ(points.color[1], (Rgb{0, 0, 0}));
 }
 
-}  // namespace fovea::visible_map_test
+}  // namespace fovea::patch_colors_test
