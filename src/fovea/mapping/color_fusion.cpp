@@ -1,9 +1,6 @@
 #include "fovea/mapping/color_fusion.h"
 
-#include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstring>
 
 namespace fovea {
 namespace {
@@ -19,35 +16,23 @@ std::uint8_t rounded(float value, float chance) {
   return static_cast<std::uint8_t>(static_cast<std::int32_t>(clamped));
 }
 
-// A FusedColor as one number, so that loops vectorize.
-static_assert(std::endian::native == std::endian::little && sizeof(FusedColor) == 8);
-static_assert(offsetof(FusedColor, color) == 0 && offsetof(FusedColor, views) == 3 &&
-              offsetof(FusedColor, spread) == 4 && offsetof(FusedColor, weight) == 6);
-using Words = std::array<std::uint64_t, ColorBlock::kSize>;
-
 }  // namespace
 
 void FusedColors::load(std::span<const FusedColor> colors) {
-  Words words;
-  const std::size_t count = colors.size();
-  if (count > 0) std::memcpy(words.data(), colors.data(), colors.size_bytes());
-  for (std::size_t i = 0; i < count; ++i) red[i] = static_cast<std::uint8_t>(words[i]);
-  for (std::size_t i = 0; i < count; ++i) green[i] = static_cast<std::uint8_t>(words[i] >> 8);
-  for (std::size_t i = 0; i < count; ++i) blue[i] = static_cast<std::uint8_t>(words[i] >> 16);
-  for (std::size_t i = 0; i < count; ++i) views[i] = static_cast<std::uint8_t>(words[i] >> 24);
-  for (std::size_t i = 0; i < count; ++i) spread[i] = static_cast<std::uint8_t>(words[i] >> 32);
-  for (std::size_t i = 0; i < count; ++i) weight[i] = static_cast<std::uint16_t>(words[i] >> 48);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    red[i] = colors[i].color.r;
+    green[i] = colors[i].color.g;
+    blue[i] = colors[i].color.b;
+    views[i] = colors[i].views;
+    spread[i] = colors[i].spread;
+    weight[i] = colors[i].weight;
+  }
 }
 
 void FusedColors::store(std::span<FusedColor> colors) const {
-  Words words;
-  const std::size_t count = colors.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    words[i] = std::uint64_t{red[i]} | std::uint64_t{green[i]} << 8 | std::uint64_t{blue[i]} << 16 |
-               std::uint64_t{views[i]} << 24 | std::uint64_t{spread[i]} << 32 |
-               std::uint64_t{weight[i]} << 48;
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    colors[i] = {{red[i], green[i], blue[i]}, views[i], spread[i], weight[i]};
   }
-  if (count > 0) std::memcpy(static_cast<void*>(colors.data()), words.data(), colors.size_bytes());
 }
 
 void fuse(FusedColors& points, const ColorObservations& seen, std::size_t count) {
