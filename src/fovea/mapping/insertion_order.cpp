@@ -1,7 +1,6 @@
 #include "fovea/mapping/insertion_order.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <utility>
 
@@ -11,51 +10,25 @@
 namespace fovea {
 namespace {
 
-constexpr int kLevels =
-    15;  // bits of a cell's coordinate; its position on the curve has twice as many
-constexpr int kStepLevels = 3;  // levels taken at once
+constexpr int kLevels = 15;  // bits of a cell's coordinate
 constexpr int kRounds = 3;
-static_assert(kLevels % kStepLevels == 0 && 2 * kLevels + 2 == 32);
+static_assert(2 * kLevels + 2 == 32);
 
-// The curve as a state machine. The state is the orientation of the curve in a square: bit 0
-// exchanges x and y, bit 1 rotates by 180 degrees.
-struct Step {
-  unsigned place, state;
-};
-
-constexpr Step descend(unsigned state, unsigned x, unsigned y) {
-  if (state & 2) x ^= 1, y ^= 1;
-  if (state & 1) std::swap(x, y);
-  // In state 0 the curve visits (0,0), (0,1), (1,1), (1,0). It is transposed in the first quadrant,
-  // and transposed and rotated in the last one.
-  const unsigned place = (3 * x) ^ y;
-  return {place, state ^ (place == 0 ? 1u : place == 3 ? 3u : 0u)};
-}
-
-// For each state and three bits of x and of y: the position along the curve (6 bits) and the next
-// state.
-constexpr std::array<std::uint8_t, 256> make_steps() {
-  std::array<std::uint8_t, 256> steps{};
-  for (unsigned i = 0; i < 256; ++i) {
-    Step step{0, i >> 6};
-    for (int level = kStepLevels - 1; level >= 0; --level) {
-      const Step below = descend(step.state, (i >> (3 + level)) & 1, (i >> level) & 1);
-      step = {step.place << 2 | below.place, below.state};
-    }
-    steps[i] = static_cast<std::uint8_t>(step.state << 6 | step.place);
+/// Position of a cell on the Hilbert curve.
+std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t index = 0;
+  // Orientation of the curve in a square: bit 0 exchanges x and y, bit 1 rotates by 180 degrees.
+  std::uint32_t state = 0;
+  for (int level = kLevels - 1; level >= 0; --level) {
+    std::uint32_t right = (x >> level & 1) ^ (state >> 1), up = (y >> level & 1) ^ (state >> 1);
+    if (state & 1) std::swap(right, up);
+    // In state 0 the curve visits (0,0), (0,1), (1,1), (1,0). It is transposed in the first
+    // quadrant, and transposed and rotated in the last one.
+    const std::uint32_t quadrant = (3 * right) ^ up;
+    index = index << 2 | quadrant;
+    state ^= quadrant == 0 ? 1 : quadrant == 3 ? 3 : 0;
   }
-  return steps;
-}
-constexpr std::array<std::uint8_t, 256> kSteps = make_steps();
-
-std::uint32_t place_on_hilbert_curve(std::uint32_t x, std::uint32_t y) {
-  std::uint32_t place = 0, state = 0;  // the state in bits 6 and 7
-  for (int level = kLevels - kStepLevels; level >= 0; level -= kStepLevels) {
-    const std::uint32_t step = kSteps[state | ((x >> level) & 7) << 3 | ((y >> level) & 7)];
-    place = place << 6 | (step & 63);
-    state = step & 192;
-  }
-  return place;
+  return index;
 }
 
 std::uint32_t round_of(std::uint32_t index) {
@@ -84,7 +57,7 @@ std::vector<std::uint32_t> insertion_order(std::span<const GridPoint> points) {
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const auto x = static_cast<std::uint32_t>((std::int64_t{points[i].x} - low.x) >> shift);
     const auto y = static_cast<std::uint32_t>((std::int64_t{points[i].y} - low.y) >> shift);
-    items[i] = {round_of(i) << (2 * kLevels) | place_on_hilbert_curve(x, y), i};
+    items[i] = {round_of(i) << (2 * kLevels) | hilbert_index(x, y), i};
   }
   radix_sort(items, 2 * kLevels + 2);
   std::vector<std::uint32_t> order(points.size());
