@@ -24,7 +24,7 @@ void TriangleSampler::add_along(const std::array<Eigen::Vector3d, 3>& corner,
   const double cell = grid_.cell;
   // Corners sorted by v, so that two triangles compute the same line for a common edge. Each row
   // crosses the long edge and one of the others.
-  const Eigen::Vector3d *low = &corner[0], *middle = &corner[1], *high = &corner[2];
+  const Eigen::Vector3d *low = corner.data(), *middle = &corner[1], *high = &corner[2];
   if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);
   if ((*high)[kV] < (*middle)[kV]) std::swap(middle, high);
   if ((*middle)[kV] < (*low)[kV]) std::swap(low, middle);

@@ -41,7 +41,6 @@ class GridCells {
   bool is_marked(const Eigen::Array3i& cell) {
     const Eigen::Array3i number = CellBrick::number_of(cell);
     if (!CellBrick::same(number, brick_number_)) {
-      static constexpr CellBrick kEmpty{};
       brick_number_ = number;
       brick_ = grid_.taken_brick(number);
       if (brick_ == nullptr) brick_ = &kEmpty;
@@ -56,10 +55,11 @@ class GridCells {
   }
 
  private:
+  static constexpr CellBrick kEmpty{};
   const SampleGrid& grid_;
   double cells_per_meter_, steps_per_meter_, cells_per_step_, half_, offset_;
   Eigen::Array3i brick_number_ = CellBrick::no_number();  // of the last call
-  const CellBrick* brick_ = nullptr;
+  const CellBrick* brick_ = &kEmpty;
 };
 
 /// The columns of cells that are sampled: all; after one halving every second, as on a chessboard;

@@ -38,7 +38,8 @@ class TileVoxels {
   }
   Eigen::Vector3f center_of(std::uint32_t cell) const {
     const auto n = static_cast<std::uint32_t>(edge_);
-    return Eigen::Vector3f(float(cell % n), float(cell / n % n), float(cell / n / n)) * size_ +
+    const std::uint32_t x = cell % n, y = cell / n % n, z = cell / n / n;
+    return Eigen::Vector3f(float(x), float(y), float(z)) * size_ +
            Eigen::Vector3f::Constant(size_ / 2);
   }
 
