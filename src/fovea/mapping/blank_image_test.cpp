@@ -29,7 +29,7 @@ TEST(BlankImage, BlackAndWhiteOnesAreBlank) {
   }
 }
 
-TEST(BlankImage, WhatShowsATenthOfAStreetIsNot) {
+TEST(BlankImage, AnImageWithATenthOfAStreetIsNot) {
   EXPECT_FALSE(is_blank(with_rows(filled(0), 0.1, 90)));
   EXPECT_FALSE(is_blank(with_rows(filled(255), 0.1, 90)));
   EXPECT_FALSE(is_blank(with_rows(filled(0), 0.5, 255)));  // half black, half white: a pattern

@@ -257,7 +257,7 @@ TEST(DelaunayTriangulation, IsEmptyAgainAfterClear) {
   }
 }
 
-TEST(DelaunayTriangulation, RejectsWhatItCannotDoExactly) {
+TEST(DelaunayTriangulation, RejectsInputBeyondExactArithmetic) {
   DelaunayTriangulation triangulation;
   triangulation.insert(Points{{0, 0}, {9, 0}, {0, 9}});
   constexpr std::int32_t kBeyond = kMaxGridCoordinate + 1;

@@ -18,13 +18,13 @@ void add(DepthBuffer& buffer, const Eigen::Vector2f& pixel, float depth, float r
   buffer.add(samples, 1, radius * depth);
 }
 
-TEST(DepthBuffer, HidesNothingWhereNothingStands) {
+TEST(DepthBuffer, AnEmptyBufferHidesNothing) {
   const DepthBuffer buffer(camera_of(100, 50));
   EXPECT_FALSE(buffer.hides({0, 0}, 1000.f));
   EXPECT_FALSE(buffer.hides({99, 49}, 1000.f));
 }
 
-TEST(DepthBuffer, HidesWhatIsBehindAndNotWhatIsBesideOrInFront) {
+TEST(DepthBuffer, HidesOnlyPointsBehindASample) {
   DepthBuffer buffer(camera_of(100, 50));
   add(buffer, {40, 20}, 5, 6);
   const float margin = DepthBuffer::kBehind + DepthBuffer::kBehindShare * 5.2f;
@@ -43,7 +43,7 @@ TEST(DepthBuffer, HidesWhatIsBehindAndNotWhatIsBesideOrInFront) {
   }
 }
 
-TEST(DepthBuffer, TheNearestStandsInFront) {
+TEST(DepthBuffer, TheNearestSampleCounts) {
   DepthBuffer buffer(camera_of(100, 50));
   add(buffer, {40, 20}, 5, 2);
   add(buffer, {40, 20}, 3, 2);

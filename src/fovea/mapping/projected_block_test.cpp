@@ -37,7 +37,7 @@ TEST(ProjectedBlock, ProjectsAsTheCameraDoes) {
   EXPECT_GT(in_view, 300u);
 }
 
-TEST(ProjectedBlock, WhatIsBehindOrNotANumberIsNotInView) {
+TEST(ProjectedBlock, PointsBehindAndNonFinitePointsAreNotInView) {
   ProjectedBlock block(test_camera());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Eigen::Vector3f> points = {{0, 0, -5},  {0, 0, 0},   {0, 0, 0.05f},

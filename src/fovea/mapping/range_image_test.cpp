@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3f> room_scan(float radius, Nearer&& nearer, int every 
 
 float nothing(float, float) { return 0; }
 
-TEST(RangeImage, SaysFreeSurfaceAndUnknown) {
+TEST(RangeImage, ClassifiesFreeSurfaceAndUnknown) {
   const RangeImage image(room_scan(20, nothing));
   EXPECT_EQ(image.visibility({10, 0, -0.5f}), Visibility::kFree);
   EXPECT_EQ(image.visibility({-4, -3, -0.3f}), Visibility::kFree);
@@ -40,7 +40,7 @@ TEST(RangeImage, SaysFreeSurfaceAndUnknown) {
   EXPECT_EQ(image.visibility({0.1f, 0, 0}), Visibility::kUnknown);
 }
 
-TEST(RangeImage, RowsAsHighAsTheRingsAreApartSeeWhatSparseRingsSee) {
+TEST(RangeImage, SparseRingsNeedHighRows) {
   // Sixteen rings, 1.7 degrees apart. Of rows of 0.6 degrees, two of three have no return.
   const std::vector<Eigen::Vector3f> scan = room_scan(20, nothing, 4);
   const RangeImage narrow(scan), image(scan, 1.85 * std::numbers::pi / 180);

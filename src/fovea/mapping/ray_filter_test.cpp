@@ -62,7 +62,7 @@ TEST(RayFilter, EachTestCanBeSwitchedOff) {
   EXPECT_EQ(RayFilter().filter(behind_it, wall_in_map, camera, options)[0], RayVerdict::kVisible);
 }
 
-TEST(RayFilter, NewSurfaceBesideTheMapIsKept) {
+TEST(RayFilter, NewSurfaceNextToTheMapIsKept) {
   const Camera camera = test_camera();
   const auto map = wall(10, camera, 0, 50, 0, 100);
   const auto scan = wall(10, camera, 60, 100, 0, 100);
@@ -118,7 +118,7 @@ TEST(RayFilter, OfOneScanTheNearestKeepsThePixel) {
             (std::vector{RayVerdict::kShared, RayVerdict::kVisible, RayVerdict::kShared}));
 }
 
-TEST(RayFilter, PixelLostToTheMapGoesOnToTheSecondTest) {
+TEST(RayFilter, PointWhosePixelTheMapOwnsTakesTheSecondTest) {
   const Camera camera = test_camera();
   const std::vector<Ray> map{{{50, 50}, 9.0f}};
   // Just behind a lone map point of the same surface: sigma 0, within a centimeter: visible.

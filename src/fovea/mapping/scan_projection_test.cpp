@@ -68,14 +68,14 @@ Counts judge(const Eigen::Vector3d& center) {
   return counts;
 }
 
-TEST(ScanProjection, FindsWhatACameraAsideCannotSee) {
+TEST(ScanProjection, FindsThePointsHiddenFromASideCamera) {
   const Counts counts = judge({0.3, 0.4, -0.1});
   EXPECT_GT(counts.hidden, 200);
   EXPECT_GT(counts.found, 0.93 * counts.hidden);
   EXPECT_LT(counts.wrong, 0.01 * counts.seen);  // the rim of the box, a quarter of a degree wide
 }
 
-TEST(ScanProjection, WhereTheLidarStandsTheCameraSeesAll) {
+TEST(ScanProjection, ACameraAtTheLidarSeesAllPoints) {
   const Counts counts = judge(Eigen::Vector3d::Zero());
   EXPECT_EQ(counts.hidden, 0);
   EXPECT_LT(counts.wrong, 0.01 * counts.seen);

@@ -120,7 +120,7 @@ TEST(SensorProfileEstimate, UpsideDownItIsAsHigh) {
   EXPECT_NEAR(*profile.height, 1.7, 0.03);
 }
 
-TEST(SensorProfileEstimate, OfNothingIsWhatIsStated) {
+TEST(SensorProfileEstimate, WithoutScansIsTheStatedOne) {
   SensorProfile stated;
   stated.name = "front";
   EXPECT_EQ(estimate_sensor_profile({}, stated), stated);

@@ -42,7 +42,7 @@ TEST(Surface, GroundBetweenDistantRingsIsFilled) {
 // Rings 0.3 to 1 m apart: a sample states whether short edges or flat ground admitted it. The edges
 // of triangles between two known rings are at least as long as the gap. They are at most as long as
 // its diagonal with a step along the ring.
-TEST(Surface, SayWhyTheyAreThere) {
+TEST(Surface, SamplesStateTheRuleThatAdmittedThem) {
   constexpr double kHeight = 1.653, kMaxEdge = 0.55;
   const Rings rings;
   const PointCloud measured = scan({{{{-50, kHeight, -5}, {50, kHeight + 1, 60}}}}, rings);

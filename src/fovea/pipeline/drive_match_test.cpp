@@ -231,7 +231,7 @@ TEST_F(MatchDrive, SomeOtherStampsDoNotMatter) {
 }
 
 // The fingerprint contains the median delay of the present images.
-TEST_F(MatchDrive, AcceptsAThinnedDriveWhoseImagesHaveDelaysOfTheirOwn) {
+TEST_F(MatchDrive, AcceptsAThinnedDriveWithDelaysOfSingleImages) {
   TestDrive drive;
   drive.info_.image_offsets.resize(2);
   drive.info_.calibration.cameras[0].image_delay = 0.020;

@@ -53,7 +53,8 @@ TEST(NewColors, AreMarkedIfTheirExposureWasMatched) {
   EXPECT_EQ(points.color[0], (Rgb{120, 120, 120}));
 }
 
-// Near by the footprint is many pixels: the mean of stripes; far away it is less than one.
+// The footprint of a near point covers many pixels: the mean of stripes. That of a far point is
+// below one pixel.
 TEST(NewColors, AreMeansOverTheFootprint) {
   Image stripes(621, 188, 1);
   for (int y = 0; y < stripes.height; ++y) {

@@ -35,7 +35,7 @@ TEST(VisibleMap, AWallGetsTheWeightedMeanOfItsViews) {
       weight += w;
     }
     ASSERT_EQ(tile.views[i], 4);
-    ASSERT_NEAR(tile.weight[i], weight, 1);  // a distance within rounding of where weights change
+    ASSERT_NEAR(tile.weight[i], weight, 1);  // a distance at a step of the weights
     const Eigen::Vector3d mean = sum / weight, found = to_float(tile.color[i]).cast<double>();
     ASSERT_LT((found - mean).cwiseAbs().maxCoeff(), 4);
     error += (found - mean) / double(map.size());
@@ -108,7 +108,7 @@ TEST(VisibleMap, PointsOutsideTheRegionStayAsTheyAre) {
   EXPECT_LE(seen, inside);
 }
 
-// Tiles are left out whole where the camera does not look; none that holds a point in view is.
+// The map skips whole tiles outside the view, but none with a point in view.
 TEST(VisibleMap, FindsEveryPointInViewWhereverItsTileLies) {
   Random random(5);
   std::size_t all_inside = 0;
@@ -116,7 +116,7 @@ TEST(VisibleMap, FindsEveryPointInViewWhereverItsTileLies) {
     Twist twist;
     for (double& value : twist) value = random.uniform(-1.5, 1.5);
     const RigidMotion T_cam_local = exp_se3(twist);
-    std::vector<Eigen::Vector3f> positions;  // so few that none hides another
+    std::vector<Eigen::Vector3f> positions;  // few, so that they do not hide each other
     for (int i = 0; i < 300; ++i) {
       positions.push_back(
           Eigen::Vector3d(random.uniform(-19, 19), random.uniform(-19, 19), random.uniform(-19, 19))
@@ -137,7 +137,7 @@ TEST(VisibleMap, FindsEveryPointInViewWhereverItsTileLies) {
   EXPECT_GT(all_inside, 150u);
 }
 
-// Nearer than the near blind zone nothing is colored, but it hides.
+// Points in the near blind zone get no color, but hide others.
 TEST(VisibleMap, PointsOutsideTheRegionHideOthers) {
   TileMap map = map_of(wall(8, -1, 1, -0.3, 0.3));
   map.add(new_points(wall(2, -1, 1, -0.3, 0.3)));
@@ -145,8 +145,7 @@ TEST(VisibleMap, PointsOutsideTheRegionHideOthers) {
   EXPECT_EQ(view.recolor(map), 0u);
 }
 
-// Something comes between the camera and a wall that is in the map: in front of it by more than
-// 30 cm and 5 %.
+// Points between the camera and a wall in the map: more than 30 cm and 5 % in front of it.
 TEST(VisibleMap, FindsPointsInFrontOfTheMap) {
   const Camera camera = test_camera();
   const FovealRegion region(white_zone(1), camera);
@@ -155,7 +154,7 @@ TEST(VisibleMap, FindsPointsInFrontOfTheMap) {
   seen.render(map, region, RigidMotion::Identity(), kSpacing);
   PointCloud points;
   points.position = {{0, 0, 5},       {0.2f, 0.1f, 7.5f}, {0, 0, 7.7f}, {0, 0, 8},
-                     {0, 0, 8.5f},    {-0.3f, 0, 3},      {2, 0, 5},  // beside the wall
+                     {0, 0, 8.5f},    {-0.3f, 0, 3},      {2, 0, 5},  // next to the wall
                      {0.4f, -0.2f, 4}};
   EXPECT_EQ(seen.find_occluding(points), (std::vector<std::uint8_t>{1, 1, 0, 0, 0, 1, 0, 1}));
   seen.render(TileMap(), region, RigidMotion::Identity(), kSpacing);
@@ -209,18 +208,18 @@ TEST(Exposure, GainBringsAnImageToTheMap) {
   EXPECT_LT((gain_of({100, 60, 80}) - 1).abs().maxCoeff(), 1e-3);
   EXPECT_LT((gain_of({200, 120, 160}) - 0.5f).abs().maxCoeff(), 1e-3);
   EXPECT_LT((gain_of({50, 60, 40}) - Eigen::Array3f(2, 1, 2)).abs().maxCoeff(), 1e-3);
-  EXPECT_EQ(gain_of({255, 255, 255}).matrix(), Eigen::Vector3f::Ones());  // saturated: no answer
+  EXPECT_EQ(gain_of({255, 255, 255}).matrix(), Eigen::Vector3f::Ones());  // saturated
   EXPECT_FALSE(is_exposure_off(gain_of({120, 72, 96})));
   EXPECT_TRUE(is_exposure_off(gain_of({200, 120, 160})));
   EXPECT_TRUE(is_exposure_off(gain_of({50, 30, 40})));
 
-  // How far off an image is: (100, 60, 80) against (120, 60, 90).
+  // Error of an image: (100, 60, 80) against (120, 60, 90).
   const TestView other(image_of({120, 60, 90}));
   const VisibleMap::Comparison off = other.render(map).compare(other.view);
   EXPECT_GT(off.points, 100u);
   EXPECT_NEAR(off.error, 10, 0.1);
 
-  // New points under the matching gain lie close to the map's colors.
+  // New points with the matching gain are close to the map's colors.
   const TestView bright(image_of({200, 120, 160}));
   ColorView view = bright.view;
   view.gain = matching_gain(gain_of({200, 120, 160}));

@@ -30,7 +30,7 @@ inline FovealOptions white_zone(double near_range, double far_range = 18) {
   return options;
 }
 
-/// A view of one color (of one's choice) from a place in the local frame, which is the camera's.
+/// A view of one image from a pose in the local frame.
 struct TestView {
   ImagePyramid image;
   Camera camera;
@@ -77,7 +77,7 @@ inline std::vector<Eigen::Vector3f> wall(double depth, double left, double right
   return positions;
 }
 
-/// As color_new_points() leaves points of color (1, 2, 3) seen from 5 m; `frame` 0.
+/// Points after color_new_points(), with color (1, 2, 3) from 5 m; `frame` 0.
 inline PointCloud new_points(const std::vector<Eigen::Vector3f>& positions) {
   PointCloud points = one_point_each(positions);
   points.frame.assign(points.size(), 0);

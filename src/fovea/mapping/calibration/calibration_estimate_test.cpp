@@ -72,7 +72,7 @@ CalibrationVector planted(double x, double y, double z, double ms) {
       .finished();
 }
 
-TEST(CalibrationEstimate, FindsWhatIsPlantedWithinItsOwnSigmas) {
+TEST(CalibrationEstimate, FindsTheTrueErrorWithinItsSigmas) {
   for (const auto& truth :
        {planted(0, 0, 0, 0), planted(0.3, 0, 0, 0), planted(0, -0.3, 0, 0), planted(0, 0, 0.3, 0),
         planted(0, 0, 0, 20), planted(0.3, 0.3, -0.3, -20)}) {
@@ -161,7 +161,7 @@ TEST(CalibrationEstimate, AnUnknownDelayMakesTheRotationLessSure) {
 }
 
 // Two looks at the same objects do not reduce the deviations.
-TEST(CalibrationEstimate, SigmasCountThingsAndNotFrames) {
+TEST(CalibrationEstimate, SigmasCountObjectsAndNotFrames) {
   Drive once, again;
   again.edges = once.frames * once.edges;
   again.frames = 10;

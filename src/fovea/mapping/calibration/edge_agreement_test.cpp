@@ -77,14 +77,14 @@ TEST(EdgeAgreement, EachAxisIsJudgedByTheEdgesThatItMovesAcross) {
   EXPECT_FALSE(edges_disagree(profiles_of({.level = 0, .off_level = 40})));
 }
 
-TEST(EdgeAgreement, FewEdgesAndImagesWithoutStepsSayNothing) {
+TEST(EdgeAgreement, FewEdgesOrImagesWithoutStepsAreNoEvidence) {
   EXPECT_FALSE(edges_disagree({}));
   EXPECT_FALSE(edges_disagree(profiles_of({.upright = 5, .level = 5, .off_upright = 30})));
   EXPECT_FALSE(edges_disagree(profiles_of({.off_upright = 30, .off_level = 30, .step = 0.05})));
 }
 
 // Ten frames of one scene contain no more evidence than one.
-TEST(EdgeAgreement, SigmasCountThings) {
+TEST(EdgeAgreement, SigmasCountObjects) {
   const auto once = profiles_of({.frames = 1});
   std::vector<EdgeProfile> again;
   for (int frame = 0; frame < 10; ++frame) {
@@ -111,7 +111,7 @@ TEST(EdgeAgreement, MeansHaveTheScatterOfTheirGroups) {
   EXPECT_NEAR(mean.sigma, std::sqrt(2.0 / 1 * 8) / 4, 1e-12);
 }
 
-TEST(EdgeAgreement, GainsTellTheBetterOfTwoCorrections) {
+TEST(EdgeAgreement, GainsFavorTheBetterOfTwoCorrections) {
   const auto profiles = profiles_of({.off_upright = 7});
   // Yaw moves an edge to the left: -7 / 700 rad moves it 7 pixels to the right.
   CalibrationVector right = CalibrationVector::Zero();

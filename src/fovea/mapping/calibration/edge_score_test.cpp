@@ -39,7 +39,7 @@ TEST(EdgeScore, GradientAndCurvatureAreTheDerivatives) {
   }
 }
 
-TEST(EdgeScore, IsHighestWhereTheImagesEdgeIs) {
+TEST(EdgeScore, IsHighestAtTheImagesEdge) {
   const EdgeProfile profile = profile_at(4, 0.5f);
   const double unit = profile.J_along[0] * calibration_unit()[0];
   const auto value = [&](double pixels) {

@@ -38,7 +38,7 @@ PointCloud board_before_a_wall() {
   return scan;
 }
 
-TEST(LidarEdges, LieOnEitherSideOfWhereTheThingEnds) {
+TEST(LidarEdges, LieOnEitherSideOfAnObjectsEnd) {
   const LidarEdges edges = find_lidar_edges(board_before_a_wall(), forward_camera(), 40);
   ASSERT_EQ(edges.outside.size(), edges.size());
   ASSERT_EQ(edges.between_rings.size(), edges.size());

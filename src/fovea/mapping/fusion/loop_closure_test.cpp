@@ -76,7 +76,7 @@ TEST_F(LoopCloserTest, GroundAloneIsNoPlace) {
   EXPECT_FALSE(closer_.find(scan_of(0, again_, 0), {{5, again_, 500}}));
 }
 
-TEST_F(LoopCloserTest, LooksNeitherAtWhatWasJustThereNorFarAway) {
+TEST_F(LoopCloserTest, IgnoresRecentAndDistantSubmaps) {
   EXPECT_FALSE(closer_.find(scan_of(1, again_), {{1, again_, /*path=*/20}}));
   EXPECT_FALSE(closer_.find(scan_of(1, again_), {{1, again_ * pose(40, 0, 0), 500}}));
   EXPECT_FALSE(closer_.find(scan_of(1, again_), {{9, again_, 500}}));  // not there

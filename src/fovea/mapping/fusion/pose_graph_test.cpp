@@ -74,7 +74,7 @@ TEST(PoseGraph, ExactMeasurementsAreMetExactly) {
   }
 }
 
-TEST(PoseGraph, TwoMeasurementsOfOneThingAreWeighted) {
+TEST(PoseGraph, TwoMeasurementsOfOnePoseAreWeighted) {
   PoseGraph graph;
   graph.add_node(pose(0, 0, 0));
   graph.add(AbsolutePose{0, pose(1, 0, 0), sigmas(0.1, 0.1)});
@@ -185,7 +185,7 @@ TEST(PoseGraph, ALongRoadIsSolvedAsItComes) {
   EXPECT_GT(distance(graph.poses()[100], before[100]), 0.001);
 }
 
-TEST(PoseGraph, WhatNothingHoldsStays) {
+TEST(PoseGraph, PosesWithoutMeasurementsStay) {
   PoseGraph graph;
   graph.add_node(pose(1, 2, 0.1));
   graph.add_node(pose(3, 4, 0.2));
