@@ -137,9 +137,9 @@ TEST(MotionModel, VelocityIsThatOfTheBetterPrediction) {
   const auto steady = [](double frame) { return frame; };
   const auto braking = [](double frame) { return 2 * frame - 0.02 * frame * frame; };  // 4 m/s^2
   const auto none = [](int) { return 0.0; };
-  const auto two_centimetres = [](int frame) { return frame % 2 == 0 ? 0.01 : -0.01; };
-  EXPECT_NEAR(worst_velocity(steady, two_centimetres, /*doubt=*/false), 0.2, 1e-9);
-  EXPECT_LT(worst_velocity(steady, two_centimetres, true), 0.04);
+  const auto two_centimeters = [](int frame) { return frame % 2 == 0 ? 0.01 : -0.01; };
+  EXPECT_NEAR(worst_velocity(steady, two_centimeters, /*doubt=*/false), 0.2, 1e-9);
+  EXPECT_LT(worst_velocity(steady, two_centimeters, true), 0.04);
   // The motion so far has an error of 0.6 m/s: one and a half frames late.
   EXPECT_NEAR(worst_velocity(braking, none, /*doubt=*/false), 0.2, 1e-9);
   EXPECT_LT(worst_velocity(braking, none, true), 0.26);
