@@ -50,6 +50,7 @@ fi
 if ! $sanitize; then
   scripts/check_layers.sh
   scripts/check_format.sh
+  scripts/check_sizes.sh
   scripts/build.sh release
   run_tests release
   exit 0

@@ -22,6 +22,7 @@ void add_repair_command(CLI::App& app, Session& session);
 void add_reproduce_command(CLI::App& app, Session& session);
 void add_upsample_command(CLI::App& app);
 void add_register_command(CLI::App& app);
+void add_settings_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_view_command(CLI::App& app, Session& session);
 

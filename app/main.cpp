@@ -65,6 +65,7 @@ int run(int argc, char** argv, fovea::app::Session& session) {
   fovea::app::add_reproduce_command(app, session);
   fovea::app::add_upsample_command(app);
   fovea::app::add_register_command(app);
+  fovea::app::add_settings_command(app);
   fovea::app::add_simulate_command(app);
   fovea::app::add_view_command(app, session);
   app.add_flag("--strict", session.warnings.strict, kStrictHelp);

@@ -28,7 +28,7 @@ std::vector<std::string> warnings_of_map(const MapMeta& meta) {
   return warnings;
 }
 
-MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
+MapSettings stored_settings(const MapMeta& meta, const std::string& map) {
   const auto stored = meta.find(meta_key::kConfig);
   if (stored == meta.end()) {
     throw meta.contains(meta_key::kRepair)
@@ -36,9 +36,7 @@ MapperOptions stored_options(const MapMeta& meta, const std::string& map) {
         : InputError("the map does not tell its settings", map,
                      "give a map that 'fovea map' wrote");
   }
-  MapperOptions options;
-  apply_config_text(stored->second, map, options);
-  return options;
+  return fovea::stored_settings(stored->second, map);
 }
 
 void add_foreign_option(CLI::App& command, bool& foreign) {

@@ -8,7 +8,7 @@
 
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/drive_match.h"
-#include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/map_settings.h"
 
 namespace fovea::app {
 
@@ -20,7 +20,7 @@ MapReader open_map(const std::string& map);
 std::vector<std::string> warnings_of_map(const MapMeta& meta);
 
 /// The settings that a map was made with; InputError if it does not tell them.
-MapperOptions stored_options(const MapMeta& meta, const std::string& map);
+MapSettings stored_settings(const MapMeta& meta, const std::string& map);
 
 /// Adds the option --foreign.
 void add_foreign_option(CLI::App& command, bool& foreign);

@@ -53,12 +53,12 @@ struct MapArguments {
   std::string live;  // empty: no; a port, or kSomePort
 };
 
-MapperOptions resolve_options(const MapArguments& arguments) {
-  MapperOptions options = load_preset(arguments.preset);
-  if (!arguments.config.empty()) apply_config_file(arguments.config, options);
-  if (!arguments.variant.empty()) apply_variant(arguments.variant, options);
-  for (const std::string& setting : arguments.settings) apply_setting(setting, options);
-  return options;
+MapSettings resolve_settings(const MapArguments& arguments) {
+  MapSettings settings = load_preset(arguments.preset);
+  if (!arguments.config.empty()) apply_config_file(arguments.config, settings);
+  if (!arguments.variant.empty()) settings = with_variant(arguments.variant, settings);
+  for (const std::string& setting : arguments.settings) apply_setting(setting, settings);
+  return settings;
 }
 
 void print_summary(const MapSummary& summary, const MapArguments& arguments) {
@@ -147,7 +147,7 @@ void run(const MapArguments& arguments, Session& session) {
   const ThreadLimit threads(arguments.threads);
   MapJob job;
   job.output = arguments.output;
-  job.options = resolve_options(arguments);
+  job.settings = resolve_settings(arguments);
   job.variant = arguments.variant;
   job.hold_out = parse_hold_out(arguments.hold_out);
   job.rate = arguments.rate;

@@ -66,7 +66,7 @@ void run(const MergeArguments& arguments, Warnings& warnings) {
   job.output = arguments.output;
   job.force = arguments.force;
   job.memory = arguments.memory;
-  job.spacing = stored_options(a.meta(), arguments.a).surface.spacing;
+  job.spacing = stored_settings(a.meta(), arguments.a).spacing();
   const MergeFigures figures = merge_maps(a, b, job);
   if (!arguments.quiet) print(figures, arguments.output);
   warnings.add(warnings_of(a, b, arguments, figures), arguments.quiet);

@@ -32,16 +32,16 @@ struct RecolorArguments {
 };
 
 /// The map's own settings, with what is to be different.
-MapperOptions options_of(const RecolorArguments& arguments, const MapMeta& meta) {
-  MapperOptions options = stored_options(meta, arguments.map);
-  const double tile_size = options.tile_size;
-  if (!arguments.config.empty()) apply_config_file(arguments.config, options);
-  for (const std::string& setting : arguments.settings) apply_setting(setting, options);
-  if (options.tile_size != tile_size) {
-    throw ConfigError("the tiles of a map keep their size", "map.tile_size",
+MapSettings settings_of(const RecolorArguments& arguments, const MapMeta& meta) {
+  MapSettings settings = stored_settings(meta, arguments.map);
+  const double tile_size = settings.tile_size();
+  if (!arguments.config.empty()) apply_config_file(arguments.config, settings);
+  for (const std::string& setting : arguments.settings) apply_setting(setting, settings);
+  if (settings.tile_size() != tile_size) {
+    throw ConfigError("the tiles of a map keep their size", "map.tile_size_m",
                       "map the drive again for another");
   }
-  return options;
+  return settings;
 }
 
 void run(RecolorArguments arguments, Warnings& warnings) {
@@ -52,7 +52,7 @@ void run(RecolorArguments arguments, Warnings& warnings) {
   const MapMeta meta = map.meta();
   RecolorJob job;
   job.output = arguments.output;
-  job.options = options_of(arguments, meta);
+  job.settings = settings_of(arguments, meta);
   job.force = arguments.force;
   if (arguments.drive.cameras.empty() && meta.contains(meta_key::kCameras)) {
     arguments.drive.cameras = meta.at(meta_key::kCameras);

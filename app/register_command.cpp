@@ -14,7 +14,7 @@
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/registration.h"
-#include "fovea/pipeline/config_keys.h"
+#include "fovea/pipeline/settings_rows.h"
 #include "fovea/sensor/lidar_scan.h"
 
 namespace fovea::app {

@@ -61,7 +61,7 @@ Run map_once(const std::shared_ptr<const FrameSource>& drive, const std::string&
              int reading, int deaf) {
   MapJob job;
   job.output = output;
-  job.options = load_preset("default");
+  job.settings = load_preset("default");
   job.force = true;
   WebServerOptions server;
   server.in_background = true;

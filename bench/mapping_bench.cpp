@@ -17,18 +17,18 @@ constexpr std::size_t kFirstCounted = 5;
 }  // namespace
 
 struct MappedStreet {
-  MapperOptions options = load_preset("default");
+  MapperOptions options = load_preset("default").mapper();
   const BenchData& data;
   TileMap map;
   FrameRecord last;  // pose of the frame at hand, which is not in the map
   FovealRegion region;
 
   explicit MappedStreet(const BenchData& bench_data)
-      : data(bench_data), region(foveal_options_of(options, data.camera.index), data.camera) {
+      : data(bench_data), region(options.foveal, data.camera) {
     Mapper mapper(data.drive, options, PoseSource::kRefine);
     for (std::size_t k = 0; k < data.frames.size(); ++k) {
       const bool is_last = k + 1 == data.frames.size();
-      last = mapper.process(data.frames[k], is_last);
+      last = record_of(mapper.process(data.frames[k], {.held_out = is_last}));
     }
     map = mapper.map();
     check(map.size() > 10'000, "a map without points");
@@ -36,7 +36,7 @@ struct MappedStreet {
   const Frame& frame() const { return data.frames.back(); }
   RigidMotion T_cam_local() const { return data.camera.T_cam_lidar * last.T_local_lidar.inverse(); }
   ColorView view(const ImagePyramid& image) const {
-    return {image, data.camera, frame().index, options.texture.footprint};
+    return {image, data.camera, frame().index, options.footprint};
   }
 };
 
@@ -69,7 +69,7 @@ void bench_recolor(benchmark::State& state, const MappedStreet& street) {
 }
 
 void bench_moving(benchmark::State& state, const MappedStreet& street) {
-  DynamicPointFilter moving(street.options.moving);
+  DynamicPointFilter moving(street.options.dynamic);
   int frame = street.frame().index;
   const RigidMotion T_odom_local = street.last.T_odom_lidar * street.last.T_local_lidar.inverse();
   solo(state, [&] {
@@ -80,7 +80,7 @@ void bench_moving(benchmark::State& state, const MappedStreet& street) {
 }
 
 void bench_paper_filter(benchmark::State& state, const MappedStreet& street) {
-  const RayFilterOptions options{.mode = RayFilterMode::kPaper};
+  const RayFilterOptions options;
   const PointCloud dense = upsample(street.data.scan_cam, street.data.camera, UpsampleOptions());
   RayFilter filter;
   std::size_t in_view = 0;
@@ -126,20 +126,20 @@ void bench_store(benchmark::State& state, const MappedStreet& street) {
 }
 
 void bench_chain(benchmark::State& state, const BenchData& data) {
-  const MapperOptions options = load_preset("default");
+  const MapperOptions options = load_preset("default").mapper();
   std::unique_ptr<Mapper> mapper;
   std::size_t next = data.frames.size();
   const auto start_anew = [&] {
     if (next < data.frames.size()) return;
     mapper = std::make_unique<Mapper>(data.drive, options, PoseSource::kRefine);
     for (next = 0; next < std::min(kFirstCounted, data.frames.size() - 1); ++next) {
-      mapper->process(data.frames[next], false);
+      mapper->process(data.frames[next]);
     }
   };
   solo(state, start_anew, [&] {
-    const FrameRecord record = mapper->process(data.frames[next++], false);
-    check(!record.has("registration_failed"), "a scan that does not fit the ones before");
-    return record.index;
+    const FrameResult result = mapper->process(data.frames[next++]);
+    check(!result.tracking.is_weak(), "a scan that does not fit the ones before");
+    return result.index;
   });
 }
 

@@ -65,13 +65,11 @@ simulate traffic traffic
 score street street
 score given street --poses navigation
 score uncompensated street --set motion.compensate=false
-score unfiltered street --set ray_filter.mode=off
-score nearest street --set texture.sampling=nearest
 score true-poses exact-navigation --poses navigation
 for drive in rotated late exact-navigation range exposure pixel-noise matte perfect traffic; do score "$drive" "$drive"; done
 for drive in rotated late; do score "$drive-calibrated" "$drive" --calibrate; done
 score perfect-true-poses perfect --poses navigation
-score traffic-kept traffic --set moving.remove=false
+score traffic-kept traffic --set dynamic.remove=false
 
 echo "| street, default preset | TE | less by | te_sampling | te_same_place | TE, fitted gains | TE, visible | ME mm | cover 5 cm | poses, mm |"
 echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
@@ -93,8 +91,6 @@ row "timing: images 5 ms late" late street
 row "... with --calibrate" late-calibrated street
 row "calibration: 0.1 degrees about the vertical" rotated street
 row "... with --calibrate" rotated-calibrated street
-row "image: nearest pixel" nearest street
-row "occlusion: no ray filter" unfiltered street
 row "moving things: traffic" traffic traffic
 row "... kept in the map" traffic-kept traffic
 echo

@@ -50,7 +50,7 @@ class Mapping {
     ::dup2(nowhere, 1);
     ::dup2(nowhere, 2);
     ::execl(FOVEA_PROGRAM, "fovea", "map", drive.c_str(), "-o", output.c_str(), "--set",
-            "surface.spacing=0.1", resume ? "--resume" : "--force", nullptr);
+            "surface.spacing_m=0.1", resume ? "--resume" : "--force", nullptr);
     ::_exit(127);
   }
   void stop() const { ::kill(process_, SIGSTOP); }

@@ -23,7 +23,7 @@ class MapDamageProgram : public testing::Test {
     const SyntheticDrive drive(street_scene(), 4, 0.8);
     drive_ = write_kitti_drive(drive, scratch_->path());
     const ProgramRun run =
-        run_fovea(fmt::format("map '{}' -o '{}' --set surface.spacing=0.2 --hold-out 4:2 --quiet",
+        run_fovea(fmt::format("map '{}' -o '{}' --set surface.spacing_m=0.2 --hold-out 4:2 --quiet",
                               drive_.string(), whole().string()));
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }

@@ -64,7 +64,7 @@ class NavigationFaultsProgram : public testing::Test {
 
   ProgramRun map(const fs::path& drive) const {
     const ProgramRun run =
-        run_fovea(fmt::format("map '{}' -o '{}' --force --cameras none --set surface.spacing=0.5",
+        run_fovea(fmt::format("map '{}' -o '{}' --force --cameras none --set surface.spacing_m=0.5",
                               drive.string(), (own_ / "map.fovea").string()));
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return run;

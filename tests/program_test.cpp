@@ -185,12 +185,9 @@ TEST_F(Program, UnseenPointsAreNeitherScoredNorBlack) {
 }
 
 TEST_F(Program, TheWrittenDriveIsReadBackToTheTruth) {
-  // Calibration, geodesy, stamps, poses: with true poses every map point lies on a surface.
-  ASSERT_EQ(map(drive_,
-                "--poses navigation --set surface.spacing=0 --set upsample.rate=0 --set "
-                "motion.compensate=false")
-                .exit_code,
-            0);
+  // Calibration, geodesy, stamps, poses: with true poses the map's points lie on surfaces, but for
+  // those of triangles across an edge of a box.
+  ASSERT_EQ(map(drive_, "--poses navigation --set motion.compensate=false").exit_code, 0);
   const auto ply = own_ / "map.ply";
   ASSERT_EQ(run_fovea("export '" + output().string() + "' " + ply.string() + " --double").exit_code,
             0);
@@ -199,13 +196,20 @@ TEST_F(Program, TheWrittenDriveIsReadBackToTheTruth) {
   const auto count = std::stoul(text.substr(text.find("element vertex ") + 15));
   const std::size_t stride = (text.size() - header) / count;
   const BoxScene scene = street_scene();
-  double worst = 0;
+  std::vector<double> distances;
   for (std::size_t i = 0; i < count; ++i) {
     Eigen::Vector3d p;
     std::memcpy(p.data(), text.data() + header + i * stride, 24);
-    worst = std::max(worst, scene.distance(p));
+    distances.push_back(scene.distance(p));
   }
-  EXPECT_LT(worst, 2e-3);
+  constexpr double kOnSurface = 2e-3, kNearEdge = 0.1;
+  const auto near = [&](double bound) {
+    return double(std::count_if(distances.begin(), distances.end(),
+                                [&](double d) { return d < bound; })) /
+           double(count);
+  };
+  EXPECT_GT(near(kOnSurface), 0.9);
+  EXPECT_EQ(near(kNearEdge), 1);
 }
 
 TEST_F(Program, SameDigestAtAnyThreadCountAndAfterResume) {
@@ -265,7 +269,7 @@ TEST_F(Program, CalibratingNeedsToKnowTheMotion) {
 
 TEST_F(Program, ResumeRefusesOtherSettings) {
   ASSERT_EQ(map(drive_).exit_code, 0);
-  const ProgramRun run = map(drive_, "--resume --set upsample.rate=1");
+  const ProgramRun run = map(drive_, "--resume --set texture.footprint_m=0.03");
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, HasSubstr("config"));
 }
@@ -468,21 +472,21 @@ TEST_F(Program, CropAndRecolor) {
     return run_fovea(fmt::format("recolor '{}' '{}' -o '{}' {}", part.string(), drive_.string(),
                                  to.string(), more));
   };
-  const ProgramRun run = recolor(again, "--set foveal.far_range=12");
+  const ProgramRun run = recolor(again, "--set foveal.far_range_m=12");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(MapReader(again).size(), MapReader(part).size());
-  EXPECT_THAT(MapReader(again).meta().at("config"), HasSubstr("far_range = 12"));
+  EXPECT_THAT(MapReader(again).meta().at("config"), HasSubstr("far_range_m = 12"));
   EXPECT_EQ(recolor(part, "--force").exit_code, 1);  // into itself
-  EXPECT_EQ(recolor(again, "--force --set map.tile_size=8").exit_code, 1);
+  EXPECT_EQ(recolor(again, "--force --set map.tile_size_m=8").exit_code, 1);
 }
 
 TEST_F(Program, BadConfiguration) {
   const auto config = own_ / "my.toml";
-  write_text(config, "[upsample]\nrat = 2\n");
+  write_text(config, "[surface]\nspacng_m = 2\n");
   expect_failure(map(drive_, "--config " + config.string()), "my.toml:2");
-  write_text(config, "[upsample]\nrate = \"two\"\n");
-  expect_failure(map(drive_, "--config " + config.string()), "upsample.rate");
-  write_text(config, "[upsample]\nrate = 77\n");
+  write_text(config, "[surface]\nspacing_m = \"two\"\n");
+  expect_failure(map(drive_, "--config " + config.string()), "surface.spacing_m");
+  write_text(config, "[surface]\nspacing_m = 77\n");
   expect_failure(map(drive_, "--config " + config.string()), "my.toml:2");
   expect_failure(map(drive_, "--set nonsense.key=1"), "nonsense.key");
   expect_failure(map(drive_, "--config " + (own_ / "none.toml").string()), "none.toml");

@@ -27,7 +27,7 @@ struct Chain {
     const ProgramRun run =
         run_fovea("map '" + folder.string() + "' -o '" + (own / "map.fovea").string() +
                   "' --poses '" + (folder / "truth/poses.txt").string() +
-                  "' --set surface.spacing=0 --set upsample.rate=0 --quiet");
+                  "' --preset paper --set upsample.rate=0 --set 'foveal.slices_deg=[]' --quiet");
     EXPECT_EQ(run.exit_code, 0) << run.err;
     map = MapReader(own / "map.fovea").all_points_local();
   }

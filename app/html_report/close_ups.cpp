@@ -8,8 +8,7 @@
 
 #include "app/html_report/markup.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/pipeline/config.h"
-#include "fovea/pipeline/mapper.h"
+#include "fovea/pipeline/paper_mapper.h"
 
 namespace fovea::app {
 namespace {
@@ -22,13 +21,13 @@ constexpr int kPatchWidth = 150, kPatchHeight = 100, kMagnified = 3, kQuality = 
 /// baselines do.
 ColouredPoints baseline_points(const FrameSource& drive, const std::vector<PlacedFrame>& training,
                                int frame, const Eigen::Vector3d& origin_local) {
-  MapperOptions options = load_preset("default");
+  PaperOptions options;
   apply_variant("baseline-gicp", options);
-  Mapper mapper(drive.info(), options, PoseSource::kGiven);
+  PaperMapper mapper(drive.info(), options, PoseSource::kGiven);
   for (const PlacedFrame& placed : training) {
     if (std::abs(placed.index - frame) > kReach) continue;
     if (const auto loaded = load_frame(drive, placed)) {
-      mapper.process(loaded->frame, /*held_out=*/false, placed.T_local_lidar);
+      mapper.process(loaded->frame, {.given_pose = placed.T_local_lidar});
     }
   }
   PointCloud all;

@@ -65,16 +65,18 @@ std::string figure(const ColouredPoints& points, const std::vector<float>& spaci
 
 /// As the map's options say, without a map that would have some of it already.
 PointCloud densified(const PointCloud& measured_cam, const Camera& camera,
-                     const MapperOptions& options) {
-  if (options.surface.spacing == 0) return upsample(measured_cam, camera, options.upsample);
+                     const MapSettings& settings, const SensorProfile& lidar) {
+  if (settings.is_paper()) return upsample(measured_cam, camera, settings.paper().upsample);
+  const MapperOptions options = suited_to(lidar, settings.mapper());
   const SampleGrid grid{camera.T_cam_lidar.inverse(), options.surface.spacing,
                         [](const Eigen::Vector3d&) { return false; }};
   return sample_surfaces(measured_cam, camera, options.surface, grid);
 }
 
-std::string what_upsampled(const MapperOptions& options) {
-  return options.surface.spacing == 0 ? fmt::format("at rate {}", options.upsample.rate)
-                                      : fmt::format("every {:g} cm", 100 * options.surface.spacing);
+std::string what_upsampled(const MapSettings& settings) {
+  return settings.is_paper()
+             ? fmt::format("at rate {}", settings.paper().upsample.rate)
+             : fmt::format("every {:g} cm", 100 * settings.mapper().surface.spacing);
 }
 
 }  // namespace
@@ -91,13 +93,13 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   if (shot == images.end()) return excuse("The frame has no image.");
   const auto place = static_cast<std::size_t>(shot - images.begin());
   const Camera camera = drive.info().camera_at(place, placed.index).at_image(placed.motion);
-  const MapperOptions options = suited_to(lidar_profile(drive), options_of(map));
-  const FovealOptions foveal = foveal_options_of(options, camera.index);
+  const MapSettings settings = settings_of(map);
+  const FovealOptions& foveal = settings.foveal();
   const FovealRegion region(foveal, camera);
 
   const PointCloud measured_cam = foveal_points(loaded->scan_lidar, region);
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
-  PointCloud dense_cam = densified(measured_cam, camera, options);
+  PointCloud dense_cam = densified(measured_cam, camera, settings, lidar_profile(drive));
   limit_incidence(dense_cam, foveal.max_incidence);
   color_points(dense_cam, {*shot, camera, placed.index});
 
@@ -117,7 +119,7 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   html += figure(
       as_coloured(dense, range_colors(dense, foveal)), std::vector<float>(dense.size(), kDot),
       "Upsampled points",
-      fmt::format("<b>Upsampled</b> {}: {} points", what_upsampled(options), count(dense.size())));
+      fmt::format("<b>Upsampled</b> {}: {} points", what_upsampled(settings), count(dense.size())));
   html += figure(as_coloured(dense, dense.color), sample_spacing(dense.position), "Textured points",
                  "<b>Textured</b> from the photograph");
   return html + "</div>\n";

@@ -13,12 +13,11 @@
 #include "fovea/evaluation/scan_matching.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/transform_cloud.h"
-#include "fovea/mapping/sensor_profile_estimate.h"
+#include "fovea/mapping/ground.h"
+#include "fovea/mapping/registration/registration.h"
 #include "fovea/mapping/upsample.h"
-#include "fovea/pipeline/config.h"
-#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/motion_model.h"
-#include "fovea/pipeline/pose_refiner.h"
+#include "fovea/pipeline/registration_check.h"
 
 namespace fovea::app {
 namespace {
@@ -171,18 +170,29 @@ std::string overview(const Scans& scans) {
       png_uri(image), wide.pixel * float(wide.width));
 }
 
-std::string rate_figure(const Pair& pair, const Scans& scans, const std::vector<Camera>& cameras,
+const RegistrationOptions kRegistration{.method = RegistrationMethod::kGicp};
+
+/// As the paper's mapper registers a scan (E0 to E3).
+RegistrationCloud points_to_register(const PointCloud& scan_lidar,
+                                     const std::vector<Camera>& cameras, int rate) {
+  GroundOptions ground;
+  ground.sensor_height = sensor_height(scan_lidar.position).value_or(kUsualSensorHeight);
+  return prepare_cloud(upsample_non_ground(scan_lidar, segment_ground(scan_lidar.position, ground),
+                                           cameras, {.rate = rate}),
+                       kRegistration);
+}
+
+std::string rate_figure(const Scans& scans, const std::vector<Camera>& cameras,
                         int rate) {
-  MapperOptions options = load_preset("default");
-  apply_variant(fmt::format("E{}", rate), options);
-  const SensorProfile lidar = estimate_sensor_profile({&scans.target.scan_lidar, 1}, {});
-  PoseRefiner refiner(suited_to(lidar, options).refinement, cameras);
-  StageClock unused;
-  refiner.keep(refiner.prepare(scans.target.scan_lidar, unused), pair.target.T_local_lidar, unused);
-  const RefinedPose refined =
-      refiner.refine(scans.source.scan_lidar, pair.guess_T_local_lidar, unused);
-  const RigidMotion T_target_source = pair.target.T_local_lidar.inverse() * refined.T_odom_lidar;
-  const RigidMotion correction = scans.T_target_guess.inverse() * T_target_source;
+  const RegistrationCloud target = points_to_register(scans.target.scan_lidar, cameras, rate);
+  const RegistrationCloud source = points_to_register(scans.source.scan_lidar, cameras, rate);
+  const RegistrationResult registered_pair = register_clouds(
+      target, PointIndex(target.points), source, scans.T_target_guess, kRegistration);
+  const RigidMotion found = scans.T_target_guess.inverse() * registered_pair.T_target_source;
+  const std::string failure =
+      failure_of(registered_pair, alignment_stats(registered_pair, found));
+  const RigidMotion correction = failure.empty() ? found : RigidMotion::Identity();
+  const RigidMotion T_target_source = scans.T_target_guess * correction;
 
   const auto a = drawn_points(scans.target.scan_lidar, cameras.front(), rate);
   const auto b = drawn_points(scans.source.scan_lidar, cameras.front(), rate);
@@ -193,7 +203,7 @@ std::string rate_figure(const Pair& pair, const Scans& scans, const std::vector<
   const ScanMatching registered =
       match_scans(scans.source_matched, scans.target_matched, T_target_source);
   const std::string remark =
-      refined.note.empty() ? std::string() : fmt::format(" {}.", escaped(refined.note));
+      failure.empty() ? std::string() : fmt::format(" {}.", escaped(failure));
   return fmt::format(
       "<figure class=\"scans\"><img alt=\"The scans as guessed, rate {0}\" src=\"{1}\"/>"
       "<img alt=\"The scans as registered, rate {0}\" src=\"{2}\"/><figcaption><b>Rate {0}</b>: "
@@ -266,7 +276,7 @@ std::string scan_pair_section(const FrameSource& drive, const std::vector<Placed
       pair->target.index, pair->source.index,
       drive.info().navigation ? "the navigation" : "constant velocity", 100 * pair->error, kWindow,
       overview(scans));
-  for (int rate = 0; rate < kPairRates; ++rate) html += rate_figure(*pair, scans, cameras, rate);
+  for (int rate = 0; rate < kPairRates; ++rate) html += rate_figure(scans, cameras, rate);
   return html + "</div>\n";
 }
 

@@ -37,17 +37,14 @@ std::optional<TrainingFrame> load_frame(const FrameSource& drive, const PlacedFr
   return result;
 }
 
-MapperOptions options_of(const ScoredMap& map) {
-  MapperOptions options = load_preset("default");
+MapSettings settings_of(const ScoredMap& map) {
   const auto config = map.meta.find(meta_key::kConfig);
-  if (config == map.meta.end()) return options;
+  if (config == map.meta.end()) return load_preset("default");
   try {
-    apply_config_text(config->second, "the map's configuration", options);
-    options.validate();
+    return stored_settings(config->second, "the map's configuration");
   } catch (const ConfigError&) {
-    return load_preset("default");  // written by another version
+    return load_preset("default");  // written by a newer version
   }
-  return options;
 }
 
 std::string excuse(const std::string& why) {

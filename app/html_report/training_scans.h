@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fovea/evaluation/protocol.h"
-#include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/map_settings.h"
 
 namespace fovea::app {
 
@@ -25,7 +25,7 @@ struct TrainingFrame {
 std::optional<TrainingFrame> load_frame(const FrameSource& drive, const PlacedFrame& placed);
 
 /// The settings that the map was made with; of a cloud, or where they are not known, the default's.
-MapperOptions options_of(const ScoredMap& map);
+MapSettings settings_of(const ScoredMap& map);
 
 /// Why a section has no pictures, as a paragraph.
 std::string excuse(const std::string& why);

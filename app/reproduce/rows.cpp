@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kHoldOut = "8:4";
 
 struct RowPlan {
-  MapperOptions options;
+  MapSettings settings;
   PoseSource pose_source = PoseSource::kRefine;
   bool in_sample = true;  ///< false: an ablation, of which only quality is asked
 };
@@ -36,11 +36,11 @@ RowPlan plan_of(const std::string& row) {
   if (std::find(presets.begin(), presets.end(), row) != presets.end()) return {load_preset(row)};
   RowPlan plan{load_preset("default")};
   if (const Ablation* ablation = find_ablation(row); ablation != nullptr) {
-    for (const std::string& setting : ablation->settings) apply_setting(setting, plan.options);
+    for (const std::string& setting : ablation->settings) apply_setting(setting, plan.settings);
     if (ablation->navigation_poses) plan.pose_source = PoseSource::kNavigation;
     plan.in_sample = false;
   } else {
-    apply_variant(row, plan.options);
+    plan.settings = with_variant(row, plan.settings);
   }
   return plan;
 }
@@ -53,7 +53,7 @@ std::string fingerprint(const RowPlan& plan, const FrameSource& drive) {
   return fmt::format("# fovea {}\n# {}, frames {} to {}, cameras {}, poses {}\n{}", version(),
                      info.path.string(), info.begin, info.end, fmt::join(cameras, ", "),
                      plan.pose_source == PoseSource::kRefine ? "refined" : "navigation",
-                     to_toml(plan.options));
+                     to_toml(plan.settings));
 }
 
 /// The table of every frame is for `fovea evaluate`.
@@ -123,7 +123,7 @@ class RowRun {
   Json map(const RowPlan& plan, const HoldOut& hold_out) const {
     MapJob job;
     job.output = map_file_;
-    job.options = plan.options;
+    job.settings = plan.settings;
     job.pose_source = plan.pose_source;
     job.hold_out = hold_out;
     job.force = true;
@@ -157,7 +157,7 @@ std::vector<std::string> reproduced_rows() {
   return rows;
 }
 
-void check_row(const std::string& row) { plan_of(row).options.validate(); }
+void check_row(const std::string& row) { plan_of(row); }
 
 Json run_row(const FrameSource& drive, const std::string& row, const std::filesystem::path& folder,
              const std::filesystem::path& page) {

@@ -38,7 +38,7 @@ py::object map_drive(const std::filesystem::path& drive, const std::filesystem::
   std::tie(wanted.begin, wanted.end) = frames;
   MapJob job;
   job.output = output;
-  job.options = mapper_options(preset, settings);
+  job.settings = map_settings(preset, settings);
   job.hold_out = HoldOut::parse(hold_out);
   job.calibrate = calibrate;
   job.resume = resume;

@@ -1,6 +1,4 @@
 // fovea.Mapper: a map in memory, frame by frame.
-#include "fovea/pipeline/mapper.h"
-
 #include <pybind11/stl.h>
 
 #include <mutex>
@@ -8,6 +6,7 @@
 
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/initial_motion.h"
+#include "fovea/pipeline/make_mapper.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/drive.h"
@@ -22,7 +21,7 @@ namespace {
 class DriveMapper {
  public:
   DriveMapper(Drive drive, const std::string& preset, const py::dict& settings)
-      : DriveMapper(std::move(drive), mapper_options(preset, settings)) {}
+      : DriveMapper(std::move(drive), map_settings(preset, settings)) {}
 
   FrameRecord process(const DriveFrame& frame, bool held_out) {
     frame.require_of(drive_);
@@ -31,34 +30,30 @@ class DriveMapper {
     if (last_ && frame.frame->index <= *last_) {
       throw std::invalid_argument("frames are mapped in the drive's order, each once");
     }
-    if (!last_) begin_at(frame.frame->index);
     last_ = frame.frame->index;
-    return mapper_.process(*frame.frame, held_out);
+    return record_of(mapper_->process(*frame.frame, {.held_out = held_out}));
   }
 
   template <class Look>
   auto look(Look&& look) const {
     const py::gil_scoped_release others_run;
     const std::lock_guard one_at_a_time(mutex_);
-    return look(mapper_.map());
+    return look(std::as_const(*mapper_).map());
   }
 
  private:
-  DriveMapper(Drive drive, const MapperOptions& options)
-      : drive_(std::move(drive)),
-        info_(info_with_lidars(*drive_.source)),
-        compensate_(options.compensate_motion),
-        mapper_(info_, options, PoseSource::kRefine) {}
-
-  void begin_at(int index) {
-    const auto velocity = initial_velocity(*drive_.source, {}, index, compensate_);
-    if (velocity) mapper_.begin_with(*velocity);
+  DriveMapper(Drive drive, const MapSettings& settings)
+      : drive_(std::move(drive)), info_(info_with_lidars(*drive_.source)) {
+    MapperServices services;
+    services.initial_velocity = [this, compensate = settings.compensates_motion()](int frame) {
+      return initial_velocity(*drive_.source, {}, frame, compensate);
+    };
+    mapper_ = make_mapper(info_, settings, PoseSource::kRefine, std::move(services));
   }
 
   Drive drive_;
   DriveInfo info_;
-  bool compensate_;
-  Mapper mapper_;
+  std::unique_ptr<IncrementalMapper> mapper_;
   std::optional<int> last_;
   mutable std::mutex mutex_;
 };

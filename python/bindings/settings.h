@@ -10,6 +10,6 @@
 namespace fovea::python {
 
 /// A preset with keys set, as by `fovea map --set`. ConfigError as there.
-MapperOptions mapper_options(const std::string& preset, const pybind11::dict& settings);
+MapSettings map_settings(const std::string& preset, const pybind11::dict& settings);
 
 }  // namespace fovea::python

@@ -11,7 +11,7 @@ def show(progress: fovea.Progress) -> None:
 
 
 drive, output = sys.argv[1:]
-summary = fovea.map_drive(drive, output, settings={"surface.spacing": 0.1}, hold_out="4:3",
+summary = fovea.map_drive(drive, output, settings={"surface.spacing_m": 0.1}, hold_out="4:3",
                           force=True, callback=show)
 for note in summary["notes"]:
     print("note:", note)

@@ -11,7 +11,7 @@ FRAMES = 6
 HELD_OUT = 2
 WITHOUT_SCAN = 4
 USED = [index for index in range(FRAMES) if index != WITHOUT_SCAN]
-SETTINGS = {"surface.spacing": 0.1}  # of the map, for speed
+SETTINGS = {"surface.spacing_m": 0.1}  # of the map, for speed
 HOLD_OUT = f"{FRAMES}:{HELD_OUT}"
 
 

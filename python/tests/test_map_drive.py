@@ -55,16 +55,16 @@ class MapDriveTest(unittest.TestCase):
 
     def test_a_range_of_frames(self):
         summary = self.map("range.fovea", frames=(1, 3), hold_out="", cameras=[3], threads=1,
-                           settings={"surface.spacing": 0.2, "texture.views": "first"})
+                           settings={"surface.spacing_m": 0.2, "texture.footprint_m": 0.0})
         self.assertEqual(summary["frames"], 2)
         made = fovea.Map(sample.folder() / "range.fovea")
         self.assertEqual(made.meta["cameras"], "3")
-        self.assertIn("spacing = 0.2", made.meta["config"])
-        self.assertIn('views = "first"', made.meta["config"])
+        self.assertIn("spacing_m = 0.2", made.meta["config"])
+        self.assertIn('footprint_m = 0.0', made.meta["config"])
 
     def test_errors(self):
         with self.assertRaises(fovea.ConfigError):
-            self.map("wrong.fovea", settings={"surface.spaces": 0.2})
+            self.map("wrong.fovea", settings={"surface.spaces_m": 0.2})
         with self.assertRaises(fovea.ConfigError):
             self.map("wrong.fovea", preset="perfect")
         with self.assertRaises(fovea.InputError):

@@ -33,7 +33,7 @@ function liveDrive() {
 
 test('the map grows while the vehicle drives, and stays when the drive ends', async (t) => {
   const server = await serve(program, 'map', liveDrive(), '-o', join(folder, 'live.fovea'), '--live=0',
-    '--rate', '2', '--set', 'surface.spacing=0.05');
+    '--rate', '2', '--set', 'surface.spacing_m=0.05');
   t.after(() => server.stop('SIGKILL'));  // whatever failed
   const map = await MapPage.open(browser, server.url);
   const first = await map.comesTo('frames', (state) => state.live?.frames > 2);
@@ -67,7 +67,7 @@ test('it comes back after the server was away', async (t) => {
     '--set', 'camera.cx=203', '--set', 'camera.cy=57']);
   const output = join(folder, 'again.fovea');
   const live = (port, ...more) => serve(program, 'map', join(folder, 'again'), '-o', output, `--live=${port}`,
-    '--rate', '2', '--set', 'surface.spacing=0.08', ...more);
+    '--rate', '2', '--set', 'surface.spacing_m=0.08', ...more);
   const server = await live(0);
   t.after(() => server.stop('SIGKILL'));
   const map = await MapPage.open(browser, server.url);

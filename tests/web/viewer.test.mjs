@@ -21,7 +21,7 @@ before(async () => {
   // Few points: software draws them.
   run('simulate', '-o', join(folder, 'drive'), '--frames', '12', '--seed', '3');
   drive = join(folder, 'drive/2026_01_01/2026_01_01_drive_0001_sync');
-  run('map', drive, '-o', join(folder, 'map.fovea'), '--set', 'surface.spacing=0.05', '--quiet');
+  run('map', drive, '-o', join(folder, 'map.fovea'), '--set', 'surface.spacing_m=0.05', '--quiet');
   plain = new TestMap();
   browser = await launchBrowser();
   server = await serve(program, 'view', join(folder, 'map.fovea'), '--drive', drive, '--port', '0',

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 
 #include "fovea/base/angle.h"
 #include "fovea/base/errors.h"
@@ -18,6 +17,32 @@
 
 namespace fovea {
 namespace {
+
+/// Calls visit(key, node) for every key below a table that is no table itself.
+template <class Visit>
+void for_each_key(const toml::table& table, Visit&& visit, const std::string& prefix = "") {
+  for (const auto& [name, node] : table) {
+    const std::string key = prefix + std::string(name.str());
+    if (const toml::table* inner = node.as_table()) {
+      for_each_key(*inner, visit, key + ".");
+    } else {
+      visit(key, node);
+    }
+  }
+}
+
+/// A value in TOML, in one line.
+std::string text_of(const toml::node& node) {
+  if (const toml::array* array = node.as_array()) {
+    std::vector<std::string> entries;
+    for (const toml::node& entry : *array) entries.push_back(text_of(entry));
+    return fmt::format("[{}]", fmt::join(entries, ", "));
+  }
+  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  return text.str();
+}
 
 /// Assigns what a TOML document says; remembers which keys it met.
 class Reader : public SettingVisitor {
@@ -35,7 +60,23 @@ class Reader : public SettingVisitor {
   bool is_given(std::string_view key) override { return find(key) != nullptr; }
 
   /// ConfigError for the first key of the document that is not known.
-  void reject_unknown_keys(std::string_view help) const { reject_unknown(table_, "", help); }
+  void reject_unknown_keys(std::string_view help,
+                           const std::function<void(std::string_view)>& explain) const {
+    for_each_key(table_, [&](const std::string& key, const toml::node& node) {
+      if (known_.contains(key)) return;
+      if (explain) with_place([&] { explain(key); });
+      throw ConfigError("unknown key", place(node, key), fmt::format("remove it, or {}", help));
+    });
+  }
+
+  /// Calls work(), whose ConfigErrors have a key as their place.
+  void with_place(const std::function<void()>& work) const {
+    try {
+      work();
+    } catch (const ConfigError& error) {
+      throw ConfigError(error.problem(), where(error.where()), error.remedy());
+    }
+  }
 
   /// "FILE:LINE, KEY" for a key of the document, or of the table that it should be in; else "FILE,
   /// KEY".
@@ -57,14 +98,12 @@ class Reader : public SettingVisitor {
     const std::string choices = fmt::format("one of '{}'", fmt::join(names, "', '"));
     const auto text = node->value_exact<std::string>();
     if (!text) wrong_type(*node, key, choices);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i] == *text) {
-        chosen = i;
-        return;
-      }
+    const auto found = std::find(names.begin(), names.end(), *text);
+    if (found == names.end()) {
+      throw ConfigError(fmt::format("unknown value '{}'", *text), place(*node, key),
+                        "give " + choices);
     }
-    throw ConfigError(fmt::format("unknown value '{}'", *text), place(*node, key),
-                      "give " + choices);
+    chosen = static_cast<std::size_t>(found - names.begin());
   }
 
  private:
@@ -151,92 +190,9 @@ class Reader : public SettingVisitor {
     value.radians = std::move(result);
   }
 
-  void reject_unknown(const toml::table& table, const std::string& prefix,
-                      std::string_view help) const {
-    for (const auto& [name, node] : table) {
-      const std::string key = prefix + std::string(name.str());
-      if (known_.contains(key)) continue;
-      if (const toml::table* inner = node.as_table()) {
-        reject_unknown(*inner, key + ".", help);
-      } else {
-        throw ConfigError("unknown key", place(node, key), fmt::format("remove it, or {}", help));
-      }
-    }
-  }
-
   const toml::table& table_;
   std::string name_;
   std::set<std::string> known_;
-};
-
-/// Prints every key.
-class Writer : public SettingVisitor {
- public:
-  void operator()(std::string_view key, bool& value) override {
-    print(key, value ? "true" : "false");
-  }
-  void operator()(std::string_view key, int& value) override {
-    print(key, fmt::format("{}", value));
-  }
-  void operator()(std::string_view key, double& value) override { print(key, text_of(value)); }
-  void operator()(std::string_view key, std::string& value) override {
-    std::ostringstream quoted;
-    quoted << toml::value<std::string>(value);
-    print(key, quoted.str());
-  }
-  void operator()(std::string_view key, std::vector<int>& value) override {
-    print(key, fmt::format("[{}]", fmt::join(value, ", ")));
-  }
-  void operator()(std::string_view key, std::vector<double>& value) override {
-    std::vector<std::string> numbers;
-    numbers.reserve(value.size());
-    for (const double number : value) numbers.push_back(text_of(number));
-    print(key, fmt::format("[{}]", fmt::join(numbers, ", ")));
-  }
-  void operator()(std::string_view key, Degrees value) override {
-    print(key, degrees_text(value.radians));
-  }
-  void operator()(std::string_view key, DegreeRows value) override {
-    std::vector<std::string> rows;
-    for (const std::array<double, 4>& row : value.radians) {
-      std::vector<std::string> numbers;
-      numbers.reserve(row.size());
-      for (const double angle : row) numbers.push_back(degrees_text(angle));
-      rows.push_back(fmt::format("[{}]", fmt::join(numbers, ", ")));
-    }
-    print(key, fmt::format("[{}]", fmt::join(rows, ", ")));
-  }
-  bool is_given(std::string_view) override { return false; }
-
-  const std::string& text() const { return text_; }
-
- protected:
-  void choose(std::string_view key, std::span<const std::string_view> names,
-              std::size_t& chosen) override {
-    if (chosen >= names.size()) throw std::logic_error("an enumeration value has no name");
-    print(key, fmt::format("\"{}\"", names[chosen]));
-  }
-
- private:
-  void print(std::string_view key, std::string_view value) {
-    const std::size_t dot = key.find('.');
-    if (const auto table = key.substr(0, dot); table != table_) {
-      text_ += fmt::format("{}[{}]\n", text_.empty() ? "" : "\n", table);
-      table_ = table;
-    }
-    text_ += fmt::format("{} = {}\n", key.substr(dot + 1), value);
-  }
-  static std::string text_of(double value) {
-    std::string text = fmt::format("{}", value);
-    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
-  }
-  static std::string degrees_text(double radians) {
-    // 12 digits: what was given as 70 degrees must not come back as 70.00000000000001.
-    return text_of(std::stod(fmt::format("{:.12g}", radians / kDegree)));
-  }
-
-  std::string text_;
-  std::string table_;
 };
 
 toml::table parse(std::string_view text, std::string_view name) {
@@ -321,22 +277,24 @@ std::vector<std::string> SettingsDocument::tables(std::string_view key) const {
   return names;
 }
 
-void SettingsDocument::apply(const VisitSettings& visit, const std::function<void()>& validate,
-                             std::string_view help) const {
-  Reader reader(content_->table, content_->name);
-  visit(reader);
-  reader.reject_unknown_keys(help);
-  try {
-    validate();
-  } catch (const ConfigError& error) {
-    throw ConfigError(error.problem(), reader.where(error.where()), error.remedy());
-  }
+std::vector<SettingText> SettingsDocument::entries() const {
+  std::vector<std::pair<toml::source_position, SettingText>> found;
+  for_each_key(content_->table, [&](const std::string& key, const toml::node& node) {
+    found.push_back({node.source().begin, {key, text_of(node)}});
+  });
+  std::ranges::sort(found, std::less<>(), [](const auto& entry) { return entry.first; });
+  std::vector<SettingText> entries;
+  for (auto& [position, entry] : found) entries.push_back(std::move(entry));
+  return entries;
 }
 
-std::string settings_text(const VisitSettings& visit) {
-  Writer writer;
-  visit(writer);
-  return writer.text();
+void SettingsDocument::apply(const VisitSettings& visit, const std::function<void()>& validate,
+                             std::string_view help,
+                             const std::function<void(std::string_view key)>& explain) const {
+  Reader reader(content_->table, content_->name);
+  visit(reader);
+  reader.reject_unknown_keys(help, explain);
+  reader.with_place(validate);
 }
 
 }  // namespace fovea

@@ -16,6 +16,12 @@
 
 namespace fovea {
 
+/// An angle as it is written: 12 digits, so that 70 degrees do not come back as 70.00000000000001.
+double written_degrees(double radians);
+
+/// A number in TOML; one without fraction ends with ".0".
+std::string number_text(double value);
+
 /// A value kept in radians and written in degrees.
 struct Degrees {
   double& radians;
@@ -87,6 +93,11 @@ class SettingVisitor {
 /// A function that lists the keys of some options.
 using VisitSettings = std::function<void(SettingVisitor&)>;
 
+/// A key and the text of its value in TOML.
+struct SettingText {
+  std::string key, value;
+};
+
 /// What a user gave: TOML.
 class SettingsDocument {
  public:
@@ -95,7 +106,7 @@ class SettingsDocument {
   /// InputError if the file cannot be read; ConfigError as above.
   static SettingsDocument from_file(const std::filesystem::path& file);
   /// One "key=value" of the command line, the value in TOML form (a bare word is a string).
-  /// @param example  what a right one looks like ("upsample.rate=2"), for errors
+  /// @param example  what a right one looks like ("surface.spacing_m=0.03"), for errors
   static SettingsDocument from_assignment(std::string_view assignment, std::string_view example);
 
   ~SettingsDocument();
@@ -106,12 +117,18 @@ class SettingsDocument {
   /// name of other characters than letters, digits, '_' and '-'.
   std::vector<std::string> tables(std::string_view key) const;
 
+  /// All keys with their values, in the order of the text.
+  std::vector<SettingText> entries() const;
+
   /// Assigns what the document says to the options that `visit` lists, then validates them.
   /// ConfigError naming file, line and key for an unknown key, a wrong type or what `validate`
   /// rejects (a ConfigError whose place is the key); the options are then half changed.
   /// @param help  what to do about an unknown key, after "remove it, or "
+  /// @param explain  throws a ConfigError whose place is the key for an unknown key that needs
+  ///                 another error than this
   void apply(const VisitSettings& visit, const std::function<void()>& validate,
-             std::string_view help) const;
+             std::string_view help,
+             const std::function<void(std::string_view key)>& explain = {}) const;
 
  private:
   struct Content;
@@ -119,7 +136,14 @@ class SettingsDocument {
   std::unique_ptr<Content> content_;
 };
 
-/// Every key with its value as TOML, which SettingsDocument::from_text reads back.
+/// Every key with its value.
+std::vector<SettingText> setting_texts(const VisitSettings& visit);
+
+/// The keys as TOML, which SettingsDocument::from_text reads back. Keys of one table follow each
+/// other, and keys without a table come first.
+std::string toml_of(std::span<const SettingText> settings);
+
+/// Every key with its value as TOML.
 std::string settings_text(const VisitSettings& visit);
 
 }  // namespace fovea

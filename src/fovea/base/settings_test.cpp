@@ -83,6 +83,32 @@ TEST(Settings, ArePrintedByTable) {
             "rows = []\nshade = \"light\"\n\n[c]\ntext = 'as is'\nlengths = [1.0]\n");
 }
 
+TEST(Settings, KeysOfADocumentKeepTheirOrder) {
+  const auto entries =
+      SettingsDocument::from_text("mapper = 'x'\n[b]\nz = [1, [2.5]]\na = true\n[a.c]\nq = 1", "x")
+          .entries();
+  std::string text;
+  for (const auto& [key, value] : entries) text += key + " is " + value + "; ";
+  EXPECT_EQ(text, "mapper is 'x'; b.z is [1, [2.5]]; b.a is true; a.c.q is 1; ");
+}
+
+TEST(Settings, AKeyWithoutATableComesFirst) {
+  const std::vector<SettingText> settings = {{"mapper", "'x'"}, {"a.b", "1"}, {"a.c", "2"}};
+  EXPECT_EQ(toml_of(settings), "mapper = 'x'\n\n[a]\nb = 1\nc = 2\n");
+}
+
+TEST(Settings, AnUnknownKeyCanHaveAnErrorOfItsOwn) {
+  Options options;
+  try {
+    SettingsDocument::from_text("a.count = 1\na.old = 2", "x.toml")
+        .apply([&](SettingVisitor& visit) { visit_options(visit, options); }, [] {}, "look there",
+               [](std::string_view key) { throw ConfigError("an old key", key, "write a.new"); });
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(), "an old key, x.toml:2, key 'a.old', write a.new");
+  }
+}
+
 TEST(Settings, AnglesTooSmallForTheirDigitsAreZero) {
   Options options;
   read("b.angle = 1e-310\nb.rows = [[-1e-310, 0, 0, 0]]", options);

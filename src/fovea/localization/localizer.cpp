@@ -92,7 +92,6 @@ const char* to_string(LocalizationState state) {
 }
 
 void LocalizerOptions::validate() const {
-  registration.validate();
   if (registration.method == RegistrationMethod::kPointToPoint) {
     throw ConfigError("scans are localised by surfaces", "registration.method",
                       "give gicp or plane");

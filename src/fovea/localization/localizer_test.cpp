@@ -55,7 +55,7 @@ class Localize : public testing::Test {
     MapJob job;
     job.output = *folder_ / name;
     job.pose_source = PoseSource::kNavigation;
-    job.options.surface.spacing = 0.06;
+    job.settings.mapper().surface.spacing = 0.06;
     map_drive(drive, job, {});
     return job.output;
   }

@@ -76,6 +76,16 @@ void TileMap::move_submap(std::size_t submap, const RigidMotion& T_local_submap)
   submaps_[submap].T_local_submap = T_local_submap;
 }
 
+void TileMap::place_submaps(const std::vector<RigidMotion>& poses) {
+  for (std::size_t id = 0; id < poses.size(); ++id) {
+    if (id < submaps_.size()) {
+      move_submap(id, poses[id]);
+    } else {
+      add_submap(poses[id]);
+    }
+  }
+}
+
 void TileMap::add(const PointCloud& points_local) {
   if (submaps_.empty()) throw std::logic_error("points need a submap to be added to");
   if (points_local.empty()) return;

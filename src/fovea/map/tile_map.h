@@ -80,6 +80,9 @@ class TileMap {
   /// std::invalid_argument if the pose is not finite.
   void move_submap(std::size_t submap, const RigidMotion& T_local_submap);
 
+  /// Moves submaps to these poses (T_local_submap), and opens those that do not exist yet.
+  void place_submaps(const std::vector<RigidMotion>& poses);
+
   /// Adds points to the last submap; std::logic_error without one, if a column of a tile is
   /// missing, if intensity is there in some calls only, if a position is not finite or if a tile
   /// that they belong to is stored.

@@ -2,9 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/base/quick_angle.h"
 #include "fovea/geometry/transform_cloud.h"
@@ -14,27 +12,10 @@ namespace {
 constexpr std::size_t kGrain = 8192;
 }  // namespace
 
-void FovealOptions::validate() const {
-  const auto reject = [](const char* what, const char* field, const char* remedy) {
-    throw ConfigError(what, field, remedy);
-  };
-  if (!(near_range >= 0)) reject("a range is negative", "foveal.near_range", "give meters >= 0");
-  if (!(far_range > near_range && far_range <= 1000)) {
-    reject("the white zone is empty or too large", "foveal.far_range",
-           "give meters above near_range and up to 1000");
-  }
-  constexpr double quarter = std::numbers::pi / 2;
-  if (!(max_incidence > 0 && max_incidence <= quarter)) {
-    reject("an angle is out of range", "foveal.max_incidence", "give degrees above 0 and up to 90");
-  }
-  for (const AngularSlice& slice : slices) {
-    if (!(slice.azimuth_min < slice.azimuth_max && slice.elevation_min < slice.elevation_max &&
-          slice.azimuth_min > -quarter && slice.azimuth_max < quarter &&
-          slice.elevation_min > -quarter && slice.elevation_max < quarter)) {
-      reject("a slice is empty or reaches beyond 90 degrees", "foveal.slices",
-             "give [azimuth_min, azimuth_max, elevation_min, elevation_max] in degrees");
-    }
-  }
+std::vector<AngularSlice> FovealOptions::slices_of(int camera) const {
+  if (camera == kNoCamera) return {};
+  const auto own = camera_slices.find(camera);
+  return own != camera_slices.end() ? own->second : slices;
 }
 
 FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
@@ -43,7 +24,7 @@ FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
       lidar_in_cam_(camera.T_cam_lidar.translation().cast<float>()),
       near_range2_(static_cast<float>(options.near_range * options.near_range)),
       far_range2_(static_cast<float>(options.far_range * options.far_range)) {
-  for (const AngularSlice& s : options.slices) {
+  for (const AngularSlice& s : options.slices_of(camera.index)) {
     slices_.push_back({float(std::tan(s.azimuth_min)), float(std::tan(s.azimuth_max)),
                        float(std::tan(s.elevation_min)), float(std::tan(s.elevation_max))});
   }

@@ -2,7 +2,7 @@
 // 4).
 #pragma once
 
-#include <string>
+#include <map>
 #include <vector>
 
 #include "fovea/base/point_cloud.h"
@@ -21,11 +21,15 @@ struct FovealOptions {
   double near_range = 3.0;  ///< m from the LiDAR: end of the near blind zone (the vehicle)
   double far_range = 18.0;  ///< m from the LiDAR: start of the far blind zone
   /// Slices whose union is processed; empty: the whole view of the camera.
-  std::vector<AngularSlice> slices;
+  std::vector<AngularSlice> slices = {};
+  /// Slices of single cameras by number, in place of `slices`.
+  std::map<int, std::vector<AngularSlice>> camera_slices = {};
   /// Largest angle between view ray and surface normal (paper: "beyond about 70 degrees no fine
   /// texture"), rad; pi / 2: no limit. Points without a normal pass.
   double max_incidence = 1.5707963267948966;
-  void validate() const;  ///< ConfigError that names the field
+
+  /// Slices of a camera. Views of a LiDAR without cameras (kNoCamera) have none.
+  std::vector<AngularSlice> slices_of(int camera) const;
 };
 
 /// The 3D and 2D foveal region of one camera at one moment.

@@ -4,8 +4,6 @@
 
 #include <numbers>
 
-#include "fovea/base/errors.h"
-
 namespace fovea::foveal_region_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -109,19 +107,6 @@ TEST(LimitIncidence, DropsSurfacesSeenEdgeOn) {
   EXPECT_NEAR(cloud.range[1], 10, 1e-6);
   EXPECT_TRUE(std::isnan(cloud.incidence[3]));
   EXPECT_NEAR(cloud.range[3], 5, 1e-6);
-}
-
-TEST(FovealOptions, AreChecked) {
-  EXPECT_NO_THROW(FovealOptions{}.validate());
-  FovealOptions options;
-  options.far_range = 2;
-  EXPECT_THROW(options.validate(), ConfigError);
-  options = {};
-  options.slices = {{0.1, -0.1, 0, 1}};
-  EXPECT_THROW(options.validate(), ConfigError);
-  options = {};
-  options.max_incidence = 2;
-  EXPECT_THROW(options.validate(), ConfigError);
 }
 
 }  // namespace fovea::foveal_region_test

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/random.h"
 
 namespace fovea {
@@ -152,26 +151,6 @@ std::optional<double> sensor_height(std::span<const Eigen::Vector3f> points_lida
     best = plane->offset;
   }
   return best;
-}
-
-void GroundOptions::validate() const {
-  const auto reject = [](const char* what, const char* field, const char* remedy) {
-    throw ConfigError(what, field, remedy);
-  };
-  if (!(sensor_height >= 0 && sensor_height <= 10)) {
-    reject("a height is out of range", "ground.sensor_height",
-           "give meters above 0 and up to 10, or 0 for the height of the LiDAR's profile");
-  }
-  if (!(tolerance > 0 && tolerance <= 5)) {
-    reject("a tolerance is out of range", "ground.tolerance", "give meters above 0 and up to 5");
-  }
-  if (ransac_iterations < 1 || ransac_iterations > 100000) {
-    reject("an iteration count is out of range", "ground.ransac_iterations", "give 1 to 100000");
-  }
-  if (!(ransac_max_tilt > 0 && ransac_max_tilt <= 45)) {
-    reject("an angle is out of range", "ground.ransac_max_tilt",
-           "give degrees above 0 and up to 45");
-  }
 }
 
 std::vector<std::uint8_t> segment_ground(std::span<const Eigen::Vector3f> points_lidar,

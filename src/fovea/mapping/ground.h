@@ -18,7 +18,6 @@ struct GroundOptions {
   int ransac_iterations = 200;
   double ransac_max_tilt = 10;  ///< degrees between the plane's normal and the LiDAR's z axis
   std::uint64_t seed = 1;
-  void validate() const;  ///< ConfigError that names the field
 };
 
 /// Mask, 1 for ground, of points in the LiDAR frame (m, relative to the LiDAR). RANSAC falls back

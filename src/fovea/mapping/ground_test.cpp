@@ -1,12 +1,9 @@
 #include "fovea/mapping/ground.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <numbers>
 
-#include "fovea/base/errors.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
 namespace fovea::ground_test {
@@ -96,25 +93,6 @@ TEST(Ground, RansacDependsOnTheSeedAlone) {
   GroundOptions options;
   options.method = GroundMethod::kRansac;
   EXPECT_EQ(segment_ground(sloped.points, options), segment_ground(sloped.points, options));
-}
-
-TEST(GroundOptions, ValidateNamesTheField) {
-  EXPECT_NO_THROW(GroundOptions().validate());
-  const auto expect_rejected = [](auto change, const char* field) {
-    GroundOptions options;
-    change(options);
-    try {
-      options.validate();
-      ADD_FAILURE() << field << " was not rejected";
-    } catch (const ConfigError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr(field));
-    }
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  expect_rejected([](GroundOptions& o) { o.sensor_height = -1; }, "ground.sensor_height");
-  expect_rejected([&](GroundOptions& o) { o.tolerance = nan; }, "ground.tolerance");
-  expect_rejected([](GroundOptions& o) { o.ransac_iterations = 0; }, "ground.ransac_iterations");
-  expect_rejected([](GroundOptions& o) { o.ransac_max_tilt = 90; }, "ground.ransac_max_tilt");
 }
 
 }  // namespace fovea::ground_test

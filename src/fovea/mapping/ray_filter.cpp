@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 
 namespace fovea {
@@ -41,17 +40,6 @@ struct WindowStatistics {
 
 }  // namespace
 
-void RayFilterOptions::validate() const {
-  if (window < 1 || window > 101 || window % 2 == 0) {
-    throw ConfigError("the window is not an odd number of pixels from 1 to 101",
-                      "ray_filter.window", "give 3, 5, 7, ...");
-  }
-  if (!(outlier_rate > 0 && outlier_rate <= 1e6)) {
-    throw ConfigError("the outlier rate is not positive", "ray_filter.outlier_rate",
-                      "give a number of standard deviations, e.g. 2");
-  }
-}
-
 void RayFilter::assign_owners(std::span<const Ray> scan, std::span<const Ray> map,
                               const Camera& camera) {
   owners_.assign(static_cast<std::size_t>(camera.width) * camera.height,
@@ -77,7 +65,6 @@ void RayFilter::assign_owners(std::span<const Ray> scan, std::span<const Ray> ma
 std::vector<RayVerdict> RayFilter::filter(std::span<const Ray> scan, std::span<const Ray> map,
                                           const Camera& camera, const RayFilterOptions& options) {
   std::vector<RayVerdict> verdicts(scan.size(), RayVerdict::kVisible);
-  if (options.mode != RayFilterMode::kPaper) return verdicts;
   assign_owners(scan, map, camera);
 
   const int half = options.window / 2;
@@ -86,8 +73,7 @@ std::vector<RayVerdict> RayFilter::filter(std::span<const Ray> scan, std::span<c
     const Owner& own = owners_[static_cast<std::size_t>(p.y) * camera.width + p.x];
     const bool is_owner = own.scan_index == static_cast<std::int32_t>(i);
     if (!is_owner && own.scan_index != kMapOwner) return RayVerdict::kShared;
-    if (options.occluding_test && is_owner && own.map_point) return RayVerdict::kOccluding;
-    if (!options.occluded_test) return RayVerdict::kVisible;
+    if (is_owner && own.map_point) return RayVerdict::kOccluding;
 
     WindowStatistics window;
     const int x_end = std::min(camera.width - 1, p.x + half);

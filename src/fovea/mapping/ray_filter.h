@@ -9,19 +9,9 @@
 
 namespace fovea {
 
-enum class RayFilterMode {
-  kPaper,  ///< both tests, as in the paper
-  kScan,   ///< removes scan points that the camera cannot see (scan_projection.h); keeps new detail
-  kOff,    ///< keeps every point
-};
-
 struct RayFilterOptions {
-  RayFilterMode mode = RayFilterMode::kPaper;
-  int window = 5;              ///< M: edge of the pixel window, odd
-  double outlier_rate = 2.0;   ///< c: smaller rejects more
-  bool occluding_test = true;  ///< step 1; false: a point may hide the map (ablation)
-  bool occluded_test = true;   ///< step 2; false: keeps outliers (ablation)
-  void validate() const;       ///< ConfigError that names the field
+  int window = 5;             ///< M: edge of the pixel window, odd
+  double outlier_rate = 2.0;  ///< c: smaller rejects more
 };
 
 /// Verdict on a scan point.
@@ -50,7 +40,7 @@ struct Ray {
 /// windows of five or fewer rays reject nothing.
 class RayFilter {
  public:
-  /// Verdict on each scan ray; all are visible unless the mode is kPaper.
+  /// Verdict on each scan ray.
   std::vector<RayVerdict> filter(std::span<const Ray> scan, std::span<const Ray> map,
                                  const Camera& camera, const RayFilterOptions& options);
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/random.h"
 
 namespace fovea::ray_filter_test {
@@ -46,20 +45,11 @@ TEST(RayFilter, ScanPointInFrontOfAMapPointIsOccluding) {
   EXPECT_EQ(count(verdicts, RayVerdict::kOccluding), scan.size());
 }
 
-TEST(RayFilter, EachTestCanBeSwitchedOff) {
+TEST(RayFilter, ScanPointBehindTheMappedWallIsOccluded) {
   const Camera camera = test_camera();
   const auto wall_in_map = wall(10, camera, 0, 200, 0, 100);
-  const auto before_it = wall(9, camera, 50, 60, 50, 60);
-  RayFilterOptions options;
-  options.occluding_test = false;
-  auto verdicts = RayFilter().filter(before_it, wall_in_map, camera, options);
-  EXPECT_EQ(count(verdicts, RayVerdict::kOccluding), 0u);
-  EXPECT_GT(count(verdicts, RayVerdict::kVisible), 0u) << "judged by the second test alone";
-
   const std::vector<Ray> behind_it{{{100, 50}, 14.0f}};
-  EXPECT_EQ(RayFilter().filter(behind_it, wall_in_map, camera, options)[0], RayVerdict::kOccluded);
-  options.occluded_test = false;
-  EXPECT_EQ(RayFilter().filter(behind_it, wall_in_map, camera, options)[0], RayVerdict::kVisible);
+  EXPECT_EQ(RayFilter().filter(behind_it, wall_in_map, camera, {})[0], RayVerdict::kOccluded);
 }
 
 TEST(RayFilter, NewSurfaceNextToTheMapIsKept) {
@@ -220,16 +210,6 @@ TEST(RayFilter, ImageBordersAndReuseOfTheGrid) {
   Camera larger = camera;
   larger.width = 400;
   EXPECT_EQ(count(filter.filter(corners, {}, larger, {}), RayVerdict::kVisible), 4u);
-}
-
-TEST(RayFilter, OptionsAreChecked) {
-  EXPECT_NO_THROW(RayFilterOptions{}.validate());
-  RayFilterOptions options;
-  options.window = 4;
-  EXPECT_THROW(options.validate(), ConfigError);
-  options = {};
-  options.outlier_rate = 0;
-  EXPECT_THROW(options.validate(), ConfigError);
 }
 
 }  // namespace fovea::ray_filter_test

@@ -83,4 +83,16 @@ bool ScanProjection::near_edge(const Eigen::Vector2d& pixel, double distance) co
   });
 }
 
+std::size_t drop_hidden(PointCloud& points_cam, const PointCloud& scan_lidar,
+                        const Camera& camera) {
+  constexpr std::size_t kPoints = 1024;
+  const ScanProjection projection(scan_lidar, camera);
+  std::vector<std::uint8_t> is_hidden(points_cam.size());
+  parallel_for(is_hidden.size(), kPoints, [&](std::size_t i) {
+    const Eigen::Vector3d p = points_cam.position[i].cast<double>();
+    is_hidden[i] = projection.hidden(camera.project(p).value(), p.norm());
+  });
+  return points_cam.drop(is_hidden);
+}
+
 }  // namespace fovea

@@ -53,4 +53,8 @@ class ScanProjection {
   std::vector<Point> points_;
 };
 
+/// Drops the points that another point of the scan hides from the camera. Returns how many.
+/// @param points_cam  of the scan, all in view
+std::size_t drop_hidden(PointCloud& points_cam, const PointCloud& scan_lidar, const Camera& camera);
+
 }  // namespace fovea

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "fovea/base/errors.h"
-
 namespace fovea {
 namespace {
 
@@ -119,31 +117,8 @@ void find_halvings(const GridProjection& project, const Camera& camera,
 
 }  // namespace
 
-void SurfaceOptions::validate() const {
-  if (!(spacing == 0 || (spacing >= 0.005 && spacing <= 1))) {
-    throw ConfigError("the spacing of samples is out of range", "surface.spacing",
-                      "give meters from 0.005 to 1, or 0 for the paper's upsampling");
-  }
-  for (const auto& [edge, key] :
-       {std::pair(max_edge, "surface.max_edge"), std::pair(planar_edge, "surface.planar_edge")}) {
-    if (!(edge >= 0 && edge <= 100)) {
-      throw ConfigError(
-          "the longest edge of a triangle is out of range", key,
-          "give meters above 0 and up to 100, or 0 to derive it from the LiDAR's rings");
-    }
-  }
-  if (!(max_per_pixel == 0 || (max_per_pixel >= 0.1 && max_per_pixel <= 1000))) {
-    throw ConfigError("the number of samples in a pixel is out of range", "surface.max_per_pixel",
-                      "give 0.1 to 1000, or 0 for no limit");
-  }
-  if (!(planar_angle >= 0 && planar_angle <= 1.5707963267948966)) {
-    throw ConfigError("an angle is out of range", "surface.planar_angle", "give 0 to 90 degrees");
-  }
-}
-
 Surface find_surface(const PointCloud& points_cam, const Camera& camera,
                      const SurfaceOptions& options) {
-  options.validate();
   points_cam.check();
   const GridProjection project(camera, points_cam.origin);
   Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}, {}};

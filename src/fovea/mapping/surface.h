@@ -19,7 +19,6 @@ struct SurfaceOptions {
   /// Largest number of samples in a pixel; 0: no limit. If more cells project to a pixel, only
   /// every second, fourth or eighth is sampled: the image cannot resolve more.
   double max_per_pixel = 4;
-  void validate() const;  ///< ConfigError that names the field
 };
 
 /// The surface triangles between a cloud's projected points, and their normals.

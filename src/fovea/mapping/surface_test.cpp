@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
-#include "fovea/base/errors.h"
 #include "fovea/mapping/surface_test_support.h"
 
 namespace fovea::surface_test {
@@ -180,39 +178,6 @@ TEST(Surface, RejectsPointsThatAreNotInFrontOfTheCamera) {
   PointCloud cloud;
   cloud.position = {{0, 0, 5}, {0, 1, -1}};
   EXPECT_THROW(sample_surfaces(cloud, test_camera(), {}, plain_grid()), std::invalid_argument);
-}
-
-TEST(SurfaceOptions, NameTheBadField) {
-  EXPECT_NO_THROW(SurfaceOptions{}.validate());
-  EXPECT_NO_THROW(SurfaceOptions{.spacing = 0}.validate());
-  const auto message = [](const SurfaceOptions& options) -> std::string {
-    try {
-      options.validate();
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (const double bad : {-0.02, 0.001, 1.5, kInfinite, kNaN}) {
-    EXPECT_NE(message({.spacing = bad}).find("surface.spacing"), std::string::npos) << bad;
-  }
-  EXPECT_NO_THROW(
-      (SurfaceOptions{.max_edge = 0, .planar_edge = 0}.validate()));  // derived from the rings
-  for (const double bad : {-0.3, 101.0, kInfinite, kNaN}) {
-    EXPECT_NE(message({.max_edge = bad}).find("surface.max_edge"), std::string::npos) << bad;
-    EXPECT_NE(message({.planar_edge = bad}).find("surface.planar_edge"), std::string::npos) << bad;
-  }
-  EXPECT_NO_THROW(SurfaceOptions{.max_per_pixel = 0}.validate());
-  for (const double bad : {-1.0, 0.05, 2000.0, kNaN}) {
-    EXPECT_NE(message({.max_per_pixel = bad}).find("surface.max_per_pixel"), std::string::npos)
-        << bad;
-  }
-  for (const double bad : {-0.1, 1.6, kNaN}) {
-    EXPECT_NE(message({.planar_angle = bad}).find("surface.planar_angle"), std::string::npos)
-        << bad;
-  }
 }
 
 }  // namespace fovea::surface_test

@@ -1,6 +1,5 @@
 #include "fovea/mapping/texture.h"
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 
 namespace fovea {
@@ -15,13 +14,7 @@ Rgb sample(const Image& image, const Eigen::Vector2d& pixel, ImageSampling sampl
 
 }  // namespace
 
-void TextureOptions::validate() const {
-  if (!(footprint >= 0 && footprint <= 1)) {
-    throw ConfigError("a length is out of range", "texture.footprint", "give meters from 0 to 1");
-  }
-}
-
-void color_points(PointCloud& points_cam, const View& view, const TextureOptions& options) {
+void color_points(PointCloud& points_cam, const View& view, ImageSampling sampling) {
   const std::size_t n = points_cam.size();
   points_cam.color.assign(n, Rgb{});
   points_cam.camera.assign(n, kNoCamera);
@@ -33,7 +26,7 @@ void color_points(PointCloud& points_cam, const View& view, const TextureOptions
   parallel_for(n, kGrain, [&](std::size_t i) {
     const auto pixel = view.camera.project(points_cam.position[i].cast<double>());
     if (!pixel || !view.camera.in_view(*pixel)) return;
-    points_cam.color[i] = sample(view.image, *pixel, options.sampling);
+    points_cam.color[i] = sample(view.image, *pixel, sampling);
     points_cam.camera[i] = static_cast<std::int8_t>(view.camera.index);
     points_cam.views[i] = 1;
   });

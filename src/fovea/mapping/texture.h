@@ -10,19 +10,6 @@ namespace fovea {
 /// Interpolation between pixel centers.
 enum class ImageSampling { kBilinear, kNearest };
 
-/// Views that a point's color comes from.
-enum class TextureViews {
-  kFirst,  ///< the view that added the point, as in the paper
-  kMean,   ///< all views of the point, fused (mapping/color_fusion.h)
-};
-
-struct TextureOptions {
-  TextureViews views = TextureViews::kFirst;
-  double footprint = 0.02;  ///< of kMean: edge of the patch whose mean color a view gives (m)
-  ImageSampling sampling = ImageSampling::kBilinear;  ///< of kFirst
-  void validate() const;                              ///< ConfigError that names the field
-};
-
 /// An image and its camera.
 struct View {
   const Image& image;
@@ -34,6 +21,7 @@ struct View {
 /// the image get kNoCamera; so do all points if the image is empty. Averaging views would blur
 /// edges.
 /// @param points_cam  camera frame, origin 0
-void color_points(PointCloud& points_cam, const View& view, const TextureOptions& options = {});
+void color_points(PointCloud& points_cam, const View& view,
+                  ImageSampling sampling = ImageSampling::kBilinear);
 
 }  // namespace fovea

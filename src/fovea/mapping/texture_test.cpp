@@ -38,8 +38,7 @@ TEST(Texture, NearestSamplingUsesTheNearestPixelCenter) {
   image.data = {0, 100, 200, 255};
   PointCloud cloud;
   cloud.position = {{1.4f, 0, 1}, {1.6f, 0, 1}};
-  const TextureOptions nearest{.sampling = ImageSampling::kNearest};
-  color_points(cloud, {image, camera, 0}, nearest);
+  color_points(cloud, {image, camera, 0}, ImageSampling::kNearest);
   EXPECT_EQ(cloud.color[0].r, 100);
   EXPECT_EQ(cloud.color[1].r, 200);
   color_points(cloud, {image, camera, 0});

@@ -1,13 +1,10 @@
 #include "fovea/mapping/upsample.h"
 
-#include <fmt/format.h>
-
 #include <array>
-#include <cmath>
 #include <type_traits>
 #include <vector>
 
-#include "fovea/base/errors.h"
+#include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/image_mesh.h"
 
 namespace fovea {
@@ -132,20 +129,8 @@ PointCloud to_cloud(const PointCloud& points, const DenseMesh& mesh) {
 
 }  // namespace
 
-void UpsampleOptions::validate() const {
-  if (rate < 0 || rate > 5) {
-    throw ConfigError(fmt::format("upsampling rate is {}", rate), "upsample.rate",
-                      "give a number from 0 to 5");
-  }
-  if (!(max_edge > 0 && std::isfinite(max_edge))) {
-    throw ConfigError(fmt::format("longest edge is {} m", max_edge), "upsample.max_edge",
-                      "give a positive length");
-  }
-}
-
 PointCloud upsample(const PointCloud& points_cam, const Camera& camera,
                     const UpsampleOptions& options) {
-  options.validate();
   points_cam.check();
   const GridProjection project(camera, points_cam.origin);
   const auto max_edge_squared = static_cast<float>(options.max_edge * options.max_edge);
@@ -154,6 +139,32 @@ PointCloud upsample(const PointCloud& points_cam, const Camera& camera,
   find_normals(mesh, project, max_edge_squared);
   for (int i = 0; i < options.rate; ++i) insert_centroids(mesh, project, max_edge_squared);
   return to_cloud(points_cam, mesh);
+}
+
+std::vector<Eigen::Vector3f> upsample_non_ground(const PointCloud& scan_lidar,
+                                                 const std::vector<std::uint8_t>& is_ground,
+                                                 const std::vector<Camera>& cameras,
+                                                 const UpsampleOptions& options) {
+  std::vector<Eigen::Vector3f> result;
+  std::vector<std::uint8_t> is_taken(scan_lidar.size(), 0);
+  for (const Camera& camera : cameras) {
+    const PointCloud points_cam = transform_cloud(scan_lidar, camera.T_cam_lidar);
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
+      const auto pixel = camera.project(points_cam.position[i].cast<double>());
+      if (is_taken[i] != 0 || !pixel || !camera.in_view(*pixel)) continue;
+      is_taken[i] = 1;
+      if (is_ground[i] != 0) {
+        result.push_back(scan_lidar.position[i]);
+      } else {
+        rest.push_back(i);
+      }
+    }
+    const PointCloud dense = upsample(points_cam.select(rest), camera, options);
+    const PointCloud dense_lidar = transform_cloud(dense, camera.T_cam_lidar.inverse());
+    result.insert(result.end(), dense_lidar.position.begin(), dense_lidar.position.end());
+  }
+  return result;
 }
 
 }  // namespace fovea

@@ -1,6 +1,9 @@
 // Constrained Delaunay upsampling (paper: Pose Refinement; docs/method.md 3).
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/camera.h"
 
@@ -9,8 +12,6 @@ namespace fovea {
 struct UpsampleOptions {
   int rate = 2;           ///< how often centroids are inserted, 0-5
   double max_edge = 0.3;  ///< tau: longest 3D edge of a triangle that is filled (m)
-  /// ConfigError that names the field.
-  void validate() const;
 };
 
 /// Adds points on the triangles of a cloud's image projection.
@@ -33,5 +34,14 @@ struct UpsampleOptions {
 ///         normal of the vertex if that is within 5 cm, or zero
 PointCloud upsample(const PointCloud& points_cam, const Camera& camera,
                     const UpsampleOptions& options);
+
+/// Constrained upsampling before registration: the points of a scan in view of a camera, densified
+/// except for the ground. Each point belongs to the first camera that sees it.
+/// @param is_ground  1 for a ground point, by point of the scan
+/// @return positions in the LiDAR frame, m
+std::vector<Eigen::Vector3f> upsample_non_ground(const PointCloud& scan_lidar,
+                                                 const std::vector<std::uint8_t>& is_ground,
+                                                 const std::vector<Camera>& cameras,
+                                                 const UpsampleOptions& options);
 
 }  // namespace fovea

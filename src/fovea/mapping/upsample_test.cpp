@@ -7,7 +7,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/random.h"
 #include "fovea/mapping/camera_test_support.h"
 #include "fovea/mapping/grid_predicates.h"
@@ -273,24 +272,6 @@ TEST(Upsample, RejectsPointsThatAreNotInFrontOfTheCamera) {
     PointCloud cloud;
     cloud.position = {{0, 0, 5}, {0, 1, z}};
     EXPECT_THROW(upsample(cloud, camera, {}), std::invalid_argument) << z;
-  }
-}
-
-TEST(UpsampleOptions, NameTheBadField) {
-  EXPECT_NO_THROW(UpsampleOptions{}.validate());
-  const auto message = [](UpsampleOptions options) -> std::string {
-    try {
-      options.validate();
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_NE(message({.rate = -1}).find("rate"), std::string::npos);
-  EXPECT_NE(message({.rate = 6}).find("rate"), std::string::npos);
-  for (const double bad : {0.0, -0.3, std::numeric_limits<double>::infinity(),
-                           std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_NE(message({.max_edge = bad}).find("max_edge"), std::string::npos) << bad;
   }
 }
 

@@ -37,7 +37,7 @@ void require_fit(const MapContent& a, const MapContent& b, const std::string& wh
   if (a.tile_size != b.tile_size) {
     throw InputError(
         fmt::format("the maps' tiles differ in size, {} m and {} m", a.tile_size, b.tile_size),
-        where, "map one of the drives again with the other's map.tile_size");
+        where, "map one of the drives again with the other's map.tile_size_m");
   }
 }
 

@@ -65,8 +65,8 @@ class Merge : public testing::Test {
     MapJob job;
     job.output = folder_ / name;
     job.pose_source = PoseSource::kNavigation;
-    job.options.surface.spacing = kSpacing;
-    job.options.fusion.submap_duration = 0.25;
+    job.settings.mapper().surface.spacing = kSpacing;
+    job.settings.mapper().fusion.submap_duration = 0.25;
     map_drive(drive, job, {});
     return job.output;
   }
@@ -334,7 +334,7 @@ TEST_F(Merge, MapsOfOtherTilesAreRefused) {
   map(first_, "a.fovea");
   MapJob job;
   job.output = folder_ / "b.fovea";
-  job.options.tile_size = 8;
+  job.settings.mapper().tile_size = 8;
   map_drive(second_, job, {});
   EXPECT_THROW(merge("a.fovea", "b.fovea", "c.fovea"), InputError);
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.fovea", "b.fovea"}));

@@ -7,18 +7,27 @@
 
 #include "fovea/base/errors.h"
 #include "fovea/base/settings.h"
-#include "fovea/pipeline/config_keys.h"
+#include "fovea/pipeline/old_settings.h"
 #include "fovea/pipeline/presets.h"
+#include "fovea/pipeline/settings_rows.h"
 
 namespace fovea {
 namespace {
 
-void apply(const SettingsDocument& document, MapperOptions& options) {
-  MapperOptions result = options;
-  document.apply([&](SettingVisitor& visit) { visit_config(visit, result); },
-                 [&] { result.validate(); },
-                 "see `fovea map --help` and config/default.toml for the keys");
-  options = std::move(result);
+constexpr const char* kMapperKey = "mapper";
+
+void apply(const SettingsDocument& document, MapSettings& settings) {
+  MapSettings result = settings;
+  MapperKind mapper = mapper_of(settings);
+  document.apply(
+      [&](SettingVisitor& visit) {
+        visit(kMapperKey, mapper);
+        if (mapper != mapper_of(result)) result = default_settings(mapper);
+        visit_rows(settings_rows(result), visit);
+      },
+      [&] { validate_rows(settings_rows(result)); }, "see docs/settings.md for the keys",
+      [&](std::string_view key) { explain_unknown_key(mapper, key); });
+  settings = std::move(result);
 }
 
 }  // namespace
@@ -30,32 +39,47 @@ std::vector<std::string> preset_names() {
   return names;
 }
 
-MapperOptions load_preset(std::string_view name) {
+MapSettings load_preset(std::string_view name) {
   for (const Preset& preset : kPresets) {
     if (preset.name != name) continue;
-    MapperOptions options;
-    apply_config_text(preset.text, fmt::format("preset {}", name), options);
-    return options;
+    MapSettings settings;
+    apply_config_text(preset.text, fmt::format("preset {}", name), settings);
+    return settings;
   }
   throw ConfigError(fmt::format("unknown preset '{}'", name), "--preset",
                     fmt::format("give one of {}", fmt::join(preset_names(), ", ")));
 }
 
-void apply_config_file(const std::filesystem::path& file, MapperOptions& options) {
-  apply(SettingsDocument::from_file(file), options);
+void apply_config_file(const std::filesystem::path& file, MapSettings& settings) {
+  apply(SettingsDocument::from_file(file), settings);
 }
 
-void apply_config_text(std::string_view text, std::string_view name, MapperOptions& options) {
-  apply(SettingsDocument::from_text(text, name), options);
+void apply_config_text(std::string_view text, std::string_view name, MapSettings& settings) {
+  apply(SettingsDocument::from_text(text, name), settings);
 }
 
-void apply_setting(std::string_view setting, MapperOptions& options) {
-  apply(SettingsDocument::from_assignment(setting, "upsample.rate=2"), options);
+void apply_setting(std::string_view setting, MapSettings& settings) {
+  apply(SettingsDocument::from_assignment(setting, "surface.spacing_m=0.03"), settings);
 }
 
-std::string to_toml(const MapperOptions& options) {
-  MapperOptions copy = options;
-  return settings_text([&](SettingVisitor& visit) { visit_config(visit, copy); });
+MapSettings stored_settings(std::string_view text, std::string_view name) {
+  MapSettings settings;
+  apply_config_text(convert_settings(text, name), name, settings);
+  return settings;
+}
+
+void validate(const MapSettings& settings) {
+  MapSettings copy = settings;
+  validate_rows(settings_rows(copy));
+}
+
+std::string to_toml(const MapSettings& settings) {
+  MapSettings copy = settings;
+  MapperKind mapper = mapper_of(settings);
+  return settings_text([&](SettingVisitor& visit) {
+    visit(kMapperKey, mapper);
+    visit_rows(settings_rows(copy), visit);
+  });
 }
 
 }  // namespace fovea

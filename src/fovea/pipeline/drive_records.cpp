@@ -69,4 +69,24 @@ void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record) 
             [](const ViewRecord& a, const ViewRecord& b) { return a.camera < b.camera; });
 }
 
+FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
+  FrameRecord record;
+  record.index = skipped.index;
+  record.stamp = stamp;
+  record.status = FrameStatus::kSkipped;
+  record.note = fmt::format("{}: {}", to_string(skipped.reason), skipped.detail);
+  const bool is_damaged =
+      skipped.reason == SkipReason::kDamagedScan || skipped.reason == SkipReason::kDamagedImage;
+  if (is_damaged) record.figures["damaged"] = 1;
+  return record;
+}
+
+void note_missing_images(const Frame& frame, FrameRecord& record) {
+  for (const MissingImage& image : frame.missing_images) {
+    record.count_missing_image(image.camera);
+    record.note += fmt::format("{}camera {} gives nothing, {}: {}", record.note.empty() ? "" : "; ",
+                               image.camera, to_string(image.reason), image.detail);
+  }
+}
+
 }  // namespace fovea

@@ -19,4 +19,10 @@ std::vector<SensorRecord> sensor_records(const DriveInfo& drive);
 /// @param drive  its calibration has the frame's cameras
 void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record);
 
+/// The record of a frame that the drive skips.
+FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp);
+
+/// Counts and names the cameras that gave a frame no image.
+void note_missing_images(const Frame& frame, FrameRecord& record);
+
 }  // namespace fovea

@@ -8,6 +8,13 @@
 #include "fovea/mapping/sensor_profile_estimate.h"
 
 namespace fovea {
+namespace {
+
+SensorProfile first_lidar(const DriveInfo& drive) {
+  return drive.lidars.empty() ? SensorProfile() : drive.lidars.front();
+}
+
+}  // namespace
 
 SensorProfile lidar_profile(const FrameSource& source) {
   constexpr std::size_t kScans = 2;
@@ -45,20 +52,22 @@ MapperOptions suited_to(const SensorProfile& profile, MapperOptions options) {
     surface.planar_edge =
         std::clamp(ring_gap_on_ground(profile, kRange), kLeastPlanarEdge, kMostPlanarEdge);
   }
-  GroundOptions& ground = options.refinement.ground;
-  if (ground.sensor_height == 0) {
-    ground.sensor_height = profile.height.value_or(kUsualSensorHeight);
-  }
   // A margin: motion compensation scatters the elevations of a ring.
   const double spacing = ring_spacing_at(profile, elevation_on_ground(profile, kRange));
-  options.moving.row_height = std::max(RangeImage::kLeastRowHeight, 1.1 * spacing);
-  options.refinement.max_edge = options.upsample.max_edge;
+  options.dynamic.row_height = std::max(RangeImage::kLeastRowHeight, 1.1 * spacing);
   options.refinement.range_noise = std::max(kLeastRangeNoise, profile.range_noise);
   return options;
 }
 
 MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options) {
-  return suited_to(drive.lidars.empty() ? SensorProfile() : drive.lidars.front(), options);
+  return suited_to(first_lidar(drive), options);
+}
+
+PaperOptions suited_to(const DriveInfo& drive, PaperOptions options) {
+  if (options.ground.sensor_height == 0) {
+    options.ground.sensor_height = first_lidar(drive).height.value_or(kUsualSensorHeight);
+  }
+  return options;
 }
 
 }  // namespace fovea

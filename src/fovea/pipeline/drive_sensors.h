@@ -3,6 +3,7 @@
 
 #include "fovea/geometry/sensor_profile.h"
 #include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/paper_options.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
@@ -18,5 +19,6 @@ DriveInfo info_with_lidars(const FrameSource& source);
 MapperOptions suited_to(const SensorProfile& profile, MapperOptions options);
 /// The same for the first LiDAR of a drive; for 64 rings if the drive describes none.
 MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options);
+PaperOptions suited_to(const DriveInfo& drive, PaperOptions options);
 
 }  // namespace fovea

@@ -138,13 +138,12 @@ TEST(DriveSensors, SettingsFollowFromTheRings) {
   const MapperOptions dense = suited_to(rings(0.4), MapperOptions());
   EXPECT_EQ(dense.surface.max_edge, 0.4);
   EXPECT_EQ(dense.surface.planar_edge, 1.0);
-  EXPECT_EQ(dense.moving.row_height, RangeImage::kLeastRowHeight);
-  // Rings 1.5 degrees apart have a spacing of 3.5 m on the ground at 15 m, and 0.39 m on a wall
-  // there.
+  EXPECT_EQ(dense.dynamic.row_height, RangeImage::kLeastRowHeight);
+  // Rings 1.5 degrees apart meet the ground at 15 m 3.5 m apart, and a wall there 0.39 m apart.
   const MapperOptions sparse = suited_to(rings(1.5), MapperOptions());
   EXPECT_NEAR(sparse.surface.planar_edge, 1.5 * kDegree * (1.73 + 15 * 15 / 1.73), 1e-9);
   EXPECT_NEAR(sparse.surface.max_edge, 1.2 * 15 * 1.5 * kDegree, 1e-9);
-  EXPECT_NEAR(sparse.moving.row_height, 1.1 * 1.5 * kDegree, 1e-9);
+  EXPECT_NEAR(sparse.dynamic.row_height, 1.1 * 1.5 * kDegree, 1e-9);
   // No edge grows without limit.
   const MapperOptions sparsest = suited_to(rings(6), MapperOptions());
   EXPECT_EQ(sparsest.surface.planar_edge, 4);
@@ -155,23 +154,26 @@ TEST(DriveSensors, GivenSettingsStay) {
   MapperOptions given;
   given.surface.max_edge = 0.3;
   given.surface.planar_edge = 0.7;
-  given.refinement.ground.sensor_height = 2.5;
   const MapperOptions options = suited_to(rings(2), given);
   EXPECT_EQ(options.surface.max_edge, 0.3);
   EXPECT_EQ(options.surface.planar_edge, 0.7);
-  EXPECT_EQ(options.refinement.ground.sensor_height, 2.5);
+  DriveInfo drive;
+  drive.lidars = {rings(2)};
+  PaperOptions paper;
+  paper.ground.sensor_height = 2.5;
+  EXPECT_EQ(suited_to(drive, paper).ground.sensor_height, 2.5);
 }
 
 TEST(DriveSensors, HeightAndNoiseComeFromTheProfile) {
   SensorProfile profile = rings(0.4);
   profile.height = 2.2;
   profile.range_noise = 0.05;
-  const MapperOptions options = suited_to(profile, MapperOptions());
-  EXPECT_EQ(options.refinement.ground.sensor_height, 2.2);
-  EXPECT_EQ(options.refinement.range_noise, 0.05);
-  // A drive with an unknown LiDAR.
-  EXPECT_EQ(suited_to(DriveInfo(), MapperOptions()).refinement.ground.sensor_height,
-            kUsualSensorHeight);
+  EXPECT_EQ(suited_to(profile, MapperOptions()).refinement.range_noise, 0.05);
+  DriveInfo drive;
+  drive.lidars = {profile};
+  EXPECT_EQ(suited_to(drive, PaperOptions()).ground.sensor_height, 2.2);
+  // A drive whose LiDAR is not known.
+  EXPECT_EQ(suited_to(DriveInfo(), PaperOptions()).ground.sensor_height, kUsualSensorHeight);
 }
 
 }  // namespace fovea::drive_sensors_test

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/geometry/cell_brick.h"
 
@@ -75,16 +74,6 @@ struct CloudVoxels {
 };
 
 }  // namespace
-
-void DynamicPointOptions::validate() const {
-  if (!(range > 0 && range <= 200)) {
-    throw ConfigError("a range is out of range", "moving.range",
-                      "give meters above 0 and up to 200");
-  }
-  if (free_scans < 1 || free_scans > DynamicPointFilter::kMemory) {
-    throw ConfigError("a number of scans is out of range", "moving.free_scans", "give 1 to 32");
-  }
-}
 
 std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_local,
                                                        const RigidMotion& T_odom_local) const {

@@ -18,7 +18,6 @@ struct DynamicPointOptions {
   double range = 25.0;  ///< m from the LiDAR: scans observe map points up to this range
   int free_scans = 4;   ///< a voxel loses its points if this many scans see through it
   double row_height = RangeImage::kLeastRowHeight;  ///< rad, from the LiDAR's rings; no key
-  void validate() const;                            ///< ConfigError that names the field
 };
 
 /// Evidence of free space in the voxels of a map. Covers the last kMemory frame numbers, so that a

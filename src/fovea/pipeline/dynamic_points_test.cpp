@@ -6,8 +6,6 @@
 #include <numbers>
 #include <utility>
 
-#include "fovea/base/errors.h"
-
 namespace fovea::dynamic_points_test {
 
 /// A scan at rest: a wall all around at 20 m, and a box face at x = `face` (0: none), 2 m wide.
@@ -170,15 +168,6 @@ TEST(DynamicPointFilter, ReplayedScansGiveTheSameDecision) {
   }
   EXPECT_EQ(map.size(), 0u);
   EXPECT_EQ(again.size(), 0u);
-}
-
-TEST(DynamicPointFilter, OptionsAreChecked) {
-  DynamicPointOptions options;
-  options.free_scans = 0;
-  EXPECT_THROW(options.validate(), ConfigError);
-  options = {};
-  options.range = -1;
-  EXPECT_THROW(options.validate(), ConfigError);
 }
 
 }  // namespace fovea::dynamic_points_test

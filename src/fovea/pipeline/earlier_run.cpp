@@ -13,6 +13,7 @@
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/drive_match.h"
+#include "fovea/pipeline/drive_records.h"
 
 namespace fovea {
 namespace {
@@ -110,6 +111,22 @@ void keep_names(const MapReader& map, MapMeta& meta, DriveRecord& drive) {
     if (found != before.end()) meta[key] = found->second;
   }
   for (const DriveRecord& stored : map.drives()) drive.name = stored.name;
+}
+
+std::optional<MapSummary> complete_run(const FrameSource& source, const DriveInfo& drive,
+                                       const MapJob& job, const MapMeta& meta) {
+  const MapReader reader(job.output);
+  reader.check_structure();
+  reader.check_records();
+  // MapWriter refuses an older format.
+  if (reader.format_version() != kMapFormatVersion || !is_complete(reader.meta())) return {};
+  require_same_run(reader, meta, drive_record(source), source, job.output);
+  DriveFigures figures(drive, job.rate);
+  for (const FrameRecord& record : reader.frames()) figures.add(record, /*is_new=*/false);
+  MapSummary summary = figures.summary();
+  summary.points = reader.size();
+  summary.notes.push_back("the map is complete: there is nothing to resume");
+  return summary;
 }
 
 }  // namespace fovea

@@ -5,6 +5,7 @@
 
 #include "fovea/map/map_records.h"
 #include "fovea/map/map_store.h"
+#include "fovea/pipeline/map_drive.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
@@ -18,6 +19,11 @@ bool is_complete(const MapMeta& meta);
 /// @param record  of `drive`, before any correction of the calibration
 void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& record,
                       const FrameSource& drive, const std::filesystem::path& path);
+
+/// The summary of a complete map that a run would resume; nothing if frames are missing.
+/// @param meta  the settings of the present run
+std::optional<MapSummary> complete_run(const FrameSource& source, const DriveInfo& drive,
+                                       const MapJob& job, const MapMeta& meta);
 
 /// Replaces texts that contain the path of the drive by those of the map, since the path may
 /// differ.

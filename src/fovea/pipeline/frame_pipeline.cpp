@@ -30,7 +30,7 @@ bool are_tasks(const FramePipelineOptions& options) { return options.overlap && 
 }  // namespace
 
 FramePipeline::FramePipeline(const FrameSource& source, std::vector<int> indices,
-                             std::function<TrackedFrame(const Frame&)> track,
+                             std::function<TrackedScan(const Frame&)> track,
                              const FramePipelineOptions& options)
     : source_(source),
       indices_(std::move(indices)),

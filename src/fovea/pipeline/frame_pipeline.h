@@ -13,7 +13,7 @@
 #include "fovea/base/prefetch.h"
 #include "fovea/base/producer.h"
 #include "fovea/base/wall_clock.h"
-#include "fovea/pipeline/tracker.h"
+#include "fovea/pipeline/incremental_mapper.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
@@ -34,7 +34,7 @@ struct FramePipelineOptions {
 struct LocatedFrame {
   using TimePoint = WallClock::time_point;
   LoadedFrame result;
-  std::optional<TrackedFrame> tracked;  ///< absent: skipped
+  std::optional<TrackedScan> tracked;  ///< absent: skipped
   /// When the frame could be tracked: at a rate, when it was due, be it decoded or not; otherwise
   /// when it was decoded and tracking took it, since a drive's files arrive as they are wanted.
   TimePoint arrival;
@@ -48,7 +48,7 @@ class FramePipeline {
   /// @param indices  of the frames, in order
   /// @param track   called for each usable frame in order, in one thread at a time
   FramePipeline(const FrameSource& source, std::vector<int> indices,
-                std::function<TrackedFrame(const Frame&)> track,
+                std::function<TrackedScan(const Frame&)> track,
                 const FramePipelineOptions& options);
 
   /// The next frame, in order; nothing at the end. Errors of decoding and tracking come when all
@@ -71,7 +71,7 @@ class FramePipeline {
   std::vector<int> indices_;
   std::size_t next_ = 0;      // place in indices_
   std::size_t expected_ = 1;  // first place of which the source has not been told
-  std::function<TrackedFrame(const Frame&)> track_;
+  std::function<TrackedScan(const Frame&)> track_;
   FramePipelineOptions options_;
   TimePoint first_arrival_;
   bool taken_ = false;                                      // whether the taker has a frame

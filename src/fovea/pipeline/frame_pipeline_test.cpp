@@ -39,9 +39,9 @@ class Numbers : public FrameSource {
   DriveInfo info_;
 };
 
-TrackedFrame number_of(const Frame& frame) {
-  TrackedFrame tracked;
-  tracked.record.index = frame.index;
+TrackedScan number_of(const Frame& frame) {
+  TrackedScan tracked;
+  tracked.result.index = frame.index;
   return tracked;
 }
 
@@ -57,7 +57,7 @@ std::vector<int> indices(FramePipeline& frames) {
   std::vector<int> found;
   while (const auto located = frames.next()) {
     const auto* skipped = std::get_if<SkippedFrame>(&located->result);
-    found.push_back(skipped != nullptr ? -skipped->index : located->tracked->record.index);
+    found.push_back(skipped != nullptr ? -skipped->index : located->tracked->result.index);
   }
   return found;
 }

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
 
 namespace fovea {
 namespace {
@@ -33,19 +32,7 @@ Twist deviations(double rotation, double translation) {
   return sigma;
 }
 
-bool is_weak(const FrameRecord& record) {
-  return record.has("registration_failed") || record.has("registration_degenerate") ||
-         record.has("registration_lost");
-}
-
 }  // namespace
-
-void FusionOptions::validate() const {
-  if (!(submap_duration > 0 && submap_duration <= 3600)) {
-    throw ConfigError("a duration is out of range", "map.submap_duration",
-                      "give seconds above 0 and up to 3600");
-  }
-}
 
 Fusion::Fusion(const FusionOptions& options, const RegistrationOptions& registration,
                const DriveInfo& drive)
@@ -96,10 +83,10 @@ void Fusion::apply_deferred() {
   if (!std::exchange(is_solved_, true)) graph_.optimize();
 }
 
-void Fusion::track(FrameRecord& record) {
+void Fusion::track(FrameResult& frame) {
   apply_deferred();
-  const RigidMotion& T_odom_lidar = record.T_odom_lidar;
-  const bool restarts = record.has("track_restarted");
+  const RigidMotion& T_odom_lidar = frame.poses.T_odom_lidar;
+  const bool restarts = frame.tracking.has_restarted;
   if (restarts) {
     last_T_odom_lidar_.reset();
     path_ += kRestartPath;
@@ -109,17 +96,17 @@ void Fusion::track(FrameRecord& record) {
     path_ += (T_odom_lidar.translation() - last_T_odom_lidar_->translation()).norm();
   }
   last_T_odom_lidar_ = T_odom_lidar;
-  const std::string problem = navigation_.observe(record.stamp.value(), T_odom_lidar);
+  const std::string problem = navigation_.observe(frame.stamp.value(), T_odom_lidar);
   if (!problem.empty()) {
-    record.figures["navigation_jumped"] = 1;
-    record.note += (record.note.empty() ? "" : "; ") + problem;
+    frame.tracking.has_navigation_jumped = true;
+    frame.note += (frame.note.empty() ? "" : "; ") + problem;
   }
-  weak_frames_ += is_weak(record) ? 1 : 0;
-  if (restarts || is_due(*record.stamp, T_odom_lidar)) {
-    open_submap(*record.stamp, T_odom_lidar, restarts);
+  weak_frames_ += frame.tracking.is_weak() ? 1 : 0;
+  if (restarts || is_due(*frame.stamp, T_odom_lidar)) {
+    open_submap(*frame.stamp, T_odom_lidar, restarts);
   }
-  record.submap = static_cast<int>(submaps_.size()) - 1;
-  record.T_local_lidar = T_local_lidar(record);
+  frame.poses.submap = static_cast<int>(submaps_.size()) - 1;
+  frame.poses.T_local_lidar = T_local_lidar(frame);
 }
 
 bool Fusion::is_scan_requested() const {
@@ -134,31 +121,31 @@ std::vector<LoopCandidate> Fusion::candidates(const RigidMotion& T_local_lidar) 
   return result;
 }
 
-void Fusion::close_loops(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
+void Fusion::close_loops(FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar) {
   if (!is_scan_requested()) return;
-  if (const auto closure = closer_.find(points_lidar, candidates(record.T_local_lidar))) {
-    record.revisit = Revisit{static_cast<int>(closure->submap), closure->T_submap_lidar};
+  if (const auto closure = closer_.find(points_lidar, candidates(frame.poses.T_local_lidar))) {
+    frame.poses.revisit = Revisit{static_cast<int>(closure->submap), closure->T_submap_lidar};
   }
-  replay(record, points_lidar);
-  record.T_local_lidar = T_local_lidar(record);
+  replay(frame, points_lidar);
+  frame.poses.T_local_lidar = T_local_lidar(frame);
 }
 
-void Fusion::replay(const FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar) {
+void Fusion::replay(const FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar) {
   if (!is_scan_requested()) return;
-  const auto submap = static_cast<std::size_t>(record.submap);
-  closer_.add(submap, points_lidar, T_submap_lidar(record));
-  if (record.revisit) close_loop(record);
+  const auto submap = static_cast<std::size_t>(frame.poses.submap);
+  closer_.add(submap, points_lidar, T_submap_lidar(frame));
+  if (frame.poses.revisit) close_loop(frame);
 }
 
-RigidMotion Fusion::T_submap_lidar(const FrameRecord& record) const {
-  const auto submap = static_cast<std::size_t>(record.submap);
-  return submaps_[submap].T_odom_submap.inverse() * record.T_odom_lidar;
+RigidMotion Fusion::T_submap_lidar(const FrameResult& frame) const {
+  const auto submap = static_cast<std::size_t>(frame.poses.submap);
+  return submaps_[submap].T_odom_submap.inverse() * frame.poses.T_odom_lidar;
 }
 
-void Fusion::close_loop(const FrameRecord& record) {
-  const auto submap = static_cast<std::size_t>(record.submap);
-  graph_.add(RelativePose{static_cast<std::size_t>(record.revisit->submap), submap,
-                          record.revisit->T_submap_lidar * T_submap_lidar(record).inverse(),
+void Fusion::close_loop(const FrameResult& frame) {
+  const auto submap = static_cast<std::size_t>(frame.poses.submap);
+  graph_.add(RelativePose{static_cast<std::size_t>(frame.poses.revisit->submap), submap,
+                          frame.poses.revisit->T_submap_lidar * T_submap_lidar(frame).inverse(),
                           deviations(kClosureRotation, kClosureTranslation), /*robust=*/true});
   is_solved_ = false;
   apply_deferred();
@@ -169,10 +156,10 @@ RigidMotion Fusion::T_local_odom() const {
   return graph_.poses()[submaps_.size() - 1] * submaps_.back().T_odom_submap.inverse();
 }
 
-RigidMotion Fusion::T_local_lidar(const FrameRecord& record) const {
-  if (!options_.enabled) return record.T_odom_lidar;
-  const auto submap = static_cast<std::size_t>(record.submap);
-  return graph_.poses()[submap] * T_submap_lidar(record);
+RigidMotion Fusion::T_local_lidar(const FrameResult& frame) const {
+  if (!options_.enabled) return frame.poses.T_odom_lidar;
+  const auto submap = static_cast<std::size_t>(frame.poses.submap);
+  return graph_.poses()[submap] * T_submap_lidar(frame);
 }
 
 }  // namespace fovea

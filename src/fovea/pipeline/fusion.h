@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/map/frame_record.h"
 #include "fovea/mapping/fusion/loop_closure.h"
 #include "fovea/mapping/fusion/pose_graph.h"
+#include "fovea/pipeline/frame_result.h"
 #include "fovea/pipeline/navigation_check.h"
 #include "fovea/sensor/frame_source.h"
 
@@ -16,7 +16,6 @@ struct FusionOptions {
   bool enabled = true;         ///< false: submaps never move
   bool loop_closure = true;    ///< registers revisited places
   double submap_duration = 2;  ///< s, at least; the points of a submap move together
-  void validate() const;       ///< ConfigError that names the field
 };
 
 /// Poses of the submaps. Scans are registered in the frame `odom`, which never jumps. Navigation
@@ -30,28 +29,27 @@ class Fusion {
          const DriveInfo& drive);
 
   /// Adds the next frame by its pose in odom, and opens a submap if one is due or the track
-  /// restarts. Sets record.submap and record.T_local_lidar; appends faults of navigation to
-  /// record.note.
-  void track(FrameRecord& record);
+  /// restarts. Sets the frame's submap and T_local_lidar; appends faults of navigation to its note.
+  void track(FrameResult& frame);
   /// Deferred work: solves the graph with the submap that the last frame opened. The time grows
   /// with the drive. track() does this first if it was not called.
   void apply_deferred();
 
-  /// Keeps the first scan of a submap and searches a loop closure for it. Sets record.revisit and
-  /// record.T_local_lidar if it finds one.
-  /// @param record  the frame just tracked, not held out
-  void close_loops(FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar);
+  /// Keeps the first scan of a submap and searches a loop closure for it. Sets the frame's revisit
+  /// and T_local_lidar if it finds one.
+  /// @param frame  just tracked, not held out
+  void close_loops(FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar);
   /// Whether the present submap has no scan yet for close_loops().
   bool is_scan_requested() const;
 
-  /// close_loops() for a frame of an earlier run: the loop closure is in the record.
-  void replay(const FrameRecord& record, const std::vector<Eigen::Vector3f>& points_lidar);
+  /// close_loops() for a frame of an earlier run, whose revisit is known.
+  void replay(const FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar);
 
   RigidMotion T_local_odom() const;
   /// T_local_submap by number.
   const std::vector<RigidMotion>& submaps() const { return graph_.poses(); }
-  /// Present pose of any tracked frame.
-  RigidMotion T_local_lidar(const FrameRecord& record) const;
+  /// Of any frame tracked, by what is known now.
+  RigidMotion T_local_lidar(const FrameResult& frame) const;
 
  private:
   struct Submap {
@@ -64,8 +62,8 @@ class Fusion {
   /// Standard deviations of the odometry from the last submap to a new one.
   /// @param length  m driven between their origins
   Twist odometry_deviations(double length, bool restarts) const;
-  RigidMotion T_submap_lidar(const FrameRecord& record) const;
-  void close_loop(const FrameRecord& record);
+  RigidMotion T_submap_lidar(const FrameResult& frame) const;
+  void close_loop(const FrameResult& frame);
   std::vector<LoopCandidate> candidates(const RigidMotion& T_local_lidar) const;
 
   FusionOptions options_;

@@ -64,20 +64,20 @@ struct Odometry {
   }
 };
 
-std::vector<FrameRecord> drive(Fusion& fusion, double turn, int frames, bool with_scans) {
+std::vector<FrameResult> drive(Fusion& fusion, double turn, int frames, bool with_scans) {
   Odometry odometry{turn};
-  std::vector<FrameRecord> records;
+  std::vector<FrameResult> results;
   for (int i = 0; i < frames; ++i) {
     odometry.step(i);
-    FrameRecord record;
-    record.index = i;
-    record.stamp = i * kTenth;
-    record.T_odom_lidar = odometry.T_odom_lidar;
-    fusion.track(record);
-    if (with_scans && fusion.is_scan_requested()) fusion.close_loops(record, scan_at(true_pose(i)));
-    records.push_back(record);
+    FrameResult result;
+    result.index = i;
+    result.stamp = i * kTenth;
+    result.poses.T_odom_lidar = odometry.T_odom_lidar;
+    fusion.track(result);
+    if (with_scans && fusion.is_scan_requested()) fusion.close_loops(result, scan_at(true_pose(i)));
+    results.push_back(result);
   }
-  return records;
+  return results;
 }
 
 double error_of(const RigidMotion& T_local_lidar, int frame) {
@@ -87,22 +87,23 @@ double error_of(const RigidMotion& T_local_lidar, int frame) {
 TEST(Fusion, WithoutNavigationAndLoopsLocalIsOdom) {
   DriveInfo info;
   Fusion fusion({}, {}, info);
-  const auto records = drive(fusion, 1e-4, 100, /*with_scans=*/false);
-  for (const FrameRecord& record : records) {
-    EXPECT_TRUE(record.T_local_lidar.isApprox(record.T_odom_lidar, 1e-9)) << record.index;
+  const auto results = drive(fusion, 1e-4, 100, /*with_scans=*/false);
+  for (const FrameResult& result : results) {
+    EXPECT_TRUE(result.poses.T_local_lidar.isApprox(result.poses.T_odom_lidar, 1e-9))
+        << result.index;
   }
   // 9.9 s: a submap every 2 s.
   EXPECT_EQ(fusion.submaps().size(), 5u);
-  EXPECT_EQ(records.back().submap, 4);
+  EXPECT_EQ(results.back().poses.submap, 4);
 }
 
 TEST(Fusion, AStandingVehicleStaysInItsSubmap) {
   DriveInfo info;
   Fusion fusion({}, {}, info);
   for (int i = 0; i < 200; ++i) {
-    FrameRecord record;
-    record.stamp = i * kTenth;
-    fusion.track(record);
+    FrameResult result;
+    result.stamp = i * kTenth;
+    fusion.track(result);
   }
   EXPECT_EQ(fusion.submaps().size(), 1u);
 }
@@ -113,22 +114,22 @@ TEST(Fusion, ARevisitedPlaceClosesTheLoop) {
   Fusion open({.loop_closure = false}, {}, info), closed({}, {}, info);
   const int frames = kLap + 40;
   const auto drifted = drive(open, kTurn, frames, true);
-  auto records = drive(closed, kTurn, frames, true);
-  EXPECT_GT(error_of(drifted[kLap].T_local_lidar, kLap), 1.0);
+  auto results = drive(closed, kTurn, frames, true);
+  EXPECT_GT(error_of(drifted[kLap].poses.T_local_lidar, kLap), 1.0);
   int revisits = 0;
-  for (const FrameRecord& record : records) revisits += record.revisit.has_value();
+  for (const FrameResult& result : results) revisits += result.poses.revisit.has_value();
   EXPECT_GE(revisits, 1);
-  EXPECT_LT(error_of(records.back().T_local_lidar, frames - 1), 0.1);
+  EXPECT_LT(error_of(results.back().poses.T_local_lidar, frames - 1), 0.1);
   for (int i = 0; i < frames; ++i) {
-    EXPECT_LT(error_of(closed.T_local_lidar(records[std::size_t(i)]), i), 0.4) << i;
+    EXPECT_LT(error_of(closed.T_local_lidar(results[std::size_t(i)]), i), 0.4) << i;
   }
 }
 
 TEST(Fusion, OtherPlacesCloseNoLoop) {
   DriveInfo info;
   Fusion fusion({}, {}, info);
-  for (const FrameRecord& record : drive(fusion, 0, kLap * 3 / 4, true)) {
-    EXPECT_FALSE(record.revisit) << record.index;
+  for (const FrameResult& result : drive(fusion, 0, kLap * 3 / 4, true)) {
+    EXPECT_FALSE(result.poses.revisit) << result.index;
   }
 }
 
@@ -144,12 +145,12 @@ TEST(Fusion, NavigationHoldsALongDriveInPlace) {
   info.navigation = Trajectory(poses);
   info.navigation_accuracy.assign(poses.size(), 0.1);
   Fusion fusion({.loop_closure = false}, {}, info);
-  auto records = drive(fusion, 6e-5, 3 * kLap, false);
-  const double without = error_of(records.back().T_odom_lidar, 3 * kLap - 1);
+  auto results = drive(fusion, 6e-5, 3 * kLap, false);
+  const double without = error_of(results.back().poses.T_odom_lidar, 3 * kLap - 1);
   EXPECT_GT(without, 2);
   double worst = 0;
   for (int i = 0; i < 3 * kLap; ++i) {
-    worst = std::max(worst, error_of(fusion.T_local_lidar(records[std::size_t(i)]), i));
+    worst = std::max(worst, error_of(fusion.T_local_lidar(results[std::size_t(i)]), i));
   }
   EXPECT_LT(worst, without / 3);
 }
@@ -168,9 +169,9 @@ TEST(Fusion, NavigationThatBeginsLaterMovesTheSubmapsBeforeIt) {
     }
     info.navigation = Trajectory(poses);
     Fusion fusion({.loop_closure = false}, {}, info);
-    const auto records = drive(fusion, 0, 200, false);
+    const auto results = drive(fusion, 0, 200, false);
     for (int i = 0; i < 200; ++i) {
-      const RigidMotion T = fusion.T_local_lidar(records[std::size_t(i)]);
+      const RigidMotion T = fusion.T_local_lidar(results[std::size_t(i)]);
       EXPECT_LT((T.translation() - (T_local_true * true_pose(i)).translation()).norm(), 0.05)
           << without_fix << " " << i;
     }
@@ -185,19 +186,19 @@ TEST(Fusion, SwitchedOffItChangesNoPose) {
   }
   info.navigation = Trajectory(poses);
   Fusion fusion({.enabled = false}, {}, info);
-  for (const FrameRecord& record : drive(fusion, 1e-3, 100, false)) {
-    EXPECT_EQ(record.T_local_lidar.matrix(), record.T_odom_lidar.matrix());
+  for (const FrameResult& result : drive(fusion, 1e-3, 100, false)) {
+    EXPECT_EQ(result.poses.T_local_lidar.matrix(), result.poses.T_odom_lidar.matrix());
   }
 }
 
 TEST(Fusion, ReplayedFramesGiveTheSameResult) {
   DriveInfo info;
   Fusion first({}, {}, info), again({}, {}, info);
-  const auto records = drive(first, 1e-4, kLap + 30, true);
-  for (const FrameRecord& record : records) {
-    FrameRecord tracked = record;
+  const auto results = drive(first, 1e-4, kLap + 30, true);
+  for (const FrameResult& result : results) {
+    FrameResult tracked = result;
     again.track(tracked);
-    if (again.is_scan_requested()) again.replay(record, scan_at(true_pose(record.index)));
+    if (again.is_scan_requested()) again.replay(result, scan_at(true_pose(result.index)));
   }
   ASSERT_EQ(first.submaps().size(), again.submaps().size());
   for (std::size_t i = 0; i < first.submaps().size(); ++i) {

@@ -63,8 +63,8 @@ class ScanPair {
         elapsed_(seconds(second.stamp - first.stamp)),
         height_(sensor_height(first.scan.position).value_or(kUsualSensorHeight)),
         compensate_(compensate && !drive.sweep_compensated) {
-    options_.max_correction_translation = kFastest * elapsed_;
-    // Two scans have separate planes.
+    options_.limits.translation_m = kFastest * elapsed_;
+    // Of two scans, each has its own planes.
     options_.registration.method = RegistrationMethod::kGicp;
   }
 
@@ -94,11 +94,9 @@ class ScanPair {
   /// that fails.
   std::optional<RigidMotion> refine(const RigidMotion& guess) const {
     const Twist velocity = velocity_of(guess);
-    StageClock unused;
-    PoseRefiner refiner(options_, drive_.calibration.cameras);
-    refiner.keep(refiner.prepare(compensated(first_, velocity), unused), RigidMotion::Identity(),
-                 unused);
-    const RefinedPose refined = refiner.refine(compensated(second_, velocity), guess, unused);
+    PoseRefiner refiner(options_);
+    refiner.keep(refiner.prepare(compensated(first_, velocity)), RigidMotion::Identity());
+    const RefinedPose refined = refiner.refine(compensated(second_, velocity), guess);
     if (!refined.note.empty()) return std::nullopt;
     return refined.T_odom_lidar;
   }

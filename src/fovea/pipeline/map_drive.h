@@ -9,8 +9,9 @@
 
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_keeper.h"
+#include "fovea/pipeline/incremental_mapper.h"
+#include "fovea/pipeline/map_settings.h"
 #include "fovea/pipeline/map_summary.h"
-#include "fovea/pipeline/mapper.h"
 #include "fovea/sensor/frame_source.h"
 #include "fovea/sensor/hold_out.h"
 
@@ -29,8 +30,8 @@ class MapObserver {
 
 struct MapJob {
   std::filesystem::path output;
-  MapperOptions options;
-  std::string variant;  ///< name of the row that `options` stands for, or empty
+  MapSettings settings;
+  std::string variant;  ///< name of the row that `settings` stands for, or empty
   HoldOut hold_out;
   PoseSource pose_source = PoseSource::kRefine;
   /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven, or of its first

@@ -1,48 +1,15 @@
-// The drive's stages side by side: the same map as one after the other, and the same errors.
+// Runs over whole drives: errors, stages in parallel, memory, live frames.
 #include "fovea/pipeline/map_drive.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../../../tests/raw_drive.h"
-#include "../../../tests/temporary_folder.h"
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/map/drive_fingerprint.h"
-#include "fovea/map/map_store.h"
-#include "fovea/pipeline/mapper_test_support.h"
+#include "fovea/pipeline/map_drive_test_support.h"
 
 namespace fovea::map_drive_test {
-
-/// A drive with moves of its submaps; one frame may not be readable.
-class BrokenDrive : public SyntheticDrive {
- public:
-  int error_at = -1;
-  TimeNs shift = 0;  ///< of all stamps
-  std::optional<TimeNs> stamp(int index) const override { return stamp_of(index) + shift; }
-  BrokenDrive() : SyntheticDrive(street_scene(), 8, 0.8) {}
-  LoadedFrame load(int index) const override {
-    if (index == error_at) throw InputError("cannot be read", "frame", "repair it");
-    return SyntheticDrive::load(index);
-  }
-};
-
-class MapDrive : public testing::Test {
- protected:
-  MapJob job() const {
-    MapJob job;
-    job.output = folder_ / "out.fovea";
-    job.hold_out = HoldOut::parse("8:2");
-    job.options.fusion.submap_duration = 0.25;  // several submaps, which navigation moves
-    job.options.surface.spacing = 0.05;         // a sparse map is soon made
-    job.force = true;
-    return job;
-  }
-  std::string digest() const { return MapReader(folder_ / "out.fovea").digest(); }
-
-  BrokenDrive drive_;
-  TemporaryFolder folder_;
-};
 
 TEST_F(MapDrive, CamerasThatSeeNoPointAreAnErrorAndLeaveNoMap) {
   Camera& camera = drive_.editable_info().calibration.cameras.at(0);
@@ -62,9 +29,9 @@ TEST_F(MapDrive, CamerasThatSeeNoPointAreAnErrorAndLeaveNoMap) {
 TEST_F(MapDrive, WhatNeedsACameraIsRefusedWithoutOne) {
   drive_.editable_info().calibration = {};
   MapJob job = this->job();
-  job.options.refinement.visible_only = true;
+  job.settings = PaperOptions();
   EXPECT_THROW(map_drive(drive_, job, {}), InputError);
-  job.options.refinement.visible_only = false;
+  job.settings = this->job().settings;
   job.calibrate = true;
   EXPECT_THROW(map_drive(drive_, job, {}), InputError);
   job.calibrate = false;
@@ -90,84 +57,6 @@ TEST_F(MapDrive, OverlapChangesNothing) {
   EXPECT_GT(MapReader(job().output).submaps().size(), 1u);
 }
 
-TEST_F(MapDrive, AnInterruptedRunGoesOnToTheSameMap) {
-  const ThreadLimit limit(2);
-  map_drive(drive_, job(), {});
-  const std::string whole = digest();
-
-  std::stop_source stop;
-  MapJob job = this->job();
-  job.stop = stop.get_token();
-  const MapSummary cut = map_drive(drive_, job, [&](const MapProgress& progress) {
-    if (progress.done == 3) stop.request_stop();
-  });
-  ASSERT_TRUE(cut.interrupted);
-  EXPECT_LE(cut.frames_mapped + cut.frames_held_out, 3 + 1);  // one may have been tracked
-  job.stop = {};
-  job.resume = true;
-  EXPECT_FALSE(map_drive(drive_, job, {}).interrupted);
-  EXPECT_EQ(digest(), whole);
-}
-
-// Without navigation too, and with a vehicle that is under way.
-TEST_F(MapDrive, WithoutCamerasTheMapIsTheSameAtAnyThreadsAndWhenResumed) {
-  drive_.editable_info().calibration = {};
-  MapJob job = this->job();
-  job.checkpoint_frames = 1;
-  std::vector<std::string> digests;
-  for (const int threads : {1, 4}) {
-    const ThreadLimit limit(threads);
-    map_drive(drive_, job, {});
-    digests.push_back(digest());
-  }
-  std::stop_source stop;
-  MapJob part = job;
-  part.overlap = false;
-  part.stop = stop.get_token();
-  map_drive(drive_, part, [&](const MapProgress& progress) {
-    if (progress.done == 3) stop.request_stop();
-  });
-  part.stop = {};
-  part.resume = true;
-  map_drive(drive_, part, {});
-  digests.push_back(digest());
-  EXPECT_THAT(digests, testing::Each(digests.front()));
-}
-
-TEST_F(MapDrive, ADriveThatBeginsAtSpeedIsMappedAndResumed) {
-  const Twist velocity = (Twist() << 0, 0, 0.1, 28, 0, 0).finished();
-  for (const bool compensated : {false, true}) {
-    RawDrive drive(5, velocity);
-    drive.editable_info().sweep_compensated = compensated;
-    MapJob job = this->job();
-    job.checkpoint_frames = 1;
-    map_drive(drive, job, {});
-    const std::string whole = digest();
-    for (const FrameRecord& record : MapReader(job.output).frames()) {
-      const RigidMotion error =
-          drive.T_local_lidar[std::size_t(record.index)].inverse() * record.T_local_lidar;
-      EXPECT_LT(error.translation().norm(), 0.03) << record.index;
-      EXPECT_EQ(record.motion.has_value(), !compensated);
-      if (record.motion) {
-        EXPECT_LT((record.motion->velocity - velocity).norm(), 0.3) << record.index;
-      }
-    }
-    for (int frames = 1; frames <= 2; ++frames) {
-      std::stop_source stop;
-      MapJob part = job;
-      part.overlap = false;
-      part.stop = stop.get_token();
-      map_drive(drive, part, [&](const MapProgress& progress) {
-        if (progress.done == frames) stop.request_stop();
-      });
-      part.stop = {};
-      part.resume = true;
-      map_drive(drive, part, {});
-      EXPECT_EQ(digest(), whole) << frames;
-    }
-  }
-}
-
 TEST_F(MapDrive, AnErrorEndsTheRunAndLeavesNothing) {
   drive_.error_at = 4;
   for (const bool overlap : {false, true}) {
@@ -181,34 +70,6 @@ TEST_F(MapDrive, AnErrorEndsTheRunAndLeavesNothing) {
     EXPECT_THROW(map_drive(drive_, job, [](const MapProgress&) { throw OutputError("", "", ""); }),
                  OutputError);
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
-  }
-}
-
-// A run that ends by an error or a crash has what was committed before, and goes on from there.
-TEST_F(MapDrive, AnErrorAfterACommitLeavesAMapToGoOnWith) {
-  for (const bool overlap : {false, true}) {
-    MapJob job = this->job();
-    job.overlap = overlap;
-    map_drive(drive_, job, {});
-    const std::string whole = digest();
-    job.checkpoint_frames = 2;
-    for (const int error_at : {3, 5, 7}) {
-      job.force = true;
-      job.resume = false;
-      drive_.error_at = error_at;
-      EXPECT_THROW(map_drive(drive_, job, {}), InputError);
-      drive_.error_at = -1;
-      const std::size_t committed = MapReader(job.output).frames().size();
-      EXPECT_GE(committed, 2u);
-      EXPECT_LE(committed, std::size_t(error_at));
-      EXPECT_EQ(MapReader(job.output).meta().at("complete"), "0");
-      job.force = false;
-      job.resume = true;
-      const MapSummary rest = map_drive(drive_, job, {});
-      EXPECT_EQ(rest.frames_new, 8 - committed);
-      EXPECT_EQ(rest.frames_mapped + rest.frames_held_out, 8);
-      EXPECT_EQ(digest(), whole) << error_at;
-    }
   }
 }
 
@@ -237,77 +98,6 @@ TEST_F(MapDrive, TheMapStatesItsDriveSensorAndViews) {
   }
 }
 
-TEST_F(MapDrive, ADriveOfAnotherCalibrationOrOtherStampsDoesNotResume) {
-  std::stop_source stop;
-  MapJob job = this->job();
-  job.stop = stop.get_token();
-  map_drive(drive_, job, [&](const MapProgress&) { stop.request_stop(); });
-  job.stop = {};
-  job.resume = true;
-  const auto refusal = [&](const FrameSource& drive) -> std::string {
-    try {
-      map_drive(drive, job, {});
-    } catch (const InputError& error) {
-      return error.problem();
-    }
-    return "resumed";
-  };
-  BrokenDrive recalibrated;
-  recalibrated.editable_info().calibration.cameras[0].T_cam_lidar.translation().x() += 0.001;
-  EXPECT_EQ(refusal(recalibrated),
-            "the map was made of a drive with another calibration (camera 2)");
-  BrokenDrive remounted;
-  remounted.editable_info().calibration.T_imu_lidar = RigidMotion::Identity();
-  EXPECT_EQ(refusal(remounted),
-            "the map was made of a drive with another calibration (the place of the IMU)");
-  BrokenDrive later;
-  later.shift = kNsPerSecond;
-  EXPECT_EQ(refusal(later), "the map was made of a drive with other stamps");
-  for (const int beams : {47, 24}) {  // with the same stamps, as all simulated drives have
-    BrokenDrive elsewhere;
-    elsewhere.beams = beams;
-    EXPECT_THAT(refusal(elsewhere),
-                testing::HasSubstr("made of a drive with other scans: its scan "));
-  }
-  EXPECT_EQ(refusal(drive_), "resumed");
-}
-
-// The name of a drive is no part of its identity, and a note may contain it.
-TEST_F(MapDrive, ARenamedDriveResumesToTheSameMap) {
-  map_drive(drive_, job(), {});
-  const std::string whole = digest();
-  std::stop_source stop;
-  MapJob job = this->job();
-  job.stop = stop.get_token();
-  map_drive(drive_, job, [&](const MapProgress&) { stop.request_stop(); });
-  job.stop = {};
-  job.resume = true;
-  BrokenDrive renamed;
-  renamed.editable_info().path = "elsewhere/renamed";
-  renamed.editable_info().notes = {"elsewhere/renamed/stamps.csv has 1 bad line"};
-  EXPECT_FALSE(map_drive(renamed, job, {}).interrupted);
-  EXPECT_EQ(digest(), whole);
-}
-
-TEST_F(MapDrive, ACompleteMapIsNotWrittenAgainByResume) {
-  const MapSummary made = map_drive(drive_, job(), {});
-  const auto written = std::filesystem::last_write_time(job().output);
-  MapJob job = this->job();
-  job.resume = true;
-  const MapSummary resumed = map_drive(drive_, job, {});
-  EXPECT_EQ(resumed.notes.back(), "the map is complete: there is nothing to resume");
-  EXPECT_FALSE(resumed.interrupted);
-  EXPECT_EQ(resumed.points, made.points);
-  EXPECT_EQ(resumed.frames_mapped, made.frames_mapped);
-  EXPECT_EQ(std::filesystem::last_write_time(job.output), written);
-  // It must still be the map of this drive and of these settings.
-  BrokenDrive recalibrated;
-  recalibrated.editable_info().calibration.cameras[0].fx += 1;
-  EXPECT_THROW(map_drive(recalibrated, job, {}), InputError);
-  job.hold_out = HoldOut::parse("4:1");
-  EXPECT_THROW(map_drive(drive_, job, {}), InputError);
-}
-
 /// Leaves a place and comes back to it twice; 100 m lie between the two.
 class ThereAndBack : public BrokenDrive {
  public:
@@ -327,7 +117,7 @@ TEST_F(MapDrive, WhatIsOutOfReachNeedNotBeInMemory) {
   const ThereAndBack drive;
   MapJob job = this->job();
   job.pose_source = PoseSource::kNavigation;
-  job.options.fusion.submap_duration = 0.05;
+  job.settings.mapper().fusion.submap_duration = 0.05;
   std::vector<std::string> digests;
   std::vector<std::size_t> points;
   for (const auto& [frames, memory] :

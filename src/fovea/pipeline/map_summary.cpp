@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/base/errors.h"
 #include "fovea/base/process_memory.h"
 
 namespace fovea {
@@ -131,6 +132,19 @@ MapSummary DriveFigures::summary() const {
   }
   summary.peak_rss_mb = double(peak_resident_memory()) / (1024 * 1024);
   return summary;
+}
+
+void require_few_damaged(const MapSummary& summary, double most, const std::string& drive,
+                         const std::string& map) {
+  const int damaged = summary.frames_damaged;
+  const int usable = summary.frames_mapped + summary.frames_held_out;
+  if (damaged <= most * (usable + damaged)) return;
+  throw InputError(fmt::format("{} of {} frames are damaged (the first: {})", damaged,
+                               usable + damaged, summary.first_damage),
+                   drive,
+                   fmt::format("restore them and map again, or allow a larger share (--set "
+                               "input.max_damaged_share=1): {} holds the other frames",
+                               map));
 }
 
 }  // namespace fovea

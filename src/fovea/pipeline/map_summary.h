@@ -53,6 +53,11 @@ struct MapSummary : Messages {
   int skipped() const;
 };
 
+/// InputError if more than a share of the frames is damaged.
+/// @param drive, map  where the error is, and the file that holds the other frames
+void require_few_damaged(const MapSummary& summary, double most, const std::string& drive,
+                         const std::string& map);
+
 /// Accumulates a summary frame by frame.
 class DriveFigures {
  public:

@@ -1,8 +1,8 @@
-// What the mapper makes of images: blank, missing or wrongly exposed ones, and of points that none
-// shows.
+// Blank, missing and wrongly exposed images.
 #include <gtest/gtest.h>
 
 #include "fovea/pipeline/mapper_test_support.h"
+#include "fovea/pipeline/paper_mapper.h"
 
 namespace fovea::mapper_images_test {
 
@@ -19,7 +19,7 @@ double color_error_of_free_running_camera(bool own_times) {
   for (int i = 0; i < kFrames; ++i) frames.push_back(std::get<Frame>(drive.load(i)));
   info.image_stamps_are_capture_times = own_times;
   Mapper mapper(info, {}, PoseSource::kNavigation);
-  for (const Frame& frame : frames) mapper.process(frame, false);
+  for (const Frame& frame : frames) mapper.process(frame);
   double error = 0;
   const auto points = points_of(mapper.map());
   for (const MapPoint& point : points) {
@@ -34,16 +34,16 @@ TEST(Mapper, EachImageIsProjectedAtItsOwnTime) {
 }
 
 // A lens that is covered for three frames: no point turns black, and the drive goes on.
-TEST(Mapper, BlankImagesColourNothing) {
+TEST(Mapper, BlankImagesColorNothing) {
   Mapper mapper(street().info(), {}, PoseSource::kNavigation);
   std::size_t before = 0;
   for (int i = 0; i < 6; ++i) {
     Frame frame = std::get<Frame>(street().load(i));
     const bool covered = i >= 2 && i < 5;
     if (covered) std::fill(frame.images[0].data.begin(), frame.images[0].data.end(), 3);
-    const FrameRecord record = mapper.process(frame, false);
-    EXPECT_EQ(record.has("images_blank"), covered);
-    EXPECT_EQ(record.status, FrameStatus::kMapped);
+    const FrameResult result = mapper.process(frame);
+    EXPECT_EQ(result.blank_images, covered ? 1 : 0);
+    EXPECT_EQ(result.status, FrameStatus::kMapped);
     if (covered) {
       EXPECT_EQ(mapper.map().size(), before);
     } else {
@@ -59,37 +59,41 @@ TEST(Mapper, BlankImagesColourNothing) {
   EXPECT_LT(color_error / double(points.size()), 4.0);
 }
 
-// Two cameras, one without an image for a while: the other one goes on, in both kinds of mapping.
-TEST(Mapper, ACameraWithoutImageLeavesTheOther) {
+/// Two cameras, one without an image in each frame.
+template <class AnyMapper, class Options>
+void expect_the_other_camera_to_color(const Options& options) {
   SyntheticDrive drive(street_scene(), 3, 0.8);
   Camera right = drive.info().calibration.cameras[0];
   right.index = 3;
   drive.editable_info().calibration.cameras.push_back(right);
-  MapperOptions whole_scan;
-  apply_variant("baseline-gicp", whole_scan);
-  for (const MapperOptions& options : {MapperOptions{}, whole_scan}) {
-    Mapper mapper(drive.info(), options, PoseSource::kNavigation);
-    for (int i = 0; i < 3; ++i) {
-      Frame frame = std::get<Frame>(drive.load(i));
-      frame.images[i == 1 ? 0 : 1] = {};
-      const FrameRecord record = mapper.process(frame, false);
-      EXPECT_GT(record.figures.at("points_added"), 0);
-      EXPECT_FALSE(record.has("images_blank"));
-    }
-    double color_error = 0;
-    std::size_t coloured = 0;
-    for (const MapPoint& point : points_of(mapper.map())) {
-      if (point.camera == kNoCamera) continue;
-      EXPECT_EQ(point.camera, point.frame == 1 ? 3 : 2);
-      color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
-      ++coloured;
-    }
-    EXPECT_LT(color_error / double(coloured), 4.0);
+  AnyMapper mapper(drive.info(), options, PoseSource::kNavigation);
+  for (int i = 0; i < 3; ++i) {
+    Frame frame = std::get<Frame>(drive.load(i));
+    frame.images[i == 1 ? 0 : 1] = {};
+    const FrameResult result = mapper.process(frame);
+    EXPECT_GT(result.added, 0u);
+    EXPECT_EQ(result.blank_images, 0);
   }
+  double color_error = 0;
+  std::size_t colored = 0;
+  for (const MapPoint& point : points_of(mapper.map())) {
+    if (point.camera == kNoCamera) continue;
+    EXPECT_EQ(point.camera, point.frame == 1 ? 3 : 2);
+    color_error += (to_float(point.color) - synthetic_color(point.p_local)).norm();
+    ++colored;
+  }
+  EXPECT_LT(color_error / double(colored), 4.0);
 }
 
-// Images of two fifths of the light for three frames, as of a camera whose exposure jumps: the map
-// keeps its colours, and what comes in these frames is matched to them.
+TEST(Mapper, ACameraWithoutImageLeavesTheOther) {
+  PaperOptions baseline;
+  apply_variant("baseline-gicp", baseline);
+  expect_the_other_camera_to_color<Mapper>(MapperOptions());
+  expect_the_other_camera_to_color<PaperMapper>(PaperOptions());
+  expect_the_other_camera_to_color<PaperMapper>(baseline);
+}
+
+// Two fifths of the light in three frames: the map keeps its colors, and new points match them.
 TEST(Mapper, AWrongExposureDoesNotSpoilTheMap) {
   Mapper mapper(street().info(), {}, PoseSource::kNavigation);
   for (int i = 0; i < 8; ++i) {
@@ -98,7 +102,7 @@ TEST(Mapper, AWrongExposureDoesNotSpoilTheMap) {
     if (wrong) {
       for (std::uint8_t& value : frame.images[0].data) value = std::uint8_t(value * 2 / 5);
     }
-    EXPECT_EQ(mapper.process(frame, false).has("exposure_off"), wrong) << i;
+    EXPECT_EQ(mapper.process(frame).colors.value().matched_exposures, wrong ? 1 : 0) << i;
   }
   double color_error = 0;
   const auto points = points_of(mapper.map());
@@ -110,19 +114,6 @@ TEST(Mapper, AWrongExposureDoesNotSpoilTheMap) {
     ASSERT_EQ((point.reason & kExposureMatched) != 0, point.frame >= 3 && point.frame < 6);
     ASSERT_EQ(rule_number(point.reason) == reason_of(PointRule::kMeasured), !point.interpolated);
   }
-}
-
-TEST(Mapper, BaselineKeepsTheWholeScanAndLeavesTheUnseenUncoloured) {
-  MapperOptions options;
-  apply_variant("baseline-gicp", options);
-  Mapper mapper(street().info(), options, PoseSource::kNavigation);
-  const auto record = map_frames(mapper, street(), 0, 1)[0];
-  EXPECT_EQ(mapper.map().size(), std::size_t(record.figures.at("points_scan")));
-  std::size_t uncoloured = 0;
-  for (const MapPoint& point : points_of(mapper.map())) uncoloured += point.camera == kNoCamera;
-  EXPECT_EQ(double(uncoloured), record.figures.at("points_unseen"));
-  for (const MapPoint& point : points_of(mapper.map())) ASSERT_EQ(point.reason, 0);
-  EXPECT_GT(uncoloured, mapper.map().size() / 2);
 }
 
 TEST(Mapper, TwoCamerasTakeTurns) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "../../../tests/sample_map.h"
 #include "../../../tests/synthetic_drive.h"
 #include "fovea/pipeline/mapper.h"
 
@@ -32,11 +33,12 @@ inline std::vector<MapPoint> points_of(const TileMap& map) {
   return points;
 }
 
-inline std::vector<FrameRecord> map_frames(Mapper& mapper, const SyntheticDrive& drive, int begin,
-                                           int end, int held_out = -1) {
+inline std::vector<FrameRecord> map_frames(IncrementalMapper& mapper, const SyntheticDrive& drive,
+                                           int begin, int end, int held_out = -1) {
   std::vector<FrameRecord> records;
   for (int i = begin; i < end; ++i) {
-    records.push_back(mapper.process(std::get<Frame>(drive.load(i)), i == held_out));
+    records.push_back(
+        record_of(mapper.process(std::get<Frame>(drive.load(i)), {.held_out = i == held_out})));
   }
   return records;
 }
@@ -44,6 +46,21 @@ inline std::vector<FrameRecord> map_frames(Mapper& mapper, const SyntheticDrive&
 inline const SyntheticDrive& street() {
   static const SyntheticDrive drive(street_scene(), 8, 0.8);
   return drive;
+}
+
+/// Bit for bit, all columns.
+inline void expect_same_maps(const TileMap& a, const TileMap& b) {
+  ASSERT_EQ(a.submaps().size(), b.submaps().size());
+  for (std::size_t id = 0; id < a.submaps().size(); ++id) {
+    const Submap &left = a.submaps()[id], &right = b.submaps()[id];
+    EXPECT_EQ(left.T_local_submap.matrix(), right.T_local_submap.matrix());
+    ASSERT_EQ(left.tiles.size(), right.tiles.size());
+    for (const auto& [key, stored] : left.tiles) {
+      const PointCloud tile = stored.points->cloud();
+      ASSERT_TRUE(right.tiles.contains(key));
+      expect_same_columns(tile, right.tiles.at(key).points->cloud());
+    }
+  }
 }
 
 }  // namespace fovea

@@ -63,7 +63,7 @@ void VelocityError::add(const Twist& predicted, const Twist& actual) {
 
 std::optional<RigidMotion> MotionModel::navigation_at(TimeNs stamp) const {
   if (navigation_ == nullptr) return std::nullopt;
-  return options_.interpolate ? navigation_->at(stamp) : navigation_->nearest(stamp);
+  return navigation_->at(stamp);
 }
 
 std::optional<SweepMotion> MotionModel::navigation_motion(TimeNs stamp) const {

@@ -30,7 +30,6 @@ struct MotionPrediction {
 };
 
 struct MotionModelOptions {
-  bool interpolate = true;  ///< navigation between records; false: the record nearest in time
   /// Compares navigation with the motion so far: weights both for the velocity, and adds a second
   /// guess if they contradict each other.
   bool doubt = true;
@@ -75,8 +74,8 @@ class MotionModel {
   /// Whether a frame follows a pause of the recording: over 1 s after the last frame, and over
   /// three of the drive's usual steps.
   bool follows_pause(TimeNs stamp) const;
-  /// Whether the model has exactly one pose since the beginning or the last pause, and no velocity.
-  bool begins() const { return last_ && !before_last_; }
+  /// Whether nothing states the motion before a frame: the first one, or one after a pause.
+  bool needs_initial_velocity(TimeNs stamp) const { return !last_ || follows_pause(stamp); }
 
   /// Adds the final pose of a frame. The state of the model depends only on these calls.
   void update(TimeNs stamp, const RigidMotion& T_odom_lidar);

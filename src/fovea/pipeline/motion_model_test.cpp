@@ -55,14 +55,7 @@ TEST(MotionModel, NavigationsMotionIsAppliedToTheRefinedPose) {
   EXPECT_NEAR(next.guesses[0].motion->velocity[3], 10, 1e-9);
 }
 
-TEST(MotionModel, WithoutInterpolationTheNearestRecordCounts) {
-  const Trajectory navigation({{0, at_x(0)}, {kTenth, at_x(1)}, {2 * kTenth, at_x(2)}});
-  const MotionModel model(&navigation, {.interpolate = false});
-  EXPECT_NEAR(model.predict(kTenth * 6 / 10).guesses[0].T_odom_lidar.translation().x(), 1, 1e-12);
-  EXPECT_NEAR(model.predict(kTenth * 4 / 10).guesses[0].T_odom_lidar.translation().x(), 0, 1e-12);
-}
-
-/// Navigation that departs from the true motion (1 m a frame) at frame 5.
+/// Navigation that leaves the true motion (1 m a frame) at frame 5.
 MotionPrediction predict_fifth(const RigidMotion& navigation_at_5, bool doubt) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 5; ++i) poses.push_back({i * kTenth, at_x(i)});
@@ -174,18 +167,18 @@ TEST(MotionModel, NoVelocityIsUsedAfterAPause) {
   EXPECT_FALSE(model.follows_pause(13 * kTenth));  // nine frames are missing
   const TimeNs after = 60 * kNsPerSecond;
   ASSERT_TRUE(model.follows_pause(after));
+  EXPECT_TRUE(model.needs_initial_velocity(after));
   const MotionPrediction first = model.predict(after);
   EXPECT_TRUE(first.after_pause);
   EXPECT_NEAR(first.guesses[0].T_odom_lidar.translation().x(), 3, 1e-12);
   EXPECT_FALSE(first.guesses[0].motion);
   model.update(after, at_x(50));
-  EXPECT_TRUE(model.begins());
   const MotionPrediction second = model.predict(after + kTenth);
   EXPECT_FALSE(second.after_pause);
   EXPECT_NEAR(second.guesses[0].T_odom_lidar.translation().x(), 50, 1e-12);
   EXPECT_FALSE(second.guesses[0].motion);
   model.update(after + kTenth, at_x(52));
-  EXPECT_FALSE(model.begins());
+  EXPECT_FALSE(model.needs_initial_velocity(after + 2 * kTenth));
   EXPECT_NEAR(model.predict(after + 2 * kTenth).guesses[0].T_odom_lidar.translation().x(), 54,
               1e-12);
 }

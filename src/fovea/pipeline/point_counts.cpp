@@ -23,12 +23,12 @@ std::size_t count_of(const FrameRecord& record, const char* figure) {
 
 }  // namespace
 
-void count_points(const Frame& frame, FrameRecord& record) {
-  record.figures[kUsed] = as_figure(frame.scan.size());
-  record.figures[kDropped] = as_figure(frame.dropped_points.total());
+void count_points(const ScanStats& scan, std::map<std::string, double>& figures) {
+  figures[kUsed] = as_figure(scan.used);
+  figures[kDropped] = as_figure(scan.dropped.total());
   for (const auto& [figure, reason] : kReasons) {
-    const std::size_t count = frame.dropped_points.*reason;
-    if (count > 0) record.figures[figure] = as_figure(count);
+    const std::size_t count = scan.dropped.*reason;
+    if (count > 0) figures[figure] = as_figure(count);
   }
 }
 

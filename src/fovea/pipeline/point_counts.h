@@ -2,15 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 
 #include "fovea/map/frame_record.h"
-#include "fovea/sensor/frame_source.h"
+#include "fovea/pipeline/frame_result.h"
 
 namespace fovea {
 
-/// Writes the counts of a frame into its record, for PointCounts.
-void count_points(const Frame& frame, FrameRecord& record);
+/// Writes the counts of a frame into the figures of its record, where PointCounts finds them.
+void count_points(const ScanStats& scan, std::map<std::string, double>& figures);
 
 class PointCounts {
  public:

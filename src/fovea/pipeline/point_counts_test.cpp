@@ -4,18 +4,11 @@
 
 namespace fovea::point_counts_test {
 
-Frame frame_of(std::size_t used, const DroppedPoints& dropped) {
-  Frame frame;
-  frame.scan.position.resize(used);
-  frame.dropped_points = dropped;
-  return frame;
-}
-
 TEST(PointCounts, RecordsKeepTheReasons) {
   PointCounts counts;
   for (const DroppedPoints& dropped : {DroppedPoints{1, 2, 3, 4}, DroppedPoints{10, 20, 30, 40}}) {
     FrameRecord record;
-    count_points(frame_of(445, dropped), record);
+    count_points({445, dropped}, record.figures);
     EXPECT_EQ(record.figures.at("points_scan"), 445);
     EXPECT_EQ(record.figures.at("points_dropped"), double(dropped.total()));
     counts.add(record);
@@ -29,7 +22,7 @@ TEST(PointCounts, RecordsKeepTheReasons) {
 
 TEST(PointCounts, ScansWithoutDroppedPointsHaveTheUsualFigures) {
   FrameRecord record;
-  count_points(frame_of(10, {}), record);
+  count_points({10, {}}, record.figures);
   EXPECT_EQ(record.figures.size(), 2u);
   PointCounts counts;
   counts.add(record);

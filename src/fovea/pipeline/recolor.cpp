@@ -35,11 +35,11 @@ void forget_colors(int drive, TilePoints& tile) {
 /// The map without its colours; its tiles are in the file alone.
 TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& writer) {
   const auto held_state = map.hold_state();
-  TileMap copy(job.options.tile_size);
+  TileMap copy(job.settings.tile_size());
   for (const RigidMotion& T_local_submap : copy_all_but_tiles(map, writer)) {
     copy.add_submap(T_local_submap);
   }
-  writer.put_meta(meta_key::kConfig, to_toml(job.options));
+  writer.put_meta(meta_key::kConfig, to_toml(job.settings));
   map.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
     TilePoints uncolored = tile;
     if (!tile.empty()) forget_colors(job.drive, uncolored);
@@ -51,14 +51,17 @@ TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& w
 
 class Recolorer {
  public:
-  Recolorer(const DriveInfo& drive, const MapperOptions& options, TileMap map, MapKeeper& keeper)
-      : drive_(drive), options_(options), map_(std::move(map)), keeper_(keeper) {
-    for (const Camera& camera : drive.calibration.cameras) {
-      reach_ = std::max(reach_, foveal_options_of(options, camera.index).far_range + kMargin);
-    }
-    spacing_ = options.surface.spacing > 0
-                   ? Occupancy(options.tile_size, options.surface.spacing).cell()
-                   : options.texture.footprint;
+  Recolorer(const DriveInfo& drive, const MapSettings& settings, TileMap map, MapKeeper& keeper)
+      : drive_(drive),
+        foveal_(settings.foveal()),
+        map_(std::move(map)),
+        keeper_(keeper),
+        reach_(foveal_.far_range + kMargin) {
+    // A map of the paper's method has no spacing: colors are those of patches as by default.
+    const MapperOptions options = settings.is_paper() ? MapperOptions() : settings.mapper();
+    footprint_ = options.footprint;
+    spacing_ = settings.is_paper() ? footprint_
+                                   : Occupancy(options.tile_size, options.surface.spacing).cell();
   }
 
   void see(const Frame& frame, const FrameRecord& record, RecolorFigures& figures) {
@@ -68,11 +71,11 @@ class Recolorer {
       const Image& image = frame.images[slot];
       if (image.empty()) continue;
       const Camera camera = drive_.camera_at(slot, record.index).at_image(record.motion);
-      const FovealRegion region(foveal_options_of(options_, camera.index), camera);
+      const FovealRegion region(foveal_, camera);
       visible_map_.render(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(),
                           spacing_);
       const ImagePyramid pyramid(image);
-      const ColorView view{pyramid, camera, frame.index, options_.texture.footprint};
+      const ColorView view{pyramid, camera, frame.index, footprint_};
       if (is_blank(image) || is_exposure_off(visible_map_.compare(view).gain)) {
         ++figures.images_left_out;
       } else {
@@ -86,11 +89,11 @@ class Recolorer {
 
  private:
   const DriveInfo& drive_;
-  const MapperOptions& options_;
+  FovealOptions foveal_;
   TileMap map_;
   MapKeeper& keeper_;
   VisibleMap visible_map_;
-  double reach_ = 0, spacing_ = 0;  // m
+  double reach_, footprint_, spacing_;  // m
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();
 };
 
@@ -98,7 +101,7 @@ class Recolorer {
 
 RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, const RecolorJob& job,
                            const std::function<void(int, int)>& progress) {
-  job.options.validate();
+  validate(job.settings);
   require_cameras(source.info(), "recoloring");
   std::vector<FrameRecord> records = map.frames();
   std::erase_if(records, [](const FrameRecord& r) { return r.status != FrameStatus::kMapped; });
@@ -115,7 +118,7 @@ RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, cons
     TileMap uncolored = copy_uncolored(map, job, *writer);
     MapKeeper keeper(std::move(writer),
                      {available_threads() > 1, job.memory, /*commit_at_end=*/true});
-    Recolorer recolorer(source.info(), job.options, std::move(uncolored), keeper);
+    Recolorer recolorer(source.info(), job.settings, std::move(uncolored), keeper);
     for (std::size_t i = 0; i < records.size(); ++i) {
       const LoadedFrame loaded = source.load(records[i].index);
       const auto* frame = std::get_if<Frame>(&loaded);

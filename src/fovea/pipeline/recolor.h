@@ -5,16 +5,16 @@
 #include <functional>
 
 #include "fovea/map/map_keeper.h"
-#include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/map_settings.h"
 #include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 
 struct RecolorJob {
   std::filesystem::path output;
-  MapperOptions options;  ///< of which those of foveal region, texture and sampling are used
-  bool force = false;     ///< overwrite `output`
-  int drive = 0;          ///< number of the drive in the map, for the points' column `session`
+  MapSettings settings;  ///< those of foveal region, texture and sampling are used
+  bool force = false;    ///< overwrite `output`
+  int drive = 0;         ///< number of the drive in the map, for the points' column `session`
   std::size_t memory = std::size_t{1} << 30;  ///< as MapJob::memory
 };
 

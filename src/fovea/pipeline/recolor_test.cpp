@@ -20,7 +20,7 @@ class Recolor : public testing::Test {
     job.hold_out = HoldOut::parse("8:3");
     job.pose_source = PoseSource::kNavigation;
     job.checkpoint_frames = 2;
-    job.options = options_of_map();
+    job.settings = options_of_map();
     map_drive(street(), job, {});
   }
   static void TearDownTestSuite() { delete folder_; }
@@ -35,7 +35,7 @@ class Recolor : public testing::Test {
   RecolorFigures recolor(const MapperOptions& options, const FrameSource& source = street()) {
     RecolorJob job;
     job.output = output_;
-    job.options = options;
+    job.settings = options;
     job.force = true;
     return recolor_map(map_, source, job);
   }

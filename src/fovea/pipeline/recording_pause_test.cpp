@@ -107,7 +107,7 @@ class ElsewhereDrive {
 std::vector<FrameRecord> map_whole(const ElsewhereDrive& drive) {
   Mapper mapper(drive.drive.info(), options(), PoseSource::kRefine);
   std::vector<FrameRecord> records;
-  for (int i = 0; i < kFrames; ++i) records.push_back(mapper.process(drive.frame(i), false));
+  for (int i = 0; i < kFrames; ++i) records.push_back(record_of(mapper.process(drive.frame(i))));
   return records;
 }
 

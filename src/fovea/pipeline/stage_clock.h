@@ -3,35 +3,26 @@
 
 #include <map>
 #include <string>
-#include <utility>
 
 #include "fovea/base/wall_clock.h"
 
 namespace fovea {
 
+/// Wall time between laps, by stage.
 class StageClock {
  public:
-  /// Runs `work`, adds its wall time to `stage` and returns its result.
-  template <class Work>
-  decltype(auto) time(const char* stage, Work&& work) {
-    const Timer timer{milliseconds_[stage]};
-    return std::forward<Work>(work)();
-  }
-  /// Adds the times of another clock, possibly from another thread.
-  void add(const StageClock& other) {
-    for (const auto& [stage, milliseconds] : other.milliseconds_) {
-      milliseconds_[stage] += milliseconds;
-    }
+  /// The next lap begins now.
+  void start() { lap_began_ = WallClock::now(); }
+  /// Adds the time since the last lap, or since start(), to a stage.
+  void lap(const char* stage) {
+    const auto now = WallClock::now();
+    milliseconds_[stage] += fovea::milliseconds(now - lap_began_);
+    lap_began_ = now;
   }
   const std::map<std::string, double>& milliseconds() const { return milliseconds_; }
 
  private:
-  struct Timer {
-    double& total;
-    WallClock::time_point start = WallClock::now();
-    explicit Timer(double& total_) : total(total_) {}
-    ~Timer() { total += milliseconds_since(start); }
-  };
+  WallClock::time_point lap_began_ = WallClock::now();
   std::map<std::string, double> milliseconds_;
 };
 

@@ -4,29 +4,14 @@
 
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "fovea/base/median.h"
-#include "fovea/base/parallel.h"
-#include "fovea/pipeline/point_counts.h"
-#include "fovea/sensor/motion_compensation.h"
+#include "fovea/pipeline/scan_geometry.h"
 
 namespace fovea {
 namespace {
 
-/// Poses that are given are not corrected, nor those of the paper's pairwise chain.
-bool fuses(const MapperOptions& options, PoseSource pose_source) {
-  return options.fusion.enabled && pose_source == PoseSource::kRefine &&
-         options.refinement.target == RegistrationTarget::kLocalMap;
-}
-
-FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_source) {
-  FusionOptions fusion = options.fusion;
-  fusion.enabled = fuses(options, pose_source);
-  return fusion;
-}
-
-/// After as many frames that were lost, the local map is out of reach.
+/// After so many lost frames in a row the local map is out of reach.
 constexpr int kLostFrames = 3;
 /// Fastest vehicle, m/s.
 constexpr double kFastest = 60;
@@ -34,6 +19,13 @@ constexpr double kFastest = 60;
 constexpr double kSigmas = 5;
 /// Largest error of navigation's motion over a pause, m.
 constexpr double kNavigationReach = 5;
+
+/// Poses that are given are not corrected.
+FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_source) {
+  FusionOptions fusion = options.fusion;
+  fusion.enabled = fusion.enabled && pose_source == PoseSource::kRefine;
+  return fusion;
+}
 
 /// Median of the accuracy that navigation states where it has a fix (m); 0 if it states none.
 double stated_accuracy(const DriveInfo& drive) {
@@ -44,112 +36,128 @@ double stated_accuracy(const DriveInfo& drive) {
   return median_of(std::move(stated));
 }
 
-/// Whether a scan that is mapped is a target of those after it. All that says so is in its record:
-/// a run that resumes chooses the same.
-///
-/// A lost scan is none, since its pose is wrong; but where the scans before it were lost, too, the
-/// local map is out of reach, and starts again.
-/// @param lost_before  frames lost just before
-bool takes(Keyframes& keyframes, const FrameRecord& record, int lost_before) {
-  if (record.has("registration_lost") && lost_before < kLostFrames) return false;
-  const auto pairs = record.figures.find("registration_pairs");
-  const bool registered = pairs != record.figures.end() && record.has("registration_points");
-  const double overlap = registered ? pairs->second / record.figures.at("registration_points") : 1;
-  return keyframes.is_keyframe(record.T_odom_lidar, overlap);
+/// Whether a mapped scan is a target of later ones. A lost scan is none, since its pose is wrong.
+/// After kLostFrames lost scans the local map starts again.
+/// @param lost_before  lost frames just before
+bool is_keyframe(Keyframes& keyframes, const FrameResult& frame, int lost_before) {
+  if (frame.tracking.is_lost && lost_before < kLostFrames) return false;
+  return keyframes.is_keyframe(frame.poses.T_odom_lidar, frame.tracking.overlap());
 }
 
 }  // namespace
 
-Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source)
+Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
+                 InitialVelocity initial_velocity)
     : drive_(drive),
-      maps_whole_scans_(!options.foveal_enabled),
       compensate_motion_(options.compensate_motion),
       pose_source_(pose_source),
+      initial_velocity_(std::move(initial_velocity)),
       motion_model_(drive.navigation ? &*drive.navigation : nullptr,
-                    {.interpolate = options.interpolate_navigation,
-                     .doubt = fuses(options, pose_source),
+                    {.doubt = fusion_options(options, pose_source).enabled,
                      .stated_accuracy = stated_accuracy(drive),
                      .sweep_rest = from_seconds(drive.sweep.end_time())}),
-      refiner_(options.refinement, drive.calibration.cameras),
+      refiner_(options.refinement),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
       keyframes_(refiner_.keyframes()) {}
 
-TrackedFrame Tracker::track(const Frame& frame, bool held_out,
-                            const std::optional<RigidMotion>& given_pose, const View& view) {
-  settle();
-  TrackedFrame tracked;
-  StageClock& clock = tracked.clock;
-  clock.add(std::exchange(settling_, {}));
-  FrameRecord& record = tracked.record;
-  record.index = frame.index;
-  record.stamp = frame.stamp;
-  record.status = held_out ? FrameStatus::kHeldOut : FrameStatus::kMapped;
-  count_points(frame, record);
+TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
+  TrackedScan tracked;
+  tracked.task = task;
+  FrameResult& result = tracked.result = started_result(frame, task.held_out);
+  apply_deferred();
 
-  // Where are we, and how do we move?
-  const MotionPrediction motion = motion_model_.predict(frame.stamp);
-  record.T_local_lidar_navigation = motion.T_local_lidar_navigation;
-
-  // Pose refinement, and what needs no pose.
-  Placed placed = place(frame, motion, given_pose, clock, held_out ? View() : view);
-  if (motion.after_pause && registers() && refiner_.confirms_poses()) {
-    find_after_pause(placed, motion.guesses.front(), record, clock);
-  } else if (placed.refined.lost) {
-    find_again(placed, motion, record, clock);
+  const MotionPrediction motion = predict(frame);
+  result.poses.T_local_lidar_navigation = motion.T_local_lidar_navigation;
+  PlacedScan placed = place(frame, motion, task);
+  RefinedPose& refined = placed.refined;
+  if (motion.after_pause && registers()) {
+    search_after_pause(refined, motion.guesses.front(), result);
+  } else if (refined.lost) {
+    search_lost(refined, motion.guesses.front(), result);
   }
-  if (compensates() || drive_.has_image_delays()) record.motion = placed.motion;
-  record.note = placed.refined.note;
-  record.figures.merge(placed.refined.figures);
-  record.T_odom_lidar = placed.refined.T_odom_lidar;
-  motion_model_.update(frame.stamp, record.T_odom_lidar);
-  clock.time("register", [&] {
-    fusion_.track(record);
-    if (!held_out) fusion_.close_loops(record, placed.refined.cloud.points);
-  });
-  if (!held_out && registers() && takes(keyframes_, record, lost_frames_)) {
-    next_target_ = {std::move(placed.refined.cloud), record.T_odom_lidar};
+  result.tracking.registration = refined.stats;
+  const bool has_sweep_motion = compensate_motion_ && !drive_.sweep_compensated;
+  if (has_sweep_motion || drive_.has_image_delays()) result.poses.motion = placed.motion;
+  result.note = refined.note;
+  result.poses.T_odom_lidar = refined.T_odom_lidar;
+  motion_model_.update(frame.stamp, refined.T_odom_lidar);
+  fusion_.track(result);
+  if (!task.held_out) {
+    fusion_.close_loops(result, refined.cloud.points);
+    if (registers() && is_keyframe(keyframes_, result, lost_frames_)) {
+      next_target_ = {std::move(refined.cloud), refined.T_odom_lidar};
+    }
   }
+  count_lost(result);
 
-  count_lost(record);
-
-  tracked.views = std::move(placed.views);
-  if (maps_whole_scans_) tracked.scan_lidar = std::move(placed.scan_lidar);
-  tracked.motion = placed.motion;
+  tracked.scan_lidar = std::move(placed.scan_lidar);
   tracked.submaps = fusion_.submaps();
   tracked.T_local_odom = fusion_.T_local_odom();
+  result.clock.lap("register");
   return tracked;
 }
 
-void Tracker::find_again(Placed& placed, const MotionPrediction& motion, FrameRecord& record,
-                         StageClock& clock) {
-  const MotionGuess& guess = motion.guesses.front();
+MotionPrediction Tracker::predict(const Frame& frame) {
+  if (motion_model_.needs_initial_velocity(frame.stamp)) {
+    motion_model_.begin_with(initial_velocity_(frame.index));
+  }
+  return motion_model_.predict(frame.stamp);
+}
+
+Tracker::PlacedScan Tracker::place(const Frame& frame, const MotionPrediction& motion,
+                                   const FrameTask& task) const {
+  std::optional<PlacedScan> best;
+  for (const MotionGuess& guess : motion.guesses) {
+    PlacedScan placed{compensated(frame.scan, guess.motion), guess.motion, {}};
+    placed.refined = locate(placed.scan_lidar, motion, guess, task);
+    if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
+  }
+  return std::move(*best);
+}
+
+RefinedPose Tracker::locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
+                            const MotionGuess& guess, const FrameTask& task) const {
+  RefinedPose refined;
+  if (pose_source_ == PoseSource::kNavigation) {
+    refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
+  } else if (task.given_pose) {
+    if (registers()) refined.cloud = refiner_.prepare(scan_lidar);
+    refined.T_odom_lidar = *task.given_pose;
+  } else {
+    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, guess.sigma);
+  }
+  return refined;
+}
+
+void Tracker::search_lost(RefinedPose& refined, const MotionGuess& guess,
+                          FrameResult& result) const {
   // Not every frame of a drive that stays lost: a search takes half a second.
   constexpr int kEvery = 10;
   if (lost_frames_ < kLostFrames || lost_frames_ % kEvery == 0) {
-    const double elapsed = last_stamp_ ? seconds(*record.stamp - *last_stamp_) : 0;
+    const double elapsed = last_stamp_ ? seconds(*result.stamp - *last_stamp_) : 0;
     const double reach =
         guess.sigma ? kSigmas * guess.sigma->tail<3>().maxCoeff() : kFastest * elapsed;
-    placed.refined = refiner_.search(std::move(placed.refined), guess.T_odom_lidar, reach, clock);
+    refined = refiner_.search(std::move(refined), guess.T_odom_lidar, reach);
   }
-  if (!placed.refined.lost) return;
-  record.figures["registration_lost"] = 1;
-  placed.refined.T_odom_lidar = guess.T_odom_lidar;
+  if (!refined.lost) return;
+  result.tracking.is_lost = true;
+  refined.T_odom_lidar = guess.T_odom_lidar;
 }
 
-void Tracker::find_after_pause(Placed& placed, const MotionGuess& guess, FrameRecord& record,
-                               StageClock& clock) {
-  if (placed.refined.is_confirmed) return;
-  const double paused = seconds(*record.stamp - *last_stamp_);
+void Tracker::search_after_pause(RefinedPose& refined, const MotionGuess& guess,
+                                 FrameResult& result) {
+  if (refined.is_confirmed) return;
+  const double paused = seconds(*result.stamp - *last_stamp_);
   const double reach = guess.by_navigation ? kNavigationReach : kFastest * paused;
-  placed.refined = refiner_.search(std::move(placed.refined), guess.T_odom_lidar, reach, clock);
-  if (placed.refined.is_confirmed) return;
-  placed.refined.lost = false;
-  placed.refined.T_odom_lidar = guess.T_odom_lidar;
-  placed.refined.note = fmt::format(
+  refined = refiner_.search(std::move(refined), guess.T_odom_lidar, reach);
+  if (refined.is_confirmed) return;
+  refined.lost = false;
+  refined.T_odom_lidar = guess.T_odom_lidar;
+  refined.note = fmt::format(
       "the track restarts after a pause of {:.1f} s, {}", paused,
       guess.by_navigation ? "where navigation has it" : "at the last pose before the pause");
-  record.figures["track_restarted"] = 1;
-  if (!guess.by_navigation) record.figures["pose_unknown"] = 1;
+  result.tracking.has_restarted = true;
+  result.tracking.is_pose_unknown = !guess.by_navigation;
   restart();
 }
 
@@ -158,105 +166,66 @@ void Tracker::restart() {
   keyframes_.restart();
 }
 
-void Tracker::count_lost(const FrameRecord& record) {
-  lost_frames_ = record.has("registration_lost") ? lost_frames_ + 1 : 0;
-  last_stamp_ = record.stamp;
+void Tracker::count_lost(const FrameResult& frame) {
+  lost_frames_ = frame.tracking.is_lost ? lost_frames_ + 1 : 0;
+  last_stamp_ = frame.stamp;
 }
 
-void Tracker::settle() {
-  settling_.time("register", [&] { fusion_.apply_deferred(); });
+void Tracker::apply_deferred() {
+  fusion_.apply_deferred();
   if (!next_target_) return;
-  refiner_.keep(std::move(next_target_->cloud_lidar), next_target_->T_odom_lidar, settling_);
+  refiner_.keep(std::move(next_target_->cloud_lidar), next_target_->T_odom_lidar);
   next_target_.reset();
 }
 
 PointCloud Tracker::compensated(const PointCloud& scan,
                                 const std::optional<SweepMotion>& motion) const {
-  PointCloud scan_lidar = scan;
-  if (motion && compensates()) compensate_sweep(scan_lidar, *motion, drive_.sweep);
-  // No stage uses these. Interpolated points have neither.
-  scan_lidar.time.clear();
-  scan_lidar.ring.clear();
-  return scan_lidar;
+  return deskewed(scan, compensate_motion_ ? motion : std::nullopt, drive_);
 }
-
-Tracker::Placed Tracker::place(const Frame& frame, const MotionPrediction& motion,
-                               const std::optional<RigidMotion>& given_pose, StageClock& clock,
-                               const View& view) const {
-  std::optional<Placed> best;
-  for (const MotionGuess& guess : motion.guesses) {
-    Placed placed;
-    placed.motion = guess.motion;
-    placed.scan_lidar =
-        clock.time("register", [&] { return compensated(frame.scan, guess.motion); });
-    // Where it is doubted which of two scans it will be, both are looked at.
-    run_both([&] { placed.refined = locate(placed.scan_lidar, motion, guess, given_pose, clock); },
-             [&] {
-               if (view) placed.views = view(placed.scan_lidar, placed.motion);
-             });
-    if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
-  }
-  return std::move(*best);
-}
-
-RefinedPose Tracker::locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
-                            const MotionGuess& guess, const std::optional<RigidMotion>& given_pose,
-                            StageClock& clock) const {
-  RefinedPose refined;
-  if (pose_source_ == PoseSource::kNavigation) {
-    refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
-  } else if (given_pose) {
-    if (registers()) refined.cloud = refiner_.prepare(scan_lidar, clock);
-    refined.T_odom_lidar = *given_pose;
-  } else {
-    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, clock, guess.sigma);
-  }
-  return refined;
-}
-
-bool Tracker::compensates() const { return compensate_motion_ && !drive_.sweep_compensated; }
 
 bool Tracker::registers() const {
   return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
 }
 
-void Tracker::follow(const FrameRecord& record) {
-  motion_model_.update(record.stamp.value(), record.T_odom_lidar);
-  if (record.has("track_restarted")) restart();
-  FrameRecord tracked = record;
+void Tracker::follow(const FrameResult& frame) {
+  if (motion_model_.needs_initial_velocity(*frame.stamp)) {
+    motion_model_.begin_with(initial_velocity_(frame.index));
+  }
+  motion_model_.update(*frame.stamp, frame.poses.T_odom_lidar);
+  if (frame.tracking.has_restarted) restart();
+  FrameResult tracked = frame;
   fusion_.track(tracked);
-  is_target_ = record.status == FrameStatus::kMapped && registers() &&
-               takes(keyframes_, record, lost_frames_);
-  count_lost(record);
+  is_target_ = frame.status == FrameStatus::kMapped && registers() &&
+               is_keyframe(keyframes_, frame, lost_frames_);
+  followed_frame_ = frame.index;
+  count_lost(frame);
 }
 
-int Tracker::first_target(const std::vector<FrameRecord>& records) const {
+int Tracker::first_target(const std::vector<FrameResult>& frames) const {
   Keyframes keyframes = refiner_.keyframes();
   std::vector<int> targets;
   int lost = 0;
   int restart_index = 0;
-  for (const FrameRecord& record : records) {
-    if (record.has("track_restarted")) {
+  for (const FrameResult& frame : frames) {
+    if (frame.tracking.has_restarted) {
       keyframes.restart();
       targets.clear();
-      restart_index = record.index;
+      restart_index = frame.index;
     }
-    if (record.status == FrameStatus::kMapped && takes(keyframes, record, lost)) {
-      targets.push_back(record.index);
+    if (frame.status == FrameStatus::kMapped && is_keyframe(keyframes, frame, lost)) {
+      targets.push_back(frame.index);
     }
-    if (record.status != FrameStatus::kSkipped)
-      lost = record.has("registration_lost") ? lost + 1 : 0;
+    lost = frame.tracking.is_lost ? lost + 1 : 0;
   }
   const auto memory = static_cast<std::size_t>(refiner_.memory());
   return targets.size() <= memory ? restart_index : targets[targets.size() - memory];
 }
 
-void Tracker::replay(const PointCloud& scan_lidar, const FrameRecord& record) {
-  if (!is_target_ && !wants_scan()) return;
-  StageClock unused;
-  RegistrationCloud cloud = refiner_.prepare(scan_lidar, unused);
-  fusion_.replay(record, cloud.points);
-  if (is_target_) refiner_.keep(std::move(cloud), record.T_odom_lidar, unused);
+void Tracker::replay(const PointCloud& scan_lidar, const FrameResult& frame) {
+  if (!is_target_ && !fusion_.is_scan_requested()) return;
+  RegistrationCloud cloud = refiner_.prepare(scan_lidar);
+  fusion_.replay(frame, cloud.points);
+  if (is_target_) refiner_.keep(std::move(cloud), frame.poses.T_odom_lidar);
 }
 
 }  // namespace fovea

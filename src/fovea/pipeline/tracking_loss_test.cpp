@@ -51,11 +51,11 @@ TEST(TrackingLoss, AScanWithoutAFitIsReported) {
   const SyntheticDrive drive = town_drive(8);
   Mapper mapper(drive.info(), options(), PoseSource::kRefine);
   map_frames(mapper, drive, 0, 6);
-  const FrameRecord lost = mapper.process(frame_in_a_hall(drive, 6), false);
+  const FrameRecord lost = record_of(mapper.process(frame_in_a_hall(drive, 6)));
   EXPECT_TRUE(lost.has("registration_lost"));
   EXPECT_NE(lost.note.find("fits nowhere"), std::string::npos) << lost.note;
   // A lost scan is no target: the next scan has the right pose.
-  const FrameRecord next = mapper.process(std::get<Frame>(drive.load(7)), false);
+  const FrameRecord next = record_of(mapper.process(std::get<Frame>(drive.load(7))));
   EXPECT_FALSE(next.has("registration_lost"));
   EXPECT_LT(position_error(drive, next), 0.05);
 }
@@ -65,7 +65,7 @@ TEST(TrackingLoss, ADriveThatStaysLostStartsAgain) {
   Mapper mapper(drive.info(), options(), PoseSource::kRefine);
   map_frames(mapper, drive, 0, 6);
   for (int i = 6; i < 10; ++i) {
-    const FrameRecord lost = mapper.process(frame_in_a_hall(drive, i), false);
+    const FrameRecord lost = record_of(mapper.process(frame_in_a_hall(drive, i)));
     EXPECT_TRUE(lost.has("registration_lost")) << i;
   }
   // After that many lost scans, the next one becomes a target, at any pose: later ones fit it.
@@ -74,7 +74,7 @@ TEST(TrackingLoss, ADriveThatStaysLostStartsAgain) {
   elsewhere.columns = 360;
   std::vector<FrameRecord> records;
   for (int i = 10; i < 14; ++i) {
-    records.push_back(mapper.process(std::get<Frame>(elsewhere.load(i)), false));
+    records.push_back(record_of(mapper.process(std::get<Frame>(elsewhere.load(i)))));
   }
   EXPECT_FALSE(records[3].has("registration_lost"));
   const RigidMotion moved = records[2].T_odom_lidar.inverse() * records[3].T_odom_lidar;

@@ -26,7 +26,7 @@ class RenderDrive : public testing::Test {
     MapJob job;
     job.output = *folder_ / "map.fovea";
     job.pose_source = PoseSource::kNavigation;
-    job.options.surface.spacing = 0.03;
+    job.settings.mapper().surface.spacing = 0.03;
     map_drive(driven(), job, {});
   }
   static void TearDownTestSuite() { delete folder_; }

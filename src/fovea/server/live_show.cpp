@@ -23,12 +23,12 @@ MapDescription describe_run(const DriveInfo& drive, const MapJob& job) {
   map.live = true;
   map.images = true;
   map.origin = drive.origin;
-  map.tile_size = job.options.tile_size;
+  map.tile_size = job.settings.tile_size();
   map.sensor_period = drive.sweep.period;
   map.cameras = drive.calibration.cameras;
-  if (job.options.foveal_enabled) {
+  if (job.settings.has_foveal_region()) {
     map.foveal =
-        MapDescription::Foveal{job.options.foveal.near_range, job.options.foveal.far_range};
+        MapDescription::Foveal{job.settings.foveal().near_range, job.settings.foveal().far_range};
   }
   return map;
 }
@@ -54,7 +54,7 @@ LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
       images_(std::move(images)),
       page_(page),
       description_(describe_run(images_->info(), job)),
-      board_(job.output, job.resume, job.options.tile_size,
+      board_(job.output, job.resume, job.settings.tile_size(),
              static_cast<int>(images_->info().frame_count())),
       server_(options,
               [this](const std::string& path, WebServer::Reply reply) {

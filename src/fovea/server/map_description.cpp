@@ -22,14 +22,13 @@ constexpr double kRounding = 1e3;  // a thousandth of a millisecond is noise
 std::optional<MapDescription::Foveal> foveal_of(const MapMeta& meta) {
   const auto config = meta.find(meta_key::kConfig);
   if (config == meta.end()) return std::nullopt;
-  MapperOptions options;
   try {
-    apply_config_text(config->second, "config", options);
+    const MapSettings settings = stored_settings(config->second, "config");
+    if (!settings.has_foveal_region()) return std::nullopt;
+    return MapDescription::Foveal{settings.foveal().near_range, settings.foveal().far_range};
   } catch (const ConfigError&) {
-    return std::nullopt;  // a map of a newer program can be looked at all the same
+    return std::nullopt;  // a map of a newer program is shown without them
   }
-  if (!options.foveal_enabled) return std::nullopt;
-  return MapDescription::Foveal{options.foveal.near_range, options.foveal.far_range};
 }
 
 Json camera_json(const Camera& camera) {

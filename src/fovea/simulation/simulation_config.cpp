@@ -108,9 +108,7 @@ class CameraKeys {
 void visit_degrees(SettingVisitor& visit, std::string_view key, std::vector<double>& radians) {
   std::vector<double> degrees;
   degrees.reserve(radians.size());
-  for (const double angle : radians) {
-    degrees.push_back(std::stod(fmt::format("{:.12g}", angle / kDegree)));
-  }
+  for (const double angle : radians) degrees.push_back(written_degrees(angle));
   const std::vector<double> before = degrees;
   visit(key, degrees);
   if (degrees == before) return;

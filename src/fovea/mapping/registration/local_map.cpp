@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
-
-#include "fovea/base/errors.h"
 
 namespace fovea {
 namespace {
@@ -21,39 +18,11 @@ Eigen::Vector3d origin_near(const Eigen::Vector3d& p_local) {
 
 }  // namespace
 
-void LocalMapOptions::validate() const {
-  const auto reject = [](const char* what, const char* field, const char* remedy) {
-    throw ConfigError(what, field, remedy);
-  };
-  if (max_keyframes < 1 || max_keyframes > 1000) {
-    reject("a number of scans is out of range", "local_map.max_keyframes", "give 1 to 1000");
-  }
-  if (!(keyframe_distance >= 0 && keyframe_distance <= 1000)) {
-    reject("a distance is out of range", "local_map.keyframe_distance",
-           "give 0 (every scan) or meters up to 1000");
-  }
-  if (!(keyframe_rotation > 0 && keyframe_rotation <= std::numbers::pi)) {
-    reject("an angle is out of range", "local_map.keyframe_rotation",
-           "give degrees above 0 and up to 180");
-  }
-  if (!(keyframe_overlap >= 0 && keyframe_overlap <= 1)) {
-    reject("a share is out of range", "local_map.keyframe_overlap", "give 0 (off) to 1");
-  }
-  if (!(max_range > 0 && max_range <= 1000)) {
-    reject("a range is out of range", "local_map.max_range", "give meters above 0 and up to 1000");
-  }
-  if (!(voxel == 0 || (voxel >= 0.01 && voxel <= 10))) {
-    reject("a voxel size is out of range", "local_map.voxel",
-           "give 0 (off) or meters from 0.01 to 10");
-  }
-}
-
 LocalMap::LocalMap(const LocalMapOptions& options, std::optional<NormalOptions> normals)
     : options_(options),
       normals_(normals),
       voxels_(static_cast<float>(options.voxel)),
       target_{{}, {}, PointIndex({})} {
-  options_.validate();
   if (normals_) normals_->spacing = options_.voxel;
 }
 

@@ -21,7 +21,6 @@ struct LocalMapOptions {
   double keyframe_overlap = 0.8;                   ///< 0 to 1
   double max_range = 120.0;  ///< m from a scan's sensor; points further away are left out
   double voxel = 0.25;       ///< m, at most one point for each voxel; 0 keeps all
-  void validate() const;     ///< ConfigError that names the field
 };
 
 /// The last scans of known pose, thinned to one point for each voxel. The oldest scan in a voxel

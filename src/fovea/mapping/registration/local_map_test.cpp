@@ -1,16 +1,13 @@
 #include "fovea/mapping/registration/local_map.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <set>
 #include <tuple>
 
-#include "fovea/base/errors.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
@@ -163,31 +160,6 @@ TEST(LocalMap, EmptyMapHasNoTarget) {
   const RegistrationResult result =
       register_to(map, source(1, pose(0)), RigidMotion::Identity(), {});
   EXPECT_FALSE(result.converged);
-}
-
-TEST(LocalMapOptions, ValidateNamesTheField) {
-  EXPECT_NO_THROW(LocalMapOptions().validate());
-  const auto expect_rejected = [](auto change, const char* field) {
-    LocalMapOptions options;
-    change(options);
-    try {
-      options.validate();
-      ADD_FAILURE() << field << " was not rejected";
-    } catch (const ConfigError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr(field));
-    }
-    EXPECT_THROW(LocalMap{options}, ConfigError);
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  expect_rejected([](LocalMapOptions& o) { o.max_keyframes = 0; }, "local_map.max_keyframes");
-  expect_rejected([&](LocalMapOptions& o) { o.keyframe_distance = nan; },
-                  "local_map.keyframe_distance");
-  expect_rejected([](LocalMapOptions& o) { o.keyframe_rotation = 0; },
-                  "local_map.keyframe_rotation");
-  expect_rejected([](LocalMapOptions& o) { o.keyframe_overlap = 1.1; },
-                  "local_map.keyframe_overlap");
-  expect_rejected([](LocalMapOptions& o) { o.max_range = 0; }, "local_map.max_range");
-  expect_rejected([&](LocalMapOptions& o) { o.voxel = nan; }, "local_map.voxel");
 }
 
 }  // namespace fovea::local_map_test

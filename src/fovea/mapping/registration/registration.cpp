@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/mapping/registration/gicp_factor.h"
 #include "fovea/mapping/registration/normals.h"
@@ -166,46 +165,6 @@ RegistrationResult align(const Clouds& clouds, const RigidMotion& guess,
 }
 
 }  // namespace
-
-void RegistrationOptions::validate() const {
-  const auto reject = [](const char* what, const char* field, const char* remedy) {
-    throw ConfigError(what, field, remedy);
-  };
-  if (max_iterations < 1 || max_iterations > 1000) {
-    reject("an iteration limit is out of range", "registration.max_iterations", "give 1 to 1000");
-  }
-  if (max_points < 0 || max_points > 10'000'000) {
-    reject("a number of points is out of range", "registration.max_points",
-           "give 0 (all) or a number up to 10000000");
-  }
-  if (!(max_distance > 0 && max_distance <= 100)) {
-    reject("a pair distance is out of range", "registration.max_distance",
-           "give meters above 0 and up to 100");
-  }
-  if (!(converged_rotation > 0 && converged_rotation < 1)) {
-    reject("a threshold is out of range", "registration.converged_rotation",
-           "give radians above 0 and below 1");
-  }
-  if (!(converged_translation > 0 && converged_translation < 10)) {
-    reject("a threshold is out of range", "registration.converged_translation",
-           "give meters above 0 and below 10");
-  }
-  if (neighbors < 4 || neighbors > 100) {
-    reject("a neighbor count is out of range", "registration.neighbors", "give 4 to 100");
-  }
-  if (!(plane_epsilon > 0 && plane_epsilon <= 1)) {
-    reject("a regularization is out of range", "registration.plane_epsilon",
-           "give a ratio above 0 and up to 1");
-  }
-  if (!(robust_width >= 0 && robust_width <= 100)) {
-    reject("a kernel width is out of range", "registration.robust_width",
-           "give meters from 0 (off) to 100");
-  }
-  if (!(degenerate_eigenvalue >= 0 && degenerate_eigenvalue < 1)) {
-    reject("a threshold is out of range", "registration.degenerate_eigenvalue",
-           "give a number from 0 (off) to below 1");
-  }
-}
 
 RegistrationCloud select_points(std::vector<Eigen::Vector3f> points, int max_points) {
   std::erase_if(points, [](const Eigen::Vector3f& p) { return !p.allFinite(); });

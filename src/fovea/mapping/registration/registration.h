@@ -33,7 +33,6 @@ struct RegistrationOptions {
   /// point) no direction is degenerate.
   double degenerate_eigenvalue = 0.01;
   RegistrationPolicies policies = {};
-  void validate() const;  ///< ConfigError that names the field
 };
 
 /// A cloud ready to be registered.

@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
@@ -268,33 +267,6 @@ TEST(Registration, ResultDoesNotDependOnTheTargetsOrigin) {
   scans.target = test::transformed(shift, scans.target);
   const RegistrationResult far = align(scans, shift, options);
   EXPECT_LT(error_of(far.T_target_source, shift * near).meters, 1e-4);
-}
-
-TEST(RegistrationOptions, ValidateNamesTheField) {
-  EXPECT_NO_THROW(RegistrationOptions().validate());
-  const auto expect_rejected = [](auto change, const char* field) {
-    RegistrationOptions options;
-    change(options);
-    try {
-      options.validate();
-      ADD_FAILURE() << field << " was not rejected";
-    } catch (const ConfigError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr(field));
-    }
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  using Options = RegistrationOptions;
-  expect_rejected([](Options& o) { o.max_iterations = 0; }, "registration.max_iterations");
-  expect_rejected([](Options& o) { o.max_distance = -1; }, "registration.max_distance");
-  expect_rejected([&](Options& o) { o.max_distance = nan; }, "registration.max_distance");
-  expect_rejected([](Options& o) { o.converged_rotation = 0; }, "registration.converged_rotation");
-  expect_rejected([](Options& o) { o.converged_translation = 0; },
-                  "registration.converged_translation");
-  expect_rejected([](Options& o) { o.neighbors = 2; }, "registration.neighbors");
-  expect_rejected([](Options& o) { o.plane_epsilon = 0; }, "registration.plane_epsilon");
-  expect_rejected([](Options& o) { o.robust_width = -0.1; }, "registration.robust_width");
-  expect_rejected([](Options& o) { o.degenerate_eigenvalue = 1; },
-                  "registration.degenerate_eigenvalue");
 }
 
 }  // namespace fovea::registration_test

@@ -1,0 +1,84 @@
+// A mapper as a run over a drive uses it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "fovea/map/tile_map.h"
+#include "fovea/pipeline/frame_result.h"
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// Where poses come from.
+enum class PoseSource {
+  kRefine,
+  kNavigation,
+  kGiven,
+  kGivenFirst,  ///< given for the first frames; those after them are registered
+};
+
+/// What to do with a frame.
+struct FrameTask {
+  /// The frame gets a pose. It adds no point, color or registration target.
+  bool held_out = false;
+  /// T_local_lidar, where the pose source is kGiven, or kGivenFirst and it is one of the first.
+  std::optional<RigidMotion> given_pose = {};
+};
+
+/// A frame with its pose. Later frames do not change it.
+struct TrackedScan {
+  FrameTask task;
+  FrameResult result;
+  PointCloud scan_lidar;  ///< motion compensated
+  /// T_local_submap of all submaps, and the motion that puts the latest into local.
+  std::vector<RigidMotion> submaps;
+  RigidMotion T_local_odom = RigidMotion::Identity();
+};
+
+/// Where a mapper meets the rest of a run.
+struct MapperServices {
+  /// The LiDAR's velocity at a frame before which nothing states the motion (initial_velocity).
+  std::function<std::optional<Twist>(int frame)> initial_velocity = [](int) {
+    return std::nullopt;
+  };
+  /// Loads the tiles of a ball around the LiDAR, where some of them may be in a store.
+  std::function<void(TileMap& map, const Eigen::Vector3d& center_local, double radius)> load_near =
+      [](TileMap&, const Eigen::Vector3d&, double) {};
+};
+
+/// Builds a map frame by frame, in increasing order of the stamps.
+class IncrementalMapper {
+ public:
+  virtual ~IncrementalMapper() = default;
+
+  /// The pose of the next frame.
+  virtual TrackedScan track(const Frame& frame, const FrameTask& task) = 0;
+  /// The points and colors of a tracked frame, into the map. Runs in one thread, track() of later
+  /// frames in another one; the map is the same.
+  virtual FrameResult map_frame(const Frame& frame, TrackedScan tracked) = 0;
+
+  /// Work that the next track() or map_frame() needs and the last one does not. Each runs in the
+  /// thread of its stage while that waits; otherwise the next frame does it first.
+  virtual void apply_deferred_tracking() {}
+  virtual void apply_deferred_mapping() {}
+
+  virtual const TileMap& map() const = 0;
+  virtual TileMap& map() = 0;
+  /// Farthest distance from the LiDAR at which a frame uses tiles, m.
+  virtual double reach() const = 0;
+
+  /// Continues an earlier run.
+  /// @param records  of its frames, in order
+  /// @param source   gives the scans that later frames depend on
+  virtual void resume(TileMap map, const std::vector<FrameRecord>& records,
+                      const FrameSource& source) = 0;
+
+  /// track() and map_frame().
+  FrameResult process(const Frame& frame, const FrameTask& task = {}) {
+    return map_frame(frame, track(frame, task));
+  }
+};
+
+}  // namespace fovea

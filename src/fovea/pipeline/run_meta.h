@@ -1,0 +1,12 @@
+// What a map states of the run that makes it.
+#pragma once
+
+#include "fovea/map/map_records.h"
+#include "fovea/pipeline/map_drive.h"
+
+namespace fovea {
+
+/// Drive, settings and options of a run. An earlier run is resumed only with the same.
+MapMeta meta_of_run(const DriveInfo& drive, const MapJob& job);
+
+}  // namespace fovea

@@ -1,0 +1,27 @@
+#include "fovea/pipeline/scan_geometry.h"
+
+#include "fovea/pipeline/lidar_views.h"
+#include "fovea/sensor/motion_compensation.h"
+
+namespace fovea {
+
+PointCloud deskewed(const PointCloud& scan, const std::optional<SweepMotion>& motion,
+                    const DriveInfo& drive) {
+  PointCloud scan_lidar = scan;
+  if (motion && !drive.sweep_compensated) compensate_sweep(scan_lidar, *motion, drive.sweep);
+  scan_lidar.time.clear();
+  scan_lidar.ring.clear();
+  return scan_lidar;
+}
+
+std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
+                                  const std::optional<SweepMotion>& motion) {
+  if (drive.calibration.cameras.empty()) return lidar_views();
+  std::vector<Camera> cameras;
+  for (std::size_t slot = 0; slot < drive.calibration.cameras.size(); ++slot) {
+    cameras.push_back(drive.camera_at(slot, frame).at_image(motion));
+  }
+  return cameras;
+}
+
+}  // namespace fovea

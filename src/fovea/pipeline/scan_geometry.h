@@ -1,0 +1,21 @@
+// Scan and cameras of a frame, at the scan's stamp.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fovea/sensor/frame_source.h"
+
+namespace fovea {
+
+/// The scan with the sweep's motion undone, where the scans of the drive are raw and the motion is
+/// given. Without the columns of times and rings.
+PointCloud deskewed(const PointCloud& scan, const std::optional<SweepMotion>& motion,
+                    const DriveInfo& drive);
+
+/// The drive's cameras, each where it took its image of a frame. lidar_views() of a drive without
+/// cameras.
+std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
+                                  const std::optional<SweepMotion>& motion);
+
+}  // namespace fovea
