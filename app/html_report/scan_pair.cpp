@@ -182,15 +182,13 @@ RegistrationCloud points_to_register(const PointCloud& scan_lidar,
                        kRegistration);
 }
 
-std::string rate_figure(const Scans& scans, const std::vector<Camera>& cameras,
-                        int rate) {
+std::string rate_figure(const Scans& scans, const std::vector<Camera>& cameras, int rate) {
   const RegistrationCloud target = points_to_register(scans.target.scan_lidar, cameras, rate);
   const RegistrationCloud source = points_to_register(scans.source.scan_lidar, cameras, rate);
   const RegistrationResult registered_pair = register_clouds(
       target, PointIndex(target.points), source, scans.T_target_guess, kRegistration);
   const RigidMotion found = scans.T_target_guess.inverse() * registered_pair.T_target_source;
-  const std::string failure =
-      failure_of(registered_pair, alignment_stats(registered_pair, found));
+  const std::string failure = failure_of(registered_pair, alignment_stats(registered_pair, found));
   const RigidMotion correction = failure.empty() ? found : RigidMotion::Identity();
   const RigidMotion T_target_source = scans.T_target_guess * correction;
 
