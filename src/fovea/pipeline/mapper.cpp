@@ -72,7 +72,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
   if (options_.dynamic.remove) {
-    // 5. Dynamic points: map points that this scan sees through leave the map.
+    // Map points leave where this scan and those before it see free space.
     const RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
     result.dynamic.emplace().removed =
         dynamic_points_.observe(map_, ranges, result.poses.T_odom_lidar, T_odom_local, frame.index);
@@ -112,6 +112,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
         if (!image.empty()) pyramid.emplace(image);
       });
   result.clock.lap("upsample");
+  // 5. Points in front of the map: an object has come between.
   const std::vector<std::uint8_t> is_occluding = visible_map_.find_occluding(new_cam);
   visible_map_.add_occluders(new_cam);
   stats.occluding += new_cam.drop(is_occluding);
@@ -122,7 +123,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
     ColorView view{*pyramid, camera, result.index, options_.footprint};
     // 6. Radiometry: an image of another exposure gets a gain, and leaves known colors alone.
     match_exposure(visible_map_, view, colors);
-    // 7. Colors: map points fuse one more view, new points get their first.
+    // Colors: map points fuse one more view, new points get their first.
     std::size_t recolored = 0;
     run_both([&] { recolored = view.is_exposure_matched() ? 0 : visible_map_.recolor(map_, view); },
              [&] { color_new_points(new_cam, view); });
@@ -130,15 +131,15 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   } else {
     color_points(new_cam, {image, camera, result.index});  // none
   }
+  result.clock.lap("texture");
   new_cam.normal.clear();  // a map has none
   PointCloud new_local =
       transform_cloud(std::move(new_cam), T_local_cam, T_local_lidar.translation());
-  result.clock.lap("texture");
-  // 5. Dynamic points: new points where other scans see free space.
+  // 7. Dynamic points: new points where other scans see free space.
   if (result.dynamic) {
     result.dynamic->dropped += new_local.drop(dynamic_points_.classify(new_local, T_odom_local));
-    result.clock.lap("filter");
   }
+  result.clock.lap("filter");
   // 8. Add.
   map_.add(new_local);
   added_near_ = T_local_cam.translation();
