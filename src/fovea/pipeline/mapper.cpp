@@ -101,6 +101,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
         // 3. Visible points: in the foveal region, not hidden by another point of the scan.
         new_cam = foveal_points(scan_lidar, region);
         stats.measured += new_cam.size();
+        result.clock.lap("fovea");
         result.hidden = result.hidden.value_or(0) + drop_hidden(new_cam, scan_lidar, camera);
         // 4. Surface samples, in cells of the map's grid that have no point yet.
         new_cam = samples_of(new_cam, camera, T_local_cam);
