@@ -108,7 +108,9 @@ void MapKeeper::bring_near(TileMap& map, const Eigen::Vector3d& center_local, do
   map.begin_step();
   for (const TileId& id : map.stored_near(center_local, radius + kAhead)) {
     if (requested_.contains(id)) continue;
-    requested_.emplace(id, worker_.post([this, id] { return writer_->read_tile(id); }));
+    requested_.emplace(id, worker_.post([this, id, is_ended = ended_.get_token()] {
+      return is_ended.stop_requested() ? TilePoints() : writer_->read_tile(id);
+    }));
   }
   for (const TileId& id : map.stored_near(center_local, radius)) {
     const std::future<TilePoints>& tile = requested_.at(id);
@@ -188,6 +190,7 @@ void MapKeeper::finish() {
 }
 
 void MapKeeper::finish(TileMap& map, MapRows rows) {
+  ended_.request_stop();  // a tile requested ahead may lie in a checkpoint that is taken over
   Tiles tiles;
   if (on_checkpoint_) {
     end_checkpoint();

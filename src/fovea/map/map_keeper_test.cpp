@@ -252,6 +252,25 @@ TEST_F(PatientKeeper, TheLastCheckpointTakesOverTheOneBefore) {
   }
 }
 
+// A tile that is requested ahead lies in the checkpoint that finish() takes over.
+TEST_F(PatientKeeper, ATileRequestedAheadDoesNotDisturbTheEnd) {
+  MapKeeper keeper(MapWriter::create(path_, true), options_);
+  TileMap map(2.0), whole(2.0);
+  const PointCloud behind = points_at(0, random_), ahead = points_at(100, random_);
+  for (TileMap* m : {&map, &whole}) {
+    m->add_submap(RigidMotion::Identity());
+    m->add(behind);
+    m->add_submap(RigidMotion(Eigen::Translation3d(100, 0, 0)));
+    m->add(ahead);
+  }
+  keeper.checkpoint(map, rows_of(map), {100, 0, 0}, kNear);
+  until_it_waits(1);
+  ASSERT_LT(map.size_in_memory(), map.size());
+  keeper.bring_near(map, {20, 0, 0}, kNear);  // 20 m behind: wanted soon, not waited for
+  keeper.finish(map, {});
+  expect_stored(path_, whole);
+}
+
 TEST_P(Keeper, WantsACheckpointWhenMemoryRunsOut) {
   const auto keeper = this->keeper(/*memory=*/65'000);
   TileMap map(2.0);
