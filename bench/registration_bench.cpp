@@ -78,13 +78,13 @@ void bench_alignment(benchmark::State& state, const BenchData& data) {
   const RegistrationCloud scan = prepared(data.frames.back().scan.position);
   const LocalMap::Target& target = street.map.target();
   const PointIndex tree(target.cloud.points);
-  const Eigen::Translation3d T_origin_local(-target.origin_local);
+  const Eigen::Translation3d T_origin_odom(-target.origin_odom);
   const auto ours = [&] { return register_to(street.map, scan, street.guess, options()); };
   const auto by_tree = [&] {
-    return register_clouds(target.cloud, tree, scan, T_origin_local * street.guess, options());
+    return register_clouds(target.cloud, tree, scan, T_origin_odom * street.guess, options());
   };
   const RegistrationResult result = ours();
-  const Eigen::Vector3d apart = (T_origin_local * result.T_target_source).translation() -
+  const Eigen::Vector3d apart = (T_origin_odom * result.T_target_source).translation() -
                                 by_tree().T_target_source.translation();
   check(result.converged && apart.norm() < 1e-3, "a pose unlike the tree's");
   duel(

@@ -167,7 +167,7 @@ inline void put_sample_map(MapWriter& writer, const TileMap& map) {
   writer.put_meta("origin.longitude_deg", "8.4228850417969");
   writer.put_meta("origin.height_m", "112.83492279053");
   writer.put_meta("map.tile_size_m", "4");
-  writer.put_meta("config", "[registration]\nmethod = \"gicp\"\n");
+  writer.put_meta("config", "mapper = \"default\"\n");
   writer.put_meta("timing.total", "12.5");
   writer.put_drive(0, sample_drive());
   writer.put_sensor(0, sample_sensor());

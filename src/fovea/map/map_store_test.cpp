@@ -45,7 +45,7 @@ TEST(MapStore, EverythingComesBackBitForBit) {
 
   const MapReader reader(folder / "a.fovea");
   const MapMeta meta = reader.meta();
-  EXPECT_EQ(meta.at("config"), "[registration]\nmethod = \"gicp\"\n");
+  EXPECT_EQ(meta.at("config"), "mapper = \"default\"\n");
   EXPECT_EQ(meta.at("format_version"), "7");
   EXPECT_EQ(meta.size(), 7u);
   EXPECT_EQ(reader.format_version(), 7);

@@ -24,8 +24,8 @@ struct FovealOptions {
   std::vector<AngularSlice> slices = {};
   /// Slices of single cameras by number, in place of `slices`.
   std::map<int, std::vector<AngularSlice>> camera_slices = {};
-  /// Largest angle between view ray and surface normal (paper: "beyond about 70 degrees no fine
-  /// texture"), rad; pi / 2: no limit. Points without a normal pass.
+  /// Largest angle between view ray and surface normal (the paper observes coarse texture above
+  /// about 70 degrees), rad; pi / 2: no limit. Points without a normal pass.
   double max_incidence = 1.5707963267948966;
 
   /// Slices of a camera. Views of a LiDAR without cameras (kNoCamera) have none.

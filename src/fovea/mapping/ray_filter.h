@@ -19,7 +19,7 @@ enum class RayVerdict : std::uint8_t {
   kVisible,    ///< new surface: is colored and added
   kOccluding,  ///< hides a map point
   kOccluded,   ///< its length is an outlier among the neighboring rays
-  kShared,     ///< a nearer point of the scan owns the pixel
+  kShared,     ///< a nearer point of the scan owns the pixel (our reading of the paper)
 };
 
 /// A ray from a point to the camera center.

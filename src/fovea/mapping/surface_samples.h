@@ -30,8 +30,9 @@ struct SampleGrid {
 /// nearest to its normal. Samples of all frames and triangles therefore share the same positions.
 ///
 /// @param points_cam  the points of the surface
-/// @return the points in their order, then the samples with the mean intensity of their corners. At
-///         most one for each cell, and none in taken cells. Has the columns of upsample() and
+/// @return the points in free cells in their order, then the samples with the mean intensity of
+/// their
+///         corners. At most one for each cell. Has the columns of upsample() and
 ///         normals; `reason` tells which rule admitted the triangle.
 PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
                           const SampleGrid& grid);

@@ -35,8 +35,9 @@ struct UpsampleOptions {
 PointCloud upsample(const PointCloud& points_cam, const Camera& camera,
                     const UpsampleOptions& options);
 
-/// Constrained upsampling before registration: the points of a scan in view of a camera, densified
-/// except for the ground. Each point belongs to the first camera that sees it.
+/// Constrained upsampling before registration: densifies the points in view of a camera except for
+/// ground points, which stay as they are. Each point belongs to the first camera that sees it.
+/// Points outside all cameras are dropped.
 /// @param is_ground  1 for a ground point, by point of the scan
 /// @return positions in the LiDAR frame, m
 std::vector<Eigen::Vector3f> upsample_non_ground(const PointCloud& scan_lidar,

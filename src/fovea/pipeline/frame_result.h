@@ -106,6 +106,12 @@ struct FrameResult {
   StageClock clock;
 };
 
+/// Statistics of a stage, created at its first use in a frame.
+template <class Stats>
+Stats& stats_of(std::optional<Stats>& stats) {
+  return stats ? *stats : stats.emplace();
+}
+
 /// The result of a frame before its stages.
 FrameResult started_result(const Frame& frame, bool held_out);
 

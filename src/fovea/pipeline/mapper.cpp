@@ -65,7 +65,7 @@ TrackedScan Mapper::track(const Frame& frame, const FrameTask& task) {
 FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   FrameResult result = std::move(tracked.result);
   result.clock.start();
-  apply_deferred_mapping();
+  apply_deferred_mapping();  // before observe() removes points, see Occupancy::follow
   map_.place_submaps(tracked.submaps);
   services_.load_near(map_, result.poses.T_local_lidar.translation(), reach_);
   if (tracked.task.held_out) return result;
@@ -79,8 +79,8 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
     result.clock.lap("filter");
   }
   const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, result.poses.motion);
+  const bool has_image = !frame.images.empty();  // a LiDAR without cameras has views alone
   for (std::size_t k = 0; k < cameras.size(); ++k) {
-    const bool has_image = !frame.images.empty();
     if (has_image && !has_content(frame.images[k], result)) continue;
     map_view(tracked.scan_lidar, has_image ? frame.images[k] : Image(), cameras[k], T_odom_local,
              result);
@@ -93,7 +93,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   const FovealRegion region(options_.foveal, camera);
   const RigidMotion& T_local_lidar = result.poses.T_local_lidar;
   const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
-  FovealStats& stats = result.foveal ? *result.foveal : result.foveal.emplace();
+  FovealStats& stats = stats_of(result.foveal);
   PointCloud new_cam;
   std::optional<ImagePyramid> pyramid;
   run_both(
@@ -102,9 +102,9 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
         new_cam = foveal_points(scan_lidar, region);
         stats.measured += new_cam.size();
         result.clock.lap("fovea");
-        result.hidden = result.hidden.value_or(0) + drop_hidden(new_cam, scan_lidar, camera);
+        stats_of(result.hidden) += drop_hidden(new_cam, scan_lidar, camera);
         // 4. Surface samples, in cells of the map's grid that have no point yet.
-        new_cam = samples_of(new_cam, camera, T_local_cam);
+        new_cam = new_points_of(new_cam, camera, T_local_cam);
         stats.upsampled += new_cam.size();
         stats.oblique += limit_incidence(new_cam, options_.foveal.max_incidence);
       },
@@ -115,22 +115,23 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   result.clock.lap("upsample");
   // 5. Points in front of the map: an object has come between.
   const std::vector<std::uint8_t> is_occluding = visible_map_.find_occluding(new_cam);
-  visible_map_.add_occluders(new_cam);
+  visible_map_.add_occluders(new_cam);  // also the dropped ones: a passing object hides the map
   stats.occluding += new_cam.drop(is_occluding);
   result.clock.lap("filter");
 
   if (pyramid) {
-    ColorStats& colors = result.colors ? *result.colors : result.colors.emplace();
+    ColorStats& colors = stats_of(result.colors);
     ColorView view{*pyramid, camera, result.index, options_.footprint};
     // 6. Radiometry: an image of another exposure gets a gain, and leaves known colors alone.
     match_exposure(visible_map_, view, colors);
     // Colors: map points fuse one more view, new points get their first.
-    std::size_t recolored = 0;
-    run_both([&] { recolored = view.is_exposure_matched() ? 0 : visible_map_.recolor(map_, view); },
-             [&] { color_new_points(new_cam, view); });
-    colors.recolored += recolored;
+    run_both(
+        [&] {
+          if (!view.has_gain()) colors.recolored += visible_map_.recolor(map_, view);
+        },
+        [&] { color_new_points(new_cam, view); });
   } else {
-    color_points(new_cam, {image, camera, result.index});  // none
+    color_points(new_cam, {image, camera, result.index});  // no image: empty columns
   }
   result.clock.lap("texture");
   new_cam.normal.clear();  // a map has none
@@ -144,12 +145,12 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   // 8. Add.
   map_.add(new_local);
   added_near_ = T_local_cam.translation();
-  result.added = result.added.value_or(0) + new_local.size();
+  stats_of(result.added) += new_local.size();
   result.clock.lap("store");
 }
 
-PointCloud Mapper::samples_of(const PointCloud& points_cam, const Camera& camera,
-                              const RigidMotion& T_local_cam) {
+PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& camera,
+                                 const RigidMotion& T_local_cam) {
   const Surface surface = find_surface(points_cam, camera, options_.surface);
   occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
   const SampleGrid grid{

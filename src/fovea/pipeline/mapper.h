@@ -38,8 +38,9 @@ class Mapper : public IncrementalMapper {
   /// Steps 3 to 8 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
   void map_view(const PointCloud& scan_lidar, const Image& image, const Camera& camera,
                 const RigidMotion& T_odom_local, FrameResult& result);
-  PointCloud samples_of(const PointCloud& points_cam, const Camera& camera,
-                        const RigidMotion& T_local_cam);
+  /// Points and samples of the surface in free cells of the map.
+  PointCloud new_points_of(const PointCloud& points_cam, const Camera& camera,
+                           const RigidMotion& T_local_cam);
 
   const DriveInfo& drive_;
   MapperOptions options_;

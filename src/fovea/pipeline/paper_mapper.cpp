@@ -43,17 +43,18 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   StageClock& clock = result.clock;
   clock.start();
 
-  // Sec. Pose Refinement: "with the raw poses as initial guess".
+  // Sec. Pose Refinement: "with the raw poses as initial guess". Submaps never move here, so that
+  // the frames odom and local are the same.
   const MotionGuess raw = raw_pose(frame, tracked.task, result);
   RigidMotion T_local_lidar = raw.T_odom_lidar;
-  // 1. Deskew: each point of the sweep at the scan's time stamp.
+  // 1. Deskew (the paper's scans need none): each point at the scan's time stamp.
   const PointCloud scan_lidar = deskewed(frame.scan, raw.motion, drive_);
   clock.lap("register");
   if (registers()) {
     // 2. Ground: "we extract the ground plane by using z thresholding".
     const std::vector<std::uint8_t> is_ground =
         segment_ground(scan_lidar.position, options_.ground);
-    // 3. Constrained upsampling: "only the non-ground points", edges below tau.
+    // 3. Constrained upsampling in view: "only the non-ground points", edges below tau.
     std::vector<Eigen::Vector3f> dense_lidar = densified(scan_lidar, is_ground);
     clock.lap("upsample");
     // 4. Registration to the previous scan.
@@ -72,7 +73,7 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   }
   for (std::size_t k = 0; k < frame.images.size(); ++k) {
     if (!has_content(frame.images[k], result)) continue;
-    FovealStats& stats = result.foveal ? *result.foveal : result.foveal.emplace();
+    FovealStats& stats = stats_of(result.foveal);
     // 5.1 Foveal region (Sec. Foveal Processing): white zone and slices of the camera.
     const FovealRegion region(options_.foveal, cameras[k]);
     const PointCloud foveal_cam = foveal_points(scan_lidar, region);
@@ -82,7 +83,7 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
     PointCloud dense_cam = upsample(foveal_cam, cameras[k], options_.upsample);
     stats.upsampled += dense_cam.size();
     clock.lap("upsample");
-    // 5.3 Incidence: no "large angle between view point and normal at the point".
+    // 5.3 Incidence limit; the preset has none (config/paper.toml).
     stats.oblique += limit_incidence(dense_cam, options_.foveal.max_incidence);
     clock.lap("fovea");
     // 5.4 Ray filter (Sec. Ray-filtering, Eq. 1-2) against the accumulated points.
@@ -146,6 +147,7 @@ RigidMotion PaperMapper::registered(const RegistrationCloud& cloud_lidar,
   return result.note.empty() ? T_local_lidar : raw_T_local_lidar;
 }
 
+/// Passes the pose to motion model and submaps, and loads the tiles around it.
 void PaperMapper::enter_pose(const RigidMotion& T_local_lidar, FrameResult& result) {
   result.poses.T_odom_lidar = T_local_lidar;
   motion_model_.update(*result.stamp, T_local_lidar);
@@ -165,7 +167,7 @@ PointCloud PaperMapper::visible_points(const PointCloud& points_cam, const Fovea
     ++counts[static_cast<std::size_t>(verdicts[i])];
     if (verdicts[i] == RayVerdict::kVisible) visible.push_back(i);
   }
-  RayFilterStats& stats = result.ray_filter ? *result.ray_filter : result.ray_filter.emplace();
+  RayFilterStats& stats = stats_of(result.ray_filter);
   stats.map_points += accumulated.size();
   stats.visible += counts[std::size_t(RayVerdict::kVisible)];
   stats.occluded += counts[std::size_t(RayVerdict::kOccluded)];
@@ -177,7 +179,7 @@ PointCloud PaperMapper::visible_points(const PointCloud& points_cam, const Fovea
 void PaperMapper::add_points(PointCloud points_cam, const RigidMotion& T_local_cam,
                              FrameResult& result) {
   points_cam.normal.clear();  // a map has none
-  result.added = result.added.value_or(0) + points_cam.size();
+  stats_of(result.added) += points_cam.size();
   map_.add(transform_cloud(std::move(points_cam), T_local_cam,
                            result.poses.T_local_lidar.translation()));
 }

@@ -16,7 +16,7 @@ void color_new_points(PointCloud& points_cam, const ColorView& view) {
   points_cam.views.resize(n);
   points_cam.spread.resize(n);
   points_cam.weight.resize(n);
-  if (view.is_exposure_matched()) {
+  if (view.has_gain()) {
     for (std::uint8_t& reason : points_cam.reason) reason |= kExposureMatched;
   }
   const PatchColors patches(view);

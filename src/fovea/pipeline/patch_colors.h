@@ -16,7 +16,7 @@ struct ColorView {
   double footprint = 0.02;  ///< m: edge of the patch of surface whose mean color a point gets
   /// Factor of each channel that brings the image to the map's exposure.
   Eigen::Array3f gain = Eigen::Array3f::Ones();
-  bool is_exposure_matched() const { return (gain != 1).any(); }
+  bool has_gain() const { return (gain != 1).any(); }
 };
 
 class PatchColors {

@@ -69,21 +69,22 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
       register_to(local_map_, refined.cloud, guess, options_.registration, prior);
   AlignmentStats& alignment =
       stats.alignment.emplace(alignment_stats(result, guess.inverse() * result.T_target_source));
-  VerticalFit fit = vertical_fit(local_map_, refined.cloud, result.T_target_source);
+  VerticalFit vertical = vertical_fit(local_map_, refined.cloud, result.T_target_source);
   refined.note = failure_of(result, alignment, options_.limits);
-  if (refined.note.empty()) refined.note = doubt_of(alignment, sigma, fit);
+  if (refined.note.empty()) refined.note = doubt_of(alignment, sigma, vertical);
   alignment.has_failed = !refined.note.empty();
   if (alignment.has_failed) {
-    fit = vertical_fit(local_map_, refined.cloud, guess);
+    vertical = vertical_fit(local_map_, refined.cloud, guess);
   } else {
     refined.T_odom_lidar = result.T_target_source;
     refined.fit = fit_of(result, options_.registration);
   }
-  const double overlap = double(result.pairs) / double(stats.points);
-  refined.lost = fit.contradicts() || overlap < kLeastOverlap;
+  // Where the guess is kept, too, the pairs of the registration give the overlap.
+  const double overlap = stats.points > 0 ? double(result.pairs) / double(stats.points) : 1;
+  refined.lost = vertical.contradicts() || overlap < kLeastOverlap;
   refined.is_confirmed =
-      !alignment.has_failed && !refined.lost && place_score(fit, overlap) > kLeastPlaceScore;
-  stats.vertical_fit = fit.share;
+      !alignment.has_failed && !refined.lost && place_score(vertical, overlap) > kLeastPlaceScore;
+  stats.vertical_fit = vertical.share;
   return refined;
 }
 

@@ -11,7 +11,7 @@
 namespace fovea {
 namespace {
 
-/// After so many lost frames in a row the local map is out of reach.
+/// After this number of lost frames in a row, the pose error exceeds the extent of the local map.
 constexpr int kLostFrames = 3;
 /// Fastest vehicle, m/s.
 constexpr double kFastest = 60;
@@ -37,11 +37,11 @@ double stated_accuracy(const DriveInfo& drive) {
 }
 
 /// Whether a mapped scan is a target of later ones. A lost scan is none, since its pose is wrong.
-/// After kLostFrames lost scans the local map starts again.
+/// After kLostFrames lost scans, lost scans become targets too.
 /// @param lost_before  lost frames just before
-bool is_keyframe(Keyframes& keyframes, const FrameResult& frame, int lost_before) {
+bool becomes_target(Keyframes& keyframes, const FrameResult& frame, int lost_before) {
   if (frame.tracking.is_lost && lost_before < kLostFrames) return false;
-  return keyframes.is_keyframe(frame.poses.T_odom_lidar, frame.tracking.overlap());
+  return keyframes.add_if_due(frame.poses.T_odom_lidar, frame.tracking.overlap());
 }
 
 }  // namespace
@@ -63,13 +63,15 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
 TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   TrackedScan tracked;
   tracked.task = task;
-  FrameResult& result = tracked.result = started_result(frame, task.held_out);
+  tracked.result = started_result(frame, task.held_out);
+  FrameResult& result = tracked.result;
   apply_deferred();
 
   const MotionPrediction motion = predict(frame);
   result.poses.T_local_lidar_navigation = motion.T_local_lidar_navigation;
   PlacedScan placed = place(frame, motion, task);
   RefinedPose& refined = placed.refined;
+  // A search starts at the first guess, also if the scan fits best at the second one.
   if (motion.after_pause && registers()) {
     search_after_pause(refined, motion.guesses.front(), result);
   } else if (refined.lost) {
@@ -81,14 +83,16 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   result.note = refined.note;
   result.poses.T_odom_lidar = refined.T_odom_lidar;
   motion_model_.update(frame.stamp, refined.T_odom_lidar);
+  // Pose in local: of the submap, then corrected by a loop that the scan closes.
   fusion_.track(result);
   if (!task.held_out) {
     fusion_.close_loops(result, refined.cloud.points);
-    if (registers() && is_keyframe(keyframes_, result, lost_frames_)) {
-      next_target_ = {std::move(refined.cloud), refined.T_odom_lidar};
+    if (registers() && becomes_target(keyframes_, result, lost_frames_)) {
+      next_target_ = {std::move(refined.cloud), refined.T_odom_lidar};  // see apply_deferred()
     }
   }
   count_lost(result);
+  last_stamp_ = frame.stamp;
 
   tracked.scan_lidar = std::move(placed.scan_lidar);
   tracked.submaps = fusion_.submaps();
@@ -168,7 +172,6 @@ void Tracker::restart() {
 
 void Tracker::count_lost(const FrameResult& frame) {
   lost_frames_ = frame.tracking.is_lost ? lost_frames_ + 1 : 0;
-  last_stamp_ = frame.stamp;
 }
 
 void Tracker::apply_deferred() {
@@ -196,9 +199,10 @@ void Tracker::follow(const FrameResult& frame) {
   FrameResult tracked = frame;
   fusion_.track(tracked);
   is_target_ = frame.status == FrameStatus::kMapped && registers() &&
-               is_keyframe(keyframes_, frame, lost_frames_);
+               becomes_target(keyframes_, frame, lost_frames_);
   followed_frame_ = frame.index;
   count_lost(frame);
+  last_stamp_ = frame.stamp;
 }
 
 int Tracker::first_target(const std::vector<FrameResult>& frames) const {
@@ -212,7 +216,7 @@ int Tracker::first_target(const std::vector<FrameResult>& frames) const {
       targets.clear();
       restart_index = frame.index;
     }
-    if (frame.status == FrameStatus::kMapped && is_keyframe(keyframes, frame, lost)) {
+    if (frame.status == FrameStatus::kMapped && becomes_target(keyframes, frame, lost)) {
       targets.push_back(frame.index);
     }
     lost = frame.tracking.is_lost ? lost + 1 : 0;

@@ -25,7 +25,7 @@ class Keyframes {
 
   /// Whether the next scan is a keyframe. If so, it becomes the last keyframe.
   /// @param overlap  share of the scan's points that have a counterpart in the target
-  bool is_keyframe(const RigidMotion& T_odom_lidar, double overlap) {
+  bool add_if_due(const RigidMotion& T_odom_lidar, double overlap) {
     if (last_ && overlap >= options_.overlap && !is_far(last_->inverse() * T_odom_lidar)) {
       return false;
     }

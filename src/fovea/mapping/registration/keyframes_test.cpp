@@ -13,7 +13,7 @@ RigidMotion at(double x, double yaw = 0) {
 std::vector<double> chosen(Keyframes keyframes, const std::vector<double>& positions) {
   std::vector<double> result;
   for (const double x : positions) {
-    if (keyframes.is_keyframe(at(x), 1)) result.push_back(x);
+    if (keyframes.add_if_due(at(x), 1)) result.push_back(x);
   }
   return result;
 }
@@ -29,20 +29,20 @@ TEST(Keyframes, AreFarFromTheLastOne) {
 
 TEST(Keyframes, AreTurnedFromTheLastOne) {
   Keyframes keyframes({1.5, 0.04});
-  EXPECT_TRUE(keyframes.is_keyframe(at(0), 1));
-  EXPECT_FALSE(keyframes.is_keyframe(at(0.1, 0.03), 1));
-  EXPECT_TRUE(keyframes.is_keyframe(at(0.2, -0.05), 1));
-  EXPECT_FALSE(keyframes.is_keyframe(at(0.2, -0.02), 1));
+  EXPECT_TRUE(keyframes.add_if_due(at(0), 1));
+  EXPECT_FALSE(keyframes.add_if_due(at(0.1, 0.03), 1));
+  EXPECT_TRUE(keyframes.add_if_due(at(0.2, -0.05), 1));
+  EXPECT_FALSE(keyframes.add_if_due(at(0.2, -0.02), 1));
 }
 
 TEST(Keyframes, IncludeScansOfLowOverlap) {
   Keyframes keyframes({1.5, 0.04, 0.9});
-  EXPECT_TRUE(keyframes.is_keyframe(at(0), 1));
-  EXPECT_FALSE(keyframes.is_keyframe(at(1), 0.9));
-  EXPECT_TRUE(keyframes.is_keyframe(at(1), 0.8));
+  EXPECT_TRUE(keyframes.add_if_due(at(0), 1));
+  EXPECT_FALSE(keyframes.add_if_due(at(1), 0.9));
+  EXPECT_TRUE(keyframes.add_if_due(at(1), 0.8));
   // Distances count from this keyframe.
-  EXPECT_FALSE(keyframes.is_keyframe(at(2), 1));
-  EXPECT_TRUE(keyframes.is_keyframe(at(2.5), 1));
+  EXPECT_FALSE(keyframes.add_if_due(at(2), 1));
+  EXPECT_TRUE(keyframes.add_if_due(at(2.5), 1));
 }
 
 }  // namespace fovea::keyframes_test

@@ -12,8 +12,8 @@ namespace {
 /// step makes rebuilds rare.
 constexpr double kOriginStep = 64;
 
-Eigen::Vector3d origin_near(const Eigen::Vector3d& p_local) {
-  return (p_local.array() / kOriginStep).round() * kOriginStep;
+Eigen::Vector3d origin_near(const Eigen::Vector3d& p_odom) {
+  return (p_odom.array() / kOriginStep).round() * kOriginStep;
 }
 
 }  // namespace
@@ -32,12 +32,12 @@ auto LocalMap::next_of() {
   };
 }
 
-void LocalMap::add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_local_lidar) {
+void LocalMap::add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_odom_lidar) {
   if (keyframes_.size() == static_cast<std::size_t>(options_.max_keyframes)) remove_oldest();
-  keyframes_.push_back({next_number_++, std::move(points_lidar), T_local_lidar, {}, {}, {}});
-  const Eigen::Vector3d origin = origin_near(T_local_lidar.translation());
+  keyframes_.push_back({next_number_++, std::move(points_lidar), T_odom_lidar, {}, {}, {}});
+  const Eigen::Vector3d origin = origin_near(T_odom_lidar.translation());
   // Without voxels the target cannot be updated point by point.
-  if (origin != target_.origin_local || keyframes_.size() == 1 || options_.voxel == 0) {
+  if (origin != target_.origin_odom || keyframes_.size() == 1 || options_.voxel == 0) {
     rebuild(origin);
   } else {
     insert(keyframes_.back());
@@ -47,9 +47,9 @@ void LocalMap::add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion&
 
 void LocalMap::insert(Keyframe& keyframe) {
   const std::vector<Eigen::Vector3f>& source = keyframe.points_lidar;
-  const Eigen::Matrix3f R = keyframe.T_local_lidar.linear().cast<float>();
+  const Eigen::Matrix3f R = keyframe.T_odom_lidar.linear().cast<float>();
   const Eigen::Vector3f t =
-      (keyframe.T_local_lidar.translation() - target_.origin_local).cast<float>();
+      (keyframe.T_odom_lidar.translation() - target_.origin_odom).cast<float>();
   const std::size_t n = source.size();
   keyframe.points.resize(n);
   for (std::size_t i = 0; i < n; ++i) keyframe.points[i] = R * source[i] + t;
@@ -115,10 +115,10 @@ void LocalMap::fit_normals() {
   }
 }
 
-void LocalMap::rebuild(const Eigen::Vector3d& origin_local) {
+void LocalMap::rebuild(const Eigen::Vector3d& origin_odom) {
   voxels_ = VoxelQueues(static_cast<float>(options_.voxel));
   free_slots_.clear();
-  target_ = {origin_local, {}, PointIndex({}, options_.voxel)};
+  target_ = {origin_odom, {}, PointIndex({}, options_.voxel)};
   for (Keyframe& keyframe : keyframes_) insert(keyframe);
   if (options_.voxel == 0) target_.index = PointIndex(target_.cloud.points);
 }
@@ -129,16 +129,16 @@ const LocalMap::Target& LocalMap::target() const {
 }
 
 VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_lidar,
-                         const RigidMotion& T_local_lidar) {
+                         const RigidMotion& T_odom_lidar) {
   constexpr std::size_t kPoints = 1500;
   constexpr float kReach = 1, kOnSurface = 0.1f;  // m
   constexpr float kMaxNormalZ = 0.5f;             // of a vertical surface
   const LocalMap::Target& target = map.target();
   VerticalFit fit;
   if (target.cloud.normals.empty()) return fit;
-  const RigidMotion T_origin_lidar = Eigen::Translation3d(-target.origin_local) * T_local_lidar;
-  const Eigen::Vector3f ahead = T_local_lidar.linear().col(0).cast<float>(),
-                        left = T_local_lidar.linear().col(1).cast<float>();
+  const RigidMotion T_origin_lidar = Eigen::Translation3d(-target.origin_odom) * T_odom_lidar;
+  const Eigen::Vector3f ahead = T_odom_lidar.linear().col(0).cast<float>(),
+                        left = T_odom_lidar.linear().col(1).cast<float>();
   const std::size_t step = std::max<std::size_t>(1, source_lidar.points.size() / kPoints);
   // Surfaces across and along the LiDAR's x axis.
   std::array<std::size_t, 2> points{}, fitting{};
@@ -163,14 +163,14 @@ VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_li
 }
 
 RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,
-                               const RigidMotion& guess_T_local_lidar,
+                               const RigidMotion& guess_T_odom_lidar,
                                const RegistrationOptions& options, std::optional<PosePrior> prior) {
   const LocalMap::Target& target = map.target();
-  const Eigen::Translation3d T_origin_local(-target.origin_local);
-  if (prior) prior->T_target_source = T_origin_local * prior->T_target_source;
+  const Eigen::Translation3d T_origin_odom(-target.origin_odom);
+  if (prior) prior->T_target_source = T_origin_odom * prior->T_target_source;
   RegistrationResult result = register_clouds(target.cloud, target.index, source_lidar,
-                                              T_origin_local * guess_T_local_lidar, options, prior);
-  result.T_target_source = T_origin_local.inverse() * result.T_target_source;
+                                              T_origin_odom * guess_T_odom_lidar, options, prior);
+  result.T_target_source = T_origin_odom.inverse() * result.T_target_source;
   return result;
 }
 

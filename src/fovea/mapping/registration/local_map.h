@@ -34,10 +34,10 @@ struct LocalMapOptions {
 /// resumed run adds these scans again and gets an identical target.
 class LocalMap {
  public:
-  /// A cloud to register against, in `local` axes relative to an origin near the vehicle. Floats
+  /// A cloud to register against, in `odom` axes relative to an origin near the vehicle. Floats
   /// thus stay precise at any distance from the origin of `local`.
   struct Target {
-    Eigen::Vector3d origin_local = Eigen::Vector3d::Zero();  ///< of the points
+    Eigen::Vector3d origin_odom = Eigen::Vector3d::Zero();  ///< of the points
     RegistrationCloud cloud;  ///< may contain unused slots, which are not in `index`
     PointIndex index;         ///< over cloud.points
   };
@@ -48,7 +48,7 @@ class LocalMap {
 
   /// Adds a scan. Removes the oldest scan if there are max_keyframes already.
   /// @param points_lidar  thinned
-  void add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_local_lidar);
+  void add(std::vector<Eigen::Vector3f> points_lidar, const RigidMotion& T_odom_lidar);
 
   /// Number of added scans that the target depends on. It includes removed scans: normals of
   /// present points were fitted while these scans were in the map.
@@ -69,7 +69,7 @@ class LocalMap {
   struct Keyframe {
     std::uint32_t number = 0;
     std::vector<Eigen::Vector3f> points_lidar;
-    RigidMotion T_local_lidar;
+    RigidMotion T_odom_lidar;
     std::vector<Eigen::Vector3f> points;  // relative to the target's origin
     std::vector<std::uint32_t> slot;      // in the target; kNoSlot if not a target point
     std::vector<VoxelQueues::Item> next;  // successor of each point in its voxel
@@ -79,7 +79,7 @@ class LocalMap {
   void insert_target(Keyframe& keyframe, std::uint32_t index);
   void remove_oldest();
   /// Builds the target again around another origin.
-  void rebuild(const Eigen::Vector3d& origin_local);
+  void rebuild(const Eigen::Vector3d& origin_odom);
   /// Fits normals to target points that have none yet.
   void fit_normals();
   auto next_of();
@@ -94,9 +94,9 @@ class LocalMap {
 };
 
 /// Registers a scan to the map. T_target_source of the guess, the prior and the result is
-/// T_local_lidar.
+/// T_odom_lidar.
 RegistrationResult register_to(const LocalMap& map, const RegistrationCloud& source_lidar,
-                               const RigidMotion& guess_T_local_lidar,
+                               const RigidMotion& guess_T_odom_lidar,
                                const RegistrationOptions& options,
                                std::optional<PosePrior> prior = std::nullopt);
 
@@ -117,6 +117,6 @@ struct VerticalFit {
   static constexpr double kLeastShare = 0.45;
 };
 VerticalFit vertical_fit(const LocalMap& map, const RegistrationCloud& source_lidar,
-                         const RigidMotion& T_local_lidar);
+                         const RigidMotion& T_odom_lidar);
 
 }  // namespace fovea

@@ -39,12 +39,12 @@ TEST(LocalMap, IsAPureFunctionOfItsLastScans) {
   for (int i = 0; i < 10; ++i) whole.add(scan(i, pose(i)), pose(i));
   ASSERT_EQ(LocalMap::memory(options), 7);
   for (int i = 3; i < 10; ++i) resumed.add(scan(i, pose(i)), pose(i));
-  EXPECT_GT(whole.target().origin_local.norm(), 50);
+  EXPECT_GT(whole.target().origin_odom.norm(), 50);
   EXPECT_GT(whole.size(), 300u);
   EXPECT_EQ(whole.size(), resumed.size());
   const LocalMap::Target& a = whole.target();
   const LocalMap::Target& b = resumed.target();
-  EXPECT_EQ(a.origin_local, b.origin_local);
+  EXPECT_EQ(a.origin_odom, b.origin_odom);
   for (const Eigen::Vector3f& p : b.cloud.points) {
     const Neighbor in_a = a.index.nearest(p, 0.01f), in_b = b.index.nearest(p, 0.01f);
     ASSERT_EQ(in_a.squared_distance, in_b.squared_distance);
@@ -76,7 +76,7 @@ TEST(LocalMap, HoldsOnePointPerVoxelWithinMaxRange) {
   for (int i = 0; i < 3; ++i) map.add(scan(i, pose(i)), pose(i));
   std::set<std::tuple<int, int, int>> voxels;
   for (const Eigen::Vector3f& p : map.target().cloud.points) {
-    const Eigen::Vector3d p_local = p.cast<double>() + map.target().origin_local;
+    const Eigen::Vector3d p_local = p.cast<double>() + map.target().origin_odom;
     const auto away = [&](int i) { return (p_local - pose(i).translation()).norm(); };
     EXPECT_LE(std::min({away(0), away(1), away(2)}), 5.0001);
     const Eigen::Vector3i v = (p / 0.5f).array().floor().cast<int>();

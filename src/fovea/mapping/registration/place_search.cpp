@@ -30,7 +30,7 @@ double place_score(const VerticalFit& fit, double overlap) {
 }
 
 std::optional<FoundPlace> search_place(const LocalMap& map, const RegistrationCloud& source_lidar,
-                                       const RigidMotion& guess_T_local_lidar, double reach,
+                                       const RigidMotion& guess_T_odom_lidar, double reach,
                                        const RegistrationOptions& options) {
   RegistrationOptions coarse = options;
   coarse.max_distance = kCoarsePairs;
@@ -39,7 +39,7 @@ std::optional<FoundPlace> search_place(const LocalMap& map, const RegistrationCl
   std::optional<FoundPlace> best;
   double best_score = kLeastPlaceScore;
   for (const Eigen::Vector3d& offset : cross(reach)) {
-    const RigidMotion start = guess_T_local_lidar * Eigen::Translation3d(offset);
+    const RigidMotion start = guess_T_odom_lidar * Eigen::Translation3d(offset);
     const RigidMotion near = register_to(map, source_lidar, start, coarse).T_target_source;
     const RegistrationResult result = register_to(map, source_lidar, near, options);
     if (!result.converged) continue;

@@ -16,7 +16,7 @@ double place_score(const VerticalFit& fit, double overlap);
 inline constexpr double kLeastPlaceScore = 0.55;
 
 struct FoundPlace {
-  RegistrationResult registration;  ///< T_target_source is T_local_lidar
+  RegistrationResult registration;  ///< T_target_source is T_odom_lidar
   VerticalFit fit;
 };
 
@@ -27,7 +27,7 @@ struct FoundPlace {
 /// @param options       of the final registration, which follows one with pairs of up to 4 m
 /// @return the pose whose vertical surfaces fit best, or nothing if none confirms a pose
 std::optional<FoundPlace> search_place(const LocalMap& map, const RegistrationCloud& source_lidar,
-                                       const RigidMotion& guess_T_local_lidar, double reach,
+                                       const RigidMotion& guess_T_odom_lidar, double reach,
                                        const RegistrationOptions& options);
 
 }  // namespace fovea
