@@ -51,9 +51,9 @@ std::uint32_t aged(std::uint32_t bits, int frames) {
   return frames < DynamicPointFilter::kMemory ? bits << frames : 0;
 }
 
-/// Number of scans that saw through a voxel since the last one that hit it.
-int free_since_filled(std::uint32_t filled, std::uint32_t free) {
-  return std::popcount(free & ((filled & -filled) - 1));  // without a hit: all
+/// Number of scans that observed a voxel as free since the last one that hit it.
+int free_since_filled(std::uint32_t filled, std::uint32_t seen_free) {
+  return std::popcount(seen_free & ((filled & -filled) - 1));  // without a hit: all
 }
 
 /// The voxels of a cloud, each with one of its points.
@@ -145,7 +145,7 @@ void DynamicPointFilter::update_evidence(const TileMap& map, const RigidMotion& 
   evidence.frame = frame;
   for (Voxel& voxel : evidence.voxels) {
     voxel.filled = aged(voxel.filled, age);
-    voxel.free = aged(voxel.free, age);
+    voxel.seen_free = aged(voxel.seen_free, age);
   }
   // New points. A replay leaves out those of later frames.
   tile.points->frame.for_each_run_from(
@@ -173,13 +173,13 @@ void DynamicPointFilter::update_evidence(const TileMap& map, const RigidMotion& 
   scan.image.classify(p_lidar, visibilities);
   for (std::size_t i = 0; i < visibilities.size(); ++i) {
     evidence.voxels[i].filled |= visibilities[i] == Visibility::kSurface ? 1 : 0;
-    evidence.voxels[i].free |= visibilities[i] == Visibility::kFree ? 1 : 0;
+    evidence.voxels[i].seen_free |= visibilities[i] == Visibility::kFree ? 1 : 0;
   }
 }
 
 bool DynamicPointFilter::is_gone(const Voxel& voxel) const {
-  return (voxel.free & 1) != 0 &&
-         free_since_filled(voxel.filled, voxel.free) >= options_.free_scans;
+  return (voxel.seen_free & 1) != 0 &&
+         free_since_filled(voxel.filled, voxel.seen_free) >= options_.free_scans;
 }
 
 void DynamicPointFilter::select_kept(const TileMap& map, Tile& tile) const {

@@ -1,5 +1,5 @@
 // Removes moving objects from the map (docs/method.md 8; not in the paper). Space that scans see
-// through is free, whatever an earlier scan measured there.
+// through is free, even if an earlier scan measured a point there.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct DynamicPointOptions {
   bool remove = true;   ///< false: moving objects stay in the map, as in the paper
   double range = 25.0;  ///< m from the LiDAR: scans observe map points up to this range
   int free_scans = 4;   ///< a voxel loses its points if this many scans see through it
-  double row_height = RangeImage::kLeastRowHeight;  ///< rad, from the LiDAR's rings; no key
+  double row_height = RangeImage::kLeastRowHeight;  ///< rad, from the LiDAR's rings; not a setting
 };
 
 /// Evidence of free space in the voxels of a map. Covers the last kMemory frame numbers, so that a
-/// resumed run that replays those scans decides alike.
+/// resumed run that replays those scans makes the same decisions.
 class DynamicPointFilter {
  public:
   static constexpr int kMemory = 32;               ///< frames
@@ -29,9 +29,9 @@ class DynamicPointFilter {
 
   explicit DynamicPointFilter(const DynamicPointOptions& options) : options_(options) {}
 
-  /// Marks (1) points of a new scan in space that most of the voting scans saw through: an object
-  /// has moved there since. One decision for each voxel of 0.2 m.
-  /// @param T_odom_local  inverse of the pose of the latest submap's odometry in local
+  /// Marks (1) points of a new scan in space that most of the voting scans observed as free: an
+  /// object has moved there since. One decision for each voxel of 0.2 m.
+  /// @param T_odom_local  inverse of T_local_odom (fusion.h)
   std::vector<std::uint8_t> classify(const PointCloud& points_local,
                                      const RigidMotion& T_odom_local) const;
 
@@ -48,8 +48,8 @@ class DynamicPointFilter {
  private:
   struct Voxel {
     std::uint32_t cell = 0;  // in its tile
-    /// Bit k: the scan k frames before the evidence's frame hit the voxel, or saw through it.
-    std::uint32_t filled = 0, free = 0;
+    /// Bit k: the scan k frames before the evidence's frame hit the voxel, or observed it as free.
+    std::uint32_t filled = 0, seen_free = 0;
   };
   struct Evidence {                // for a tile
     int frame = 0;                 // of the last scan
@@ -64,7 +64,7 @@ class DynamicPointFilter {
     std::vector<std::uint32_t> kept;  // points, if any are removed
     bool shrinks = false;
   };
-  struct Scan {  // in odom, in which scans never move
+  struct Scan {  // poses in odom never change
     RangeImage image;
     RigidMotion T_lidar_odom;
   };

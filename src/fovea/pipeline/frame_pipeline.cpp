@@ -6,16 +6,15 @@
 namespace fovea {
 namespace {
 
-/// Frames that a sensor's thread is ahead, the one at hand included: more would only wait.
+/// Frames that the decoding thread is ahead. More frames would only wait.
 constexpr std::size_t kAhead = 1;
-/// So many frames before its turn the disk is told of a frame: a second at 10 Hz, which a disk that
-/// sleeps or serves others may take.
+/// The source expects a frame this many frames ahead. A sleeping or busy disk may take a second.
 constexpr std::size_t kExpected = 10;
-/// At a rate a frame is decoded once none is under way, but begun this long before it is due at the
-/// latest, in periods.
+/// With a rate, decoding waits until no frame is in work, but starts at the latest this long before
+/// the frame is due. In periods.
 constexpr double kInTime = 0.25;
 
-/// Whether the time has come; not if `stop` came before.
+/// @return false if `stop` ended the wait
 bool wait_until(WallClock::time_point due, const std::stop_token& stop) {
   std::mutex guard;
   std::unique_lock lock(guard);
@@ -24,7 +23,7 @@ bool wait_until(WallClock::time_point due, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
-/// Whether stages are tasks of the loops' threads: at a rate a sensor's thread is beside the taker.
+/// Whether the stages run on the threads of the parallel loops.
 bool are_tasks(const FramePipelineOptions& options) { return options.overlap && options.rate == 0; }
 
 }  // namespace

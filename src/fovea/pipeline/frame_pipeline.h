@@ -1,7 +1,6 @@
-// Frames on their way to the map: decoding of the next one, tracking of this one and, by whoever
-// takes them here, mapping of the one before, side by side on the threads of the parallel loops
-// (docs/performance.md). At a rate, where it counts how long a frame takes and not how many there
-// are, who takes them tracks them too, and a sensor's thread waits for the next one.
+// Pipeline of frames: decoding, tracking, and the caller's mapping (docs/performance.md). Without a
+// rate, the three stages run in parallel on the threads of the parallel loops. With a rate, the
+// caller's thread also tracks, and another thread decodes: this shortens the time of one frame.
 #pragma once
 
 #include <functional>
@@ -19,14 +18,14 @@
 namespace fovea {
 
 struct FramePipelineOptions {
-  /// Frames a second that a live sensor would give; 0: as fast as they are wanted.
+  /// Frames per second of the simulated live sensor; 0: no waiting.
   double rate = 0;
-  bool overlap = true;        ///< false: one after the other, all in the thread that takes them
+  bool overlap = true;        ///< false: all stages run in the caller's thread
   std::stop_token stop = {};  ///< ends after the frames that tracking has begun
-  /// Called by whoever tracks before the next frame is there: what nobody waits for.
+  /// Deferred work; runs in the tracking thread before it waits for the next frame.
   std::function<void()> settle = [] {};
-  /// Knows of each frame from its arrival until its taker has done with it. At a rate decoding
-  /// leaves the processors to such frames while there is time.
+  /// Counts frames from their arrival to the end of their mapping. With a rate, decoding of the
+  /// next frame waits for these frames while there is time.
   std::shared_ptr<IdleGate> gate = std::make_shared<IdleGate>();
 };
 
@@ -35,8 +34,7 @@ struct LocatedFrame {
   using TimePoint = WallClock::time_point;
   LoadedFrame result;
   std::optional<TrackedScan> tracked;  ///< absent: skipped
-  /// When the frame could be tracked: at a rate, when it was due, be it decoded or not; otherwise
-  /// when it was decoded and tracking took it, since a drive's files arrive as they are wanted.
+  /// With a rate, the time at which the frame was due; otherwise tracking_began.
   TimePoint arrival;
   TimePoint tracking_began, tracking_ended;
   double decode_ms = 0;  ///< wall time of reading and decoding
@@ -51,8 +49,8 @@ class FramePipeline {
                 std::function<TrackedScan(const Frame&)> track,
                 const FramePipelineOptions& options);
 
-  /// The next frame, in order; nothing at the end. Errors of decoding and tracking come when all
-  /// frames before have been taken. Who asks has done with the frame before.
+  /// The next frame, in order; nothing at the end. Throws errors of decoding and tracking in the
+  /// order of the frames. The call also ends the mapping of the frame before.
   std::optional<LocatedFrame> next();
 
  private:
@@ -70,14 +68,14 @@ class FramePipeline {
   const FrameSource& source_;
   std::vector<int> indices_;
   std::size_t next_ = 0;      // place in indices_
-  std::size_t expected_ = 1;  // first place of which the source has not been told
+  std::size_t expected_ = 1;  // first place not yet passed to source_.expect()
   std::function<TrackedScan(const Frame&)> track_;
   FramePipelineOptions options_;
   TimePoint first_arrival_;
-  bool taken_ = false;                                      // whether the taker has a frame
-  Producer<Arrived> sensed_;                                // at a rate
-  std::stop_callback<std::function<void()>> stop_sensing_;  // nobody waits for a frame not due yet
-  Prefetch<Arrived> decoded_;                               // without
+  bool taken_ = false;                                      // whether the caller has a frame
+  Producer<Arrived> sensed_;                                // with a rate
+  std::stop_callback<std::function<void()>> stop_sensing_;  // ends the wait for a frame
+  Prefetch<Arrived> decoded_;                               // without a rate
   Prefetch<LocatedFrame> located_;
 };
 

@@ -1,4 +1,4 @@
-// What a mapper finds out about one frame, by stage.
+// Result of one frame.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct FramePoses {
 
 /// Points of the scan.
 struct ScanStats {
-  std::size_t used = 0;
+  std::size_t points = 0;  ///< usable
   DroppedPoints dropped;
 };
 
@@ -48,7 +48,7 @@ struct RegistrationStats {
 struct TrackingStats {
   std::optional<RegistrationStats> registration;  ///< absent where poses are given
   bool is_lost = false;        ///< the scan does not lie on the surfaces of the local map
-  bool has_restarted = false;  ///< after a pause, without knowledge of the motion meanwhile
+  bool has_restarted = false;  ///< the motion during the pause is unknown
   bool is_pose_unknown = false;
   bool has_navigation_jumped = false;
 
@@ -74,7 +74,7 @@ struct RayFilterStats {
 
 /// Points of moving objects.
 struct DynamicStats {
-  std::size_t removed = 0;  ///< map points that scans saw through
+  std::size_t removed = 0;  ///< map points in space observed as free
   std::size_t dropped = 0;  ///< new points where other scans saw free space
 };
 
@@ -83,7 +83,7 @@ struct ColorStats {
   std::size_t recolored = 0;  ///< map points in view again
   int matched_exposures = 0;  ///< images whose exposure differs from that of the map
   std::size_t compared = 0;   ///< map points, with the image before it is fused
-  double error = 0;           ///< mean difference there, gray values
+  double error = 0;           ///< mean color difference of the compared points, gray values
 };
 
 struct FrameResult {
@@ -95,7 +95,7 @@ struct FrameResult {
   ScanStats scan;
   TrackingStats tracking;
   int blank_images = 0;
-  // What a mapper does not do has no statistics.
+  // Absent if the mapper lacks the stage.
   std::optional<FovealStats> foveal;
   std::optional<std::size_t> hidden;  ///< foveal points that other points of the scan hide
   std::optional<RayFilterStats> ray_filter;
@@ -115,7 +115,7 @@ Stats& stats_of(std::optional<Stats>& stats) {
 /// The result of a frame before its stages.
 FrameResult started_result(const Frame& frame, bool held_out);
 
-/// Whether an image can color points. Counts blank images; a missing one is known to the drive.
+/// Whether an image can color points. Counts blank images. The drive counts missing images.
 bool has_content(const Image& image, FrameResult& result);
 
 /// The report of a frame: what the map keeps.

@@ -43,7 +43,7 @@ Fusion::Fusion(const FusionOptions& options, const RegistrationOptions& registra
 
 bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
   if (submaps_.empty()) return true;
-  if (!is_located_ && navigation_.measurement(submaps_.size(), stamp)) return true;
+  if (!has_navigation_pose_ && navigation_.measurement(submaps_.size(), stamp)) return true;
   const Submap& submap = submaps_.back();
   const double moved = (T_odom_lidar.translation() - submap.T_odom_submap.translation()).norm();
   return seconds(stamp - submap.start) >= options_.submap_duration && moved >= kSubmapLength;
@@ -59,13 +59,13 @@ Twist Fusion::odometry_deviations(double length, bool restarts) const {
 void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts) {
   const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
   const auto measured = navigation_.measurement(node, stamp);
-  if (measured && !std::exchange(is_located_, true) && node > 0) {
+  if (measured && !std::exchange(has_navigation_pose_, true) && node > 0) {
     graph_.move(measured->T_local_node * graph_.poses().back().inverse());
   }
   if (node > 0) {
     const Submap& before = submaps_.back();
     graph_.add(RelativePose{node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
-                            odometry_deviations(path_ - before.path, restarts)});
+                            odometry_deviations(path_ - before.start_path, restarts)});
   } else if (!measured) {
     graph_.add(AbsolutePose{node, graph_.poses().back(),
                             navigation_.has_fix() ? deviations(kFreeRotation, kFreeTranslation)
@@ -116,12 +116,14 @@ bool Fusion::is_scan_requested() const {
 std::vector<LoopCandidate> Fusion::candidates(const RigidMotion& T_local_lidar) const {
   std::vector<LoopCandidate> result;
   for (std::size_t id = 0; id + 1 < submaps_.size(); ++id) {
-    result.push_back({id, graph_.poses()[id].inverse() * T_local_lidar, path_ - submaps_[id].path});
+    result.push_back(
+        {id, graph_.poses()[id].inverse() * T_local_lidar, path_ - submaps_[id].start_path});
   }
   return result;
 }
 
-void Fusion::close_loops(FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar) {
+void Fusion::add_scan_and_close_loops(FrameResult& frame,
+                                      const std::vector<Eigen::Vector3f>& points_lidar) {
   if (!is_scan_requested()) return;
   if (const auto closure = closer_.find(points_lidar, candidates(frame.poses.T_local_lidar))) {
     frame.poses.revisit = Revisit{static_cast<int>(closure->submap), closure->T_submap_lidar};

@@ -31,31 +31,32 @@ class Fusion {
   /// Adds the next frame by its pose in odom, and opens a submap if one is due or the track
   /// restarts. Sets the frame's submap and T_local_lidar; appends faults of navigation to its note.
   void track(FrameResult& frame);
-  /// Deferred work: solves the graph with the submap that the last frame opened. The time grows
-  /// with the drive. track() does this first if it was not called.
+  /// Deferred work: solves the graph with the submap that the last frame opened. The run time
+  /// grows with the drive. track() does this first if it was not called.
   void apply_deferred();
 
-  /// Keeps the first scan of a submap and searches a loop closure for it. Sets the frame's revisit
+  /// Keeps the first scan of a submap and searches for a loop closure. Sets the frame's revisit
   /// and T_local_lidar if it finds one.
   /// @param frame  just tracked, not held out
-  void close_loops(FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar);
-  /// Whether the present submap has no scan yet for close_loops().
+  void add_scan_and_close_loops(FrameResult& frame,
+                                const std::vector<Eigen::Vector3f>& points_lidar);
+  /// Whether the present submap has no scan yet.
   bool is_scan_requested() const;
 
-  /// close_loops() for a frame of an earlier run, whose revisit is known.
+  /// add_scan_and_close_loops() for a frame of an earlier run, whose revisit is known.
   void replay(const FrameResult& frame, const std::vector<Eigen::Vector3f>& points_lidar);
 
   RigidMotion T_local_odom() const;
   /// T_local_submap by number.
   const std::vector<RigidMotion>& submaps() const { return graph_.poses(); }
-  /// Of any frame tracked, by what is known now.
+  /// Current pose of a tracked frame in local.
   RigidMotion T_local_lidar(const FrameResult& frame) const;
 
  private:
   struct Submap {
     RigidMotion T_odom_submap;
     TimeNs start;
-    double path;  // m driven before
+    double start_path;  // m
   };
   bool is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const;
   void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts);
@@ -70,7 +71,7 @@ class Fusion {
   NavigationCheck navigation_;
   PoseGraph graph_;
   bool is_solved_ = true;
-  bool is_located_ = false;  // navigation has stated the pose of a submap
+  bool has_navigation_pose_ = false;  // of any submap
   LoopCloser closer_;
   std::vector<Submap> submaps_;
   std::optional<RigidMotion> last_T_odom_lidar_;

@@ -74,7 +74,8 @@ std::vector<FrameResult> drive(Fusion& fusion, double turn, int frames, bool wit
     result.stamp = i * kTenth;
     result.poses.T_odom_lidar = odometry.T_odom_lidar;
     fusion.track(result);
-    if (with_scans && fusion.is_scan_requested()) fusion.close_loops(result, scan_at(true_pose(i)));
+    if (with_scans && fusion.is_scan_requested())
+      fusion.add_scan_and_close_loops(result, scan_at(true_pose(i)));
     results.push_back(result);
   }
   return results;

@@ -1,4 +1,4 @@
-// A mapper as a run over a drive uses it.
+// Interface of both mappers.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ enum class PoseSource {
 struct FrameTask {
   /// The frame gets a pose. It adds no point, color or registration target.
   bool held_out = false;
-  /// T_local_lidar, where the pose source is kGiven, or kGivenFirst and it is one of the first.
+  /// T_local_lidar: of all frames with kGiven, of the first frames with kGivenFirst.
   std::optional<RigidMotion> given_pose = {};
 };
 
@@ -32,14 +32,14 @@ struct TrackedScan {
   FrameTask task;
   FrameResult result;
   PointCloud scan_lidar;  ///< motion compensated
-  /// T_local_submap of all submaps, and the motion that puts the latest into local.
+  /// T_local_submap of all submaps, and T_local_odom of the latest submap.
   std::vector<RigidMotion> submaps;
   RigidMotion T_local_odom = RigidMotion::Identity();
 };
 
-/// Where a mapper meets the rest of a run.
+/// Callbacks into the run.
 struct MapperServices {
-  /// The LiDAR's velocity at a frame before which nothing states the motion (initial_velocity).
+  /// The LiDAR's velocity at a frame without navigation or an earlier frame (initial_velocity).
   std::function<std::optional<Twist>(int frame)> initial_velocity = [](int) {
     return std::nullopt;
   };
@@ -53,14 +53,14 @@ class IncrementalMapper {
  public:
   virtual ~IncrementalMapper() = default;
 
-  /// The pose of the next frame.
+  /// Finds the pose of the next frame.
   virtual TrackedScan track(const Frame& frame, const FrameTask& task) = 0;
-  /// The points and colors of a tracked frame, into the map. Runs in one thread, track() of later
-  /// frames in another one; the map is the same.
+  /// Adds the frame's points and colors. May run in parallel with track() of later frames; the map
+  /// stays the same.
   virtual FrameResult map_frame(const Frame& frame, TrackedScan tracked) = 0;
 
-  /// Work that the next track() or map_frame() needs and the last one does not. Each runs in the
-  /// thread of its stage while that waits; otherwise the next frame does it first.
+  /// Deferred work. Runs in the stage's thread while the stage waits for the next frame, or at the
+  /// start of that frame.
   virtual void apply_deferred_tracking() {}
   virtual void apply_deferred_mapping() {}
 

@@ -1,4 +1,4 @@
-// Everything that a map depends on besides its drive.
+// All settings of a map.
 #pragma once
 
 #include <string_view>
@@ -20,15 +20,15 @@ struct MapSettings {
   std::variant<MapperOptions, PaperOptions> method;
 
   MapSettings() = default;
-  /// The default method.
+  /// Default method.
   MapSettings(const MapperOptions& options) : method(options) {}  // NOLINT: converts on purpose
-  /// The paper's, which trusts its calibration.
+  /// Paper method; the calibration is not checked.
   MapSettings(const PaperOptions& options) : method(options) {  // NOLINT: converts on purpose
     run.check_calibration = false;
   }
 
   bool is_paper() const { return std::holds_alternative<PaperOptions>(method); }
-  /// std::bad_variant_access where the other method is set.
+  /// Throws std::bad_variant_access if the other method is set.
   MapperOptions& mapper() { return std::get<MapperOptions>(method); }
   const MapperOptions& mapper() const { return std::get<MapperOptions>(method); }
   PaperOptions& paper() { return std::get<PaperOptions>(method); }
@@ -44,8 +44,7 @@ struct MapSettings {
   bool compensates_motion() const { return is_paper() || mapper().compensate_motion; }
 };
 
-/// Settings of the paper's method for a row of Table II (apply_variant).
-/// @param settings  options that the row leaves as they are
+/// Settings of the paper's method for a row of Table II (apply_variant); other options stay.
 MapSettings with_variant(std::string_view name, const MapSettings& settings);
 
 }  // namespace fovea

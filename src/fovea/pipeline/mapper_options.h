@@ -16,8 +16,8 @@ struct RefinementOptions {
   double voxel = 0.25;  ///< m, at most one registered point a voxel; 0: no thinning
   CorrectionLimits limits;
   double range_noise = 0.02;  ///< m, of the LiDAR
-  /// Moving objects do not pull, because of the robust kernel. More than max_points would add less
-  /// than the errors that all points share.
+  /// The robust kernel suppresses moving objects. More points give no accuracy: their common errors
+  /// dominate.
   RegistrationOptions registration{
       .method = RegistrationMethod::kPointToPlane, .max_points = 12000, .robust_width = 0.1};
   LocalMapOptions local_map;
@@ -27,9 +27,9 @@ struct MapperOptions {
   bool compensate_motion = true;  ///< sweep motion, where the drive's scans are raw
   RefinementOptions refinement;
   FovealOptions foveal;
-  /// Edges of 0 follow from the LiDAR's rings (pipeline/drive_sensors.h).
+  /// 0: derived from the LiDAR's ring spacing (pipeline/drive_sensors.h).
   SurfaceOptions surface{.max_edge = 0, .planar_edge = 0};
-  double footprint = 0.02;  ///< m, edge of the patch of surface whose mean color a view gives
+  double footprint = 0.02;  ///< m, edge of the surface patch whose mean color a point gets
   DynamicPointOptions dynamic;
   FusionOptions fusion;
   double tile_size = 4.0;  ///< m

@@ -15,8 +15,9 @@
 namespace fovea {
 
 struct PaperOptions {
-  /// Ground points are registered as they are. Height 0: the height in the LiDAR's profile.
+  /// Ground points are not upsampled for registration. Height 0: from the LiDAR's profile.
   GroundOptions ground{.sensor_height = 0};
+  /// E6, the best row of Table II.
   RegistrationMethod registration = RegistrationMethod::kPointToPoint;
   /// Rate and tau, for the points to register and for the foveal points.
   UpsampleOptions upsample;

@@ -1,4 +1,4 @@
-// Colors of points in one image: means over the patches of surface that the points stand for.
+// Colors of points in one image: means over the surface patches of the points.
 #pragma once
 
 #include "fovea/base/point_cloud.h"
@@ -13,8 +13,8 @@ struct ColorView {
   const ImagePyramid& image;
   const Camera& camera;
   int frame = 0;
-  double footprint = 0.02;  ///< m: edge of the patch of surface whose mean color a point gets
-  /// Factor of each channel that brings the image to the map's exposure.
+  double footprint = 0.02;  ///< m: edge of the surface patch whose mean color a point gets
+  /// Factor of each channel that matches the image to the map's exposure.
   Eigen::Array3f gain = Eigen::Array3f::Ones();
   bool has_gain() const { return (gain != 1).any(); }
 };

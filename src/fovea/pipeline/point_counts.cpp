@@ -24,7 +24,7 @@ std::size_t count_of(const FrameRecord& record, const char* figure) {
 }  // namespace
 
 void count_points(const ScanStats& scan, std::map<std::string, double>& figures) {
-  figures[kUsed] = as_figure(scan.used);
+  figures[kUsed] = as_figure(scan.points);
   figures[kDropped] = as_figure(scan.dropped.total());
   for (const auto& [figure, reason] : kReasons) {
     const std::size_t count = scan.dropped.*reason;

@@ -86,7 +86,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   // Pose in local: of the submap, then corrected by a loop that the scan closes.
   fusion_.track(result);
   if (!task.held_out) {
-    fusion_.close_loops(result, refined.cloud.points);
+    fusion_.add_scan_and_close_loops(result, refined.cloud.points);
     if (registers() && becomes_target(keyframes_, result, lost_frames_)) {
       next_target_ = {std::move(refined.cloud), refined.T_odom_lidar};  // see apply_deferred()
     }

@@ -51,7 +51,7 @@ void VisibleMap::render(const TileMap& map, const FovealRegion& region,
   disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
   collect_chunks(map, region, T_cam_local);
   parallel_for(kShards, 1, [&](std::size_t shard) {
-    shards_[shard].front.clear(camera_);
+    shards_[shard].depth.clear(camera_);
     std::size_t first = 0;
     for (std::size_t k = shard; k < chunks_.size(); k += kShards) {
       chunks_[k].first = first;
@@ -59,8 +59,8 @@ void VisibleMap::render(const TileMap& map, const FovealRegion& region,
       first += chunks_[k].count;
     }
   });
-  std::swap(front_, shards_[0].front);
-  for (std::size_t shard = 1; shard < kShards; ++shard) front_.add(shards_[shard].front);
+  std::swap(depth_, shards_[0].depth);
+  for (std::size_t shard = 1; shard < kShards; ++shard) depth_.add(shards_[shard].depth);
 }
 
 void VisibleMap::render_chunk(const FovealRegion& region, Chunk& chunk) {
@@ -105,7 +105,7 @@ void VisibleMap::render_chunk(const FovealRegion& region, Chunk& chunk) {
       in_view += block.in_view(i);
       in_region += block.in_view(i) & (in_zone[i] != 0);
     }
-    shard.front.add(samples, in_view, disc_radius_);
+    shard.depth.add(samples, in_view, disc_radius_);
     out += in_region;
     chunk.count += in_region;
   }
@@ -126,8 +126,8 @@ void VisibleMap::for_each_block(const PointCloud& points_cam, std::size_t begin,
 void VisibleMap::add_occluders(const PointCloud& points_cam) {
   const std::size_t shard_size = (points_cam.size() + kShards - 1) / kShards;
   parallel_for(kShards, 1, [&](std::size_t shard) {
-    DepthBuffer& front = shards_[shard].front;
-    front.clear(camera_);
+    DepthBuffer& depth = shards_[shard].depth;
+    depth.clear(camera_);
     const std::size_t end = std::min(points_cam.size(), (shard + 1) * shard_size);
     ProjectedPoints samples;
     for_each_block(points_cam, shard * shard_size, end,
@@ -136,10 +136,10 @@ void VisibleMap::add_occluders(const PointCloud& points_cam) {
                      for (std::size_t i = 0; i < block_end - begin; ++i) {
                        if (block.in_view(i)) samples.put(count++, block.pixel(i), block.depth(i));
                      }
-                     front.add(samples, count, disc_radius_);
+                     depth.add(samples, count, disc_radius_);
                    });
   });
-  for (const Shard& shard : shards_) front_.add(shard.front);
+  for (const Shard& shard : shards_) depth_.add(shard.depth);
 }
 
 std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_cam) const {
@@ -149,7 +149,7 @@ std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_ca
                    [&](std::size_t begin, std::size_t end, const ProjectedBlock& block) {
                      for (std::size_t i = 0; i < end - begin; ++i) {
                        marks[begin + i] =
-                           block.in_view(i) && front_.is_in_front(block.pixel(i), block.depth(i));
+                           block.in_view(i) && depth_.is_in_front(block.pixel(i), block.depth(i));
                      }
                    });
   });
@@ -168,7 +168,7 @@ VisibleMap::Differences VisibleMap::differences_of(const Chunk& chunk,
     const FusedColor& color = tile.colors[chunk.begin + point.index];
     if (color.views < 2) continue;
     const Eigen::Vector2f pixel = quantizer_.pixel(point);
-    if (front_.hides(pixel, quantizer_.depth(point))) continue;
+    if (depth_.hides(pixel, quantizer_.depth(point))) continue;
     known[n] = to_float(color.color).array();
     projected.put(n++, pixel, quantizer_.depth(point));
   }
@@ -222,7 +222,7 @@ std::size_t VisibleMap::recolor_block(std::span<const PointInView> points,
     all.put(i, quantizer.pixel(points[i]), quantizer.depth(points[i]));
   }
   std::array<std::uint32_t, kBlock> visible;
-  const std::size_t n = front_.find_visible(all, points.size(), visible);
+  const std::size_t n = depth_.find_visible(all, points.size(), visible);
   ProjectedPoints projected;
   ColorObservations seen;
   std::array<std::uint32_t, kBlock> index;

@@ -25,17 +25,18 @@ class VisibleMap {
   void render(const TileMap& map, const FovealRegion& region, const RigidMotion& T_cam_local,
               double spacing);
 
-  /// Marks (1) points that lie in front of a surface of the map: an object has come between. Near
-  /// surfaces enter the foveal region first, so a static surface is in the map before its
+  /// Marks (1) points that lie in front of a surface of the map: a new object hides the surface.
+  /// Near surfaces enter the foveal region first, so a static surface is in the map before its
   /// background.
   std::vector<std::uint8_t> find_occluding(const PointCloud& points_cam) const;
 
-  /// Adds points that are not in the map to the surfaces that hide others.
+  /// Adds points to the depth buffer, so that recolor() skips the map behind them.
   void add_occluders(const PointCloud& points_cam);
 
   /// Colors of a view compared with those of map points that have at least two views.
   struct Comparison {
-    /// Median gain of each channel that brings the view to the map; 1 if there are too few points.
+    /// Median gain of each channel that matches the view to the map's colors; 1 if there are too
+    /// few points.
     Eigen::Array3f gain = Eigen::Array3f::Ones();
     std::size_t points = 0;  ///< compared
     double error = 0;        ///< mean absolute difference, gray values, without any gain
@@ -60,7 +61,7 @@ class VisibleMap {
   /// Output of one thread.
   struct Shard {
     std::vector<PointInView> points;  // in the region
-    DepthBuffer front;                // of all in view
+    DepthBuffer depth;                // of all points in view
   };
   static constexpr std::size_t kShards = 4;
 
@@ -79,7 +80,7 @@ class VisibleMap {
   Differences differences_of(const Chunk& chunk, const PatchColors& patches) const;
   /// The colors of each chunk's tile; empty if no point of the tile is in the region.
   std::vector<std::span<FusedColor>> colors_of_chunks(TileMap& map) const;
-  /// Seeds of the two random words that a point takes to its fusion.
+  /// Seeds of the two random numbers for each fused point.
   using NoiseSeeds = std::array<std::uint32_t, 2>;
   /// @param chunk_begin    of the points' chunk
   /// @param first_colored  gets the points that had no color
@@ -100,7 +101,7 @@ class VisibleMap {
   float disc_radius_ = 0;  // of a point's disc, pixels at a depth of 1 m
   std::vector<Chunk> chunks_;
   std::array<Shard, kShards> shards_;
-  DepthBuffer front_;
+  DepthBuffer depth_;
 };
 
 }  // namespace fovea

@@ -1,4 +1,4 @@
-// The optimizer of all registration methods: Gauss-Newton / Levenberg-Marquardt on SE(3).
+// The optimizer of all registration methods: Levenberg-Marquardt on SE(3).
 #pragma once
 
 #include <optional>

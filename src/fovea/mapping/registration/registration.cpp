@@ -109,8 +109,8 @@ void set_statistics(const OptimizerResult& solution, RegistrationResult& result)
 }
 
 /// Iterative closest point. Each round pairs source points p_i with target points q_i and minimizes
-///   E(T) = sum_i rho(d_i^T M_i d_i),  d_i = T p_i - q_i.
-/// M_i is the factor's information matrix:
+///   E(T) = sum_i rho(d_i^T M_i d_i) + e^T W e,  d_i = T p_i - q_i,  e = log(T_prior^-1 T).
+/// W is the weight of the prior, zero without one. M_i is the factor's information matrix:
 ///   point to point  M_i = I                              (Besl, McKay 1992)
 ///   point to plane  M_i = n_i n_i^T                      (Chen, Medioni 1992)
 ///   GICP            M_i = (C_i^B + R C_i^A R^T)^-1       (Segal, Haehnel, Thrun 2009, Sec. III)
@@ -119,29 +119,35 @@ template <class Factor>
 RegistrationResult align(const Clouds& clouds, const RigidMotion& guess,
                          const RegistrationOptions& options,
                          const std::optional<PosePrior>& prior) {
-  const RegistrationPolicies& use = options.policies;
+  const RegistrationPolicies& policies = options.policies;
+  // A kernel as wide as max_distance does not narrow. The plain loop suffices then.
   const bool is_robust = options.robust_width > 0 && options.robust_width < options.max_distance;
   const StepLimit limit{options.converged_rotation, options.converged_translation};
-  const NarrowingKernel kernel(use.narrowing_kernel, options.max_distance, options.robust_width);
-  CoarsePhase coarse(use.coarse_phase && is_robust, clouds.source.points.size());
-  AitkenAcceleration acceleration(use.aitken_acceleration && is_robust, limit);
-  OptimizerOptions optimizer{0, options.degenerate_eigenvalue, Factor::kNeedsNormals, limit, prior};
+  const NarrowingKernel kernel(policies.narrowing_kernel, options.max_distance,
+                               options.robust_width);
+  CoarsePhase coarse(policies.coarse_phase && is_robust, clouds.source.points.size());
+  AitkenAcceleration acceleration(policies.aitken_acceleration && is_robust, limit);
+  OptimizerOptions optimizer_options{.degenerate_eigenvalue = options.degenerate_eigenvalue,
+                                     .judge_by_planes = Factor::kNeedsNormals,
+                                     .converged = limit,
+                                     .prior = prior};
 
   std::vector<Pair> pairs = pairs_of(clouds.source, coarse.points());
-  RegistrationResult result;
-  RigidMotion& T = result.T_target_source = guess;
+  RegistrationResult result{.T_target_source = guess};
+  RigidMotion& T = result.T_target_source;
   while (!result.converged && result.iterations < options.max_iterations) {
     const int round = result.iterations++;
 
     // Find pairs: q_i is the target point nearest to T p_i.
-    const PairCache cache(use.pair_cache, Factor::kMaxPairMove, result.rms_distance);
+    const PairCache cache(policies.pair_cache, Factor::kMaxPairMove, result.rms_distance);
     result.searches += find_pairs<Factor>(clouds, T, options, cache, pairs);
 
-    // Linearize and solve: Gauss-Newton steps H x = -b on E (optimizer.h).
-    optimizer.robust_width = kernel.width(round);
-    const OptimizerResult solution = minimize(PairBlocks(pairs), T, optimizer);
+    // Linearize and solve: Levenberg-Marquardt steps on E (optimizer.h).
+    optimizer_options.robust_width = kernel.width(round);
+    const OptimizerResult solution = minimize(PairBlocks(pairs), T, optimizer_options);
     result.pairs = solution.equations.pairs;
     if (result.pairs < kMinPairs) {
+      // rms_distance and information stay those of the round before. The report shows rms_distance.
       T = guess;
       result.degenerate_directions = 6;
       return result;
@@ -152,12 +158,14 @@ RegistrationResult align(const Clouds& clouds, const RigidMotion& guess,
     const bool is_final = kernel.is_final(round);
     result.converged = is_final && !coarse.is_active() && limit.contains(step);
 
-    // Update. The last round is not accelerated: no later round would correct the pose.
+    // Update. Steps form a series only after the kernel has its final width. The last round is not
+    // accelerated: no later round would correct the pose.
     const double factor = is_final ? acceleration.factor(step) : 1;
     const bool accelerates = factor > 1 && result.iterations < options.max_iterations;
     T = accelerates ? moved_by(T, factor * step) : solution.T_target_source;
     set_statistics<Factor>(solution, result);
-    if (kernel.is_final(round + 1) && coarse.ends(step, round + 1, limit)) {
+    const bool next_has_final_kernel = kernel.is_final(round + 1);
+    if (next_has_final_kernel && coarse.end_if_due(step, result.iterations, limit)) {
       pairs = pairs_of(clouds.source, coarse.points());
     }
   }

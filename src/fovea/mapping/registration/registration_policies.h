@@ -58,7 +58,7 @@ class CoarsePhase {
   /// Ends the phase if the last step was nearly small, or after many rounds: the sample may have
   /// no stable pose.
   /// @return whether it ended
-  bool ends(const Twist& step, int rounds, const StepLimit& limit) {
+  bool end_if_due(const Twist& step, int rounds, const StepLimit& limit) {
     if (!is_active_ || !(limit.contains(step, kNearlyFound) || rounds >= kMaxRounds)) return false;
     is_active_ = false;
     return true;

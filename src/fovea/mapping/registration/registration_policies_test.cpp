@@ -89,11 +89,11 @@ TEST(CoarsePhase, EndsWhenThePoseIsNearlyFoundOrAfterManyRounds) {
   const Twist large = Twist::Constant(0.1), small = Twist::Constant(5e-4);
   CoarsePhase phase(true, 10000);
   EXPECT_EQ(phase.points(), 2000u);
-  EXPECT_FALSE(phase.ends(large, 1, limit));
-  EXPECT_TRUE(phase.ends(small, 2, limit));
+  EXPECT_FALSE(phase.end_if_due(large, 1, limit));
+  EXPECT_TRUE(phase.end_if_due(small, 2, limit));
   EXPECT_EQ(phase.points(), 10000u);
-  EXPECT_FALSE(phase.ends(small, 3, limit));
-  EXPECT_TRUE(CoarsePhase(true, 10000).ends(large, 30, limit));
+  EXPECT_FALSE(phase.end_if_due(small, 3, limit));
+  EXPECT_TRUE(CoarsePhase(true, 10000).end_if_due(large, 30, limit));
   EXPECT_FALSE(CoarsePhase(true, 1999).is_active());
 }
 
