@@ -111,7 +111,7 @@ class MapKeeper {
   std::future<Tiles> written_;         // what the latest checkpoint has left to others
   std::stop_source hurry_;             // for it
   std::stop_source taken_over_;        // it is to leave what it has not begun
-  std::stop_source ended_;  // no frame follows: requested tiles are not needed
+  std::stop_source ended_;             // no frame follows: requested tiles are not needed
   std::map<TileId, std::future<TilePoints>> requested_;
   Worker worker_;
 };
