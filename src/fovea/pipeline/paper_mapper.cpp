@@ -24,7 +24,6 @@ PaperMapper::PaperMapper(const DriveInfo& drive, const PaperOptions& options,
       services_(std::move(services)),
       motion_model_(drive.navigation ? &*drive.navigation : nullptr,
                     {.doubt = false, .sweep_rest = from_seconds(drive.sweep.end_time())}),
-      submaps_({.enabled = false}, registration_options(), drive),
       map_(options.tile_size) {}
 
 double PaperMapper::reach() const {
@@ -43,8 +42,7 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   StageClock& clock = result.clock;
   clock.start();
 
-  // Sec. Pose Refinement: "with the raw poses as initial guess". Submaps never move here, so that
-  // the frames odom and local are the same.
+  // Sec. Pose Refinement: "with the raw poses as initial guess".
   const MotionGuess raw = raw_pose(frame, tracked.task, result);
   RigidMotion T_local_lidar = raw.T_odom_lidar;
   // 1. Deskew (the paper's scans need none): each point at the scan's time stamp.
@@ -147,13 +145,25 @@ RigidMotion PaperMapper::registered(const RegistrationCloud& cloud_lidar,
   return result.note.empty() ? T_local_lidar : raw_T_local_lidar;
 }
 
-/// Passes the pose to motion model and submaps, and loads the tiles around it.
+/// Passes the pose to the motion model, opens a submap if one is due, and loads the tiles around.
+/// Submaps never move here: the frames odom and local are the same.
 void PaperMapper::enter_pose(const RigidMotion& T_local_lidar, FrameResult& result) {
-  result.poses.T_odom_lidar = T_local_lidar;
+  result.poses.T_local_lidar = result.poses.T_odom_lidar = T_local_lidar;
   motion_model_.update(*result.stamp, T_local_lidar);
-  submaps_.track(result);
-  map_.place_submaps(submaps_.submaps());
+  const bool is_first = map_.submaps().empty();
+  if (is_first || is_submap_due(*result.stamp, T_local_lidar)) {
+    map_.add_submap(T_local_lidar);
+    submap_start_ = *result.stamp;
+  }
+  result.poses.submap = static_cast<int>(map_.submaps().size()) - 1;
   services_.load_near(map_, T_local_lidar.translation(), reach());
+}
+
+bool PaperMapper::is_submap_due(TimeNs stamp, const RigidMotion& T_local_lidar) const {
+  constexpr double kDuration = 2, kLength = 5;  // s, m; at least
+  const RigidMotion& T_local_submap = map_.submaps().back().T_local_submap;
+  return seconds(stamp - submap_start_) >= kDuration &&
+         (T_local_lidar.translation() - T_local_submap.translation()).norm() >= kLength;
 }
 
 PointCloud PaperMapper::visible_points(const PointCloud& points_cam, const FovealRegion& region,
@@ -217,17 +227,17 @@ void PaperMapper::resume(TileMap map, const std::vector<FrameRecord>& records,
                          const FrameSource& source) {
   map_ = std::move(map);
   const FrameRecord* last_mapped = nullptr;
+  int last_submap = -1;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
     if (motion_model_.needs_initial_velocity(*record.stamp)) {
       motion_model_.begin_with(services_.initial_velocity(record.index));
     }
-    FrameResult result = tracked_result(record);
     motion_model_.update(*record.stamp, record.T_odom_lidar);
-    submaps_.track(result);
+    if (record.submap > last_submap) submap_start_ = *record.stamp;
+    last_submap = record.submap;
     if (record.status == FrameStatus::kMapped) last_mapped = &record;
   }
-  map_.place_submaps(submaps_.submaps());
   if (last_mapped == nullptr || !registers()) return;
   const LoadedFrame loaded = source.load(last_mapped->index);
   const auto* frame = std::get_if<Frame>(&loaded);

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/pipeline/fusion.h"
 #include "fovea/pipeline/incremental_mapper.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/paper_options.h"
@@ -43,6 +42,7 @@ class PaperMapper : public IncrementalMapper {
   RegistrationOptions registration_options() const;
   RigidMotion registered(const RegistrationCloud& cloud_lidar, const RigidMotion& raw_T_local_lidar,
                          FrameResult& result) const;
+  bool is_submap_due(TimeNs stamp, const RigidMotion& T_local_lidar) const;
   void enter_pose(const RigidMotion& T_local_lidar, FrameResult& result);
   PointCloud visible_points(const PointCloud& points_cam, const FovealRegion& region,
                             const RigidMotion& T_local_lidar, FrameResult& result);
@@ -55,7 +55,7 @@ class PaperMapper : public IncrementalMapper {
   PoseSource pose_source_;
   MapperServices services_;
   MotionModel motion_model_;
-  Fusion submaps_;
+  TimeNs submap_start_ = 0;  // of the last submap
   std::optional<RegisteredScan> previous_;
   RayFilter ray_filter_;
   TileMap map_;
