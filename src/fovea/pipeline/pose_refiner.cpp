@@ -100,7 +100,11 @@ RefinedPose PoseRefiner::search(RefinedPose lost, const RigidMotion& guess, doub
   refined.T_odom_lidar = found->registration.T_target_source;
   refined.fit = fit_of(found->registration, options_.registration);
   refined.note = "the scan was found again by a search";
-  if (refined.stats) refined.stats->vertical_fit = found->fit.share;
+  if (refined.stats) {
+    refined.stats->alignment =
+        alignment_stats(found->registration, guess.inverse() * refined.T_odom_lidar);
+    refined.stats->vertical_fit = found->fit.share;
+  }
   return refined;
 }
 

@@ -33,6 +33,8 @@ TEST(TrackingLoss, AScanFarFromItsFirstGuessIsFoundAgain) {
   Mapper mapper(drive.info(), options(), PoseSource::kRefine);
   const std::vector<FrameRecord> records = map_frames(mapper, drive, 0, 10);
   EXPECT_NE(records[7].note.find("found again"), std::string::npos) << records[7].note;
+  // The figures are those of the search, not of the registration before it.
+  EXPECT_NEAR(records[7].figures.at("correction_translation"), 7, 1);
   for (const FrameRecord& record : records) {
     EXPECT_FALSE(record.has("registration_lost")) << record.index;
     EXPECT_LT(position_error(drive, record), 0.05) << record.index;
