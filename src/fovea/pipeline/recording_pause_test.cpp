@@ -119,6 +119,18 @@ void expect_steady_motion(const std::vector<FrameRecord>& records) {
   }
 }
 
+// Poses that are given across the pause are kept as they are.
+TEST(RecordingPause, GivenPosesNeedNoSearch) {
+  const ElsewhereDrive drive(false);
+  Mapper mapper(drive.drive.info(), options(), PoseSource::kGivenFirst);
+  for (int i = 0; i < kFrames; ++i) {
+    const RigidMotion given(Eigen::Translation3d(i < kPaused ? i : i + 40, 0, 0));
+    const FrameResult result = mapper.process(drive.frame(i), {.given_pose = given});
+    EXPECT_EQ(result.poses.T_odom_lidar.matrix(), given.matrix()) << i;
+    EXPECT_FALSE(result.tracking.has_restarted) << i;
+  }
+}
+
 TEST(RecordingPause, ElsewhereTheTrackRestartsAtThePoseOfNavigation) {
   const ElsewhereDrive drive(true);
   const std::vector<FrameRecord> records = map_whole(drive);

@@ -72,7 +72,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   PlacedScan placed = place(frame, motion, task);
   RefinedPose& refined = placed.refined;
   // A search starts at the first guess, also if the scan fits best at the second one.
-  if (motion.after_pause && registers()) {
+  if (motion.after_pause && registers() && !task.given_pose) {
     search_after_pause(refined, motion.guesses.front(), result);
   } else if (refined.lost) {
     search_lost(refined, motion.guesses.front(), result);
