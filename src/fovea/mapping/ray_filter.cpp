@@ -34,7 +34,7 @@ struct WindowStatistics {
     sum += offset;
     square += offset * offset;
   }
-  // Eq. 1
+  // Eq. 1, relative to d_i: mean() is mu - d_i.
   double mean() const { return sum / count; }
   double sigma() const { return std::sqrt(std::max(0.0, square / count - mean() * mean())); }
 };
@@ -85,7 +85,7 @@ std::vector<RayVerdict> RayFilter::filter(std::span<const Ray> scan, std::span<c
         if (row[x].length != kNoRay) window.add(row[x].length - scan[i].length);
       }
     }
-    // Eq. 2: |d_i - mu| <= c sigma
+    // Eq. 2: |d_i - mu| <= c sigma. Our addition: a flat window.
     const double offset = std::abs(window.mean()), sigma = window.sigma();
     const bool visible =
         offset <= options.outlier_rate * sigma || (sigma < kFlatSigma && offset < kFlatOffset);

@@ -12,9 +12,9 @@
 namespace fovea {
 
 struct SurfaceOptions {
-  double spacing = 0.02;     ///< of the samples, m; 0: the paper's upsampling instead
-  double max_edge = 0.4;     ///< m: triangles with shorter edges are surface
-  double planar_edge = 1.0;  ///< m: the same where the surface is flat
+  double spacing = 0.02;                     ///< of the samples, m
+  double max_edge = 0.4;                     ///< m: triangles with shorter edges are surface
+  double planar_edge = 1.0;                  ///< m: the same where the surface is flat
   double planar_angle = 0.5235987755982988;  ///< rad, between the normals on both sides of an edge
   /// Largest number of samples in a pixel; 0: no limit. If more cells project to a pixel, only
   /// every second, fourth or eighth is sampled: the image cannot resolve more.

@@ -61,7 +61,7 @@ struct TrackingStats {
 /// Points of the foveal regions, over all cameras.
 struct FovealStats {
   std::size_t measured = 0;
-  std::size_t upsampled = 0;  ///< measured points and the points between them
+  std::size_t upsampled = 0;  ///< points for the map: measured ones and those between them
   std::size_t oblique = 0;    ///< dropped: seen at more than the incidence limit
   std::size_t occluding = 0;  ///< dropped: they would hide the map
 };
@@ -101,7 +101,7 @@ struct FrameResult {
   std::optional<RayFilterStats> ray_filter;
   std::optional<DynamicStats> dynamic;
   std::optional<ColorStats> colors;
-  std::optional<std::size_t> added;   ///< points of the map
+  std::optional<std::size_t> added;   ///< points added to the map
   std::optional<std::size_t> unseen;  ///< points of a whole scan that no camera sees
   StageClock clock;
 };

@@ -27,7 +27,8 @@ struct FrameTask {
   std::optional<RigidMotion> given_pose = {};
 };
 
-/// A frame with its pose. Later frames do not change it.
+/// A frame with its pose; the paper mapper finds the pose in map_frame(). Later frames do not
+/// change it.
 struct TrackedScan {
   FrameTask task;
   FrameResult result;

@@ -38,7 +38,7 @@ struct MapSettings {
   const FovealOptions& foveal() const { return is_paper() ? paper().foveal : mapper().foveal; }
   /// Edge of the cells of the map's grid, m; 0: the paper's method has none.
   double spacing() const { return is_paper() ? 0 : mapper().surface.spacing; }
-  /// Whether only foveal regions are mapped: all but the paper's baselines.
+  /// False only for baselines, which map whole scans.
   bool has_foveal_region() const { return !is_paper() || paper().foveal_enabled; }
   /// Whether sweep motion is undone where scans are raw.
   bool compensates_motion() const { return is_paper() || mapper().compensate_motion; }

@@ -13,11 +13,11 @@
 namespace fovea {
 namespace {
 
-constexpr double kMargin = 1;  // m, by which samples may lie beyond the foveal region
+constexpr double kMargin = 1;  // m: samples may lie beyond the foveal region
 
 double reach_of(const MapperOptions& options) {
   const double dynamic = options.dynamic.remove ? options.dynamic.range : 0;
-  return std::max(dynamic, options.foveal.far_range) + 2 * kMargin;
+  return std::max(dynamic, options.foveal.far_range) + 2 * kMargin;  // cells, and a margin for them
 }
 
 /// Brings the view to the map's exposure, if they differ.
@@ -72,7 +72,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
   if (options_.dynamic.remove) {
-    // Map points leave where this scan and those before it see free space.
+    // 7 for the map: points leave where this scan and those before it see free space.
     const RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
     result.dynamic.emplace().removed =
         dynamic_points_.observe(map_, ranges, result.poses.T_odom_lidar, T_odom_local, frame.index);
@@ -99,21 +99,21 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   run_both(
       [&] {
         // 3. Visible points: in the foveal region, not hidden by another point of the scan.
-        new_cam = foveal_points(scan_lidar, region);
-        stats.measured += new_cam.size();
+        PointCloud visible_cam = foveal_points(scan_lidar, region);
+        stats.measured += visible_cam.size();
         result.clock.lap("fovea");
-        stats_of(result.hidden) += drop_hidden(new_cam, scan_lidar, camera);
+        stats_of(result.hidden) += drop_hidden(visible_cam, scan_lidar, camera);
         // 4. Surface samples, in cells of the map's grid that have no point yet.
-        new_cam = new_points_of(new_cam, camera, T_local_cam);
+        new_cam = new_points_of(visible_cam, camera, T_local_cam);
         stats.upsampled += new_cam.size();
         stats.oblique += limit_incidence(new_cam, options_.foveal.max_incidence);
       },
-      [&] {
+      [&] {  // In parallel, on other data: what steps 5 and 6 compare with.
         visible_map_.render(map_, region, T_local_cam.inverse(), occupancy_.cell());
         if (!image.empty()) pyramid.emplace(image);
       });
   result.clock.lap("upsample");
-  // 5. Points in front of the map: an object has come between.
+  // 5. Points in front of the map: a new object hides the surface.
   const std::vector<std::uint8_t> is_occluding = visible_map_.find_occluding(new_cam);
   visible_map_.add_occluders(new_cam);  // also the dropped ones: a passing object hides the map
   stats.occluding += new_cam.drop(is_occluding);
@@ -122,9 +122,9 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   if (pyramid) {
     ColorStats& colors = stats_of(result.colors);
     ColorView view{*pyramid, camera, result.index, options_.footprint};
-    // 6. Radiometry: an image of another exposure gets a gain, and leaves known colors alone.
+    // 6. Colors: an image of another exposure gets a gain, and leaves known colors alone. Otherwise
+    // known points fuse one more view. New points get their first.
     match_exposure(visible_map_, view, colors);
-    // Colors: map points fuse one more view, new points get their first.
     run_both(
         [&] {
           if (!view.has_gain()) colors.recolored += visible_map_.recolor(map_, view);
@@ -138,13 +138,13 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   PointCloud new_local =
       transform_cloud(std::move(new_cam), T_local_cam, T_local_lidar.translation());
   // 7. Dynamic points: new points where other scans see free space.
-  if (result.dynamic) {
+  if (options_.dynamic.remove) {
     result.dynamic->dropped += new_local.drop(dynamic_points_.classify(new_local, T_odom_local));
   }
   result.clock.lap("filter");
   // 8. Add.
   map_.add(new_local);
-  added_near_ = T_local_cam.translation();
+  occupancy_update_center_ = T_local_cam.translation();
   stats_of(result.added) += new_local.size();
   result.clock.lap("store");
 }
@@ -161,10 +161,10 @@ PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& cam
 }
 
 void Mapper::apply_deferred_mapping() {
-  if (added_near_) {
-    occupancy_.follow(map_, *added_near_, options_.foveal.far_range + kMargin);
+  if (occupancy_update_center_) {
+    occupancy_.follow(map_, *occupancy_update_center_, options_.foveal.far_range + kMargin);
   }
-  added_near_.reset();
+  occupancy_update_center_.reset();
 }
 
 void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,

@@ -51,7 +51,7 @@ class Mapper : public IncrementalMapper {
   VisibleMap visible_map_;
   DynamicPointFilter dynamic_points_;
   Occupancy occupancy_;
-  std::optional<Eigen::Vector3d> added_near_;  // position of the points that occupancy_ lacks
+  std::optional<Eigen::Vector3d> occupancy_update_center_;  // where occupancy_ is out of date
 };
 
 }  // namespace fovea

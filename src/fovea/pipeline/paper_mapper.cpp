@@ -48,7 +48,7 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   // 1. Deskew (the paper's scans need none): each point at the scan's time stamp.
   const PointCloud scan_lidar = deskewed(frame.scan, raw.motion, drive_);
   clock.lap("register");
-  if (registers()) {
+  if (uses_registration()) {
     // 2. Ground: "we extract the ground plane by using z thresholding".
     const std::vector<std::uint8_t> is_ground =
         segment_ground(scan_lidar.position, options_.ground);
@@ -57,11 +57,12 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
     clock.lap("upsample");
     // 4. Registration to the previous scan.
     RegistrationCloud cloud = prepare_cloud(std::move(dense_lidar), registration_options());
-    if (!tracked.task.given_pose) T_local_lidar = registered(cloud, T_local_lidar, result);
+    if (!tracked.task.given_pose)
+      T_local_lidar = register_to_previous(cloud, T_local_lidar, result);
     if (!tracked.task.held_out) previous_ = {std::move(cloud), T_local_lidar};
     clock.lap("register");
   }
-  enter_pose(T_local_lidar, result);
+  apply_pose(T_local_lidar, result);
   if (tracked.task.held_out) return result;
 
   const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, raw.motion);
@@ -97,12 +98,10 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   return result;
 }
 
-bool PaperMapper::registers() const {
+bool PaperMapper::uses_registration() const {
   return pose_source_ == PoseSource::kRefine || pose_source_ == PoseSource::kGivenFirst;
 }
 
-/// The pose by navigation's motion since the previous scan, or by constant velocity; a pose that
-/// the run states takes its place.
 MotionGuess PaperMapper::raw_pose(const Frame& frame, const FrameTask& task, FrameResult& result) {
   if (motion_model_.needs_initial_velocity(frame.stamp)) {
     motion_model_.begin_with(services_.initial_velocity(frame.index));
@@ -127,10 +126,9 @@ RegistrationOptions PaperMapper::registration_options() const {
   return {.method = options_.registration};
 }
 
-/// The pose of a scan against the previous one. The raw pose where registration fails.
-RigidMotion PaperMapper::registered(const RegistrationCloud& cloud_lidar,
-                                    const RigidMotion& raw_T_local_lidar,
-                                    FrameResult& result) const {
+RigidMotion PaperMapper::register_to_previous(const RegistrationCloud& cloud_lidar,
+                                              const RigidMotion& raw_T_local_lidar,
+                                              FrameResult& result) const {
   RegistrationStats& stats = result.tracking.registration.emplace();
   stats.points = cloud_lidar.points.size();
   if (!previous_) return raw_T_local_lidar;
@@ -145,9 +143,7 @@ RigidMotion PaperMapper::registered(const RegistrationCloud& cloud_lidar,
   return result.note.empty() ? T_local_lidar : raw_T_local_lidar;
 }
 
-/// Passes the pose to the motion model, opens a submap if one is due, and loads the tiles around.
-/// Submaps never move here: the frames odom and local are the same.
-void PaperMapper::enter_pose(const RigidMotion& T_local_lidar, FrameResult& result) {
+void PaperMapper::apply_pose(const RigidMotion& T_local_lidar, FrameResult& result) {
   result.poses.T_local_lidar = result.poses.T_odom_lidar = T_local_lidar;
   motion_model_.update(*result.stamp, T_local_lidar);
   const bool is_first = map_.submaps().empty();
@@ -238,7 +234,7 @@ void PaperMapper::resume(TileMap map, const std::vector<FrameRecord>& records,
     last_submap = record.submap;
     if (record.status == FrameStatus::kMapped) last_mapped = &record;
   }
-  if (last_mapped == nullptr || !registers()) return;
+  if (last_mapped == nullptr || !uses_registration()) return;
   const LoadedFrame loaded = source.load(last_mapped->index);
   const auto* frame = std::get_if<Frame>(&loaded);
   if (frame == nullptr) return;

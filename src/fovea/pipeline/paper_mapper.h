@@ -19,7 +19,7 @@ class PaperMapper : public IncrementalMapper {
 
   /// The whole method: pose and map.
   FrameResult map_frame(const Frame& frame, TrackedScan tracked) override;
-  /// Does nothing.
+  /// Starts the result; map_frame() finds the pose.
   TrackedScan track(const Frame&, const FrameTask& task) override;
 
   const TileMap& map() const override { return map_; }
@@ -34,16 +34,21 @@ class PaperMapper : public IncrementalMapper {
     RegistrationCloud cloud_lidar;
     RigidMotion T_local_lidar;
   };
-  bool registers() const;
+  bool uses_registration() const;
+  /// The pose by navigation's motion since the previous scan, or by constant velocity. A given pose
+  /// takes its place.
   MotionGuess raw_pose(const Frame& frame, const FrameTask& task, FrameResult& result);
   /// The points to register.
   std::vector<Eigen::Vector3f> densified(const PointCloud& scan_lidar,
                                          const std::vector<std::uint8_t>& is_ground) const;
   RegistrationOptions registration_options() const;
-  RigidMotion registered(const RegistrationCloud& cloud_lidar, const RigidMotion& raw_T_local_lidar,
-                         FrameResult& result) const;
+  /// The raw pose if registration fails.
+  RigidMotion register_to_previous(const RegistrationCloud& cloud_lidar,
+                                   const RigidMotion& raw_T_local_lidar, FrameResult& result) const;
   bool is_submap_due(TimeNs stamp, const RigidMotion& T_local_lidar) const;
-  void enter_pose(const RigidMotion& T_local_lidar, FrameResult& result);
+  /// Passes the pose to the motion model, opens a submap if one is due, and loads the tiles around
+  /// it. Submaps never move here: the frames odom and local are the same.
+  void apply_pose(const RigidMotion& T_local_lidar, FrameResult& result);
   PointCloud visible_points(const PointCloud& points_cam, const FovealRegion& region,
                             const RigidMotion& T_local_lidar, FrameResult& result);
   void add_points(PointCloud points_cam, const RigidMotion& T_local_cam, FrameResult& result);

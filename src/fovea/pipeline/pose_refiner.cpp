@@ -79,7 +79,7 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
     refined.T_odom_lidar = result.T_target_source;
     refined.fit = fit_of(result, options_.registration);
   }
-  // Where the guess is kept, too, the pairs of the registration give the overlap.
+  // The pairs of the registration give the overlap, even if its pose is rejected.
   const double overlap = stats.points > 0 ? double(result.pairs) / double(stats.points) : 1;
   refined.lost = vertical.contradicts() || overlap < kLeastOverlap;
   refined.is_confirmed =

@@ -71,7 +71,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   result.poses.T_local_lidar_navigation = motion.T_local_lidar_navigation;
   PlacedScan placed = place(frame, motion, task);
   RefinedPose& refined = placed.refined;
-  // A search starts at the first guess, also if the scan fits best at the second one.
+  // A search starts at the first guess, even if the scan fits best at the second one.
   if (motion.after_pause && registers() && !task.given_pose) {
     search_after_pause(refined, motion.guesses.front(), result);
   } else if (refined.lost) {
@@ -83,7 +83,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   result.note = refined.note;
   result.poses.T_odom_lidar = refined.T_odom_lidar;
   motion_model_.update(frame.stamp, refined.T_odom_lidar);
-  // Pose in local: of the submap, then corrected by a loop that the scan closes.
+  // The submap gives the pose in local. A loop closure may then correct it.
   fusion_.track(result);
   if (!task.held_out) {
     fusion_.add_scan_and_close_loops(result, refined.cloud.points);
@@ -122,6 +122,7 @@ Tracker::PlacedScan Tracker::place(const Frame& frame, const MotionPrediction& m
 RefinedPose Tracker::locate(const PointCloud& scan_lidar, const MotionPrediction& motion,
                             const MotionGuess& guess, const FrameTask& task) const {
   RefinedPose refined;
+  // Poses in local: without fusion, odom and local are the same.
   if (pose_source_ == PoseSource::kNavigation) {
     refined.T_odom_lidar = motion.T_local_lidar_navigation.value_or(guess.T_odom_lidar);
   } else if (task.given_pose) {
