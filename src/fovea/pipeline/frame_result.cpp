@@ -75,10 +75,12 @@ Figures figures_of(const FrameResult& result) {
 
 }  // namespace
 
-double TrackingStats::overlap() const {
-  if (!registration || !registration->alignment || registration->points == 0) return 1;
-  return double(registration->alignment->pairs) / double(registration->points);
+double RegistrationStats::overlap() const {
+  if (!alignment || points == 0) return 1;
+  return double(alignment->pairs) / double(points);
 }
+
+double TrackingStats::overlap() const { return registration ? registration->overlap() : 1; }
 
 bool TrackingStats::is_weak() const {
   if (is_lost) return true;

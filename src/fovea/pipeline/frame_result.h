@@ -42,6 +42,9 @@ struct RegistrationStats {
   std::size_t points = 0;
   std::optional<AlignmentStats> alignment;  ///< absent where there is no target yet
   std::optional<double> vertical_fit;       ///< share, with the local map (VerticalFit)
+
+  /// Share of the points that have a counterpart; 1 without an alignment or without points.
+  double overlap() const;
 };
 
 /// Decisions of tracking that later frames depend on.

@@ -13,6 +13,7 @@
 namespace fovea {
 namespace {
 
+const Image kNoImage;
 constexpr double kMargin = 1;  // m: samples may lie beyond the foveal region
 
 double reach_of(const MapperOptions& options) {
@@ -73,16 +74,16 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
   if (options_.dynamic.remove) {
     // 7 for the map: points leave where this scan and those before it see free space.
-    const RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
-    result.dynamic.emplace().removed =
-        dynamic_points_.observe(map_, ranges, result.poses.T_odom_lidar, T_odom_local, frame.index);
+    RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
+    result.dynamic.emplace().removed = dynamic_points_.observe(
+        map_, std::move(ranges), result.poses.T_odom_lidar, T_odom_local, frame.index);
     result.clock.lap("filter");
   }
   const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, result.poses.motion);
   const bool has_image = !frame.images.empty();  // a LiDAR without cameras has views alone
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     if (has_image && !has_content(frame.images[k], result)) continue;
-    map_view(tracked.scan_lidar, has_image ? frame.images[k] : Image(), cameras[k], T_odom_local,
+    map_view(tracked.scan_lidar, has_image ? frame.images[k] : kNoImage, cameras[k], T_odom_local,
              result);
   }
   return result;

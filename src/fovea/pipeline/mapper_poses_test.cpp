@@ -9,14 +9,7 @@ namespace fovea::mapper_poses_test {
 
 // The registration is given a wrong speed (navigation scaled by 0.9) and must find the true steps.
 TEST(Mapper, RefinementCorrectsTheNavigation) {
-  SyntheticDrive drive(street_scene(), 8, 0.8);
-  std::vector<StampedPose> wrong;
-  for (int i = 0; i < 8; ++i) {
-    RigidMotion T = drive.T_local_lidar[std::size_t(i)];
-    T.translation() *= 0.9;
-    wrong.push_back({SyntheticDrive::stamp_of(i), T});
-  }
-  drive.editable_info().navigation = Trajectory(wrong);
+  const SyntheticDrive drive = street_with_slow_navigation();
   Mapper mapper(drive.info(), {}, PoseSource::kRefine);
   const auto records = map_frames(mapper, drive, 0, 8);
   const double error =

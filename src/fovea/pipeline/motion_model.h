@@ -1,6 +1,7 @@
 // Motion model: predicts the pose of a frame before its scan is registered.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -74,6 +75,11 @@ class MotionModel {
   /// Whether a frame follows a pause of the recording: over 1 s after the last frame, and over
   /// three of the drive's usual steps.
   bool follows_pause(TimeNs stamp) const;
+  /// Begins with the velocity at a frame if nothing states the motion before it.
+  void begin_if_needed(TimeNs stamp, int frame,
+                       const std::function<std::optional<Twist>(int frame)>& initial_velocity) {
+    if (needs_initial_velocity(stamp)) begin_with(initial_velocity(frame));
+  }
   /// Whether nothing states the motion before a frame: the first one, or one after a pause.
   bool needs_initial_velocity(TimeNs stamp) const { return !last_ || follows_pause(stamp); }
 

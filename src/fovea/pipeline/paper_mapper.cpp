@@ -103,9 +103,7 @@ bool PaperMapper::uses_registration() const {
 }
 
 MotionGuess PaperMapper::raw_pose(const Frame& frame, const FrameTask& task, FrameResult& result) {
-  if (motion_model_.needs_initial_velocity(frame.stamp)) {
-    motion_model_.begin_with(services_.initial_velocity(frame.index));
-  }
+  motion_model_.begin_if_needed(frame.stamp, frame.index, services_.initial_velocity);
   const MotionPrediction prediction = motion_model_.predict(frame.stamp);
   MotionGuess raw = prediction.guesses.front();
   const auto& navigation = prediction.T_local_lidar_navigation;
@@ -226,9 +224,7 @@ void PaperMapper::resume(TileMap map, const std::vector<FrameRecord>& records,
   int last_submap = -1;
   for (const FrameRecord& record : records) {
     if (record.status == FrameStatus::kSkipped) continue;
-    if (motion_model_.needs_initial_velocity(*record.stamp)) {
-      motion_model_.begin_with(services_.initial_velocity(record.index));
-    }
+    motion_model_.begin_if_needed(*record.stamp, record.index, services_.initial_velocity);
     motion_model_.update(*record.stamp, record.T_odom_lidar);
     if (record.submap > last_submap) submap_start_ = *record.stamp;
     last_submap = record.submap;

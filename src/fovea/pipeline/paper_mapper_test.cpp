@@ -51,14 +51,7 @@ TEST(PaperMapper, BaselineKeepsTheWholeScanAndLeavesTheUnseenUncolored) {
 
 // The street, driven through with navigation that is 10 % too slow: each method finds the steps.
 TEST(PaperMapper, RegistrationToThePreviousScanCorrectsTheNavigation) {
-  SyntheticDrive drive(street_scene(), 8, 0.8);
-  std::vector<StampedPose> wrong;
-  for (int i = 0; i < 8; ++i) {
-    RigidMotion T = drive.T_local_lidar[std::size_t(i)];
-    T.translation() *= 0.9;
-    wrong.push_back({SyntheticDrive::stamp_of(i), T});
-  }
-  drive.editable_info().navigation = Trajectory(wrong);
+  const SyntheticDrive drive = street_with_slow_navigation();
   for (const char* row : {"baseline-gicp", "baseline-plane", "E2", "E10"}) {
     PaperOptions options;
     apply_variant(row, options);

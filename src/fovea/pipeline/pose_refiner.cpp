@@ -80,7 +80,7 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
     refined.fit = fit_of(result, options_.registration);
   }
   // The pairs of the registration give the overlap, even if its pose is rejected.
-  const double overlap = stats.points > 0 ? double(result.pairs) / double(stats.points) : 1;
+  const double overlap = stats.overlap();
   refined.lost = vertical.contradicts() || overlap < kLeastOverlap;
   refined.is_confirmed =
       !alignment.has_failed && !refined.lost && place_score(vertical, overlap) > kLeastPlaceScore;

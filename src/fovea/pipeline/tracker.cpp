@@ -102,9 +102,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
 }
 
 MotionPrediction Tracker::predict(const Frame& frame) {
-  if (motion_model_.needs_initial_velocity(frame.stamp)) {
-    motion_model_.begin_with(initial_velocity_(frame.index));
-  }
+  motion_model_.begin_if_needed(frame.stamp, frame.index, initial_velocity_);
   return motion_model_.predict(frame.stamp);
 }
 
@@ -192,9 +190,7 @@ bool Tracker::registers() const {
 }
 
 void Tracker::follow(const FrameResult& frame) {
-  if (motion_model_.needs_initial_velocity(*frame.stamp)) {
-    motion_model_.begin_with(initial_velocity_(frame.index));
-  }
+  motion_model_.begin_if_needed(*frame.stamp, frame.index, initial_velocity_);
   motion_model_.update(*frame.stamp, frame.poses.T_odom_lidar);
   if (frame.tracking.has_restarted) restart();
   FrameResult tracked = frame;
