@@ -71,15 +71,6 @@ std::optional<RigidMotion> Trajectory::at(TimeNs time) const {
   return holds ? std::optional(nearest->T_local_body) : std::nullopt;
 }
 
-std::optional<RigidMotion> Trajectory::nearest(TimeNs time) const {
-  if (!at(time)) return std::nullopt;
-  const auto distance = [&](const StampedPose& p) { return std::abs(p.time - time); };
-  return std::min_element(
-             poses_.begin(), poses_.end(),
-             [&](const StampedPose& a, const StampedPose& b) { return distance(a) < distance(b); })
-      ->T_local_body;
-}
-
 std::optional<Trajectory::MeanVelocity> Trajectory::mean_velocity(TimeNs begin, TimeNs end,
                                                                   TimeNs about) const {
   auto pose = std::lower_bound(poses_.begin(), poses_.end(), begin,

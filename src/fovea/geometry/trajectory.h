@@ -36,9 +36,6 @@ class Trajectory {
   /// Empty further out.
   std::optional<RigidMotion> at(TimeNs time) const;
 
-  /// The pose nearest in time, where at() has one.
-  std::optional<RigidMotion> nearest(TimeNs time) const;
-
   /// How the body moves at `time`, from what is known by `known_until` (the poses at or before it;
   /// a live program has no later ones). That span is 25 ms at least. Where velocities were measured
   /// no farther from `time` than it: their mean, and its change since those up to three times as

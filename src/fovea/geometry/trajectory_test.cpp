@@ -70,7 +70,6 @@ TEST(Trajectory, BridgesNoOutage) {
   EXPECT_NEAR(x_at(trajectory, 10.8), 49.6, 1e-12);
   EXPECT_FALSE(trajectory.at(from_seconds(1.2) + 1));
   EXPECT_FALSE(trajectory.at(from_seconds(10.8) - 1));
-  EXPECT_FALSE(trajectory.nearest(6 * kNsPerSecond));
   EXPECT_FALSE(trajectory.motion(6 * kNsPerSecond, 20 * kNsPerSecond));
   EXPECT_NEAR(speed(trajectory, 12, 12.05), 2, 1e-12);
   EXPECT_NEAR(speed(trajectory, 11, 11.05), 2, 1e-12);  // the first two poses after the outage
