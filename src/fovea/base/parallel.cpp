@@ -4,13 +4,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 
 #include <algorithm>
-#if defined(__SANITIZE_THREAD__)
+#if defined(FOVEA_THREAD_SANITIZER)
 #include <atomic>
 #include <exception>
-#include <future>
 #include <mutex>
 #include <thread>
 #endif
@@ -18,7 +16,7 @@
 namespace fovea {
 namespace {
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(FOVEA_THREAD_SANITIZER)
 // Debian's TBB is built without ThreadSanitizer, which then reports its synchronisation as races;
 // and a suppression that names TBB hides every race of ours, since TBB is below each of them on the
 // stack. So under ThreadSanitizer the chunks run on plain threads, which it understands.
@@ -45,20 +43,7 @@ void run_chunks(std::size_t chunks, const Run& run) {
   if (error) std::rethrow_exception(error);
 }
 
-/// As tbb::task_group, in a thread of its own.
-class TaskGroup {
- public:
-  void run(std::function<void()> work) { done_ = std::async(std::launch::async, std::move(work)); }
-  void wait() {
-    if (done_.valid()) done_.get();
-  }
-
- private:
-  std::future<void> done_;
-};
 #else
-using TaskGroup = tbb::task_group;
-
 template <class Run>
 void run_chunks(std::size_t chunks, const Run& run) {
   // Who waits for the last chunk takes part in this loop alone: other work may take long.
@@ -83,7 +68,7 @@ void parallel_chunks(std::size_t count, std::size_t grain,
 
 void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>& make,
                        const std::function<void(std::size_t)>& take) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(FOVEA_THREAD_SANITIZER)
   run_chunks(count, make);
   for (std::size_t i = 0; i < count; ++i) take(i);
 #else
@@ -111,23 +96,6 @@ void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>
 void run_both(const std::function<void()>& a, const std::function<void()>& b) {
   parallel_chunks(2, 1, [&](std::size_t begin, std::size_t) { begin == 0 ? a() : b(); });
 }
-
-struct Background::Group : TaskGroup {};
-
-Background::Background() : group_(std::make_unique<Group>()) {}
-
-Background::~Background() {
-  try {
-    group_->wait();
-  } catch (...) {  // nobody asks any more
-  }
-}
-
-void Background::run(std::function<void()> work) { group_->run(std::move(work)); }
-
-void Background::wait() { group_->wait(); }
-
-void run_alone(const std::function<void()>& body) { tbb::task_arena(1).execute(body); }
 
 int available_threads() {
   return static_cast<int>(

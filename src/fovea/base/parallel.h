@@ -41,30 +41,6 @@ T parallel_sum(std::size_t count, std::size_t grain, T zero, Map&& map) {
 /// Runs two things side by side where there are two threads.
 void run_both(const std::function<void()>& a, const std::function<void()>& b);
 
-/// Work that the threads of these loops do while whoever gave it to them does something else.
-class Background {
- public:
-  Background();
-  /// Waits for what has been begun.
-  ~Background();
-  Background(const Background&) = delete;
-  Background& operator=(const Background&) = delete;
-
-  /// Begins it as soon as a thread is free. It must not wait for anything but loops and other such
-  /// work: its thread is one of few.
-  void run(std::function<void()> work);
-  /// Waits until it is done, or does it if no thread was free. What it threw is thrown here.
-  void wait();
-
- private:
-  struct Group;
-  std::unique_ptr<Group> group_;
-};
-
-/// Runs `body` as on a machine with one processor: a library that splits its work by the number of
-/// threads then does it the same way everywhere.
-void run_alone(const std::function<void()>& body);
-
 /// How many threads the loops above may use.
 int available_threads();
 

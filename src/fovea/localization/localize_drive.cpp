@@ -6,20 +6,16 @@
 #include <optional>
 #include <utility>
 
+#include "fovea/base/bounded_queue.h"
 #include "fovea/base/errors.h"
-#include "fovea/base/prefetch.h"
 #include "fovea/base/process_memory.h"
+#include "fovea/base/thread.h"
 #include "fovea/base/wall_clock.h"
 #include "fovea/map/map_meta.h"
+#include "fovea/pipeline/frame_reader.h"
 
 namespace fovea {
 namespace {
-
-struct TimedFrame {
-  int index = 0;
-  LoadedFrame result;
-  double milliseconds = 0;
-};
 
 std::vector<int> wanted_frames(const DriveInfo& drive, const HoldOut& only) {
   std::vector<int> wanted;
@@ -46,31 +42,29 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
                               const std::function<void(int, int)>& progress) {
   const std::vector<int> wanted = wanted_frames(drive.info(), job.only);
   Localizer localizer(map, drive.info(), job.guess, job.options);
-  std::size_t next = 0;
-  Prefetch<TimedFrame> loader(true, [&]() -> std::optional<TimedFrame> {
-    if (next == wanted.size()) return std::nullopt;
-    const auto start = WallClock::now();
-    const int index = wanted[next++];
-    LoadedFrame result = drive.load(index);
-    return TimedFrame{index, std::move(result), milliseconds_since(start)};
+  FrameReader frames(drive, wanted, /*rate=*/0);
+  BoundedQueue<ReadFrame> read(/*capacity=*/1);
+  const std::jthread reader = start_thread("fovea-read", [&](const std::stop_token& stop) {
+    fill(read, stop, [&] { return frames.next(stop); });
   });
   LocalizedDrive localized;
   std::map<std::string, std::vector<float>> times;
   std::optional<SkippedFrame> skipped;
   const auto start = WallClock::now();
-  while (const std::optional<TimedFrame> loaded = loader.next()) {
+  while (const std::optional<ReadFrame> loaded = read.pop()) {
     if (const auto* frame = std::get_if<Frame>(&loaded->result)) {
       const auto began = WallClock::now();
       localized.frames.push_back(localizer.localize(*frame));
       const double took = milliseconds_since(began);
-      times["decode"].push_back(float(loaded->milliseconds));
+      times["decode"].push_back(float(loaded->decode_ms));
       times["localize"].push_back(float(took));
-      times["frame"].push_back(float(loaded->milliseconds + took));
+      times["frame"].push_back(float(loaded->decode_ms + took));
     } else {
-      if (!skipped) skipped = std::get<SkippedFrame>(loaded->result);
+      const SkippedFrame& unusable = std::get<SkippedFrame>(loaded->result);
+      if (!skipped) skipped = unusable;
       Localization& none = localized.frames.emplace_back();
-      none.index = loaded->index;
-      none.stamp = drive.stamp(loaded->index);
+      none.index = unusable.index;
+      none.stamp = drive.stamp(unusable.index);
     }
     progress(int(localized.frames.size()), int(wanted.size()));
   }

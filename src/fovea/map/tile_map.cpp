@@ -41,6 +41,12 @@ void widen(Submap& submap, const TileKey& key) {
 
 }  // namespace
 
+TilePoints& Tile::edit() {
+  if (!has_changed_) points = std::make_shared<TilePoints>(*points);
+  has_changed_ = true;
+  return const_cast<TilePoints&>(*points);  // not shared, and not const where it was made
+}
+
 TileMap::TileMap(double tile_size) : tile_size_(tile_size) {
   if (!(tile_size > 0 && tile_size <= kMaxTileSize)) {
     throw std::invalid_argument(
@@ -105,14 +111,13 @@ void TileMap::add(const PointCloud& points_local) {
     }
     const auto [place, is_new] = submap.tiles.try_emplace(key);
     if (is_new) {
-      place->second.points.write().origin = corner(key);
+      place->second.edit().origin = corner(key);
       widen(submap, key);
     }
-    place->second.changed_at = step_;
     additions.emplace_back(&place->second, &ranges);
   }
   parallel_for(additions.size(), 1, [&](std::size_t k) {
-    additions[k].first->points.write().append(points_local, placed.position, *additions[k].second);
+    additions[k].first->edit().append(points_local, placed.position, *additions[k].second);
   });
   size_ += points_local.size();
   size_in_memory_ += points_local.size();
@@ -135,22 +140,15 @@ void TileMap::keep_points(const TileId& id, const std::vector<std::uint32_t>& in
     submaps_[id.submap].tiles.erase(id.key);
     removed_.push_back(id);
   } else {
-    tile.points.write().keep(indices);
-    tile.changed_at = step_;
+    tile.edit().keep(indices);
   }
 }
 
-std::span<FusedColor> TileMap::colors(const TileId& id) {
-  Tile& tile = existing_tile(id);
-  tile.changed_at = step_;
-  return tile.points.write().colors;
-}
+std::span<FusedColor> TileMap::colors(const TileId& id) { return existing_tile(id).edit().colors; }
 
 void TileMap::put_camera(const TileId& id, std::span<const std::uint32_t> indices,
                          std::int8_t camera) {
-  Tile& tile = existing_tile(id);
-  tile.changed_at = step_;
-  tile.points.write().camera.put(indices, camera);
+  existing_tile(id).edit().camera.put(indices, camera);
 }
 
 template <class Tiles, class F>
@@ -189,9 +187,7 @@ TileChanges TileMap::take_changes() {
   TileChanges changes;
   for (std::size_t id = 0; id < submaps_.size(); ++id) {
     for (auto& [key, tile] : submaps_[id].tiles) {
-      const std::uint64_t changed_at = std::exchange(tile.changed_at, 0);
-      if (changed_at == 0) continue;
-      changes.changed.push_back({{id, key}, tile.points, changed_at + 1 >= step_});
+      if (tile.has_changed()) changes.changed.push_back({{id, key}, tile.take_snapshot()});
     }
   }
   // One that went and came again is among the changed.
@@ -209,7 +205,7 @@ void TileMap::drop_beyond(const Eigen::Vector3d& center_local, double radius) {
     Submap& submap = submaps_[id];
     std::erase_if(submap.tiles, [&](const auto& entry) {
       const auto& [key, tile] = entry;
-      if (tile.changed_at != 0 || near.contains({id, key})) return false;
+      if (tile.has_changed() || near.contains({id, key})) return false;
       submap.stored.emplace(key, tile.points->size());
       size_in_memory_ -= tile.points->size();
       return true;
@@ -255,7 +251,7 @@ void TileMap::restore(const TileId& id, TilePoints tile) {
   require_same_columns(!tile.intensity.empty());
   size_in_memory_ += tile.size();
   submap->stored.erase(stored);
-  submap->tiles.emplace(id.key, Tile{CopyOnWrite(std::move(tile))});
+  submap->tiles.emplace(id.key, Tile(std::move(tile)));
 }
 
 }  // namespace fovea

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "fovea/base/copy_on_write.h"
 #include "fovea/base/point_cloud.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/tile_points.h"
@@ -29,10 +29,32 @@ struct TileId {
   friend auto operator<=>(const TileId&, const TileId&) = default;
 };
 
-/// A tile in memory.
-struct Tile {
-  CopyOnWrite<TilePoints> points;
-  std::uint64_t changed_at = 0;  ///< step of the map; 0: not since take_changes()
+/// A tile in memory. A snapshot of its points never changes: the first change after take_changes()
+/// copies the points.
+class Tile {
+ public:
+  /// A new tile.
+  Tile() : points(std::make_shared<TilePoints>()), has_changed_(true) {}
+  /// A tile as the store has it.
+  explicit Tile(TilePoints stored) : points(std::make_shared<TilePoints>(std::move(stored))) {}
+  Tile(const Tile& other)
+      : points(std::make_shared<TilePoints>(*other.points)), has_changed_(other.has_changed_) {}
+  Tile(Tile&&) = default;
+  Tile& operator=(const Tile&) = delete;
+
+  std::shared_ptr<const TilePoints> points;
+
+  bool has_changed() const { return has_changed_; }
+  /// The points, to be changed. Earlier references to them are invalid.
+  TilePoints& edit();
+  /// The points as they are, which from now on count as unchanged.
+  std::shared_ptr<const TilePoints> take_snapshot() {
+    has_changed_ = false;
+    return points;
+  }
+
+ private:
+  bool has_changed_ = false;  // since take_snapshot(): no snapshot shares the points
 };
 
 /// Some seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
@@ -45,12 +67,11 @@ struct Submap {
   TileKey low, high;
 };
 
-/// What has become of the tiles since a store last looked.
+/// Tiles that have changed since the last take_changes().
 struct TileChanges {
   struct Changed {
     TileId id;
-    CopyOnWrite<TilePoints> points;
-    bool lately = false;  ///< in this step or the one before: it may well go on changing
+    std::shared_ptr<const TilePoints> points;
   };
   std::vector<Changed> changed;
   std::vector<TileId> removed;
@@ -69,9 +90,6 @@ class TileMap {
   /// Points of all tiles, and of those in memory.
   std::size_t size() const { return size_; }
   std::size_t size_in_memory() const { return size_in_memory_; }
-
-  /// What changes from here on is told from what has changed before, e.g. with each frame.
-  void begin_step() { ++step_; }
 
   /// Opens a new submap, which becomes the last.
   void add_submap(const RigidMotion& T_local_submap);
@@ -106,7 +124,7 @@ class TileMap {
   void for_each_tile_near(const Eigen::Vector3d& center_local, double radius,
                           const std::function<void(const TileId&, const TilePoints&)>& f) const;
 
-  /// What changed since the last call. The points are shared, not copied.
+  /// Snapshots of the tiles that changed since the last call.
   TileChanges take_changes();
   /// Drops from memory the unchanged tiles that a ball does not touch, but none of the last submap:
   /// the store has them.
@@ -133,7 +151,6 @@ class TileMap {
   double tile_size_;
   std::vector<Submap> submaps_;
   std::vector<TileId> removed_;
-  std::uint64_t step_ = 1;
   std::size_t size_ = 0, size_in_memory_ = 0;
   std::optional<bool> has_intensity_;  // known from the first points on
 };

@@ -82,7 +82,7 @@ TEST(TileMap, TellsOfTheTilesThatChanged) {
   EXPECT_TRUE(changes.removed.empty());
 }
 
-TEST(TileMap, ChangesToldOfStayAsTheyWere) {
+TEST(TileMap, SnapshotsNeverChange) {
   TileMap map(1.0);
   map.add_submap(RigidMotion::Identity());
   map.add(one_point_each({{0.5f, 0.5f, 0.5f}}));
@@ -92,26 +92,6 @@ TEST(TileMap, ChangesToldOfStayAsTheyWere) {
   EXPECT_EQ(changes.changed[0].points->size(), 1u);
   EXPECT_NE(changes.changed[0].points->colors[0].views, 99);
   EXPECT_EQ(map.submaps()[0].tiles.at({0, 0, 0}).points->colors[0].views, 99);
-}
-
-TEST(TileMap, TellsWhichTilesChangedLately) {
-  TileMap map(2.0);
-  map.add_submap(RigidMotion::Identity());
-  for (int x = 0; x < 3; ++x) {
-    map.begin_step();
-    map.add(one_point_each({{2.0F * float(x), 1, 1}}));
-  }
-  const auto lately = [&] {
-    std::vector<int> at;
-    for (const TileChanges::Changed& tile : map.take_changes().changed) {
-      if (tile.lately) at.push_back(tile.id.key.x);
-    }
-    return at;
-  };
-  EXPECT_EQ(lately(), (std::vector<int>{1, 2}));
-  map.colors({0, {0, 0, 0}})[0].spread = 1;
-  map.begin_step();
-  EXPECT_EQ(lately(), (std::vector<int>{0}));
 }
 
 TEST(TileMap, PointsOfATileComeInTheOrderOfAdding) {
@@ -227,7 +207,7 @@ TEST(TileMap, FarTilesLeaveTheMemoryAndComeBack) {
     map.add(random_map_points(1000, random, 10.0));
   }
   const TileMap whole = map;
-  std::map<TileId, CopyOnWrite<TilePoints>> store;
+  std::map<TileId, std::shared_ptr<const TilePoints>> store;
   for (const TileChanges::Changed& tile : map.take_changes().changed) {
     store.emplace(tile.id, tile.points);
   }

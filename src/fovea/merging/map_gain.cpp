@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fovea/geometry/point_index.h"
-#include "fovea/map/map_keeper.h"
+#include "fovea/map/tile_cache.h"
 #include "fovea/map/tile_place.h"
 #include "fovea/mapping/exposure.h"
 #include "fovea/merging/place_points.h"

@@ -14,6 +14,7 @@
 #include "fovea/geometry/geodesy.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/map/tile_cache.h"
 #include "fovea/merging/map_gain.h"
 #include "fovea/merging/map_joiner.h"
 
@@ -123,10 +124,11 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
     for (const auto& [key, value] : merged_meta(content_a, content_b, added)) {
       writer->put_meta(key, value);
     }
-    MapKeeper keeper(std::move(writer),
-                     {available_threads() > 1, job.memory, /*commit_at_end=*/true});
-    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, keeper);
-    keeper.finish(map, {});
+    Checkpointer file(std::move(writer),
+                      {available_threads() > 1, job.memory, /*commit_at_end=*/true});
+    TileCache cache(file, job.memory);
+    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, file, cache);
+    file.finish(map, {});
   }
   figures.points = map.size();
   return figures;

@@ -186,12 +186,14 @@ std::vector<Cube> cubes_of(const TileMap& map, std::size_t first_b) {
 }  // namespace
 
 PointMergeFigures merge_points(TileMap& map, std::size_t first_b, double spacing,
-                               MapKeeper& keeper) {
+                               Checkpointer& file, TileCache& cache) {
   PointMergeFigures figures;
   for (const Cube& cube : cubes_of(map, first_b)) {
-    keeper.bring_near(map, middle_of(cube), kCubeReach);
+    cache.load_within(map, middle_of(cube), kCubeReach);
     CubeMerger(map, first_b, spacing, cube).merge(figures);
-    if (keeper.needs_memory(map)) keeper.checkpoint(map, {}, middle_of(cube), kCubeReach);
+    if (!cache.is_full(map)) continue;
+    cache.evict_beyond(map, middle_of(cube), kCubeReach);
+    file.checkpoint(map, {});
   }
   return figures;
 }

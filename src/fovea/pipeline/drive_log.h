@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "fovea/map/checkpointer.h"
 #include "fovea/map/frame_record.h"
-#include "fovea/map/map_keeper.h"
 #include "fovea/map/tile_map.h"
 
 namespace fovea {

@@ -1,82 +1,64 @@
-// Pipeline of frames: decoding, tracking, and the caller's mapping (docs/performance.md). Without a
-// rate, the three stages run in parallel on the threads of the parallel loops. With a rate, the
-// caller's thread also tracks, and another thread decodes: this shortens the time of one frame.
+// Reads and tracks the frames of a drive while the caller maps:
+//
+//   thread       work                       result goes to
+//   fovea-read   read: files or a sensor    queue read_
+//   fovea-track  track: pose of the LiDAR   queue tracked_
+//   the caller   next(), then mapping
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <stop_token>
+#include <thread>
 
-#include "fovea/base/idle_gate.h"
-#include "fovea/base/prefetch.h"
-#include "fovea/base/producer.h"
+#include "fovea/base/bounded_queue.h"
 #include "fovea/base/wall_clock.h"
+#include "fovea/pipeline/frame_reader.h"
 #include "fovea/pipeline/incremental_mapper.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 
-struct FramePipelineOptions {
-  /// Frames per second of the simulated live sensor; 0: no waiting.
-  double rate = 0;
-  bool overlap = true;        ///< false: all stages run in the caller's thread
-  std::stop_token stop = {};  ///< ends after the frames that tracking has begun
-  /// Deferred work; runs in the tracking thread before it waits for the next frame.
-  std::function<void()> settle = [] {};
-  /// Counts frames from their arrival to the end of their mapping. With a rate, decoding of the
-  /// next frame waits for these frames while there is time.
-  std::shared_ptr<IdleGate> gate = std::make_shared<IdleGate>();
+/// A frame that has been tracked, or was skipped.
+struct TrackedFrame {
+  using TimePoint = WallClock::time_point;
+  ReadFrame read;
+  std::optional<TrackedScan> tracked;  ///< absent: skipped
+  TimePoint tracking_began, tracking_ended;
+  /// At a live sensor's rate, the time at which the frame was due. Otherwise tracking_began.
+  TimePoint arrival() const { return read.due.value_or(tracking_began); }
 };
 
-/// A frame that has been tracked, or was skipped.
-struct LocatedFrame {
-  using TimePoint = WallClock::time_point;
-  LoadedFrame result;
-  std::optional<TrackedScan> tracked;  ///< absent: skipped
-  /// With a rate, the time at which the frame was due; otherwise tracking_began.
-  TimePoint arrival;
-  TimePoint tracking_began, tracking_ended;
-  double decode_ms = 0;  ///< wall time of reading and decoding
+struct FramePipelineStages {
+  /// The next frame, in order; nothing at the end or if `stop` is requested.
+  std::function<std::optional<ReadFrame>(const std::stop_token& stop)> read;
+  /// Called for each usable frame, in order.
+  std::function<TrackedScan(const Frame&)> track;
+  /// Deferred work of the tracker. Called before the wait for a frame.
+  std::function<void()> apply_deferred = [] {};
 };
 
 class FramePipeline {
  public:
-  /// @param source  must outlive the pipeline
-  /// @param indices  of the frames, in order
-  /// @param track   called for each usable frame in order, in one thread at a time
-  FramePipeline(const FrameSource& source, std::vector<int> indices,
-                std::function<TrackedScan(const Frame&)> track,
-                const FramePipelineOptions& options);
+  /// @param threaded  false: next() itself reads and tracks
+  /// @param stop      ends reading. Frames that are tracked still come.
+  FramePipeline(FramePipelineStages stages, bool threaded, const std::stop_token& stop);
 
-  /// The next frame, in order; nothing at the end. Throws errors of decoding and tracking in the
-  /// order of the frames. The call also ends the mapping of the frame before.
-  std::optional<LocatedFrame> next();
+  /// The next frame, in order; nothing at the end. Throws errors of reading and tracking in the
+  /// order of the frames.
+  std::optional<TrackedFrame> next();
 
  private:
-  using TimePoint = WallClock::time_point;
-  struct Arrived {
-    LoadedFrame result;
-    double decode_ms;
-    std::optional<TimePoint> due;
-  };
-  void expect_until(std::size_t place);
-  std::optional<Arrived> arrive(const std::stop_token& stop);
-  std::optional<LocatedFrame> locate();
-  WallClock::duration periods(double count) const;
+  std::jthread start_reader();
+  std::jthread start_tracker();
+  std::optional<TrackedFrame> track(std::optional<ReadFrame> read);
 
-  const FrameSource& source_;
-  std::vector<int> indices_;
-  std::size_t next_ = 0;      // place in indices_
-  std::size_t expected_ = 1;  // first place not yet passed to source_.expect()
-  std::function<TrackedScan(const Frame&)> track_;
-  FramePipelineOptions options_;
-  TimePoint first_arrival_;
-  bool taken_ = false;                                      // whether the caller has a frame
-  Producer<Arrived> sensed_;                                // with a rate
-  std::stop_callback<std::function<void()>> stop_sensing_;  // ends the wait for a frame
-  Prefetch<Arrived> decoded_;                               // without a rate
-  Prefetch<LocatedFrame> located_;
+  FramePipelineStages stages_;
+  bool threaded_;
+  std::stop_token stop_;
+  BoundedQueue<ReadFrame> read_;
+  BoundedQueue<TrackedFrame> tracked_;
+  std::jthread reader_, tracker_;  // use all of the above; without threads, both are empty
+  std::stop_callback<std::function<void()>> stop_reading_;
 };
 
 }  // namespace fovea

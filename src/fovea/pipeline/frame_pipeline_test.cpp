@@ -3,41 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <numeric>
+#include <chrono>
+#include <thread>
 #include <utility>
 #include <vector>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/pipeline/numbered_frames.h"
 
 namespace fovea::frame_pipeline_test {
 
 using namespace std::chrono_literals;
-
-constexpr int kSkipped = 3;
-
-/// Frames without content; one is skipped, one may be an error.
-class Numbers : public FrameSource {
- public:
-  int error_at = -1;
-  mutable std::atomic<int> loaded{0};
-  mutable std::vector<std::pair<int, int>> expected;  // and how many had been loaded
-
-  const DriveInfo& info() const override { return info_; }
-  std::optional<TimeNs> stamp(int index) const override { return index; }
-  void expect(int index) const override { expected.emplace_back(index, loaded); }
-  LoadedFrame load(int index) const override {
-    ++loaded;
-    if (index == error_at) throw InputError("no such frame", "numbers", "ask for another");
-    if (index == kSkipped) return SkippedFrame{index, SkipReason::kMissingScan, ""};
-    Frame frame;
-    frame.index = index;
-    return frame;
-  }
-
- private:
-  DriveInfo info_;
-};
 
 TrackedScan number_of(const Frame& frame) {
   TrackedScan tracked;
@@ -45,160 +20,138 @@ TrackedScan number_of(const Frame& frame) {
   return tracked;
 }
 
-/// Indices in the order in which they come; the one skipped negative.
-/// first, ..., end - 1.
-std::vector<int> numbers(int first, int end) {
-  std::vector<int> numbers(static_cast<std::size_t>(end - first));
-  std::iota(numbers.begin(), numbers.end(), first);
-  return numbers;
-}
+/// A pipeline over numbered frames.
+struct NumberedRun {
+  NumberedRun(const NumberedFrames& source, int first, int end, bool threaded,
+              std::function<TrackedScan(const Frame&)> track = number_of, double rate = 0)
+      : reader(source, numbers(first, end), rate),
+        frames({.read = [this](const std::stop_token& s) { return reader.next(s); },
+                .track = std::move(track)},
+               threaded, stop.get_token()) {}
 
-std::vector<int> indices(FramePipeline& frames) {
-  std::vector<int> found;
-  while (const auto located = frames.next()) {
-    const auto* skipped = std::get_if<SkippedFrame>(&located->result);
-    found.push_back(skipped != nullptr ? -skipped->index : located->tracked->result.index);
+  /// Indices in the order in which the frames come; the skipped one is negative.
+  std::vector<int> indices() {
+    std::vector<int> found;
+    while (const auto frame = frames.next()) {
+      const auto* skipped = std::get_if<SkippedFrame>(&frame->read.result);
+      found.push_back(skipped != nullptr ? -skipped->index : frame->tracked->result.index);
+    }
+    return found;
   }
-  return found;
-}
 
-TEST(FramePipeline, EachFrameIsExpectedOnceBeforeItIsLoaded) {
-  const Numbers source;
-  FramePipeline frames(source, numbers(0, 30), number_of, {.overlap = true});
-  while (frames.next()) {
-  }
-  ASSERT_EQ(source.expected.size(), 29u);  // the first is loaded at once
-  for (int i = 1; i < 30; ++i) {
-    const auto [index, loaded] = source.expected[std::size_t(i) - 1];
-    EXPECT_EQ(index, i);
-    EXPECT_LE(loaded, i);
-  }
-}
+  std::stop_source stop;
+  FrameReader reader;
+  FramePipeline frames;
+};
 
 TEST(FramePipeline, FramesComeInOrderTrackedOrSkipped) {
-  const Numbers source;
-  for (const bool overlap : {false, true}) {
-    FramePipeline frames(source, numbers(1, 6), number_of, {.overlap = overlap});
-    EXPECT_EQ(indices(frames), (std::vector<int>{1, 2, -3, 4, 5}));
-    FramePipeline none(source, numbers(6, 6), number_of, {.overlap = overlap});
-    EXPECT_EQ(indices(none), std::vector<int>{});
+  const NumberedFrames source;
+  for (const bool threaded : {false, true}) {
+    EXPECT_EQ(NumberedRun(source, 1, 6, threaded).indices(), (std::vector<int>{1, 2, -3, 4, 5}));
+    EXPECT_EQ(NumberedRun(source, 6, 6, threaded).indices(), std::vector<int>{});
+  }
+}
+
+TEST(FramePipeline, DeferredWorkRunsBeforeEachFrame) {
+  const NumberedFrames source;
+  for (const bool threaded : {false, true}) {
+    FrameReader reader(source, numbers(10, 15), /*rate=*/0);
+    std::atomic<int> deferred = 0, tracked = 0;
+    FramePipeline frames({.read = [&](const std::stop_token& stop) { return reader.next(stop); },
+                          .track =
+                              [&](const Frame& frame) {
+                                EXPECT_EQ(deferred, ++tracked);
+                                return number_of(frame);
+                              },
+                          .apply_deferred = [&] { ++deferred; }},
+                         threaded, {});
+    while (frames.next()) {
+    }
+    EXPECT_EQ(tracked, 5);
+    EXPECT_EQ(deferred, 6);  // once more before the end is seen
   }
 }
 
 TEST(FramePipeline, ErrorsOfAnyStageComeAfterTheFramesBefore) {
-  Numbers source;
+  NumberedFrames source;
   source.error_at = 5;
-  for (const bool overlap : {false, true}) {
-    FramePipeline decoding(source, numbers(0, 9), number_of, {.overlap = overlap});
-    const auto fails_at = [](int index) {
-      return [index](const Frame& frame) {
-        if (frame.index == index) throw OutputError("no pose", "frame", "give one");
-        return number_of(frame);
-      };
-    };
-    FramePipeline tracking(source, numbers(0, 9), fails_at(4), {.overlap = overlap});
-    for (int i = 0; i < 5; ++i) ASSERT_TRUE(decoding.next()) << i;
-    EXPECT_THROW(decoding.next(), InputError);
-    for (int i = 0; i < 4; ++i) ASSERT_TRUE(tracking.next()) << i;
-    EXPECT_THROW(tracking.next(), OutputError);
+  const auto fails_at_4 = [](const Frame& frame) {
+    if (frame.index == 4) throw OutputError("no pose", "frame", "give one");
+    return number_of(frame);
+  };
+  for (const bool threaded : {false, true}) {
+    NumberedRun reading(source, 0, 9, threaded), tracking(source, 0, 9, threaded, fails_at_4);
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(reading.frames.next()) << i;
+    EXPECT_THROW(reading.frames.next(), InputError);
+    for (int i = 0; i < 4; ++i) ASSERT_TRUE(tracking.frames.next()) << i;
+    EXPECT_THROW(tracking.frames.next(), OutputError);
   }
 }
 
 TEST(FramePipeline, ReadsFewFramesAhead) {
-  if (available_threads() < 2) GTEST_SKIP() << "one processor";
-  const Numbers source;
-  FramePipeline frames(source, numbers(10, 100), number_of, {});
+  const NumberedFrames source;
+  NumberedRun run(source, 10, 100, /*threaded=*/true);
+  // One in each queue, and one in each thread that waits for room.
+  constexpr int kAhead = 4;
   for (int taken = 0; taken < 10; ++taken) {
-    while (source.loaded < taken + 2) std::this_thread::yield();  // one tracked, one decoded
-    std::this_thread::sleep_for(1ms);                             // so that it could go on
-    ASSERT_EQ(source.loaded, taken + 2);
-    ASSERT_TRUE(frames.next());
+    while (source.loaded < taken + kAhead) std::this_thread::yield();
+    std::this_thread::sleep_for(1ms);  // time for one too many
+    ASSERT_EQ(source.loaded, taken + kAhead);
+    ASSERT_TRUE(run.frames.next());
   }
 }
 
-TEST(FramePipeline, AtARateFramesArriveWhenTheyAreDue) {
-  const Numbers source;
-  for (const bool overlap : {false, true}) {
-    FramePipeline frames(source, numbers(0, 6), number_of, {.rate = 200, .overlap = overlap});
-    const auto first = frames.next();
-    for (int i = 1; i < 6; ++i) {
-      const auto located = frames.next();
-      EXPECT_EQ(located->arrival, first->arrival + i * 5ms);
-      EXPECT_GE(located->tracking_began, located->arrival);
-    }
-  }
-}
-
-// However late its taker is, a live sensor's frame was there at its time.
+// A live sensor's frame arrives when it is due, however late the pipeline takes it.
 TEST(FramePipeline, WaitingCountsAtARateAndNotWithoutOne) {
-  const Numbers source;
+  const NumberedFrames source;
+  const auto slow = [](const Frame& frame) {
+    std::this_thread::sleep_for(20ms);
+    return number_of(frame);
+  };
   for (const double rate : {0.0, 1000.0}) {
-    const auto slow = [](const Frame& frame) {
-      std::this_thread::sleep_for(20ms);
-      return number_of(frame);
-    };
-    FramePipeline frames(source, numbers(10, 14), slow, {.rate = rate});
-    std::optional<LocatedFrame> last;
-    while (auto located = frames.next()) last = std::move(located);
-    const auto waited = last->tracking_began - last->arrival;
+    NumberedRun run(source, 10, 14, /*threaded=*/true, slow, rate);
+    std::optional<TrackedFrame> last;
+    while (auto frame = run.frames.next()) last = std::move(frame);
+    const auto waited = last->tracking_began - last->arrival();
     EXPECT_TRUE(rate == 0 ? waited == 0ms : waited >= 3 * 20ms - 3ms);
   }
 }
 
-// A frame in hand has the processors for itself while the next one is far from due.
-TEST(FramePipeline, AtARateWhatCanWaitWaitsForTheFrameInHand) {
-  const Numbers source;
-  std::atomic<int> settled = 0;
-  std::stop_source stop;
-  FramePipeline frames(source, numbers(0, 9), number_of,
-                       {.rate = 1e-3, .stop = stop.get_token(), .settle = [&] { ++settled; }});
-  ASSERT_TRUE(frames.next());
-  std::this_thread::sleep_for(5ms);  // so that it could go on
-  EXPECT_EQ(source.loaded, 1);
-  EXPECT_EQ(settled, 1);  // before the first frame
-  std::jthread taker([&] { EXPECT_FALSE(frames.next()); });
-  while (source.loaded < 2 || settled < 2) std::this_thread::yield();
-  stop.request_stop();
-}
-
-TEST(FramePipeline, AFrameInHandForLongHoldsUpNoOther) {
-  const Numbers source;
-  FramePipeline frames(source, numbers(10, 14), number_of, {.rate = 100});
-  ASSERT_TRUE(frames.next());
-  while (source.loaded < 2) std::this_thread::yield();  // it is about to be due
-  EXPECT_TRUE(frames.next());
-}
-
 TEST(FramePipeline, AStopEndsTheWaitForAFrameNotDue) {
-  const Numbers source;
-  for (const bool overlap : {false, true}) {
-    std::stop_source stop;
-    FramePipeline frames(source, numbers(0, 9), number_of,
-                         {.rate = 1e-3, .overlap = overlap, .stop = stop.get_token()});
-    EXPECT_TRUE(frames.next());  // at once
-    std::jthread interrupt([&] {
+  const NumberedFrames source;
+  for (const bool threaded : {false, true}) {
+    NumberedRun run(source, 0, 9, threaded, number_of, /*rate=*/1e-3);
+    EXPECT_TRUE(run.frames.next());  // at once
+    const std::jthread interrupt([&] {
       std::this_thread::sleep_for(20ms);
-      stop.request_stop();
+      run.stop.request_stop();
     });
-    EXPECT_FALSE(frames.next());  // not after a quarter of an hour
+    EXPECT_FALSE(run.frames.next());  // not after a quarter of an hour
   }
 }
 
-TEST(FramePipeline, AStopLosesNoFrameThatWasTracked) {
-  if (available_threads() < 2) GTEST_SKIP() << "one processor";
-  const Numbers source;
-  std::stop_source stop;
+TEST(FramePipeline, AStopLosesNoTrackedFrame) {
+  const NumberedFrames source;
   std::atomic<int> tracked{0};
   const auto track = [&](const Frame& frame) {
     ++tracked;
     return number_of(frame);
   };
-  FramePipeline frames(source, numbers(10, 100), track, {.stop = stop.get_token()});
-  ASSERT_TRUE(frames.next());
-  while (tracked < 2) std::this_thread::yield();
-  stop.request_stop();
-  EXPECT_EQ(indices(frames), std::vector<int>{11});
-  EXPECT_EQ(tracked, 2);
+  NumberedRun run(source, 10, 100, /*threaded=*/true, track);
+  ASSERT_TRUE(run.frames.next());
+  while (tracked < 3) std::this_thread::yield();
+  run.stop.request_stop();
+  const std::size_t rest = run.indices().size();
+  EXPECT_EQ(int(rest) + 1, tracked);
+  EXPECT_LE(tracked, 4);
+}
+
+TEST(FramePipeline, DestructionEndsAllThreads) {
+  const NumberedFrames source;
+  for (const double rate : {0.0, 1e-3}) {
+    NumberedRun run(source, 0, 1000, /*threaded=*/true, number_of, rate);
+    EXPECT_TRUE(run.frames.next());
+  }
 }
 
 }  // namespace fovea::frame_pipeline_test

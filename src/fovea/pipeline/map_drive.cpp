@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <future>
-
 #include "fovea/base/errors.h"
 #include "fovea/base/parallel.h"
-#include "fovea/map/map_keeper.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/map/tile_cache.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/drive_records.h"
@@ -24,19 +22,19 @@
 namespace fovea {
 namespace {
 
-/// The last stage of a frame.
+/// Maps a tracked frame.
 FrameRecord map_frame(IncrementalMapper& mapper, const FrameSource& source, const DriveInfo& drive,
-                      LocatedFrame& located) {
-  if (const auto* skipped = std::get_if<SkippedFrame>(&located.result)) {
+                      TrackedFrame& tracked) {
+  if (const auto* skipped = std::get_if<SkippedFrame>(&tracked.read.result)) {
     return skipped_record(*skipped, source.stamp(skipped->index));
   }
   const WallClock::time_point mapping_began = WallClock::now();
-  const Frame& frame = std::get<Frame>(located.result);
-  FrameRecord record = record_of(mapper.map_frame(frame, std::move(*located.tracked)));
-  record.milliseconds["frame"] = milliseconds_since(located.arrival);
-  record.milliseconds["wait"] = milliseconds(located.tracking_began - located.arrival) +
-                                milliseconds(mapping_began - located.tracking_ended);
-  record.milliseconds["decode"] = located.decode_ms;
+  const Frame& frame = std::get<Frame>(tracked.read.result);
+  FrameRecord record = record_of(mapper.map_frame(frame, std::move(*tracked.tracked)));
+  record.milliseconds["frame"] = milliseconds_since(tracked.arrival());
+  record.milliseconds["wait"] = milliseconds(tracked.tracking_began - tracked.arrival()) +
+                                milliseconds(mapping_began - tracked.tracking_ended);
+  record.milliseconds["decode"] = tracked.read.decode_ms;
   note_missing_images(frame, record);
   add_views(frame, drive, record);
   return record;
@@ -60,8 +58,9 @@ class MapRun {
         drive_records_{drive_record(source)},
         sensor_records_(sensor_records(drive)),
         threaded_(job.overlap && available_threads() > 1),
-        keeper_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
-                keeper_options()),
+        file_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
+              checkpointer_options()),
+        cache_(file_, job.memory),
         mapper_(mapper_of_drive()),
         figures_(drive, job.rate),
         views_(drive) {
@@ -83,10 +82,13 @@ class MapRun {
   MapSummary summary() const;
 
  private:
-  MapKeeperOptions keeper_options();
+  CheckpointerOptions checkpointer_options();
   void resume_from_file();
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
-  void check_calibration(const LocatedFrame& located, FrameRecord& record);
+  TrackedScan track(const Frame& frame);  // runs in the tracker's thread
+  void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
+  void checkpoint_if_due();
+  void check_calibration(const TrackedFrame& tracked, FrameRecord& record);
   /// InputError if too many points were dropped so far.
   void check_points() const {
     if (job_.allow_dropped) return;
@@ -104,8 +106,8 @@ class MapRun {
   std::vector<DriveRecord> drive_records_;
   std::vector<SensorRecord> sensor_records_;
   bool threaded_;
-  std::shared_ptr<IdleGate> gate_ = std::make_shared<IdleGate>();
-  MapKeeper keeper_;
+  Checkpointer file_;
+  TileCache cache_;
   std::unique_ptr<IncrementalMapper> mapper_;
   DriveLog log_;
   DriveFigures figures_;
@@ -117,13 +119,8 @@ class MapRun {
   std::optional<DriveLostError> lost_;
 };
 
-MapKeeperOptions MapRun::keeper_options() {
-  MapKeeperOptions options{threaded_, job_.memory};
-  if (threaded_ && job_.rate > 0) {
-    options.pause = [gate = gate_](WallClock::time_point latest, const std::stop_token& hurry) {
-      gate->wait(latest, hurry);
-    };
-  }
+CheckpointerOptions MapRun::checkpointer_options() {
+  CheckpointerOptions options{threaded_, job_.memory};
   if (job_.observer != nullptr) {
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
       job_.observer->map_changed(changes, rows, mapper_->map());
@@ -138,7 +135,7 @@ std::unique_ptr<IncrementalMapper> MapRun::mapper_of_drive() {
     return initial_velocity(source_, job_.given_poses, frame, job_.settings.compensates_motion());
   };
   services.load_near = [this](TileMap& map, const Eigen::Vector3d& center_local, double radius) {
-    keeper_.bring_near(map, center_local, radius);
+    cache_.load_within(map, center_local, radius);
   };
   return make_mapper(drive_, job_.settings, job_.pose_source, std::move(services));
 }
@@ -157,9 +154,9 @@ void MapRun::resume_from_file() {
   if (log_.has_mapped()) views_.skip();
 }
 
-void MapRun::check_calibration(const LocatedFrame& located, FrameRecord& record) {
+void MapRun::check_calibration(const TrackedFrame& tracked, FrameRecord& record) {
   if (!check_ || record.status != FrameStatus::kMapped) return;
-  const Frame& frame = std::get<Frame>(located.result);
+  const Frame& frame = std::get<Frame>(tracked.read.result);
   if (!check_->is_due(frame.index)) return;
   const WallClock::time_point start = WallClock::now();
   if (const auto motion = mapped_motion(record, latest_)) check_->add(frame, *motion);
@@ -176,47 +173,56 @@ MapRows MapRun::fresh_rows(bool last) {
 }
 
 void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress) {
-  const int total = static_cast<int>(drive_.frame_count());
-  const auto track = [&](const Frame& frame) {
-    FrameTask task{.held_out = job_.hold_out.contains(frame.index)};
-    const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
-    if (place < job_.given_poses.size()) task.given_pose = job_.given_poses[place];
-    return mapper_->track(frame, task);
-  };
   std::vector<int> indices = drive_.frame_indices();
   indices.erase(indices.begin(), indices.begin() + std::ptrdiff_t(log_.size()));
-  FramePipeline frames(
-      source_, std::move(indices), track,
-      {job_.rate, threaded_, job_.stop, [this] { mapper_->apply_deferred_tracking(); }, gate_});
-  const auto next_frame = [&]() -> std::optional<LocatedFrame> {
-    try {
-      return frames.next();
-    } catch (const DriveLostError& error) {
-      lost_ = error;
-      return std::nullopt;
+  FrameReader reader(source_, std::move(indices), job_.rate);
+  FramePipeline frames({.read = [&](const std::stop_token& stop) { return reader.next(stop); },
+                        .track = [&](const Frame& frame) { return track(frame); },
+                        .apply_deferred = [&] { mapper_->apply_deferred_tracking(); }},
+                       threaded_, job_.stop);
+  try {
+    while (std::optional<TrackedFrame> frame = frames.next()) {
+      map_next(*frame, progress);
+      checkpoint_if_due();
     }
-  };
-  while (std::optional<LocatedFrame> located = next_frame()) {
-    if (const auto* frame = std::get_if<Frame>(&located->result)) views_.add(frame->scan);
-    FrameRecord record = map_frame(*mapper_, source_, drive_, *located);
-    check_calibration(*located, record);
-    figures_.add(record, /*is_new=*/true);
-    log_.add(record);
-    // At frames that do not depend on timing.
-    constexpr std::size_t kCheckEvery = 30;
-    if (log_.size() % kCheckEvery == 0) check_points();
-    if (job_.observer != nullptr) {
-      job_.observer->frame_mapped(record, std::get_if<Frame>(&located->result), mapper_->map());
-    }
-    if (progress) progress({static_cast<int>(log_.size()), total, mapper_->map().size(), &record});
-    latest_ = std::move(record);
-    mapper_->apply_deferred_mapping();
-    const bool due = log_.fresh() >= job_.checkpoint_frames && !keeper_.is_writing();
-    if (log_.has_mapped() && views_.passed() && (due || keeper_.needs_memory(mapper_->map()))) {
-      keeper_.checkpoint(mapper_->map(), fresh_rows(/*last=*/false),
-                         latest_->T_local_lidar.translation(), mapper_->reach());
-    }
+  } catch (const DriveLostError& error) {
+    lost_ = error;
   }
+}
+
+TrackedScan MapRun::track(const Frame& frame) {
+  FrameTask task{.held_out = job_.hold_out.contains(frame.index)};
+  const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
+  if (place < job_.given_poses.size()) task.given_pose = job_.given_poses[place];
+  return mapper_->track(frame, task);
+}
+
+void MapRun::map_next(TrackedFrame& tracked,
+                      const std::function<void(const MapProgress&)>& progress) {
+  const auto* frame = std::get_if<Frame>(&tracked.read.result);
+  if (frame != nullptr) views_.add(frame->scan);
+  FrameRecord record = map_frame(*mapper_, source_, drive_, tracked);
+  check_calibration(tracked, record);
+  figures_.add(record, /*is_new=*/true);
+  log_.add(record);
+  // At frames that do not depend on timing.
+  constexpr std::size_t kCheckEvery = 30;
+  if (log_.size() % kCheckEvery == 0) check_points();
+  if (job_.observer != nullptr) job_.observer->frame_mapped(record, frame, mapper_->map());
+  if (progress) {
+    progress({int(log_.size()), int(drive_.frame_count()), mapper_->map().size(), &record});
+  }
+  latest_ = std::move(record);
+  mapper_->apply_deferred_mapping();
+}
+
+void MapRun::checkpoint_if_due() {
+  if (!log_.has_mapped() || !views_.passed()) return;
+  TileMap& map = mapper_->map();
+  const bool is_due = log_.fresh() >= job_.checkpoint_frames && !file_.is_writing();
+  if (!is_due && !cache_.is_full(map)) return;
+  cache_.evict_beyond(map, latest_->T_local_lidar.translation(), mapper_->reach());
+  file_.checkpoint(map, fresh_rows(/*last=*/false));
 }
 
 void MapRun::finish() {
@@ -228,12 +234,9 @@ void MapRun::finish() {
   }
   views_.require_view();
   check_points();
-  // In parallel with the writer, which sometimes waits for the disk.
-  auto calibration = std::async(threaded_ ? std::launch::async : std::launch::deferred, [this] {
-    return check_ ? check_->estimates() : std::vector<CameraCalibration>();
-  });
-  keeper_.finish(mapper_->map(), fresh_rows(/*last=*/true));
-  calibration_ = calibration.get();
+  // While the writer thread writes the checkpoint before.
+  if (check_) calibration_ = check_->estimates();
+  file_.finish(mapper_->map(), fresh_rows(/*last=*/true));
 }
 
 void MapRun::require_whole_drive() const {

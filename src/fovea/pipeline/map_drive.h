@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/map/checkpointer.h"
 #include "fovea/map/frame_record.h"
-#include "fovea/map/map_keeper.h"
 #include "fovea/pipeline/incremental_mapper.h"
 #include "fovea/pipeline/map_settings.h"
 #include "fovea/pipeline/map_summary.h"
@@ -17,14 +17,14 @@
 
 namespace fovea {
 
-/// Looks on while a map is made. Called in the thread that maps, which waits for it.
+/// Observes a growing map. Called in the mapping thread.
 class MapObserver {
  public:
   virtual ~MapObserver() = default;
   /// After each frame, in order.
-  /// @param frame  nullptr where it was skipped
+  /// @param frame  nullptr if it was skipped
   virtual void frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) = 0;
-  /// When what has changed is handed on to be written: all before it is in the file.
+  /// Before a checkpoint is written. All earlier checkpoints are in the file.
   virtual void map_changed(const TileChanges& changes, const MapRows& rows, const TileMap& map) = 0;
 };
 
@@ -39,8 +39,8 @@ struct MapJob {
   std::vector<RigidMotion> given_poses;
   /// Frames a second, released by the clock as a live sensor does; 0: as fast as they are mapped.
   double rate = 0;
-  /// Stages work side by side on neighbouring frames where there are threads for it; the map is the
-  /// same.
+  /// Reading, tracking, mapping and writing run in parallel if there is more than one thread. The
+  /// map is the same.
   bool overlap = true;
   bool calibrate = false;      ///< correct the calibration first (pipeline/self_calibration.h)
   bool force = false;          ///< overwrite `output`

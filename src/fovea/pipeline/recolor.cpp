@@ -6,6 +6,7 @@
 #include "fovea/base/parallel.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/occupancy.h"
+#include "fovea/map/tile_cache.h"
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/image_pyramid.h"
 #include "fovea/pipeline/config.h"
@@ -51,11 +52,13 @@ TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& w
 
 class Recolorer {
  public:
-  Recolorer(const DriveInfo& drive, const MapSettings& settings, TileMap map, MapKeeper& keeper)
+  Recolorer(const DriveInfo& drive, const MapSettings& settings, TileMap map, Checkpointer& file,
+            std::size_t memory)
       : drive_(drive),
         foveal_(settings.foveal()),
         map_(std::move(map)),
-        keeper_(keeper),
+        file_(file),
+        cache_(file, memory),
         reach_(foveal_.far_range + kMargin) {
     // A map of the paper's method has no spacing: colors are those of patches as by default.
     const MapperOptions options = settings.is_paper() ? MapperOptions() : settings.mapper();
@@ -66,7 +69,7 @@ class Recolorer {
 
   void see(const Frame& frame, const FrameRecord& record, RecolorFigures& figures) {
     position_local_ = record.T_local_lidar.translation();
-    keeper_.bring_near(map_, position_local_, reach_);
+    cache_.load_within(map_, position_local_, reach_);
     for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
       const Image& image = frame.images[slot];
       if (image.empty()) continue;
@@ -82,16 +85,19 @@ class Recolorer {
         visible_map_.recolor(map_, view);
       }
     }
-    if (keeper_.needs_memory(map_)) keeper_.checkpoint(map_, {}, position_local_, reach_);
+    if (!cache_.is_full(map_)) return;
+    cache_.evict_beyond(map_, position_local_, reach_);
+    file_.checkpoint(map_, {});
   }
 
-  void finish() { keeper_.finish(map_, {}); }
+  void finish() { file_.finish(map_, {}); }
 
  private:
   const DriveInfo& drive_;
   FovealOptions foveal_;
   TileMap map_;
-  MapKeeper& keeper_;
+  Checkpointer& file_;
+  TileCache cache_;
   VisibleMap visible_map_;
   double reach_, footprint_, spacing_;  // m
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();
@@ -116,9 +122,9 @@ RecolorFigures recolor_map(const MapReader& map, const FrameSource& source, cons
   {
     auto writer = MapWriter::create(job.output, job.force);
     TileMap uncolored = copy_uncolored(map, job, *writer);
-    MapKeeper keeper(std::move(writer),
-                     {available_threads() > 1, job.memory, /*commit_at_end=*/true});
-    Recolorer recolorer(source.info(), job.settings, std::move(uncolored), keeper);
+    Checkpointer file(std::move(writer),
+                      {available_threads() > 1, job.memory, /*commit_at_end=*/true});
+    Recolorer recolorer(source.info(), job.settings, std::move(uncolored), file, job.memory);
     for (std::size_t i = 0; i < records.size(); ++i) {
       const LoadedFrame loaded = source.load(records[i].index);
       const auto* frame = std::get_if<Frame>(&loaded);

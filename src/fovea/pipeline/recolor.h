@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <functional>
 
-#include "fovea/map/map_keeper.h"
 #include "fovea/pipeline/map_settings.h"
 #include "fovea/sensor/frame_source.h"
 

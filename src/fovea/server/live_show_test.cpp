@@ -12,7 +12,7 @@
 
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/map/map_keeper.h"
+#include "fovea/map/checkpointer.h"
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
@@ -112,11 +112,11 @@ class LiveRun : public testing::Test {
     show_ = std::make_unique<LiveShow>(
         job_, std::make_shared<const DriveImages>(std::make_shared<TestDrive>(0, kFrames)), kPage,
         WebServerOptions());
-    MapKeeperOptions options;
+    CheckpointerOptions options;
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
       show_->map_changed(changes, rows, map_);
     };
-    keeper_ = std::make_unique<MapKeeper>(MapWriter::create(job_.output, force), options);
+    file_ = std::make_unique<Checkpointer>(MapWriter::create(job_.output, force), options);
   }
   int port() const {
     const std::string url = show_->url();
@@ -187,10 +187,10 @@ class LiveRun : public testing::Test {
       }
     }
     rows.meta["map.tile_size_m"] = "4";
-    keeper_->checkpoint(map_, std::move(rows), {0, 0, 0}, 1000);
+    file_->checkpoint(map_, std::move(rows), {0, 0, 0}, 1000);
   }
   void finish() {
-    keeper_->finish();
+    file_->wait();
     show_->finish();
   }
 
@@ -261,7 +261,7 @@ class LiveRun : public testing::Test {
   TileMap map_{4.0};
   std::vector<FrameRecord> frames_;
   std::unique_ptr<LiveShow> show_;
-  std::unique_ptr<MapKeeper> keeper_;
+  std::unique_ptr<Checkpointer> file_;
 };
 
 TEST_F(LiveRun, EverybodyHasTheWholeMapInTheEnd) {
@@ -301,7 +301,7 @@ TEST_F(LiveRun, EverybodyHasTheWholeMapInTheEnd) {
 // Another map under the output's name is gone with the first commit, and never shown.
 TEST_F(LiveRun, AnOldMapOfThatNameIsNotShown) {
   show_.reset();
-  keeper_.reset();
+  file_.reset();
   auto old = MapWriter::create(job_.output, true);
   put_sample_map(*old, sample_tile_map());
   old->commit();
@@ -367,7 +367,7 @@ TEST_F(LiveRun, EndsInTheMiddle) {
   ASSERT_EQ(client.open_socket("/live"), 101);
   ASSERT_EQ(deaf.open_socket("/live"), 101);
   drive(0, 21);
-  keeper_.reset();
+  file_.reset();
   show_.reset();
   while (client.message().opcode >= 0) {
   }

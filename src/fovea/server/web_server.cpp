@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "fovea/base/errors.h"
-#include "fovea/base/give_way.h"
+#include "fovea/base/thread.h"
 #include "fovea/base/version.h"
 #include "fovea/server/web_request.h"
 
@@ -42,8 +42,6 @@ constexpr const char* kContentPolicy =
 /// A WebSocket holds at most so much that its client has not taken: what comes later is newer.
 constexpr int kSendBuffer = 256 * 1024;  // bytes
 
-constexpr int kNice = 15;  // who looks at a map waits for who makes it
-
 constexpr std::size_t kFragment = 64 * 1024;  // bytes
 
 /// Programs that are started, a browser say, do not keep the port.
@@ -62,32 +60,27 @@ class WebServer::Impl {
         handler_(std::move(handler)),
         feeds_(std::move(feeds)),
         acceptor_(io_),
-        pause_(io_),
-        makers_(static_cast<std::size_t>(options.threads)) {
+        pause_(io_) {
     listen();
     accept();
-    if (options_.in_background) {
-      for (int i = 0; i < options_.threads; ++i) asio::post(makers_, [] { give_way(kNice); });
+    const ThreadPriority priority =
+        options_.in_background ? ThreadPriority::kBackground : ThreadPriority::kNormal;
+    const auto serve = [this](const std::stop_token&) { run(io_); };
+    const auto make_replies = [this](const std::stop_token&) { run(maker_io_); };
+    io_thread_ = start_thread("fovea-serve", serve, priority);
+    for (int i = 0; i < options_.threads; ++i) {
+      makers_.push_back(start_thread("fovea-reply", make_replies, priority));
     }
-    thread_ = std::thread([this] {
-      if (options_.in_background) give_way(kNice);
-      while (!io_.stopped()) {
-        try {
-          io_.run();
-        } catch (const std::exception&) {  // out of memory: of one connection, not of the program
-        }
-      }
-    });
   }
 
   ~Impl() { stop(); }
 
   void stop() {
-    if (!thread_.joinable()) return;
+    if (!io_thread_.joinable()) return;
     io_.stop();
-    thread_.join();
-    makers_.stop();
-    makers_.join();  // what it still posts to io_ is never done
+    io_thread_.join();
+    maker_io_.stop();
+    makers_.clear();  // joins; io_ ignores what they still post
   }
 
   class Http;
@@ -120,6 +113,15 @@ class WebServer::Impl {
     endpoint_ = acceptor_.local_endpoint();
   }
   void accept();
+  /// Handles events until the context is stopped.
+  static void run(asio::io_context& context) {
+    while (!context.stopped()) {
+      try {
+        context.run();
+      } catch (const std::exception&) {  // out of memory: of one connection, not of the program
+      }
+    }
+  }
 
   WebServerOptions options_;
   Handler handler_;
@@ -133,8 +135,10 @@ class WebServer::Impl {
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;  // of the acceptor
   tcp::endpoint endpoint_;
-  asio::thread_pool makers_;
-  std::thread thread_;
+  asio::io_context maker_io_;  // replies that take time
+  asio::executor_work_guard<asio::io_context::executor_type> maker_work_{maker_io_.get_executor()};
+  std::jthread io_thread_;
+  std::vector<std::jthread> makers_;
 };
 
 /// A connection, request by request.
@@ -216,7 +220,7 @@ class WebServer::Impl::Http : public std::enable_shared_from_this<Http> {
         self->respond(response);
       });
     };
-    asio::post(server_.makers_, [&server = server_, reply, path] {
+    asio::post(server_.maker_io_, [&server = server_, reply, path] {
       try {
         server.handler_(path, reply);
       } catch (const std::exception& error) {
@@ -314,7 +318,7 @@ class WebServer::Impl::Socket : public std::enable_shared_from_this<Socket> {
     }
     busy_ = true;
     again_ = false;
-    asio::post(server_.makers_, [self = shared_from_this()]() mutable {
+    asio::post(server_.maker_io_, [self = shared_from_this()]() mutable {
       std::optional<WebMessage> message;
       bool failed = false;
       try {

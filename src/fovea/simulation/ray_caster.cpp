@@ -1,6 +1,7 @@
 #include "fovea/simulation/ray_caster.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,11 +38,11 @@ EmbreeScene new_scene(RTCDevice device) {
   return scene;
 }
 
-/// Builds a scene's tree on one thread: which of two equally near triangles Embree reports depends
-/// on the tree, and the same seed must give the same bytes at any number of threads. (The device's
-/// own option "threads=1" would hold back every thread of the program.)
+/// Builds a scene's tree with one thread. The tree decides which of two equally near triangles
+/// Embree reports, and the same seed must give the same bytes at any number of threads. (Embree's
+/// option "threads=1" would limit all threads of the program.)
 void commit(RTCScene scene) {
-  run_alone([&] { rtcJoinCommitScene(scene); });
+  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene); });
 }
 
 TracedMesh trace(RTCDevice device, TriangleMesh mesh, const Vector3d& center) {

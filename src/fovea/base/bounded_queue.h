@@ -1,0 +1,100 @@
+// Queue between two threads of a pipeline.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+namespace fovea {
+
+/// Passes items from one thread to another in order. A full queue makes the first thread wait, an
+/// empty one the second.
+///
+///   BoundedQueue<Frame> frames(2);
+///   const std::jthread reader = start_thread("fovea-read", [&](const std::stop_token& stop) {
+///     fill(frames, stop, [&] { return read_frame(); });
+///   });
+///   while (std::optional<Frame> frame = frames.pop()) use(*frame);
+template <class T>
+class BoundedQueue {
+ public:
+  /// @param capacity  items in the queue, at most
+  explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
+  BoundedQueue(const BoundedQueue&) = delete;
+  BoundedQueue& operator=(const BoundedQueue&) = delete;
+
+  /// Waits for room and appends the item.
+  /// @return false if `stop` ended the wait, or the queue is closed; the item is dropped
+  bool push(T item, const std::stop_token& stop = {}) {
+    std::unique_lock lock(guard_);
+    changed_.wait(lock, stop, [&] { return items_.size() < capacity_ || closed_; });
+    if (items_.size() >= capacity_ || closed_) return false;
+    items_.push_back(std::move(item));
+    changed_.notify_all();
+    return true;
+  }
+
+  /// Puts an item before all others, also into a full queue. Dropped if the queue is closed.
+  void push_urgent(T item) {
+    const std::lock_guard lock(guard_);
+    if (closed_) return;
+    items_.push_front(std::move(item));
+    changed_.notify_all();
+  }
+
+  /// Waits for the next item.
+  /// @return nothing if the queue is closed and empty, or if `stop` is requested
+  /// Throws the error of close() after the last item.
+  std::optional<T> pop(const std::stop_token& stop = {}) {
+    std::unique_lock lock(guard_);
+    changed_.wait(lock, stop, [&] { return !items_.empty() || closed_; });
+    if (stop.stop_requested()) return std::nullopt;
+    if (items_.empty()) {
+      if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+      return std::nullopt;
+    }
+    std::optional<T> item(std::move(items_.front()));
+    items_.pop_front();
+    changed_.notify_all();
+    return item;
+  }
+
+  /// No item follows.
+  /// @param error  why, if an error ended the items
+  void close(std::exception_ptr error = nullptr) {
+    const std::lock_guard lock(guard_);
+    closed_ = true;
+    error_ = std::move(error);
+    changed_.notify_all();
+  }
+
+ private:
+  const std::size_t capacity_;
+  std::mutex guard_;  // of all below
+  std::condition_variable_any changed_;
+  std::deque<T> items_;
+  bool closed_ = false;
+  std::exception_ptr error_;
+};
+
+/// Pushes the items that `next` returns, until it returns nothing, throws, or `stop` is requested.
+/// Then closes the queue. pop() throws the error of `next` after the items before it.
+/// @param next  returns std::optional<T>
+template <class T, class Next>
+void fill(BoundedQueue<T>& queue, const std::stop_token& stop, Next&& next) {
+  try {
+    while (std::optional<T> item = next()) {
+      if (!queue.push(std::move(*item), stop)) break;
+    }
+    queue.close();
+  } catch (...) {
+    queue.close(std::current_exception());
+  }
+}
+
+}  // namespace fovea
