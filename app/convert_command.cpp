@@ -12,10 +12,10 @@
 #include "app/commands.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/base/errors.h"
-#include "fovea/pipeline/command_files.h"
-#include "fovea/recording/camera_name.h"
-#include "fovea/rosbag/convert_bags.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/command_files.h"
+#include "fovea/drive/recordings/convert_bags.h"
+#include "fovea/drive/writers/camera_name.h"
 
 namespace fovea::app {
 namespace {

@@ -8,8 +8,8 @@
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/print.h"
+#include "fovea/drive/command_files.h"
 #include "fovea/map/crop.h"
-#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <CLI/Error.hpp>
 #include <charconv>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::app {
 namespace {

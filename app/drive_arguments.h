@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/sensor/frame_source.h"
-#include "fovea/sensor/hold_out.h"
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/hold_out.h"
 
 namespace fovea::app {
 

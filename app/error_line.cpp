@@ -9,8 +9,8 @@
 #include <new>
 #include <system_error>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/path_remedy.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/path_remedy.h"
 
 namespace fovea::app {
 namespace {

@@ -15,15 +15,15 @@
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/viewer_page.h"
-#include "fovea/exporting/las_writer.h"
+#include "fovea/drive/command_files.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
-#include "fovea/exporting/pcd_writer.h"
-#include "fovea/exporting/ply_writer.h"
 #include "fovea/exporting/pose_writer.h"
 #include "fovea/exporting/tileset/tileset_writer.h"
 #include "fovea/map/map_store.h"
-#include "fovea/pipeline/command_files.h"
+#include "fovea/map/point_files/las_writer.h"
+#include "fovea/map/point_files/pcd_writer.h"
+#include "fovea/map/point_files/ply_writer.h"
 
 namespace fovea::app {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/printable.h"
-#include "fovea/base/unfinished_output.h"
+#include "fovea/core/printable.h"
+#include "fovea/core/unfinished_output.h"
 
 namespace fovea::app {
 namespace {

@@ -14,14 +14,14 @@
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/command_files.h"
 #include "fovea/evaluation/truth_poses.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/localization/localize_drive.h"
 #include "fovea/localization/pose_table.h"
 #include "fovea/map/map_meta.h"
-#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/summary_json.h"
 
 namespace fovea::app {

@@ -11,11 +11,11 @@
 #include "app/commands.h"
 #include "app/error_line.h"
 #include "app/standard_output.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/printable.h"
-#include "fovea/base/process_memory.h"
-#include "fovea/base/unfinished_output.h"
-#include "fovea/base/version.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/printable.h"
+#include "fovea/core/process_memory.h"
+#include "fovea/core/unfinished_output.h"
+#include "fovea/core/version.h"
 
 namespace {
 

@@ -11,9 +11,9 @@
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/command_files.h"
 #include "fovea/merging/merge_maps.h"
-#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "fovea/base/printable.h"
+#include "fovea/core/printable.h"
 
 namespace fovea::app {
 

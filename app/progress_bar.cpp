@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "fovea/base/process_memory.h"
+#include "fovea/core/process_memory.h"
 
 namespace fovea::app {
 namespace {

@@ -9,13 +9,13 @@
 #include "app/commands.h"
 #include "app/number_checks.h"
 #include "app/print.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/registration.h"
 #include "fovea/pipeline/settings_rows.h"
-#include "fovea/sensor/lidar_scan.h"
 
 namespace fovea::app {
 namespace {

@@ -18,17 +18,17 @@
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/render_drive.h"
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/output_file.h"
-#include "fovea/base/stable_order.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/output_file.h"
+#include "fovea/core/stable_order.h"
+#include "fovea/drive/command_files.h"
+#include "fovea/drive/writers/png_encode.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/scored_map.h"
-#include "fovea/evaluation/splat.h"
 #include "fovea/geometry/lidar_data_sheet.h"
-#include "fovea/pipeline/command_files.h"
 #include "fovea/pipeline/stored_calibration.h"
-#include "fovea/recording/png_encode.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea::app {
 namespace {
@@ -60,8 +60,8 @@ const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string
 }
 
 SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam) {
-  const ColouredPoints points =
-      has_colors(map) ? coloured_points(map.points_local) : all_points(map.points_local);
+  const ColoredPoints points =
+      has_colors(map) ? colored_points(map.points_local) : all_points(map.points_local);
   SplatOptions options;
   options.max_radius = 20;
   return splat(points, sample_spacing(points.position), camera, T_local_cam.inverse(), options);

@@ -14,12 +14,12 @@
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/kitti/kitti_calibration.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/rendering/render_drive.h"
-#include "fovea/sensor/image_decode.h"
-#include "fovea/sensor/kitti_calibration.h"
 
 namespace fovea::app {
 namespace {

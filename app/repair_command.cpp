@@ -10,9 +10,9 @@
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/print.h"
+#include "fovea/drive/command_files.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/repair.h"
-#include "fovea/pipeline/command_files.h"
 
 namespace fovea::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 
 namespace fovea::app {
 namespace {

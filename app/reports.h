@@ -3,8 +3,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fovea/base/messages.h"
-#include "fovea/base/output_file.h"
+#include "fovea/core/messages.h"
+#include "fovea/core/output_file.h"
 #include "fovea/pipeline/map_summary.h"
 
 namespace fovea::app {

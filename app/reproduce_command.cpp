@@ -12,13 +12,11 @@
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
-#include "app/reports.h"
-#include "app/reproduce/results_page.h"
-#include "app/reproduce/rows.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/path_name.h"
-#include "fovea/pipeline/command_files.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/command_files.h"
+#include "tools/paper/reproduce.h"
+#include "tools/paper/rows.h"
 
 namespace fovea::app {
 namespace {
@@ -32,9 +30,9 @@ struct ReproduceArguments {
 
 /// Rows as asked for, in the order of the tables.
 std::vector<std::string> wanted_rows(const ReproduceArguments& arguments) {
-  if (arguments.rows.empty()) return reproduced_rows();
+  if (arguments.rows.empty()) return paper::reproduced_rows();
   std::vector<std::string> rows;
-  for (const std::string& row : reproduced_rows()) {
+  for (const std::string& row : paper::reproduced_rows()) {
     if (std::find(arguments.rows.begin(), arguments.rows.end(), row) != arguments.rows.end())
       rows.push_back(row);
   }
@@ -55,31 +53,6 @@ std::string command_line(const ReproduceArguments& arguments) {
   return text;
 }
 
-/// What the user calls the drives: simulated ones all have the same folder inside. A name that
-/// comes again gets a number.
-std::vector<std::string> drive_names(const std::vector<std::string>& drives) {
-  std::vector<std::string> names;
-  for (const std::string& drive : drives) {
-    const std::string name = name_of(drive);
-    const auto before = [&](const std::string& wanted) {
-      return std::find(names.begin(), names.end(), wanted) != names.end();
-    };
-    std::string unique = name;
-    for (int i = 2; before(unique); ++i) unique = fmt::format("{}-{}", name, i);
-    names.push_back(unique);
-  }
-  return names;
-}
-
-std::filesystem::path make_folder(const std::filesystem::path& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed || !std::filesystem::is_directory(folder)) {
-    throw OutputError("the folder cannot be made", folder.string(), "give another -o");
-  }
-  return folder;
-}
-
 CommandFiles files_of(const ReproduceArguments& arguments) {
   CommandFiles files;
   files.inputs = arguments.drives;
@@ -96,46 +69,22 @@ CommandFiles files_of(const ReproduceArguments& arguments) {
 void run(const ReproduceArguments& arguments, Warnings& warnings) {
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
-  const std::vector<std::string> rows = wanted_rows(arguments);
-  std::vector<std::unique_ptr<FrameSource>>
-      sources;  // all opened first: a bad path must not cost a run
+  paper::ReproduceJob job;
+  job.rows = wanted_rows(arguments);
+  job.output = arguments.output;
+  job.command = command_line(arguments);
   for (const std::string& drive : arguments.drives) {
-    sources.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
-    require_cameras(sources.back()->info(), "the paper's method");
+    job.drives.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
+    require_cameras(job.drives.back()->info(), "the paper's method");
   }
-  // All rows, wanted or not: a bad one must show at once, not after an hour.
-  for (const std::string& row : reproduced_rows()) check_row(row);
-  std::optional<MlsTimes> mls;
-  if (!arguments.mls.empty()) mls = read_mls_times(arguments.mls);
-  const std::filesystem::path output = make_folder(arguments.output);
+  job.names = paper::drive_names(arguments.drives);
+  if (!arguments.mls.empty()) job.mls = paper::read_mls_times(arguments.mls);
   ProgressBar bar(arguments.quiet, "rows");
-  const int total = static_cast<int>(rows.size() * sources.size());
-  int done = 0;
-  const std::vector<std::string> names = drive_names(arguments.drives);
-  std::vector<DriveResults> results;
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const auto& source = sources[i];
-    const DriveInfo& info = source->info();
-    DriveResults drive{names[i], {}, info.end - info.begin, {}, time_upsampling(*source)};
-    for (const Camera& camera : info.calibration.cameras) drive.cameras.push_back(camera.index);
-    const std::filesystem::path folder = make_folder(output / ("rows-" + drive.name));
-    for (const std::string& row : rows) {
-      // One row's pictures are enough to look at.
-      const std::filesystem::path page =
-          row == "default" ? output / report_file(drive.name) : std::filesystem::path();
-      nlohmann::ordered_json result = run_row(*source, row, folder, page);
-      if (!result.is_null()) drive.rows.push_back(std::move(result));
-      bar.draw(++done, total, row + "  ");
-    }
-    results.push_back(std::move(drive));
-  }
-  OutputFile json(output / "results.json", /*force=*/true),
-      page(output / "results.md", /*force=*/true);
-  page.stream() << write_results_page(results, mls, command_line(arguments), output);
-  write_json(json, results_json(results));
-  page.commit();
-  warnings.add(results_warnings(results), arguments.quiet);
-  if (!arguments.quiet) print_out("{}\n", (output / "results.md").string());
+  job.progress = [&](int done, int total, const std::string& row) {
+    bar.draw(done, total, row + "  ");
+  };
+  warnings.add(paper::reproduce(job), arguments.quiet);
+  if (!arguments.quiet) print_out("{}\n", (job.output / "results.md").string());
 }
 
 }  // namespace
@@ -156,7 +105,7 @@ void add_reproduce_command(CLI::App& app, Session& session) {
       ->type_name("A:B");
   command->add_option("--rows", arguments->rows, "Only these rows (default: all)")
       ->delimiter(',')
-      ->check(CLI::IsMember(reproduced_rows()));
+      ->check(CLI::IsMember(paper::reproduced_rows()));
   command
       ->add_option("--mls", arguments->mls,
                    "Times of PCL's moving least squares for Table I, from upsampling_bench --json")

@@ -5,8 +5,8 @@
 
 #include "app/commands.h"
 #include "app/print.h"
-#include "fovea/base/input_file.h"
-#include "fovea/base/text_encoding.h"
+#include "fovea/core/input_file.h"
+#include "fovea/core/text_encoding.h"
 #include "fovea/pipeline/old_settings.h"
 #include "fovea/pipeline/settings_listing.h"
 

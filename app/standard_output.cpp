@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <system_error>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::app {
 

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::app {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/base/messages.h"
+#include "fovea/core/messages.h"
 
 namespace fovea::app {
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <variant>
 
-#include "app/reproduce/upsampling_times.h"
-#include "fovea/base/errors.h"
-#include "fovea/sensor/frame_source.h"
-#include "fovea/sensor/read_file.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/read_file.h"
+#include "fovea/drive/frame_source.h"
 #include "fovea/simulation/simulate.h"
 #include "tests/temporary_folder.h"
+#include "tools/paper/upsampling_times.h"
 
 namespace fovea::bench {
 namespace {
@@ -19,7 +19,7 @@ constexpr int kScansBefore = 20;
 BenchData data_of(const fs::path& folder) {
   const auto drive = open_drive(folder, {});
   BenchData data{
-      app::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}, drive->info(), {}};
+      paper::scan_in_view(*drive), drive->info().calibration.cameras.at(0), {}, drive->info(), {}};
   const fs::path images =
       drive->info().path / ("image_0" + std::to_string(data.camera.index)) / "data";
   const NumberedFiles files = list_numbered_files(images, {".png"});

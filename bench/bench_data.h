@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
+#include "fovea/drive/frame_source.h"
 #include "fovea/geometry/camera.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea::bench {
 

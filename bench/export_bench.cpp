@@ -13,8 +13,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/random.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/random.h"
 #include "fovea/map/map_store.h"
 
 namespace {

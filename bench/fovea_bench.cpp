@@ -12,12 +12,12 @@
 #include "bench/duel.h"
 #include "bench/mapping_bench.h"
 #include "bench/registration_bench.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
+#include "fovea/drive/images/png_decode.h"
 #include "fovea/mapping/image_mesh.h"
 #include "fovea/mapping/surface_samples.h"
 #include "fovea/mapping/upsample.h"
-#include "fovea/sensor/png_decode.h"
 
 namespace fovea::bench {
 namespace {

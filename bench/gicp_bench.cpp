@@ -16,8 +16,8 @@
 #if defined(FOVEA_OPEN3D_PEER)
 #include "bench/open3d_peer.h"
 #endif
-#include "fovea/base/parallel.h"
-#include "fovea/base/wall_clock.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/wall_clock.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/registration/registration.h"
 

@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
-#include "fovea/sensor/frame_source.h"
 #include "fovea/server/live_show.h"
 #include "fovea/server/web_client.h"
 

@@ -7,11 +7,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/frame_source.h"
 #include "fovea/evaluation/truth_poses.h"
 #include "fovea/exporting/mesh/mesh_levels.h"
 #include "fovea/map/map_store.h"
-#include "fovea/sensor/frame_source.h"
 #include "fovea/world/surface_index.h"
 #include "fovea/world/world_file.h"
 

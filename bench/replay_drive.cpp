@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/read_file.h"
+#include "fovea/drive/kitti/oxts.h"
+#include "fovea/drive/time_stamps.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/sensor/oxts.h"
-#include "fovea/sensor/read_file.h"
-#include "fovea/sensor/time_stamps.h"
 #include "fovea/simulation/drive_texts.h"
 
 namespace {

@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "app/drive_arguments.h"
-#include "app/reproduce/upsampling_times.h"
 #include "bench/mls_peer.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/output_file.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/path_name.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/output_file.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/path_name.h"
 #include "fovea/mapping/upsample.h"
+#include "tools/paper/upsampling_times.h"
 
 namespace fovea::bench {
 namespace {
@@ -111,7 +111,7 @@ Contender uniform_density(const PointCloud& points, std::size_t wanted, MlsOptio
 }
 
 /// @param given, camera  must outlive the contender
-Contender fovea(const app::UpsamplingCase& given, const Camera& camera) {
+Contender fovea(const paper::UpsamplingCase& given, const Camera& camera) {
   UpsampleOptions options;
   options.rate = given.rate;
   return {"fovea", given.points_cam.size(), [&given, &camera, options](int threads) {
@@ -146,7 +146,7 @@ void race(std::vector<Contender>& contenders, int runs, std::size_t wanted) {
 }
 
 /// Prints a column of the table and returns it. Fovea is the first contender.
-Json report(const app::UpsamplingCase& given, const std::vector<Contender>& contenders) {
+Json report(const paper::UpsamplingCase& given, const std::vector<Contender>& contenders) {
   Json column{{"points", given.wanted}, {"rate", given.rate}, {"results", Json::array()}};
   for (std::size_t t = 0; t < kThreads.size(); ++t) {
     for (const Contender& c : contenders) {
@@ -166,11 +166,12 @@ Json report(const app::UpsamplingCase& given, const std::vector<Contender>& cont
 }
 
 /// All points of the scan, in its order, at the rates of the paper's Table II.
-std::vector<app::UpsamplingCase> whole_scan_cases(const FrameSource& drive, const Camera& camera) {
-  const PointCloud scan = app::scan_in_view(drive);
-  std::vector<app::UpsamplingCase> cases;
+std::vector<paper::UpsamplingCase> whole_scan_cases(const FrameSource& drive,
+                                                    const Camera& camera) {
+  const PointCloud scan = paper::scan_in_view(drive);
+  std::vector<paper::UpsamplingCase> cases;
   for (int rate = 1; rate <= 3; ++rate) {
-    app::UpsamplingCase given{0, rate, scan};
+    paper::UpsamplingCase given{0, rate, scan};
     given.wanted = static_cast<int>(fovea(given, camera).run(1).points);
     cases.push_back(std::move(given));
   }
@@ -189,7 +190,7 @@ void run(const Arguments& arguments) {
   if (!arguments.json.empty()) file.emplace(arguments.json, /*force=*/true);
   const auto drive = arguments.drive.open();
   const Camera& camera = drive->info().calibration.cameras.at(0);
-  const PointCloud scan = app::shuffled_scan(*drive);
+  const PointCloud scan = paper::shuffled_scan(*drive);
   Json json{{"drive", name_of(arguments.drive.drive)},
             {"runs", arguments.runs},
             {"search_radius", arguments.mls.search_radius},
@@ -199,8 +200,8 @@ void run(const Arguments& arguments) {
   fmt::print(
       "| points | method | threads | given | produced | ms | times Fovea |\n"
       "| --- | --- | --- | --- | --- | --- | --- |\n");
-  const auto race_all = [&](const char* key, const std::vector<app::UpsamplingCase>& cases) {
-    for (const app::UpsamplingCase& given : cases) {
+  const auto race_all = [&](const char* key, const std::vector<paper::UpsamplingCase>& cases) {
+    for (const paper::UpsamplingCase& given : cases) {
       const auto wanted = static_cast<std::size_t>(given.wanted);
       std::vector<Contender> contenders{fovea(given, camera),
                                         local_plane(scan, wanted, arguments.mls),
@@ -209,7 +210,7 @@ void run(const Arguments& arguments) {
       json[key].push_back(report(given, contenders));
     }
   };
-  race_all("columns", app::upsampling_cases(*drive));
+  race_all("columns", paper::upsampling_cases(*drive));
   race_all("whole_scan", whole_scan_cases(*drive, camera));
   if (!file) return;
   file->stream() << json.dump(2) << "\n";

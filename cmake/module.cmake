@@ -40,17 +40,27 @@ function(fovea_discover_tests target)
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 TEST_FILTER "-${filter}" PROPERTIES ${ARG_PROPERTIES})
 endfunction()
 
-# fovea_module(NAME [TOGETHER] [DEPENDS modules...] [PUBLIC libs...] [PRIVATE libs...] [TEST_DEPENDS modules...])
+# fovea_module(NAME [FOLDER folder] [WITHOUT folder] [TOGETHER] [DEPENDS modules...] [PUBLIC libs...]
+#              [PRIVATE libs...] [TEST_DEPENDS modules...])
 #
-# Makes the static library fovea_NAME (alias fovea::NAME) of src/fovea/NAME, and, from the
-# *_test.cpp files beside the sources, the test program NAME_tests. TOGETHER: what is computed there
-# makes neither a map nor a figure, so its files may be compiled together. TEST_DEPENDS: what only the
-# tests include, such as the reader of what the module writes.
+# Makes the static library fovea_NAME (alias fovea::NAME) from src/fovea/NAME, and the test program
+# NAME_tests from the *_test.cpp files next to the sources.
+#   FOLDER        folder in src/fovea/, if it is not NAME
+#   WITHOUT       folder inside it that is a module of its own
+#   TOGETHER      compiles several files together: the module computes neither maps nor figures
+#   TEST_DEPENDS  modules that only the tests include, such as the reader of the module's files
 function(fovea_module name)
-  cmake_parse_arguments(ARG "TOGETHER" "" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
-  set(root ${PROJECT_SOURCE_DIR}/src/fovea/${name})
+  cmake_parse_arguments(ARG "TOGETHER" "FOLDER;WITHOUT" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
+  if(NOT ARG_FOLDER)
+    set(ARG_FOLDER ${name})
+  endif()
+  set(root ${PROJECT_SOURCE_DIR}/src/fovea/${ARG_FOLDER})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/*.cpp)
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${root}/*_test.cpp)
+  if(ARG_WITHOUT)
+    list(FILTER sources EXCLUDE REGEX "^${root}/${ARG_WITHOUT}/")
+    list(FILTER tests EXCLUDE REGEX "^${root}/${ARG_WITHOUT}/")
+  endif()
   list(REMOVE_ITEM sources ${tests})
 
   add_library(fovea_${name} STATIC ${sources})

@@ -1,12 +1,12 @@
 // Recordings of ROS 2, MCAP and SQLite, plain or compressed as a whole: what a pass over them
 // finds, and what is made of it.
-#include "fovea/rosbag/bag.h"
+#include "fovea/drive/recordings/bag.h"
 
 #include <fstream>
 
-#include "fovea/rosbag/camera_topics.h"
-#include "fovea/rosbag/navigation_topics.h"
-#include "fovea/rosbag/survey.h"
+#include "fovea/drive/recordings/camera_topics.h"
+#include "fovea/drive/recordings/navigation_topics.h"
+#include "fovea/drive/recordings/survey.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 

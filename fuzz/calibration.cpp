@@ -2,7 +2,7 @@
 // sequence.
 #include <fstream>
 
-#include "fovea/sensor/kitti_calibration.h"
+#include "fovea/drive/kitti/kitti_calibration.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 

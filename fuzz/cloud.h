@@ -1,7 +1,7 @@
 // What holds of every cloud that `evaluate` reads.
 #pragma once
 
-#include "fovea/evaluation/cloud_format.h"
+#include "fovea/map/point_files/cloud_format.h"
 #include "fuzz_input.h"
 
 namespace fovea {

@@ -1,8 +1,8 @@
 // The tables of a drive: poses, positions, orientations. The first byte says which the rest is.
 #include <fstream>
 
-#include "fovea/sensor/csv_rows.h"
-#include "fovea/sensor/generic_navigation.h"
+#include "fovea/drive/navigation/generic_navigation.h"
+#include "fovea/drive/scans/csv_rows.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 

@@ -1,6 +1,6 @@
 // drive.toml: the calibration of any drive, and the pinhole cameras in its lenses.
+#include "fovea/drive/drive_description.h"
 #include "fovea/geometry/rectified_camera.h"
-#include "fovea/sensor/drive_description.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

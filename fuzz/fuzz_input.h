@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 

@@ -1,7 +1,7 @@
 // JPEG images.
 #include <stdexcept>
 
-#include "fovea/sensor/jpeg_decode.h"
+#include "fovea/drive/images/jpeg_decode.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

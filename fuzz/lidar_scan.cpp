@@ -1,10 +1,10 @@
 // Scans in PCD and PLY. The first byte says which, and how the times count or whether the units are
 // recognized.
-#include "fovea/sensor/lidar_scan.h"
+#include "fovea/drive/scans/lidar_scan.h"
 
 #include <fstream>
 
-#include "fovea/sensor/recognized_format.h"
+#include "fovea/drive/scans/recognized_format.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 

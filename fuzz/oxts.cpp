@@ -1,5 +1,5 @@
 // KITTI's GPS/INS records.
-#include "fovea/sensor/oxts.h"
+#include "fovea/drive/kitti/oxts.h"
 
 #include "fuzz_input.h"
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fovea/sensor/png_decode.h"
-#include "fovea/sensor/png_plain_decode.h"
+#include "fovea/drive/images/png_decode.h"
+#include "fovea/drive/images/png_plain_decode.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

@@ -1,13 +1,13 @@
 // Messages of ROS 2, and the scans, images and cameras in them: the first byte says of which type.
-#include "fovea/rosbag/ros_messages.h"
+#include "fovea/drive/recordings/ros_messages.h"
 
 #include <array>
 #include <vector>
 
-#include "fovea/rosbag/camera_topics.h"
-#include "fovea/rosbag/pixels.h"
-#include "fovea/rosbag/point_cloud_rows.h"
-#include "fovea/sensor/recognized_format.h"
+#include "fovea/drive/recordings/camera_topics.h"
+#include "fovea/drive/recordings/pixels.h"
+#include "fovea/drive/recordings/point_cloud_rows.h"
+#include "fovea/drive/scans/recognized_format.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

@@ -1,5 +1,5 @@
 // LiDAR scans without a header.
-#include "fovea/sensor/kitti_scan.h"
+#include "fovea/drive/kitti/kitti_scan.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

@@ -1,9 +1,9 @@
 // KITTI's time stamps, both forms.
-#include "fovea/sensor/time_stamps.h"
+#include "fovea/drive/time_stamps.h"
 
 #include <algorithm>
 
-#include "fovea/base/text_encoding.h"
+#include "fovea/core/text_encoding.h"
 #include "fuzz_input.h"
 
 using namespace fovea;

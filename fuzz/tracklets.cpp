@@ -1,5 +1,5 @@
 // KITTI's tracklets.
-#include "fovea/sensor/tracklets.h"
+#include "fovea/drive/kitti/tracklets.h"
 
 #include "fuzz_input.h"
 

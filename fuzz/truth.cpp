@@ -2,7 +2,7 @@
 // of a camera, true returns.
 #include <fstream>
 
-#include "fovea/sensor/drive_truth.h"
+#include "fovea/drive/drive_truth.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 

@@ -9,8 +9,8 @@
 #include <chrono>
 #include <thread>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/random.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/random.h"
 #include "fovea/map/map_store.h"
 #include "tests/kitti_writer.h"
 #include "tests/program.h"

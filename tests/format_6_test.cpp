@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/map_store.h"
 #include "tests/program.h"

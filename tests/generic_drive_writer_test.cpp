@@ -1,13 +1,13 @@
-#include "fovea/recording/generic_drive_writer.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
-#include "fovea/sensor/frame_source.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/frame_source.h"
 #include "tests/temporary_folder.h"
 
 namespace fovea::generic_drive_writer_test {

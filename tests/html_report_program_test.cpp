@@ -7,7 +7,7 @@
 #include <pugixml.hpp>
 #include <set>
 
-#include "fovea/sensor/image_decode.h"
+#include "fovea/drive/images/image_decode.h"
 #include "tests/program.h"
 
 namespace fovea::html_report_program_test {

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fovea/drive/recordings/ros_messages.h"
 #include "fovea/map/map_store.h"
-#include "fovea/rosbag/ros_messages.h"
 #include "tests/background_program.h"
 #include "tests/cdr_writer.h"
 #include "tests/kitti_writer.h"

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "fovea/base/process_memory.h"
+#include "fovea/core/process_memory.h"
 
 namespace fovea {
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/sensor/image_decode.h"
+#include "fovea/drive/images/image_decode.h"
 #include "tests/kitti_writer.h"
 #include "tests/program.h"
 

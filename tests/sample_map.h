@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea {

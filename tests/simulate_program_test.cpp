@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fovea/sensor/frame_source.h"
+#include "fovea/drive/frame_source.h"
 #include "tests/program.h"
 
 namespace fovea::simulate_program_test {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "fovea/drive/drive_truth.h"
 #include "fovea/map/map_store.h"
-#include "fovea/sensor/drive_truth.h"
 #include "fovea/simulation/camera_model.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/rig.h"

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/drive_truth.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/pose_file.h"
-#include "fovea/sensor/drive_truth.h"
 
 namespace fovea::test {
 

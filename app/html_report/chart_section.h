@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/evaluation/report.h"
 #include "fovea/evaluation/scored_map.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea::app {
 

@@ -19,8 +19,8 @@ constexpr int kPatchWidth = 150, kPatchHeight = 100, kMagnified = 3, kQuality = 
 
 /// The coloured points of a map that keeps every point of the scans around a frame, as the paper's
 /// baselines do.
-ColouredPoints baseline_points(const FrameSource& drive, const std::vector<PlacedFrame>& training,
-                               int frame, const Eigen::Vector3d& origin_local) {
+ColoredPoints baseline_points(const FrameSource& drive, const std::vector<PlacedFrame>& training,
+                              int frame, const Eigen::Vector3d& origin_local) {
   PaperOptions options;
   apply_variant("baseline-gicp", options);
   PaperMapper mapper(drive.info(), options, PoseSource::kGiven);
@@ -37,7 +37,7 @@ ColouredPoints baseline_points(const FrameSource& drive, const std::vector<Place
       all.append(transform_cloud(stored.points->cloud(), submap.T_local_submap, origin_local));
     }
   }
-  return coloured_points(all);
+  return colored_points(all);
 }
 
 /// Mean difference of the channels between a drawing and the photograph at a pixel.
@@ -194,7 +194,7 @@ std::string close_up_section(const Scorer& scorer, const FrameSource& drive,
     const auto camera =
         std::find_if(scorer.cameras().begin(), scorer.cameras().end(),
                      [&](const Camera& c) { return c.index == view.report.camera; });
-    const ColouredPoints points =
+    const ColoredPoints points =
         baseline_points(drive, training, view.report.frame, scorer.coloured().origin);
     if (points.position.empty()) continue;
     const SplatView baseline = splat(points, sample_spacing(points.position), *camera,

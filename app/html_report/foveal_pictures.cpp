@@ -7,14 +7,14 @@
 
 #include "app/html_report/markup.h"
 #include "app/html_report/viewpoint.h"
-#include "fovea/base/angle.h"
-#include "fovea/evaluation/splat.h"
+#include "fovea/core/angle.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/foveal_region.h"
 #include "fovea/mapping/surface_samples.h"
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/upsample.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea::app {
 namespace {
@@ -35,8 +35,8 @@ Rgb color_of_range(float range, const FovealOptions& options) {
   return to_rgb((1 - share) * kStops[stop] + share * kStops[stop + 1]);
 }
 
-ColouredPoints as_coloured(const PointCloud& points_lidar, const std::vector<Rgb>& color) {
-  ColouredPoints points;
+ColoredPoints as_coloured(const PointCloud& points_lidar, const std::vector<Rgb>& color) {
+  ColoredPoints points;
   points.position = points_lidar.position;
   points.color = color;
   constexpr std::size_t kRun = 1024;
@@ -52,7 +52,7 @@ std::vector<Rgb> range_colors(const PointCloud& points_lidar, const FovealOption
   return colors;
 }
 
-std::string figure(const ColouredPoints& points, const std::vector<float>& spacing,
+std::string figure(const ColoredPoints& points, const std::vector<float>& spacing,
                    const std::string& alt, const std::string& caption) {
   const Camera camera = viewpoint_camera(kBeside, kWidth, kHeight);
   const SplatView drawn =

@@ -4,11 +4,11 @@
 
 #include "app/html_report/markup.h"
 #include "app/html_report/viewpoint.h"
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 
 namespace fovea::app {
 
-std::string picture_from_behind(const ColouredPoints& points, const std::vector<float>& spacing,
+std::string picture_from_behind(const ColoredPoints& points, const std::vector<float>& spacing,
                                 const RigidMotion& T_local_lidar, const std::string& alt) {
   constexpr Viewpoint kBehind{"behind", 9, 5, 20 * kDegree, 75 * kDegree};
   constexpr int kWidth = 1280, kHeight = 620, kQuality = 80;

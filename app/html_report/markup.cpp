@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/drive/writers/png_encode.h"
 #include "fovea/exporting/jpeg_encode.h"
-#include "fovea/recording/png_encode.h"
 
 namespace fovea::app {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "app/html_report/assets.h"
 #include "app/html_report/markup.h"
-#include "fovea/base/version.h"
+#include "fovea/core/version.h"
 
 namespace fovea::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "app/html_report/markup.h"
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 #include "fovea/evaluation/scan_matching.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/transform_cloud.h"

@@ -158,8 +158,8 @@ std::string charts_html(const TruthPageInput& input) {
 }
 
 /// The map painted by the distance of its points to the true surfaces, ghosts in their own colour.
-ColouredPoints painted(const TruthPoints& points, const TruthEvaluation& e) {
-  ColouredPoints painted = points.coloured;
+ColoredPoints painted(const TruthPoints& points, const TruthEvaluation& e) {
+  ColoredPoints painted = points.coloured;
   for (std::size_t i = 0; i < painted.color.size(); ++i) {
     painted.color[i] =
         e.is_ghost[i] != 0 ? kGhost : kClassColors[kSurfaceScale.class_of(100.0 * e.distance[i])];
@@ -190,7 +190,7 @@ std::string errors_html(const TruthPoints& points, const TruthEvaluation& e) {
       "<p>Every point in the colour of its distance to the nearest true surface, from behind the "
       "vehicle; what stems from something that moved is bright blue.</p>\n" +
       legend(kSurfaceScale, shares) + "<div class=\"strip wide\">\n";
-  const ColouredPoints colours = painted(points, e);
+  const ColoredPoints colours = painted(points, e);
   std::vector<std::pair<int, std::string>> frames;
   if (const TruthFrame* worst = worst_frame(e.report)) {
     frames.emplace_back(worst->frame,

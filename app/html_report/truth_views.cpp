@@ -9,7 +9,7 @@
 #include "app/html_report/markup.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/evaluation/metrics.h"
-#include "fovea/evaluation/splat.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea::app {
 namespace {
@@ -58,12 +58,12 @@ std::vector<std::pair<std::string, std::string>> facts(const TruthFrame& frame,
 }  // namespace
 
 TruthPoints drawable(const TruthEvaluation& evaluation) {
-  TruthPoints points{coloured_points(evaluation.points_true), {}};
+  TruthPoints points{colored_points(evaluation.points_true), {}};
   points.spacing = sample_spacing(points.coloured.position);
   return points;
 }
 
-PointsInView points_in_view(const ColouredPoints& points, const SplatView& drawn,
+PointsInView points_in_view(const ColoredPoints& points, const SplatView& drawn,
                             const Camera& camera, const RigidMotion& T_cam_points) {
   const int columns = (camera.width + PointsInView::kCell - 1) / PointsInView::kCell;
   const int rows = (camera.height + PointsInView::kCell - 1) / PointsInView::kCell;
@@ -100,7 +100,7 @@ PointsInView points_in_view(const ColouredPoints& points, const SplatView& drawn
   return view;
 }
 
-std::vector<float> perfect_color_errors(const ColouredPoints& points, const PointsInView& view,
+std::vector<float> perfect_color_errors(const ColoredPoints& points, const PointsInView& view,
                                         const std::vector<float>& distance, const Image& perfect) {
   const bool grey = perfect.channels == 1;
   std::vector<Eigen::Vector3f> seen, mapped, seen_near, mapped_near;

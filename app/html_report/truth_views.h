@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "app/html_report/view_section.h"
-#include "fovea/evaluation/coloured_points.h"
+#include "fovea/drive/drive_truth.h"
 #include "fovea/evaluation/evaluate_truth.h"
-#include "fovea/sensor/drive_truth.h"
+#include "fovea/map/colored_points.h"
 
 namespace fovea::app {
 
@@ -17,7 +17,7 @@ inline const ErrorScale kPerfectScale{"colour error", "", kTeScale.bounds};
 
 /// The points as they are drawn.
 struct TruthPoints {
-  ColouredPoints coloured;     ///< the truth's local frame
+  ColoredPoints coloured;      ///< the truth's local frame
   std::vector<float> spacing;  ///< see sample_spacing
 };
 TruthPoints drawable(const TruthEvaluation& evaluation);
@@ -30,12 +30,12 @@ struct PointsInView {
   std::vector<Eigen::Vector2d> pixels;  ///< an entry a point, as all that follow
   std::vector<double> depth;            ///< m
 };
-PointsInView points_in_view(const ColouredPoints& points, const SplatView& drawn,
+PointsInView points_in_view(const ColoredPoints& points, const SplatView& drawn,
                             const Camera& camera, const RigidMotion& T_cam_points);
 
 /// Difference of each point's colour to the perfect image, after one gain a channel that the points
 /// on true surfaces (within 5 cm) need.
-std::vector<float> perfect_color_errors(const ColouredPoints& points, const PointsInView& view,
+std::vector<float> perfect_color_errors(const ColoredPoints& points, const PointsInView& view,
                                         const std::vector<float>& distance, const Image& perfect);
 
 /// Frames in all cameras that the drive is open with, at most kMaxViews panels: the frame whose

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/evaluation/splat.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea::app::truth_views_test {
 
@@ -18,15 +18,15 @@ Camera test_camera() {
 }
 
 /// In the camera's frame.
-ColouredPoints points_at(const std::vector<Eigen::Vector3f>& positions) {
-  ColouredPoints points;
+ColoredPoints points_at(const std::vector<Eigen::Vector3f>& positions) {
+  ColoredPoints points;
   points.position = positions;
   points.color.assign(positions.size(), Rgb{100, 100, 100});
   points.runs = make_runs(positions, 16);
   return points;
 }
 
-PointsInView view_of(const ColouredPoints& points) {
+PointsInView view_of(const ColoredPoints& points) {
   const RigidMotion here = RigidMotion::Identity();
   const std::vector<float> spacing(points.position.size(), 0.02f);
   const SplatView drawn = splat(points, spacing, test_camera(), here, {.min_depth = 0.5});
@@ -45,7 +45,7 @@ TEST(PointsInView, HasWhatTheMapShowsOneACell) {
 }
 
 TEST(PerfectColorErrors, AreLeftAfterTheGainOfPointsOnSurfaces) {
-  ColouredPoints points = points_at({{-1, 0, 4}, {0, 0, 4}, {1, 0, 4}});
+  ColoredPoints points = points_at({{-1, 0, 4}, {0, 0, 4}, {1, 0, 4}});
   points.color = {Rgb{50, 50, 50}, Rgb{100, 100, 100}, Rgb{10, 10, 10}};
   const PointsInView view = view_of(points);
   ASSERT_EQ(view.index.size(), 3u);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "python/bindings/arrays.h"
 
 namespace fovea::python {

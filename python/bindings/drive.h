@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/sensor/frame_source.h"
+#include "fovea/drive/frame_source.h"
 
 namespace fovea::python {
 

@@ -4,7 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/evaluate_truth.h"
 #include "fovea/pipeline/drive_match.h"
 #include "fovea/pipeline/stored_calibration.h"

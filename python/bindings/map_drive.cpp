@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
-#include "fovea/pipeline/command_files.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/command_files.h"
 #include "fovea/pipeline/summary_json.h"
 #include "python/bindings/bindings.h"
 #include "python/bindings/drive.h"

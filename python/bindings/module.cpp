@@ -1,5 +1,5 @@
 // fovea._fovea: the compiled part of `import fovea`.
-#include "fovea/base/version.h"
+#include "fovea/core/version.h"
 #include "python/bindings/bindings.h"
 
 PYBIND11_MODULE(_fovea, module) {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/map/tile_map.h"
 
 namespace fovea::python {

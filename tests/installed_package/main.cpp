@@ -1,6 +1,6 @@
 // Registers two clouds with the installed library: headers, archives and their dependencies are
 // there.
-#include <fovea/base/version.h>
+#include <fovea/core/version.h>
 #include <fovea/mapping/registration/registration.h>
 #include <fovea/pipeline/config.h>
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea {
 namespace {

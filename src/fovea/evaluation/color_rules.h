@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 
 namespace fovea {
 

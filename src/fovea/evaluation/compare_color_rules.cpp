@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/sharpness.h"
 #include "fovea/evaluation/surface_normals.h"
 #include "fovea/evaluation/training_views.h"
@@ -20,7 +20,7 @@ struct Comparison {
   std::vector<std::size_t> places;  // of the cameras in the drive's calibration
   std::vector<PlacedFrame> scored;
   std::vector<FrameRecord> training;
-  ColouredPoints points;
+  ColoredPoints points;
 };
 
 /// A held-out view: its evaluated points, the map point nearest to each, and the floor.
@@ -114,7 +114,7 @@ Askers sort_by_nearest(const std::vector<HeldOutView>& views, std::size_t points
 
 /// Shows one view to all points; each point's state, and the floor of its askers, belongs to one
 /// thread.
-void show(const TrainingView& view, const ColouredPoints& points,
+void show(const TrainingView& view, const ColoredPoints& points,
           const std::vector<Eigen::Vector3f>& normals, const Askers& askers,
           std::vector<ColorState>& states, std::vector<HeldOutView>& held_out) {
   const Eigen::Isometry3f T_cam_map =
@@ -162,13 +162,13 @@ std::vector<ColorState> show_training_frames(const Comparison& c,
 
 /// The points that every rule coloured, with all their colours.
 struct RuleColors {
-  ColouredPoints points;             // without colours
+  ColoredPoints points;              // without colours
   std::vector<std::uint32_t> place;  // of each map point among them, or kNone
   std::map<ColorRule, std::vector<Rgb>> color;
   std::map<ColorRule, std::size_t> coloured;  // of all map points
 };
 
-RuleColors apply_rules(const ColouredPoints& points, const std::vector<ColorState>& states) {
+RuleColors apply_rules(const ColoredPoints& points, const std::vector<ColorState>& states) {
   RuleColors colors;
   colors.points.origin = points.origin;
   colors.place.assign(states.size(), kNone);
@@ -257,7 +257,7 @@ std::vector<ColorRuleScore> compare_color_rules(const ScoredMap& map, const Fram
                select_cameras(map, drive.info(), options),
                select_frames(map, drive, options),
                {},
-               coloured_points(map.points_local)};
+               colored_points(map.points_local)};
   c.training = training_frames(map, drive.info(), c.scored, options.hold_out);
   if (c.points.position.empty()) {
     throw InputError("the map has no coloured point", "colour rules",

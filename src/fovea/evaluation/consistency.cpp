@@ -72,7 +72,7 @@ RoughnessSums compare_roughness(const SplatView& drawn, const Image& photograph)
   return sums;
 }
 
-CrossViewTest::CrossViewTest(const ColouredPoints& map)
+CrossViewTest::CrossViewTest(const ColoredPoints& map)
     : map_(map), sums_((map.position.size() + kStride - 1) / kStride) {}
 
 void CrossViewTest::add_view(const SplatView& drawn, const Camera& camera,

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/evaluation/splat.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea {
 
@@ -30,7 +30,7 @@ class CrossViewTest {
   static constexpr std::size_t kStride = 8;  ///< every 8th map point is asked
 
   /// @param map  must outlive the test
-  explicit CrossViewTest(const ColouredPoints& map);
+  explicit CrossViewTest(const ColoredPoints& map);
 
   /// Takes the colours (nearest pixel) of the points that the view shows: those not over 5 cm and
   /// 2% behind what is drawn there. Thread-safe; sums are of integers, so that the order of views
@@ -51,7 +51,7 @@ class CrossViewTest {
   struct Sums {
     std::uint64_t views = 0, r = 0, g = 0, b = 0, squares = 0, errors = 0;
   };
-  const ColouredPoints& map_;
+  const ColoredPoints& map_;
   std::vector<Sums> sums_;  // of points 0, kStride, ...
 };
 

@@ -1,6 +1,6 @@
 #include "fovea/evaluation/evaluate.h"
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/evaluation_setup.h"
@@ -10,7 +10,7 @@
 namespace fovea {
 namespace {
 
-double share_interpolated(const ColouredPoints& map) {
+double share_interpolated(const ColoredPoints& map) {
   if (map.interpolated.empty()) return ErrorFigures::kNone;
   const auto made = std::count(map.interpolated.begin(), map.interpolated.end(), 1);
   return static_cast<double>(made) / static_cast<double>(map.interpolated.size());

@@ -2,7 +2,7 @@
 
 #include <unordered_map>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/metrics.h"
 #include "fovea/evaluation/truth_colors.h"

@@ -1,10 +1,10 @@
 // Scores a map against the truth of a simulated drive (docs/simulator.md).
 #pragma once
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/evaluation/truth_poses.h"
 #include "fovea/evaluation/truth_report.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

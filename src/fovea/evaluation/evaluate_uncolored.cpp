@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/scored_frames.h"
 #include "fovea/evaluation/warnings.h"
@@ -50,7 +50,7 @@ class UncoloredScorer {
     return score;
   }
 
-  const ColouredPoints& points() const { return points_; }
+  const ColoredPoints& points() const { return points_; }
   FreeSpaceTest::Result free_space() const { return free_space_.result(); }
   std::vector<Eigen::Vector3f> testable_points() const {
     const std::vector<std::uint8_t> tested = free_space_.tested();
@@ -63,7 +63,7 @@ class UncoloredScorer {
 
  private:
   const FrameSource& drive_;
-  ColouredPoints points_;
+  ColoredPoints points_;
   KdTree tree_;
   FreeSpaceTest free_space_;
 };

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/test_scene.h"
 
 namespace fovea::evaluate_uncolored_test {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "fovea/sensor/motion_compensation.h"
+#include "fovea/drive/motion_compensation.h"
 
 namespace fovea {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 
 namespace fovea {

@@ -140,7 +140,7 @@ bool in_any_view(const Eigen::Vector3f& p_lidar, const std::vector<Camera>& came
 
 }  // namespace
 
-FreeSpaceTest::FreeSpaceTest(const ColouredPoints& map)
+FreeSpaceTest::FreeSpaceTest(const ColoredPoints& map)
     : map_(map), state_(map.position.size(), 0) {}
 
 void FreeSpaceTest::add_scan(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,

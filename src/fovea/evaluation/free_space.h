@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/evaluation/coloured_points.h"
 #include "fovea/evaluation/evaluated_set.h"
+#include "fovea/map/colored_points.h"
 
 namespace fovea {
 
@@ -21,7 +21,7 @@ class FreeSpaceTest {
   static constexpr float kInFront = 0.2f;   ///< m
 
   /// @param map  must outlive the test
-  explicit FreeSpaceTest(const ColouredPoints& map);
+  explicit FreeSpaceTest(const ColoredPoints& map);
 
   /// Tests the map points that lie 3-15 m from the scan's LiDAR, in the view of one of the
   /// `cameras` (without cameras: in any direction) and within the cone of at least one return.
@@ -43,7 +43,7 @@ class FreeSpaceTest {
   std::vector<std::uint8_t> tested() const;
 
  private:
-  const ColouredPoints& map_;
+  const ColoredPoints& map_;
   std::vector<std::uint8_t> state_;  // bits of each map point, see the source
 };
 

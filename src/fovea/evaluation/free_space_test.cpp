@@ -15,9 +15,9 @@ Eigen::Vector3f from_polar(double azimuth, double elevation, double range) {
       .cast<float>();
 }
 
-ColouredPoints map_of(const std::vector<Eigen::Vector3f>& points,
-                      const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) {
-  ColouredPoints map;
+ColoredPoints map_of(const std::vector<Eigen::Vector3f>& points,
+                     const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) {
+  ColoredPoints map;
   map.origin = origin;
   map.position = points;
   map.color.resize(points.size());
@@ -28,7 +28,7 @@ ColouredPoints map_of(const std::vector<Eigen::Vector3f>& points,
 FreeSpaceTest::Result test_points(const std::vector<Eigen::Vector3f>& points,
                                   const std::vector<Eigen::Vector3f>& returns,
                                   const Camera& camera = forward_camera()) {
-  const ColouredPoints map = map_of(points);
+  const ColoredPoints map = map_of(points);
   FreeSpaceTest test(map);
   PointCloud scan;
   scan.position = returns;
@@ -118,7 +118,7 @@ TEST(FreeSpace, OnlyPointsInRangeAndInViewAreTested) {
 }
 
 TEST(FreeSpace, AViolationThatALaterScanEnclosesIsEnclosed) {
-  const ColouredPoints map = map_of({{8, 0, 0}});
+  const ColoredPoints map = map_of({{8, 0, 0}});
   FreeSpaceTest test(map);
   PointCloud above, around;
   above.position = {from_polar(0, 0.2 * kDegree, 20)};
@@ -131,7 +131,7 @@ TEST(FreeSpace, AViolationThatALaterScanEnclosesIsEnclosed) {
 }
 
 TEST(FreeSpace, AViolationInAnyScanCountsOnce) {
-  const ColouredPoints map = map_of({{-92, 0, 0}, {-92, 0.5f, 0}}, {100, 0, 0});
+  const ColoredPoints map = map_of({{-92, 0, 0}, {-92, 0.5f, 0}}, {100, 0, 0});
   FreeSpaceTest test(map);
   PointCloud blocked, open;
   blocked.position = {{8, 0, 0}, {8, 0.5f, 0}};

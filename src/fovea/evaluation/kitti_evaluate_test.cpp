@@ -77,7 +77,7 @@ TEST(KittiEvaluate, RulesSeeTheColoursThatTheMapTookFromTheSameViews) {
   FOVEA_KITTI_SAMPLE_OR_SKIP(path);
   const std::unique_ptr<FrameSource> drive = open_drive(path, {});
   const ScoredMap map = keep_every_point(*drive);
-  const ColouredPoints points = coloured_points(map.points_local);
+  const ColoredPoints points = colored_points(map.points_local);
   const std::vector<float> spacing = sample_spacing(points.position);
   std::size_t own = 0, same = 0, visible = 0;
   for (const FrameRecord& record : training_frames(map, drive->info(), {}, HoldOut::parse("8:4"))) {

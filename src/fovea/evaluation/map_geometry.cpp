@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/voxel_moments.h"
 #include "fovea/geometry/kd_tree.h"

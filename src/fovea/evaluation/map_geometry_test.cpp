@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::map_geometry_test {
 

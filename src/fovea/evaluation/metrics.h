@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/geometry/kd_tree.h"
 
@@ -15,11 +15,6 @@ namespace fovea {
 inline constexpr float kCoverageFine = 0.05f, kCoverageCoarse = 0.20f;
 /// A colour is right within this Euclidean distance in RGB (included).
 inline constexpr float kColorWithin = 20.0f;
-
-/// Brightness of a colour (ITU-R BT.601), 0-255; of a grey one its channels' common value.
-inline float luma(const Eigen::Vector3f& color) {
-  return color.dot(Eigen::Vector3f(0.299f, 0.587f, 0.114f));
-}
 
 /// TE of one point: |C - C_n|, Euclidean in RGB (0-441); for a grey camera the difference of the
 /// intensities (0-255), the map's being its luma.

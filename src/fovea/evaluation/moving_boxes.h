@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "fovea/drive/kitti/tracklets.h"
 #include "fovea/map/frame_record.h"
-#include "fovea/sensor/tracklets.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fovea/evaluation/splat.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea {
 

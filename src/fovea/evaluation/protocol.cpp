@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 namespace {

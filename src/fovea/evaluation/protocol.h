@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/hold_out.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/evaluation/scored_map.h"
-#include "fovea/sensor/frame_source.h"
-#include "fovea/sensor/hold_out.h"
 
 namespace fovea {
 

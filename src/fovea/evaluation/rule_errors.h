@@ -1,11 +1,11 @@
-// Errors by what let the nearest map point into the map (base/point_reason.h): which kind of point
+// Errors by what let the nearest map point into the map (core/point_reason.h): which kind of point
 // costs how much.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "fovea/base/point_reason.h"
+#include "fovea/core/point_reason.h"
 #include "fovea/evaluation/metrics.h"
 
 namespace fovea {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/mapping/ground.h"

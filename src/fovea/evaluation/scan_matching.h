@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/evaluation/scored_map.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/evaluate.h"
 
 namespace fovea {

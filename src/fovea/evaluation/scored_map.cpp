@@ -6,11 +6,11 @@
 #include <map>
 #include <set>
 
-#include "fovea/base/errors.h"
-#include "fovea/evaluation/cloud_format.h"
-#include "fovea/evaluation/las_reader.h"
+#include "fovea/core/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/map/point_files/cloud_format.h"
+#include "fovea/map/point_files/las_reader.h"
 
 namespace fovea {
 namespace {

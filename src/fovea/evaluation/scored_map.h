@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
 

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "../../../tests/peak_memory.h"
-#include "fovea/base/errors.h"
-#include "fovea/evaluation/ply_reader.h"
+#include "fovea/core/errors.h"
+#include "fovea/map/point_files/ply_reader.h"
 
 namespace fovea::scored_map_test {
 

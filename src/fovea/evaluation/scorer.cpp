@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/scored_frames.h"
 #include "fovea/mapping/scan_projection.h"
 
@@ -26,7 +26,7 @@ Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions opt
     : map_(map.points_local),
       drive_(drive),
       options_(std::move(options)),
-      coloured_(coloured_points(map_)),
+      coloured_(colored_points(map_)),
       coloured_tree_(coloured_.position),
       spacing_(sample_spacing(coloured_.position)),
       free_space_(coloured_),

@@ -55,7 +55,7 @@ class Scorer {
   /// drive cannot load it. Thread-safe.
   std::vector<ViewPicture> pictures(const PlacedFrame& placed) const;
 
-  const ColouredPoints& coloured() const { return coloured_; }
+  const ColoredPoints& coloured() const { return coloured_; }
   const std::vector<float>& spacing() const { return spacing_; }  ///< see sample_spacing
   const std::vector<Camera>& cameras() const { return cameras_; }
   FreeSpaceTest::Result free_space() const { return free_space_.result(); }
@@ -92,12 +92,12 @@ class Scorer {
   const FrameSource& drive_;
   ScorerOptions options_;
   std::vector<Camera> cameras_;
-  ColouredPoints coloured_;
+  ColoredPoints coloured_;
   KdTree coloured_tree_;
   std::vector<float> spacing_;
   FreeSpaceTest free_space_;
   CrossViewTest cross_view_;
-  ColouredPoints static_;  // without what moved; empty unless boxes are known
+  ColoredPoints static_;  // without what moved; empty unless boxes are known
   std::optional<KdTree> static_tree_;
   std::optional<KdTree> all_tree_;  // where there are uncoloured points
   std::vector<Rgb> all_color_;

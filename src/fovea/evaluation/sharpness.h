@@ -2,7 +2,7 @@
 // cannot see it: a blur of one pixel "improves" TE.
 #pragma once
 
-#include "fovea/evaluation/splat.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea {
 

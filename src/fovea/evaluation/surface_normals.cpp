@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/voxel_moments.h"
 
 namespace fovea {

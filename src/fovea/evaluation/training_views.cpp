@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "fovea/evaluation/splat.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea {
 namespace {
@@ -31,7 +31,7 @@ std::vector<FrameRecord> training_frames(const ScoredMap& map, const DriveInfo& 
 
 std::vector<TrainingView> load_training_views(const FrameSource& drive, const FrameRecord& record,
                                               const std::vector<std::size_t>& cameras,
-                                              const ColouredPoints& points,
+                                              const ColoredPoints& points,
                                               const std::vector<float>& spacing, TimeNs first) {
   LoadedFrame loaded = drive.load(record.index);
   if (!std::holds_alternative<Frame>(loaded)) return {};

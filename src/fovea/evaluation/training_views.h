@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fovea/evaluation/color_rules.h"
-#include "fovea/evaluation/coloured_points.h"
 #include "fovea/evaluation/protocol.h"
+#include "fovea/map/colored_points.h"
 
 namespace fovea {
 
@@ -35,7 +35,7 @@ std::vector<FrameRecord> training_frames(const ScoredMap& map, const DriveInfo& 
 /// @param first      time of the first training frame
 std::vector<TrainingView> load_training_views(const FrameSource& drive, const FrameRecord& record,
                                               const std::vector<std::size_t>& cameras,
-                                              const ColouredPoints& points,
+                                              const ColoredPoints& points,
                                               const std::vector<float>& spacing, TimeNs first);
 
 /// What a view says of a point; empty if it projects outside (see scored_pixel) or lies beyond

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/metrics.h"
 
 namespace fovea {

@@ -2,7 +2,7 @@
 
 #include <unordered_map>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/kd_tree.h"
 
 namespace fovea {

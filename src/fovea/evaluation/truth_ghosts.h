@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/evaluation/truth_poses.h"
 
 namespace fovea {

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/drive/drive_truth.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
-#include "fovea/sensor/drive_truth.h"
 
 namespace fovea {
 

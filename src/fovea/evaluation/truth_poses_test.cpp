@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/evaluation/truth_test_scene.h"
 
 namespace fovea::truth_poses_test {

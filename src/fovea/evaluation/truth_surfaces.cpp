@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/voxel_grid.h"

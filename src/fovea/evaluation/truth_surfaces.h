@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/truth_poses.h"
 #include "fovea/geometry/camera.h"

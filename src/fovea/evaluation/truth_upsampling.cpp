@@ -1,6 +1,6 @@
 #include "fovea/evaluation/truth_upsampling.h"
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/evaluation/truth_surfaces.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/mapping/upsample.h"

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fovea/base/jpeg_errors.h"
+#include "fovea/core/jpeg_errors.h"
 
 namespace fovea {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 
 namespace fovea {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fovea/sensor/jpeg_decode.h"
+#include "fovea/drive/images/jpeg_decode.h"
 
 namespace fovea::jpeg_encode_test {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/base/flat_map.h"
+#include "fovea/core/flat_map.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <set>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::cell_brick_test {
 

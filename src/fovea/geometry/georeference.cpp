@@ -6,7 +6,7 @@
 #include <GeographicLib/UTMUPS.hpp>
 #include <cmath>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 namespace {

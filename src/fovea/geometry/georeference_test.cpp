@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::georeference_test {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::kd_tree_test {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::lidar_data_sheet_test {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "fovea/base/lanes.h"
+#include "fovea/core/lanes.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::plane_moments_test {
 

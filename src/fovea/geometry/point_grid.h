@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/lanes.h"
+#include "fovea/core/lanes.h"
 #include "fovea/geometry/neighbor.h"
 #include "fovea/geometry/voxel_table.h"
 

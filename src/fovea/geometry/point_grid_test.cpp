@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/geometry/point_index.h"
 
 namespace fovea::point_grid_test {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "fovea/base/radix_sort.h"
+#include "fovea/core/radix_sort.h"
 
 namespace fovea {
 namespace {

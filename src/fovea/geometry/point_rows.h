@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/lanes.h"
+#include "fovea/core/lanes.h"
 
 namespace fovea {
 

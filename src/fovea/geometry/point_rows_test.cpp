@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::point_rows_test {
 

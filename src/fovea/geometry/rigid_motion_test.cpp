@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::rigid_motion_test {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fovea/base/settings.h"
+#include "fovea/core/settings.h"
 #include "fovea/geometry/sensor_profile.h"
 
 namespace fovea {

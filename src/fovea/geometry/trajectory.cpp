@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 
 namespace fovea {
 namespace {

@@ -1,6 +1,6 @@
 #include "fovea/geometry/transform_cloud.h"
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 

@@ -1,7 +1,7 @@
 // Moving clouds from one frame of reference to another.
 #pragma once
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::voxel_grid_test {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/base/flat_map.h"
+#include "fovea/core/flat_map.h"
 #include "fovea/geometry/cell_brick.h"
 
 namespace fovea {

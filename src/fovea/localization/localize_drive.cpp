@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/base/bounded_queue.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/process_memory.h"
-#include "fovea/base/thread.h"
-#include "fovea/base/wall_clock.h"
+#include "fovea/core/bounded_queue.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/process_memory.h"
+#include "fovea/core/thread.h"
+#include "fovea/core/wall_clock.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/pipeline/frame_reader.h"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/messages.h"
+#include "fovea/core/messages.h"
+#include "fovea/drive/hold_out.h"
 #include "fovea/localization/localizer.h"
 #include "fovea/pipeline/map_summary.h"
-#include "fovea/sensor/hold_out.h"
 
 namespace fovea {
 

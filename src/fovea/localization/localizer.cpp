@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/motion_compensation.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/optimizer.h"
-#include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
 namespace {

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/localization/place_candidates.h"
 #include "fovea/localization/prior_map.h"
 #include "fovea/map/map_store.h"
 #include "fovea/mapping/range_image.h"
 #include "fovea/pipeline/motion_model.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

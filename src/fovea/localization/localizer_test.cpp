@@ -8,10 +8,10 @@
 
 #include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 #include "fovea/localization/localize_drive.h"
 #include "fovea/pipeline/map_drive.h"
 

@@ -3,15 +3,15 @@
 #include <chrono>
 #include <limits>
 
-#include "fovea/base/process_memory.h"
-#include "fovea/base/thread.h"
+#include "fovea/core/process_memory.h"
+#include "fovea/core/thread.h"
 #include "fovea/map/packed_tile.h"
 
 namespace fovea {
 namespace {
 
-/// checkpoint() never waits for room: the queue has one checkpoint at most, since the next one waits
-/// for it.
+/// checkpoint() never waits for room: the queue has one checkpoint at most, since the next one
+/// waits for it.
 constexpr std::size_t kQueued = std::numeric_limits<std::size_t>::max();
 
 }  // namespace

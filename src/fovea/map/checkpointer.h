@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "fovea/base/bounded_queue.h"
+#include "fovea/core/bounded_queue.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/tile_map.h"
@@ -43,8 +43,8 @@ struct CheckpointerOptions {
 /// Each checkpoint is one transaction: after a crash the file has the state of the last committed
 /// one. The number and the times of the checkpoints do not change the map.
 ///
-/// A background thread, "fovea-write", takes tasks from a queue: rows, snapshots of tiles, a commit.
-/// Reads of tiles go before them.
+/// A background thread, "fovea-write", takes tasks from a queue: rows, snapshots of tiles, a
+/// commit. Reads of tiles go before them.
 class Checkpointer {
  public:
   Checkpointer(std::unique_ptr<MapWriter> writer, const CheckpointerOptions& options);

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/geometry/camera.h"
 
 namespace fovea {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/base/output_file.h"
+#include "fovea/core/output_file.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
 

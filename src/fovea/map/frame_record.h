@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {

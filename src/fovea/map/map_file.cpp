@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/base/file_format.h"
-#include "fovea/base/input_file.h"
-#include "fovea/base/path_remedy.h"
+#include "fovea/core/file_format.h"
+#include "fovea/core/input_file.h"
+#include "fovea/core/path_remedy.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/row_scan.h"
 

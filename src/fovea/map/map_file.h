@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/sqlite_database.h"
 #include "fovea/map/first_page.h"
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_row.h"
-#include "fovea/map/sqlite_database.h"
 #include "fovea/map/tile_query.h"
 
 namespace fovea {

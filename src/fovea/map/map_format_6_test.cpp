@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::map_format_6_test {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "fovea/map/sqlite_database.h"
+#include "fovea/core/sqlite_database.h"
 
 namespace fovea {
 

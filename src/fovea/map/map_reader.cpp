@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/map/map_file.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/record_rows.h"

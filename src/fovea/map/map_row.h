@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
+#include "fovea/core/sqlite_database.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/map_schema.h"
-#include "fovea/map/sqlite_database.h"
 #include "fovea/map/value_hash.h"
 
 namespace fovea {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_records.h"
 #include "fovea/map/packed_tile.h"

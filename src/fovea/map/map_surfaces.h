@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/base/scratch_file.h"
+#include "fovea/core/scratch_file.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea {

@@ -5,17 +5,17 @@
 #include <optional>
 #include <stdexcept>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/output_file.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/unfinished_output.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/output_file.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/sqlite_database.h"
+#include "fovea/core/unfinished_output.h"
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_log.h"
 #include "fovea/map/map_schema.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/record_rows.h"
-#include "fovea/map/sqlite_database.h"
 #include "fovea/map/tile_query.h"
 
 namespace fovea {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::number_text_test {
 

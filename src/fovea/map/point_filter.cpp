@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 namespace {

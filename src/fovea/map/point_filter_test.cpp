@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::point_filter_test {
 

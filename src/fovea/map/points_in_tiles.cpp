@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::points_in_tiles_test {
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "fovea/core/sqlite_database.h"
 #include "fovea/map/map_schema.h"
-#include "fovea/map/sqlite_database.h"
 
 namespace fovea {
 

@@ -34,7 +34,7 @@ class TileCache {
 
  private:
   Checkpointer& file_;
-  std::size_t most_points_;         // in memory
+  std::size_t most_points_;          // in memory
   std::size_t points_in_reach_ = 0;  // in memory after the last evict_beyond()
   std::map<TileId, std::future<TilePoints>> requested_;
 };

@@ -4,7 +4,7 @@
 
 #include "../../../tests/peak_memory.h"
 #include "../../../tests/sample_map.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::tile_codec_test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/map/points_in_tiles.h"
 
 namespace fovea {

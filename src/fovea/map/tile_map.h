@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/map/tile_points.h"
 

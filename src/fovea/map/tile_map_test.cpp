@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "../../../tests/sample_map.h"
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/map/tile_points.h"
 
 namespace fovea::tile_map_test {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/base/kept_rows.h"
+#include "fovea/core/kept_rows.h"
 
 namespace fovea {
 namespace {

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/base/fused_color.h"
-#include "fovea/base/point_cloud.h"
-#include "fovea/base/run_column.h"
-#include "fovea/base/steps.h"
+#include "fovea/core/fused_color.h"
+#include "fovea/core/point_cloud.h"
+#include "fovea/core/run_column.h"
+#include "fovea/core/steps.h"
 
 namespace fovea {
 

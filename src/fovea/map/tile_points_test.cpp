@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "../../../tests/sample_map.h"
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::tile_points_test {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "fovea/core/sqlite_database.h"
 #include "fovea/map/map_format.h"
-#include "fovea/map/sqlite_database.h"
 #include "fovea/map/tile_codec.h"
 
 namespace fovea {

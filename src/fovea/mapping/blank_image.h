@@ -1,7 +1,7 @@
 // Images without content: a covered lens, a failed camera, glare.
 #pragma once
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 
 namespace fovea {
 

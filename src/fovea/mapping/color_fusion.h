@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "fovea/base/color_block.h"
-#include "fovea/base/fused_color.h"
+#include "fovea/core/color_block.h"
+#include "fovea/core/fused_color.h"
 
 namespace fovea {
 

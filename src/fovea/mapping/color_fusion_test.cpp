@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fovea/base/image.h"
-#include "fovea/base/random.h"
+#include "fovea/core/image.h"
+#include "fovea/core/random.h"
 
 namespace fovea::color_fusion_test {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/mapping/delaunay.h"
 
 namespace fovea::delaunay_test {

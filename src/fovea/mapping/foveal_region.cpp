@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/parallel.h"
-#include "fovea/base/quick_angle.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/quick_angle.h"
 #include "fovea/geometry/transform_cloud.h"
 
 namespace fovea {

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::grid_predicates_test {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea {
 namespace {

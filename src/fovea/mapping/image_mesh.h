@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/mapping/delaunay.h"
 

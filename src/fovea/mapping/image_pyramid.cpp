@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/color_block.h"
-#include "fovea/base/image.h"
+#include "fovea/core/color_block.h"
+#include "fovea/core/image.h"
 
 namespace fovea {
 

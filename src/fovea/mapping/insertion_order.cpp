@@ -4,8 +4,8 @@
 #include <bit>
 #include <utility>
 
-#include "fovea/base/radix_sort.h"
-#include "fovea/base/random.h"
+#include "fovea/core/radix_sort.h"
+#include "fovea/core/random.h"
 
 namespace fovea {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::insertion_order_test {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <utility>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/median.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/median.h"
 
 namespace fovea {
 namespace {

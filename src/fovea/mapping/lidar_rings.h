@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "fovea/base/color_block.h"
+#include "fovea/core/color_block.h"
 
 namespace fovea {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "fovea/base/parallel.h"
-#include "fovea/base/quick_angle.h"
-#include "fovea/base/steps.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/quick_angle.h"
+#include "fovea/core/steps.h"
 
 namespace fovea {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

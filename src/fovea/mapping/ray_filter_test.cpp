@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::ray_filter_test {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

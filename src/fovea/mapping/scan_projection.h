@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 
 namespace fovea {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/median.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/median.h"
 #include "fovea/mapping/ground.h"
 #include "fovea/mapping/lidar_rings.h"
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/sensor_profile.h"
 
 namespace fovea {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/random.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/random.h"
 #include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/mapping/registration/test_scenes.h"
 

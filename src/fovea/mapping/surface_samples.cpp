@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/mapping/triangle_sampler.h"
 
 namespace fovea {

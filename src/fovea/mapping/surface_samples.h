@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/cell_brick.h"
 #include "fovea/mapping/surface.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/mapping/surface_test_support.h"
 
 namespace fovea::surface_samples_test {

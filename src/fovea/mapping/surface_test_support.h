@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "../../../tests/synthetic_drive.h"
-#include "fovea/base/angle.h"
-#include "fovea/base/random.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/random.h"
 #include "fovea/mapping/camera_test_support.h"
 #include "fovea/mapping/surface_samples.h"
 

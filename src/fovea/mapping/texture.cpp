@@ -1,6 +1,6 @@
 #include "fovea/mapping/texture.h"
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

@@ -1,8 +1,8 @@
 // Color from one view (paper: Ray-filtering and Texture Mapping; docs/method.md 6).
 #pragma once
 
-#include "fovea/base/image.h"
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/image.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 
 namespace fovea {

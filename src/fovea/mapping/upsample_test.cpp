@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/mapping/camera_test_support.h"
 #include "fovea/mapping/grid_predicates.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/map/meta_keys.h"
 
 namespace fovea {

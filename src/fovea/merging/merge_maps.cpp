@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"

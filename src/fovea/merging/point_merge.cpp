@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/point_index.h"
 #include "fovea/map/tile_place.h"
 #include "fovea/mapping/color_fusion.h"

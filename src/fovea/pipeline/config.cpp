@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/settings.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/settings.h"
 #include "fovea/pipeline/old_settings.h"
 #include "fovea/pipeline/presets.h"
 #include "fovea/pipeline/settings_rows.h"

@@ -10,10 +10,10 @@
 #include <set>
 #include <utility>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/path_name.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/path_name.h"
+#include "fovea/drive/renumbered_drive.h"
 #include "fovea/map/drive_fingerprint.h"
-#include "fovea/pipeline/renumbered_drive.h"
 
 namespace fovea {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/map/map_store.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "fovea/base/path_name.h"
+#include "fovea/core/path_name.h"
 #include "fovea/map/drive_fingerprint.h"
 
 namespace fovea {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_records.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -1,10 +1,10 @@
 // The LiDARs of a drive, and settings derived from them.
 #pragma once
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/geometry/sensor_profile.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/paper_options.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "../../../tests/kitti_sample.h"
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
+#include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/mapping/sensor_profile_estimate.h"
-#include "fovea/sensor/lidar_scan.h"
 
 namespace fovea::drive_sensors_test {
 

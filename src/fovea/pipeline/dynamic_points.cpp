@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/cell_brick.h"
 
 namespace fovea {

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "fovea/base/flat_map.h"
+#include "fovea/core/flat_map.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/range_image.h"
 

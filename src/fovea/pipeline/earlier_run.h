@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/map/map_records.h"
 #include "fovea/map/map_store.h"
 #include "fovea/pipeline/map_drive.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "fovea/base/thread.h"
+#include "fovea/core/thread.h"
 
 namespace fovea {
 namespace {

@@ -11,8 +11,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "fovea/base/bounded_queue.h"
-#include "fovea/base/wall_clock.h"
+#include "fovea/core/bounded_queue.h"
+#include "fovea/core/wall_clock.h"
 #include "fovea/pipeline/frame_reader.h"
 #include "fovea/pipeline/incremental_mapper.h"
 

@@ -6,8 +6,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "fovea/base/wall_clock.h"
-#include "fovea/sensor/frame_source.h"
+#include "fovea/core/wall_clock.h"
+#include "fovea/drive/frame_source.h"
 
 namespace fovea {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/pipeline/stage_clock.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/mapping/fusion/loop_closure.h"
+#include "fovea/mapping/fusion/navigation_check.h"
 #include "fovea/mapping/fusion/pose_graph.h"
 #include "fovea/pipeline/frame_result.h"
-#include "fovea/pipeline/navigation_check.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::fusion_test {
 

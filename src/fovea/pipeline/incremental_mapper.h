@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/map/tile_map.h"
 #include "fovea/pipeline/frame_result.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -1,12 +1,12 @@
 #include "fovea/pipeline/initial_motion.h"
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
+#include "fovea/drive/motion_compensation.h"
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/ground.h"
 #include "fovea/pipeline/frame_motion.h"
 #include "fovea/pipeline/pose_refiner.h"
-#include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/geometry/rigid_motion.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

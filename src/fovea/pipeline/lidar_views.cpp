@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/point_cloud.h"
 
 namespace fovea {
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/point_cloud.h"
 
 namespace fovea::lidar_views_test {
 

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/lost_drive.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/tile_cache.h"
 #include "fovea/pipeline/config.h"
@@ -17,7 +18,6 @@
 #include "fovea/pipeline/run_meta.h"
 #include "fovea/pipeline/run_preparation.h"
 #include "fovea/pipeline/view_check.h"
-#include "fovea/sensor/lost_drive.h"
 
 namespace fovea {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/hold_out.h"
 #include "fovea/map/checkpointer.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/pipeline/incremental_mapper.h"
 #include "fovea/pipeline/map_settings.h"
 #include "fovea/pipeline/map_summary.h"
-#include "fovea/sensor/frame_source.h"
-#include "fovea/sensor/hold_out.h"
 
 namespace fovea {
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "../../../tests/raw_drive.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/map/drive_fingerprint.h"
 #include "fovea/pipeline/map_drive_test_support.h"
 

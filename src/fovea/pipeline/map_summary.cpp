@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/process_memory.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/process_memory.h"
 
 namespace fovea {
 
@@ -40,6 +40,11 @@ std::string DriveFigures::Flaw::text(std::string_view description) const {
 }
 
 void DriveFigures::note_flaws(const FrameRecord& record) {
+  if (record.T_local_lidar_navigation && !record.has("registration_lost")) {
+    navigation_.add(*record.T_local_lidar_navigation, record.T_odom_lidar);
+  } else {
+    navigation_.interrupt();
+  }
   if (drive_.navigation && !record.T_local_lidar_navigation) absent_.add(record.index);
   if (record.has("navigation_jumped")) jumped_.add(record.index);
   if (record.has("registration_degenerate")) degenerate_.add(record.index);
@@ -77,7 +82,6 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
     if (record.status != FrameStatus::kSkipped) missing_[camera.index].add(record.index);
   }
   if (record.status != FrameStatus::kSkipped) note_flaws(record);
-  navigation_.add(record);
   if (!is_new) return;
   if (is_late(record, summary_.rate)) ++summary_.late_frames;
   for (const auto& [stage, ms] : record.milliseconds) {

@@ -6,12 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/base/messages.h"
+#include "fovea/core/messages.h"
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/navigation/navigation_faults.h"
 #include "fovea/map/frame_record.h"
-#include "fovea/pipeline/navigation_faults.h"
 #include "fovea/pipeline/point_counts.h"
 #include "fovea/pipeline/self_calibration.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/surface_samples.h"

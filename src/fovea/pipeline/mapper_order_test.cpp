@@ -3,7 +3,7 @@
 
 #include <tuple>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/pipeline/mapper.h"
 #include "fovea/pipeline/mapper_test_support.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/geometry/trajectory.h"
 
 namespace fovea {

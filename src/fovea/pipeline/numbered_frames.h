@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/base/errors.h"
-#include "fovea/sensor/frame_source.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/frame_source.h"
 
 namespace fovea {
 

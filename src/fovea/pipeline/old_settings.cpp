@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/printable.h"
-#include "fovea/base/settings.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/printable.h"
+#include "fovea/core/settings.h"
 
 namespace fovea {
 namespace {

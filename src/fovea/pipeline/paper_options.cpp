@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/mapping/color_fusion.h"
 #include "fovea/pipeline/foveal_query.h"
 

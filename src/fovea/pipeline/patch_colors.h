@@ -1,7 +1,7 @@
 // Colors of points in one image: means over the surface patches of the points.
 #pragma once
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/mapping/image_pyramid.h"
 #include "fovea/mapping/projected_points.h"

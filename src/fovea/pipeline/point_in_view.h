@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "fovea/base/steps.h"
+#include "fovea/core/steps.h"
 #include "fovea/geometry/camera.h"
 
 namespace fovea {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/mapping/registration/keyframes.h"
 #include "fovea/mapping/registration/local_map.h"
 #include "fovea/mapping/registration/registration.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/occupancy.h"
 #include "fovea/map/tile_cache.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/pipeline/map_settings.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "fovea/base/path_name.h"
-#include "fovea/base/version.h"
+#include "fovea/core/path_name.h"
+#include "fovea/core/version.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 

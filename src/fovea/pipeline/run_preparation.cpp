@@ -1,6 +1,6 @@
 #include "fovea/pipeline/run_preparation.h"
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/pipeline/frame_motion.h"
 #include "fovea/pipeline/stored_calibration.h"
 

@@ -1,7 +1,7 @@
 #include "fovea/pipeline/scan_geometry.h"
 
+#include "fovea/drive/motion_compensation.h"
 #include "fovea/pipeline/lidar_views.h"
-#include "fovea/sensor/motion_compensation.h"
 
 namespace fovea {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fovea/base/parallel.h"
-#include "fovea/sensor/motion_compensation.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/motion_compensation.h"
 
 namespace fovea {
 namespace {

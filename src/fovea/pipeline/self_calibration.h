@@ -7,9 +7,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "fovea/drive/frame_source.h"
 #include "fovea/mapping/calibration/calibration_estimate.h"
 #include "fovea/pipeline/frame_motion.h"
-#include "fovea/sensor/frame_source.h"
 
 namespace fovea {
 

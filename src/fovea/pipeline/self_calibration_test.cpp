@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 
 namespace fovea::self_calibration_test {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 namespace fovea {
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fovea/base/settings_table.h"
+#include "fovea/core/settings_table.h"
 #include "fovea/pipeline/map_settings.h"
 
 namespace fovea {

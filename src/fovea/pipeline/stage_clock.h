@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "fovea/base/wall_clock.h"
+#include "fovea/core/wall_clock.h"
 
 namespace fovea {
 

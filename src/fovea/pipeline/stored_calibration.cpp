@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 
 namespace fovea {
 namespace {

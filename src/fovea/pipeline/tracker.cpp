@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fovea/base/median.h"
+#include "fovea/core/median.h"
 #include "fovea/pipeline/scan_geometry.h"
 
 namespace fovea {

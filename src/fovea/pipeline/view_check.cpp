@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 namespace {

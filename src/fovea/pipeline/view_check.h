@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/sensor/frame_source.h"
+#include "fovea/drive/frame_source.h"
 
 namespace fovea {
 

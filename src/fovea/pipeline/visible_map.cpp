@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 #include "fovea/mapping/color_fusion.h"
 #include "fovea/mapping/projected_block.h"
 #include "fovea/pipeline/view_frustum.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/pipeline/visible_map_test_support.h"
 
 namespace fovea::visible_map_test {

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <set>
 
-#include "fovea/base/parallel.h"
-#include "fovea/evaluation/coloured_points.h"
-#include "fovea/evaluation/metrics.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/point_index.h"
 #include "fovea/geometry/voxel_grid.h"
+#include "fovea/map/colored_points.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/tile_place.h"
 #include "fovea/mapping/registration/normals.h"

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/evaluation/splat.h"
-#include "fovea/recording/generic_drive_writer.h"
-#include "fovea/recording/png_encode.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
+#include "fovea/drive/writers/png_encode.h"
+#include "fovea/rendering/splat.h"
 
 namespace fovea {
 namespace {
 
 /// What splats are drawn of.
 struct ColouredSurfels {
-  ColouredPoints points;
+  ColoredPoints points;
   std::vector<float> spacing;
 };
 

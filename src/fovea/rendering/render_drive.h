@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/map/map_store.h"
 #include "fovea/rendering/virtual_lidar.h"
@@ -40,7 +40,7 @@ struct RenderFigures {
 /// Writes a drive as docs/drives.md describes it: images/NAME/, lidar/ (KITTI's .bin), poses.csv,
 /// drive.toml; and depth/NAME/NNNNNN.png: 16 bits, metres along the optical axis x 256, 0 where
 /// nothing is (the form of KITTI's depth maps; nothing beyond 255 m). Images are the map's coloured
-/// points as discs (evaluation/splat.h), black where it has none. InputError if the map is damaged,
+/// points as discs (rendering/splat.h), black where it has none. InputError if the map is damaged,
 /// OutputError as GenericDriveWriter.
 /// @param progress  called after each frame with how many are done, of how many
 RenderFigures render_drive(const MapReader& map, const RenderJob& job,

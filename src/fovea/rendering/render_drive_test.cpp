@@ -10,10 +10,10 @@
 
 #include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/images/image_decode.h"
 #include "fovea/pipeline/map_drive.h"
-#include "fovea/sensor/image_decode.h"
 
 namespace fovea::render_drive_test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/rendering/lidar_beams.h"
 
 namespace fovea {

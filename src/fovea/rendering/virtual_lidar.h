@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/rendering/map_window.h"

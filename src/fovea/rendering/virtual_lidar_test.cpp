@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/parallel.h"
 #include "fovea/rendering/lidar_beams.h"
 #include "fovea/simulation/lidar_model.h"
 

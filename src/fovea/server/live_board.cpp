@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "fovea/base/errors.h"
-#include "fovea/exporting/byte_packer.h"
+#include "fovea/core/errors.h"
 #include "fovea/exporting/jpeg_encode.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/point_files/byte_packer.h"
 #include "fovea/server/live_sample.h"
 #include "fovea/server/map_description.h"
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstring>
 
-#include "fovea/exporting/byte_packer.h"
-#include "fovea/exporting/point_source.h"
+#include "fovea/map/point_files/byte_packer.h"
+#include "fovea/map/point_files/point_source.h"
 
 namespace fovea {
 namespace {

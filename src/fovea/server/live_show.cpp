@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fovea/base/path_name.h"
+#include "fovea/core/path_name.h"
 
 namespace fovea {
 namespace {

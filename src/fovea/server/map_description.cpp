@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/point_reason.h"
-#include "fovea/base/version.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/point_reason.h"
+#include "fovea/core/version.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/config.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "fovea/sensor/frame_source.h"
+#include "fovea/drive/frame_source.h"
 #include "fovea/server/tile_source.h"
 #include "fovea/server/web_server.h"
 

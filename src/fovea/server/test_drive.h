@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "fovea/sensor/frame_source.h"
+#include "fovea/drive/frame_source.h"
 
 namespace fovea {
 

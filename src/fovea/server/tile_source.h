@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "fovea/base/scratch_file.h"
+#include "fovea/core/scratch_file.h"
 #include "fovea/exporting/tileset/node_points.h"
 
 namespace fovea {

@@ -18,9 +18,9 @@
 #include <thread>
 #include <utility>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/thread.h"
-#include "fovea/base/version.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/thread.h"
+#include "fovea/core/version.h"
 #include "fovea/server/web_request.h"
 
 namespace fovea {

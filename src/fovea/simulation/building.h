@@ -1,7 +1,7 @@
 // Houses: walls with windows set back, doors, shops, balconies, roofs.
 #pragma once
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/palette.h"
 

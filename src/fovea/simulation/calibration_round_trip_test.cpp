@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/sensor/kitti_calibration.h"
+#include "fovea/drive/kitti/kitti_calibration.h"
 #include "fovea/simulation/drive_texts.h"
 
 namespace fovea::calibration_round_trip_test {

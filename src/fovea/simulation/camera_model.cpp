@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 #include "fovea/world/material.h"
 
 namespace fovea {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/simulation/shading.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/parallel.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_scenery.h"
 #include "fovea/world/material.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/simulation/rig.h"
 #include "fovea/simulation/simulation_options.h"
 

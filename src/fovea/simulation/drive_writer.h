@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/base/image.h"
-#include "fovea/base/time.h"
+#include "fovea/core/image.h"
+#include "fovea/core/time.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/navigation_model.h"
 #include "fovea/simulation/simulation_options.h"

@@ -1,7 +1,7 @@
 // Writes a simulated drive as a folder with a drive.toml (docs/drives.md).
 #pragma once
 
-#include "fovea/recording/generic_drive_writer.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
 #include "fovea/simulation/drive_writer.h"
 
 namespace fovea {

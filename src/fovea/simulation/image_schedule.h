@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/simulation/simulation_options.h"
 
 namespace fovea {

@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/base/errors.h"
-#include "fovea/sensor/drive_truth.h"
-#include "fovea/sensor/frame_source.h"
-#include "fovea/sensor/image_decode.h"
-#include "fovea/sensor/nearest_images.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/drive_truth.h"
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/nearest_images.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/simulate.h"
 

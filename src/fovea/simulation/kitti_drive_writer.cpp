@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "fovea/recording/png_encode.h"
+#include "fovea/drive/writers/png_encode.h"
 #include "fovea/simulation/drive_texts.h"
 
 namespace fovea {

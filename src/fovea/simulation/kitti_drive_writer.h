@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/output_folder.h"
+#include "fovea/core/output_folder.h"
 #include "fovea/simulation/drive_writer.h"
 
 namespace fovea {

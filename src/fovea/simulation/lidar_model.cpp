@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 #include "fovea/world/material.h"
 
 namespace fovea {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/parallel.h"
-#include "fovea/sensor/motion_compensation.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/parallel.h"
+#include "fovea/drive/motion_compensation.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_lidar.h"
 

@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/base/angle.h"
-#include "fovea/sensor/drive_truth.h"
-#include "fovea/sensor/frame_source.h"
-#include "fovea/sensor/motion_compensation.h"
+#include "fovea/core/angle.h"
+#include "fovea/drive/drive_truth.h"
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/motion_compensation.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/simulate.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 #include "fovea/simulation/option_checks.h"
 
 namespace fovea {

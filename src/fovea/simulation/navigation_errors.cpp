@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea {
 namespace {

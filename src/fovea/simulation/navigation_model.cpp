@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/navigation_errors.h"

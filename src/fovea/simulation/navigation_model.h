@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/time.h"
+#include "fovea/core/time.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/simulation/rig.h"
 #include "fovea/simulation/simulation_options.h"

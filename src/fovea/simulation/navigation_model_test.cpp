@@ -5,10 +5,10 @@
 
 #include <numbers>
 
-#include "fovea/sensor/navigation.h"
-#include "fovea/sensor/oxts.h"
-#include "fovea/sensor/read_file.h"
-#include "fovea/sensor/time_stamps.h"
+#include "fovea/core/read_file.h"
+#include "fovea/drive/kitti/oxts.h"
+#include "fovea/drive/navigation/navigation.h"
+#include "fovea/drive/time_stamps.h"
 #include "fovea/simulation/drive_texts.h"
 
 namespace fovea::navigation_model_test {

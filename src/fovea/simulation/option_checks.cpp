@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
 
 namespace fovea {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/models.h"
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_scenery.h"
 

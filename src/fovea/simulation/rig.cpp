@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
 #include "fovea/geometry/rectified_camera.h"
 #include "fovea/geometry/rigid_motion.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/test_scenery.h"
 

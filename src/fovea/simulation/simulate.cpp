@@ -7,9 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/camera_model.h"
 #include "fovea/simulation/drive_texts.h"
 #include "fovea/simulation/drive_writer.h"

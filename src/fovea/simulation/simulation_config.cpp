@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/errors.h"
-#include "fovea/base/settings.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/settings.h"
 #include "fovea/geometry/sweep_direction_names.h"
 
 namespace fovea {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 
 namespace fovea::simulation_config_test {
 

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/random.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/option_checks.h"
 #include "fovea/simulation/rig.h"

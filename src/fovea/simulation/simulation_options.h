@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 #include "fovea/geometry/geodesy.h"
 #include "fovea/simulation/lidar_options.h"
 

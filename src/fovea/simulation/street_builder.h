@@ -1,7 +1,7 @@
 // Builds pieces of a street: road, kerbs, pavements, houses, and what stands on them.
 #pragma once
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/models.h"
 #include "fovea/simulation/path.h"
 #include "fovea/simulation/scenery.h"

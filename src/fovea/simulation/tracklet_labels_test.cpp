@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "../../../tests/temporary_folder.h"
-#include "fovea/sensor/drive_truth.h"
-#include "fovea/sensor/tracklets.h"
+#include "fovea/drive/drive_truth.h"
+#include "fovea/drive/kitti/tracklets.h"
 #include "fovea/simulation/mesh_builder.h"
 #include "fovea/simulation/simulate.h"
 #include "fovea/simulation/test_scenery.h"

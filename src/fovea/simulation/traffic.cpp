@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/simulation/vehicle_motion.h"
 
 namespace fovea {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 
 namespace fovea {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 
 namespace fovea {
 

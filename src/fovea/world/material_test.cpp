@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::material_test {
 

@@ -6,9 +6,9 @@
 #include <charconv>
 #include <cstring>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/input_file.h"
-#include "fovea/base/output_file.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/input_file.h"
+#include "fovea/core/output_file.h"
 
 namespace fovea {
 namespace {

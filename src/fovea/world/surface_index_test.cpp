@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 
 namespace fovea::surface_index_test {
 

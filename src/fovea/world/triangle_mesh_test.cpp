@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::triangle_mesh_test {
 

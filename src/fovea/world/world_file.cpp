@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/input_file.h"
-#include "fovea/base/nesting.h"
-#include "fovea/base/output_file.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/input_file.h"
+#include "fovea/core/nesting.h"
+#include "fovea/core/output_file.h"
 #include "fovea/world/mesh_ply.h"
 
 namespace fovea {

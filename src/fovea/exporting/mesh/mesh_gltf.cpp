@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fovea/exporting/byte_packer.h"
+#include "fovea/map/point_files/byte_packer.h"
 
 namespace fovea {
 namespace {

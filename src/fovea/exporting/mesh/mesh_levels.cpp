@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "fovea/base/errors.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
 #include "fovea/exporting/mesh/surface_nets.h"
 #include "fovea/exporting/tileset/tile_tree.h"
 

@@ -5,7 +5,7 @@
 
 #include "fovea/exporting/mesh/mesh_patch.h"
 #include "fovea/exporting/mesh/point_blocks.h"
-#include "fovea/exporting/point_stream.h"
+#include "fovea/map/point_files/point_stream.h"
 
 namespace fovea {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/exporting/mesh/mesh_levels.h"
 
 namespace fovea {

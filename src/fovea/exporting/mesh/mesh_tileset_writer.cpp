@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "fovea/base/output_folder.h"
+#include "fovea/core/output_folder.h"
 #include "fovea/exporting/mesh/mesh_gltf.h"
 #include "fovea/exporting/mesh/skirts.h"
 #include "fovea/exporting/tileset/tileset_json.h"

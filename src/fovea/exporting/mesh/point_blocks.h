@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "fovea/base/scratch_file.h"
+#include "fovea/core/scratch_file.h"
 #include "fovea/exporting/mesh/mesh_lattice.h"
 #include "fovea/exporting/mesh/seen_points.h"
 

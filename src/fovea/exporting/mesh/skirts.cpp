@@ -1,6 +1,6 @@
 #include "fovea/exporting/mesh/skirts.h"
 
-#include "fovea/base/flat_map.h"
+#include "fovea/core/flat_map.h"
 
 namespace fovea {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "fovea/exporting/gltf.h"
-#include "fovea/exporting/point_stream.h"
 #include "fovea/geometry/voxel_members.h"
+#include "fovea/map/point_files/point_stream.h"
 
 namespace fovea {
 namespace {

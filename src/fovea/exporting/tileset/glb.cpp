@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/exporting/byte_packer.h"
 #include "fovea/exporting/gltf.h"
-#include "fovea/exporting/point_source.h"
+#include "fovea/map/point_files/byte_packer.h"
+#include "fovea/map/point_files/point_source.h"
 
 namespace fovea {
 namespace {

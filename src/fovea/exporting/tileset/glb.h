@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "fovea/exporting/point_stream.h"
+#include "fovea/map/point_files/point_stream.h"
 
 namespace fovea {
 

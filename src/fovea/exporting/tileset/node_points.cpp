@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fovea/base/flat_map.h"
+#include "fovea/core/flat_map.h"
 
 namespace fovea {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "fovea/exporting/point_stream.h"
 #include "fovea/exporting/tileset/tile_tree.h"
+#include "fovea/map/point_files/point_stream.h"
 
 namespace fovea {
 

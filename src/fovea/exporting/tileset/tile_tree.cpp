@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fovea/base/errors.h"
+#include "fovea/core/errors.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea {

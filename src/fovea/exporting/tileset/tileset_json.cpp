@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "fovea/base/version.h"
+#include "fovea/core/version.h"
 
 namespace fovea {
 namespace {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fovea/base/output_folder.h"
+#include "fovea/core/output_folder.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/exporting/tileset/node_points.h"
 #include "fovea/exporting/tileset/tileset_json.h"

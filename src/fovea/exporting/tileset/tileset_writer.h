@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "fovea/exporting/point_stream.h"
 #include "fovea/exporting/tileset/tile_tree.h"
+#include "fovea/map/point_files/point_stream.h"
 
 namespace fovea {
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <optional>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/median.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/median.h"
 #include "fovea/mapping/calibration/edge_agreement.h"
 #include "fovea/mapping/calibration/edge_score.h"
 

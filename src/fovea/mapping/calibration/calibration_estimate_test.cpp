@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/parallel.h"
-#include "fovea/base/random.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/random.h"
 
 namespace fovea::calibration_estimate_test {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::edge_agreement_test {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "fovea/base/image.h"
+#include "fovea/core/image.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/mapping/calibration/lidar_edges.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 
 namespace fovea {
 namespace {

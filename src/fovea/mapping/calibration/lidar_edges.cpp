@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/median.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/median.h"
 
 namespace fovea {
 namespace {

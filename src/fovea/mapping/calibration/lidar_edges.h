@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fovea/base/point_cloud.h"
+#include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 
 namespace fovea {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fovea/base/angle.h"
+#include "fovea/core/angle.h"
 
 namespace fovea::lidar_edges_test {
 

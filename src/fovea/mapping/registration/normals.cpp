@@ -6,9 +6,9 @@
 #include <numeric>
 #include <optional>
 
-#include "fovea/base/angle.h"
-#include "fovea/base/lanes.h"
-#include "fovea/base/parallel.h"
+#include "fovea/core/angle.h"
+#include "fovea/core/lanes.h"
+#include "fovea/core/parallel.h"
 #include "fovea/geometry/kd_tree.h"
 #include "fovea/geometry/plane_moments.h"
 #include "fovea/geometry/point_rows.h"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "fovea/base/lanes.h"
+#include "fovea/core/lanes.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {

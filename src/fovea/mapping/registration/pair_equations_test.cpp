@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/mapping/registration/gicp_factor.h"
 #include "fovea/mapping/registration/point_to_plane_factor.h"
 #include "fovea/mapping/registration/point_to_point_factor.h"

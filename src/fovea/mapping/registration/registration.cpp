@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/mapping/registration/gicp_factor.h"
 #include "fovea/mapping/registration/normals.h"
 #include "fovea/mapping/registration/optimizer.h"

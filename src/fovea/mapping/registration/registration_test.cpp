@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "fovea/base/parallel.h"
+#include "fovea/core/parallel.h"
 #include "fovea/mapping/registration/test_scenes.h"
 
 namespace fovea::registration_test {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea::test {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "fovea/base/flat_map.h"
+#include "fovea/core/flat_map.h"
 #include "fovea/geometry/cell_brick.h"
 
 namespace fovea {

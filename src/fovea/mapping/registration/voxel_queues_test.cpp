@@ -7,7 +7,7 @@
 #include <optional>
 #include <tuple>
 
-#include "fovea/base/random.h"
+#include "fovea/core/random.h"
 
 namespace fovea::voxel_queues_test {
 

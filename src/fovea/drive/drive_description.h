@@ -1,0 +1,58 @@
+// drive.toml: what the sensors of a drive are and where they sit (docs/drives.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/core/angle.h"
+#include "fovea/drive/scans/scan_format.h"
+#include "fovea/geometry/lens.h"
+#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sensor_profile.h"
+
+namespace fovea {
+
+struct CameraDescription {
+  std::string name;
+  std::filesystem::path folder;  ///< of its images, below the drive's
+  int index = 0;                 ///< the number that commands and maps know it by, 0 to 9
+  LensCamera optics;
+  RigidMotion T_cam_lidar = RigidMotion::Identity();
+  double max_field_of_view =
+      100 * kDegree;  ///< rad, of the rectified image; not of pinhole cameras
+  double delay = 0;   ///< s from an image's stamp (or its scan's, if it has none) to its exposure
+};
+
+/// What drive.toml states of SweepTiming.
+struct SweepDescription {
+  std::optional<double> period;  ///< s
+  std::optional<SweepDirection> direction;
+  std::optional<double> start_azimuth;  ///< rad
+  std::optional<double> stamp_phase;
+};
+
+struct DriveDescription {
+  std::filesystem::path scans;  ///< folder, below the drive's
+  StatedScanFormat scan_format;
+  bool sweep_compensated = false;
+  SweepDescription sweep;
+  double image_tolerance = 0.06;  ///< s, between an image and its sweep's middle
+  /// Body: what poses.csv and the attitudes of gnss.csv are of.
+  RigidMotion T_body_lidar = RigidMotion::Identity();
+  RigidMotion T_body_imu = RigidMotion::Identity();        ///< of imu.csv's orientations
+  Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();  ///< of gnss.csv's positions
+  std::vector<CameraDescription> cameras;                  ///< by index; may be empty
+};
+
+/// Reads drive.toml. InputError if it cannot be read; ConfigError that names file and key (and
+/// line, where the key is there) for a syntax error, an unknown or missing key, a wrong type, or
+/// values that are no calibration.
+DriveDescription read_drive_description(const std::filesystem::path& file);
+
+/// The same of a text; `name` stands for the file in errors.
+DriveDescription parse_drive_description(std::string_view text, std::string_view name);
+
+}  // namespace fovea

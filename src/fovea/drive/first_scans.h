@@ -1,0 +1,26 @@
+// What the first scans of a drive show about all its scans.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "fovea/core/read_file.h"
+#include "fovea/core/time.h"
+#include "fovea/drive/scans/scan_format.h"
+#include "fovea/drive/scans/scan_numbers.h"
+
+namespace fovea {
+
+using StampOfScan = std::function<std::optional<TimeNs>(int scan)>;
+
+/// The numbers of up to `count` scans that have a stamp. Damaged scans do not count.
+std::vector<ScanNumbers> read_first_numbers(const NumberedFiles& scans, int count,
+                                            const StampOfScan& stamp);
+
+/// Middle of the sweep, s from the stamp, by the point times of the first scan that can be read;
+/// absent if its points have no times.
+std::optional<double> first_sweep_middle(const NumberedFiles& scans, const ScanFormat& format,
+                                         const StampOfScan& stamp);
+
+}  // namespace fovea

@@ -1,0 +1,270 @@
+#include "fovea/drive/generic_drive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/drive_description.h"
+#include "fovea/drive/drive_files.h"
+#include "fovea/drive/drive_stamps.h"
+#include "fovea/drive/first_scans.h"
+#include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/navigation/generic_navigation.h"
+#include "fovea/drive/nearest_images.h"
+#include "fovea/drive/scans/described_sweep.h"
+#include "fovea/drive/scans/recognized_format.h"
+#include "fovea/geometry/rectified_camera.h"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
+constexpr int kFirstScans = 5;            // whose numbers give the units
+
+class GenericDrive {
+ public:
+  GenericDrive(const fs::path& path, const DriveOptions& options)
+      : options_(options), description_(read_drive_description(path / "drive.toml")) {
+    info_.path = path;
+    info_.kind = "generic";
+    info_.sweep_compensated = description_.sweep_compensated;
+  }
+
+  std::unique_ptr<FrameSource> open() {
+    find_scans();
+    find_scan_stamps();
+    find_scan_format();
+    if (options_.use_images) find_cameras();
+    if (options_.use_navigation) find_navigation();
+    return make_frame_source(std::move(info_), std::move(files_));
+  }
+
+ private:
+  void find_scans() {
+    const fs::path folder = info_.path / description_.scans;
+    files_.scans = list_numbered_files(folder, {".bin", ".pcd", ".ply"});
+    if (files_.scans.empty()) {
+      throw InputError("the drive has no scan", folder.string(),
+                       "put scans there as NUMBER.pcd, .ply or .bin (docs/drives.md)");
+    }
+    if (files_.scans.rbegin()->first >= kMaxFileNumber) {
+      throw InputError(fmt::format("a scan's number is over {}", kMaxFileNumber - 1),
+                       files_.scans.rbegin()->second.string(), "number the scans from 0 on");
+    }
+    std::tie(info_.begin, info_.end) = frame_range(files_.scans, options_, info_.path);
+  }
+
+  void find_scan_stamps() {
+    const fs::path file = info_.path / description_.scans / "stamps.csv";
+    files_.stamps_name_scans = true;
+    if (fs::exists(file)) {
+      files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
+      for (const auto& [scan, time] : read_scan_stamps(file, info_)) {
+        if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
+      }
+      remove_out_of_order(files_.stamps);
+    }
+    info_.has_time_stamps = files_.stamps.any();
+    if (!info_.has_time_stamps) {
+      info_.warn(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
+                             fs::exists(file) ? "has no usable line" : "is missing"));
+      return;
+    }
+    if (const std::size_t count = files_.stamps.out_of_order.size(); count > 0) {
+      info_.warn(
+          fmt::format("{} stamps of {} are out of order (the first of scan {}): "
+                      "these scans are skipped",
+                      count, file.string(), files_.stamps.out_of_order.front()));
+    }
+    if (!description_.sweep.period && find_sweep_period(file, files_.stamps, info_)) {
+      stamp_step_ = info_.sweep.period;
+    }
+  }
+
+  /// Units of the scans and timing of the sweeps, by drive.toml and the first scans.
+  void find_scan_format() {
+    const auto stamp = [&](int scan) { return frame_stamp(info_, files_.stamps, scan); };
+    const std::vector<ScanNumbers> numbers = read_first_numbers(files_.scans, kFirstScans, stamp);
+    StatedScanFormat stated = description_.scan_format;
+    if (info_.sweep_compensated) stated.time_reference = TimeReference::kNone;
+    files_.scan_format =
+        recognize_format_of_drive(numbers, stated, info_.path / "drive.toml", info_.notes);
+    info_.sweep = sweep_timing(description_.sweep, stamp_step_);
+    if (info_.sweep_compensated) return;
+    const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
+    sweep_middle_ = middle.value_or(info_.sweep.middle_time());
+    if (!numbers.empty() && !middle) {
+      info_.warn(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
+    }
+  }
+
+  /// The images of those cameras that have any, by camera number.
+  std::map<int, NumberedFiles> list_images() {
+    std::map<int, NumberedFiles> images;
+    for (const CameraDescription& camera : description_.cameras) {
+      const fs::path folder = info_.path / camera.folder;
+      NumberedFiles files = list_numbered_files(folder, {".png", ".jpg", ".jpeg"});
+      if (files.empty()) {
+        info_.warn(fmt::format("camera {} ({}) has no image in {}: it is left out", camera.index,
+                               camera.name, folder.string()));
+      } else {
+        images.emplace(camera.index, std::move(files));
+      }
+    }
+    return images;
+  }
+
+  void find_cameras() {
+    if (description_.cameras.empty() && options_.cameras.empty()) {
+      info_.notes.push_back(kNoCameraNote);
+      return;
+    }
+    std::map<int, NumberedFiles> images = list_images();
+    std::vector<int> present;
+    present.reserve(images.size());
+    for (const auto& [index, files] : images) present.push_back(index);
+    for (const int index : choose_cameras(present, options_, info_.path)) {
+      const CameraDescription& camera =
+          *std::find_if(description_.cameras.begin(), description_.cameras.end(),
+                        [&](const CameraDescription& c) { return c.index == index; });
+      add_camera(camera, images.at(index));
+    }
+  }
+
+  /// ConfigError if the first images that can be read all have another size than drive.toml says:
+  /// it is that which is wrong, and a table for rectification may be of any size by it.
+  void check_image_size(const CameraDescription& described, const NumberedFiles& images) const {
+    constexpr int kLookedAt = 10;
+    int looked_at = 0;
+    std::string found = "cannot be read";
+    for (const auto& [number, file] : images) {
+      if (looked_at++ == kLookedAt) break;
+      try {
+        const Image image = read_image(file);
+        if (image.width == described.optics.width && image.height == described.optics.height)
+          return;
+        found = fmt::format("have {} x {} pixels, not {} x {}", image.width, image.height,
+                            described.optics.width, described.optics.height);
+      } catch (const InputError&) {
+        continue;  // load() reports it when its turn comes
+      }
+    }
+    throw ConfigError(fmt::format("the images of camera {} {}", described.name, found),
+                      images.begin()->second.parent_path().string(),
+                      "give their width and height in drive.toml, or restore them");
+  }
+
+  void add_camera(const CameraDescription& described, const NumberedFiles& images) {
+    check_image_size(described, images);
+    const auto pinhole =
+        rectified_camera(described.optics, described.max_field_of_view, kMaxImageSide);
+    const bool distorted = described.optics.lens.model() != LensModel::kNone;
+    files_.rectifiers.push_back(
+        distorted && pinhole ? ImageRectifier::make(described.optics, *pinhole) : std::nullopt);
+    if (!pinhole || (distorted && !files_.rectifiers.back())) {
+      throw ConfigError(
+          fmt::format("the lens of camera {} leaves no image, or one too large", described.name),
+          (info_.path / "drive.toml").string(), "check K and D, or lower its field_of_view");
+    }
+    Camera camera = *pinhole;
+    camera.index = described.index;
+    camera.T_cam_lidar = described.T_cam_lidar;
+    camera.image_delay = described.delay;
+    info_.image_offsets.emplace_back();
+    files_.images.push_back(images_of_scans(described, images, camera));
+    info_.calibration.cameras.push_back(camera);
+  }
+
+  /// The images by the numbers of the scans they belong to; sets the camera's median delay and
+  /// the offsets of its images from that median.
+  NumberedFiles images_of_scans(const CameraDescription& described, const NumberedFiles& images,
+                                Camera& camera) {
+    const fs::path file = info_.path / described.folder / "stamps.csv";
+    if (!fs::exists(file)) return images;
+    if (!info_.has_time_stamps) {
+      info_.warn(file.string() + " is not used: the scans have no stamps");
+      return images;
+    }
+    NumberedTimes scans;
+    for (const auto& [scan, path] : files_.scans) {
+      if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
+    }
+    NumberedTimes times = read_image_stamps(file, scans, info_);
+    std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
+    const ImageMatches matches =
+        match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
+    if (matches.image_of_scan.empty()) {
+      throw InputError(fmt::format("no image of camera {} belongs to a scan: {}", described.name,
+                                   why_none_matches(scans, times, description_.image_tolerance)),
+                       file.string(),
+                       "give stamps of one clock, or leave the camera out (--cameras)");
+    }
+    camera.image_delay += matches.median_delay;
+    note_matches(described, matches, scans.size());
+    info_.image_stamps_are_capture_times = true;
+    NumberedFiles result;
+    for (const auto& [scan, image] : matches.image_of_scan) {
+      result[scan] = images.at(image);
+      const double delay = seconds(times.at(image) - scans.at(scan));
+      info_.image_offsets.back()[scan] = delay - matches.median_delay;
+    }
+    return result;
+  }
+
+  void note_matches(const CameraDescription& camera, const ImageMatches& matches,
+                    std::size_t scans) {
+    if (matches.image_of_scan.size() < scans) {
+      info_.warn(fmt::format("camera {} ({}) has no image within {:g} s of {} of {} scans",
+                             camera.index, camera.name, description_.image_tolerance,
+                             scans - matches.image_of_scan.size(), scans));
+    }
+    if (matches.max_delay - matches.min_delay > kNotableSpread) {
+      info_.notes.push_back(fmt::format(
+          "camera {} ({}) takes images {:.1f} to {:.1f} ms after the scans; each is projected at "
+          "its own time",
+          camera.index, camera.name, 1e3 * matches.min_delay, 1e3 * matches.max_delay));
+    }
+  }
+
+  void find_navigation() {
+    const std::optional<int> first = first_usable_frame(info_, files_);
+    const TimeNs origin_time =
+        frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
+    GenericNavigation navigation =
+        read_generic_navigation(info_.path, description_, origin_time, period_of(files_.stamps));
+    info_.append(navigation);
+    if (!navigation.T_local_lidar || !covers_scans(*navigation.T_local_lidar)) return;
+    info_.calibration.T_imu_lidar = description_.T_body_lidar;
+    info_.navigation = std::move(navigation.T_local_lidar);
+    info_.navigation_accuracy = std::move(navigation.accuracy);
+    info_.origin = navigation.origin;
+  }
+
+  /// Notes the scans of the range that have no pose; false if none has one.
+  bool covers_scans(const Trajectory& T_local_lidar) {
+    const ScansReached reach = scans_reached(T_local_lidar, info_, files_);
+    if (reach.reached == reach.stamped) return true;
+    info_.warn(
+        fmt::format("poses or positions reach {} of {} scans{}", reach.reached, reach.stamped,
+                    reach.reached == 0 ? ", are their times of one clock? No navigation" : ""));
+    return reach.reached > 0;
+  }
+
+  DriveOptions options_;
+  DriveDescription description_;
+  DriveInfo info_;
+  DriveFiles files_;
+  std::optional<double> stamp_step_;  // s, where it can be a sweep's period
+  double sweep_middle_ = 0;           // s after a scan's stamp
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_generic_drive(const fs::path& path, const DriveOptions& options) {
+  return GenericDrive(path, options).open();
+}
+
+}  // namespace fovea

@@ -1,0 +1,137 @@
+// KITTI raw drives: DATE/DATE_drive_NNNN_sync.
+#include <fmt/format.h>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/drive_files.h"
+#include "fovea/drive/kitti/kitti_drives.h"
+#include "fovea/drive/navigation/navigation.h"
+
+namespace fovea {
+namespace {
+
+/// The folder above the drive's, for "." and "drive/", too.
+std::filesystem::path date_folder(const std::filesystem::path& drive) {
+  const auto absolute = std::filesystem::absolute(drive / "").lexically_normal();
+  return absolute.parent_path().parent_path();
+}
+
+struct OxtsFolder {
+  std::vector<StampedOxts> records;         ///< usable ones
+  std::map<int, std::string> why_unusable;  ///< by record number
+};
+
+/// @param stamps  of the records; absent where the drive counts as 10 Hz: a synced drive has one
+///                record a scan, so its number is its time
+OxtsFolder read_oxts_folder(const NumberedFiles& files, const std::optional<TimeStamps>& stamps,
+                            const DriveInfo& info) {
+  OxtsFolder folder;
+  for (const auto& [index, file] : files) {
+    const std::optional<TimeNs> time = frame_stamp(info, stamps.value_or(TimeStamps{}), index);
+    const auto record = read_oxts(file);
+    if (const auto* why = std::get_if<std::string>(&record)) {
+      folder.why_unusable[index] = file.string() + " " + *why;
+    } else if (!time) {
+      folder.why_unusable[index] = file.string() + " has no usable time stamp";
+    } else {
+      folder.records.push_back({*time, std::get<OxtsRecord>(record)});
+    }
+  }
+  return folder;
+}
+
+/// Notes the unusable records, and the frames of the range that have none of their own.
+void note_bad_records(const NumberedFiles& oxts, const OxtsFolder& folder, const DriveFiles& files,
+                      DriveInfo& info) {
+  if (!folder.why_unusable.empty()) {
+    info.warn(fmt::format("{} of {} GPS/INS records cannot be used (the first: {})",
+                          folder.why_unusable.size(), oxts.size(),
+                          folder.why_unusable.begin()->second));
+  }
+  std::vector<int> without;
+  for (auto scan = files.scans.lower_bound(info.begin);
+       scan != files.scans.end() && scan->first < info.end; ++scan) {
+    if (!oxts.contains(scan->first)) without.push_back(scan->first);
+  }
+  if (without.empty()) return;
+  info.warn(fmt::format("{} frames have no GPS/INS record (the first: {})", without.size(),
+                        without.front()));
+}
+
+/// The poses of records, without positions that are far from the others, which a note counts.
+std::vector<GeodeticPose> consistent_poses(const std::vector<StampedOxts>& records,
+                                           DriveInfo& info) {
+  const std::vector<GeodeticPose> all = geodetic_poses(records);
+  const std::vector<bool> far = far_positions(all);
+  std::vector<GeodeticPose> poses;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!far[i]) poses.push_back(all[i]);
+  }
+  if (poses.size() < all.size()) {
+    info.warn(
+        fmt::format("{} of {} GPS/INS records cannot be used: a position too far from the others",
+                    all.size() - poses.size(), all.size()));
+  }
+  return poses;
+}
+
+/// Fills info.navigation and info.origin, or notes why there is none.
+void find_navigation(const KittiCalibration& calibration, DriveInfo& info, DriveFiles& files) {
+  const std::filesystem::path folder = info.path / "oxts";
+  const auto without = [&](const std::string& why) {
+    info.warn(why + ": no navigation, the map will not be georeferenced");
+  };
+  const NumberedFiles oxts = list_numbered_files(folder / "data", {".txt"});
+  if (oxts.empty()) return without((folder / "data").string() + " has no record");
+  if (!calibration.T_imu_lidar) return without("calib_imu_to_velo.txt is missing");
+
+  std::optional<TimeStamps> stamps;
+  if (info.has_time_stamps) {
+    const std::filesystem::path file = folder / "timestamps.txt";
+    if (!std::filesystem::exists(file)) return without(file.string() + " is missing");
+    stamps = read_date_times(file);
+  }
+  const OxtsFolder records = read_oxts_folder(oxts, stamps, info);
+  if (records.records.empty()) {
+    return without(
+        "no GPS/INS record can be used (the first: " + records.why_unusable.begin()->second + ")");
+  }
+  note_bad_records(oxts, records, files, info);
+  const std::vector<GeodeticPose> poses = consistent_poses(records.records, info);
+  if (poses.empty()) return without("positions of the GPS/INS records contradict each other");
+  const std::optional<int> first = first_usable_frame(info, files);
+  const TimeNs origin_time =
+      first ? *frame_stamp(info, files.stamps, *first) : records.records.front().time;
+  Navigation navigation = navigation_of(poses, *calibration.T_imu_lidar, origin_time);
+  if (scans_reached(navigation.trajectory, info, files).reached == 0) {
+    return without("GPS/INS records reach no scan, are their times of one clock?");
+  }
+  if (!navigation.origin) info.warn(no_fix_note(folder / "data"));
+  info.calibration.T_imu_lidar = calibration.T_imu_lidar;
+  info.navigation = std::move(navigation.trajectory);
+  info.navigation_accuracy = std::move(navigation.accuracy);
+  info.origin = navigation.origin;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
+                                            const DriveOptions& options) {
+  DriveInfo info;
+  DriveFiles files;
+  info.path = path;
+  info.kind = "kitti-raw";
+  const std::filesystem::path scans = path / "velodyne_points";
+  files.scans = list_numbered_files(scans / "data", {".bin"});
+  if (files.scans.empty()) {
+    throw InputError("the drive has no scan", (scans / "data" / "*.bin").string(),
+                     "use a synced and rectified drive (DATE_drive_NNNN_sync) with its scans");
+  }
+  std::tie(info.begin, info.end) = frame_range(files.scans, options, path);
+  const KittiCalibration calibration = read_kitti_raw_calibration(date_folder(path));
+  if (options.use_images) find_images(calibration, options, "image_0", "data", info, files);
+  find_stamps(scans / "timestamps.txt", read_date_times, info, files);
+  if (options.use_navigation) find_navigation(calibration, info, files);
+  return make_frame_source(std::move(info), std::move(files));
+}
+
+}  // namespace fovea

@@ -1,0 +1,20 @@
+// Headings of a vehicle of which only positions are known.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "fovea/core/time.h"
+
+namespace fovea {
+
+/// Heading at each place (rad, 0 = along x, counter-clockwise): the direction of the way through
+/// it, between the nearest places before and after that are a metre apart; where the vehicle stands
+/// (no metre within two seconds), that of before, or else of afterwards. Empty if it never moves.
+/// @param times      strictly increasing, one a place
+/// @param positions  m; z does not matter
+std::optional<std::vector<double>> course_headings(const std::vector<TimeNs>& times,
+                                                   const std::vector<Eigen::Vector3d>& positions);
+
+}  // namespace fovea

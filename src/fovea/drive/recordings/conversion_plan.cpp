@@ -1,0 +1,109 @@
+#include "fovea/drive/recordings/conversion_plan.h"
+
+#include <fmt/format.h>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/recordings/navigation_topics.h"
+#include "fovea/drive/recordings/only_topic.h"
+#include "fovea/drive/scans/recognized_format.h"
+
+namespace fovea {
+namespace {
+
+[[noreturn]] void throw_no_clouds(const BagSurvey& survey) {
+  for (const auto& [name, unusable] : survey.unusable) {
+    const auto topic = survey.topics.find(name);
+    if (topic == survey.topics.end() || topic->second.type != ros::kPointCloud) continue;
+    throw InputError(fmt::format("no point cloud can be used ({})", unusable.first_problem), name,
+                     "restore it from a copy, or see docs/drives.md for what is read");
+  }
+  for (const auto& [name, topic] : survey.topics) {
+    if (topic.encoding == kCdrEncoding) continue;
+    throw InputError(fmt::format("messages are of encoding '{:.40}'", topic.encoding), name,
+                     "give a recording of ROS 2 (encoding 'cdr')");
+  }
+  throw InputError("the recording has no point clouds", std::string(ros::kPointCloud),
+                   "record the LiDAR's topic, not its packets");
+}
+
+/// InputError if the two have no time in common: they were stamped by different clocks.
+void check_clocks(const std::string& lidar, const std::vector<TimeNs>& scans,
+                  const std::string& other, TimeNs first, TimeNs last) {
+  if (first <= scans.back() + kNsPerSecond && last >= scans.front() - kNsPerSecond) return;
+  throw InputError(fmt::format("stamps have no time in common with those of {}", lidar), other,
+                   "have all sensors use one clock");
+}
+
+/// InputError if there are more than a drive's files have numbers.
+void check_count(const SensorTopic& sensor, const std::string& topic) {
+  constexpr std::size_t kMostFiles = 1'000'000;  // of six digits
+  if (sensor.stamps.size() <= kMostFiles) return;
+  throw InputError(fmt::format("there are {} messages", sensor.stamps.size()), topic,
+                   "split the recording: a drive has a million at most");
+}
+
+void check_sensors(const BagSurvey& survey, const ConversionPlan& plan) {
+  check_count(survey.clouds.at(plan.lidar), plan.lidar);
+  const std::vector<TimeNs>& scans = survey.clouds.at(plan.lidar).stamps;
+  const auto check = [&](const std::string& other, TimeNs first, TimeNs last) {
+    check_clocks(plan.lidar, scans, other, first, last);
+  };
+  for (const PlannedCamera& camera : plan.cameras) {
+    const std::vector<TimeNs>& stamps = survey.images.at(camera.topic).stamps;
+    check(camera.topic, stamps.front(), stamps.back());
+    check_count(survey.images.at(camera.topic), camera.topic);
+  }
+  const RecordedDrive& drive = plan.drive;
+  if (!drive.poses.empty()) check("the poses", drive.poses.front().time, drive.poses.back().time);
+  if (!drive.positions.empty()) {
+    check("the positions", drive.positions.front().time, drive.positions.back().time);
+  }
+}
+
+/// Recognizes the units of the scans. Times that have no meaning are not used, which a note says.
+ScanFormat recognize_scans(const SensorTopic& lidar, const std::string& topic,
+                           std::vector<std::string>& notes) {
+  const auto recognize = [&](const StatedScanFormat& stated) {
+    const RecognizedFormat recognized = recognize_format(lidar.first_scans, stated);
+    const ScanFormat& format = recognized.format;
+    const bool timed = format.time_unit && format.time_reference != TimeReference::kNone;
+    notes.push_back(fmt::format("scans: {} of {}, {}", lidar.stamps.size(), topic,
+                                timed ? "points have times" : "points have no times"));
+    for (const FormatNote& note : recognized.notes) notes.push_back(note.what);
+    return format;
+  };
+  try {
+    return recognize({});
+  } catch (const ConfigError& error) {
+    if (!error.where().starts_with("lidar.time_")) {
+      throw InputError(error.problem(), topic, "record coordinates in m, in the LiDAR's frame");
+    }
+    notes.push_back("the times of points are not used: " + error.problem());
+    StatedScanFormat untimed;
+    untimed.time_reference = TimeReference::kNone;
+    return recognize(untimed);
+  }
+}
+
+}  // namespace
+
+ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options) {
+  ConversionPlan plan;
+  if (survey.clouds.empty()) throw_no_clouds(survey);
+  plan.lidar = only_topic(survey.clouds, options.lidar, "PointCloud2", "--lidar");
+  const SensorTopic& lidar = survey.clouds.at(plan.lidar);
+  plan.drive.sweep_compensated = options.sweep_compensated;
+  plan.scan_format = recognize_scans(lidar, plan.lidar, plan.notes);
+  plan.cameras = plan_cameras(survey, options, lidar.frame, plan.notes);
+  for (const PlannedCamera& planned : plan.cameras) {
+    plan.notes.push_back(fmt::format("camera {}: '{}', {} images of {}", planned.camera.index,
+                                     planned.camera.name,
+                                     survey.images.at(planned.topic).stamps.size(), planned.topic));
+    plan.drive.cameras.push_back(planned.camera);
+  }
+  plan.navigation_topics = plan_navigation(survey, options, lidar.frame, plan.drive, plan.notes);
+  check_sensors(survey, plan);
+  return plan;
+}
+
+}  // namespace fovea

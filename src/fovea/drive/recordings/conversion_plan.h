@@ -1,0 +1,29 @@
+// What of a recording becomes what of a drive.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fovea/drive/recordings/camera_topics.h"
+#include "fovea/drive/recordings/convert_options.h"
+#include "fovea/drive/recordings/survey.h"
+#include "fovea/drive/scans/scan_format.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
+
+namespace fovea {
+
+struct ConversionPlan {
+  std::string lidar;  ///< topic of the scans
+  ScanFormat scan_format;
+  std::vector<PlannedCamera> cameras;
+  RecordedDrive drive;
+  std::vector<std::string> navigation_topics;  ///< that are used
+  std::vector<std::string> notes;              ///< what was chosen, what is left out and why
+};
+
+/// InputError for a recording that is no drive: without scans or cameras, without their calibration
+/// or place, of sensors that different clocks have stamped, or of what may be meant in several
+/// ways.
+ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options);
+
+}  // namespace fovea

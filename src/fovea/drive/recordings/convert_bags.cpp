@@ -1,0 +1,72 @@
+#include "fovea/drive/recordings/convert_bags.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/recordings/bag.h"
+#include "fovea/drive/recordings/conversion_plan.h"
+#include "fovea/drive/recordings/recorder.h"
+#include "fovea/drive/recordings/survey.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
+
+namespace fovea {
+namespace {
+
+/// Calls what knows of topics only: its errors say which recording they are in.
+template <class Step>
+auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
+  try {
+    return step();
+  } catch (const InputError& error) {
+    throw InputError(error.problem(),
+                     fmt::format("{} in {}{}", error.where(), bags.front().string(),
+                                 bags.size() > 1 ? " and others" : ""),
+                     error.remedy());
+  }
+}
+
+/// Notes each topic without use, with the number of its messages.
+void note_unused_topics(const BagSurvey& survey, const ConversionPlan& plan,
+                        ConvertFigures& figures) {
+  std::set<std::string> used(plan.navigation_topics.begin(), plan.navigation_topics.end());
+  used.insert(plan.lidar);
+  for (const PlannedCamera& camera : plan.cameras) used.insert(camera.topic);
+  for (const auto& [name, messages] : survey.messages) {
+    const std::string& type = survey.topics.at(name).type;
+    if (type == ros::kTransforms || type == ros::kCameraInfo || used.contains(name)) continue;
+    figures.notes.push_back(fmt::format("not used: {} message{} of {} ({})", messages,
+                                        messages == 1 ? "" : "s", name, type));
+  }
+}
+
+}  // namespace
+
+ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
+                            const std::filesystem::path& output, bool force,
+                            const ConvertOptions& options,
+                            const std::function<void(int, int)>& progress) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& bag : bags) {
+    const auto parts = bag_files(bag);
+    files.insert(files.end(), parts.begin(), parts.end());
+  }
+  ConvertFigures figures;
+  GenericDriveWriter writer(output, force);
+  const std::filesystem::path scratch = writer.folder();
+  const BagSurvey survey = survey_bags(files, scratch);
+  ConversionPlan plan = naming(bags, [&] { return plan_conversion(survey, options); });
+  Recorder recorder(survey, plan, writer, options.allow_dropped, progress);
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, recorder);
+  figures.notes = plan.notes;
+  naming(bags, [&] { recorder.finish(plan.drive, figures); });
+  note_unused_topics(survey, plan, figures);
+  for (const auto& [topic, unusable] : survey.unusable) {
+    figures.warn(unusable.note(topic));
+  }
+  writer.finish(plan.drive);
+  return figures;
+}
+
+}  // namespace fovea

@@ -1,0 +1,215 @@
+#include "fovea/drive/recordings/mcap_file.h"
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <cstring>
+#include <map>
+#include <optional>
+
+#include "fovea/core/errors.h"
+#include "fovea/core/input_file.h"
+#include "fovea/core/printable.h"
+#include "fovea/drive/recordings/decompress.h"
+
+namespace fovea {
+namespace {
+
+constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+
+enum Opcode : std::uint8_t {
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+};
+
+/// Numbers (little endian) and texts of a record, one after the other.
+class Fields {
+ public:
+  Fields(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
+
+  template <class T>
+  T number() {
+    T value;
+    std::memcpy(&value, block(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::string_view text() { return block(number<std::uint32_t>()); }
+  std::string_view block(std::uint64_t size) {
+    if (size > bytes_.size()) {
+      throw InputError("a record ends early", where_, "restore the recording from a copy");
+    }
+    const std::string_view result = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return result;
+  }
+  std::string_view rest() const { return bytes_; }
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  std::string_view bytes_;
+  const std::string& where_;
+};
+
+class McapReader {
+ public:
+  McapReader(const std::filesystem::path& file, const std::filesystem::path& shown, BagSink& sink)
+      : name_(shown.string()),
+        input_(file, kStreamedFile),
+        stream_(input_.stream()),
+        sink_(sink),
+        size_(input_.size()) {}
+
+  void read() {
+    if (take(std::min<std::uint64_t>(kMagic.size(), size_)) != kMagic) {
+      throw InputError("this is no MCAP file", name_, "give a recording of ROS 2");
+    }
+    while (!ended_) next();
+  }
+
+ private:
+  [[noreturn]] void throw_cut_short() const {
+    throw InputError("the recording is cut short", fmt::format("{}, byte {}", name_, at_),
+                     "give a whole copy, or what 'mcap recover' makes of it");
+  }
+
+  /// The next bytes of the file, valid until the next call.
+  std::string_view take(std::uint64_t size) {
+    if (size > size_ - at_) throw_cut_short();
+    if (size > kMaxBagBlock) {
+      throw InputError(fmt::format("a record has {} bytes", size),
+                       fmt::format("{}, byte {}", name_, at_),
+                       "restore the recording from a copy, or write it with smaller chunks");
+    }
+    buffer_.resize(size);
+    stream_.read(buffer_.data(), std::streamsize(size));
+    if (std::uint64_t(stream_.gcount()) != size) throw_cut_short();
+    at_ += size;
+    return buffer_;
+  }
+
+  /// Reads a record.
+  void next() {
+    const std::string where = fmt::format("{}, byte {}", name_, at_);
+    Fields head(take(9), where);
+    const auto opcode = head.number<std::uint8_t>();
+    const auto size = head.number<std::uint64_t>();
+    switch (opcode) {
+      case kChunk:
+        return read_chunk(take(size), where);
+      case kSchema:
+      case kChannel:
+      case kMessage:
+        return read_record(opcode, take(size), where);
+      case kFooter:
+        take(size);
+        if (take(kMagic.size()) != kMagic) throw_cut_short();
+        ended_ = true;
+        return;
+      default:  // of no interest, or of a later version
+        if (size > size_ - at_) throw_cut_short();
+        at_ += size;
+        stream_.seekg(std::streamoff(at_));
+    }
+  }
+
+  void read_chunk(std::string_view bytes, const std::string& where) {
+    Fields chunk(bytes, where);
+    chunk.block(16);  // times of the first and the last message
+    const auto size = chunk.number<std::uint64_t>();
+    const auto crc = chunk.number<std::uint32_t>();
+    const std::string compression(chunk.text());
+    const std::string_view stored = chunk.block(chunk.number<std::uint64_t>());
+    if (size > kMaxBagBlock) {
+      throw InputError(fmt::format("a chunk has {} bytes", size), where,
+                       "write the recording with smaller chunks");
+    }
+    std::string unpacked;
+    std::string_view records = stored;
+    if (!compression.empty()) {
+      if (compression == "zstd") {
+        unpacked = decompress_zstd(stored, size, where);
+      } else if (compression == "lz4") {
+        unpacked = decompress_lz4(stored, size, where);
+      } else {
+        throw InputError(fmt::format("chunks are compressed by '{:.40}'", printable(compression)),
+                         where, "write the recording with zstd, lz4 or none");
+      }
+      records = unpacked;
+    }
+    const bool whole = records.size() == size &&
+                       (crc == 0 || libdeflate_crc32(0, records.data(), records.size()) == crc);
+    if (!whole) {
+      throw InputError("a chunk is damaged (its size or checksum differs)", where,
+                       "restore the recording from a copy");
+    }
+    Fields fields(records, where);
+    while (!fields.at_end()) {
+      const auto opcode = fields.number<std::uint8_t>();
+      read_record(opcode, fields.block(fields.number<std::uint64_t>()), where);
+    }
+  }
+
+  void read_record(std::uint8_t opcode, std::string_view bytes, const std::string& where) {
+    Fields record(bytes, where);
+    if (opcode == kSchema) {
+      const auto id = record.number<std::uint16_t>();
+      schemas_[id] = record.text();
+    } else if (opcode == kChannel) {
+      add_channel(record, where);
+    } else if (opcode == kMessage) {
+      const auto channel = channels_.find(record.number<std::uint16_t>());
+      if (channel == channels_.end()) {
+        throw InputError("a message is of a channel that was not announced", where,
+                         "restore the recording from a copy");
+      }
+      record.block(20);  // sequence, times of receipt and of publishing
+      if (channel->second.wanted) return sink_.add(channel->second.topic, record.rest());
+      sink_.skip(channel->second.topic);
+    }
+  }
+
+  void add_channel(Fields record, const std::string& where) {
+    const auto id = record.number<std::uint16_t>();
+    const auto schema_id = record.number<std::uint16_t>();
+    // Announced again in the summary, and in each chunk where it has messages.
+    if (channels_.contains(id)) return;
+    const auto schema = schemas_.find(schema_id);
+    if (schema == schemas_.end() && schema_id != 0) {
+      throw InputError("a channel is of a schema that was not announced", where,
+                       "restore the recording from a copy");
+    }
+    BagTopic topic;
+    if (schema != schemas_.end()) topic.type = schema->second;
+    topic.name = record.text();
+    topic.encoding = record.text();
+    const bool wanted = sink_.wants(topic) && topic.encoding == kCdrEncoding;
+    channels_.emplace(id, Channel{std::move(topic), wanted});
+  }
+
+  struct Channel {
+    BagTopic topic;
+    bool wanted;
+  };
+
+  std::string name_;
+  InputFile input_;
+  std::istream& stream_;
+  BagSink& sink_;
+  std::uint64_t size_, at_ = 0;
+  std::string buffer_;
+  bool ended_ = false;
+  std::map<std::uint16_t, std::string> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+};
+
+}  // namespace
+
+void read_mcap(const std::filesystem::path& file, const std::filesystem::path& shown,
+               BagSink& sink) {
+  McapReader(file, shown, sink).read();
+}
+
+}  // namespace fovea

@@ -1,0 +1,147 @@
+#include "fovea/drive/recordings/mcap_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <fstream>
+#include <vector>
+
+#include "../../../tests/mcap_writer.h"
+#include "../../../tests/temporary_folder.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/recordings/bag.h"
+#include "fovea/drive/recordings/decompress.h"
+
+namespace fovea::mcap_file_test {
+
+using namespace mcap;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string zstd(const std::string& bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
+  return packed;
+}
+std::string lz4(const std::string& bytes) {
+  std::string packed(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
+  packed.resize(
+      LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr));
+  return packed;
+}
+
+/// Notes "TOPIC:MESSAGE" of all topics but /other.
+class Listener : public BagSink {
+ public:
+  bool wants(const BagTopic& topic) override {
+    types.push_back(topic.type);
+    return topic.name != "/other";
+  }
+  void add(const BagTopic& topic, std::string_view bytes) override {
+    heard.push_back(topic.name + ":" + std::string(bytes));
+  }
+  std::vector<std::string> heard, types;
+};
+
+class McapFile : public testing::Test {
+ protected:
+  std::vector<std::string> read(const std::string& bytes) {
+    std::ofstream(folder_ / "bag.mcap", std::ios::binary) << bytes;
+    Listener listener;
+    read_bag_file(folder_ / "bag.mcap", folder_ / "", listener);
+    return listener.heard;
+  }
+  std::string error_of(const std::string& bytes) {
+    try {
+      read(bytes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::string kRecords = channel(1, "/a") + message(1, "one") + channel(2, "/other") +
+                             message(2, "no") + message(1, "two");
+
+TEST_F(McapFile, ReadsMessagesInChunksOfEveryCompressionAndOutside) {
+  const auto all = ElementsAre("/a:one", "/a:two", "/a:three");
+  const std::string more = message(1, "three");
+  EXPECT_THAT(read(file_of(kRecords + more)), all);
+  EXPECT_THAT(read(file_of(chunk(kRecords, "", kRecords) + more)), all);
+  EXPECT_THAT(read(file_of(chunk(kRecords, "zstd", zstd(kRecords)) + chunk(more, "", more))), all);
+  EXPECT_THAT(read(file_of(chunk(kRecords, "lz4", lz4(kRecords)) + more)), all);
+}
+
+TEST_F(McapFile, MessagesThatWereCompressedOneByOneAreRead) {
+  EXPECT_THAT(read(file_of(channel(1, "/a") + message(1, zstd("one")))), ElementsAre("/a:one"));
+}
+
+TEST_F(McapFile, SizesAtTheBlocksOfDecompressionAreRead) {
+  constexpr std::size_t kBlock = std::size_t{1} << 18;
+  for (const std::size_t size : {std::size_t{0}, kBlock - 1, kBlock, kBlock + 1, 2 * kBlock}) {
+    const std::string bytes(size, 'x');
+    EXPECT_EQ(decompress_zstd(zstd(bytes), size, "t"), bytes) << size;
+    EXPECT_EQ(decompress_lz4(lz4(bytes), size, "t"), bytes) << size;
+    if (size > 0) {
+      EXPECT_THROW(decompress_zstd(zstd(bytes), size - 1, "t"), InputError);
+    }
+    std::ofstream(folder_ / "a.zst", std::ios::binary) << zstd(bytes);
+    const DecompressedFile plain(folder_ / "a.zst", folder_ / "");
+    EXPECT_EQ(std::filesystem::file_size(plain.path()), size);
+  }
+}
+
+TEST_F(McapFile, AWholeFileThatIsCompressedIsRead) {
+  EXPECT_THAT(read(zstd(file_of(kRecords))), ElementsAre("/a:one", "/a:two"));
+  EXPECT_THAT(folder_.names(), ElementsAre("bag.mcap"));
+}
+
+TEST_F(McapFile, ADamagedMessageIsHandedOnAsItIs) {
+  const std::string damaged = zstd("one").substr(0, 8);
+  EXPECT_THAT(read(file_of(channel(1, "/a") + message(1, damaged) + message(1, "two"))),
+              ElementsAre("/a:" + damaged, "/a:two"));
+}
+
+TEST_F(McapFile, OtherRecordsAndEncodingsArePassedOver) {
+  const std::string records = record(9, "attachment") + record(200, "of the future") +
+                              channel(3, "/json", "json") + message(3, "{}") + kRecords;
+  EXPECT_THAT(read(file_of(records)), ElementsAre("/a:one", "/a:two"));
+}
+
+TEST_F(McapFile, SaysWhatIsWrong) {
+  EXPECT_THAT(error_of(file_of(chunk(kRecords, "br", kRecords))), HasSubstr("by 'br'"));
+  EXPECT_THAT(error_of(file_of(chunk(kRecords, "", kRecords, 7))), HasSubstr("checksum"));
+  EXPECT_THAT(error_of(file_of(chunk(kRecords + "x", "zstd", zstd(kRecords)))),
+              HasSubstr("checksum"));
+  EXPECT_THAT(error_of(file_of(chunk("", "zstd", zstd(kRecords)))), HasSubstr("zstd"));
+  EXPECT_THAT(error_of(file_of(chunk(kRecords, "lz4", lz4(kRecords).substr(0, 20)))),
+              HasSubstr("LZ4"));
+  EXPECT_THAT(error_of(file_of(message(9, "x"))), HasSubstr("not announced"));
+  EXPECT_THAT(error_of("#ROSBAG V2.0\n"), HasSubstr("ROS 1"));
+  EXPECT_THAT(error_of("a text"), HasSubstr("no recording"));
+  EXPECT_THAT(error_of(""), HasSubstr("no recording"));
+}
+
+TEST_F(McapFile, AnyFileCutShortIsRefused) {
+  const std::string whole = file_of(chunk(kRecords, "zstd", zstd(kRecords)) + kRecords);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_NE(error_of(whole.substr(0, size)), "") << size;
+  }
+  EXPECT_EQ(error_of(whole), "");
+}
+
+TEST_F(McapFile, SizesThatCannotBeAreNotBelieved) {
+  std::string huge = file_of(kRecords);
+  huge.replace(8 + 1, 8, number(~std::uint64_t{0}));
+  EXPECT_THAT(error_of(huge), HasSubstr("cut short"));
+  const std::string claims = record(6, std::string(16, '\0') + number(~std::uint64_t{0}) +
+                                           number(0u) + text("zstd") + number(std::uint64_t{0}));
+  EXPECT_THAT(error_of(file_of(claims)), HasSubstr("smaller chunks"));
+}
+
+}  // namespace fovea::mcap_file_test

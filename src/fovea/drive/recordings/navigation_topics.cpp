@@ -1,0 +1,226 @@
+#include "fovea/drive/recordings/navigation_topics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/recordings/only_topic.h"
+
+namespace fovea {
+namespace {
+
+constexpr const char* kNoImu = "none";  // of the option --imu
+
+class NavigationPlanner {
+ public:
+  NavigationPlanner(const BagSurvey& survey, const ConvertOptions& options,
+                    const std::string& lidar_frame, RecordedDrive& drive,
+                    std::vector<std::string>& notes)
+      : survey_(survey),
+        options_(options),
+        lidar_frame_(lidar_frame),
+        drive_(drive),
+        notes_(notes) {}
+
+  /// Topics of which messages are used.
+  const std::vector<std::string>& used() const { return used_; }
+
+  void plan() {
+    for (const std::string& frame : survey_.transforms.ambiguous()) {
+      notes_.push_back(
+          fmt::format("tf has frame '{}' in several parents: the most frequent counts", frame));
+    }
+    switch (source()) {
+      case NavigationSource::kAuto:
+        if (!take_positions() && !take_odometry() && !take_transforms()) take_nothing();
+        return;
+      case NavigationSource::kGnss:
+        return require(take_positions(), "positions (sensor_msgs/msg/NavSatFix)");
+      case NavigationSource::kOdometry:
+        return require(take_odometry(), "poses (nav_msgs/msg/Odometry)");
+      case NavigationSource::kTf:
+        return require(take_transforms(), "frame of tf above the body that it moves in");
+      case NavigationSource::kNone:
+        return take_nothing();
+    }
+  }
+
+ private:
+  /// What the options name says where poses come from.
+  NavigationSource source() const {
+    NavigationSource source = options_.poses;
+    const auto imply = [&](const std::string& name, NavigationSource implied, const char* option) {
+      if (name.empty()) return;
+      if (source != NavigationSource::kAuto && source != implied) {
+        throw ConfigError("poses are to come from elsewhere", fmt::format("{} {}", option, name),
+                          "leave it out, or choose its source by --poses");
+      }
+      source = implied;
+    };
+    imply(options_.fix, NavigationSource::kGnss, "--fix");
+    if (options_.imu != kNoImu) imply(options_.imu, NavigationSource::kGnss, "--imu");
+    imply(options_.odometry, NavigationSource::kOdometry, "--odometry");
+    imply(options_.world, NavigationSource::kTf, "--world");
+    return source;
+  }
+
+  void require(bool found, const char* what) const {
+    if (!found) {
+      throw InputError(fmt::format("the recording has no {}", what), "--poses",
+                       "choose another source, or none");
+    }
+  }
+
+  std::string usual_body() const {
+    if (!options_.body.empty()) return options_.body;
+    std::string usual = "base_link";  // REP 105
+    if (!survey_.transforms.fixed(usual, lidar_frame_)) usual = lidar_frame_;
+    return usual;
+  }
+
+  void take_nothing() {
+    drive_.T_body_lidar = T_body_lidar(usual_body());
+    notes_.emplace_back("no poses: the motion will be that of the scans alone");
+  }
+
+  /// T_a_b; empty if tf does not tell, or they move.
+  std::optional<QuaternionMotion> still(const std::string& a, const std::string& b) const {
+    if (survey_.transforms.moving(a, b)) return std::nullopt;
+    return survey_.transforms.fixed(a, b);
+  }
+
+  /// InputError if tf does not tell, or they move.
+  QuaternionMotion T_body_lidar(const std::string& body) const {
+    const auto T = survey_.transforms.fixed(body, lidar_frame_);
+    if (!T) {
+      throw InputError(
+          fmt::format("tf does not say where the LiDAR ('{}') is on '{}'", lidar_frame_, body),
+          "/tf_static", "record it, too, or name another frame by --body");
+    }
+    if (const auto moving = survey_.transforms.moving(body, lidar_frame_)) {
+      throw InputError(
+          fmt::format("frame '{}' moves between '{}' and '{}'", *moving, body, lidar_frame_), "/tf",
+          "name the frame of the vehicle by --body");
+    }
+    return *T;
+  }
+
+  bool take_positions() {
+    const std::string topic = only_topic(survey_.fixes, options_.fix, "NavSatFix", "--fix");
+    if (topic.empty()) return false;
+    std::size_t without = 0;
+    for (const ros::NavSatFix& fix : survey_.fixes.at(topic)) {
+      const bool somewhere = std::isfinite(fix.latitude) && std::isfinite(fix.longitude) &&
+                             std::isfinite(fix.altitude) && fix.fix;
+      if (!somewhere) {
+        ++without;
+        continue;
+      }
+      drive_.positions.push_back({fix.header.stamp,
+                                  {fix.latitude, fix.longitude, fix.altitude},
+                                  accuracy_of(fix),
+                                  std::nullopt});
+    }
+    if (drive_.positions.empty()) return false;
+    used_.push_back(topic);
+    notes_.push_back(fmt::format("positions: {} of {}, {} without a fix left out",
+                                 drive_.positions.size(), topic, without));
+    take_inertia();
+    const std::string body = usual_body();
+    drive_.T_body_lidar = T_body_lidar(body);
+    const std::string& antenna = survey_.fixes.at(topic).front().header.frame;
+    if (const auto T = still(body, antenna)) {
+      drive_.antenna_body = T->translation;
+    } else {
+      notes_.push_back(fmt::format(
+          "tf does not say where the antenna ('{}') is on '{}': taken to be there", antenna, body));
+    }
+    return true;
+  }
+
+  /// Of a coordinate on the ground (m).
+  static double accuracy_of(const ros::NavSatFix& fix) {
+    const double variance = (fix.covariance[0] + fix.covariance[4]) / 2;
+    return fix.covariance_known && variance >= 0 ? std::sqrt(variance) : 0;
+  }
+
+  void take_inertia() {
+    if (options_.imu == kNoImu) return;
+    const std::string topic = only_topic(survey_.imus, options_.imu, "Imu", "--imu");
+    if (topic.empty()) return;
+    const std::vector<ros::Imu>& imus = survey_.imus.at(topic);
+    const std::string& frame = imus.front().header.frame;
+    const auto T = still(usual_body(), frame);
+    if (!T) {
+      notes_.push_back(fmt::format("{} is not used: tf does not say where '{}' is on '{}'", topic,
+                                   frame, usual_body()));
+      return;
+    }
+    drive_.T_body_imu = *T;
+    // What an IMU that knows none leaves in its messages, though it should say so in another way.
+    bool ever_turned = false;
+    for (const ros::Imu& imu : imus) {
+      if (!imu.orientation) continue;
+      ever_turned |= !imu.orientation->vec().isZero(0);
+      drive_.inertia.push_back(
+          {imu.header.stamp, imu.orientation, imu.angular_velocity, imu.acceleration});
+    }
+    if (!ever_turned) drive_.inertia.clear();
+    if (ever_turned) used_.push_back(topic);
+    notes_.push_back(fmt::format("orientations: {} of {} messages of {} have one",
+                                 drive_.inertia.size(), imus.size(), topic));
+  }
+
+  bool take_odometry() {
+    const std::string topic =
+        only_topic(survey_.odometries, options_.odometry, "Odometry", "--odometry");
+    if (topic.empty()) return false;
+    const std::vector<ros::Odometry>& odometries = survey_.odometries.at(topic);
+    for (const ros::Odometry& odometry : odometries) {
+      drive_.poses.push_back({odometry.header.stamp, odometry.T_header_child});
+    }
+    const std::string& child = odometries.front().child_frame;
+    const bool from_child = options_.body.empty() && !child.empty();
+    drive_.T_body_lidar = T_body_lidar(from_child ? child : usual_body());
+    used_.push_back(topic);
+    notes_.push_back(fmt::format("poses: {} of {}", drive_.poses.size(), topic));
+    return true;
+  }
+
+  bool take_transforms() {
+    const std::string body = usual_body();
+    const auto world =
+        options_.world.empty() ? survey_.transforms.world_of(body) : std::optional(options_.world);
+    if (!world) return false;
+    for (const auto& [time, T_world_body] : survey_.transforms.course(*world, body)) {
+      drive_.poses.push_back({time, T_world_body});
+    }
+    if (drive_.poses.empty()) return false;
+    drive_.T_body_lidar = T_body_lidar(body);
+    notes_.push_back(
+        fmt::format("poses: {} of '{}' in '{}', by tf", drive_.poses.size(), body, *world));
+    return true;
+  }
+
+  const BagSurvey& survey_;
+  const ConvertOptions& options_;
+  const std::string& lidar_frame_;
+  RecordedDrive& drive_;
+  std::vector<std::string>& notes_;
+  std::vector<std::string> used_;
+};
+
+}  // namespace
+
+std::vector<std::string> plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+                                         const std::string& lidar_frame, RecordedDrive& drive,
+                                         std::vector<std::string>& notes) {
+  NavigationPlanner planner(survey, options, lidar_frame, drive, notes);
+  planner.plan();
+  return planner.used();
+}
+
+}  // namespace fovea

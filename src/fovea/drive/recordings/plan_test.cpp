@@ -1,0 +1,345 @@
+// Which topics become what: cameras and navigation.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/recordings/camera_topics.h"
+#include "fovea/drive/recordings/navigation_topics.h"
+
+namespace fovea::plan_test {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+QuaternionMotion at(double x) { return {Eigen::Vector3d(x, 0, 0), Eigen::Quaterniond::Identity()}; }
+
+ros::CameraInfo some_info(const std::string& frame) {
+  ros::CameraInfo info;
+  info.header.frame = frame;
+  info.width = 640, info.height = 480;
+  info.distortion_model = "plumb_bob";
+  info.d = {-0.3, 0.1, 0.001, -0.001, 0.01};
+  info.k = {400, 0, 320, 0, 410, 240, 0, 0, 1};
+  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.p = {380, 0, 310, 0, 0, 390, 230, 0, 0, 0, 1, 0};
+  return info;
+}
+
+void add_images(BagSurvey& survey, const std::string& topic, const std::string& unread = "") {
+  SensorTopic& images = survey.images[topic];
+  images.frame = "front";
+  images.stamps = {1, 2, 3};
+  images.unread = unread;
+}
+
+BagSurvey one_camera() {
+  BagSurvey survey;
+  add_images(survey, "/cams/front/image_raw/compressed");
+  survey.camera_infos["/cams/front/camera_info"] = some_info("front");
+  survey.transforms.add("base_link", "lidar", 0, at(1), true);
+  survey.transforms.add("lidar", "front", 0, at(0.25), true);
+  return survey;
+}
+
+std::vector<std::string> topics_of(const std::vector<PlannedCamera>& cameras) {
+  std::vector<std::string> topics;
+  for (const PlannedCamera& camera : cameras) topics.push_back(camera.topic);
+  return topics;
+}
+
+TEST(PlanCameras, TakesWhatHasCalibrationAndPlace) {
+  BagSurvey survey = one_camera();
+  add_images(survey, "/cams/rear/image_raw");
+  add_images(survey, "/cams/depth/image_raw/compressed");
+  std::vector<std::string> notes;
+  const auto cameras = plan_cameras(survey, {}, "lidar", notes);
+  ASSERT_EQ(cameras.size(), 1u);
+  EXPECT_EQ(cameras[0].camera.name, "cams_front");
+  EXPECT_EQ(cameras[0].camera.index, 0);
+  EXPECT_EQ(cameras[0].camera.optics.fy, 410);
+  EXPECT_EQ(cameras[0].camera.optics.lens.model(), LensModel::kPlumbBob);
+  EXPECT_EQ(cameras[0].camera.T_lidar_cam.translation.x(), 0.25);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("/cams/rear/camera_info")));
+}
+
+TEST(PlanCameras, PrefersRawAndPlainImages) {
+  BagSurvey survey = one_camera();
+  std::vector<std::string> notes;
+  add_images(survey, "/cams/front/image_rect_color");
+  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+              ElementsAre("/cams/front/image_raw/compressed"));
+  add_images(survey, "/cams/front/image_raw");
+  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+              ElementsAre("/cams/front/image_raw"));
+  survey.images.at("/cams/front/image_raw").unread = "of another encoding";
+  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+              ElementsAre("/cams/front/image_raw/compressed"));
+  ConvertOptions options;
+  options.cameras = {{"a", "/cams/front/image_rect_color"}};
+  const auto rectified = plan_cameras(survey, options, "lidar", notes);
+  EXPECT_EQ(rectified[0].camera.name, "a");
+  EXPECT_EQ(rectified[0].camera.optics.fy, 390);
+  EXPECT_EQ(rectified[0].camera.optics.lens.model(), LensModel::kNone);
+}
+
+TEST(PlanCameras, ARectifiedCameraIsTurnedAsItsRectificationSays) {
+  BagSurvey survey = one_camera();
+  add_images(survey, "/cams/front/image_rect");
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R =
+      Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  std::copy(R.data(), R.data() + 9, survey.camera_infos["/cams/front/camera_info"].r.begin());
+  ConvertOptions options;
+  options.cameras = {{"a", "/cams/front/image_rect"}};
+  std::vector<std::string> notes;
+  const auto cameras = plan_cameras(survey, options, "lidar", notes);
+  const Eigen::Vector3d ray_lidar =
+      cameras[0].camera.T_lidar_cam.rotation * (R * Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(ray_lidar.isApprox(Eigen::Vector3d(1, 2, 3), 1e-12));
+}
+
+TEST(PlanCameras, ARecordingWithoutImagesHasNoCamera) {
+  BagSurvey survey = one_camera();
+  survey.images.clear();
+  std::vector<std::string> notes;
+  EXPECT_TRUE(plan_cameras(survey, {}, "lidar", notes).empty());
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("the recording has no images")));
+}
+
+TEST(PlanCameras, SaysWhichCalibrationIsMissing) {
+  const auto error_of = [](const std::function<void(BagSurvey&)>& change) -> std::string {
+    BagSurvey survey = one_camera();
+    change(survey);
+    std::vector<std::string> notes;
+    try {
+      plan_cameras(survey, {}, "lidar", notes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto info_of = [](BagSurvey& survey) -> ros::CameraInfo& {
+    return survey.camera_infos.at("/cams/front/camera_info");
+  };
+  EXPECT_THAT(error_of([](BagSurvey& s) { s.camera_infos.clear(); }), HasSubstr("CameraInfo"));
+  EXPECT_THAT(error_of([](BagSurvey& s) { s.transforms = {}; }), HasSubstr("/tf_static"));
+  EXPECT_THAT(error_of([](BagSurvey& s) { s.images.begin()->second.unread = "odd"; }),
+              HasSubstr("odd"));
+  EXPECT_THAT(error_of([](BagSurvey& s) {
+                s.images.begin()->second.width = 320, s.images.begin()->second.height = 240;
+              }),
+              HasSubstr("320 x 240"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) {
+                info_of(s).header.frame = s.images.begin()->second.frame = "lidar";
+              }),
+              HasSubstr("'lidar'"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).k = {}; }), HasSubstr("not calibrated"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).distortion_model = "ftheta"; }),
+              HasSubstr("'ftheta'"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).d.resize(3); }), HasSubstr("3 coefficients"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).d.resize(8, 0.1); }),
+              HasSubstr("8 coefficients"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).binning_x = 2; }), HasSubstr("binning"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).roi_x = 2; }), HasSubstr("region"));
+  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).width = 0; }), HasSubstr("0 x 480"));
+  EXPECT_THAT(error_of([](BagSurvey& s) {
+                s.transforms.add("lidar", "front", 1, at(0), false);
+                s.transforms.add("lidar", "front", 2, at(1), false);
+              }),
+              HasSubstr("moves"));
+}
+
+TEST(PlanCameras, AFrameThatTfDoesNotKnowGivesWayToThatOfTheImages) {
+  BagSurvey survey = one_camera();
+  survey.camera_infos["/cams/front/camera_info"].header.frame = "unknown";
+  std::vector<std::string> notes;
+  const auto cameras = plan_cameras(survey, {}, "lidar", notes);
+  EXPECT_EQ(cameras.at(0).camera.T_lidar_cam.translation.x(), 0.25);
+}
+
+TEST(OpticsOf, WithoutDistortionALensIsAPinhole) {
+  ros::CameraInfo info = some_info("front");
+  info.d = {0, 0, 0, 0, 0};
+  EXPECT_EQ(optics_of(info, false, "t").lens.model(), LensModel::kNone);
+  info.distortion_model = "";
+  info.d = {};
+  EXPECT_EQ(optics_of(info, false, "t").lens.model(), LensModel::kNone);
+  info.distortion_model = "equidistant";
+  info.d = {0, 0, 0, 0};
+  EXPECT_EQ(optics_of(info, false, "t").lens.model(), LensModel::kEquidistant);
+  info.p[3] = -50;
+  EXPECT_THROW(optics_of(info, true, "t"), InputError);
+}
+
+class PlanNavigation : public testing::Test {
+ protected:
+  PlanNavigation() {
+    survey_.transforms.add("base_link", "lidar", 0, at(1), true);
+    survey_.transforms.add("base_link", "imu", 0, at(0.5), true);
+    survey_.transforms.add("base_link", "gps", 0, at(-2), true);
+  }
+
+  void add_fixes(const std::string& topic) {
+    for (int i = 0; i < 4; ++i) {
+      ros::NavSatFix fix;
+      fix.header.stamp = i;
+      fix.header.frame = "gps";
+      fix.fix = i != 1;
+      fix.latitude = 49, fix.longitude = i == 2 ? std::nan("") : 8;
+      fix.covariance = {0.09, 0, 0, 0, 0.09, 0, 0, 0, 1};
+      fix.covariance_known = true;
+      survey_.fixes[topic].push_back(fix);
+    }
+  }
+  void add_imu(const std::string& frame, const Eigen::Quaterniond& orientation = {0.8, 0, 0, 0.6}) {
+    ros::Imu imu;
+    imu.header.frame = frame;
+    survey_.imus["/imu"].push_back(imu);
+    imu.orientation = orientation;
+    survey_.imus["/imu"].push_back(imu);
+  }
+  void add_odometry(const std::string& topic, const std::string& child) {
+    ros::Odometry odometry;
+    odometry.header.stamp = 7;
+    odometry.child_frame = child;
+    odometry.T_header_child = at(3);
+    survey_.odometries[topic].push_back(odometry);
+  }
+  void add_course() {
+    for (int i = 0; i < 3; ++i) survey_.transforms.add("odom", "base_link", i, at(i), false);
+  }
+
+  RecordedDrive plan() {
+    RecordedDrive drive;
+    notes_.clear();
+    plan_navigation(survey_, options_, "lidar", drive, notes_);
+    return drive;
+  }
+  std::string error() {
+    try {
+      plan();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  BagSurvey survey_;
+  ConvertOptions options_;
+  std::vector<std::string> notes_;
+};
+
+TEST_F(PlanNavigation, PositionsComeFirstWithTheirAccuracyAndOrientations) {
+  add_fixes("/fix");
+  add_imu("imu");
+  add_odometry("/odom", "base_link");
+  const RecordedDrive drive = plan();
+  EXPECT_THAT(drive.poses, IsEmpty());
+  ASSERT_EQ(drive.positions.size(), 2u);  // one has no fix, one is nowhere
+  EXPECT_EQ(drive.positions[1].time, 3);
+  EXPECT_DOUBLE_EQ(drive.positions[0].accuracy, 0.3);
+  EXPECT_EQ(drive.inertia.size(), 1u);  // the other's orientation is not known
+  EXPECT_EQ(drive.antenna_body.x(), -2);
+  EXPECT_EQ(drive.T_body_lidar.translation.x(), 1);
+  EXPECT_EQ(drive.T_body_imu.translation.x(), 0.5);
+}
+
+TEST_F(PlanNavigation, AnImuThatNeverTurnsKnowsNoOrientation) {
+  add_fixes("/fix");
+  add_imu("imu", Eigen::Quaterniond::Identity());
+  EXPECT_THAT(plan().inertia, IsEmpty());
+  survey_.imus.clear();
+  add_imu("imu");
+  options_.imu = "none";
+  EXPECT_THAT(plan().inertia, IsEmpty());
+  EXPECT_EQ(plan().positions.size(), 2u);
+}
+
+TEST_F(PlanNavigation, AnAntennaThatMovesIsNone) {
+  add_fixes("/fix");
+  add_course();
+  for (ros::NavSatFix& fix : survey_.fixes["/fix"]) fix.header.frame = "odom";
+  EXPECT_TRUE(plan().antenna_body.isZero(0));
+  EXPECT_THAT(notes_, Contains(HasSubstr("'odom'")));
+}
+
+TEST_F(PlanNavigation, WhatIsNamedIsWherePosesComeFrom) {
+  add_fixes("/fix");
+  add_odometry("/odom", "nobody");
+  options_.odometry = "/odom";
+  EXPECT_THAT(error(), HasSubstr("--body"));
+  options_.body = "imu";
+  EXPECT_EQ(plan().poses.size(), 1u);
+  EXPECT_EQ(plan().T_body_lidar.translation.x(), 0.5);
+  options_.poses = NavigationSource::kGnss;
+  EXPECT_THROW(plan(), ConfigError);
+}
+
+TEST_F(PlanNavigation, NoImuIsNoWordOnWherePosesComeFrom) {
+  options_.imu = "none";
+  add_odometry("/odom", "imu");
+  EXPECT_EQ(plan().poses.size(), 1u);
+  options_.poses = NavigationSource::kOdometry;
+  EXPECT_EQ(error(), "");
+}
+
+TEST_F(PlanNavigation, WhatTfDoesNotJoinIsTold) {
+  add_fixes("/fix");
+  add_imu("elsewhere");
+  survey_.fixes["/fix"].front().header.frame = "nowhere";
+  const RecordedDrive drive = plan();
+  EXPECT_THAT(drive.inertia, IsEmpty());
+  EXPECT_TRUE(drive.antenna_body.isZero(0));
+  EXPECT_THAT(notes_, Contains(HasSubstr("'elsewhere'")));
+  EXPECT_THAT(notes_, Contains(HasSubstr("'nowhere'")));
+}
+
+TEST_F(PlanNavigation, ThenOdometryThenTfThenNothing) {
+  add_course();
+  EXPECT_EQ(plan().poses.size(), 3u);
+  add_odometry("/odom", "imu");
+  EXPECT_EQ(plan().poses.size(), 1u);
+  EXPECT_EQ(plan().T_body_lidar.translation.x(), 0.5);  // from the IMU's frame
+  options_.poses = NavigationSource::kTf;
+  EXPECT_EQ(plan().poses.size(), 3u);
+  options_.poses = NavigationSource::kNone;
+  EXPECT_THAT(plan().poses, IsEmpty());
+  EXPECT_THAT(notes_, Contains(HasSubstr("no poses")));
+}
+
+TEST_F(PlanNavigation, AsksWhereSeveralMightBeMeant) {
+  add_odometry("/wheels", "base_link");
+  add_odometry("/visual", "base_link");
+  EXPECT_THAT(error(), HasSubstr("--odometry"));
+  options_.odometry = "/visual";
+  EXPECT_EQ(error(), "");
+  options_.odometry = "";
+  add_fixes("/a");
+  add_fixes("/b");
+  EXPECT_THAT(error(), HasSubstr("--fix"));
+}
+
+TEST_F(PlanNavigation, RefusesWhatTheRecordingDoesNotHave) {
+  options_.poses = NavigationSource::kGnss;
+  EXPECT_THAT(error(), HasSubstr("no positions"));
+  options_.poses = NavigationSource::kOdometry;
+  EXPECT_THAT(error(), HasSubstr("no poses"));
+  options_.poses = NavigationSource::kTf;
+  EXPECT_THAT(error(), HasSubstr("no frame"));
+  add_course();
+  options_.world = "mars";
+  EXPECT_THAT(error(), HasSubstr("no frame"));
+  options_.world = "odom";
+  EXPECT_EQ(error(), "");
+  options_.world = "";
+  options_.poses = NavigationSource::kOdometry;
+  add_odometry("/odom", "nobody");
+  EXPECT_THAT(error(), HasSubstr("'nobody'"));
+  options_.odometry = "/none";
+  EXPECT_THAT(error(), HasSubstr("/none"));
+}
+
+}  // namespace fovea::plan_test

@@ -1,0 +1,136 @@
+#include "fovea/drive/recordings/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/recordings/pixels.h"
+#include "fovea/drive/recordings/point_cloud_rows.h"
+
+namespace fovea {
+
+Recorder::Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
+                   bool allow_dropped, const std::function<void(int, int)>& progress)
+    : lidar_(plan.lidar, survey.clouds.at(plan.lidar)),
+      format_(plan.scan_format),
+      allow_dropped_(allow_dropped),
+      writer_(writer),
+      progress_(progress) {
+  total_ = lidar_.stamps.size();
+  for (const PlannedCamera& planned : plan.cameras) {
+    Numbered& camera =
+        cameras_.try_emplace(planned.topic, planned.topic, survey.images.at(planned.topic))
+            .first->second;
+    camera.name = planned.camera.name;
+    total_ += camera.stamps.size();
+  }
+}
+
+bool Recorder::wants(const BagTopic& topic) {
+  return (topic.name == lidar_.topic && topic.type == ros::kPointCloud) ||
+         (cameras_.contains(topic.name) &&
+          (topic.type == ros::kImage || topic.type == ros::kCompressedImage));
+}
+
+void Recorder::add(const BagTopic& topic, std::string_view bytes) {
+  Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
+  try {
+    CdrReader message(bytes, topic.name);
+    if (topic.type == ros::kPointCloud) {
+      write_scan(ros::read_point_cloud(message));
+    } else if (topic.type == ros::kImage) {
+      write_plain(ros::read_image(message), sensor);
+    } else {
+      write_compressed(ros::read_compressed_image(message), sensor);
+    }
+  } catch (const InputError&) {
+    // The survey has counted it.
+  }
+  done_ = std::min(done_ + 1, total_);
+  progress_(int(done_), int(total_));
+}
+
+void Recorder::finish(RecordedDrive& drive, ConvertFigures& figures) const {
+  figures.scans = lidar_.written;
+  figures.cameras = cameras_.size();
+  account_for(lidar_, figures);
+  for (const auto& [topic, camera] : cameras_) {
+    figures.images += camera.written;
+    account_for(camera, figures);
+  }
+  if (dropped_.total() > 0) {
+    figures.notes.push_back("points left out: " + reasons_of(dropped_));
+  }
+  if (!allow_dropped_) require_few_dropped(dropped_, kept_, lidar_.topic);
+  drive.intensity_max = scale_.max();
+}
+
+Recorder::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
+    : topic(topic_name), frame(sensor.frame), stamps(sensor.stamps), taken(stamps.size()) {}
+
+std::optional<int> Recorder::Numbered::take(const ros::Header& header) {
+  const auto found = std::lower_bound(stamps.begin(), stamps.end(), header.stamp);
+  const auto number = std::size_t(found - stamps.begin());
+  if (found == stamps.end() || *found != header.stamp || header.frame != frame || taken[number]) {
+    return std::nullopt;
+  }
+  taken[number] = true;
+  return int(number);
+}
+
+/// Calls `write(number)` for a message that has not been there yet.
+template <class Write>
+void Recorder::use(Numbered& sensor, const ros::Header& header, Write&& write) {
+  const auto number = sensor.take(header);
+  if (!number) return;
+  try {
+    write(*number);
+    ++sensor.written;
+  } catch (const InputError& error) {
+    sensor.unusable.add(error.problem());
+  }
+}
+
+void Recorder::write_scan(const ros::PointCloud2& cloud) {
+  const TimeNs stamp = cloud.header.stamp;
+  use(lidar_, cloud.header, [&](int number) {
+    ScanRows rows(format_, stamp);
+    read_cloud_rows(cloud, lidar_.topic, rows);
+    const LidarScan scan = rows.take(lidar_.topic);
+    dropped_ += scan.dropped;
+    kept_ += scan.points.size();
+    scale_.add(scan.points.intensity);
+    writer_.write_scan(number, stamp, scan.points);
+  });
+}
+
+void Recorder::write_plain(const ros::ImageMessage& image, Numbered& camera) {
+  use(camera, image.header, [&](int number) {
+    writer_.write_image(camera.name, number, image.header.stamp, image_of(image, camera.topic));
+  });
+}
+
+void Recorder::write_compressed(const ros::CompressedImage& image, Numbered& camera) {
+  use(camera, image.header, [&](int number) {
+    const bool png = is_png(image.data);
+    if (!png && !is_jpeg(image.data)) {
+      throw InputError(fmt::format("images of format '{:.40}' are not read", image.format),
+                       camera.topic, "record PNG or JPEG");
+    }
+    writer_.write_encoded_image(camera.name, number, image.header.stamp, image.data,
+                                png ? ".png" : ".jpg");
+  });
+}
+
+void Recorder::account_for(const Numbered& sensor, ConvertFigures& figures) {
+  const UnusableMessages& unusable = sensor.unusable;
+  if (sensor.written == 0) {
+    throw InputError(fmt::format("none of the messages can be used ({})", unusable.first_problem),
+                     sensor.topic,
+                     "restore it from a copy, or see docs/drives.md for what is read");
+  }
+  if (unusable.count > 0) figures.warn(unusable.note(sensor.topic));
+}
+
+}  // namespace fovea

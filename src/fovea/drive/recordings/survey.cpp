@@ -1,0 +1,200 @@
+#include "fovea/drive/recordings/survey.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fovea/core/errors.h"
+#include "fovea/core/stable_order.h"
+#include "fovea/drive/recordings/bag.h"
+#include "fovea/drive/recordings/pixels.h"
+#include "fovea/drive/recordings/point_cloud_rows.h"
+
+namespace fovea {
+namespace {
+
+/// Why a compressed image is not read; empty if it is. The format tells, in words of
+/// compressed_image_transport, what was compressed and to what: "bayer_rggb8; png compressed ".
+std::string why_unread(const ros::CompressedImage& image) {
+  const std::string_view format = image.format;
+  if (!is_png(image.data) && !is_jpeg(image.data)) {
+    return fmt::format("compressed images of format '{:.40}' are not read", format);
+  }
+  const std::size_t end = format.find(';');
+  if (end == std::string_view::npos) return "";
+  const std::string_view source = format.substr(0, end);
+  if (!is_known_encoding(source)) {
+    return fmt::format("images of encoding '{:.40}' are not read", source);
+  }
+  constexpr std::string_view kCompressed = "compressed ";
+  const std::size_t at = format.find(kCompressed, end);
+  const std::string_view stored =
+      at == std::string_view::npos ? "" : format.substr(at + kCompressed.size());
+  if (source.starts_with("bayer") && (stored.empty() || stored.starts_with("bayer"))) {
+    return "compressed images of one colour a pixel (Bayer) are not read";
+  }
+  return "";
+}
+
+class Surveyor : public BagSink {
+ public:
+  bool wants(const BagTopic& topic) override {
+    survey_.topics.insert_or_assign(topic.name, topic);
+    return readers().contains(topic.type);
+  }
+
+  void skip(const BagTopic& topic) override { ++survey_.messages[topic.name]; }
+
+  void add(const BagTopic& topic, std::string_view bytes) override {
+    ++survey_.messages[topic.name];
+    try {
+      CdrReader message(bytes, topic.name);
+      (this->*readers().at(topic.type))(topic.name, message);
+    } catch (const InputError& error) {
+      survey_.unusable[topic.name].add(error.problem());
+    }
+  }
+
+  BagSurvey finish() {
+    sort(survey_.fixes);
+    sort(survey_.imus);
+    sort(survey_.odometries);
+    for (auto* topics : {&survey_.clouds, &survey_.images}) {
+      std::erase_if(*topics, [](const auto& topic) { return topic.second.stamps.empty(); });
+      for (auto& [name, topic] : *topics) keep_each_once(name, topic.stamps);
+    }
+    return std::move(survey_);
+  }
+
+ private:
+  using Reader = void (Surveyor::*)(const std::string&, CdrReader&);
+
+  static const std::map<std::string_view, Reader>& readers() {
+    static const std::map<std::string_view, Reader> kReaders = {
+        {ros::kPointCloud, &Surveyor::add_cloud},
+        {ros::kImage, &Surveyor::add_image},
+        {ros::kCompressedImage, &Surveyor::add_compressed},
+        {ros::kCameraInfo, &Surveyor::add_camera_info},
+        {ros::kNavSatFix, &Surveyor::add_fix},
+        {ros::kImu, &Surveyor::add_imu},
+        {ros::kOdometry, &Surveyor::add_odometry},
+        {ros::kTransforms, &Surveyor::add_transforms}};
+    return kReaders;
+  }
+
+  /// @return whether the message is the topic's first
+  static bool add_stamp(const ros::Header& header, SensorTopic& topic) {
+    check_stamp(header);
+    const bool first = topic.stamps.empty();
+    if (first) topic.frame = header.frame;
+    if (header.frame != topic.frame) {
+      throw InputError(fmt::format("its frame is '{}', not '{}'", header.frame, topic.frame), "",
+                       "");
+    }
+    topic.stamps.push_back(header.stamp);
+    return first;
+  }
+  static void check_stamp(const ros::Header& header) {
+    if (header.stamp <= 0) throw InputError("it has no stamp", "", "");
+  }
+
+  void add_cloud(const std::string& name, CdrReader& message) {
+    const ros::PointCloud2 cloud = ros::read_point_cloud(message);
+    ScanNumberRows rows(cloud.header.stamp);
+    read_cloud_rows(cloud, name, rows);
+    SensorTopic& topic = survey_.clouds[name];
+    add_stamp(cloud.header, topic);
+    keep_first(rows.take(), topic.first_scans);
+  }
+  /// Keeps the first scans, and the first ones with times that differ.
+  static void keep_first(ScanNumbers numbers, std::vector<ScanNumbers>& scans) {
+    constexpr std::size_t kKept = 5;
+    const auto has_times = [](const ScanNumbers& scan) {
+      return scan.times && scan.times->span > 0;
+    };
+    if (scans.size() < kKept) {
+      scans.push_back(std::move(numbers));
+    } else if (has_times(numbers)) {
+      const auto without = std::find_if_not(scans.begin(), scans.end(), has_times);
+      if (without != scans.end()) *without = std::move(numbers);
+    }
+  }
+  void add_image(const std::string& name, CdrReader& message) {
+    const ros::ImageMessage image = ros::read_image(message);
+    SensorTopic& topic = survey_.images[name];
+    if (!add_stamp(image.header, topic)) return;
+    topic.width = image.width, topic.height = image.height;
+    if (!is_known_encoding(image.encoding)) {
+      topic.unread = fmt::format("images of encoding '{:.40}' are not read", image.encoding);
+    }
+  }
+  void add_compressed(const std::string& name, CdrReader& message) {
+    const ros::CompressedImage image = ros::read_compressed_image(message);
+    SensorTopic& topic = survey_.images[name];
+    if (add_stamp(image.header, topic)) topic.unread = why_unread(image);
+  }
+  void add_camera_info(const std::string& name, CdrReader& message) {
+    ros::CameraInfo info = ros::read_camera_info(message);
+    const auto [known, fresh] = survey_.camera_infos.try_emplace(name, info);
+    if (!fresh && known->second.k[0] == 0) known->second = std::move(info);
+  }
+  void add_fix(const std::string& name, CdrReader& message) {
+    keep(ros::read_nav_sat_fix(message), survey_.fixes[name]);
+  }
+  void add_imu(const std::string& name, CdrReader& message) {
+    keep(ros::read_imu(message), survey_.imus[name]);
+  }
+  void add_odometry(const std::string& name, CdrReader& message) {
+    keep(ros::read_odometry(message), survey_.odometries[name]);
+  }
+  template <class Message>
+  static void keep(Message message, std::vector<Message>& messages) {
+    check_stamp(message.header);
+    messages.push_back(std::move(message));
+  }
+  void add_transforms(const std::string& name, CdrReader& message) {
+    const bool fixed = name.ends_with("tf_static");
+    for (const ros::Transform& transform : ros::read_transforms(message)) {
+      survey_.transforms.add(transform.header.frame, transform.child_frame, transform.header.stamp,
+                             transform.T_header_child, fixed);
+    }
+  }
+
+  /// In order of stamps, without the topics of which nothing could be read.
+  template <class Message>
+  static void sort(std::map<std::string, std::vector<Message>>& topics) {
+    std::erase_if(topics, [](const auto& topic) { return topic.second.empty(); });
+    for (auto& [name, messages] : topics) {
+      sort_stably(messages, [](const Message& a, const Message& b) {
+        return a.header.stamp < b.header.stamp;
+      });
+    }
+  }
+
+  void keep_each_once(const std::string& name, std::vector<TimeNs>& stamps) {
+    std::sort(stamps.begin(), stamps.end());
+    const auto end = std::unique(stamps.begin(), stamps.end());
+    for (auto again = end; again != stamps.end(); ++again) {
+      survey_.unusable[name].add("two messages have the same stamp");
+    }
+    stamps.erase(end, stamps.end());
+  }
+
+  BagSurvey survey_;
+};
+
+}  // namespace
+
+std::string UnusableMessages::note(const std::string& topic) const {
+  return fmt::format("{} messages of {} cannot be used (the first: {})", count, topic,
+                     first_problem);
+}
+
+BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
+                      const std::filesystem::path& scratch) {
+  Surveyor surveyor;
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, surveyor);
+  return surveyor.finish();
+}
+
+}  // namespace fovea

@@ -1,0 +1,212 @@
+#include "fovea/drive/writers/generic_drive_writer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <stdexcept>
+
+#include "fovea/core/angle.h"
+#include "fovea/drive/writers/camera_name.h"
+#include "fovea/drive/writers/png_encode.h"
+
+namespace fovea {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "PCD's binary data is little endian");
+
+std::string file_name(int number, std::string_view extension) {
+  return fmt::format("{:06d}{}", number, extension);
+}
+
+std::string pcd_text(const PointCloud& scan) {
+  const bool timed = !scan.time.empty();
+  const auto for_each_field = [&](std::string_view word) {
+    std::string text;
+    for (int i = 0; i < (timed ? 5 : 4); ++i) text += fmt::format(" {}", word);
+    return text;
+  };
+  std::string bytes = fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity{}\nSIZE{}\n"
+      "TYPE{}\nCOUNT{}\nWIDTH {}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
+      timed ? " time" : "", for_each_field("4"), for_each_field("F"), for_each_field("1"),
+      scan.size(), scan.size());
+  const auto put = [&](float value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    for (const float coordinate : scan.position[i]) put(coordinate);
+    put(scan.intensity.empty() ? 0 : scan.intensity[i]);
+    if (timed) put(scan.time[i]);
+  }
+  return bytes;
+}
+
+std::string kitti_text(const PointCloud& scan) {
+  if (!scan.time.empty()) throw std::invalid_argument("a KITTI scan has no place for times");
+  std::string bytes;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Eigen::Vector3f& p = scan.position[i];
+    const std::array<float, 4> point{p.x(), p.y(), p.z(),
+                                     scan.intensity.empty() ? 0 : scan.intensity[i]};
+    bytes.append(reinterpret_cast<const char*>(point.data()), sizeof point);
+  }
+  return bytes;
+}
+
+std::string stamps_text(const std::map<int, TimeNs>& stamps) {
+  std::string text = "index,time_ns\n";
+  for (const auto& [number, time] : stamps) text += fmt::format("{},{}\n", number, time);
+  return text;
+}
+
+std::string motion_text(const QuaternionMotion& T) {
+  const Eigen::Vector3d& t = T.translation;
+  const Eigen::Quaterniond& q = T.rotation;
+  return fmt::format("{{translation = [{}, {}, {}], rotation = [{}, {}, {}, {}]}}", t.x(), t.y(),
+                     t.z(), q.x(), q.y(), q.z(), q.w());
+}
+
+std::string camera_text(const RecordedCamera& camera) {
+  const LensCamera& c = camera.optics;
+  std::string text = fmt::format(
+      "\n[camera.{}]\nindex = {}\nwidth = {}\nheight = {}\nK = [{}, 0, {}, 0, {}, {}, 0, 0, 1]\n",
+      camera.name, camera.index, c.width, c.height, c.fx, c.cx, c.fy, c.cy);
+  const auto& k = c.lens.coefficients();
+  const std::size_t count = coefficient_count(c.lens.model());
+  text += fmt::format("distortion_model = \"{}\"\nD = [{}]\n", to_string(c.lens.model()),
+                      fmt::join(k.begin(), k.begin() + std::ptrdiff_t(count), ", "));
+  return text + fmt::format("T_lidar_cam = {}\n", motion_text(camera.T_lidar_cam));
+}
+
+std::string sweep_text(const SweepTiming& sweep) {
+  const bool clockwise = sweep.direction == SweepDirection::kClockwise;
+  return fmt::format(
+      "sweep_period_s = {}\nrotation = \"{}\"\nsweep_start_deg = {}\nstamp_phase = {}\n",
+      sweep.period, clockwise ? "clockwise" : "counterclockwise", sweep.start_azimuth / kDegree,
+      sweep.stamp_phase);
+}
+
+std::string drive_text(const RecordedDrive& drive) {
+  const Eigen::Vector3d& antenna = drive.antenna_body;
+  std::string text = fmt::format(
+      "version = 1\n\n[lidar]\ncompensated = {}\nintensity_max = {}\n{}\n[body]\nT_body_lidar = "
+      "{}\n"
+      "T_body_imu = {}\nantenna = [{}, {}, {}]\n",
+      drive.sweep_compensated, drive.intensity_max, drive.sweep ? sweep_text(*drive.sweep) : "",
+      motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(), antenna.y(),
+      antenna.z());
+  for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
+  return text;
+}
+
+std::string poses_text(const std::vector<RecordedPose>& poses) {
+  std::string text = "time_ns,x,y,z,qx,qy,qz,qw\n";
+  for (const RecordedPose& pose : poses) {
+    const Eigen::Vector3d& t = pose.T_world_body.translation;
+    const Eigen::Quaterniond& q = pose.T_world_body.rotation;
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", pose.time, t.x(), t.y(), t.z(), q.x(), q.y(),
+                        q.z(), q.w());
+  }
+  return text;
+}
+
+std::string positions_text(const std::vector<RecordedPosition>& positions) {
+  std::string text = "time_ns,latitude,longitude,altitude,accuracy,roll,pitch,yaw";
+  const bool has_velocities =
+      std::any_of(positions.begin(), positions.end(),
+                  [](const RecordedPosition& position) { return position.velocity.has_value(); });
+  text += has_velocities ? ",vx,vy,vz,wx,wy,wz\n" : "\n";
+  for (const RecordedPosition& position : positions) {
+    const GeodeticPoint& p = position.antenna;
+    text += fmt::format("{},{},{},{},{}", position.time, p.latitude, p.longitude, p.altitude,
+                        position.accuracy);
+    if (const auto& angles = position.roll_pitch_yaw) {
+      text += fmt::format(",{},{},{}", angles->x(), angles->y(), angles->z());
+    } else {
+      text += ",,,";
+    }
+    if (const auto& v = position.velocity) {
+      text +=
+          fmt::format(",{},{},{},{},{},{}", (*v)[3], (*v)[4], (*v)[5], (*v)[0], (*v)[1], (*v)[2]);
+    } else if (has_velocities) {
+      text += ",,,,,,";
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string inertia_text(const std::vector<RecordedInertia>& inertia) {
+  std::string text = "time_ns,qx,qy,qz,qw,wx,wy,wz,ax,ay,az\n";
+  for (const RecordedInertia& moment : inertia) {
+    const Eigen::Vector3d &w = moment.angular_velocity, &a = moment.acceleration;
+    text += fmt::format("{}", moment.time);
+    if (const auto& q = moment.R_enu_imu) {
+      text += fmt::format(",{},{},{},{}", q->x(), q->y(), q->z(), q->w());
+    } else {
+      text += ",,,,";
+    }
+    text += fmt::format(",{},{},{},{},{},{}\n", w.x(), w.y(), w.z(), a.x(), a.y(), a.z());
+  }
+  return text;
+}
+
+/// Also what keeps a camera's images below the drive's folder.
+std::filesystem::path image_folder(const std::string& camera) {
+  if (!is_camera_name(camera)) {
+    throw std::invalid_argument("a camera's name is of letters, digits, '_' and '-'");
+  }
+  return std::filesystem::path("images") / camera;
+}
+
+}  // namespace
+
+GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root, bool force)
+    : folder_(root, force,
+              {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "truth",
+               "depth", "tracklet_labels.xml"}) {}
+
+void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
+                                    ScanFile format) {
+  const bool pcd = format == ScanFile::kPcd;
+  folder_.write(std::filesystem::path("lidar") / file_name(number, pcd ? ".pcd" : ".bin"),
+                pcd ? pcd_text(scan_lidar) : kitti_text(scan_lidar));
+  const std::lock_guard lock(mutex_);
+  scan_stamps_[number] = stamp;
+}
+
+void GenericDriveWriter::write_image(const std::string& camera, int number, TimeNs stamp,
+                                     const Image& image) {
+  const std::vector<std::uint8_t> bytes = encode_png(image);
+  write_encoded_image(camera, number, stamp,
+                      {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, ".png");
+}
+
+void GenericDriveWriter::write_encoded_image(const std::string& camera, int number, TimeNs stamp,
+                                             std::string_view bytes, const std::string& extension) {
+  folder_.write(image_folder(camera) / file_name(number, extension), bytes);
+  const std::lock_guard lock(mutex_);
+  image_stamps_[camera][number] = stamp;
+}
+
+void GenericDriveWriter::write_file(const std::filesystem::path& name,
+                                    std::string_view bytes) const {
+  folder_.write(name, bytes);
+}
+
+void GenericDriveWriter::finish(const RecordedDrive& drive) {
+  folder_.write("drive.toml", drive_text(drive));
+  folder_.write("lidar/stamps.csv", stamps_text(scan_stamps_));
+  for (const auto& [camera, stamps] : image_stamps_) {
+    folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps));
+  }
+  if (!drive.poses.empty()) folder_.write("poses.csv", poses_text(drive.poses));
+  if (!drive.positions.empty()) folder_.write("gnss.csv", positions_text(drive.positions));
+  if (!drive.inertia.empty()) folder_.write("imu.csv", inertia_text(drive.inertia));
+  folder_.commit();
+}
+
+}  // namespace fovea

@@ -1,0 +1,111 @@
+// Writes a drive as a folder with a drive.toml (docs/drives.md), whatever it was recorded with.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fovea/core/image.h"
+#include "fovea/core/output_folder.h"
+#include "fovea/core/point_cloud.h"
+#include "fovea/core/time.h"
+#include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/lens.h"
+#include "fovea/geometry/quaternion_motion.h"
+#include "fovea/geometry/rigid_motion.h"
+#include "fovea/geometry/sensor_profile.h"
+
+namespace fovea {
+
+struct RecordedCamera {
+  std::string name;  ///< letters, digits, '_' and '-'
+  int index = 0;     ///< 0 to 9
+  LensCamera optics;
+  QuaternionMotion T_lidar_cam;
+};
+
+/// A line of poses.csv.
+struct RecordedPose {
+  TimeNs time = 0;
+  QuaternionMotion T_world_body;
+};
+
+/// A line of gnss.csv.
+struct RecordedPosition {
+  TimeNs time = 0;
+  GeodeticPoint antenna;
+  double accuracy = 0;  ///< standard deviation of a coordinate (m); 0: not known, infinite: no fix
+  std::optional<Eigen::Vector3d> roll_pitch_yaw;  ///< rad, as in oxts.h
+  std::optional<Twist> velocity = {};             ///< of the body in its own frame, a second
+};
+
+/// A line of imu.csv.
+struct RecordedInertia {
+  TimeNs time = 0;
+  std::optional<Eigen::Quaterniond> R_enu_imu;
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< m/s^2, gravity included
+};
+
+enum class ScanFile {
+  kPcd,      ///< x y z intensity, and time where the scan has the points' times
+  kKittiBin  ///< x y z intensity; std::invalid_argument for a scan with times
+};
+
+/// All of a drive but its scans and images. Its numbers are written as they are: reading them gives
+/// each to the last digit.
+struct RecordedDrive {
+  std::vector<RecordedCamera> cameras;
+  bool sweep_compensated = false;
+  std::optional<SweepTiming> sweep;  ///< of points without times; absent: drive.toml states none
+  double intensity_max = 1;  ///< the intensity in the scans that stands for a reflectance of 1
+  QuaternionMotion T_body_lidar, T_body_imu;
+  Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();
+  std::vector<RecordedPose> poses;          ///< where there are any, positions are not looked at
+  std::vector<RecordedPosition> positions;  ///< all with an attitude, or none
+  std::vector<RecordedInertia> inertia;     ///< all with an orientation, or none
+};
+
+/// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was
+/// not finished is removed. Every function throws OutputError where the disk is full or refuses.
+/// Scans and images may be written at once, from several threads.
+class GenericDriveWriter {
+ public:
+  /// OutputError where anything exists at ROOT (with `force`: anything but such a drive), its
+  /// parent does not, or another program is writing it.
+  explicit GenericDriveWriter(const std::filesystem::path& root, bool force = false);
+
+  /// std::invalid_argument for a scan with times that is to be KITTI's.
+  void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
+                  ScanFile format = ScanFile::kPcd);
+  /// As PNG. std::invalid_argument for a name that RecordedCamera does not allow.
+  void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
+  /// An image that is encoded already; as above.
+  /// @param extension  ".png" or ".jpg"
+  void write_encoded_image(const std::string& camera, int number, TimeNs stamp,
+                           std::string_view bytes, const std::string& extension);
+  /// A file beside the recording: of truth/ (docs/simulator.md) or depth/, or tracklet_labels.xml.
+  void write_file(const std::filesystem::path& name, std::string_view bytes) const;
+  /// Where the drive grows, for what writes files itself, of it or for a while.
+  const std::filesystem::path& folder() const { return folder_.partial(); }
+  /// Folder of the truth.
+  std::filesystem::path truth_folder() const { return folder_.partial() / "truth"; }
+
+  /// Writes drive.toml and the tables, makes everything durable and gives ROOT its name.
+  void finish(const RecordedDrive& drive);
+
+ private:
+  using Stamps = std::map<int, TimeNs>;
+
+  OutputFolder folder_;
+  std::mutex mutex_;  // of the stamps
+  Stamps scan_stamps_;
+  std::map<std::string, Stamps> image_stamps_;  // by camera
+};
+
+}  // namespace fovea

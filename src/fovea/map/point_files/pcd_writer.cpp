@@ -1,0 +1,46 @@
+#include "fovea/map/point_files/pcd_writer.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "fovea/core/version.h"
+#include "fovea/map/point_files/point_packing.h"
+
+namespace fovea {
+namespace {
+
+std::string pcd_header(const PointStream& points, const PointFileOptions& options) {
+  std::string text =
+      fmt::format("# .PCD v0.7 - Point Cloud Data file format\n# fovea {}\n", version());
+  const Georeference& georeference = points.georeference();
+  if (georeference.origin()) {
+    text += fmt::format("# {}\n# crs {}\n", georeference.description(), georeference.wkt2());
+  }
+  const char real = options.doubles() ? '8' : '4';
+  return text + fmt::format(
+                    "VERSION 0.7\n"
+                    "FIELDS x y z rgb camera frame range interpolated views spread reason\n"
+                    "SIZE {0} {0} {0} 4 1 4 4 1 1 1 1\n"
+                    "TYPE F F F F I I F U U U U\n"
+                    "COUNT 1 1 1 1 1 1 1 1 1 1 1\n"
+                    "WIDTH {1}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA binary\n",
+                    real, points.figures().points);
+}
+
+}  // namespace
+
+ExportFigures write_pcd(const MapReader& map, const std::filesystem::path& path,
+                        const PointFileOptions& options) {
+  return write_point_file(map, path, options, pcd_header,
+                          [&](const ExportPoint& point, BytePacker& packer) {
+                            pack_position(point, options.doubles(), packer);
+                            packer.put(point.color.b);
+                            packer.put(point.color.g);
+                            packer.put(point.color.r);
+                            packer.put(std::uint8_t{0});
+                            pack_provenance(point, packer);
+                          });
+}
+
+}  // namespace fovea

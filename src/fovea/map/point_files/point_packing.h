@@ -1,0 +1,59 @@
+// What the formats that store points one behind the other have in common.
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "fovea/core/output_file.h"
+#include "fovea/map/point_files/byte_packer.h"
+#include "fovea/map/point_files/point_file_options.h"
+#include "fovea/map/point_files/point_stream.h"
+
+namespace fovea {
+
+/// x y z as double or float.
+inline void pack_position(const ExportPoint& point, bool doubles, BytePacker& packer) {
+  for (const double coordinate : point.position) {
+    doubles ? packer.put(coordinate) : packer.put(static_cast<float>(coordinate));
+  }
+}
+
+/// camera (int8), frame (int32), range (float), interpolated, views, spread, reason (uint8).
+inline void pack_provenance(const ExportPoint& point, BytePacker& packer) {
+  packer.put(point.camera);
+  packer.put(point.frame);
+  packer.put(point.range);
+  packer.put(point.interpolated);
+  packer.put(point.views);
+  packer.put(point.spread);
+  packer.put(point.reason);
+}
+
+/// Writes all points with `pack(point, packer)`.
+template <class Pack>
+void write_points(const PointStream& points, std::ostream& stream, Pack&& pack) {
+  std::string bytes;
+  points.for_each_block([&](std::span<const ExportPoint> block) {
+    bytes.clear();
+    BytePacker packer(bytes);
+    for (const ExportPoint& point : block) pack(point, packer);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+/// Writes a file of a header and all points, with `pack(point, packer)`; it appears when it is
+/// whole.
+/// @param header  the text of `header(points, options)`
+template <class Header, class Pack>
+ExportFigures write_point_file(const MapReader& map, const std::filesystem::path& path,
+                               const PointFileOptions& options, Header&& header, Pack&& pack) {
+  OutputFile file(path, options.force);
+  const PointStream points(map, options.points);
+  file.stream() << header(points, options);
+  write_points(points, file.stream(), pack);
+  file.commit();
+  return points.figures();
+}
+
+}  // namespace fovea
