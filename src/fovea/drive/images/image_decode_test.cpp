@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "../../../tests/kitti_test_drive.h"
+#include "../../../../tests/kitti_test_drive.h"
 #include "fovea/core/errors.h"
 
 namespace fovea::image_decode_test {

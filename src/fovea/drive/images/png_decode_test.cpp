@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../../../tests/peak_memory.h"
+#include "../../../../tests/peak_memory.h"
 #include "fovea/core/random.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/images/png_plain_decode.h"

@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "../../../tests/kitti_test_drive.h"
+#include "../../../../tests/kitti_test_drive.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
 

@@ -1,5 +1,5 @@
 // The real drive: figures measured on it by other programs.
-#include "../../../tests/kitti_sample.h"
+#include "../../../../tests/kitti_sample.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "../../../tests/kitti_test_drive.h"
+#include "../../../../tests/kitti_test_drive.h"
 
 namespace fovea::oxts_test {
 

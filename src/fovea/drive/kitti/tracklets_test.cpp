@@ -6,8 +6,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "../../../tests/temporary_folder.h"
-#include "../../../tests/tracklet_writer.h"
+#include "../../../../tests/temporary_folder.h"
+#include "../../../../tests/tracklet_writer.h"
 #include "fovea/core/errors.h"
 
 namespace fovea::tracklets_test {

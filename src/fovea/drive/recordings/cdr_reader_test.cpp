@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../../../tests/cdr_writer.h"
+#include "../../../../tests/cdr_writer.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/ros_messages.h"
 

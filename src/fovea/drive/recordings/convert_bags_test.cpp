@@ -6,9 +6,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "../../../tests/cdr_writer.h"
-#include "../../../tests/mcap_writer.h"
-#include "../../../tests/temporary_folder.h"
+#include "../../../../tests/cdr_writer.h"
+#include "../../../../tests/mcap_writer.h"
+#include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/images/image_decode.h"

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <vector>
 
-#include "../../../tests/mcap_writer.h"
-#include "../../../tests/temporary_folder.h"
+#include "../../../../tests/mcap_writer.h"
+#include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/decompress.h"

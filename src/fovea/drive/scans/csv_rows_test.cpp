@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "../../../tests/kitti_test_drive.h"
+#include "../../../../tests/kitti_test_drive.h"
 #include "fovea/core/errors.h"
 
 namespace fovea::csv_rows_test {

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "../../../tests/kitti_test_drive.h"
+#include "../../../../tests/kitti_test_drive.h"
 #include "fovea/core/errors.h"
 
 namespace fovea::lidar_scan_test {

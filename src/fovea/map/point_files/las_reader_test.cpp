@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "../../../tests/peak_memory.h"
+#include "../../../../tests/peak_memory.h"
 #include "fovea/map/point_files/cloud_test_files.h"
 
 namespace fovea::las_reader_test {

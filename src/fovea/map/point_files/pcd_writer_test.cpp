@@ -8,8 +8,8 @@
 #include <map>
 #include <sstream>
 
-#include "../../../tests/sample_map.h"
-#include "../../../tests/temporary_folder.h"
+#include "../../../../tests/sample_map.h"
+#include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 
 namespace fovea::pcd_writer_test {

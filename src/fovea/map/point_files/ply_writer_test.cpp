@@ -6,9 +6,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "../../../tests/file_size_limit.h"
-#include "../../../tests/sample_map.h"
-#include "../../../tests/temporary_folder.h"
+#include "../../../../tests/file_size_limit.h"
+#include "../../../../tests/sample_map.h"
+#include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/version.h"
 #include "fovea/map/map_meta.h"

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../../../tests/sample_map.h"
-#include "../../../tests/temporary_folder.h"
+#include "../../../../tests/sample_map.h"
+#include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 
 namespace fovea::point_stream_test {
