@@ -32,7 +32,7 @@ void run(const CropArguments& arguments) {
 
 }  // namespace
 
-void add_crop_command(CLI::App& app) {
+void add_crop_command(CLI::App& app, Session&) {
   auto arguments = std::make_shared<CropArguments>();
   CLI::App* command = app.add_subcommand("crop", "Cut a part out of a map");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();

@@ -238,7 +238,7 @@ void run(const InfoArguments& arguments) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app) {
+void add_info_command(CLI::App& app, Session&) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand("info", "Describe a map");
   command->add_option("MAP.fovea", arguments->map, "Map file")->required();

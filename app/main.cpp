@@ -51,23 +51,7 @@ int run(int argc, char** argv, fovea::app::Session& session) {
   app.set_version_flag("--version", std::string("fovea ") + fovea::version());
   app.require_subcommand(1);
   app.get_formatter()->column_width(36);
-  fovea::app::add_map_command(app, session);
-  fovea::app::add_info_command(app);
-  fovea::app::add_evaluate_command(app, session);
-  fovea::app::add_convert_command(app, session);
-  fovea::app::add_crop_command(app);
-  fovea::app::add_export_command(app, session);
-  fovea::app::add_localize_command(app, session);
-  fovea::app::add_merge_command(app, session);
-  fovea::app::add_render_command(app, session);
-  fovea::app::add_recolor_command(app, session);
-  fovea::app::add_repair_command(app, session);
-  fovea::app::add_reproduce_command(app, session);
-  fovea::app::add_upsample_command(app);
-  fovea::app::add_register_command(app);
-  fovea::app::add_settings_command(app);
-  fovea::app::add_simulate_command(app);
-  fovea::app::add_view_command(app, session);
+  for (const fovea::app::AddCommand add : fovea::app::commands()) add(app, session);
   app.add_flag("--strict", session.warnings.strict, kStrictHelp);
   for (CLI::App* subcommand : app.get_subcommands({})) {
     subcommand->add_flag("--strict", session.warnings.strict, kStrictHelp);

@@ -12,12 +12,11 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/live_view.h"
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
-#include "app/view_arguments.h"
-#include "app/viewer_page.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/process_memory.h"
@@ -26,7 +25,6 @@
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/summary_json.h"
-#include "fovea/server/live_show.h"
 
 namespace fovea::app {
 namespace {
@@ -34,9 +32,6 @@ namespace {
 /// What a drive played live begins with, bytes, but no more than this part of what it is to keep
 /// to.
 constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
-
-/// What --live without a port stands for.
-constexpr const char* kSomePort = "some";
 
 /// Values of --poses that are no file.
 constexpr const char* kRefinedPoses = "refine";
@@ -50,7 +45,7 @@ struct MapArguments {
   double rate = 0;
   std::size_t memory = std::size_t{1} << 30;
   bool calibrate = false, resume = false, force = false, quiet = false, allow_dropped = false;
-  std::string live;  // empty: no; a port, or kSomePort
+  std::string live;  // see live_view.h
 };
 
 MapSettings resolve_settings(const MapArguments& arguments) {
@@ -97,40 +92,6 @@ OutputError with_log_remedy(const OutputError& error, const std::string& map) {
   return {error.problem(), error.where(), error.remedy() + "; " + remedy};
 }
 
-/// Shows the finished map until Ctrl-C.
-void go_on_showing(std::unique_ptr<LiveShow> show, const MapArguments& arguments,
-                   const std::stop_token& stop) {
-  show->finish();
-  if (!stop.stop_requested()) {
-    if (!arguments.quiet) {
-      print_out("the map is still shown at {} (Ctrl-C ends)\n", show->url());
-      std::fflush(stdout);
-    }
-    wait_for(stop);
-  }
-  show.reset();
-  fold_log(arguments.output);
-}
-
-/// Shows the map while it is made; nullptr where nobody wants that.
-std::unique_ptr<LiveShow> open_show(const MapArguments& arguments, const MapJob& job,
-                                    std::shared_ptr<const FrameSource> drive) {
-  if (arguments.live.empty()) return nullptr;
-  WebServerOptions server;
-  server.in_background = true;
-  std::unique_ptr<LiveShow> show;
-  const auto images = std::make_shared<const DriveImages>(std::move(drive));
-  const int port = arguments.live == kSomePort ? -1 : std::stoi(arguments.live);
-  open_at_port(server, port, [&](const WebServerOptions& options) {
-    show = std::make_unique<LiveShow>(job, images, viewer_page(), options);
-  });
-  if (!arguments.quiet) {
-    print_out("shown at {}\n", show->url());
-    std::fflush(stdout);
-  }
-  return show;
-}
-
 CommandFiles files_of(const MapArguments& arguments) {
   CommandFiles files;
   files.inputs = {arguments.drive.drive, arguments.config};
@@ -173,8 +134,7 @@ void run(const MapArguments& arguments, Session& session) {
   // Played live, the first frames are as much in a hurry as any.
   if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
   job.stop = session.interrupt.stop_gently();
-  std::unique_ptr<LiveShow> show = open_show(arguments, job, source);
-  job.observer = show.get();
+  LiveView view(arguments.live, job, source, arguments.quiet);
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
     try {
@@ -193,7 +153,7 @@ void run(const MapArguments& arguments, Session& session) {
   if (!arguments.quiet) print_summary(summary, arguments);
   session.warnings.add(calibration, "", arguments.quiet);
   if (job.stop.stop_requested()) print_interruption(summary, arguments);
-  if (show) go_on_showing(std::move(show), arguments, job.stop);
+  view.keep_serving();
 }
 
 }  // namespace
@@ -258,16 +218,7 @@ void add_map_command(CLI::App& app, Session& session) {
   command->add_flag("--force", arguments->force, "Overwrite the map");
   command->add_option("--report", arguments->report, "Write figures as JSON")
       ->type_name("FILE.json");
-  command
-      ->add_flag(fmt::format("--live{{{}}}", kSomePort), arguments->live,
-                 fmt::format("Show the map in a browser while it grows, and after: --live or "
-                             "--live=PORT (default: {}, or another if it is taken)",
-                             kUsualPort))
-      ->option_text("[=PORT]")
-      ->check([](const std::string& port) {
-        const bool is_port = port == kSomePort || CLI::Range(0, 65535)(port).empty();
-        return is_port ? std::string() : port + " is no port: 0 to 65535";
-      });
+  add_live_option(*command, arguments->live);
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments, &session] { run(*arguments, session); });
 }

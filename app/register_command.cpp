@@ -93,7 +93,7 @@ void run(const RegisterArguments& arguments) {
 
 }  // namespace
 
-void add_register_command(CLI::App& app) {
+void add_register_command(CLI::App& app, Session&) {
   auto arguments = std::make_shared<RegisterArguments>();
   CLI::App* command = app.add_subcommand(
       "register", "Align two scans (.bin, PCD, PLY): prints T_target_source as 12 numbers");

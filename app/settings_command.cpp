@@ -21,7 +21,7 @@ void convert(const std::string& file) {
 
 }  // namespace
 
-void add_settings_command(CLI::App& app) {
+void add_settings_command(CLI::App& app, Session&) {
   CLI::App* command = app.add_subcommand("settings", "List the settings, or convert old ones");
   command->require_subcommand(1);
 

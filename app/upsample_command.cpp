@@ -59,7 +59,7 @@ void run(const UpsampleArguments& arguments) {
 
 }  // namespace
 
-void add_upsample_command(CLI::App& app) {
+void add_upsample_command(CLI::App& app, Session&) {
   auto arguments = std::make_shared<UpsampleArguments>();
   CLI::App* command = app.add_subcommand("upsample", "Densify one scan in a camera's view");
   command->add_option("SCAN", arguments->scan, "Scan in .bin, PCD or PLY")->required();

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "fovea/server/map_site.h"
+#include "fovea/exporting/viewer/viewer_folder.h"
 
 namespace fovea::app {
 

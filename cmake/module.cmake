@@ -40,6 +40,34 @@ function(fovea_discover_tests target)
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 TEST_FILTER "-${filter}" PROPERTIES ${ARG_PROPERTIES})
 endfunction()
 
+# Whether this build has all of the given modules: those outside FOVEA_PARTS are always there.
+function(fovea_has_parts result)
+  set(${result} TRUE PARENT_SCOPE)
+  foreach(part IN LISTS ARGN)
+    string(TOUPPER ${part} option)
+    if(part IN_LIST FOVEA_PARTS AND NOT FOVEA_WITH_${option})
+      set(${result} FALSE PARENT_SCOPE)
+    endif()
+  endforeach()
+endfunction()
+
+# fovea_part(NAME ...): fovea_module() of a part that a build may leave out (FOVEA_WITH_NAME).
+function(fovea_part name)
+  string(TOUPPER ${name} option)
+  if(NOT FOVEA_WITH_${option})
+    return()
+  endif()
+  cmake_parse_arguments(ARG "TOGETHER" "FOLDER" "DEPENDS;PRIVATE;TEST_DEPENDS" ${ARGN})
+  foreach(part IN LISTS ARG_DEPENDS)
+    fovea_has_parts(has_part ${part})
+    if(NOT has_part)
+      string(TOUPPER ${part} needed)
+      message(FATAL_ERROR "FOVEA_WITH_${option} needs FOVEA_WITH_${needed}: set both to ON, or both to OFF")
+    endif()
+  endforeach()
+  fovea_module(${name} ${ARGN})
+endfunction()
+
 # fovea_module(NAME [FOLDER folder] [WITHOUT folder] [TOGETHER] [DEPENDS modules...] [PUBLIC libs...]
 #              [PRIVATE libs...] [TEST_DEPENDS modules...])
 #
@@ -80,7 +108,10 @@ function(fovea_module name)
   target_precompile_headers(fovea_${name} REUSE_FROM fovea_precompiled)
   set_property(GLOBAL APPEND PROPERTY FOVEA_MODULES fovea_${name})
 
-  if(FOVEA_BUILD_TESTS AND tests)
+  fovea_has_parts(can_test ${ARG_TEST_DEPENDS})
+  if(FOVEA_BUILD_TESTS AND tests AND NOT can_test)
+    message(STATUS "${name}_tests is left out: it needs all of ${ARG_TEST_DEPENDS}")
+  elseif(FOVEA_BUILD_TESTS AND tests)
     add_executable(${name}_tests ${tests})
     list(TRANSFORM ARG_TEST_DEPENDS PREPEND fovea_)
     target_link_libraries(${name}_tests PRIVATE fovea_${name} ${ARG_TEST_DEPENDS} ${ARG_PRIVATE}

@@ -8,10 +8,10 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/exporting/jpeg_encode.h"
+#include "fovea/exporting/viewer/map_description.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/byte_packer.h"
 #include "fovea/server/live_sample.h"
-#include "fovea/server/map_description.h"
 
 namespace fovea {
 namespace {

@@ -9,10 +9,10 @@
 #include <span>
 #include <string>
 
+#include "fovea/exporting/viewer/map_description.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/server/live_board.h"
 #include "fovea/server/live_sample.h"
-#include "fovea/server/map_description.h"
 #include "fovea/server/map_site.h"
 #include "fovea/server/web_server.h"
 

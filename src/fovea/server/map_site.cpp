@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "fovea/exporting/jpeg_encode.h"
-#include "fovea/server/map_description.h"
+#include "fovea/exporting/viewer/map_description.h"
 
 namespace fovea {
 namespace {
@@ -54,18 +54,6 @@ WebResponse page_response(std::span<const PageFile> page, const std::string& pat
     if (file.name == wanted) return {200, media_type(wanted), bytes(std::string(file.bytes))};
   }
   return not_found();
-}
-
-std::map<std::string, std::string> viewer_files(const MapReader& map,
-                                                std::span<const PageFile> page, bool mesh) {
-  std::map<std::string, std::string> files;
-  for (const PageFile& file : page) files.emplace(file.name, file.bytes);
-  MapDescription description = describe_map(map);
-  description.tileset = "tileset.json";
-  description.mesh = mesh;
-  files["map.json"] = to_json(description);
-  files["frames.json"] = frames_json(map.frames()).dump();
-  return files;
 }
 
 WebResponse DriveImages::response(std::string_view path) const {

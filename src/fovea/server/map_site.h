@@ -9,28 +9,17 @@
 #include <string_view>
 
 #include "fovea/drive/frame_source.h"
+#include "fovea/exporting/viewer/viewer_folder.h"
 #include "fovea/server/tile_source.h"
 #include "fovea/server/web_server.h"
 
 namespace fovea {
-
-/// A file of the page, built into the program.
-struct PageFile {
-  std::string_view name;  ///< its place in the site
-  std::string_view bytes;
-};
 
 /// The media type that a file's ending stands for.
 std::string media_type(std::string_view name);
 
 /// A file of the page as a response; "" is index.html. Status 404 if there is none of that name.
 WebResponse page_response(std::span<const PageFile> page, const std::string& path);
-
-/// What makes a folder with a tileset one that any web server shows: the page, map.json and
-/// frames.json, by their places in it. InputError if the map's meta data are damaged.
-/// @param mesh  whether the tileset has triangles instead of points
-std::map<std::string, std::string> viewer_files(const MapReader& map,
-                                                std::span<const PageFile> page, bool mesh);
 
 /// The images of a drive as JPEG.
 class DriveImages {

@@ -11,7 +11,7 @@
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
-#include "fovea/server/map_description.h"
+#include "fovea/exporting/viewer/map_description.h"
 #include "fovea/server/map_show.h"
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"

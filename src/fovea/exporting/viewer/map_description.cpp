@@ -1,4 +1,4 @@
-#include "fovea/server/map_description.h"
+#include "fovea/exporting/viewer/map_description.h"
 
 #include <fmt/format.h>
 
