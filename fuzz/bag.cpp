@@ -4,9 +4,9 @@
 
 #include <fstream>
 
+#include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/navigation_topics.h"
-#include "fovea/drive/recordings/survey.h"
 #include "fuzz_input.h"
 #include "scratch_folder.h"
 
@@ -27,16 +27,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const ScratchFolder folder;
   const std::filesystem::path file = folder / "a.bag";
   std::ofstream(file, std::ios::binary) << as_text(data, size);
-  BagSurvey survey;
-  if (!read_or_refuse([&] { survey = survey_bags({file}, folder.path()); })) {
+  BagIndex index;
+  if (!read_or_refuse([&] { index = index_bags({file}, folder.path()); })) {
     return 0;
   }
   std::string lidar_frame = "lidar";
-  for (const auto& [name, cloud] : survey.clouds) check(cloud), lidar_frame = cloud.frame;
-  for (const auto& [name, images] : survey.images) check(images);
+  for (const auto& [name, cloud] : index.clouds) check(cloud), lidar_frame = cloud.frame;
+  for (const auto& [name, images] : index.images) check(images);
   std::vector<std::string> notes;
   read_or_refuse([&] {
-    const auto cameras = plan_cameras(survey, {}, lidar_frame, notes);
+    const auto cameras = plan_cameras(index, {}, lidar_frame, notes);
     require(cameras.size() <= 10, "cameras have numbers of one digit");
   });
   for (const NavigationSource source :
@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ConvertOptions options;
     options.poses = source;
     RecordedDrive drive;
-    read_or_refuse([&] { plan_navigation(survey, options, lidar_frame, drive, notes); });
+    read_or_refuse([&] { plan_navigation(index, options, lidar_frame, drive, notes); });
   }
   return 0;
 }

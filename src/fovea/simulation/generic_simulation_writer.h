@@ -2,13 +2,13 @@
 #pragma once
 
 #include "fovea/drive/writers/generic_drive_writer.h"
-#include "fovea/simulation/drive_writer.h"
+#include "fovea/simulation/simulation_writer.h"
 
 namespace fovea {
 
 /// Cameras are called camera_K. Everything is written below ROOT.partial, as GenericDriveWriter
 /// does.
-class GenericSimulationWriter : public DriveWriter {
+class GenericSimulationWriter : public SimulationWriter {
  public:
   /// OutputError as GenericDriveWriter.
   GenericSimulationWriter(const SimulationOptions& options, const std::filesystem::path& root);

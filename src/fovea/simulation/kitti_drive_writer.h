@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "fovea/core/output_folder.h"
-#include "fovea/simulation/drive_writer.h"
+#include "fovea/simulation/simulation_writer.h"
 
 namespace fovea {
 
 /// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was
 /// not finished is removed.
-class KittiDriveWriter : public DriveWriter {
+class KittiDriveWriter : public SimulationWriter {
  public:
   /// OutputError as OutputFolder's where anything exists at ROOT.
   explicit KittiDriveWriter(const std::filesystem::path& root);

@@ -12,10 +12,10 @@
 #include "fovea/core/random.h"
 #include "fovea/simulation/camera_model.h"
 #include "fovea/simulation/drive_texts.h"
-#include "fovea/simulation/drive_writer.h"
 #include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/simulation_config.h"
+#include "fovea/simulation/simulation_writer.h"
 #include "fovea/simulation/tracklet_labels.h"
 #include "fovea/simulation/world_export.h"
 
@@ -57,7 +57,7 @@ class Simulation {
  public:
   Simulation(const SimulationOptions& options, const std::filesystem::path& root)
       : options_(options),
-        writer_(make_drive_writer(options, root)),
+        writer_(make_simulation_writer(options, root)),
         scenery_(make_scenery(options)),
         motion_(scenery_->path(), scenery_->lane_offset(), options.vehicle, options.pass_seed()),
         rig_(make_rig(options)),
@@ -254,7 +254,7 @@ class Simulation {
   }
 
   SimulationOptions options_;
-  std::unique_ptr<DriveWriter> writer_;
+  std::unique_ptr<SimulationWriter> writer_;
   std::unique_ptr<Scenery> scenery_;
   VehicleMotion motion_;
   Rig rig_;

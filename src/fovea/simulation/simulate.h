@@ -12,7 +12,7 @@ namespace fovea {
 using SimulationProgress = std::function<bool(int done, int total)>;
 
 /// Writes a drive with its truth (docs/simulator.md) below `root`. The same options give the same
-/// bytes at any number of threads. OutputError as DriveWriter; ConfigError for options out of
+/// bytes at any number of threads. OutputError as SimulationWriter; ConfigError for options out of
 /// range.
 /// @return the drive's folder; empty if it was stopped, and then nothing is left
 std::filesystem::path simulate(const SimulationOptions& options, const std::filesystem::path& root,

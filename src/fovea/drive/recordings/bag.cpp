@@ -56,7 +56,7 @@ class Unpacker : public BagSink {
  public:
   explicit Unpacker(BagSink& sink) : sink_(sink) {}
 
-  bool wants(const BagTopic& topic) override { return sink_.wants(topic); }
+  bool is_requested(const BagTopic& topic) override { return sink_.is_requested(topic); }
   void add(const BagTopic& topic, std::string_view message) override {
     if (!is_zstd(message)) return sink_.add(topic, message);
     std::string unpacked;

@@ -20,7 +20,7 @@ class BagSink {
   virtual ~BagSink() = default;
 
   /// Called for each topic of a file before its messages; whether these are wanted.
-  virtual bool wants(const BagTopic& topic) = 0;
+  virtual bool is_requested(const BagTopic& topic) = 0;
   /// Called for each message that is wanted, in the file's order.
   /// @param message  valid during the call
   virtual void add(const BagTopic& topic, std::string_view message) = 0;

@@ -84,13 +84,13 @@ Lens lens_of(const ros::CameraInfo& info, const std::string& topic) {
 }
 
 /// T_lidar_cam, of the first of the frames that tf knows.
-QuaternionMotion place_of(const BagSurvey& survey, const std::string& lidar_frame,
+QuaternionMotion place_of(const BagIndex& index, const std::string& lidar_frame,
                           const std::array<std::string, 2>& frames, const std::string& topic) {
   for (const std::string& frame : frames) {
-    const auto T = survey.transforms.fixed(lidar_frame, frame);
+    const auto T = index.transforms.fixed(lidar_frame, frame);
     // No camera looks along the LiDAR's z: such a frame was never thought of.
     if (!T || frame == lidar_frame) continue;
-    if (const auto moving = survey.transforms.moving(lidar_frame, frame)) {
+    if (const auto moving = index.transforms.moving(lidar_frame, frame)) {
       throw InputError(
           fmt::format("frame '{}' moves between '{}' and '{}'", *moving, lidar_frame, frame), topic,
           "a camera must sit still on the vehicle");
@@ -114,16 +114,16 @@ QuaternionMotion rectification(const ros::CameraInfo& info, const std::string& t
   return {Eigen::Vector3d::Zero(), Eigen::Quaterniond(nearest_rotation(R))};
 }
 
-PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
-                          const std::string& name, const std::string& lidar_frame) {
+PlannedCamera plan_camera(const BagIndex& index, const std::string& topic, const std::string& name,
+                          const std::string& lidar_frame) {
   const ImagePath path = path_of(topic);
-  const auto info = survey.camera_infos.find(path.info_topic());
-  if (info == survey.camera_infos.end()) {
+  const auto info = index.camera_infos.find(path.info_topic());
+  if (info == index.camera_infos.end()) {
     throw InputError(
         fmt::format("the images have no calibration: there is no CameraInfo {}", path.info_topic()),
         topic, "record it, too");
   }
-  const SensorTopic& images = survey.images.at(topic);
+  const SensorTopic& images = index.images.at(topic);
   if (!images.unread.empty()) {
     throw InputError(images.unread, topic, "see docs/drives.md for those that are");
   }
@@ -139,7 +139,7 @@ PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
         topic, "calibrate the camera at the resolution of its images");
   }
   planned.camera.T_lidar_cam =
-      place_of(survey, lidar_frame, {info->second.header.frame, images.frame}, topic);
+      place_of(index, lidar_frame, {info->second.header.frame, images.frame}, topic);
   if (path.rectified()) {
     planned.camera.T_lidar_cam =
         planned.camera.T_lidar_cam * rectification(info->second, path.info_topic()).inverse();
@@ -148,9 +148,9 @@ PlannedCamera plan_camera(const BagSurvey& survey, const std::string& topic,
 }
 
 /// The topics that may be cameras, by name, the best first.
-std::map<std::string, std::vector<std::string>> likely_cameras(const BagSurvey& survey) {
+std::map<std::string, std::vector<std::string>> likely_cameras(const BagIndex& index) {
   std::map<std::string, std::vector<std::string>> cameras;
-  for (const auto& [topic, images] : survey.images) {
+  for (const auto& [topic, images] : index.images) {
     const ImagePath path = path_of(topic);
     if (!path.may_be_depth()) cameras[camera_name(path.parent)].push_back(topic);
   }
@@ -165,27 +165,27 @@ std::map<std::string, std::vector<std::string>> likely_cameras(const BagSurvey& 
   return cameras;
 }
 
-std::vector<PlannedCamera> plan_named(const BagSurvey& survey, const ConvertOptions& options,
+std::vector<PlannedCamera> plan_named(const BagIndex& index, const ConvertOptions& options,
                                       const std::string& lidar_frame) {
   std::vector<PlannedCamera> cameras;
   for (const auto& [name, topic] : options.cameras) {
-    if (!survey.images.contains(topic)) {
+    if (!index.images.contains(topic)) {
       throw InputError("there are no images of this topic that can be read", topic,
                        "see 'ros2 bag info'");
     }
-    cameras.push_back(plan_camera(survey, topic, name, lidar_frame));
+    cameras.push_back(plan_camera(index, topic, name, lidar_frame));
   }
   return cameras;
 }
 
-std::vector<PlannedCamera> plan_all(const BagSurvey& survey, const std::string& lidar_frame,
+std::vector<PlannedCamera> plan_all(const BagIndex& index, const std::string& lidar_frame,
                                     std::vector<std::string>& notes) {
   std::vector<PlannedCamera> cameras;
   std::optional<InputError> first_problem;
-  for (const auto& [name, topics] : likely_cameras(survey)) {
+  for (const auto& [name, topics] : likely_cameras(index)) {
     for (const std::string& topic : topics) {
       try {
-        cameras.push_back(plan_camera(survey, topic, name, lidar_frame));
+        cameras.push_back(plan_camera(index, topic, name, lidar_frame));
         break;
       } catch (const InputError& error) {
         if (!first_problem) first_problem = error;
@@ -228,12 +228,12 @@ LensCamera optics_of(const ros::CameraInfo& info, bool rectified, const std::str
   return optics;
 }
 
-std::vector<PlannedCamera> plan_cameras(const BagSurvey& survey, const ConvertOptions& options,
+std::vector<PlannedCamera> plan_cameras(const BagIndex& index, const ConvertOptions& options,
                                         const std::string& lidar_frame,
                                         std::vector<std::string>& notes) {
   std::vector<PlannedCamera> cameras = options.cameras.empty()
-                                           ? plan_all(survey, lidar_frame, notes)
-                                           : plan_named(survey, options, lidar_frame);
+                                           ? plan_all(index, lidar_frame, notes)
+                                           : plan_named(index, options, lidar_frame);
   if (cameras.empty()) {
     notes.push_back("the recording has no images: the drive has no camera, and maps no colors");
   }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/convert_options.h"
-#include "fovea/drive/recordings/survey.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
@@ -26,7 +26,7 @@ LensCamera optics_of(const ros::CameraInfo& info, bool rectified, const std::str
 /// or all topics, have no calibration or place; or if there are over ten.
 /// @param lidar_frame  of the scans
 /// @param notes        which topics are left out, and why
-std::vector<PlannedCamera> plan_cameras(const BagSurvey& survey, const ConvertOptions& options,
+std::vector<PlannedCamera> plan_cameras(const BagIndex& index, const ConvertOptions& options,
                                         const std::string& lidar_frame,
                                         std::vector<std::string>& notes);
 

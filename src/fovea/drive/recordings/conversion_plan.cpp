@@ -10,14 +10,14 @@
 namespace fovea {
 namespace {
 
-[[noreturn]] void throw_no_clouds(const BagSurvey& survey) {
-  for (const auto& [name, unusable] : survey.unusable) {
-    const auto topic = survey.topics.find(name);
-    if (topic == survey.topics.end() || topic->second.type != ros::kPointCloud) continue;
+[[noreturn]] void throw_no_clouds(const BagIndex& index) {
+  for (const auto& [name, unusable] : index.unusable) {
+    const auto topic = index.topics.find(name);
+    if (topic == index.topics.end() || topic->second.type != ros::kPointCloud) continue;
     throw InputError(fmt::format("no point cloud can be used ({})", unusable.first_problem), name,
                      "restore it from a copy, or see docs/drives.md for what is read");
   }
-  for (const auto& [name, topic] : survey.topics) {
+  for (const auto& [name, topic] : index.topics) {
     if (topic.encoding == kCdrEncoding) continue;
     throw InputError(fmt::format("messages are of encoding '{:.40}'", topic.encoding), name,
                      "give a recording of ROS 2 (encoding 'cdr')");
@@ -42,16 +42,16 @@ void check_count(const SensorTopic& sensor, const std::string& topic) {
                    "split the recording: a drive has a million at most");
 }
 
-void check_sensors(const BagSurvey& survey, const ConversionPlan& plan) {
-  check_count(survey.clouds.at(plan.lidar), plan.lidar);
-  const std::vector<TimeNs>& scans = survey.clouds.at(plan.lidar).stamps;
+void check_sensors(const BagIndex& index, const ConversionPlan& plan) {
+  check_count(index.clouds.at(plan.lidar), plan.lidar);
+  const std::vector<TimeNs>& scans = index.clouds.at(plan.lidar).stamps;
   const auto check = [&](const std::string& other, TimeNs first, TimeNs last) {
     check_clocks(plan.lidar, scans, other, first, last);
   };
   for (const PlannedCamera& camera : plan.cameras) {
-    const std::vector<TimeNs>& stamps = survey.images.at(camera.topic).stamps;
+    const std::vector<TimeNs>& stamps = index.images.at(camera.topic).stamps;
     check(camera.topic, stamps.front(), stamps.back());
-    check_count(survey.images.at(camera.topic), camera.topic);
+    check_count(index.images.at(camera.topic), camera.topic);
   }
   const RecordedDrive& drive = plan.drive;
   if (!drive.poses.empty()) check("the poses", drive.poses.front().time, drive.poses.back().time);
@@ -87,22 +87,22 @@ ScanFormat recognize_scans(const SensorTopic& lidar, const std::string& topic,
 
 }  // namespace
 
-ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options) {
+ConversionPlan plan_conversion(const BagIndex& index, const ConvertOptions& options) {
   ConversionPlan plan;
-  if (survey.clouds.empty()) throw_no_clouds(survey);
-  plan.lidar = only_topic(survey.clouds, options.lidar, "PointCloud2", "--lidar");
-  const SensorTopic& lidar = survey.clouds.at(plan.lidar);
+  if (index.clouds.empty()) throw_no_clouds(index);
+  plan.lidar = only_topic(index.clouds, options.lidar, "PointCloud2", "--lidar");
+  const SensorTopic& lidar = index.clouds.at(plan.lidar);
   plan.drive.sweep_compensated = options.sweep_compensated;
   plan.scan_format = recognize_scans(lidar, plan.lidar, plan.notes);
-  plan.cameras = plan_cameras(survey, options, lidar.frame, plan.notes);
+  plan.cameras = plan_cameras(index, options, lidar.frame, plan.notes);
   for (const PlannedCamera& planned : plan.cameras) {
     plan.notes.push_back(fmt::format("camera {}: '{}', {} images of {}", planned.camera.index,
                                      planned.camera.name,
-                                     survey.images.at(planned.topic).stamps.size(), planned.topic));
+                                     index.images.at(planned.topic).stamps.size(), planned.topic));
     plan.drive.cameras.push_back(planned.camera);
   }
-  plan.navigation_topics = plan_navigation(survey, options, lidar.frame, plan.drive, plan.notes);
-  check_sensors(survey, plan);
+  plan.navigation_topics = plan_navigation(index, options, lidar.frame, plan.drive, plan.notes);
+  check_sensors(index, plan);
   return plan;
 }
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/convert_options.h"
-#include "fovea/drive/recordings/survey.h"
 #include "fovea/drive/scans/scan_format.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
@@ -24,6 +24,6 @@ struct ConversionPlan {
 /// InputError for a recording that is no drive: without scans or cameras, without their calibration
 /// or place, of sensors that different clocks have stamped, or of what may be meant in several
 /// ways.
-ConversionPlan plan_conversion(const BagSurvey& survey, const ConvertOptions& options);
+ConversionPlan plan_conversion(const BagIndex& index, const ConvertOptions& options);
 
 }  // namespace fovea

@@ -6,9 +6,9 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/bag.h"
+#include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/conversion_plan.h"
-#include "fovea/drive/recordings/recorder.h"
-#include "fovea/drive/recordings/survey.h"
+#include "fovea/drive/recordings/drive_writer.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
@@ -28,13 +28,13 @@ auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
 }
 
 /// Notes each topic without use, with the number of its messages.
-void note_unused_topics(const BagSurvey& survey, const ConversionPlan& plan,
+void note_unused_topics(const BagIndex& index, const ConversionPlan& plan,
                         ConvertFigures& figures) {
   std::set<std::string> used(plan.navigation_topics.begin(), plan.navigation_topics.end());
   used.insert(plan.lidar);
   for (const PlannedCamera& camera : plan.cameras) used.insert(camera.topic);
-  for (const auto& [name, messages] : survey.messages) {
-    const std::string& type = survey.topics.at(name).type;
+  for (const auto& [name, messages] : index.messages) {
+    const std::string& type = index.topics.at(name).type;
     if (type == ros::kTransforms || type == ros::kCameraInfo || used.contains(name)) continue;
     figures.notes.push_back(fmt::format("not used: {} message{} of {} ({})", messages,
                                         messages == 1 ? "" : "s", name, type));
@@ -55,14 +55,14 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   ConvertFigures figures;
   GenericDriveWriter writer(output, force);
   const std::filesystem::path scratch = writer.folder();
-  const BagSurvey survey = survey_bags(files, scratch);
-  ConversionPlan plan = naming(bags, [&] { return plan_conversion(survey, options); });
-  Recorder recorder(survey, plan, writer, options.allow_dropped, progress);
-  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, recorder);
+  const BagIndex index = index_bags(files, scratch);
+  ConversionPlan plan = naming(bags, [&] { return plan_conversion(index, options); });
+  DriveWriter drive_writer(index, plan, writer, options.allow_dropped, progress);
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, drive_writer);
   figures.notes = plan.notes;
-  naming(bags, [&] { recorder.finish(plan.drive, figures); });
-  note_unused_topics(survey, plan, figures);
-  for (const auto& [topic, unusable] : survey.unusable) {
+  naming(bags, [&] { drive_writer.finish(plan.drive, figures); });
+  note_unused_topics(index, plan, figures);
+  for (const auto& [topic, unusable] : index.unusable) {
     figures.warn(unusable.note(topic));
   }
   writer.finish(plan.drive);

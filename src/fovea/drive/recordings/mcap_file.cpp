@@ -185,7 +185,7 @@ class McapReader {
     if (schema != schemas_.end()) topic.type = schema->second;
     topic.name = record.text();
     topic.encoding = record.text();
-    const bool wanted = sink_.wants(topic) && topic.encoding == kCdrEncoding;
+    const bool wanted = sink_.is_requested(topic) && topic.encoding == kCdrEncoding;
     channels_.emplace(id, Channel{std::move(topic), wanted});
   }
 

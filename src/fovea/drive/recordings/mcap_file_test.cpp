@@ -35,7 +35,7 @@ std::string lz4(const std::string& bytes) {
 /// Notes "TOPIC:MESSAGE" of all topics but /other.
 class Listener : public BagSink {
  public:
-  bool wants(const BagTopic& topic) override {
+  bool is_requested(const BagTopic& topic) override {
     types.push_back(topic.type);
     return topic.name != "/other";
   }

@@ -16,20 +16,16 @@ constexpr const char* kNoImu = "none";  // of the option --imu
 
 class NavigationPlanner {
  public:
-  NavigationPlanner(const BagSurvey& survey, const ConvertOptions& options,
+  NavigationPlanner(const BagIndex& index, const ConvertOptions& options,
                     const std::string& lidar_frame, RecordedDrive& drive,
                     std::vector<std::string>& notes)
-      : survey_(survey),
-        options_(options),
-        lidar_frame_(lidar_frame),
-        drive_(drive),
-        notes_(notes) {}
+      : index_(index), options_(options), lidar_frame_(lidar_frame), drive_(drive), notes_(notes) {}
 
   /// Topics of which messages are used.
   const std::vector<std::string>& used() const { return used_; }
 
   void plan() {
-    for (const std::string& frame : survey_.transforms.ambiguous()) {
+    for (const std::string& frame : index_.transforms.ambiguous()) {
       notes_.push_back(
           fmt::format("tf has frame '{}' in several parents: the most frequent counts", frame));
     }
@@ -77,7 +73,7 @@ class NavigationPlanner {
   std::string usual_body() const {
     if (!options_.body.empty()) return options_.body;
     std::string usual = "base_link";  // REP 105
-    if (!survey_.transforms.fixed(usual, lidar_frame_)) usual = lidar_frame_;
+    if (!index_.transforms.fixed(usual, lidar_frame_)) usual = lidar_frame_;
     return usual;
   }
 
@@ -88,19 +84,19 @@ class NavigationPlanner {
 
   /// T_a_b; empty if tf does not tell, or they move.
   std::optional<QuaternionMotion> still(const std::string& a, const std::string& b) const {
-    if (survey_.transforms.moving(a, b)) return std::nullopt;
-    return survey_.transforms.fixed(a, b);
+    if (index_.transforms.moving(a, b)) return std::nullopt;
+    return index_.transforms.fixed(a, b);
   }
 
   /// InputError if tf does not tell, or they move.
   QuaternionMotion T_body_lidar(const std::string& body) const {
-    const auto T = survey_.transforms.fixed(body, lidar_frame_);
+    const auto T = index_.transforms.fixed(body, lidar_frame_);
     if (!T) {
       throw InputError(
           fmt::format("tf does not say where the LiDAR ('{}') is on '{}'", lidar_frame_, body),
           "/tf_static", "record it, too, or name another frame by --body");
     }
-    if (const auto moving = survey_.transforms.moving(body, lidar_frame_)) {
+    if (const auto moving = index_.transforms.moving(body, lidar_frame_)) {
       throw InputError(
           fmt::format("frame '{}' moves between '{}' and '{}'", *moving, body, lidar_frame_), "/tf",
           "name the frame of the vehicle by --body");
@@ -109,10 +105,10 @@ class NavigationPlanner {
   }
 
   bool take_positions() {
-    const std::string topic = only_topic(survey_.fixes, options_.fix, "NavSatFix", "--fix");
+    const std::string topic = only_topic(index_.fixes, options_.fix, "NavSatFix", "--fix");
     if (topic.empty()) return false;
     std::size_t without = 0;
-    for (const ros::NavSatFix& fix : survey_.fixes.at(topic)) {
+    for (const ros::NavSatFix& fix : index_.fixes.at(topic)) {
       const bool somewhere = std::isfinite(fix.latitude) && std::isfinite(fix.longitude) &&
                              std::isfinite(fix.altitude) && fix.fix;
       if (!somewhere) {
@@ -131,7 +127,7 @@ class NavigationPlanner {
     take_inertia();
     const std::string body = usual_body();
     drive_.T_body_lidar = T_body_lidar(body);
-    const std::string& antenna = survey_.fixes.at(topic).front().header.frame;
+    const std::string& antenna = index_.fixes.at(topic).front().header.frame;
     if (const auto T = still(body, antenna)) {
       drive_.antenna_body = T->translation;
     } else {
@@ -149,9 +145,9 @@ class NavigationPlanner {
 
   void take_inertia() {
     if (options_.imu == kNoImu) return;
-    const std::string topic = only_topic(survey_.imus, options_.imu, "Imu", "--imu");
+    const std::string topic = only_topic(index_.imus, options_.imu, "Imu", "--imu");
     if (topic.empty()) return;
-    const std::vector<ros::Imu>& imus = survey_.imus.at(topic);
+    const std::vector<ros::Imu>& imus = index_.imus.at(topic);
     const std::string& frame = imus.front().header.frame;
     const auto T = still(usual_body(), frame);
     if (!T) {
@@ -176,9 +172,9 @@ class NavigationPlanner {
 
   bool take_odometry() {
     const std::string topic =
-        only_topic(survey_.odometries, options_.odometry, "Odometry", "--odometry");
+        only_topic(index_.odometries, options_.odometry, "Odometry", "--odometry");
     if (topic.empty()) return false;
-    const std::vector<ros::Odometry>& odometries = survey_.odometries.at(topic);
+    const std::vector<ros::Odometry>& odometries = index_.odometries.at(topic);
     for (const ros::Odometry& odometry : odometries) {
       drive_.poses.push_back({odometry.header.stamp, odometry.T_header_child});
     }
@@ -193,9 +189,9 @@ class NavigationPlanner {
   bool take_transforms() {
     const std::string body = usual_body();
     const auto world =
-        options_.world.empty() ? survey_.transforms.world_of(body) : std::optional(options_.world);
+        options_.world.empty() ? index_.transforms.world_of(body) : std::optional(options_.world);
     if (!world) return false;
-    for (const auto& [time, T_world_body] : survey_.transforms.course(*world, body)) {
+    for (const auto& [time, T_world_body] : index_.transforms.course(*world, body)) {
       drive_.poses.push_back({time, T_world_body});
     }
     if (drive_.poses.empty()) return false;
@@ -205,7 +201,7 @@ class NavigationPlanner {
     return true;
   }
 
-  const BagSurvey& survey_;
+  const BagIndex& index_;
   const ConvertOptions& options_;
   const std::string& lidar_frame_;
   RecordedDrive& drive_;
@@ -215,10 +211,10 @@ class NavigationPlanner {
 
 }  // namespace
 
-std::vector<std::string> plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+std::vector<std::string> plan_navigation(const BagIndex& index, const ConvertOptions& options,
                                          const std::string& lidar_frame, RecordedDrive& drive,
                                          std::vector<std::string>& notes) {
-  NavigationPlanner planner(survey, options, lidar_frame, drive, notes);
+  NavigationPlanner planner(index, options, lidar_frame, drive, notes);
   planner.plan();
   return planner.used();
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/convert_options.h"
-#include "fovea/drive/recordings/survey.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
@@ -16,7 +16,7 @@ namespace fovea {
 /// that might be meant.
 /// @param notes  what was chosen, and what is left out
 /// @return the topics of positions, orientations and poses that are used; tf is not among them
-std::vector<std::string> plan_navigation(const BagSurvey& survey, const ConvertOptions& options,
+std::vector<std::string> plan_navigation(const BagIndex& index, const ConvertOptions& options,
                                          const std::string& lidar_frame, RecordedDrive& drive,
                                          std::vector<std::string>& notes);
 

@@ -29,20 +29,20 @@ ros::CameraInfo some_info(const std::string& frame) {
   return info;
 }
 
-void add_images(BagSurvey& survey, const std::string& topic, const std::string& unread = "") {
-  SensorTopic& images = survey.images[topic];
+void add_images(BagIndex& index, const std::string& topic, const std::string& unread = "") {
+  SensorTopic& images = index.images[topic];
   images.frame = "front";
   images.stamps = {1, 2, 3};
   images.unread = unread;
 }
 
-BagSurvey one_camera() {
-  BagSurvey survey;
-  add_images(survey, "/cams/front/image_raw/compressed");
-  survey.camera_infos["/cams/front/camera_info"] = some_info("front");
-  survey.transforms.add("base_link", "lidar", 0, at(1), true);
-  survey.transforms.add("lidar", "front", 0, at(0.25), true);
-  return survey;
+BagIndex one_camera() {
+  BagIndex index;
+  add_images(index, "/cams/front/image_raw/compressed");
+  index.camera_infos["/cams/front/camera_info"] = some_info("front");
+  index.transforms.add("base_link", "lidar", 0, at(1), true);
+  index.transforms.add("lidar", "front", 0, at(0.25), true);
+  return index;
 }
 
 std::vector<std::string> topics_of(const std::vector<PlannedCamera>& cameras) {
@@ -52,11 +52,11 @@ std::vector<std::string> topics_of(const std::vector<PlannedCamera>& cameras) {
 }
 
 TEST(PlanCameras, TakesWhatHasCalibrationAndPlace) {
-  BagSurvey survey = one_camera();
-  add_images(survey, "/cams/rear/image_raw");
-  add_images(survey, "/cams/depth/image_raw/compressed");
+  BagIndex index = one_camera();
+  add_images(index, "/cams/rear/image_raw");
+  add_images(index, "/cams/depth/image_raw/compressed");
   std::vector<std::string> notes;
-  const auto cameras = plan_cameras(survey, {}, "lidar", notes);
+  const auto cameras = plan_cameras(index, {}, "lidar", notes);
   ASSERT_EQ(cameras.size(), 1u);
   EXPECT_EQ(cameras[0].camera.name, "cams_front");
   EXPECT_EQ(cameras[0].camera.index, 0);
@@ -67,85 +67,85 @@ TEST(PlanCameras, TakesWhatHasCalibrationAndPlace) {
 }
 
 TEST(PlanCameras, PrefersRawAndPlainImages) {
-  BagSurvey survey = one_camera();
+  BagIndex index = one_camera();
   std::vector<std::string> notes;
-  add_images(survey, "/cams/front/image_rect_color");
-  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+  add_images(index, "/cams/front/image_rect_color");
+  EXPECT_THAT(topics_of(plan_cameras(index, {}, "lidar", notes)),
               ElementsAre("/cams/front/image_raw/compressed"));
-  add_images(survey, "/cams/front/image_raw");
-  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+  add_images(index, "/cams/front/image_raw");
+  EXPECT_THAT(topics_of(plan_cameras(index, {}, "lidar", notes)),
               ElementsAre("/cams/front/image_raw"));
-  survey.images.at("/cams/front/image_raw").unread = "of another encoding";
-  EXPECT_THAT(topics_of(plan_cameras(survey, {}, "lidar", notes)),
+  index.images.at("/cams/front/image_raw").unread = "of another encoding";
+  EXPECT_THAT(topics_of(plan_cameras(index, {}, "lidar", notes)),
               ElementsAre("/cams/front/image_raw/compressed"));
   ConvertOptions options;
   options.cameras = {{"a", "/cams/front/image_rect_color"}};
-  const auto rectified = plan_cameras(survey, options, "lidar", notes);
+  const auto rectified = plan_cameras(index, options, "lidar", notes);
   EXPECT_EQ(rectified[0].camera.name, "a");
   EXPECT_EQ(rectified[0].camera.optics.fy, 390);
   EXPECT_EQ(rectified[0].camera.optics.lens.model(), LensModel::kNone);
 }
 
 TEST(PlanCameras, ARectifiedCameraIsTurnedAsItsRectificationSays) {
-  BagSurvey survey = one_camera();
-  add_images(survey, "/cams/front/image_rect");
+  BagIndex index = one_camera();
+  add_images(index, "/cams/front/image_rect");
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R =
       Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  std::copy(R.data(), R.data() + 9, survey.camera_infos["/cams/front/camera_info"].r.begin());
+  std::copy(R.data(), R.data() + 9, index.camera_infos["/cams/front/camera_info"].r.begin());
   ConvertOptions options;
   options.cameras = {{"a", "/cams/front/image_rect"}};
   std::vector<std::string> notes;
-  const auto cameras = plan_cameras(survey, options, "lidar", notes);
+  const auto cameras = plan_cameras(index, options, "lidar", notes);
   const Eigen::Vector3d ray_lidar =
       cameras[0].camera.T_lidar_cam.rotation * (R * Eigen::Vector3d(1, 2, 3));
   EXPECT_TRUE(ray_lidar.isApprox(Eigen::Vector3d(1, 2, 3), 1e-12));
 }
 
 TEST(PlanCameras, ARecordingWithoutImagesHasNoCamera) {
-  BagSurvey survey = one_camera();
-  survey.images.clear();
+  BagIndex index = one_camera();
+  index.images.clear();
   std::vector<std::string> notes;
-  EXPECT_TRUE(plan_cameras(survey, {}, "lidar", notes).empty());
+  EXPECT_TRUE(plan_cameras(index, {}, "lidar", notes).empty());
   EXPECT_THAT(notes, ElementsAre(HasSubstr("the recording has no images")));
 }
 
 TEST(PlanCameras, SaysWhichCalibrationIsMissing) {
-  const auto error_of = [](const std::function<void(BagSurvey&)>& change) -> std::string {
-    BagSurvey survey = one_camera();
-    change(survey);
+  const auto error_of = [](const std::function<void(BagIndex&)>& change) -> std::string {
+    BagIndex index = one_camera();
+    change(index);
     std::vector<std::string> notes;
     try {
-      plan_cameras(survey, {}, "lidar", notes);
+      plan_cameras(index, {}, "lidar", notes);
     } catch (const InputError& error) {
       return error.what();
     }
     return "";
   };
-  const auto info_of = [](BagSurvey& survey) -> ros::CameraInfo& {
-    return survey.camera_infos.at("/cams/front/camera_info");
+  const auto info_of = [](BagIndex& index) -> ros::CameraInfo& {
+    return index.camera_infos.at("/cams/front/camera_info");
   };
-  EXPECT_THAT(error_of([](BagSurvey& s) { s.camera_infos.clear(); }), HasSubstr("CameraInfo"));
-  EXPECT_THAT(error_of([](BagSurvey& s) { s.transforms = {}; }), HasSubstr("/tf_static"));
-  EXPECT_THAT(error_of([](BagSurvey& s) { s.images.begin()->second.unread = "odd"; }),
+  EXPECT_THAT(error_of([](BagIndex& s) { s.camera_infos.clear(); }), HasSubstr("CameraInfo"));
+  EXPECT_THAT(error_of([](BagIndex& s) { s.transforms = {}; }), HasSubstr("/tf_static"));
+  EXPECT_THAT(error_of([](BagIndex& s) { s.images.begin()->second.unread = "odd"; }),
               HasSubstr("odd"));
-  EXPECT_THAT(error_of([](BagSurvey& s) {
+  EXPECT_THAT(error_of([](BagIndex& s) {
                 s.images.begin()->second.width = 320, s.images.begin()->second.height = 240;
               }),
               HasSubstr("320 x 240"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) {
+  EXPECT_THAT(error_of([&](BagIndex& s) {
                 info_of(s).header.frame = s.images.begin()->second.frame = "lidar";
               }),
               HasSubstr("'lidar'"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).k = {}; }), HasSubstr("not calibrated"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).distortion_model = "ftheta"; }),
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).k = {}; }), HasSubstr("not calibrated"));
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).distortion_model = "ftheta"; }),
               HasSubstr("'ftheta'"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).d.resize(3); }), HasSubstr("3 coefficients"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).d.resize(8, 0.1); }),
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).d.resize(3); }), HasSubstr("3 coefficients"));
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).d.resize(8, 0.1); }),
               HasSubstr("8 coefficients"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).binning_x = 2; }), HasSubstr("binning"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).roi_x = 2; }), HasSubstr("region"));
-  EXPECT_THAT(error_of([&](BagSurvey& s) { info_of(s).width = 0; }), HasSubstr("0 x 480"));
-  EXPECT_THAT(error_of([](BagSurvey& s) {
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).binning_x = 2; }), HasSubstr("binning"));
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).roi_x = 2; }), HasSubstr("region"));
+  EXPECT_THAT(error_of([&](BagIndex& s) { info_of(s).width = 0; }), HasSubstr("0 x 480"));
+  EXPECT_THAT(error_of([](BagIndex& s) {
                 s.transforms.add("lidar", "front", 1, at(0), false);
                 s.transforms.add("lidar", "front", 2, at(1), false);
               }),
@@ -153,10 +153,10 @@ TEST(PlanCameras, SaysWhichCalibrationIsMissing) {
 }
 
 TEST(PlanCameras, AFrameThatTfDoesNotKnowGivesWayToThatOfTheImages) {
-  BagSurvey survey = one_camera();
-  survey.camera_infos["/cams/front/camera_info"].header.frame = "unknown";
+  BagIndex index = one_camera();
+  index.camera_infos["/cams/front/camera_info"].header.frame = "unknown";
   std::vector<std::string> notes;
-  const auto cameras = plan_cameras(survey, {}, "lidar", notes);
+  const auto cameras = plan_cameras(index, {}, "lidar", notes);
   EXPECT_EQ(cameras.at(0).camera.T_lidar_cam.translation.x(), 0.25);
 }
 
@@ -177,9 +177,9 @@ TEST(OpticsOf, WithoutDistortionALensIsAPinhole) {
 class PlanNavigation : public testing::Test {
  protected:
   PlanNavigation() {
-    survey_.transforms.add("base_link", "lidar", 0, at(1), true);
-    survey_.transforms.add("base_link", "imu", 0, at(0.5), true);
-    survey_.transforms.add("base_link", "gps", 0, at(-2), true);
+    index_.transforms.add("base_link", "lidar", 0, at(1), true);
+    index_.transforms.add("base_link", "imu", 0, at(0.5), true);
+    index_.transforms.add("base_link", "gps", 0, at(-2), true);
   }
 
   void add_fixes(const std::string& topic) {
@@ -191,31 +191,31 @@ class PlanNavigation : public testing::Test {
       fix.latitude = 49, fix.longitude = i == 2 ? std::nan("") : 8;
       fix.covariance = {0.09, 0, 0, 0, 0.09, 0, 0, 0, 1};
       fix.covariance_known = true;
-      survey_.fixes[topic].push_back(fix);
+      index_.fixes[topic].push_back(fix);
     }
   }
   void add_imu(const std::string& frame, const Eigen::Quaterniond& orientation = {0.8, 0, 0, 0.6}) {
     ros::Imu imu;
     imu.header.frame = frame;
-    survey_.imus["/imu"].push_back(imu);
+    index_.imus["/imu"].push_back(imu);
     imu.orientation = orientation;
-    survey_.imus["/imu"].push_back(imu);
+    index_.imus["/imu"].push_back(imu);
   }
   void add_odometry(const std::string& topic, const std::string& child) {
     ros::Odometry odometry;
     odometry.header.stamp = 7;
     odometry.child_frame = child;
     odometry.T_header_child = at(3);
-    survey_.odometries[topic].push_back(odometry);
+    index_.odometries[topic].push_back(odometry);
   }
   void add_course() {
-    for (int i = 0; i < 3; ++i) survey_.transforms.add("odom", "base_link", i, at(i), false);
+    for (int i = 0; i < 3; ++i) index_.transforms.add("odom", "base_link", i, at(i), false);
   }
 
   RecordedDrive plan() {
     RecordedDrive drive;
     notes_.clear();
-    plan_navigation(survey_, options_, "lidar", drive, notes_);
+    plan_navigation(index_, options_, "lidar", drive, notes_);
     return drive;
   }
   std::string error() {
@@ -227,7 +227,7 @@ class PlanNavigation : public testing::Test {
     return "";
   }
 
-  BagSurvey survey_;
+  BagIndex index_;
   ConvertOptions options_;
   std::vector<std::string> notes_;
 };
@@ -251,7 +251,7 @@ TEST_F(PlanNavigation, AnImuThatNeverTurnsKnowsNoOrientation) {
   add_fixes("/fix");
   add_imu("imu", Eigen::Quaterniond::Identity());
   EXPECT_THAT(plan().inertia, IsEmpty());
-  survey_.imus.clear();
+  index_.imus.clear();
   add_imu("imu");
   options_.imu = "none";
   EXPECT_THAT(plan().inertia, IsEmpty());
@@ -261,7 +261,7 @@ TEST_F(PlanNavigation, AnImuThatNeverTurnsKnowsNoOrientation) {
 TEST_F(PlanNavigation, AnAntennaThatMovesIsNone) {
   add_fixes("/fix");
   add_course();
-  for (ros::NavSatFix& fix : survey_.fixes["/fix"]) fix.header.frame = "odom";
+  for (ros::NavSatFix& fix : index_.fixes["/fix"]) fix.header.frame = "odom";
   EXPECT_TRUE(plan().antenna_body.isZero(0));
   EXPECT_THAT(notes_, Contains(HasSubstr("'odom'")));
 }
@@ -289,7 +289,7 @@ TEST_F(PlanNavigation, NoImuIsNoWordOnWherePosesComeFrom) {
 TEST_F(PlanNavigation, WhatTfDoesNotJoinIsTold) {
   add_fixes("/fix");
   add_imu("elsewhere");
-  survey_.fixes["/fix"].front().header.frame = "nowhere";
+  index_.fixes["/fix"].front().header.frame = "nowhere";
   const RecordedDrive drive = plan();
   EXPECT_THAT(drive.inertia, IsEmpty());
   EXPECT_TRUE(drive.antenna_body.isZero(0));

@@ -45,7 +45,7 @@ void read_sqlite_bag(const std::filesystem::path& file, const std::filesystem::p
   while (topics.step()) {
     BagTopic topic{std::string(topics.text(1)), std::string(topics.text(2)),
                    std::string(topics.text(3))};
-    const bool wanted = sink.wants(topic) && topic.encoding == kCdrEncoding;
+    const bool wanted = sink.is_requested(topic) && topic.encoding == kCdrEncoding;
     channels.emplace(topics.integer(0), Channel{std::move(topic), wanted});
   }
   // By their ids: in the file's own order, without sorting what may be a hundred gigabytes.

@@ -36,7 +36,7 @@ struct SensorTopic {
 };
 
 /// By topics' names. In order of stamps, as far as the messages have any.
-struct BagSurvey {
+struct BagIndex {
   std::map<std::string, BagTopic> topics;       ///< all
   std::map<std::string, std::size_t> messages;  ///< their numbers, of all topics
   std::map<std::string, SensorTopic> clouds, images;
@@ -52,7 +52,7 @@ struct BagSurvey {
 /// or image with the stamp of another, is counted as unusable. InputError as read_bag_file.
 /// @param files    as bag_files() gives them
 /// @param scratch  as for read_bag_file
-BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
-                      const std::filesystem::path& scratch);
+BagIndex index_bags(const std::vector<std::filesystem::path>& files,
+                    const std::filesystem::path& scratch);
 
 }  // namespace fovea

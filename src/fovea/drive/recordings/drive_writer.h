@@ -19,14 +19,14 @@
 namespace fovea {
 
 /// Writes scans and images as they come, numbered by their stamps.
-class Recorder : public BagSink {
+class DriveWriter : public BagSink {
  public:
   /// @param allow_dropped  whether many points may be left out
   /// @param progress  called with messages done and in all
-  Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
-           bool allow_dropped, const std::function<void(int, int)>& progress);
+  DriveWriter(const BagIndex& index, const ConversionPlan& plan, GenericDriveWriter& writer,
+              bool allow_dropped, const std::function<void(int, int)>& progress);
 
-  bool wants(const BagTopic& topic) override;
+  bool is_requested(const BagTopic& topic) override;
   void add(const BagTopic& topic, std::string_view bytes) override;
 
   /// Counts what was written and left out; sets the scale of the intensities. InputError if nothing
@@ -38,7 +38,7 @@ class Recorder : public BagSink {
   struct Numbered {
     Numbered(const std::string& topic_name, const SensorTopic& sensor);
 
-    /// Number of a message; empty for what the survey has found unusable.
+    /// Number of a message; empty for what the index has found unusable.
     std::optional<int> take(const ros::Header& header);
 
     std::string topic, name, frame;

@@ -1,4 +1,4 @@
-#include "fovea/drive/recordings/survey.h"
+#include "fovea/drive/recordings/bag_index.h"
 
 #include <fmt/format.h>
 
@@ -36,49 +36,49 @@ std::string why_unread(const ros::CompressedImage& image) {
   return "";
 }
 
-class Surveyor : public BagSink {
+class BagIndexer : public BagSink {
  public:
-  bool wants(const BagTopic& topic) override {
-    survey_.topics.insert_or_assign(topic.name, topic);
+  bool is_requested(const BagTopic& topic) override {
+    index_.topics.insert_or_assign(topic.name, topic);
     return readers().contains(topic.type);
   }
 
-  void skip(const BagTopic& topic) override { ++survey_.messages[topic.name]; }
+  void skip(const BagTopic& topic) override { ++index_.messages[topic.name]; }
 
   void add(const BagTopic& topic, std::string_view bytes) override {
-    ++survey_.messages[topic.name];
+    ++index_.messages[topic.name];
     try {
       CdrReader message(bytes, topic.name);
       (this->*readers().at(topic.type))(topic.name, message);
     } catch (const InputError& error) {
-      survey_.unusable[topic.name].add(error.problem());
+      index_.unusable[topic.name].add(error.problem());
     }
   }
 
-  BagSurvey finish() {
-    sort(survey_.fixes);
-    sort(survey_.imus);
-    sort(survey_.odometries);
-    for (auto* topics : {&survey_.clouds, &survey_.images}) {
+  BagIndex finish() {
+    sort(index_.fixes);
+    sort(index_.imus);
+    sort(index_.odometries);
+    for (auto* topics : {&index_.clouds, &index_.images}) {
       std::erase_if(*topics, [](const auto& topic) { return topic.second.stamps.empty(); });
       for (auto& [name, topic] : *topics) keep_each_once(name, topic.stamps);
     }
-    return std::move(survey_);
+    return std::move(index_);
   }
 
  private:
-  using Reader = void (Surveyor::*)(const std::string&, CdrReader&);
+  using Reader = void (BagIndexer::*)(const std::string&, CdrReader&);
 
   static const std::map<std::string_view, Reader>& readers() {
     static const std::map<std::string_view, Reader> kReaders = {
-        {ros::kPointCloud, &Surveyor::add_cloud},
-        {ros::kImage, &Surveyor::add_image},
-        {ros::kCompressedImage, &Surveyor::add_compressed},
-        {ros::kCameraInfo, &Surveyor::add_camera_info},
-        {ros::kNavSatFix, &Surveyor::add_fix},
-        {ros::kImu, &Surveyor::add_imu},
-        {ros::kOdometry, &Surveyor::add_odometry},
-        {ros::kTransforms, &Surveyor::add_transforms}};
+        {ros::kPointCloud, &BagIndexer::add_cloud},
+        {ros::kImage, &BagIndexer::add_image},
+        {ros::kCompressedImage, &BagIndexer::add_compressed},
+        {ros::kCameraInfo, &BagIndexer::add_camera_info},
+        {ros::kNavSatFix, &BagIndexer::add_fix},
+        {ros::kImu, &BagIndexer::add_imu},
+        {ros::kOdometry, &BagIndexer::add_odometry},
+        {ros::kTransforms, &BagIndexer::add_transforms}};
     return kReaders;
   }
 
@@ -102,7 +102,7 @@ class Surveyor : public BagSink {
     const ros::PointCloud2 cloud = ros::read_point_cloud(message);
     ScanNumberRows rows(cloud.header.stamp);
     read_cloud_rows(cloud, name, rows);
-    SensorTopic& topic = survey_.clouds[name];
+    SensorTopic& topic = index_.clouds[name];
     add_stamp(cloud.header, topic);
     keep_first(rows.take(), topic.first_scans);
   }
@@ -121,7 +121,7 @@ class Surveyor : public BagSink {
   }
   void add_image(const std::string& name, CdrReader& message) {
     const ros::ImageMessage image = ros::read_image(message);
-    SensorTopic& topic = survey_.images[name];
+    SensorTopic& topic = index_.images[name];
     if (!add_stamp(image.header, topic)) return;
     topic.width = image.width, topic.height = image.height;
     if (!is_known_encoding(image.encoding)) {
@@ -130,22 +130,22 @@ class Surveyor : public BagSink {
   }
   void add_compressed(const std::string& name, CdrReader& message) {
     const ros::CompressedImage image = ros::read_compressed_image(message);
-    SensorTopic& topic = survey_.images[name];
+    SensorTopic& topic = index_.images[name];
     if (add_stamp(image.header, topic)) topic.unread = why_unread(image);
   }
   void add_camera_info(const std::string& name, CdrReader& message) {
     ros::CameraInfo info = ros::read_camera_info(message);
-    const auto [known, fresh] = survey_.camera_infos.try_emplace(name, info);
+    const auto [known, fresh] = index_.camera_infos.try_emplace(name, info);
     if (!fresh && known->second.k[0] == 0) known->second = std::move(info);
   }
   void add_fix(const std::string& name, CdrReader& message) {
-    keep(ros::read_nav_sat_fix(message), survey_.fixes[name]);
+    keep(ros::read_nav_sat_fix(message), index_.fixes[name]);
   }
   void add_imu(const std::string& name, CdrReader& message) {
-    keep(ros::read_imu(message), survey_.imus[name]);
+    keep(ros::read_imu(message), index_.imus[name]);
   }
   void add_odometry(const std::string& name, CdrReader& message) {
-    keep(ros::read_odometry(message), survey_.odometries[name]);
+    keep(ros::read_odometry(message), index_.odometries[name]);
   }
   template <class Message>
   static void keep(Message message, std::vector<Message>& messages) {
@@ -155,8 +155,8 @@ class Surveyor : public BagSink {
   void add_transforms(const std::string& name, CdrReader& message) {
     const bool fixed = name.ends_with("tf_static");
     for (const ros::Transform& transform : ros::read_transforms(message)) {
-      survey_.transforms.add(transform.header.frame, transform.child_frame, transform.header.stamp,
-                             transform.T_header_child, fixed);
+      index_.transforms.add(transform.header.frame, transform.child_frame, transform.header.stamp,
+                            transform.T_header_child, fixed);
     }
   }
 
@@ -175,12 +175,12 @@ class Surveyor : public BagSink {
     std::sort(stamps.begin(), stamps.end());
     const auto end = std::unique(stamps.begin(), stamps.end());
     for (auto again = end; again != stamps.end(); ++again) {
-      survey_.unusable[name].add("two messages have the same stamp");
+      index_.unusable[name].add("two messages have the same stamp");
     }
     stamps.erase(end, stamps.end());
   }
 
-  BagSurvey survey_;
+  BagIndex index_;
 };
 
 }  // namespace
@@ -190,11 +190,11 @@ std::string UnusableMessages::note(const std::string& topic) const {
                      first_problem);
 }
 
-BagSurvey survey_bags(const std::vector<std::filesystem::path>& files,
-                      const std::filesystem::path& scratch) {
-  Surveyor surveyor;
-  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, surveyor);
-  return surveyor.finish();
+BagIndex index_bags(const std::vector<std::filesystem::path>& files,
+                    const std::filesystem::path& scratch) {
+  BagIndexer indexer;
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, indexer);
+  return indexer.finish();
 }
 
 }  // namespace fovea

@@ -1,4 +1,4 @@
-#include "fovea/drive/recordings/recorder.h"
+#include "fovea/drive/recordings/drive_writer.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,10 @@
 
 namespace fovea {
 
-Recorder::Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericDriveWriter& writer,
-                   bool allow_dropped, const std::function<void(int, int)>& progress)
-    : lidar_(plan.lidar, survey.clouds.at(plan.lidar)),
+DriveWriter::DriveWriter(const BagIndex& index, const ConversionPlan& plan,
+                         GenericDriveWriter& writer, bool allow_dropped,
+                         const std::function<void(int, int)>& progress)
+    : lidar_(plan.lidar, index.clouds.at(plan.lidar)),
       format_(plan.scan_format),
       allow_dropped_(allow_dropped),
       writer_(writer),
@@ -20,20 +21,20 @@ Recorder::Recorder(const BagSurvey& survey, const ConversionPlan& plan, GenericD
   total_ = lidar_.stamps.size();
   for (const PlannedCamera& planned : plan.cameras) {
     Numbered& camera =
-        cameras_.try_emplace(planned.topic, planned.topic, survey.images.at(planned.topic))
+        cameras_.try_emplace(planned.topic, planned.topic, index.images.at(planned.topic))
             .first->second;
     camera.name = planned.camera.name;
     total_ += camera.stamps.size();
   }
 }
 
-bool Recorder::wants(const BagTopic& topic) {
+bool DriveWriter::is_requested(const BagTopic& topic) {
   return (topic.name == lidar_.topic && topic.type == ros::kPointCloud) ||
          (cameras_.contains(topic.name) &&
           (topic.type == ros::kImage || topic.type == ros::kCompressedImage));
 }
 
-void Recorder::add(const BagTopic& topic, std::string_view bytes) {
+void DriveWriter::add(const BagTopic& topic, std::string_view bytes) {
   Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
   try {
     CdrReader message(bytes, topic.name);
@@ -45,13 +46,13 @@ void Recorder::add(const BagTopic& topic, std::string_view bytes) {
       write_compressed(ros::read_compressed_image(message), sensor);
     }
   } catch (const InputError&) {
-    // The survey has counted it.
+    // The index has counted it.
   }
   done_ = std::min(done_ + 1, total_);
   progress_(int(done_), int(total_));
 }
 
-void Recorder::finish(RecordedDrive& drive, ConvertFigures& figures) const {
+void DriveWriter::finish(RecordedDrive& drive, ConvertFigures& figures) const {
   figures.scans = lidar_.written;
   figures.cameras = cameras_.size();
   account_for(lidar_, figures);
@@ -66,10 +67,10 @@ void Recorder::finish(RecordedDrive& drive, ConvertFigures& figures) const {
   drive.intensity_max = scale_.max();
 }
 
-Recorder::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
+DriveWriter::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
     : topic(topic_name), frame(sensor.frame), stamps(sensor.stamps), taken(stamps.size()) {}
 
-std::optional<int> Recorder::Numbered::take(const ros::Header& header) {
+std::optional<int> DriveWriter::Numbered::take(const ros::Header& header) {
   const auto found = std::lower_bound(stamps.begin(), stamps.end(), header.stamp);
   const auto number = std::size_t(found - stamps.begin());
   if (found == stamps.end() || *found != header.stamp || header.frame != frame || taken[number]) {
@@ -81,7 +82,7 @@ std::optional<int> Recorder::Numbered::take(const ros::Header& header) {
 
 /// Calls `write(number)` for a message that has not been there yet.
 template <class Write>
-void Recorder::use(Numbered& sensor, const ros::Header& header, Write&& write) {
+void DriveWriter::use(Numbered& sensor, const ros::Header& header, Write&& write) {
   const auto number = sensor.take(header);
   if (!number) return;
   try {
@@ -92,7 +93,7 @@ void Recorder::use(Numbered& sensor, const ros::Header& header, Write&& write) {
   }
 }
 
-void Recorder::write_scan(const ros::PointCloud2& cloud) {
+void DriveWriter::write_scan(const ros::PointCloud2& cloud) {
   const TimeNs stamp = cloud.header.stamp;
   use(lidar_, cloud.header, [&](int number) {
     ScanRows rows(format_, stamp);
@@ -105,13 +106,13 @@ void Recorder::write_scan(const ros::PointCloud2& cloud) {
   });
 }
 
-void Recorder::write_plain(const ros::ImageMessage& image, Numbered& camera) {
+void DriveWriter::write_plain(const ros::ImageMessage& image, Numbered& camera) {
   use(camera, image.header, [&](int number) {
     writer_.write_image(camera.name, number, image.header.stamp, image_of(image, camera.topic));
   });
 }
 
-void Recorder::write_compressed(const ros::CompressedImage& image, Numbered& camera) {
+void DriveWriter::write_compressed(const ros::CompressedImage& image, Numbered& camera) {
   use(camera, image.header, [&](int number) {
     const bool png = is_png(image.data);
     if (!png && !is_jpeg(image.data)) {
@@ -123,7 +124,7 @@ void Recorder::write_compressed(const ros::CompressedImage& image, Numbered& cam
   });
 }
 
-void Recorder::account_for(const Numbered& sensor, ConvertFigures& figures) {
+void DriveWriter::account_for(const Numbered& sensor, ConvertFigures& figures) {
   const UnusableMessages& unusable = sensor.unusable;
   if (sensor.written == 0) {
     throw InputError(fmt::format("none of the messages can be used ({})", unusable.first_problem),

@@ -19,9 +19,9 @@ namespace fovea {
 
 /// Every function throws OutputError where the disk is full or refuses. Files of different frames
 /// and cameras may be written at once, from several threads.
-class DriveWriter {
+class SimulationWriter {
  public:
-  virtual ~DriveWriter() = default;
+  virtual ~SimulationWriter() = default;
 
   virtual void write_scan(int frame, const SimulatedScan& scan) = 0;
   /// @param stamp  of the image; KITTI's drives have that of its scan
@@ -47,8 +47,8 @@ std::string numbered(int frame, std::string_view extension);
 
 /// The format that the options name, at `root`. OutputError as OutputFolder's; what is there is
 /// never replaced.
-std::unique_ptr<DriveWriter> make_drive_writer(const SimulationOptions& options,
-                                               const std::filesystem::path& root);
+std::unique_ptr<SimulationWriter> make_simulation_writer(const SimulationOptions& options,
+                                                         const std::filesystem::path& root);
 
 /// OutputError if the disk on which `path` is to be made has less than `bytes` left.
 void check_free_space(const std::filesystem::path& path, std::uintmax_t bytes);

@@ -1,4 +1,4 @@
-#include "fovea/simulation/drive_writer.h"
+#include "fovea/simulation/simulation_writer.h"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ std::string numbered(int frame, std::string_view extension) {
   return fmt::format("{:010d}{}", frame, extension);
 }
 
-void DriveWriter::write_truth(int frame, const std::vector<TruthPoint>& points) {
+void SimulationWriter::write_truth(int frame, const std::vector<TruthPoint>& points) {
   constexpr std::size_t kRecord = 28;
   std::vector<std::uint8_t> bytes(points.size() * kRecord);
   std::uint8_t* record = bytes.data();
@@ -66,13 +66,13 @@ void DriveWriter::write_truth(int frame, const std::vector<TruthPoint>& points) 
   write_file(fs::path("truth/velodyne_points") / numbered(frame, ".bin"), text_of(bytes));
 }
 
-void DriveWriter::write_perfect_image(int camera, int frame, const Image& image) {
+void SimulationWriter::write_perfect_image(int camera, int frame, const Image& image) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
   write_file(camera_folder(camera) / "perfect" / numbered(frame, ".png"), text_of(bytes));
 }
 
-void DriveWriter::write_depth(int camera, int frame, int width, int height,
-                              const std::vector<float>& depth) {
+void SimulationWriter::write_depth(int camera, int frame, int width, int height,
+                                   const std::vector<float>& depth) {
   std::vector<std::uint16_t> values(depth.size());
   std::transform(depth.begin(), depth.end(), values.begin(), [](float metres) {
     constexpr float kUnits = 256, kFarthest = 65'535;
@@ -84,8 +84,8 @@ void DriveWriter::write_depth(int camera, int frame, int width, int height,
   write_file(camera_folder(camera) / "depth" / numbered(frame, ".png"), text_of(bytes));
 }
 
-std::unique_ptr<DriveWriter> make_drive_writer(const SimulationOptions& options,
-                                               const fs::path& root) {
+std::unique_ptr<SimulationWriter> make_simulation_writer(const SimulationOptions& options,
+                                                         const fs::path& root) {
   refuse_existing(root);
   if (options.format == DriveFormat::kGeneric) {
     return std::make_unique<GenericSimulationWriter>(options, root);
