@@ -10,7 +10,7 @@
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
 #include "fovea/map/map_store.h"
-#include "fovea/server/live_show.h"
+#include "fovea/server/live_map_server.h"
 
 namespace fovea::app {
 namespace {
@@ -36,7 +36,7 @@ void add_live_option(CLI::App& command, std::string& live) {
 struct LiveView::Serving {
   MapJob& job;
   bool quiet;
-  std::unique_ptr<LiveShow> show;
+  std::unique_ptr<LiveMapServer> show;
 };
 
 LiveView::LiveView(const std::string& live, MapJob& job, std::shared_ptr<const FrameSource> drive,
@@ -46,9 +46,9 @@ LiveView::LiveView(const std::string& live, MapJob& job, std::shared_ptr<const F
   server.in_background = true;
   const auto images = std::make_shared<const DriveImages>(std::move(drive));
   const int port = live == kSomePort ? -1 : std::stoi(live);
-  std::unique_ptr<LiveShow> show;
+  std::unique_ptr<LiveMapServer> show;
   open_at_port(server, port, [&](const WebServerOptions& options) {
-    show = std::make_unique<LiveShow>(job, images, viewer_page(), options);
+    show = std::make_unique<LiveMapServer>(job, images, viewer_page(), options);
   });
   job.observer = show.get();
   if (!quiet) {
@@ -60,7 +60,7 @@ LiveView::LiveView(const std::string& live, MapJob& job, std::shared_ptr<const F
 
 void LiveView::keep_serving() {
   if (serving_ == nullptr) return;
-  LiveShow& show = *serving_->show;
+  LiveMapServer& show = *serving_->show;
   const MapJob& job = serving_->job;
   show.finish();
   if (!job.stop.stop_requested()) {

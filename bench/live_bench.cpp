@@ -15,7 +15,7 @@
 #include "fovea/drive/frame_source.h"
 #include "fovea/pipeline/config.h"
 #include "fovea/pipeline/map_drive.h"
-#include "fovea/server/live_show.h"
+#include "fovea/server/live_map_server.h"
 #include "fovea/server/web_client.h"
 
 namespace {
@@ -65,7 +65,7 @@ Run map_once(const std::shared_ptr<const FrameSource>& drive, const std::string&
   job.force = true;
   WebServerOptions server;
   server.in_background = true;
-  LiveShow show(job, std::make_shared<const DriveImages>(drive), kPage, server);
+  LiveMapServer show(job, std::make_shared<const DriveImages>(drive), kPage, server);
   job.observer = &show;
   const std::string url = show.url();
   std::unique_ptr<Clients> clients;

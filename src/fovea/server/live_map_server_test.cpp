@@ -1,4 +1,4 @@
-#include "fovea/server/live_show.h"
+#include "fovea/server/live_map_server.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
-namespace fovea::live_show_test {
+namespace fovea::live_map_server_test {
 
 using nlohmann::json;
 using ::testing::ElementsAre;
@@ -109,7 +109,7 @@ class LiveRun : public testing::Test {
     start(/*force=*/false);
   }
   void start(bool force) {
-    show_ = std::make_unique<LiveShow>(
+    show_ = std::make_unique<LiveMapServer>(
         job_, std::make_shared<const DriveImages>(std::make_shared<TestDrive>(0, kFrames)), kPage,
         WebServerOptions());
     CheckpointerOptions options;
@@ -260,7 +260,7 @@ class LiveRun : public testing::Test {
   int removed_ = 0;  // tiles
   TileMap map_{4.0};
   std::vector<FrameRecord> frames_;
-  std::unique_ptr<LiveShow> show_;
+  std::unique_ptr<LiveMapServer> show_;
   std::unique_ptr<Checkpointer> file_;
 };
 
@@ -373,4 +373,4 @@ TEST_F(LiveRun, EndsInTheMiddle) {
   }
 }
 
-}  // namespace fovea::live_show_test
+}  // namespace fovea::live_map_server_test

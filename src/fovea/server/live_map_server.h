@@ -11,8 +11,8 @@
 
 #include "fovea/exporting/viewer/map_description.h"
 #include "fovea/pipeline/map_drive.h"
-#include "fovea/server/live_board.h"
 #include "fovea/server/live_sample.h"
+#include "fovea/server/live_session.h"
 #include "fovea/server/map_site.h"
 #include "fovea/server/web_server.h"
 
@@ -21,14 +21,14 @@ namespace fovea {
 /// Serves from construction to destruction; to be given to map_drive() as observer. What it does in
 /// the mapping thread is little, and nearly nothing where nobody looks on; the rest is done by
 /// threads of low priority.
-class LiveShow : public MapObserver {
+class LiveMapServer : public MapObserver {
  public:
   /// @param job     of the run; outlives the show, as `page` does
   /// @param images  of the drive
   /// OutputError as WebServer; InputError if the map to resume cannot be read.
-  LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
-           std::span<const PageFile> page, const WebServerOptions& options);
-  ~LiveShow() override;
+  LiveMapServer(const MapJob& job, std::shared_ptr<const DriveImages> images,
+                std::span<const PageFile> page, const WebServerOptions& options);
+  ~LiveMapServer() override;
 
   std::string url() const { return server_.url(); }
 
@@ -40,15 +40,15 @@ class LiveShow : public MapObserver {
  private:
   void answer(const std::string& path, WebServer::Reply reply);
   std::string live_json() const;
-  LiveBoard::Bytes new_points(int frame, const TileMap& map);
-  LiveBoard::Bytes whole_section(const TileId& id, const TileMap& map);
+  LiveSession::Bytes new_points(int frame, const TileMap& map);
+  LiveSession::Bytes whole_section(const TileId& id, const TileMap& map);
   std::shared_ptr<LiveImage> next_image(const Frame* frame);
 
   const MapJob& job_;
   std::shared_ptr<const DriveImages> images_;
   std::span<const PageFile> page_;
   MapDescription description_;
-  LiveBoard board_;
+  LiveSession session_;
 
   // The mapping thread's.
   int late_frames_ = 0;

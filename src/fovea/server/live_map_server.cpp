@@ -1,4 +1,4 @@
-#include "fovea/server/live_show.h"
+#include "fovea/server/live_map_server.h"
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -48,32 +48,33 @@ FrameRecord told(const FrameRecord& record) {
 
 }  // namespace
 
-LiveShow::LiveShow(const MapJob& job, std::shared_ptr<const DriveImages> images,
-                   std::span<const PageFile> page, const WebServerOptions& options)
+LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<const DriveImages> images,
+                             std::span<const PageFile> page, const WebServerOptions& options)
     : job_(job),
       images_(std::move(images)),
       page_(page),
       description_(describe_run(images_->info(), job)),
-      board_(job.output, job.resume, job.settings.tile_size(),
-             static_cast<int>(images_->info().frame_count())),
+      session_(job.output, job.resume, job.settings.tile_size(),
+               static_cast<int>(images_->info().frame_count())),
       server_(options,
               [this](const std::string& path, WebServer::Reply reply) {
                 answer(path, std::move(reply));
               },
-              {{"live", [this] { return board_.make_feed(); }}}) {
+              {{"live", [this] { return session_.make_feed(); }}}) {
   if (!job.resume) return;
   const MapReader map(job.output);
   std::vector<FrameRecord> frames;
   for (const FrameRecord& record : map.frames()) frames.push_back(told(record));
-  board_.take_up(frames, map.size());
+  session_.resume_from(frames, map.size());
 }
 
-LiveShow::~LiveShow() {
+LiveMapServer::~LiveMapServer() {
   server_.stop();
   site_.reset();  // with it the replies that it keeps for later
 }
 
-void LiveShow::frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) {
+void LiveMapServer::frame_mapped(const FrameRecord& record, const Frame* frame,
+                                 const TileMap& map) {
   LiveFrame live;
   live.record = told(record);
   live.points = map.size();
@@ -83,16 +84,16 @@ void LiveShow::frame_mapped(const FrameRecord& record, const Frame* frame, const
   live.mapped_at = now_ms();
   std::vector<RigidMotion> T_local_submap;
   for (const Submap& submap : map.submaps()) T_local_submap.push_back(submap.T_local_submap);
-  const bool watched = board_.has_feeds();
+  const bool watched = session_.has_clients();
   if (!watched) samples_.clear();
-  board_.add_frame(std::move(live), T_local_submap,
-                   watched ? new_points(record.index, map) : nullptr,
-                   watched ? next_image(frame) : nullptr);
+  session_.add_frame(std::move(live), T_local_submap,
+                     watched ? new_points(record.index, map) : nullptr,
+                     watched ? next_image(frame) : nullptr);
   server_.wake();
 }
 
 /// The first camera's image that there is, unless the last one was shown just now.
-std::shared_ptr<LiveImage> LiveShow::next_image(const Frame* frame) {
+std::shared_ptr<LiveImage> LiveMapServer::next_image(const Frame* frame) {
   if (frame == nullptr || now_ms() - image_at_ < kImagePause) return nullptr;
   for (std::size_t i = 0; i < frame->images.size(); ++i) {
     if (frame->images[i].empty()) continue;
@@ -103,7 +104,7 @@ std::shared_ptr<LiveImage> LiveShow::next_image(const Frame* frame) {
   return nullptr;
 }
 
-std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap& map) {
+std::shared_ptr<const std::string> LiveMapServer::new_points(int frame, const TileMap& map) {
   if (map.submaps().empty()) return nullptr;
   const std::size_t submap = map.submaps().size() - 1;
   std::string sections;
@@ -123,16 +124,17 @@ std::shared_ptr<const std::string> LiveShow::new_points(int frame, const TileMap
   return std::make_shared<const std::string>(points_header(frame, count) + sections);
 }
 
-void LiveShow::map_changed(const TileChanges& changes, const MapRows& rows, const TileMap& map) {
-  board_.move_frames(rows.poses);
+void LiveMapServer::map_changed(const TileChanges& changes, const MapRows& rows,
+                                const TileMap& map) {
+  session_.move_frames(rows.poses);
   std::set<TileId> changing;
   for (const TileChanges::Changed& tile : changes.changed) changing.insert(tile.id);
   std::vector<TileId> settled = changes.removed;
   for (const TileId& id : changing_) {
     if (!changing.contains(id)) settled.push_back(id);
   }
-  std::map<TileId, LiveBoard::Bytes> sections;
-  if (board_.has_feeds()) {
+  std::map<TileId, LiveSession::Bytes> sections;
+  if (session_.has_clients()) {
     for (const TileId& id : settled) {
       if (auto section = whole_section(id, map)) sections[id] = std::move(section);
     }
@@ -140,13 +142,13 @@ void LiveShow::map_changed(const TileChanges& changes, const MapRows& rows, cons
   std::vector<TileId> written(changing.begin(), changing.end());
   written.insert(written.end(), changes.removed.begin(), changes.removed.end());
   std::erase_if(samples_, [&](const auto& sample) { return !changing.contains(sample.first); });
-  board_.checkpoint(std::move(written), settled, std::move(sections));
+  session_.checkpoint(std::move(written), settled, std::move(sections));
   changing_ = std::move(changing);
   server_.wake();
 }
 
 /// nullptr if the tile is in the file alone.
-LiveBoard::Bytes LiveShow::whole_section(const TileId& id, const TileMap& map) {
+LiveSession::Bytes LiveMapServer::whole_section(const TileId& id, const TileMap& map) {
   std::string section;
   const Submap& submap = map.submaps().at(id.submap);
   const auto tile = submap.tiles.find(id.key);
@@ -163,24 +165,24 @@ LiveBoard::Bytes LiveShow::whole_section(const TileId& id, const TileMap& map) {
   return std::make_shared<const std::string>(std::move(section));
 }
 
-void LiveShow::finish() {
+void LiveMapServer::finish() {
   auto site = std::make_shared<MapSite>(job_.output, page_, images_);
   {
     const std::lock_guard lock(guard_);
     site_ = std::move(site);
   }
-  board_.end();
+  session_.end();
   server_.wake();
 }
 
-std::string LiveShow::live_json() const {
+std::string LiveMapServer::live_json() const {
   MapDescription now = description_;
-  now.points = board_.points();
+  now.points = session_.points();
   now.colored_points = now.points;
   return to_json(now);
 }
 
-void LiveShow::answer(const std::string& path, WebServer::Reply reply) {
+void LiveMapServer::answer(const std::string& path, WebServer::Reply reply) {
   std::shared_ptr<MapSite> site;
   {
     const std::lock_guard lock(guard_);
@@ -191,7 +193,7 @@ void LiveShow::answer(const std::string& path, WebServer::Reply reply) {
     reply({200, media_type(".json"), std::make_shared<const std::string>(std::move(text))});
   };
   if (path == "map.json") return json(live_json());
-  if (path == "frames.json") return json(board_.frames_json());
+  if (path == "frames.json") return json(session_.frames_json());
   if (path == "status.json") return json(nlohmann::json{{"state", "live"}}.dump());
   if (DriveImages::has(path)) return reply(images_->response(path));
   reply(page_response(page_, path));

@@ -1,4 +1,4 @@
-// What a growing map shows to all who look on, and what each of them has been shown.
+// The state of a growing map that its clients see.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,14 @@
 
 #include "fovea/map/frame_record.h"
 #include "fovea/map/tile_map.h"
+#include "fovea/server/live_image.h"
 #include "fovea/server/web_server.h"
 
 namespace fovea {
 
-/// A frame as it is told of.
+class ClientSync;
+
+/// A frame as the clients get it.
 struct LiveFrame {
   FrameRecord record;      ///< of its figures only the score
   std::size_t points = 0;  ///< of the map, after it
@@ -28,57 +31,42 @@ struct LiveFrame {
   std::int64_t mapped_at = 0;  ///< ms since 1970
 };
 
-/// A camera's image, made a JPEG by the first who wants it.
-class LiveImage {
- public:
-  LiveImage(int frame, int camera, Image image)
-      : frame_(frame), camera_(camera), image_(std::move(image)) {}
-  /// Reduced to half its width, as a message. For several threads.
-  std::shared_ptr<const std::string> message();
-
- private:
-  int frame_, camera_;
-  Image image_;
-  std::once_flag made_;
-  std::shared_ptr<const std::string> message_;
-};
-
-/// The mapping thread writes on it, feeds read it in the server's threads. A client is sent the new
-/// points of each frame, and each tile as a whole when it changes no more. What the board holds
-/// does not grow with the map: frames' poses, the points of the last few frames, and tiles of the
-/// last two checkpoints. Everything else is in the map's file, which new and slow clients are
-/// shown.
-class LiveBoard {
+/// The mapping thread adds frames and tiles; a ClientSync sends them to each client in the threads
+/// of the server. A client gets the new points of each frame, and each whole tile after its last
+/// change. The memory does not grow with the map: the session holds the poses of the frames, the
+/// points of the last frames, and the tiles of the last two checkpoints. New and slow clients get
+/// the rest from the map's file.
+class LiveSession {
  public:
   using Bytes = std::shared_ptr<const std::string>;
 
   /// @param map       its file
-  /// @param has_file  whether it is there: before a new map's first commit there may be another
-  ///                  map under its name, which is not to be looked at
+  /// @param has_file  whether the file is of this map: before the first commit of a new map,
+  /// another
+  ///                  map may have its name
   /// @param total     frames of the drive
-  LiveBoard(std::filesystem::path map, bool has_file, double tile_size, int total);
+  LiveSession(std::filesystem::path map, bool has_file, double tile_size, int total);
 
   // For the mapping thread.
 
-  /// The frames of an earlier run that is gone on with.
+  /// Adds the frames of an earlier run.
   /// @param points  of the map
-  void take_up(const std::vector<FrameRecord>& frames, std::size_t points);
-  /// Whether anybody looks on.
-  bool has_feeds() const;
-  /// @param points  a message; nullptr where nobody looked on
+  void resume_from(const std::vector<FrameRecord>& frames, std::size_t points);
+  bool has_clients() const;
+  /// @param points  a message; nullptr without clients
   /// @param image   or nullptr
   void add_frame(LiveFrame frame, const std::vector<RigidMotion>& T_local_submap, Bytes points,
                  std::shared_ptr<LiveImage> image);
   /// Poses of earlier frames that a closed loop has moved.
   void move_frames(const std::vector<std::pair<int, RigidMotion>>& T_local_lidar);
-  /// When all that the checkpoint before has written is in the file.
-  /// @param written  tiles that this one is going to write or remove
-  /// @param settled  tiles that the one before has written and this one does not, or removes: to be
-  ///                 shown anew
-  /// @param tiles    sections of a message of those settled; none where nobody looks on
+  /// Call it when the file has all tiles of the checkpoint before.
+  /// @param written  tiles that this checkpoint will write or remove
+  /// @param settled  tiles to send again: those of the checkpoint before that this one does not
+  ///                 write, and those that it removes
+  /// @param tiles    message sections of the settled tiles; none without clients
   void checkpoint(std::vector<TileId> written, const std::vector<TileId>& settled,
                   std::map<TileId, Bytes> tiles);
-  /// All is in the file.
+  /// The file has the whole map.
   void end();
 
   // For any thread.
@@ -88,10 +76,11 @@ class LiveBoard {
   std::unique_ptr<WebFeed> make_feed();
 
  private:
-  class Feed;
   static constexpr std::size_t kLatest = 5;          // frames whose points are kept
   static constexpr std::size_t kTimedFrames = 1000;  // whose stages' times are kept
   static constexpr std::size_t kPoseChanges = 8;     // that are kept one by one
+
+  friend class ClientSync;
 
   // Under the guard.
   std::vector<FrameRecord> records() const;
@@ -100,7 +89,7 @@ class LiveBoard {
   std::filesystem::path map_;
   double tile_size_;
   int total_;
-  std::string session_;
+  std::string id_;
 
   mutable std::mutex guard_;  // of what follows
   std::vector<LiveFrame> frames_;
@@ -113,7 +102,7 @@ class LiveBoard {
   std::shared_ptr<LiveImage> image_;
   std::map<TileId, Bytes> tiles_, tiles_before_;  // settled at the last checkpoints
   std::vector<TileId> written_;                   // by the last checkpoint
-  std::set<Feed*> feeds_;
+  std::set<ClientSync*> clients_;
   std::size_t checkpoints_ = 0;
   bool has_file_;
   bool ended_ = false;
