@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/localization_truth.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
@@ -17,7 +17,6 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
-#include "fovea/evaluation/truth_poses.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/localization/localize_drive.h"
 #include "fovea/localization/pose_table.h"
@@ -75,82 +74,6 @@ LocalizationGuess find_guess(LocalizeArguments& arguments, const FrameSource& dr
     return guess;
   }
   return arguments.guess == kFirst ? guess : guess_of_file(arguments.guess, drive);
-}
-
-/// Errors of a simulated drive's poses beside the map's own, as text and JSON.
-struct TruthErrors {
-  double position_rms = 0, position_max = 0, rotation_rms = 0, rotation_max = 0;  // m, degrees
-  double normalized = 0;  ///< mean of the squared errors over the covariances' own, a direction
-};
-
-/// What a simulated drive is compared with.
-struct Truth {
-  std::vector<PosePair> map;
-  DriveTruth drive;
-};
-
-/// The frames of the map under their numbers in the drive of the truth. InputError if the map was
-/// not made of that drive. Prints what could not be compared.
-std::vector<FrameRecord> frames_of_truth(const MapReader& map, const FrameSource& map_drive,
-                                         const LocalizeArguments& arguments) {
-  std::map<int, int> numbers;
-  try {
-    numbers = find_drive_in_map(map, arguments.map, map_drive, /*foreign=*/false, arguments.quiet)
-                  ->number_in_drive;
-  } catch (const InputError& error) {
-    throw InputError(error.problem(), error.where(),
-                     "give --truth the drive that 'fovea info' names");
-  }
-  std::vector<FrameRecord> frames;
-  for (FrameRecord& frame : map.frames()) {
-    const auto number = numbers.find(frame.index);
-    if (number == numbers.end()) continue;
-    frame.index = number->second;
-    frames.push_back(std::move(frame));
-  }
-  return frames;
-}
-
-Truth open_truth(const LocalizeArguments& arguments, const FrameSource& drive,
-                 const MapReader& map) {
-  if (!merged_drives(map).empty()) {
-    throw InputError("the map is of several drives", arguments.map,
-                     "compare with the truth in a map of one drive");
-  }
-  DriveOptions scans;
-  scans.use_images = false;
-  const auto map_drive = open_drive(arguments.truth, scans);
-  return {
-      pose_pairs(frames_of_truth(map, *map_drive, arguments), DriveTruth(map_drive->info().path)),
-      DriveTruth(drive.info().path)};
-}
-
-TruthErrors truth_errors(const Truth& truth, const LocalizedDrive& localized) {
-  TruthErrors errors;
-  std::size_t count = 0;
-  for (const Localization& frame : localized.frames) {
-    if (frame.state != LocalizationState::kLocalized) continue;
-    if (frame.index < 0 || frame.index >= truth.drive.frames()) continue;
-    const PosePair pair{frame.index, truth.drive.T_local_lidar()[std::size_t(frame.index)],
-                        frame.T_local_lidar};
-    const Twist error = log_se3(error_beside(truth.map, pair));
-    const double position = error.tail<3>().norm();
-    const double rotation = error.head<3>().norm() * 180 / std::numbers::pi;
-    errors.position_rms += position * position;
-    errors.rotation_rms += rotation * rotation;
-    errors.position_max = std::max(errors.position_max, position);
-    errors.rotation_max = std::max(errors.rotation_max, rotation);
-    errors.normalized += error.dot(frame.covariance.ldlt().solve(error)) / 6;
-    ++count;
-  }
-  if (count == 0) {
-    throw InputError("the truth knows none of the localised frames", truth.drive.folder().string(),
-                     "check that it belongs to the drive");
-  }
-  errors.position_rms = std::sqrt(errors.position_rms / double(count));
-  errors.rotation_rms = std::sqrt(errors.rotation_rms / double(count));
-  errors.normalized /= double(count);
-  return errors;
 }
 
 nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::string& guess) {
@@ -239,8 +162,10 @@ void run(LocalizeArguments arguments, Warnings& warnings) {
   LocalizationJob job;
   job.guess = find_guess(arguments, *drive, map.meta());
   job.only = parse_frame_set(arguments.only, "--only");
-  std::optional<Truth> truth;
-  if (!arguments.truth.empty()) truth = open_truth(arguments, *drive, map);
+  std::optional<LocalizationTruth> truth;
+  if (!arguments.truth.empty()) {
+    truth = open_truth(arguments.truth, *drive, map, arguments.map, arguments.quiet);
+  }
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);
     return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
@@ -257,19 +182,9 @@ void run(LocalizeArguments arguments, Warnings& warnings) {
   warnings.add(messages, "note: ", arguments.quiet);
   if (!arguments.quiet) print_summary(arguments, localized);
   if (truth) {
-    const TruthErrors errors = truth_errors(*truth, localized);
-    figures["truth"] = {{"position_rms_m", errors.position_rms},
-                        {"position_max_m", errors.position_max},
-                        {"rotation_rms_deg", errors.rotation_rms},
-                        {"rotation_max_deg", errors.rotation_max},
-                        {"normalized_error", errors.normalized}};
-    if (!arguments.quiet) {
-      print_out(
-          "against the truth: {:.4f} m RMS (at most {:.4f}), {:.4f} degrees RMS (at most "
-          "{:.4f}); squared errors are {:.2f} times what their covariances say\n",
-          errors.position_rms, errors.position_max, errors.rotation_rms, errors.rotation_max,
-          errors.normalized);
-    }
+    const LocalizationErrors errors = localization_errors(*truth, localized);
+    figures["truth"] = to_json(errors);
+    if (!arguments.quiet) print_errors(errors);
   }
   output.commit();
   if (report) write_json(*report, {{"localize", figures}});

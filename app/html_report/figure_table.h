@@ -30,7 +30,4 @@ std::string figure_tables(const nlohmann::ordered_json& report);
 /// A table of the views, a row each.
 std::string view_table(const nlohmann::ordered_json& report);
 
-/// What the figure of this name means, in one line (docs/method.md 7); empty if it is not known.
-std::string explain_figure(const std::string& key);
-
 }  // namespace fovea::app

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
+#include "app/html_report/figure_explanations.h"
 #include "fovea/evaluation/report.h"
 
 namespace fovea::app::figure_table_test {

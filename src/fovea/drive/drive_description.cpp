@@ -9,7 +9,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
 #include "fovea/drive/images/image_decode.h"
-#include "fovea/drive/plausible.h"
+#include "fovea/drive/motion_keys.h"
 #include "fovea/drive/plausible_lens.h"
 #include "fovea/geometry/sweep_direction_names.h"
 
@@ -52,106 +52,11 @@ namespace {
 constexpr int kVersion = 1;
 constexpr int kMaxCamera = 9;  // config_keys.h knows slices of as many
 
-[[noreturn]] void reject(std::string_view what, const std::string& key, std::string_view remedy) {
-  throw ConfigError(what, key, remedy);
-}
-
 void check(const std::string& key, double value, double low, double high) {
   if (value >= low && value <= high) return;  // NaN is outside of everything
-  reject(fmt::format("{:.6g} is out of range", value), key,
-         fmt::format("give {:g} to {:g}", low, high));
+  reject_key(fmt::format("{:.6g} is out of range", value), key,
+             fmt::format("give {:g} to {:g}", low, high));
 }
-
-/// Rejects a distance that no vehicle has, and NaN.
-void check_lever(const std::string& key, const Eigen::Vector3d& t) {
-  if (t.norm() <= kMaxLever) return;
-  reject(fmt::format("the distance is {:.6g} m, over {:g} m", t.norm(), kMaxLever), key,
-         "give it in meters: these are likely millimeters");
-}
-
-/// A rigid motion as a matrix or as translation and quaternion.
-struct MotionText {
-  std::string key;
-  std::optional<std::vector<double>> matrix{}, translation{}, rotation{};
-
-  void visit(SettingVisitor& visit) {
-    // A table under the key is the other form.
-    visit(key + ".translation", translation);
-    visit(key + ".rotation", rotation);
-    if (!translation && !rotation) visit(key, matrix);
-  }
-  bool given() const { return matrix || translation || rotation; }
-
-  RigidMotion motion() const {
-    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-    Eigen::Vector3d t = Eigen::Vector3d::Zero();
-    if (matrix) {
-      read_matrix(R, t);
-    } else {
-      if (translation) t = numbers_of<3>(*translation, ".translation");
-      if (rotation) R = read_quaternion(numbers_of<4>(*rotation, ".rotation"));
-    }
-    if (!is_rotation(R, kRotationTolerance)) {
-      reject("the matrix is not a rotation", key, "give a rotation beside the translation");
-    }
-    check_lever(key, t);
-    RigidMotion T = RigidMotion::Identity();
-    T.linear() = nearest_rotation(R);
-    T.translation() = t;
-    return T;
-  }
-
- private:
-  template <int N>
-  Eigen::Matrix<double, N, 1> numbers_of(const std::vector<double>& numbers,
-                                         const char* part) const {
-    if (numbers.size() == N) return Eigen::Map<const Eigen::Matrix<double, N, 1>>(numbers.data());
-    reject(fmt::format("there are {} numbers, not {}", numbers.size(), N), key + part,
-           "give x y z, or a quaternion x y z w");
-  }
-  void read_matrix(Eigen::Matrix3d& R, Eigen::Vector3d& t) const {
-    const std::vector<double>& m = *matrix;
-    if (m.size() != 12 && m.size() != 16) {
-      reject(fmt::format("there are {} numbers, not 12 or 16", m.size()), key,
-             "give a matrix of 3 x 4 or 4 x 4, row by row");
-    }
-    if (m.size() == 16 && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1)) {
-      reject("the matrix's last row is not 0 0 0 1", key, "give a rigid motion");
-    }
-    for (int row = 0; row < 3; ++row) {
-      const double* first = m.data() + 4 * row;
-      R.row(row) << first[0], first[1], first[2];
-      t[row] = first[3];
-    }
-  }
-  Eigen::Matrix3d read_quaternion(const Eigen::Vector4d& q) const {
-    if (!(std::abs(q.norm() - 1) < 0.01)) {
-      reject("the quaternion is not of length 1", key + ".rotation", "give x y z w");
-    }
-    return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
-  }
-};
-
-/// A motion that may be given as T_a_b or T_b_a.
-struct EitherMotion {
-  MotionText forward, backward;
-  EitherMotion(const std::string& table, const std::string& a, const std::string& b)
-      : forward{.key = table + ".T_" + a + "_" + b}, backward{.key = table + ".T_" + b + "_" + a} {}
-
-  void visit(SettingVisitor& visitor) {
-    forward.visit(visitor);
-    backward.visit(visitor);
-  }
-  /// T_a_b; empty if neither is given.
-  std::optional<RigidMotion> motion() const {
-    if (forward.given() && backward.given()) {
-      reject("the motion is given both ways", backward.key, "remove it, or " + forward.key);
-    }
-    if (forward.given()) return forward.motion();
-    if (backward.given()) return backward.motion().inverse();
-    return std::nullopt;
-  }
-};
 
 /// One camera's keys.
 class CameraKeys {
@@ -187,15 +92,16 @@ class CameraKeys {
     read_intrinsics();
     read_distortion();
     if (const auto problem = lens_problem(camera_.optics)) {
-      reject(problem->what, key(problem->key), problem->remedy);
+      reject_key(problem->what, key(problem->key), problem->remedy);
     }
     constexpr double kNarrowest = 10 * kDegree, kWidest = 170 * kDegree;
     if (!(camera_.max_field_of_view >= kNarrowest && camera_.max_field_of_view <= kWidest)) {
-      reject("the field of view is out of range", key("field_of_view"), "give 10 to 170 degrees");
+      reject_key("the field of view is out of range", key("field_of_view"),
+                 "give 10 to 170 degrees");
     }
     check(key("delay"), camera_.delay, -1, 1);
     const auto T = T_cam_lidar_.motion();
-    if (!T) reject("a key is missing", T_cam_lidar_.forward.key, "say where the camera sits");
+    if (!T) reject_key("a key is missing", T_cam_lidar_.forward.key, "say where the camera sits");
     camera_.T_cam_lidar = *T;
     return camera_;
   }
@@ -206,28 +112,30 @@ class CameraKeys {
   template <class T>
   const T& required(const std::optional<T>& value, std::string_view name,
                     std::string_view remedy) const {
-    if (!value) reject("a key is missing", key(name), remedy);
+    if (!value) reject_key("a key is missing", key(name), remedy);
     return *value;
   }
 
   void read_intrinsics() {
     const std::vector<double>& K = required(K_, "K", "give fx 0 cx, 0 fy cy, 0 0 1");
     if (K.size() != 9) {
-      reject(fmt::format("there are {} numbers, not 9", K.size()), key("K"),
-             "give fx 0 cx, 0 fy cy, 0 0 1");
+      reject_key(fmt::format("there are {} numbers, not 9", K.size()), key("K"),
+                 "give fx 0 cx, 0 fy cy, 0 0 1");
     }
     LensCamera& c = camera_.optics;
     c.fx = K[0], c.cx = K[2], c.fy = K[4], c.cy = K[5];
     const bool pinhole =
         c.has_pinhole() && K[1] == 0 && K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
-    if (!pinhole) reject("this is no camera's matrix", key("K"), "give fx 0 cx, 0 fy cy, 0 0 1");
+    if (!pinhole)
+      reject_key("this is no camera's matrix", key("K"), "give fx 0 cx, 0 fy cy, 0 0 1");
   }
 
   void read_distortion() {
     const auto coefficients = lens_coefficients(model_, D_);
     if (!coefficients) {
-      reject(fmt::format("the {} coefficients are not those of '{}'", D_.size(), to_string(model_)),
-             key("D"), fmt::format("give its {}", coefficient_count(model_)));
+      reject_key(
+          fmt::format("the {} coefficients are not those of '{}'", D_.size(), to_string(model_)),
+          key("D"), fmt::format("give its {}", coefficient_count(model_)));
     }
     camera_.optics.lens = Lens(model_, *coefficients);
   }
@@ -239,7 +147,7 @@ class CameraKeys {
   std::optional<std::vector<double>> K_;
   LensModel model_ = LensModel::kNone;
   std::vector<double> D_;
-  EitherMotion T_cam_lidar_;
+  MotionKeys T_cam_lidar_;
 };
 
 /// All keys of a drive.
@@ -269,10 +177,11 @@ class DriveKeys {
 
   /// ConfigError whose place is the key.
   void finish() {
-    if (!version_) reject("a key is missing", "version", "write version = 1 above all tables");
+    if (!version_) reject_key("a key is missing", "version", "write version = 1 above all tables");
     if (*version_ != kVersion) {
-      reject(fmt::format("the drive has version {}, this program reads {}", *version_, kVersion),
-             "version", "use a newer Fovea");
+      reject_key(
+          fmt::format("the drive has version {}, this program reads {}", *version_, kVersion),
+          "version", "use a newer Fovea");
     }
     drive_.scans = scans_;
     finish_scan_format();
@@ -281,8 +190,8 @@ class DriveKeys {
     drive_.T_body_lidar = T_body_lidar_.motion().value_or(drive_.T_body_lidar);
     drive_.T_body_imu = T_body_imu_.motion().value_or(drive_.T_body_imu);
     if (antenna_.size() != 3) {
-      reject(fmt::format("there are {} numbers, not 3", antenna_.size()), "body.antenna",
-             "give x, y, z in meters");
+      reject_key(fmt::format("there are {} numbers, not 3", antenna_.size()), "body.antenna",
+                 "give x, y, z in meters");
     }
     drive_.antenna_body = Eigen::Map<const Eigen::Vector3d>(antenna_.data());
     check_lever("body.antenna", drive_.antenna_body);
@@ -321,8 +230,8 @@ class DriveKeys {
       CameraDescription camera = keys.camera();
       for (const CameraDescription& other : drive_.cameras) {
         if (other.index != camera.index) continue;
-        reject(fmt::format("cameras {} and {} have the same index", other.name, camera.name),
-               "camera." + camera.name + ".index", "number them differently");
+        reject_key(fmt::format("cameras {} and {} have the same index", other.name, camera.name),
+                   "camera." + camera.name + ".index", "number them differently");
       }
       drive_.cameras.push_back(std::move(camera));
     }
@@ -337,7 +246,7 @@ class DriveKeys {
   TimeUnit time_unit_ = TimeUnit::kAuto;
   LengthUnit length_unit_ = LengthUnit::kAuto;
   ReferenceKey time_reference_ = ReferenceKey::kAuto;
-  EitherMotion T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
+  MotionKeys T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
   std::vector<double> antenna_{0, 0, 0};
   std::vector<CameraKeys> cameras_;
 };

@@ -280,7 +280,6 @@ void MapFile::for_each_readable_tile(const std::function<void(const TileRow&)>& 
         },
         [&](const std::string& problem) { read([&] { throw damage(problem, kTilesTable); }); });
   });
-  const auto rows = static_cast<std::int64_t>(found.size());
   // The index names the tiles on pages that cannot be read.
   read([&] {
     Statement keys(*sqlite_, "SELECT submap, x, y, z FROM tiles ORDER BY submap, x, y, z");
@@ -295,7 +294,7 @@ void MapFile::for_each_readable_tile(const std::function<void(const TileRow&)>& 
       });
     }
   });
-  read([&] { require_count(kTilesTable, rows); });
+  read([&] { require_count(kTilesTable, static_cast<std::int64_t>(found.size())); });
 }
 
 }  // namespace fovea

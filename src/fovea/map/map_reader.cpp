@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <map>
 #include <set>
 #include <utility>
@@ -8,7 +7,9 @@
 #include "fovea/core/errors.h"
 #include "fovea/map/map_file.h"
 #include "fovea/map/map_store.h"
+#include "fovea/map/numbered_records.h"
 #include "fovea/map/record_rows.h"
+#include "fovea/map/submap_rows.h"
 
 namespace fovea {
 namespace {
@@ -44,89 +45,6 @@ PointCloud passing(const PointCloud& tile, const PointFilter& where) {
     if (where.matches(tile, i)) indices.push_back(i);
   }
   return tile.select(indices);
-}
-
-/// The meta data as they are stored.
-MapMeta stored_meta(MapFile& file) {
-  MapMeta meta;
-  file.for_each_row(kMetaTable, [&](const Row& row) {
-    RowCursor cursor(kMetaTable, row, file.where());
-    std::string key = cursor.text();
-    meta.emplace(std::move(key), cursor.text());
-  });
-  return meta;
-}
-
-/// Records whose numbers are 0, 1, 2, ... If damage is reported, a missing one is reported and
-/// becomes a default one; `missing` takes its number. Otherwise it is an InputError.
-template <class Record, class Parse>
-std::vector<Record> numbered_records(MapFile& file, const Table& table, Parse&& parse,
-                                     std::set<std::size_t>& missing) {
-  std::map<int, Record> records;
-  file.for_each_row(table, [&](const Row& row) {
-    const int id = RowCursor(table, row, file.where()).index();
-    records.emplace(id, parse(RowCursor(table, row, file.where())));
-  });
-  std::vector<Record> in_order;
-  for (auto& [id, record] : records) {
-    // A forged number must not take memory.
-    constexpr std::size_t kMostMissing = 1 << 16;
-    const bool is_forged = std::size_t(id) > in_order.size() + kMostMissing;
-    while (in_order.size() < std::size_t(id)) {
-      missing.insert(in_order.size());
-      file.read([&] {
-        throw InputError(
-            is_forged ? "all rows from here on are missing" : "a row is missing",
-            fmt::format("{}, table '{}', id {}", file.where(), table.name, in_order.size()),
-            kRestoreMap);
-      });
-      if (is_forged) return in_order;
-      in_order.emplace_back();
-    }
-    in_order.push_back(std::move(record));
-  }
-  return in_order;
-}
-template <class Record, class Parse>
-std::vector<Record> numbered_records(MapFile& file, const Table& table, Parse&& parse) {
-  std::set<std::size_t> missing;
-  return numbered_records<Record>(file, table, parse, missing);
-}
-
-/// Gives each missing submap that has frames the pose of its first frame, where it begins.
-void restore_submaps(MapFile& file, std::vector<SubmapRecord>& submaps,
-                     std::set<std::size_t>& missing) {
-  std::map<std::size_t, FrameRecord> first_frames;
-  file.for_each_row(kFramesTable, [&](const Row& row) {
-    FrameRecord frame = frame_of(RowCursor(kFramesTable, row, file.where()));
-    if (frame.submap >= 0) first_frames.try_emplace(std::size_t(frame.submap), std::move(frame));
-  });
-  std::vector<DriveRecord> drives;
-  file.read([&] { drives = numbered_records<DriveRecord>(file, kDrivesTable, drive_of); });
-  for (const auto& [id, frame] : first_frames) {
-    // Submaps without gaps only: a forged number must not take memory.
-    if (id == submaps.size()) {
-      missing.insert(id);
-      submaps.emplace_back();
-    }
-    if (missing.erase(id) == 0) continue;
-    submaps[id].T_local_submap = frame.T_local_lidar;
-    for (std::size_t k = 0; k < drives.size(); ++k) {
-      const bool is_its = frame.index >= drives[k].first_frame && frame.index < drives[k].end_frame;
-      if (is_its) submaps[id].drive = static_cast<int>(k);
-    }
-  }
-}
-
-std::vector<SubmapRecord> read_submaps(MapFile& file, std::set<std::size_t>& missing) {
-  std::vector<SubmapRecord> submaps =
-      numbered_records<SubmapRecord>(file, kSubmapsTable, submap_of, missing);
-  if (file.reports_damage()) restore_submaps(file, submaps, missing);
-  if (file.format().submap_drives != nullptr) {
-    const std::vector<int> drives = file.format().submap_drives(stored_meta(file), submaps.size());
-    for (std::size_t id = 0; id < submaps.size(); ++id) submaps[id].drive = drives[id];
-  }
-  return submaps;
 }
 
 }  // namespace

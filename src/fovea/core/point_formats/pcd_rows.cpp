@@ -3,51 +3,16 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <charconv>
 #include <cstring>
-#include <sstream>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/point_formats/column_names.h"
 #include "fovea/core/point_formats/lzf.h"
+#include "fovea/core/point_formats/pcd_header.h"
 #include "fovea/core/read_file.h"
 
 namespace fovea {
 namespace {
-
-constexpr std::size_t kMaxPointBytes = 1 << 16;
-
-enum class Encoding { kAscii, kBinary, kCompressed };
-
-struct Field {
-  std::string name;
-  Scalar type = Scalar::kFloat;
-  std::size_t count = 1;   // numbers
-  std::size_t offset = 0;  // in a point, bytes
-  std::size_t first = 0;   // in a point, numbers
-};
-
-std::optional<Scalar> parse_scalar(std::string_view type, std::size_t size) {
-  if (type == "F") {
-    if (size == 4) return Scalar::kFloat;
-    if (size == 8) return Scalar::kDouble;
-    return std::nullopt;
-  }
-  if (type != "I" && type != "U") return std::nullopt;
-  const bool sign = type == "I";
-  switch (size) {
-    case 1:
-      return sign ? Scalar::kInt8 : Scalar::kUint8;
-    case 2:
-      return sign ? Scalar::kInt16 : Scalar::kUint16;
-    case 4:
-      return sign ? Scalar::kInt32 : Scalar::kUint32;
-    case 8:
-      return sign ? Scalar::kInt64 : Scalar::kUint64;
-    default:
-      return std::nullopt;
-  }
-}
 
 /// Whether the field is four bytes of colour, which may be declared as a float.
 bool is_packed_color(std::string_view name) { return name == "rgb" || name == "rgba"; }
@@ -55,31 +20,34 @@ bool is_packed_color(std::string_view name) { return name == "rgb" || name == "r
 class PcdFile {
  public:
   PcdFile(InputFile& file, CloudRows& rows)
-      : name_(file.path().string()), lines_(file), rows_(rows), row_(rows.columns().size()) {
-    read_header();
-    lay_out_fields();
+      : name_(file.path().string()),
+        lines_(file),
+        rows_(rows),
+        header_(read_pcd_header(lines_, name_, rows.description())),
+        row_(rows.columns().size()) {
     resolve_columns();
   }
 
   void read() {
     // The count of a damaged header can be anything: checked before anything is allocated.
     const std::uintmax_t rest = lines_.rest();
-    if (encoding_ == Encoding::kAscii) {
-      require_length((rest + 1) / (2 * numbers_));  // a digit and a blank each; no blank at the end
-    } else if (encoding_ == Encoding::kBinary) {
-      require_length(rest / point_bytes_);
+    if (header_.encoding == PcdHeader::Encoding::kAscii) {
+      require_length((rest + 1) /
+                     (2 * header_.numbers));  // a digit and a blank each; no blank at the end
+    } else if (header_.encoding == PcdHeader::Encoding::kBinary) {
+      require_length(rest / header_.point_bytes);
     } else {
-      require_length(rest * kLzfMaxRatio / point_bytes_);
+      require_length(rest * kLzfMaxRatio / header_.point_bytes);
     }
-    rows_.begin(points_, types());
-    switch (encoding_) {
-      case Encoding::kAscii:
+    rows_.begin(header_.points, types());
+    switch (header_.encoding) {
+      case PcdHeader::Encoding::kAscii:
         read_ascii();
         break;
-      case Encoding::kBinary:
+      case PcdHeader::Encoding::kBinary:
         read_binary();
         break;
-      case Encoding::kCompressed:
+      case PcdHeader::Encoding::kCompressed:
         read_compressed();
         break;
     }
@@ -95,116 +63,19 @@ class PcdFile {
   }
 
   void require_length(std::uintmax_t most) const {
-    if (points_ <= most) return;
-    throw InputError("the file is too short for its " + std::to_string(points_) + " points", name_,
-                     "write it anew");
-  }
-
-  /// A count of the header; a sign, a fraction or anything behind it is an error.
-  std::size_t count_of(const std::string& word) const {
-    std::size_t value = 0;
-    const char* end = word.data() + word.size();
-    const auto [rest, error] = std::from_chars(word.data(), end, value);
-    if (word.empty() || error != std::errc() || rest != end) {
-      reject("\"" + word + "\" is no count");
-    }
-    return value;
-  }
-
-  void read_header() {
-    std::optional<std::size_t> width, height, points;
-    while (lines_.line_number() < kMaxHeaderLines) {
-      const std::optional<std::string> line = lines_.next();
-      if (!line) reject(fields_.empty() ? "this is no PCD file" : "the PCD header has no DATA");
-      std::istringstream words(*line);
-      std::string keyword, word;
-      if (!(words >> keyword) || keyword.starts_with('#')) continue;
-      std::vector<std::string> values;
-      while (words >> word) values.push_back(word);
-      const auto only = [&]() -> const std::string& {
-        if (values.size() != 1) reject(keyword + " needs one value");
-        return values[0];
-      };
-      if (keyword == "FIELDS" || keyword == "COLUMNS") {
-        for (const std::string& name : values) fields_.push_back({.name = name});
-      } else if (keyword == "SIZE") {
-        sizes_ = values;
-      } else if (keyword == "TYPE") {
-        types_ = values;
-      } else if (keyword == "COUNT") {
-        counts_ = values;
-      } else if (keyword == "WIDTH") {
-        width = count_of(only());
-      } else if (keyword == "HEIGHT") {
-        height = count_of(only());
-      } else if (keyword == "POINTS") {
-        points = count_of(only());
-      } else if (keyword == "DATA") {
-        set_encoding(only());
-        set_points(width, height, points);
-        return;
-      } else if (keyword != "VERSION" && keyword != "VIEWPOINT") {
-        reject(fields_.empty() ? "this is no PCD file"
-                               : "\"" + keyword + "\" is no line of a PCD header");
-      }
-    }
-    reject("the PCD header has no DATA");
-  }
-
-  void set_encoding(const std::string& name) {
-    if (name == "ascii") {
-      encoding_ = Encoding::kAscii;
-    } else if (name == "binary") {
-      encoding_ = Encoding::kBinary;
-    } else if (name == "binary_compressed") {
-      encoding_ = Encoding::kCompressed;
-    } else {
-      reject("PCD data of the form \"" + name + "\" is not read");
-    }
-  }
-
-  void set_points(std::optional<std::size_t> width, std::optional<std::size_t> height,
-                  std::optional<std::size_t> points) {
-    if (!points && !width) reject("the header has neither POINTS nor WIDTH");
-    if (!width) width = points, height = 1;
-    const std::size_t rows = height.value_or(1);
-    if (rows != 0 && *width > std::numeric_limits<std::size_t>::max() / rows) {
-      reject("WIDTH x HEIGHT is too large");
-    }
-    if (points && *points != *width * rows) reject("POINTS is not WIDTH x HEIGHT");
-    points_ = *width * rows;
-    organized_ = rows > 1;
-  }
-
-  void lay_out_fields() {
-    if (fields_.empty()) reject("the header has no FIELDS");
-    if (sizes_.size() != fields_.size() || types_.size() != fields_.size() ||
-        (!counts_.empty() && counts_.size() != fields_.size())) {
-      reject("SIZE, TYPE or COUNT are not one a field");
-    }
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      Field& field = fields_[i];
-      const std::optional<Scalar> type = parse_scalar(types_[i], count_of(sizes_[i]));
-      if (!type) reject("a field of type " + types_[i] + " and size " + sizes_[i] + " is not read");
-      field.type = *type;
-      field.count = counts_.empty() ? 1 : count_of(counts_[i]);
-      field.offset = point_bytes_;
-      field.first = numbers_;
-      if (field.count > kMaxPointBytes) reject("a field has too many numbers");
-      point_bytes_ += field.count * size_of(field.type);
-      numbers_ += field.count;
-      if (point_bytes_ > kMaxPointBytes) reject("a point takes more than 64 KiB");
-    }
+    if (header_.points <= most) return;
+    throw InputError("the file is too short for its " + std::to_string(header_.points) + " points",
+                     name_, "write it anew");
   }
 
   void resolve_columns() {
     constexpr std::size_t kAxes = 3;
     std::vector<std::string> names;
-    for (const Field& field : fields_) names.push_back(field.name);
+    for (const PcdField& field : header_.fields) names.push_back(field.name);
     for (const char* wanted : rows_.columns()) {
-      std::optional<Field>& column = columns_.emplace_back();
+      std::optional<PcdField>& column = columns_.emplace_back();
       if (const auto found = find_column(names, wanted)) {
-        column = fields_[*found];
+        column = header_.fields[*found];
         if (column->count != 1) reject("the field " + column->name + " must have COUNT 1");
         column->name = wanted;
         if (is_packed_color(wanted) && size_of(column->type) != 4) {
@@ -215,13 +86,13 @@ class PcdFile {
       }
     }
     if (!are_coordinates(types(), rows_)) reject("x, y, z must be of type F");
-    rows_.describe(names, organized_);
+    rows_.describe(names, header_.organized);
   }
 
   /// Of the columns wanted.
   std::vector<std::optional<Scalar>> types() const {
     std::vector<std::optional<Scalar>> types;
-    for (const std::optional<Field>& field : columns_) {
+    for (const std::optional<PcdField>& field : columns_) {
       types.push_back(field ? std::optional(field->type) : std::nullopt);
     }
     return types;
@@ -231,7 +102,7 @@ class PcdFile {
   template <class At>
   void add_binary(At&& at, std::size_t number) {
     for (std::size_t column = 0; column < row_.size(); ++column) {
-      if (const std::optional<Field>& field = columns_[column]) {
+      if (const std::optional<PcdField>& field = columns_[column]) {
         row_[column] =
             decode(is_packed_color(field->name) ? Scalar::kUint32 : field->type, at(*field));
       }
@@ -243,15 +114,16 @@ class PcdFile {
     constexpr std::size_t kBlock = 1 << 10;  // points
     const std::uintmax_t begin_of_data = static_cast<std::uintmax_t>(lines_.stream().tellg());
     // No larger than the file needs: a header may give a point 64 KiB.
-    std::string buffer(std::min(kBlock, points_) * point_bytes_, '\0');
-    for (std::size_t begin = 0; begin < points_; begin += kBlock) {
-      const std::size_t count = std::min(kBlock, points_ - begin);
-      if (!lines_.stream().read(buffer.data(), std::streamsize(count * point_bytes_))) {
-        reject_data("the file cannot be read to its end", begin_of_data + begin * point_bytes_);
+    std::string buffer(std::min(kBlock, header_.points) * header_.point_bytes, '\0');
+    for (std::size_t begin = 0; begin < header_.points; begin += kBlock) {
+      const std::size_t count = std::min(kBlock, header_.points - begin);
+      if (!lines_.stream().read(buffer.data(), std::streamsize(count * header_.point_bytes))) {
+        reject_data("the file cannot be read to its end",
+                    begin_of_data + begin * header_.point_bytes);
       }
       for (std::size_t i = 0; i < count; ++i) {
-        const char* point = buffer.data() + i * point_bytes_;
-        add_binary([&](const Field& field) { return point + field.offset; }, begin + i);
+        const char* point = buffer.data() + i * header_.point_bytes;
+        add_binary([&](const PcdField& field) { return point + field.offset; }, begin + i);
       }
     }
   }
@@ -270,7 +142,7 @@ class PcdFile {
     if (packed_size > lines_.rest()) {
       reject_data("the file is too short for its compressed data", begin_of_data);
     }
-    if (size != points_ * point_bytes_ || size > packed_size * kLzfMaxRatio) {
+    if (size != header_.points * header_.point_bytes || size > packed_size * kLzfMaxRatio) {
       reject_data("the compressed data is not of the size of the points", begin_of_data + 4);
     }
     std::string packed(packed_size, '\0');
@@ -279,10 +151,11 @@ class PcdFile {
     }
     const std::optional<std::string> values = lzf_decompress(packed, size);
     if (!values) reject_data("the compressed data is damaged", begin_of_data + 8);
-    for (std::size_t i = 0; i < points_; ++i) {
+    for (std::size_t i = 0; i < header_.points; ++i) {
       add_binary(
-          [&](const Field& field) {
-            return values->data() + points_ * field.offset + i * field.count * size_of(field.type);
+          [&](const PcdField& field) {
+            return values->data() + header_.points * field.offset +
+                   i * field.count * size_of(field.type);
           },
           i);
     }
@@ -302,15 +175,15 @@ class PcdFile {
   }
 
   void read_ascii() {
-    for (std::size_t i = 0; i < points_; ++i) {
+    for (std::size_t i = 0; i < header_.points; ++i) {
       const std::optional<std::string> line = lines_.next();
       if (!line) reject("the file ends before its last point");
       const std::optional<std::vector<double>> numbers = parse_numbers(*line);
-      if (!numbers || numbers->size() != numbers_) {
-        reject("a point is not " + std::to_string(numbers_) + " numbers");
+      if (!numbers || numbers->size() != header_.numbers) {
+        reject("a point is not " + std::to_string(header_.numbers) + " numbers");
       }
       for (std::size_t column = 0; column < row_.size(); ++column) {
-        const std::optional<Field>& field = columns_[column];
+        const std::optional<PcdField>& field = columns_[column];
         if (!field) continue;
         const double number = (*numbers)[field->first];
         row_[column] = is_packed_color(field->name) ? packed_of(field->type, number) : number;
@@ -322,13 +195,9 @@ class PcdFile {
   std::string name_;
   LineReader lines_;
   CloudRows& rows_;
-  Encoding encoding_ = Encoding::kAscii;
-  std::vector<std::string> sizes_, types_, counts_;  // of the header, as they stand there
-  std::vector<Field> fields_;
-  std::size_t points_ = 0, point_bytes_ = 0, numbers_ = 0;
-  bool organized_ = false;
-  std::vector<std::optional<Field>> columns_;  // in the order of rows_.columns()
-  std::vector<double> row_;                    // of the point that is being read
+  PcdHeader header_;
+  std::vector<std::optional<PcdField>> columns_;  // in the order of rows_.columns()
+  std::vector<double> row_;                       // of the point that is being read
 };
 
 }  // namespace
