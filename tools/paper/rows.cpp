@@ -5,6 +5,7 @@
 
 #include "app/html_report/report_page.h"
 #include "fovea/core/input_file.h"
+#include "fovea/core/output_file.h"
 #include "fovea/core/path_name.h"
 #include "fovea/core/unfinished_output.h"
 #include "fovea/core/version.h"
