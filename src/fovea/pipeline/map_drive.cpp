@@ -22,6 +22,9 @@
 namespace fovea {
 namespace {
 
+/// Frames from one check of dropped points to the next: does not depend on timing.
+constexpr std::size_t kPointsCheckedEvery = 30;
+
 /// Maps a tracked frame.
 FrameRecord map_frame(IncrementalMapper& mapper, const FrameSource& source, const DriveInfo& drive,
                       TrackedFrame& tracked) {
@@ -47,7 +50,7 @@ void require_no_stop(const MapJob& job) {
               "give the same command again");
 }
 
-/// A run of a mapper over a drive, with its accounts and its file.
+/// A run of a mapper over a drive, with its figures and its file.
 class MapRun {
  public:
   MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta)
@@ -64,10 +67,7 @@ class MapRun {
         mapper_(mapper_of_drive()),
         figures_(drive, job.rate),
         views_(drive) {
-    const bool has_cameras = !drive.calibration.cameras.empty();
-    if (has_cameras && job.settings.run.check_calibration && !job.calibrate) {
-      check_.emplace(drive, has_sweep_motion(drive, job));
-    }
+    if (is_calibration_checked()) check_.emplace(drive, has_sweep_motion(drive, job));
     if (job.resume) resume_from_file();
     frames_before_ = log_.size();
   }
@@ -96,6 +96,10 @@ class MapRun {
                         drive_.path.string());
   }
   MapRows fresh_rows(bool last);  // of a checkpoint
+  bool is_calibration_checked() const {
+    return job_.settings.run.check_calibration && !job_.calibrate &&
+           !drive_.calibration.cameras.empty();
+  }
   bool complete() const { return log_.size() == drive_.frame_count(); }
 
   const FrameSource& source_;
@@ -192,7 +196,7 @@ void MapRun::map_frames(const std::function<void(const MapProgress&)>& progress)
 
 TrackedScan MapRun::track(const Frame& frame) {
   FrameTask task{.held_out = job_.hold_out.contains(frame.index)};
-  const auto place = static_cast<std::size_t>(frame.index - drive_.begin);
+  const auto place = std::size_t(frame.index - drive_.begin);
   if (place < job_.given_poses.size()) task.given_pose = job_.given_poses[place];
   return mapper_->track(frame, task);
 }
@@ -205,9 +209,7 @@ void MapRun::map_next(TrackedFrame& tracked,
   check_calibration(tracked, record);
   figures_.add(record, /*is_new=*/true);
   log_.add(record);
-  // At frames that do not depend on timing.
-  constexpr std::size_t kCheckEvery = 30;
-  if (log_.size() % kCheckEvery == 0) check_points();
+  if (log_.size() % kPointsCheckedEvery == 0) check_points();
   if (job_.observer != nullptr) job_.observer->frame_mapped(record, frame, mapper_->map());
   if (progress) {
     progress({int(log_.size()), int(drive_.frame_count()), mapper_->map().size(), &record});
@@ -258,13 +260,7 @@ MapSummary MapRun::summary() const {
                     job_.given_poses.size(), drive_.end - drive_.begin));
   }
   for (std::string& note : views_.notes()) summary.warn(std::move(note));
-  const double limit_mb = double(job_.memory) / (1024 * 1024);
-  if (summary.peak_rss_mb > limit_mb) {
-    summary.warn(fmt::format(
-        "{:.0f} MB of memory were needed at the peak, more than the {:.0f} MB given: what lies "
-        "within the cameras' reach takes so much",
-        summary.peak_rss_mb, limit_mb));
-  }
+  warn_of_memory(summary, job_.memory);
   summary.points = mapper_->map().size();
   summary.frames_new = log_.size() - frames_before_;
   summary.interrupted = !complete();

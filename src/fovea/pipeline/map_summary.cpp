@@ -151,4 +151,13 @@ void require_few_damaged(const MapSummary& summary, double most, const std::stri
                                map));
 }
 
+void warn_of_memory(MapSummary& summary, std::size_t limit) {
+  const double limit_mb = double(limit) / (1024 * 1024);
+  if (summary.peak_rss_mb <= limit_mb) return;
+  summary.warn(
+      fmt::format("the process took {:.0f} MB of memory at its peak, more than the {:.0f} "
+                  "MB given: the map within reach of the cameras needs them",
+                  summary.peak_rss_mb, limit_mb));
+}
+
 }  // namespace fovea

@@ -95,4 +95,7 @@ class DriveFigures {
   PointCounts points_;
 };
 
+/// Warns if the process took more than `limit` bytes of memory.
+void warn_of_memory(MapSummary& summary, std::size_t limit);
+
 }  // namespace fovea

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fovea/drive/frame_source.h"
+#include "fovea/map/map_store.h"
 #include "fovea/pipeline/map_settings.h"
 
 namespace fovea {
