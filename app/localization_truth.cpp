@@ -10,6 +10,7 @@
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "fovea/core/errors.h"
+#include "fovea/map/map_meta.h"
 
 namespace fovea::app {
 namespace {

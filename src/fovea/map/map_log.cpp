@@ -69,4 +69,22 @@ std::string log_remedy(const fs::path& map) {
       fs::path(file).concat("-wal").string(), file.string());
 }
 
+void remove_side_files(const fs::path& map) {
+  for (const char* ending : {"-wal", "-shm", "-journal"}) {
+    std::error_code ignored;
+    fs::remove(fs::path(map) += ending, ignored);
+  }
+}
+
+void merge_old_map(const fs::path& map) {
+  if (!fs::exists(map)) return;
+  Database old(map, Access::kWrite, map);
+  if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
+}
+
+void remove_old_map_logs(const fs::path& map) {
+  merge_old_map(map);
+  remove_side_files(map);
+}
+
 }  // namespace fovea

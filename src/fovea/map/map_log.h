@@ -17,4 +17,15 @@ void leave_one_file(sqlite::Database& database) noexcept;
 void merge_log(sqlite::Database& database, const std::filesystem::path& map,
                std::chrono::milliseconds reader_timeout);
 
+/// Removes the log and journal files next to a map.
+void remove_side_files(const std::filesystem::path& map);
+
+/// For a map that a new one replaces: merges its log, which otherwise SQLite would take for the new
+/// map's log after the rename. Files that are no map stay as they are. OutputError if a program
+/// uses the map.
+void merge_old_map(const std::filesystem::path& map);
+
+/// merge_old_map(), and removes the logs of a map that no longer exists.
+void remove_old_map_logs(const std::filesystem::path& map);
+
 }  // namespace fovea

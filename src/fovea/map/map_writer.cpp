@@ -1,3 +1,4 @@
+// Over 300 lines: one class, whose methods share the state of one transaction.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "fovea/map/map_format.h"
 #include "fovea/map/map_log.h"
 #include "fovea/map/map_schema.h"
+#include "fovea/map/map_statements.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/record_rows.h"
@@ -27,56 +29,12 @@ using sqlite::Database;
 using sqlite::Outcome;
 using sqlite::Statement;
 
-void remove_side_files(const fs::path& path) {
-  for (const char* ending : {"-wal", "-shm", "-journal"}) {
-    std::error_code ignored;
-    fs::remove(fs::path(path) += ending, ignored);
-  }
-}
-
-/// Makes the old map under this name one file, so that its write-ahead log cannot be taken for the
-/// new map's after the rename. OutputError if a program is using it.
-void merge_old_map(const fs::path& path) {
-  if (!fs::exists(path)) return;
-  Database old(path, Access::kWrite, path);
-  // What fails otherwise is no map, and is replaced all the same.
-  if (old.attempt("PRAGMA journal_mode=DELETE") == Outcome::kBusy) old.throw_busy();
-}
-
-/// As merge_old_map(), and removes the log of a map that was removed.
-void settle_old_map(const fs::path& path) {
-  merge_old_map(path);
-  remove_side_files(path);
-}
-
-/// The prepared statements of one connection.
-class Puts {
- public:
-  explicit Puts(Database& database)
-      : no_tile(database, fmt::format("DELETE FROM tiles WHERE {}", kThisTile)),
-        no_views(database, "DELETE FROM views WHERE frame = ?1"),
-        frame(database, fmt::format("{} WHERE frame = ?1", select_sql(kFramesTable))),
-        read_tile(database, current_format()) {
-    for (const Table* table : kTables) inserts_.emplace_back(database, insert_sql(*table));
-  }
-
-  Statement& insert(const Table& table) {
-    const auto place = std::find(kTables.begin(), kTables.end(), &table) - kTables.begin();
-    return inserts_.at(static_cast<std::size_t>(place));
-  }
-  Statement no_tile, no_views, frame;
-  TileQuery read_tile;
-
- private:
-  std::vector<Statement> inserts_;
-};
-
 class SqliteMapWriter : public MapWriter {
  public:
   /// A new map, which grows in PATH.partial until its first commit.
   SqliteMapWriter(const fs::path& path, bool force)
       : path_(path), target_(check_output_path(path, force)), force_(force) {
-    merge_old_map(target_);  // now, and not after a long run, it shows that it is in use
+    merge_old_map(target_);  // an error before a long run, not after it
     unfinished_.emplace(path_, std::vector{partial_path(target_)},
                         [this] { start_partial_file(); });
   }
@@ -88,7 +46,7 @@ class SqliteMapWriter : public MapWriter {
   }
 
   ~SqliteMapWriter() override {
-    puts_.reset();
+    statements_.reset();
     if (database_ != nullptr && published_) {
       database_->attempt("ROLLBACK");
       leave_one_file(*database_);
@@ -169,10 +127,10 @@ class SqliteMapWriter : public MapWriter {
 
   void put(const Table& table, const Row& row) {
     const std::uint64_t checksum = row_checksum(table, row);
-    write([&] { insert_row(puts_->insert(table), row, checksum); });
+    write([&] { insert_row(statements_->insert(table), row, checksum); });
   }
   void put_row(const TileRow& row) {
-    write([&] { insert_row(puts_->insert(kTilesTable), cells_of(row), row.checksum); });
+    write([&] { insert_row(statements_->insert(kTilesTable), cells_of(row), row.checksum); });
   }
   /// Stores how many rows each table has, so that a missing row is found.
   void put_counts();
@@ -190,7 +148,7 @@ class SqliteMapWriter : public MapWriter {
   std::optional<UnfinishedOutput> unfinished_;  // of a new map
   TileEncoder encoder_;
   std::unique_ptr<Database> database_;
-  std::unique_ptr<Puts> puts_;
+  std::unique_ptr<MapStatements> statements_;
 };
 
 void SqliteMapWriter::start_partial_file() {
@@ -212,10 +170,10 @@ void SqliteMapWriter::start_partial_file() {
                     kPageSize, kMapApplicationId, kMapFormatVersion)
             .c_str());
     for (const Table* table : kTables) database_->execute(create_sql(*table).c_str());
-    puts_ = std::make_unique<Puts>(*database_);
+    statements_ = std::make_unique<MapStatements>(*database_);
     put(kMetaTable, meta_row(meta_key::kFormatVersion, fmt::to_string(kMapFormatVersion)));
   } catch (...) {
-    puts_.reset();
+    statements_.reset();
     database_.reset();
     remove_partial_file();
     throw;
@@ -231,10 +189,10 @@ void SqliteMapWriter::remove_partial_file() {
 void SqliteMapWriter::publish() {
   // Another program may have made the file meanwhile.
   check_output_path(path_, force_);
-  settle_old_map(target_);
+  remove_old_map_logs(target_);
   publish_file(partial_path(target_), target_, *unfinished_);
   published_ = true;
-  puts_.reset();
+  statements_.reset();
   database_.reset();
 }
 
@@ -247,14 +205,14 @@ void SqliteMapWriter::open_published_file() {
       "PRAGMA synchronous=EXTRA; PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0;");
   // The lock of one writer, held from commit to commit.
   database_->execute("BEGIN IMMEDIATE");
-  puts_ = std::make_unique<Puts>(*database_);
+  statements_ = std::make_unique<MapStatements>(*database_);
 }
 
 void SqliteMapWriter::put_frame(const FrameRecord& record) {
   put(kFramesTable, frame_row(record));
   write([&] {
-    puts_->no_views.bind(1, std::int64_t{record.index});
-    puts_->no_views.run();
+    statements_->no_views.bind(1, std::int64_t{record.index});
+    statements_->no_views.run();
   });
   for (const ViewRecord& view : record.views) put(kViewsTable, view_row(record.index, view));
 }
@@ -262,7 +220,7 @@ void SqliteMapWriter::put_frame(const FrameRecord& record) {
 void SqliteMapWriter::put_pose(int frame, const RigidMotion& T_local_lidar) {
   std::optional<FrameRecord> record;
   write([&] {
-    Statement& row = puts_->frame;
+    Statement& row = statements_->frame;
     row.bind(1, std::int64_t{frame});
     if (row.step()) {
       const StoredRow stored = stored_row(row, kFramesTable);
@@ -282,20 +240,20 @@ void SqliteMapWriter::put_counts() {
     if (table == &kCountsTable) continue;
     const std::string count = fmt::format("SELECT count(*) FROM {}", table->name);
     const Row row{cell(std::string(table->name)), cell(database_->integer(count.c_str()))};
-    insert_row(puts_->insert(kCountsTable), row, row_checksum(kCountsTable, row));
+    insert_row(statements_->insert(kCountsTable), row, row_checksum(kCountsTable, row));
   }
 }
 
 void SqliteMapWriter::remove_tile(const TileId& id) {
   write([&] {
-    bind_tile(puts_->no_tile, id);
-    puts_->no_tile.run();
+    bind_tile(statements_->no_tile, id);
+    statements_->no_tile.run();
   });
 }
 
 TilePoints SqliteMapWriter::read_tile(const TileId& id) {
   TilePoints tile;
-  write([&] { tile = puts_->read_tile.read(id, path_.string()); });
+  write([&] { tile = statements_->read_tile.read(id, path_.string()); });
   return tile;
 }
 

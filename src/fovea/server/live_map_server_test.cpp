@@ -187,7 +187,7 @@ class LiveRun : public testing::Test {
       }
     }
     rows.meta["map.tile_size_m"] = "4";
-    file_->checkpoint(map_, std::move(rows), {0, 0, 0}, 1000);
+    file_->checkpoint(map_, std::move(rows));
   }
   void finish() {
     file_->wait();
