@@ -1,8 +1,12 @@
 # The precompiled header that every target shares; macros of single libraries stay out of it.
 add_library(fovea_precompiled STATIC ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
 target_link_libraries(fovea_precompiled PRIVATE Eigen3::Eigen fovea_compile_options)
-target_compile_options(fovea_precompiled PRIVATE ${FOVEA_MACHINE_OPTIONS})
+target_compile_definitions(fovea_precompiled PRIVATE ${FOVEA_EIGEN_ALIGNMENT})
 target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
+
+# Their tests run under the thread sanitizer.
+set(FOVEA_MODULES_WITH_THREADS core drive map pipeline server localization)
+add_custom_target(thread_tests)
 
 # Most of a test's or a command's compilation is the same headers' templates over again. Files of most
 # modules stay apart: their arithmetic shall not depend on what else is inlined.
@@ -99,8 +103,7 @@ function(fovea_module name)
   list(TRANSFORM ARG_DEPENDS PREPEND fovea_ OUTPUT_VARIABLE modules)
   target_link_libraries(fovea_${name} PUBLIC ${modules} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE}
                         $<BUILD_INTERFACE:fovea_compile_options>)
-  # Public: Eigen's alignment depends on it, so a user of the library must compile alike.
-  target_compile_options(fovea_${name} PUBLIC ${FOVEA_MACHINE_OPTIONS})
+  target_compile_definitions(fovea_${name} PUBLIC ${FOVEA_EIGEN_ALIGNMENT})
   target_compile_features(fovea_${name} PUBLIC cxx_std_20)
   if(ARG_TOGETHER)
     fovea_compile_together(fovea_${name})
@@ -120,6 +123,11 @@ function(fovea_module name)
     target_precompile_headers(${name}_tests REUSE_FROM fovea_precompiled)
     target_compile_definitions(${name}_tests PRIVATE
                                FOVEA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    fovea_discover_tests(${name}_tests SOURCES ${tests} PROPERTIES TIMEOUT 600)
+    set(label ${name})
+    if(name IN_LIST FOVEA_MODULES_WITH_THREADS)
+      set(label ${name},threads)
+      add_dependencies(thread_tests ${name}_tests)
+    endif()
+    fovea_discover_tests(${name}_tests SOURCES ${tests} PROPERTIES TIMEOUT 600 LABELS ${label})
   endif()
 endfunction()

@@ -95,7 +95,7 @@ TEST_F(ErrorLine, LoopsOfLinksAndLongNamesAreNamed) {
   EXPECT_TRUE(fs::is_symlink(folder_ / "loop"));
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(FOVEA_SANITIZER)
 // A limit that the program's start fits into.
 TEST_F(ErrorLine, OutOfMemoryNamesTheCommandsOwnRemedy) {
   const auto writer = MapWriter::create(path("large.fovea"), false);

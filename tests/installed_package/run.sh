@@ -1,13 +1,27 @@
 #!/usr/bin/env bash
-# Installs the build into a prefix of its own, then builds and runs a project that finds it there:
-#   run.sh CMAKE BUILD_DIR WORK_DIR
+# Installs the build into a prefix of its own, then builds and runs a project that finds it there, by GCC
+# and by the library's compiler, without machine flags: run.sh CMAKE CLANG BUILD_DIR WORK_DIR
 set -euo pipefail
-cmake=$1 build=$2 work=$3
+cmake=$1 clang=$2 build=$3 work=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 rm -rf "$work"
 "$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
-"$cmake" -S "$here" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
-"$cmake" --build "$work/build"
-"$work/build/uses_fovea"
+for compiler in g++ "$clang"; do
+  project=$work/$(basename "$compiler")
+  "$cmake" -S "$here" -B "$project" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+  "$cmake" --build "$project"
+  if grep -E -- '-m(arch|tune|avx)' "$project/compile_commands.json"; then
+    echo "the package forces machine flags on its users" >&2
+    exit 1
+  fi
+  "$project/uses_fovea"
+done
 "$work/prefix/bin/fovea" --version
+
+# Without the package's definitions the headers name the remedy.
+if errors=$(g++ -std=c++20 -fsyntax-only -I"$work/prefix/include" -I/usr/include/eigen3 "$here/main.cpp" 2>&1); then
+  echo "the headers accept another alignment of Eigen's objects" >&2
+  exit 1
+fi
+grep -q 'link fovea::fovea in CMake, or compile all files with -DEIGEN_MAX_ALIGN_BYTES=32' <<<"$errors"

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 struct Rgb {

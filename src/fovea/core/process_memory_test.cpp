@@ -14,7 +14,7 @@ extern "C" [[gnu::weak]] int mallctl(const char* name, void* old_value, std::siz
 
 namespace fovea::process_memory_test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(FOVEA_SANITIZER)
 constexpr bool kOwnAllocator = true;  // the sanitizer's, which keeps what is freed
 #else
 constexpr bool kOwnAllocator = false;

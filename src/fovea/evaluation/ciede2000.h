@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// CIE L*a*b* under D65, 2 degrees.

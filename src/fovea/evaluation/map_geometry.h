@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// How far the points of flat pieces of surface lie beside them.

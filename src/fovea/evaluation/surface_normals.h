@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Direction of least spread of the points in the 30-cm cube around each point's 10-cm voxel: unit,

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// glTF's numbers for the types of components.

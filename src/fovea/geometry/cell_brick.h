@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/flat_map.h"
 
 namespace fovea {

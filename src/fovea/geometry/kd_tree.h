@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
 #include "fovea/geometry/neighbor.h"
 
 namespace fovea {

@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// How a lens distorts; the names are those of ROS, the formulas OpenCV's.

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 enum class LidarModel {

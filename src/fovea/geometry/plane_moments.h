@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/lanes.h"
 
 namespace fovea {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/lanes.h"
 
 namespace fovea {

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// m, along each axis. Local frames of any map projection lie within. A position beyond is damaged.

@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 using RigidMotion = Eigen::Isometry3d;

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Indices of one point in each occupied voxel of edge `size` (m): the point nearest to the mean of

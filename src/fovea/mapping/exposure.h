@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Gain of each channel that brings a color to the known color of the same point. None if one of

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 enum class GroundMethod { kHeight, kRansac };

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// State of a position in a scan.

@@ -5,6 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// A plane curve by its heading, a smooth function of the way along it (m). Position is the

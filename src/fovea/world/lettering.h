@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <string_view>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Share of ink at a place of a board, averaged over `footprint` (m): `text` (A-Z, 0-9, space;

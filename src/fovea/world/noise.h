@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// A number in [0, 1) of a cell of a grid and a seed.

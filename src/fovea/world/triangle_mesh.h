@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Triangles, as columns of equal length. Their frame is what the variable's name says

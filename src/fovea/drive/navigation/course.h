@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
 #include "fovea/core/time.h"
 
 namespace fovea {

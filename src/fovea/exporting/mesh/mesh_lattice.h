@@ -5,6 +5,8 @@
 #include <compare>
 #include <cstdint>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Voxels along a block's edge.

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Vertices lie on a grid of so many steps a voxel: neighbours round them alike.

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 struct NormalOptions {
