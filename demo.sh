@@ -22,8 +22,8 @@ for argument in "$@"; do
   esac
 done
 
-scripts/setup.sh $install_flag
-scripts/build.sh release fovea_app
+scripts/setup.sh $install_flag build product viewer
+scripts/build.sh program
 fovea=build/release/fovea
 mkdir -p out
 

@@ -2,8 +2,9 @@
 # Sets up, builds and runs the tests.
 #   ./test.sh [--no-install]             the test suite, with the checks of style and layers
 #   ./test.sh --sanitize [address|thread] [--no-install]
-#                                        the unit tests under address + undefined behaviour and under
-#                                        thread sanitizers (or one of them)
+#                                        the library's tests under the address + undefined behavior
+#                                        sanitizers, and the tests of the modules with threads under
+#                                        the thread sanitizer (or one of them)
 #   ./test.sh --fuzz [SECONDS] [--no-install]
 #                                        the fuzzers of the readers (fuzz/), each for so long (600)
 set -euo pipefail
@@ -21,7 +22,7 @@ for argument in "$@"; do
     address | thread) sanitizers+=("$argument") ;;
     --fuzz) fuzz=true ;;
     -h | --help)
-      sed -n '2,8s/^# //p' "$0"
+      sed -n '2,9s/^# //p' "$0"
       exit 0
       ;;
     *)
@@ -33,17 +34,17 @@ for argument in "$@"; do
       ;;
   esac
 done
-scripts/setup.sh --tests $install_flag
+scripts/setup.sh $install_flag build product viewer python tests
 
-run_tests() { # PRESET [CTEST OPTION...]
-  local preset=$1
+run_tests() { # FOLDER OF build/ [CTEST OPTION...]
+  local folder=$1
   shift
-  ctest --test-dir "build/$preset" --output-on-failure -j "$(nproc)" "$@"
+  ctest --test-dir "build/$folder" --output-on-failure -j "$(nproc)" "$@"
 }
 
 if $fuzz; then
-  scripts/build.sh fuzz fuzzers
-  FOVEA_FUZZ_SECONDS=$fuzz_seconds run_tests fuzz
+  scripts/build.sh fuzz
+  FOVEA_FUZZ_SECONDS=$fuzz_seconds run_tests asan -L '^fuzz$'
   exit 0
 fi
 
@@ -60,7 +61,11 @@ fi
 export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 for sanitizer in "${sanitizers[@]}"; do
-  preset=$([[ $sanitizer == address ]] && echo asan || echo tsan)
-  scripts/build.sh "$preset"
-  run_tests "$preset"
+  if [[ $sanitizer == address ]]; then
+    scripts/build.sh asan
+    run_tests asan -LE '^fuzz$'
+  else
+    scripts/build.sh tsan thread_tests
+    run_tests tsan -L threads
+  fi
 done

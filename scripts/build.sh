@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Configures and builds one CMake preset: scripts/build.sh PRESET [TARGET...]
+# Configures and builds one build preset of CMakePresets.json: scripts/build.sh PRESET [TARGET...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=$1
 shift
+configure=$preset
+[[ $preset != fuzz ]] || configure=asan # one build has both
 log=$(mktemp)
-if ! cmake --preset "$preset" >"$log" 2>&1; then
+if ! cmake --preset "$configure" >"$log" 2>&1; then
   cat "$log" >&2
   exit 1
 fi
 rm -f "$log"
-cmake --build "build/$preset" ${1:+--target "$@"}
+cmake --build --preset "$preset" ${1:+--target "$@"}

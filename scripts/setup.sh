@@ -1,30 +1,38 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of scripts/packages.txt that are missing, and what viewer/ is built with;
-# with --tests also what tests/web needs (both by npm, exact versions, into node_modules beside them):
-#   scripts/setup.sh [--tests] [--no-install]
+# Installs what is missing of the parts of scripts/packages.txt, and the npm packages of viewer/ (part
+# viewer) and tests/web (part tests), exact versions, into node_modules in these folders:
+#   scripts/setup.sh [--no-install] [PART...]     without PART: build product viewer, all that the program needs
 # --no-install only says what is missing, and fails if anything is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
-tests=false
+parts=()
 may_install=true
 for argument in "$@"; do
   case $argument in
-    --tests) tests=true ;;
+    build | product | viewer | python | tests) parts+=("$argument") ;;
     --no-install) may_install=false ;;
     *)
-      echo "setup: unknown option $argument" >&2
+      echo "setup: unknown part or option $argument, see scripts/packages.txt" >&2
       exit 2
       ;;
   esac
 done
+[[ ${#parts[@]} -gt 0 ]] || parts=(build product viewer)
+has_part() { [[ " ${parts[*]} " == *" $1 "* ]]; }
+
+packages_of_parts() {
+  awk -v parts=" ${parts[*]} " '
+    /^\[.*\]$/ { wanted = index(parts, " " substr($0, 2, length($0) - 2) " ") }
+    /^[a-z0-9]/ && wanted { print $1 }' "$here/packages.txt"
+}
 
 # Some packages are provided by others: npm by other builds of nodejs.
 missing_packages() {
   local provided package
   provided=$(dpkg-query -W -f='${db:Status-Status} ${Package}, ${Provides}\n' |
     sed -n 's/^installed //p' | tr ',' '\n' | awk 'NF {print $1}')
-  sed -e 's/#.*//' "$here/packages.txt" | awk 'NF {print $1}' | while read -r package; do
+  packages_of_parts | while read -r package; do
     grep -qxF "$package" <<<"$provided" || echo "$package"
   done
 }
@@ -84,12 +92,13 @@ if [[ ${#missing[@]} -gt 0 ]]; then
   fi
   install_packages "${missing[@]}"
 fi
-npm_folders=("$here/../viewer")
-if $tests; then npm_folders+=("$here/../tests/web"); fi
+npm_folders=()
+if has_part viewer; then npm_folders+=("$here/../viewer"); fi
+if has_part tests; then npm_folders+=("$here/../tests/web"); fi
 for folder in "${npm_folders[@]}"; do
   if npm_packages_installed "$folder"; then continue; fi
   if ! $may_install; then
-    echo "setup: npm's packages of ${folder#"$here/../"} are missing; install them with: scripts/setup.sh --tests" >&2
+    echo "setup: npm's packages of ${folder#"$here/../"} are missing; install them with: scripts/setup.sh ${parts[*]}" >&2
     exit 1
   fi
   install_npm_packages "$folder"
