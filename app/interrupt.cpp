@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fovea/core/printable.h"
+#include "fovea/core/thread.h"
 #include "fovea/core/unfinished_output.h"
 
 namespace fovea::app {
@@ -72,7 +73,8 @@ InterruptGuard::InterruptGuard() {
   // Blocked everywhere and waited for in one thread: a handler can neither remove files nor request
   // a stop safely.
   pthread_sigmask(SIG_BLOCK, &signals_, &mask_before_);
-  waiter_ = std::jthread([this](const std::stop_token& done) { wait_for_signals(done); });
+  waiter_ = start_thread("fovea-signals",
+                         [this](const std::stop_token& done) { wait_for_signals(done); });
 }
 
 InterruptGuard::~InterruptGuard() {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "fovea/core/thread.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/exporting/tileset/tileset_json.h"
 
@@ -37,7 +38,8 @@ TileSource::TileSource(const std::filesystem::path& map) : map_(map) {
       tileset_json(root_, std::nullopt, [](const std::string& name) { return name + ".glb"; }));
   idle_readers_.push_back(std::move(reader));
   if (!root_.is_leaf()) {
-    maker_ = std::jthread([this](const std::stop_token& stop) { make_coarse_levels(stop); });
+    maker_ = start_thread("fovea-tiles",
+                          [this](const std::stop_token& stop) { make_coarse_levels(stop); });
   }
 }
 
