@@ -15,7 +15,7 @@
 #include "app/viewer_page.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/stored_calibration.h"
-#include "fovea/server/map_show.h"
+#include "fovea/server/map_server.h"
 
 namespace fovea::app {
 namespace {
@@ -48,7 +48,7 @@ std::shared_ptr<const DriveImages> open_images(const MapReader& map,
 void run(const ViewArguments& arguments, Session& session) {
   // The map is not kept open: its writer could not merge the log.
   const auto images = open_images(open_map(arguments.map), arguments);
-  std::optional<MapShow> show;
+  std::optional<MapServer> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
     show.emplace(arguments.map, viewer_page(), images, options);
   });

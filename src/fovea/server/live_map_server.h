@@ -1,4 +1,4 @@
-// A map shown in browsers while it is made, and after.
+// Serves a map to browsers while it grows, and after.
 #pragma once
 
 #include <filesystem>
@@ -18,14 +18,14 @@
 
 namespace fovea {
 
-/// Serves from construction to destruction; to be given to map_drive() as observer. What it does in
-/// the mapping thread is little, and nearly nothing where nobody looks on; the rest is done by
-/// threads of low priority.
+/// Serves from construction to destruction, as the observer of map_drive(). Its calls in the
+/// mapping thread are short, and almost free without clients. Background threads do the rest.
 class LiveMapServer : public MapObserver {
  public:
-  /// @param job     of the run; outlives the show, as `page` does
+  /// @param job     of the run; must outlive this, as must `page`
   /// @param images  of the drive
-  /// OutputError as WebServer; InputError if the map to resume cannot be read.
+  /// @throws OutputError  as WebServer
+  /// @throws InputError   if the map to resume cannot be read
   LiveMapServer(const MapJob& job, std::shared_ptr<const DriveImages> images,
                 std::span<const PageFile> page, const WebServerOptions& options);
   ~LiveMapServer() override;
@@ -34,7 +34,8 @@ class LiveMapServer : public MapObserver {
 
   void frame_mapped(const FrameRecord& record, const Frame* frame, const TileMap& map) override;
   void map_changed(const TileChanges& changes, const MapRows& rows, const TileMap& map) override;
-  /// The map is whole: from now on the file is shown. InputError if it cannot be read.
+  /// Serves the file from now on, since it has the whole map.
+  /// @throws InputError  if it cannot be read
   void finish();
 
  private:
@@ -50,14 +51,14 @@ class LiveMapServer : public MapObserver {
   MapDescription description_;
   LiveSession session_;
 
-  // The mapping thread's.
+  // Of the mapping thread.
   int late_frames_ = 0;
   std::set<TileId> changing_;             // by the last checkpoint
   std::map<TileId, LiveSample> samples_;  // of tiles that change
-  std::int64_t image_at_ = 0;             // ms, of the last one shown
+  std::int64_t image_at_ = 0;             // ms, of the last image sent
 
   mutable std::mutex guard_;
-  std::shared_ptr<MapSite> site_;  // guarded; once the map is whole
+  std::shared_ptr<MapSite> site_;  // guarded; null until finish()
   WebServer server_;
 };
 

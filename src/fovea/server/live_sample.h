@@ -1,4 +1,4 @@
-// The points of a tile that a live view is shown: one in each cell, chosen as they come.
+// Selects the points of a tile for a live view: the first point of each cell.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,14 @@
 
 namespace fovea {
 
-/// Of one tile. 64 cells along its edge: 6 cm in a tile of 4 m.
+/// The selection of one tile, with 64 cells along its edge: 6 cm in a tile of 4 m.
 class LiveSample {
  public:
-  /// Looks at the points that have been added since the last call, the first in each cell. Where
-  /// points have gone from the tile, it begins anew.
-  /// @return their indices in the tile
+  /// Selects from the points added since the last call. Begins anew if the tile has lost points.
+  /// @return indices of the new selected points in the tile
   std::span<const std::uint32_t> more(const TilePoints& tile, double tile_size);
 
-  /// All that are chosen, after more().
+  /// All selected points, after more().
   const std::vector<std::uint32_t>& all() const { return chosen_; }
 
  private:
@@ -31,12 +30,12 @@ class LiveSample {
 };
 
 /// Appends a section of a live message (docs/viewer-protocol.md).
-/// @param tile   at `id`; nullptr for one that has gone
-/// @param whole  the points are all that the tile has
+/// @param tile   at `id`; null if the map has it no more
+/// @param whole  the points replace all earlier points of the tile
 void append_section(std::string& message, const TileId& id, const TilePoints* tile,
                     std::span<const std::uint32_t> points, bool whole);
 
-/// What stands before the sections.
+/// The bytes before the sections.
 std::string points_header(int frame, std::size_t sections);
 
 }  // namespace fovea

@@ -24,10 +24,10 @@ class ClientSync;
 
 /// A frame as the clients get it.
 struct LiveFrame {
-  FrameRecord record;      ///< of its figures only the score
-  std::size_t points = 0;  ///< of the map, after it
+  FrameRecord record;      ///< with the score as its only figure
+  std::size_t points = 0;  ///< of the map, after this frame
   bool late = false;
-  int late_frames = 0;         ///< up to it
+  int late_frames = 0;         ///< up to this frame
   std::int64_t mapped_at = 0;  ///< ms since 1970
 };
 
@@ -41,9 +41,8 @@ class LiveSession {
   using Bytes = std::shared_ptr<const std::string>;
 
   /// @param map       its file
-  /// @param has_file  whether the file is of this map: before the first commit of a new map,
-  /// another
-  ///                  map may have its name
+  /// @param has_file  whether the file is of this map: before the first commit, another map may
+  ///                  have its name
   /// @param total     frames of the drive
   LiveSession(std::filesystem::path map, bool has_file, double tile_size, int total);
 

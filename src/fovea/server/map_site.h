@@ -15,10 +15,10 @@
 
 namespace fovea {
 
-/// The media type that a file's ending stands for.
+/// The media type of a file ending.
 std::string media_type(std::string_view name);
 
-/// A file of the page as a response; "" is index.html. Status 404 if there is none of that name.
+/// The response with a file of the page; "" is index.html. Status 404 if the page has no such file.
 WebResponse page_response(std::span<const PageFile> page, const std::string& path);
 
 /// The images of a drive as JPEG.
@@ -27,9 +27,9 @@ class DriveImages {
   /// @param drive  with the cameras that the map shows and the map's numbers of its frames
   explicit DriveImages(std::shared_ptr<const FrameSource> drive) : drive_(std::move(drive)) {}
   const DriveInfo& info() const { return drive_->info(); }
-  /// Whether a path of the site is an image's.
+  /// Whether a path of the site names an image.
   static bool has(std::string_view path) { return path.starts_with(kFolder); }
-  /// Of "images/FRAME/CAMERA.jpg"; status 404 where there is no such image.
+  /// The response for "images/FRAME/CAMERA.jpg". Status 404 if there is no such image.
   WebResponse response(std::string_view path) const;
 
  private:
@@ -37,12 +37,12 @@ class DriveImages {
   std::shared_ptr<const FrameSource> drive_;
 };
 
-/// docs/viewer-protocol.md, what there is over HTTP. For several threads.
+/// The HTTP part of docs/viewer-protocol.md. Thread-safe.
 class MapSite {
  public:
-  /// @param page    outlives the site
-  /// @param images  nullptr: none
-  /// InputError if the map cannot be read.
+  /// @param page    must outlive the site
+  /// @param images  may be null
+  /// @throws InputError  if the map cannot be read
   MapSite(const std::filesystem::path& map, std::span<const PageFile> page,
           std::shared_ptr<const DriveImages> images);
 

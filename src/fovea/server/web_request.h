@@ -1,4 +1,4 @@
-// Which requests a server of one's own map answers at all.
+// Decides which requests the server answers.
 #pragma once
 
 #include <optional>

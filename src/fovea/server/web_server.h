@@ -1,5 +1,5 @@
-// A web server for one page: HTTP requests that are answered at once, and WebSockets that are fed.
-// It serves a map to its owner's browser, so it trusts nobody: see WebServerOptions.
+// A web server for one page: HTTP requests and WebSockets that send messages.
+// It serves a private map, so it refuses everything that the page does not need: see WebServer.
 #pragma once
 
 #include <chrono>
@@ -15,18 +15,18 @@ namespace fovea {
 struct WebServerOptions {
   std::string address = "127.0.0.1";  ///< of an interface of this machine
   int port = 0;                       ///< 0: any that is free
-  int threads = 1;                    ///< that make responses, beside the one that moves bytes
-  /// Threads of the server give way to all others of the machine.
+  int threads = 1;                    ///< that make responses; one more transfers bytes
+  /// The threads of the server have low priority.
   bool in_background = false;
 
-  std::size_t max_connections = 128;  ///< those beyond are closed at once
-  std::size_t max_pending = 112;      ///< requests waiting for a response; those beyond get 503
+  std::size_t max_connections = 128;  ///< further ones are closed at once
+  std::size_t max_pending = 112;      ///< requests without a response; further ones get 503
   std::size_t max_header = 8192;      ///< bytes
   std::size_t max_message = 4096;     ///< bytes of a WebSocket's message from the client
   std::chrono::milliseconds request_patience{
-      15'000};  ///< for a request to come, idle time included
-  std::chrono::milliseconds response_patience{60'000};  ///< for a response to be taken
-  /// Without a sign of life for so long a WebSocket is closed; it is asked for one after half.
+      15'000};  ///< for a request to arrive, idle time included
+  std::chrono::milliseconds response_patience{60'000};  ///< for the client to receive a response
+  /// A silent WebSocket is closed after this time, and gets a ping after half of it.
   std::chrono::milliseconds socket_patience{30'000};
 };
 
@@ -35,7 +35,7 @@ struct WebResponse {
   std::string type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body;
 };
-/// One line of text that says why not.
+/// A response with one line of text: the reason.
 WebResponse refusal(int status, const std::string& why);
 
 struct WebMessage {
@@ -43,13 +43,13 @@ struct WebMessage {
   bool binary = false;
 };
 
-/// What one client of a WebSocket is sent. It is asked for a message when the client has taken the
-/// one before, so a client that takes nothing costs nothing.
+/// The messages for one client of a WebSocket. The server requests a message when the client has
+/// received the one before, so a stalled client costs nothing.
 class WebFeed {
  public:
   virtual ~WebFeed() = default;
-  /// The next message; nothing: none now, ask again after WebServer::wake(). Never called twice at
-  /// a time, in any of the server's threads.
+  /// The next message. Empty: none now; the server calls again after WebServer::wake(). One thread
+  /// at a time calls this.
   virtual std::optional<WebMessage> next() = 0;
 };
 
@@ -61,15 +61,15 @@ class WebFeed {
 /// long headers; requests and connections beyond the limits above.
 class WebServer {
  public:
-  /// To be called once, from any thread; to be gone before the server goes.
+  /// Call it once, from any thread. Destroy it before the server.
   using Reply = std::function<void(WebResponse)>;
-  /// Answers a path (decoded, without the first slash and without a query), now or later; called in
-  /// several threads. What it throws, without having replied, is told as status 500.
+  /// Answers a path (decoded, without the first slash and without a query), now or later. Several
+  /// threads call it. An exception becomes status 500.
   using Handler = std::function<void(const std::string& path, Reply reply)>;
   using FeedMaker = std::function<std::unique_ptr<WebFeed>()>;
 
   /// @param feeds  by the path of their WebSocket
-  /// OutputError if the address is none or the port is taken.
+  /// @throws OutputError  if the address is invalid or the port is in use
   WebServer(const WebServerOptions& options, Handler handler,
             std::map<std::string, FeedMaker> feeds = {});
   ~WebServer();
@@ -77,14 +77,13 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   int port() const;
-  /// Where a browser finds it.
+  /// The address for a browser.
   std::string url() const;
-  /// WebSockets that are open.
+  /// Number of open WebSockets.
   std::size_t feeds_open() const;
-  /// Asks feeds that had nothing again. From any thread; returns at once.
+  /// Requests a message from each idle feed. From any thread; returns at once.
   void wake();
-  /// Ends its threads and answers nothing any more. Who keeps replies for later drops them between
-  /// this and the destruction.
+  /// Ends the threads. Destroy kept replies after this and before the server.
   void stop();
 
  private:

@@ -1,17 +1,17 @@
-#include "fovea/server/map_show.h"
+#include "fovea/server/map_server.h"
 
 #include <utility>
 
 namespace fovea {
 
-MapShow::MapShow(const std::filesystem::path& map, std::span<const PageFile> page,
-                 std::shared_ptr<const DriveImages> images, const WebServerOptions& options)
+MapServer::MapServer(const std::filesystem::path& map, std::span<const PageFile> page,
+                     std::shared_ptr<const DriveImages> images, const WebServerOptions& options)
     : site_(std::make_unique<MapSite>(map, page, std::move(images))),
       server_(options, [this](const std::string& path, WebServer::Reply reply) {
         site_->answer(path, std::move(reply));
       }) {}
 
-MapShow::~MapShow() {
+MapServer::~MapServer() {
   server_.stop();
   site_.reset();  // with it the replies that it keeps for later
 }

@@ -1,3 +1,5 @@
+#include "fovea/server/map_server.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,11 +14,10 @@
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/exporting/viewer/map_description.h"
-#include "fovea/server/map_show.h"
 #include "fovea/server/test_drive.h"
 #include "fovea/server/web_client.h"
 
-namespace fovea::map_site_test {
+namespace fovea::map_server_test {
 
 using nlohmann::json;
 using ::testing::ElementsAre;
@@ -24,7 +25,7 @@ using ::testing::HasSubstr;
 
 constexpr std::array kPage{PageFile{"index.html", "<html>"}, PageFile{"assets/page.js", "go()"}};
 
-class MapShowTest : public testing::Test {
+class MapServerTest : public testing::Test {
  protected:
   void show(std::shared_ptr<const DriveImages> images = nullptr) {
     show_.emplace(folder_ / "a.fovea", kPage, std::move(images), WebServerOptions());
@@ -34,11 +35,11 @@ class MapShowTest : public testing::Test {
   json get_json(const std::string& path) { return json::parse(get(path).body); }
 
   TemporaryFolder folder_;
-  std::optional<MapShow> show_;
+  std::optional<MapServer> show_;
   std::optional<WebClient> client_;
 };
 
-TEST_F(MapShowTest, ThePageAndWhatTheMapTellsOfItself) {
+TEST_F(MapServerTest, ThePageAndWhatTheMapTellsOfItself) {
   write_sample_map(folder_ / "a.fovea");
   show();
   EXPECT_EQ(get("").body, "<html>");
@@ -62,7 +63,7 @@ TEST_F(MapShowTest, ThePageAndWhatTheMapTellsOfItself) {
   EXPECT_EQ(get("images/7/3.jpg").status, 404);
 }
 
-TEST_F(MapShowTest, EveryTileOfTheTilesetIsThere) {
+TEST_F(MapServerTest, EveryTileOfTheTilesetIsThere) {
   write_sample_map(folder_ / "a.fovea");
   show();
   const json tileset = get_json("tiles/tileset.json");
@@ -83,7 +84,7 @@ TEST_F(MapShowTest, EveryTileOfTheTilesetIsThere) {
   EXPECT_EQ(get("tiles/r9.glb").status, 404);
 }
 
-TEST_F(MapShowTest, TheWriterOfAMapThatIsShownEndsItAsOneFile) {
+TEST_F(MapServerTest, TheWriterOfAMapThatIsShownEndsItAsOneFile) {
   const TileMap tiles = sample_tile_map();
   const auto writer = MapWriter::create(folder_ / "a.fovea", false);
   put_sample_map(*writer, tiles);
@@ -108,7 +109,7 @@ TEST_F(MapShowTest, TheWriterOfAMapThatIsShownEndsItAsOneFile) {
   EXPECT_THAT(statuses(), ElementsAre(200)) << "a tile that is gone is shown as empty";
 }
 
-TEST_F(MapShowTest, ImagesOfADrive) {
+TEST_F(MapServerTest, ImagesOfADrive) {
   write_sample_map(folder_ / "a.fovea");
   show(std::make_shared<DriveImages>(std::make_shared<TestDrive>()));
   const json map = get_json("map.json");
@@ -123,7 +124,7 @@ TEST_F(MapShowTest, ImagesOfADrive) {
   }
 }
 
-TEST_F(MapShowTest, AnEmptyMap) {
+TEST_F(MapServerTest, AnEmptyMap) {
   MapWriter::create(folder_ / "a.fovea", false)->commit();
   show();
   EXPECT_EQ(get_json("map.json")["points"], 0);
@@ -132,14 +133,14 @@ TEST_F(MapShowTest, AnEmptyMap) {
   EXPECT_EQ(get_json("status.json")["state"], "ready");
 }
 
-TEST_F(MapShowTest, NoMap) {
+TEST_F(MapServerTest, NoMap) {
   EXPECT_THROW(show(), InputError);
   std::ofstream(folder_ / "a.fovea") << "not a map";
   EXPECT_THROW(show(), InputError);
 }
 
 // A tile whose bytes have changed: what needs it says so, all else is shown.
-TEST_F(MapShowTest, ADamagedTileIsToldOf) {
+TEST_F(MapServerTest, ADamagedTileIsToldOf) {
   write_sample_map(folder_ / "a.fovea");
   {
     std::fstream file(folder_ / "a.fovea", std::ios::in | std::ios::out | std::ios::binary);
@@ -166,7 +167,7 @@ TEST_F(MapShowTest, ADamagedTileIsToldOf) {
   EXPECT_THAT(std::string(get_json("status.json")["failure"]), HasSubstr("restore the map"));
 }
 
-TEST_F(MapShowTest, EndsWhileItReads) {
+TEST_F(MapServerTest, EndsWhileItReads) {
   write_sample_map(folder_ / "a.fovea");
   for (int i = 0; i < 20; ++i) {
     show();
@@ -175,4 +176,4 @@ TEST_F(MapShowTest, EndsWhileItReads) {
   }
 }
 
-}  // namespace fovea::map_site_test
+}  // namespace fovea::map_server_test

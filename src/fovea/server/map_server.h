@@ -1,4 +1,4 @@
-// A finished map shown in browsers.
+// Serves a finished map to browsers.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,11 @@
 namespace fovea {
 
 /// Serves a map file from construction to destruction. Errors as MapSite and WebServer.
-class MapShow {
+class MapServer {
  public:
-  MapShow(const std::filesystem::path& map, std::span<const PageFile> page,
-          std::shared_ptr<const DriveImages> images, const WebServerOptions& options);
-  ~MapShow();
+  MapServer(const std::filesystem::path& map, std::span<const PageFile> page,
+            std::shared_ptr<const DriveImages> images, const WebServerOptions& options);
+  ~MapServer();
 
   std::string url() const { return server_.url(); }
 
