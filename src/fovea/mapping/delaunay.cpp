@@ -10,8 +10,6 @@ namespace fovea {
 void DelaunayTriangulation::clear() {
   points_.clear();
   triangles_.clear();
-  whole_triangles_.clear();
-  edges_to_legalize_.clear();
   collinear_.clear();
 }
 
@@ -42,18 +40,30 @@ std::vector<std::int32_t> DelaunayTriangulation::insert(std::span<const GridPoin
   }
   std::vector<std::int32_t> vertex_of(points.size());
   std::int32_t hint = kNoTriangle;
-  constexpr std::size_t kAhead = 8;
-  const std::vector<std::uint32_t> order = insertion_order(points);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const std::uint32_t i = order[k];
-    // The order walks randomly through the caller's memory.
-    __builtin_prefetch(&points[order[std::min(k + kAhead, order.size() - 1)]]);
+  for (const std::uint32_t i : insertion_order(points)) {
     const Insertion insertion = insert_checked(points[i], hint);
     vertex_of[i] = insertion.vertex;
     hint = insertion.triangle;
   }
   order_triangles();
   return vertex_of;
+}
+
+std::vector<std::uint32_t> DelaunayTriangulation::insert(std::span<const GridPoint> points,
+                                                         std::span<const std::int32_t> triangles) {
+  if (points.size() != triangles.size()) {
+    throw std::invalid_argument("Delaunay triangulation: each point needs a triangle");
+  }
+  check_arguments(points, triangles);
+  std::vector<std::uint32_t> point_of;
+  point_of.reserve(points.size());
+  points_.reserve(points_.size() + points.size());
+  triangles_.reserve(triangles_.size() + 2 * points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (insert_checked(points[i], triangles[i]).inserted) point_of.push_back(i);
+  }
+  order_triangles();
+  return point_of;
 }
 
 // Renumbers the triangles by their latest vertices, which follow a curve through the plane. Near
@@ -158,13 +168,6 @@ std::int32_t DelaunayTriangulation::locate(GridPoint point, std::int32_t hint) c
   return entry >> 2;
 }
 
-bool DelaunayTriangulation::strictly_inside(GridPoint point, std::int32_t triangle) const {
-  if (!is_finite(static_cast<std::size_t>(triangle))) return false;
-  const auto [a, b, c] = vertices(static_cast<std::size_t>(triangle));
-  return orientation(at(a), at(b), point) > 0 && orientation(at(b), at(c), point) > 0 &&
-         orientation(at(c), at(a), point) > 0;
-}
-
 // Replaces a triangle by three. A vertex on an edge makes one of them flat until that edge is
 // flipped: the vertex lies inside the circle beyond it.
 void DelaunayTriangulation::split_triangle(std::int32_t triangle, std::int32_t vertex) {
@@ -182,8 +185,7 @@ void DelaunayTriangulation::split_triangle(std::int32_t triangle, std::int32_t v
 // Whether the vertex before the edge lies strictly inside the circumcircle of the triangle beyond.
 // The circle of a triangle outside is the open half-plane in front of its edge of the hull, plus
 // that edge. If the vertex before the edge is infinite, the two triangles change sides.
-// Forced inlining here and below saves a tenth of the time of upsampling.
-[[gnu::always_inline]] inline bool DelaunayTriangulation::must_flip(Edge edge) const {
+bool DelaunayTriangulation::must_flip(Edge edge) const {
   const std::int32_t p = apex(edge), a = apex(next(edge)), b = apex(previous(edge));
   const std::int32_t q = apex(twin(edge));
   if ((p | a | b | q) >= 0) return in_circle(at(q), at(b), at(a), at(p));
@@ -194,7 +196,7 @@ void DelaunayTriangulation::split_triangle(std::int32_t triangle, std::int32_t v
 
 // Triangles (p, a, b), (q, b, a) -> (p, a, q), (q, b, p). p and q keep their corners: `edge`
 // becomes (a, q), still opposite p.
-[[gnu::always_inline]] inline void DelaunayTriangulation::flip(Edge edge) {
+void DelaunayTriangulation::flip(Edge edge) {
   const Edge beyond = twin(edge);
   const Edge edge_bp = twin(next(edge)), edge_aq = twin(next(beyond));
   apex(previous(edge)) = apex(beyond);
@@ -214,20 +216,6 @@ void DelaunayTriangulation::legalize_star(std::int32_t triangle) {
     while (must_flip(edge)) flip(edge);
     edge = next(twin(next(edge)));
   } while (apex(next(edge)) != first);
-}
-
-// Lawson's algorithm from any edges: after a flip the four edges around it may be illegal. A flip
-// renumbers only edges that it adds to the list, so none is lost.
-void DelaunayTriangulation::legalize_edges() {
-  while (!edges_to_legalize_.empty()) {
-    const Edge edge = edges_to_legalize_.back();
-    edges_to_legalize_.pop_back();
-    if (!must_flip(edge)) continue;
-    const Edge beyond = twin(edge);
-    flip(edge);
-    for (const Edge e : {edge, previous(edge), beyond, previous(beyond)})
-      edges_to_legalize_.push_back(e);
-  }
 }
 
 }  // namespace fovea

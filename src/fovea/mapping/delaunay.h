@@ -44,8 +44,7 @@ class DelaunayTriangulation {
   /// @return the vertex of each point; equal points share one
   std::vector<std::int32_t> insert(std::span<const GridPoint> points);
 
-  /// Inserts points with one hint each. A point strictly inside its hint needs no search if it is
-  /// the first there. The edges become Delaunay once for all such points.
+  /// Inserts points, each with a triangle as its hint.
   /// @param triangles  hints; std::invalid_argument if their number differs from that of the points
   /// @return the point of each new vertex, in order; a point at an existing vertex has none
   std::vector<std::uint32_t> insert(std::span<const GridPoint> points,
@@ -74,14 +73,6 @@ class DelaunayTriangulation {
     std::array<std::int32_t, 3> vertex;
     std::array<Edge, 3> twin;  // the same edge in the triangle beyond, opposite each vertex
   };
-  // The fate of one triangle when many are split at once.
-  struct TriangleSplit {
-    std::int32_t vertex = kInfiniteVertex;  // where it is split
-    std::int32_t first = 0;  // its new number; split, that of the first of its three parts
-    bool is_split() const { return vertex != kInfiniteVertex; }
-    /// The edge of the whole triangle opposite `corner`: if split, edge 0 of that part.
-    Edge edge(int corner) const { return is_split() ? 4 * (first + corner) : 4 * first + corner; }
-  };
   // The next and the previous edge of the same triangle, without branches.
   static Edge next(Edge edge) { return edge + 1 - 3 * (edge >> 1 & 1); }
   static Edge previous(Edge edge) { return edge - 1 + 3 * (~(edge | edge >> 1) & 1); }
@@ -100,21 +91,14 @@ class DelaunayTriangulation {
   Insertion insert_while_collinear(GridPoint point);
   void start_with(std::int32_t apex_vertex);
   std::int32_t locate(GridPoint point, std::int32_t hint) const;
-  bool strictly_inside(GridPoint point, std::int32_t triangle) const;
   void split_triangle(std::int32_t triangle, std::int32_t vertex);
   bool must_flip(Edge edge) const;
   void flip(Edge edge);
   void legalize_star(std::int32_t triangle);
-  void legalize_edges();
-  void split_all(std::span<TriangleSplit> splits);
-  void write_parts(const Triangle& whole, const std::array<Edge, 3>& outside,
-                   const TriangleSplit& split, std::span<const TriangleSplit> splits);
   void order_triangles();
 
   std::vector<GridPoint> points_;
   std::vector<Triangle> triangles_;
-  std::vector<Triangle> whole_triangles_;  // triangles_ before split_all()
-  std::vector<Edge> edges_to_legalize_;
   // The vertices while all are collinear, in their order on the line.
   std::map<GridPoint, std::int32_t> collinear_;
 };

@@ -42,25 +42,6 @@ inline bool in_circle_exact(GridPoint a, GridPoint b, GridPoint c, GridPoint p) 
          0;
 }
 
-/// The in-circle determinant of three points relative to a fourth, and the bound of its rounding
-/// error.
-/// @tparam Real  double, or a vector of doubles
-template <class Real>
-struct InCircleDeterminant {
-  Real value, bound;
-
-  /// @param aa, bb, cc  squared lengths of (ax, ay), (bx, by), (cx, cy), whose coordinates are
-  /// exact
-  [[gnu::always_inline]] InCircleDeterminant(const Real& ax, const Real& ay, const Real& aa,
-                                             const Real& bx, const Real& by, const Real& bb,
-                                             const Real& cx, const Real& cy, const Real& cc)
-      : value(aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx)),
-        // The error is at most 10 u (u = 2^-53) times the same sum with absolute values (Shewchuk
-        // 1997, incircle bound A). Since |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on,
-        // the sum below is larger. 16 u cover its own rounding.
-        bound(0x1.0p-49 * (aa * bb + bb * cc + cc * aa)) {}
-};
-
 /// Whether p lies strictly inside the circle through a, b, c (counter-clockwise). Exact: integers
 /// decide the nearly cocircular cases that the floating-point filter leaves open.
 inline bool in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
@@ -68,8 +49,13 @@ inline bool in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
   const double bx = b.x - p.x, by = b.y - p.y;
   const double cx = c.x - p.x, cy = c.y - p.y;
   const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
-  const InCircleDeterminant<double> determinant(ax, ay, aa, bx, by, bb, cx, cy, cc);
-  if (std::abs(determinant.value) > determinant.bound) return determinant.value > 0;
+  const double determinant =
+      aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx);
+  // The error is at most 10 u (u = 2^-53) times the same sum with absolute values (Shewchuk 1997,
+  // incircle bound A). Since |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on, the sum below
+  // is larger. 16 u cover its own rounding.
+  const double bound = 0x1.0p-49 * (aa * bb + bb * cc + cc * aa);
+  if (std::abs(determinant) > bound) return determinant > 0;
   return in_circle_exact(a, b, c, p);
 }
 
