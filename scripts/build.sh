@@ -7,9 +7,14 @@ shift
 configure=$preset
 [[ $preset != fuzz ]] || configure=asan # one build has both
 log=$(mktemp)
-if ! cmake --preset "$configure" >"$log" 2>&1; then
-  cat "$log" >&2
-  exit 1
-fi
-rm -f "$log"
+trap 'rm -f "$log"' EXIT
+run_cmake() {
+  if ! cmake --preset "$configure" >"$log" 2>&1; then
+    cat "$log" >&2
+    exit 1
+  fi
+}
+run_cmake
+# With another compiler than before, CMake drops the preset's other variables.
+if grep -q 'have changed variables that require your cache to be deleted' "$log"; then run_cmake; fi
 cmake --build --preset "$preset" ${1:+--target "$@"}

@@ -7,5 +7,4 @@ rm -rf "$work"
 mkdir -p "$work"
 "$fovea" simulate -o "$work/drive" --frames 6 --quiet --set lidar.columns=400 --set "camera.numbers=[2]"
 "$fovea" map "$work/drive" -o "$work/map.fovea" --threads 4 --quiet
-"$fovea" localize "$work/drive" "$work/map.fovea" -o "$work/poses.txt" --threads 4 --quiet
 "$fovea" info "$work/map.fovea"
