@@ -10,6 +10,8 @@ namespace {
 constexpr double kStep = 2.5, kMaxReach = 20;  // m
 constexpr double kCoarsePairs = 4, kCoarseWidth = 1;
 constexpr int kCoarseIterations = 30;
+/// Points of the scan in the coarse registration. The fine one uses all.
+constexpr std::size_t kCoarsePoints = 2000;
 
 /// Offsets of the cross: the center, then the four arms, nearest first.
 std::vector<Eigen::Vector3d> cross(double reach) {
@@ -21,6 +23,17 @@ std::vector<Eigen::Vector3d> cross(double reach) {
     }
   }
   return offsets;
+}
+
+/// At most `count` points, at even steps.
+RegistrationCloud sample(const RegistrationCloud& cloud, std::size_t count) {
+  RegistrationCloud samples;
+  const std::size_t step = std::max<std::size_t>(1, (cloud.points.size() + count - 1) / count);
+  for (std::size_t i = 0; i < cloud.points.size(); i += step) {
+    samples.points.push_back(cloud.points[i]);
+    if (!cloud.normals.empty()) samples.normals.push_back(cloud.normals[i]);
+  }
+  return samples;
 }
 
 }  // namespace
@@ -36,11 +49,12 @@ std::optional<FoundPlace> search_place(const LocalMap& map, const RegistrationCl
   coarse.max_distance = kCoarsePairs;
   coarse.robust_width = kCoarseWidth;
   coarse.max_iterations = kCoarseIterations;
+  const RegistrationCloud samples = sample(source_lidar, kCoarsePoints);
   std::optional<FoundPlace> best;
   double best_score = kLeastPlaceScore;
   for (const Eigen::Vector3d& offset : cross(reach)) {
     const RigidMotion start = guess_T_odom_lidar * Eigen::Translation3d(offset);
-    const RigidMotion near = register_to(map, source_lidar, start, coarse).T_target_source;
+    const RigidMotion near = register_to(map, samples, start, coarse).T_target_source;
     const RegistrationResult result = register_to(map, source_lidar, near, options);
     if (!result.converged) continue;
     const VerticalFit fit = vertical_fit(map, source_lidar, result.T_target_source);
