@@ -64,6 +64,14 @@ class BoundedQueue {
     return item;
   }
 
+  /// Closes the queue and returns the items that pop() has not returned.
+  std::deque<T> close_and_take() {
+    const std::lock_guard lock(guard_);
+    closed_ = true;
+    changed_.notify_all();
+    return std::exchange(items_, {});
+  }
+
   /// No item follows.
   /// @param error  why, if an error ended the items
   void close(std::exception_ptr error = nullptr) {

@@ -67,6 +67,15 @@ TEST(BoundedQueue, AClosedQueueTakesNothingAndGivesTheRest) {
   EXPECT_FALSE(queue.pop());
 }
 
+TEST(BoundedQueue, TheRestCanBeTakenAtOnce) {
+  BoundedQueue<int> queue(5);
+  for (int i = 0; i < 3; ++i) queue.push(i);
+  EXPECT_EQ(queue.pop(), 0);
+  EXPECT_EQ(queue.close_and_take(), (std::deque<int>{1, 2}));
+  EXPECT_FALSE(queue.pop());
+  EXPECT_FALSE(queue.push(3));
+}
+
 TEST(BoundedQueue, AnErrorComesAfterTheItemsBeforeIt) {
   BoundedQueue<int> queue(8);
   int made = 0;

@@ -1,7 +1,9 @@
 #include "fovea/map/checkpointer.h"
 
 #include <chrono>
+#include <deque>
 #include <limits>
+#include <map>
 
 #include "fovea/core/process_memory.h"
 #include "fovea/core/thread.h"
@@ -72,14 +74,25 @@ std::future<TilePoints> Checkpointer::read_tile(const TileId& id) {
 }
 
 void Checkpointer::finish(TileMap& map, MapRows rows) {
-  wait();
-  tasks_.close();
+  if (options_.on_checkpoint) wait();
+  std::deque<Task> unwritten = tasks_.close_and_take();
   if (thread_.joinable()) thread_.join();  // from here on the caller uses writer_
   if (error_) std::rethrow_exception(error_);
   TileChanges changes = take_changes(map, rows);
+  // The newest snapshot of each tile. The latest checkpoint becomes part of this one.
+  std::map<TileId, std::shared_ptr<const TilePoints>> newest;
+  for (Task& task : unwritten) {
+    if (const auto* changed = std::get_if<ChangedRows>(&task)) write(*changed);
+    if (auto* tile = std::get_if<TileSnapshot>(&task)) newest[tile->id] = std::move(tile->points);
+  }
+  for (const TileId& id : changes.removed) newest.erase(id);
+  for (TileSnapshot& tile : changes.changed) newest[tile.id] = std::move(tile.points);
   write({std::move(rows), std::move(changes.removed)});
-  writer_->put_tiles(changes.changed.size(), [&](std::size_t i) {
-    const TileSnapshot tile = std::move(changes.changed[i]);
+  std::vector<TileSnapshot> tiles;
+  for (auto& [id, points] : newest) tiles.push_back({id, std::move(points)});
+  newest.clear();
+  writer_->put_tiles(tiles.size(), [&](std::size_t i) {
+    const TileSnapshot tile = std::move(tiles[i]);
     return pack_tile(tile.id, *tile.points);
   });
   writer_->finish();

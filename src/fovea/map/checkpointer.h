@@ -59,6 +59,7 @@ class Checkpointer {
   /// Waits until the latest checkpoint is written. Throws its error.
   void wait();
   /// Writes the last changes with all threads, and MapWriter::finish(). No other call may follow.
+  /// Without an observer, the part of the latest checkpoint that is still queued goes with them.
   void finish(TileMap& map, MapRows rows);
 
   /// Reads a tile that an earlier run or a finished checkpoint wrote. Goes before queued tasks.
