@@ -17,9 +17,9 @@ namespace fovea {
 namespace {
 
 #if defined(FOVEA_THREAD_SANITIZER)
-// Debian's TBB is built without ThreadSanitizer, which then reports its synchronisation as races;
-// and a suppression that names TBB hides every race of ours, since TBB is below each of them on the
-// stack. So under ThreadSanitizer the chunks run on plain threads, which it understands.
+// Debian's TBB is built without the thread sanitizer, which therefore reports TBB's synchronization
+// as races. A suppression that names TBB would hide our races, too: TBB is on the stack of each.
+// Under the thread sanitizer, chunks therefore run on plain threads.
 template <class Run>
 void run_chunks(std::size_t chunks, const Run& run) {
   const std::size_t threads = std::min(
@@ -46,7 +46,7 @@ void run_chunks(std::size_t chunks, const Run& run) {
 #else
 template <class Run>
 void run_chunks(std::size_t chunks, const Run& run) {
-  // Who waits for the last chunk takes part in this loop alone: other work may take long.
+  // A thread that waits for the last chunk helps with this loop only: other work may take long.
   tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, chunks, run); });
 }
 #endif
@@ -72,7 +72,7 @@ void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>
   run_chunks(count, make);
   for (std::size_t i = 0; i < count; ++i) take(i);
 #else
-  // So many items a thread are made before they are taken, at most: one may take long to make.
+  // Items per thread that may be made ahead of take(): one item may take long.
   constexpr std::size_t kAhead = 2;
   std::size_t next = 0;
   const auto number = [&](tbb::flow_control& flow) {

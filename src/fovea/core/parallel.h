@@ -8,8 +8,8 @@
 
 namespace fovea {
 
-/// Calls `body(begin, end)` on consecutive chunks of at most `grain` items of [0, count), on the
-/// threads there are. Chunk bounds are multiples of `grain`, whatever the number of threads.
+/// Calls `body(begin, end)` for consecutive chunks of at most `grain` items of [0, count), in
+/// parallel. Chunk bounds are multiples of `grain` at any number of threads.
 void parallel_chunks(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body);
 
@@ -21,8 +21,8 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
   });
 }
 
-/// Calls `make(i)` for each i of [0, count), in parallel, and after it `take(i)`, in order and one
-/// at a time: what needs the order goes on beside what does not.
+/// Calls `make(i)` for each i of [0, count), in parallel. After each of them, calls `take(i)` in
+/// order and one at a time, while later items are made.
 void parallel_in_order(std::size_t count, const std::function<void(std::size_t)>& make,
                        const std::function<void(std::size_t)>& take);
 
@@ -38,13 +38,13 @@ T parallel_sum(std::size_t count, std::size_t grain, T zero, Map&& map) {
   return zero;
 }
 
-/// Runs two things side by side where there are two threads.
+/// Runs two functions, in parallel if there are two threads.
 void run_both(const std::function<void()>& a, const std::function<void()>& b);
 
-/// How many threads the loops above may use.
+/// Number of threads that the loops above may use.
 int available_threads();
 
-/// While it lives, at most `threads` threads work (0: as many as the machine has).
+/// Limits the loops above to `threads` threads during its lifetime (0: no limit).
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
