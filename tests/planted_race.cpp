@@ -30,8 +30,7 @@ int pass_through_queue(bool race) {
   BoundedQueue<std::shared_ptr<int>> queue(1);
   const std::jthread producer = start_thread("producer", [&](const std::stop_token& stop) {
     const auto number = std::make_shared<int>(1);
-    queue.push(number, stop);
-    if (race) *number = 2;
+    if (queue.push(number, stop) && race) *number = 2;
   });
   return **queue.pop();
 }

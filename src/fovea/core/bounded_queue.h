@@ -30,7 +30,7 @@ class BoundedQueue {
 
   /// Waits for room and appends the item.
   /// @return false if `stop` ended the wait, or the queue is closed; the item is dropped
-  bool push(T item, const std::stop_token& stop = {}) {
+  [[nodiscard]] bool push(T item, const std::stop_token& stop = {}) {
     std::unique_lock lock(guard_);
     changed_.wait(lock, stop, [&] { return items_.size() < capacity_ || closed_; });
     if (items_.size() >= capacity_ || closed_) return false;
@@ -39,12 +39,14 @@ class BoundedQueue {
     return true;
   }
 
-  /// Puts an item before all others, also into a full queue. Dropped if the queue is closed.
-  void push_urgent(T item) {
+  /// Puts an item before all items that are not urgent, also into a full queue.
+  /// @return false if the queue is closed; the item is dropped
+  [[nodiscard]] bool push_urgent(T item) {
     const std::lock_guard lock(guard_);
-    if (closed_) return;
-    items_.push_front(std::move(item));
+    if (closed_) return false;
+    items_.insert(items_.begin() + urgent_++, std::move(item));
     changed_.notify_all();
+    return true;
   }
 
   /// Waits for the next item.
@@ -60,6 +62,7 @@ class BoundedQueue {
     }
     std::optional<T> item(std::move(items_.front()));
     items_.pop_front();
+    if (urgent_ > 0) --urgent_;
     changed_.notify_all();
     return item;
   }
@@ -68,6 +71,7 @@ class BoundedQueue {
   std::deque<T> close_and_take() {
     const std::lock_guard lock(guard_);
     closed_ = true;
+    urgent_ = 0;
     changed_.notify_all();
     return std::exchange(items_, {});
   }
@@ -86,6 +90,7 @@ class BoundedQueue {
   std::mutex guard_;  // of all below
   std::condition_variable_any changed_;
   std::deque<T> items_;
+  std::ptrdiff_t urgent_ = 0;  // of the items: the first ones
   bool closed_ = false;
   std::exception_ptr error_;
 };
@@ -96,8 +101,9 @@ class BoundedQueue {
 template <class T, class Next>
 void fill(BoundedQueue<T>& queue, const std::stop_token& stop, Next&& next) {
   try {
-    while (std::optional<T> item = next()) {
-      if (!queue.push(std::move(*item), stop)) break;
+    while (!stop.stop_requested()) {
+      std::optional<T> item = next();
+      if (!item || !queue.push(std::move(*item), stop)) break;
     }
     queue.close();
   } catch (...) {

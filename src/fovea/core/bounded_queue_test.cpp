@@ -47,13 +47,14 @@ TEST(BoundedQueue, HoldsNoMoreThanItsCapacity) {
   }
 }
 
-TEST(BoundedQueue, AnUrgentItemGoesFirstEvenIfTheQueueIsFull) {
+TEST(BoundedQueue, UrgentItemsGoFirstInTheirOrderEvenIfTheQueueIsFull) {
   BoundedQueue<int> queue(2);
-  queue.push(1);
-  queue.push(2);
-  queue.push_urgent(0);
+  EXPECT_TRUE(queue.push(3));
+  EXPECT_TRUE(queue.push(4));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(queue.push_urgent(i));
+  EXPECT_EQ(queue.pop(), 0);
   queue.close();
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(queue.pop(), i);
+  for (int i = 1; i < 5; ++i) EXPECT_EQ(queue.pop(), i);
   EXPECT_FALSE(queue.pop());
 }
 
@@ -62,14 +63,14 @@ TEST(BoundedQueue, AClosedQueueTakesNothingAndGivesTheRest) {
   EXPECT_TRUE(queue.push(7));
   queue.close();
   EXPECT_FALSE(queue.push(8));
-  queue.push_urgent(9);
+  EXPECT_FALSE(queue.push_urgent(9));
   EXPECT_EQ(queue.pop(), 7);
   EXPECT_FALSE(queue.pop());
 }
 
 TEST(BoundedQueue, TheRestCanBeTakenAtOnce) {
   BoundedQueue<int> queue(5);
-  for (int i = 0; i < 3; ++i) queue.push(i);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(queue.push(i));
   EXPECT_EQ(queue.pop(), 0);
   EXPECT_EQ(queue.close_and_take(), (std::deque<int>{1, 2}));
   EXPECT_FALSE(queue.pop());
@@ -90,7 +91,7 @@ TEST(BoundedQueue, AnErrorComesAfterTheItemsBeforeIt) {
 
 TEST(BoundedQueue, AStopEndsTheWaitOfEitherSide) {
   BoundedQueue<int> full(1), empty(1);
-  full.push(1);
+  EXPECT_TRUE(full.push(1));
   std::atomic<bool> pushed{true}, popped{true};
   {
     const std::jthread pushing =

@@ -102,7 +102,7 @@ int available_threads() {
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
-// Made in place: a copied global_control is lifted when the copy's source dies.
+// Made in place: a copy of a global_control ends with the lifetime of its source.
 struct ThreadLimit::Control {
   explicit Control(std::size_t threads)
       : limit(tbb::global_control::max_allowed_parallelism, threads) {}

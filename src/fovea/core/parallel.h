@@ -44,7 +44,7 @@ void run_both(const std::function<void()>& a, const std::function<void()>& b);
 /// Number of threads that the loops above may use.
 int available_threads();
 
-/// Limits the loops above to `threads` threads during its lifetime (0: no limit).
+/// Limits each of the loops above to `threads` threads during its lifetime (0: no limit).
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

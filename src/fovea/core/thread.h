@@ -10,7 +10,7 @@ namespace fovea {
 
 enum class ThreadPriority {
   kNormal,
-  kBackground,  ///< work that is not urgent: on a busy processor it gets about 3 %
+  kBackground,  ///< nice 15: work that is not urgent gets about 3 % of a busy processor
 };
 
 /// Starts a thread. Its destructor requests a stop and joins the thread.

@@ -114,14 +114,15 @@ struct DriveInfo : Messages {
   bool has_image_delays() const;
 };
 
+/// Reads the frames of a drive. All methods may be called by several threads at the same time.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
   virtual const DriveInfo& info() const = 0;
-  /// Reads frame `index` of [info().begin, info().end). Thread-safe. DriveLostError if the drive
-  /// can no longer be read from there on.
+  /// Reads frame `index` of [info().begin, info().end). DriveLostError if the drive can no longer
+  /// be read from there on.
   virtual LoadedFrame load(int index) const = 0;
-  /// Has the disk fetch what load(index) will read, of any index, and waits for nothing.
+  /// Asks the system to read the files of load(index) ahead. Does not wait.
   virtual void expect(int /*index*/) const {}
   /// Time of a frame without reading it; empty if it has none.
   virtual std::optional<TimeNs> stamp(int index) const = 0;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <stdexcept>
 
 #include "fovea/core/process_memory.h"
 #include "fovea/core/thread.h"
@@ -30,11 +31,8 @@ Checkpointer::Checkpointer(std::unique_ptr<MapWriter> writer, const Checkpointer
 Checkpointer::~Checkpointer() { tasks_.close(); }
 
 void Checkpointer::queue(Task task) {
-  if (options_.threaded) {
-    tasks_.push(std::move(task));
-  } else {
-    perform(task);
-  }
+  if (!options_.threaded) return perform(task);
+  if (!tasks_.push(std::move(task))) throw std::logic_error("a map is written on after its end");
 }
 
 TileChanges Checkpointer::take_changes(TileMap& map, const MapRows& rows) const {
@@ -65,10 +63,10 @@ void Checkpointer::wait() {
 std::future<TilePoints> Checkpointer::read_tile(const TileId& id) {
   TileRead read{id, {}};
   std::future<TilePoints> points = read.points.get_future();
-  if (options_.threaded) {
-    tasks_.push_urgent(std::move(read));
-  } else {
+  if (!options_.threaded) {
     queue(std::move(read));
+  } else if (!tasks_.push_urgent(std::move(read))) {
+    throw std::logic_error("a map is read after its end");
   }
   return points;
 }

@@ -48,7 +48,7 @@ struct CheckpointerOptions {
 class Checkpointer {
  public:
   Checkpointer(std::unique_ptr<MapWriter> writer, const CheckpointerOptions& options);
-  /// Waits until the queued checkpoint is committed.
+  /// Writes and commits the queued checkpoint. An error of that is not reported: wait() reports it.
   ~Checkpointer();
 
   /// Queues all changes since the last checkpoint. First waits for the checkpoint before.
@@ -59,11 +59,12 @@ class Checkpointer {
   /// Waits until the latest checkpoint is written. Throws its error.
   void wait();
   /// Writes the last changes with all threads, and MapWriter::finish(). No other call may follow.
-  /// Without an observer, the part of the latest checkpoint that is still queued goes with them.
+  /// Without an observer, the same transaction has the rest of the latest checkpoint.
   void finish(TileMap& map, MapRows rows);
 
-  /// Reads a tile that an earlier run or a finished checkpoint wrote. Goes before queued tasks.
-  /// The future throws InputError if the file is damaged.
+  /// Reads a tile that an earlier run or a finished checkpoint wrote, before the queued tasks of
+  /// checkpoints. The future throws InputError if the file is damaged, or the error of an earlier
+  /// task. After an error no task is performed, and finish() throws the error.
   std::future<TilePoints> read_tile(const TileId& id);
 
  private:
@@ -85,7 +86,7 @@ class Checkpointer {
   void queue(Task task);
   void write(const ChangedRows& changed);
 
-  // Of the writer thread.
+  // Run in the writer thread; without threads, in the caller's.
   void perform(Task& task);
   void perform(ChangedRows& changed);
   void perform(TileSnapshot& tile);
@@ -96,7 +97,7 @@ class Checkpointer {
   void unless_failed(Step&& step);
 
   CheckpointerOptions options_;
-  std::unique_ptr<MapWriter> writer_;  // the writer thread's, until finish() has joined it
+  std::unique_ptr<MapWriter> writer_;  // only the writer thread uses it, until finish() has joined
   std::exception_ptr error_;           // likewise
   std::future<void> written_;          // of the latest checkpoint
   BoundedQueue<Task> tasks_;

@@ -26,11 +26,17 @@ TileMap stored_map(const MapReader& reader, double tile_size) {
 TileCache::TileCache(Checkpointer& file, std::size_t memory)
     : file_(file), most_points_(memory / 2 / kBytesPerPoint) {}
 
-void TileCache::load_within(TileMap& map, const Eigen::Vector3d& center_local, double radius) {
-  for (const TileId& id : map.stored_near(center_local, radius + kRequestedBeyond)) {
+void TileCache::request(const std::vector<TileId>& ids) {
+  for (const TileId& id : ids) {
     if (!requested_.contains(id)) requested_.emplace(id, file_.read_tile(id));
   }
-  for (const TileId& id : map.stored_near(center_local, radius)) requested_.at(id).wait();
+}
+
+void TileCache::load_within(TileMap& map, const Eigen::Vector3d& center_local, double radius) {
+  const std::vector<TileId> needed = map.stored_near(center_local, radius);
+  request(needed);
+  request(map.stored_near(center_local, radius + kRequestedBeyond));
+  for (const TileId& id : needed) requested_.at(id).wait();
   for (auto request = requested_.begin(); request != requested_.end();) {
     auto& [id, tile] = *request;
     if (tile.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
@@ -45,12 +51,13 @@ void TileCache::load_within(TileMap& map, const Eigen::Vector3d& center_local, d
 void TileCache::evict_beyond(TileMap& map, const Eigen::Vector3d& center_local, double radius) {
   file_.wait();
   map.drop_beyond(center_local, radius + (is_full(map) ? kRequestedBeyond : kEvictedBeyond));
-  points_in_reach_ = map.size_in_memory();
+  points_after_eviction_ = map.size_in_memory();
 }
 
 bool TileCache::is_full(const TileMap& map) const {
   // Tiles in reach stay, also if they need more memory than most_points_.
-  return map.size_in_memory() > std::max(most_points_, points_in_reach_ + points_in_reach_ / 4);
+  return map.size_in_memory() >
+         std::max(most_points_, points_after_eviction_ + points_after_eviction_ / 4);
 }
 
 }  // namespace fovea

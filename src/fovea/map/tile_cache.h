@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <future>
 #include <map>
+#include <vector>
 
 #include "fovea/map/checkpointer.h"
 #include "fovea/map/tile_map.h"
@@ -14,6 +15,7 @@ namespace fovea {
 /// @param tile_size  of the map, m
 TileMap stored_map(const MapReader& reader, double tile_size);
 
+/// Evicts tiles of a map that are out of reach, and loads them before the vehicle comes back.
 class TileCache {
  public:
   /// @param file    must outlive the cache
@@ -22,7 +24,7 @@ class TileCache {
 
   /// Loads all tiles that a ball touches, and those of the last submap. Requests tiles somewhat
   /// farther away, so that they are there when the vehicle arrives. InputError if the file is
-  /// damaged.
+  /// damaged; errors of writing as Checkpointer::wait().
   void load_within(TileMap& map, const Eigen::Vector3d& center_local, double radius);
 
   /// Evicts tiles well beyond a ball, but no tile of the last submap and no tile with changes that
@@ -33,9 +35,11 @@ class TileCache {
   bool is_full(const TileMap& map) const;
 
  private:
+  void request(const std::vector<TileId>& ids);
+
   Checkpointer& file_;
-  std::size_t most_points_;          // in memory
-  std::size_t points_in_reach_ = 0;  // in memory after the last evict_beyond()
+  std::size_t most_points_;                // in memory
+  std::size_t points_after_eviction_ = 0;  // in memory, after the last one
   std::map<TileId, std::future<TilePoints>> requested_;
 };
 

@@ -35,19 +35,20 @@ class Tile {
  public:
   /// A new tile.
   Tile() : points(std::make_shared<TilePoints>()), has_changed_(true) {}
-  /// A tile as the store has it.
+  /// A tile that was read from the map's file.
   explicit Tile(TilePoints stored) : points(std::make_shared<TilePoints>(std::move(stored))) {}
   Tile(const Tile& other)
       : points(std::make_shared<TilePoints>(*other.points)), has_changed_(other.has_changed_) {}
   Tile(Tile&&) = default;
   Tile& operator=(const Tile&) = delete;
 
+  /// To keep them for longer than until the next edit(), take a snapshot.
   std::shared_ptr<const TilePoints> points;
 
   bool has_changed() const { return has_changed_; }
   /// The points, to be changed. Earlier references to them are invalid.
   TilePoints& edit();
-  /// The points as they are, which from now on count as unchanged.
+  /// Shares the points as they are. has_changed() is false until the next edit().
   std::shared_ptr<const TilePoints> take_snapshot() {
     has_changed_ = false;
     return points;
@@ -77,9 +78,8 @@ struct TileChanges {
   std::vector<TileId> removed;
 };
 
-/// Points are added to the last submap. Tiles that are far away may be given to a store and taken
-/// back when they are near: whoever adds, removes, colours or looks for points sees only those in
-/// memory.
+/// Points are added to the last submap. A store may take tiles that are far away, and return them
+/// when they are near. All methods that read or change points use only the tiles in memory.
 class TileMap {
  public:
   /// @param tile_size  edge of a tile, m; std::invalid_argument unless positive and at most 65.5

@@ -52,8 +52,8 @@ inline bool in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
   const double determinant =
       aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx);
   // The error is at most 10 u (u = 2^-53) times the same sum with absolute values (Shewchuk 1997,
-  // incircle bound A). Since |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on, the sum below
-  // is larger. 16 u cover its own rounding.
+  // incircle bound A). Since |bx cy| + |by cx| <= |b| |c| <= (bb + cc) / 2, and so on, the sum
+  // below is larger. 16 u cover its own rounding.
   const double bound = 0x1.0p-49 * (aa * bb + bb * cc + cc * aa);
   if (std::abs(determinant) > bound) return determinant > 0;
   return in_circle_exact(a, b, c, p);

@@ -15,7 +15,7 @@ constexpr std::size_t kQueued = 1;
 FramePipeline::FramePipeline(FramePipelineStages stages, bool threaded, const std::stop_token& stop)
     : stages_(std::move(stages)),
       threaded_(threaded),
-      stop_(stop),
+      user_stop_(stop),
       read_(kQueued),
       tracked_(kQueued),
       reader_(threaded ? start_reader() : std::jthread()),
@@ -23,16 +23,16 @@ FramePipeline::FramePipeline(FramePipelineStages stages, bool threaded, const st
       stop_reading_(stop, [this] { reader_.request_stop(); }) {}
 
 std::jthread FramePipeline::start_reader() {
-  return start_thread("fovea-read", [this](const std::stop_token& end) {
-    fill(read_, end, [&] { return stages_.read(end); });
+  return start_thread("fovea-read", [this](const std::stop_token& thread_stop) {
+    fill(read_, thread_stop, [&] { return stages_.read(thread_stop); });
   });
 }
 
 std::jthread FramePipeline::start_tracker() {
-  return start_thread("fovea-track", [this](const std::stop_token& end) {
-    fill(tracked_, end, [&] {
+  return start_thread("fovea-track", [this](const std::stop_token& thread_stop) {
+    fill(tracked_, thread_stop, [&] {
       stages_.apply_deferred();
-      return track(read_.pop(end));
+      return track(read_.pop(thread_stop));
     });
   });
 }
@@ -40,11 +40,11 @@ std::jthread FramePipeline::start_tracker() {
 std::optional<TrackedFrame> FramePipeline::next() {
   if (threaded_) return tracked_.pop();
   stages_.apply_deferred();
-  return track(stages_.read(stop_));
+  return track(stages_.read(user_stop_));
 }
 
 std::optional<TrackedFrame> FramePipeline::track(std::optional<ReadFrame> read) {
-  if (!read || stop_.stop_requested()) return std::nullopt;
+  if (!read || user_stop_.stop_requested()) return std::nullopt;
   TrackedFrame frame;
   frame.read = *std::move(read);
   frame.tracking_began = WallClock::now();

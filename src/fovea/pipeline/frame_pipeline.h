@@ -1,9 +1,11 @@
 // Reads and tracks the frames of a drive while the caller maps:
 //
-//   thread       work                       result goes to
-//   fovea-read   read: files or a sensor    queue read_
-//   fovea-track  track: pose of the LiDAR   queue tracked_
+//   thread       work                          result goes to
+//   fovea-read   FramePipelineStages::read     queue read_
+//   fovea-track  FramePipelineStages::track    queue tracked_
 //   the caller   next(), then mapping
+//
+// ARCHITECTURE.md has all threads of a run.
 #pragma once
 
 #include <functional>
@@ -54,7 +56,7 @@ class FramePipeline {
 
   FramePipelineStages stages_;
   bool threaded_;
-  std::stop_token stop_;
+  std::stop_token user_stop_;
   BoundedQueue<ReadFrame> read_;
   BoundedQueue<TrackedFrame> tracked_;
   std::jthread reader_, tracker_;  // use all of the above; without threads, both are empty

@@ -8,7 +8,8 @@
 namespace fovea {
 namespace {
 
-/// The source expects a frame this many frames ahead. A sleeping or busy disk may take a second.
+/// The system reads the files of the next frames ahead, this one included. A sleeping or busy disk
+/// may take a second.
 constexpr std::size_t kExpected = 10;
 /// With a rate, decoding starts this long before the frame is due, in periods. Earlier it would
 /// slow down the frame before.

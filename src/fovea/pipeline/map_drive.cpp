@@ -15,6 +15,7 @@
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/make_mapper.h"
+#include "fovea/pipeline/map_tracked_frame.h"
 #include "fovea/pipeline/run_meta.h"
 #include "fovea/pipeline/run_preparation.h"
 #include "fovea/pipeline/view_check.h"
@@ -25,24 +26,6 @@ namespace {
 /// Frames from one check of dropped points to the next: does not depend on timing.
 constexpr std::size_t kPointsCheckedEvery = 30;
 
-/// Maps a tracked frame.
-FrameRecord map_frame(IncrementalMapper& mapper, const FrameSource& source, const DriveInfo& drive,
-                      TrackedFrame& tracked) {
-  if (const auto* skipped = std::get_if<SkippedFrame>(&tracked.read.result)) {
-    return skipped_record(*skipped, source.stamp(skipped->index));
-  }
-  const WallClock::time_point mapping_began = WallClock::now();
-  const Frame& frame = std::get<Frame>(tracked.read.result);
-  FrameRecord record = record_of(mapper.map_frame(frame, std::move(*tracked.tracked)));
-  record.milliseconds["frame"] = milliseconds_since(tracked.arrival());
-  record.milliseconds["wait"] = milliseconds(tracked.tracking_began - tracked.arrival()) +
-                                milliseconds(mapping_began - tracked.tracking_ended);
-  record.milliseconds["decode"] = tracked.read.decode_ms;
-  note_missing_images(frame, record);
-  add_views(frame, drive, record);
-  return record;
-}
-
 /// Error if the run was stopped, for steps before there is a map to keep.
 void require_no_stop(const MapJob& job) {
   if (!job.stop.stop_requested()) return;
@@ -50,7 +33,9 @@ void require_no_stop(const MapJob& job) {
               "give the same command again");
 }
 
-/// A run of a mapper over a drive, with its figures and its file.
+/// A run of a mapper over a drive, with its figures and its file. Over ten members: all state that
+/// lives as long as the run. The order counts: the mapper loads tiles through the cache, the cache
+/// through the file.
 class MapRun {
  public:
   MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta)
@@ -87,6 +72,11 @@ class MapRun {
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
   TrackedScan track(const Frame& frame);  // runs in the tracker's thread
   void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
+  void note_position(const FrameRecord& record) {
+    if (record.status != FrameStatus::kSkipped) {
+      position_local_ = record.T_local_lidar.translation();
+    }
+  }
   void checkpoint_if_due();
   void check_calibration(const TrackedFrame& tracked, FrameRecord& record);
   /// InputError if too many points were dropped so far.
@@ -119,7 +109,8 @@ class MapRun {
   std::optional<CalibrationCheck> check_;
   std::vector<CameraCalibration> calibration_;  // found by check_
   std::optional<FrameRecord> latest_;
-  std::size_t frames_before_ = 0;  // of an earlier run
+  Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();  // of the last frame with a pose
+  std::size_t frames_before_ = 0;                             // of an earlier run
   std::optional<DriveLostError> lost_;
 };
 
@@ -155,6 +146,7 @@ void MapRun::resume_from_file() {
   }
   mapper_->resume(stored_map(reader, job_.settings.tile_size()), records, source_);
   if (!records.empty()) latest_ = records.back();
+  for (const FrameRecord& record : records) note_position(record);
   if (log_.has_mapped()) views_.skip();
 }
 
@@ -205,7 +197,7 @@ void MapRun::map_next(TrackedFrame& tracked,
                       const std::function<void(const MapProgress&)>& progress) {
   const auto* frame = std::get_if<Frame>(&tracked.read.result);
   if (frame != nullptr) views_.add(frame->scan);
-  FrameRecord record = map_frame(*mapper_, source_, drive_, tracked);
+  FrameRecord record = map_tracked_frame(*mapper_, source_, drive_, tracked);
   check_calibration(tracked, record);
   figures_.add(record, /*is_new=*/true);
   log_.add(record);
@@ -214,6 +206,7 @@ void MapRun::map_next(TrackedFrame& tracked,
   if (progress) {
     progress({int(log_.size()), int(drive_.frame_count()), mapper_->map().size(), &record});
   }
+  note_position(record);
   latest_ = std::move(record);
   mapper_->apply_deferred_mapping();
 }
@@ -223,14 +216,16 @@ void MapRun::checkpoint_if_due() {
   TileMap& map = mapper_->map();
   const bool is_due = log_.fresh() >= job_.checkpoint_frames && !file_.is_writing();
   if (!is_due && !cache_.is_full(map)) return;
-  cache_.evict_beyond(map, latest_->T_local_lidar.translation(), mapper_->reach());
+  cache_.evict_beyond(map, position_local_, mapper_->reach());
   file_.checkpoint(map, fresh_rows(/*last=*/false));
 }
 
 void MapRun::finish() {
-  if (!log_.has_mapped() || !views_.passed()) require_no_stop(job_);
-  if (!log_.has_mapped()) {
+  if (!log_.has_mapped() || !views_.passed()) {
+    require_no_stop(job_);
     if (lost_) throw *lost_;
+  }
+  if (!log_.has_mapped()) {
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
                      "check that the drive has scans and images for the frames asked for");
   }

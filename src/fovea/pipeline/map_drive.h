@@ -17,7 +17,7 @@
 
 namespace fovea {
 
-/// Observes a growing map. Called in the mapping thread.
+/// Observes a growing map. Called in the thread of map_drive().
 class MapObserver {
  public:
   virtual ~MapObserver() = default;
@@ -37,19 +37,19 @@ struct MapJob {
   /// T_local_lidar of the frames of the drive's range, where pose_source is kGiven, or of its first
   /// ones (kGivenFirst).
   std::vector<RigidMotion> given_poses;
-  /// Frames a second, released by the clock as a live sensor does; 0: as fast as they are mapped.
+  /// Frames per second of a simulated live sensor; 0: full speed.
   double rate = 0;
   /// Reading, tracking, mapping and writing run in parallel if there is more than one thread. The
   /// map is the same.
   bool overlap = true;
   bool calibrate = false;      ///< correct the calibration first (pipeline/self_calibration.h)
   bool force = false;          ///< overwrite `output`
-  bool allow_dropped = false;  ///< however many points of the scans are dropped
-  bool resume = false;         ///< go on with `output`, which an earlier run left unfinished
-  /// Bytes that the process should keep to: tiles of the map that are out of reach are in the file
-  /// alone.
+  bool allow_dropped = false;  ///< no limit for the share of dropped points
+  bool resume = false;         ///< continue `output`, which an earlier run did not finish
+  /// Bytes that the process should keep to. Tiles out of reach are only in the file.
   std::size_t memory = std::size_t{1} << 30;
-  /// Frames from one commit to the next, at least: what a crash can cost.
+  /// Least number of frames from one checkpoint to the next. A crash costs these frames, and more
+  /// on a slow disk.
   std::size_t checkpoint_frames = 30;
   MapObserver* observer = nullptr;  ///< or none; outlives the run
   std::stop_token stop;             ///< ends after the frames at hand; what was mapped is committed
@@ -61,12 +61,12 @@ struct MapProgress {
   const FrameRecord* latest = nullptr;
 };
 
-/// Maps the frames of a drive into a map file. `progress` is called in the caller's thread after
-/// each frame, in order. Errors as in MapWriter; InputError if no frame of the range can be used,
-/// if the drive can no longer be read in mid-run or too many frames are damaged (the map of the
-/// other frames is kept),
-/// if navigation's poses are wanted and there are none, or if the map to resume was made with other
-/// settings. Where frames have been committed before an error, the file stays, to be resumed.
+/// Maps the frames of a drive into a map file. ARCHITECTURE.md draws its threads and queues.
+/// @param progress  called in the caller's thread after each frame, in order
+/// Errors as in MapWriter. InputError if no frame of the range is usable, if the drive has no poses
+/// of navigation but the job needs them, or if the map to resume has other settings. InputError
+/// after the map of all other frames is complete, if the drive was lost or too many frames are
+/// damaged. After any other error, the file has the frames of the last commit and can be resumed.
 MapSummary map_drive(const FrameSource& source, const MapJob& job,
                      const std::function<void(const MapProgress&)>& progress);
 
