@@ -168,10 +168,10 @@ TEST_P(CheckpointerTest, AnErrorOfWritingSurfaces) {
   EXPECT_THROW(file->finish(map, {}), std::invalid_argument);
 }
 
-TEST_P(CheckpointerTest, AFailedReadSurfacesAtTheEndAtTheLatest) {
+TEST_P(CheckpointerTest, AFailedReadEndsTheMap) {
   const auto file = checkpointer();
   TileMap map = map_of(points_at(0, random_));
-  file->read_tile({7, {}});  // not in the file
+  file->read_tile({7, {}}).wait();  // not in the file
   EXPECT_THROW(file->finish(map, {}), InputError);
 }
 
