@@ -69,8 +69,7 @@ void solo(benchmark::State& state, Prepare&& prepare, Ours&& ours) {
 
 template <class Ours>
 void solo(benchmark::State& state, Ours&& ours) {
-  solo(
-      state, [] {}, std::forward<Ours>(ours));
+  solo(state, [] {}, std::forward<Ours>(ours));
 }
 
 }  // namespace fovea::bench

@@ -34,12 +34,14 @@ struct Peer {
   PeerRegistration (*align)(const RegistrationTask&);
 };
 
-const std::vector<Peer> kPeers {
+const std::vector<Peer> kPeers{
 #if defined(FOVEA_PCL_PEER)
-  {"PCL's GICP", true, pcl_gicp}, {"PCL's ICP, point to point", false, pcl_icp},
+    {"PCL's GICP", true, pcl_gicp},
+    {"PCL's ICP, point to point", false, pcl_icp},
 #endif
 #if defined(FOVEA_OPEN3D_PEER)
-      {"Open3D's GICP", true, open3d_gicp}, {"Open3D's ICP, point to plane", false, open3d_icp},
+    {"Open3D's GICP", true, open3d_gicp},
+    {"Open3D's ICP, point to plane", false, open3d_icp},
 #endif
 };
 

@@ -68,8 +68,7 @@ void bench_normals(benchmark::State& state, const BenchData& data) {
     alike += std::abs(a[i].dot(b[i])) > 0.9f;
   }
   check(known > points.size() / 2 && alike > known * 2 / 3, "normals unlike the tree's");
-  duel(
-      state, [&] { return ours().size(); }, [&] { return by_tree().size(); });
+  duel(state, [&] { return ours().size(); }, [&] { return by_tree().size(); });
   state.counters["points"] = static_cast<double>(points.size());
 }
 
@@ -87,8 +86,7 @@ void bench_alignment(benchmark::State& state, const BenchData& data) {
   const Eigen::Vector3d apart = (T_origin_odom * result.T_target_source).translation() -
                                 by_tree().T_target_source.translation();
   check(result.converged && apart.norm() < 1e-3, "a pose unlike the tree's");
-  duel(
-      state, [&] { return ours().pairs; }, [&] { return by_tree().pairs; });
+  duel(state, [&] { return ours().pairs; }, [&] { return by_tree().pairs; });
   state.counters["points"] = static_cast<double>(scan.points.size());
   state.counters["target"] = static_cast<double>(target.cloud.points.size());
 }

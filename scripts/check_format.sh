@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mapfile -t files < <(git ls-files '*.h' '*.cpp')
 if [[ ${1:-} == --fix ]]; then
-  clang-format -i "${files[@]}"
+  clang-format-19 -i "${files[@]}"
 else
-  clang-format --dry-run --Werror "${files[@]}"
+  clang-format-19 --dry-run --Werror "${files[@]}"
 fi

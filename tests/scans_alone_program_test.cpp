@@ -322,8 +322,7 @@ TEST_F(SweepsWithoutTimes, AThinnedDriveNamesTheAssumedPeriodAndAKeyCorrectsIt) 
 TEST_F(SweepsWithoutTimes, AStampAtTheSweepsEndIsStatedByAKey) {
   map_note();
   const PointCloud middle = points_true(truth_);
-  rewrite_stamps(
-      "street/lidar/stamps.csv", [](int i) { return std::optional(i); }, 51'700'000);
+  rewrite_stamps("street/lidar/stamps.csv", [](int i) { return std::optional(i); }, 51'700'000);
   EXPECT_THAT(map_note(),
               AllOf(HasSubstr("stamp at 0.5 of the sweep (default)"), HasSubstr("stamp_phase")));
   const PointCloud assumed = points_true(truth_);

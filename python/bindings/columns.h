@@ -29,7 +29,7 @@ struct ColumnEntry<Rgb> {
 /// N or N x 3 numbers.
 template <class Entry>
 pybind11::array column_array(const std::shared_ptr<const PointCloud>& cloud,
-                             std::vector<Entry> PointCloud::*column) {
+                             std::vector<Entry> PointCloud::* column) {
   using Scalar = typename ColumnEntry<Entry>::Scalar;
   constexpr int kWidth = ColumnEntry<Entry>::kWidth;
   static_assert(sizeof(Entry) == kWidth * sizeof(Scalar));
@@ -42,7 +42,7 @@ pybind11::array column_array(const std::shared_ptr<const PointCloud>& cloud,
 /// Nothing where the cloud has points, and not this column.
 template <class Entry>
 std::optional<pybind11::array> optional_column(const std::shared_ptr<const PointCloud>& cloud,
-                                               std::vector<Entry> PointCloud::*column) {
+                                               std::vector<Entry> PointCloud::* column) {
   if (((*cloud).*column).size() != cloud->size()) return std::nullopt;
   return column_array(cloud, column);
 }

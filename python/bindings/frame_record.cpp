@@ -13,7 +13,7 @@ namespace {
 
 /// One of the twists that its sweep was compensated by.
 std::optional<py::array_t<double>> twist_array(const FrameRecord& record,
-                                               Twist SweepMotion::*twist) {
+                                               Twist SweepMotion::* twist) {
   if (!record.motion) return std::nullopt;
   return py::array_t<double>(6, ((*record.motion).*twist).data());
 }

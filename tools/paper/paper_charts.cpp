@@ -30,7 +30,7 @@ struct Figure {
   const char* y_label;
   const char* path;  ///< of a row's JSON
   double factor;
-  double PaperScore::*published;
+  double PaperScore::* published;
 };
 constexpr Figure kFigures[4] = {
     {"scan-matching", "Scan-matching error", "m", "/all/scan_matching/mean", 1,
@@ -74,7 +74,7 @@ std::string write_chart(const DriveResults& drive, const Figure& f,
 }
 
 std::string write_published_chart(const Figure& f, const std::filesystem::path& folder,
-                                  PaperScore PaperRow::*sequence, const char* name) {
+                                  PaperScore PaperRow::* sequence, const char* name) {
   const char* y_label = f.published == &PaperScore::time ? "s" : f.y_label;
   const BarChart chart =
       chart_of(fmt::format("The paper, sequence {}", name), y_label, [&](const std::string& row) {

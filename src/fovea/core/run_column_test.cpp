@@ -99,9 +99,8 @@ TEST(RunColumn, GoesThroughRunsFromAnyPlaceOn) {
   const Column runs(Values{4, 4, 5, 5, 5, 8});
   const Seen all{{0, 2, 4}, {2, 5, 5}, {5, 6, 8}};
   Seen seen;
-  runs.for_each_run([&](auto begin, auto end, std::int32_t value) {
-    seen.push_back({begin, end, value});
-  });
+  runs.for_each_run(
+      [&](auto begin, auto end, std::int32_t value) { seen.push_back({begin, end, value}); });
   EXPECT_EQ(seen, all);
   for (std::uint32_t first = 0; first <= runs.size(); ++first) {
     Seen expected;

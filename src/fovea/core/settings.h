@@ -58,7 +58,7 @@ class SettingVisitor {
 
   /// One of the values that names_of(Enum) knows.
   template <class Enum>
-  requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
   void operator()(std::string_view key, Enum& value) {
     const auto entries = names_of(Enum{});
     std::vector<std::string_view> names;

@@ -38,8 +38,8 @@ class Setting {
 
   /// One of the values that names_of(Enum) returns.
   template <class Enum>
-  requires std::is_enum_v<Enum> Setting(std::string key, Enum& option, Enum default_value,
-                                        std::string text)
+    requires std::is_enum_v<Enum>
+  Setting(std::string key, Enum& option, Enum default_value, std::string text)
       : Setting(
             key, names_text<Enum>(), [key, &option](SettingVisitor& visit) { visit(key, option); },
             [&option, default_value] { option = default_value; }, [] { return std::string(); },

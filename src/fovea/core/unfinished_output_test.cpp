@@ -31,7 +31,9 @@ TEST(UnfinishedOutput, DiscardRemovesOnlyWhatIsNotFinished) {
   const TemporaryFolder folder;
   EXPECT_TRUE(in_child([&] {
     OutputFile done(folder / "done", false), open(folder / "open", false);
-    { const OutputFile given_up(folder / "given_up", false); }
+    {
+      const OutputFile given_up(folder / "given_up", false);
+    }
     OutputFolder done_folder(folder / "done_folder", false, {"a"});
     const OutputFolder open_folder(folder / "open_folder", false, {"a"});
     open.stream() << std::string(3 << 20, 'x');

@@ -42,7 +42,9 @@ void fold_log(const fs::path& path) {
   const fs::path file = fs::canonical(path, ignored);
   if (ignored || !has_side_files(file)) return;
   try {
-    { const MapReader is_a_map(file); }
+    {
+      const MapReader is_a_map(file);
+    }
     // Fails at once while another program has the map open.
     Database(file, Access::kWrite, path)
         .attempt("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");

@@ -102,7 +102,9 @@ TEST(MapWriter, ForceReplacesAtTheFirstCommit) {
     const auto writer = MapWriter::create(folder / "a.fovea", false);
     put_meta_and_commit(*writer, "old");
   }
-  { MapWriter::create(folder / "a.fovea", true)->put_meta("config", "dropped"); }
+  {
+    MapWriter::create(folder / "a.fovea", true)->put_meta("config", "dropped");
+  }
   EXPECT_EQ(MapReader(folder / "a.fovea").meta().at("config"), "old");
   {
     const auto writer = MapWriter::create(folder / "a.fovea", true);

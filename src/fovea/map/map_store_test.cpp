@@ -419,10 +419,8 @@ TEST(MapDigest, ChangesWithAnyBitOfATile) {
   const PointCloud tile = largest.points->cloud();
   std::set<std::string> digests = {digest_with([](MapWriter&) {})};
   const auto expect_new = [&](const PointCloud& changed) {
-    EXPECT_TRUE(digests.insert(digest_with([&](MapWriter& w) {
-                         w.put_tile({1, key}, changed);
-                       }))
-                    .second);
+    EXPECT_TRUE(
+        digests.insert(digest_with([&](MapWriter& w) { w.put_tile({1, key}, changed); })).second);
   };
   const std::size_t last = tile.size() - 1;
   PointCloud changed = tile;

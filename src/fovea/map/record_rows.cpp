@@ -66,7 +66,7 @@ Row drive_row(std::size_t id, const DriveRecord& drive) {
           cell(std::int64_t{drive.end_frame}),
           cell(std::int64_t{drive.frame_shift}),
           pose_cell(drive.T_local_drive, what)};
-  for (const double GeodeticPoint::*part :
+  for (const double GeodeticPoint::* part :
        {&GeodeticPoint::latitude, &GeodeticPoint::longitude, &GeodeticPoint::altitude}) {
     require_finite(!drive.origin || std::isfinite((*drive.origin).*part), what);
     row.push_back(drive.origin ? cell((*drive.origin).*part) : Cell());

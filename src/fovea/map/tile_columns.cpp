@@ -209,13 +209,8 @@ ColumnKind kind_of(std::size_t column) {
   ColumnKind kind;
   with_column(tile, column, [&](const auto& of_tile) {
     by_packing(
-        tile, of_tile,
-        [&](const auto& planes) {
-          kind = {planes.size() * kPlaneBytes, true};
-        },
-        [&](const auto&) {
-          kind = {kChannels * kPlaneBytes, true};
-        },
+        tile, of_tile, [&](const auto& planes) { kind = {planes.size() * kPlaneBytes, true}; },
+        [&](const auto&) { kind = {kChannels * kPlaneBytes, true}; },
         [&]<class Value>(const RunColumn<Value>&) { kind.parts = kRunBytes<Value>; },
         [&]<class Values>(const Values&) {
           using Colors = const std::vector<FusedColor>;

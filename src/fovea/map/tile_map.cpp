@@ -152,7 +152,7 @@ void TileMap::put_camera(const TileId& id, std::span<const std::uint32_t> indice
 }
 
 template <class Tiles, class F>
-void TileMap::for_each_near(Tiles Submap::*tiles, const Eigen::Vector3d& center_local,
+void TileMap::for_each_near(Tiles Submap::* tiles, const Eigen::Vector3d& center_local,
                             double radius, F&& f) const {
   const double reach = radius + kRoundingMargin * tile_size_;
   if (!(reach >= 0)) return;

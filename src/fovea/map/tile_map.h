@@ -145,7 +145,7 @@ class TileMap {
   void require_same_columns(bool has_intensity);
   /// Calls f(id, value) for what a map by keys of each submap has within a ball.
   template <class Tiles, class F>
-  void for_each_near(Tiles Submap::*tiles, const Eigen::Vector3d& center_local, double radius,
+  void for_each_near(Tiles Submap::* tiles, const Eigen::Vector3d& center_local, double radius,
                      F&& f) const;
 
   double tile_size_;

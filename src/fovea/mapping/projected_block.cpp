@@ -14,9 +14,7 @@ void ProjectedBlock::project(std::span<const Eigen::Vector3f> points_b,
                              const Eigen::Matrix3f& R_cam_b, const Eigen::Vector3f& t_cam_b) {
   project_all(
       points_b.size(),
-      [&](std::size_t i) {
-        return std::array{points_b[i].x(), points_b[i].y(), points_b[i].z()};
-      },
+      [&](std::size_t i) { return std::array{points_b[i].x(), points_b[i].y(), points_b[i].z()}; },
       R_cam_b, t_cam_b);
 }
 

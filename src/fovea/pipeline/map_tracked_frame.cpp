@@ -8,8 +8,8 @@
 
 namespace fovea {
 
-FrameRecord map_tracked_frame(IncrementalMapper& mapper, const FrameSource& source, const DriveInfo& drive,
-                      TrackedFrame& tracked) {
+FrameRecord map_tracked_frame(IncrementalMapper& mapper, const FrameSource& source,
+                              const DriveInfo& drive, TrackedFrame& tracked) {
   if (const auto* skipped = std::get_if<SkippedFrame>(&tracked.read.result)) {
     return skipped_record(*skipped, source.stamp(skipped->index));
   }

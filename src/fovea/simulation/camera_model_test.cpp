@@ -96,9 +96,8 @@ TEST(CameraModel, ARollingShutterShearsUprightEdges) {
   const Camera camera = test_camera();
   constexpr double kSpeed = 25, kReadout = 0.04;  // m/s to the left, s
   const auto place = [&](double row) { return Vector3d(0, kSpeed * kReadout * (row - 0.5), 0); };
-  const Rendering image = view.model->render_rows([&](double row) {
-    return CameraModel::View{looking_ahead(place(row)), view.still};
-  });
+  const Rendering image = view.model->render_rows(
+      [&](double row) { return CameraModel::View{looking_ahead(place(row)), view.still}; });
   const Rendering still = view.model->render(looking_ahead(place(0.5)), view.still);
   // The light left of the edge is as wide as the edge is far to the right.
   const auto edge_of = [&](const Rendering& rendering, int v) {

@@ -36,8 +36,7 @@ TEST(Path, StraightLineAndOffsets) {
 TEST(Path, BendsAgreeWithAFineSum) {
   const double bend = 0.4, length = 25;
   const auto heading = [=](double s) { return bend * std::sin(s / length); };
-  const Path path(
-      heading, [=](double s) { return bend / length * std::cos(s / length); }, -3, 200);
+  const Path path(heading, [=](double s) { return bend / length * std::cos(s / length); }, -3, 200);
   // Midpoint rule with steps of a millimetre: an error of 1e-9 m or so over 61 m.
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   const double step = 1e-3;

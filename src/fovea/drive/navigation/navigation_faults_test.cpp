@@ -183,10 +183,9 @@ TEST_F(NavigationFaultsTest, AnglesInDegrees) {
 TEST_F(NavigationFaultsTest, InvertedPoses) {
   const auto inverted = [](const RigidMotion& T) { return T.inverse(); };
   EXPECT_THAT(cause_of_poses(inverted), HasSubstr("cause: poses are T_body_world"));
-  EXPECT_THAT(cause_of_poses([&](const RigidMotion& T) {
-                return (turned(1, {40, -70, 3}) * T).inverse();
-              }),
-              HasSubstr("cause: poses are T_body_world"));
+  EXPECT_THAT(
+      cause_of_poses([&](const RigidMotion& T) { return (turned(1, {40, -70, 3}) * T).inverse(); }),
+      HasSubstr("cause: poses are T_body_world"));
   bend_ = 1e-6;
   EXPECT_THAT(cause_of_poses([](const RigidMotion& T) { return T.inverse(); }),
               HasSubstr("poses are T_body_world"));

@@ -116,12 +116,9 @@ std::vector<NavigationRepair> repaired_positions(const NavigationSteps& steps,
   repairs.move("latitude and longitude are swapped",
                [&](const Eigen::Vector3d& p) { return swapped(p, origin); });
   repairs.turn("yaw grows clockwise from north, not counter-clockwise from east",
-               [](const Angles& a) {
-                 return Angles{kQuarter - a.yaw, a.pitch, a.roll};
-               });
-  repairs.turn("yaw counts from north, not from east", [](const Angles& a) {
-    return Angles{a.yaw + kQuarter, a.pitch, a.roll};
-  });
+               [](const Angles& a) { return Angles{kQuarter - a.yaw, a.pitch, a.roll}; });
+  repairs.turn("yaw counts from north, not from east",
+               [](const Angles& a) { return Angles{a.yaw + kQuarter, a.pitch, a.roll}; });
   repairs.turn("roll, pitch and yaw are in degrees, not in radians", [](const Angles& a) {
     return Angles{a.yaw * kDegree, a.pitch * kDegree, a.roll * kDegree};
   });

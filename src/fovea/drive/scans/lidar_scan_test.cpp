@@ -127,9 +127,7 @@ TEST_F(LidarScanTest, DroppedPointsAreCountedByReason) {
 TEST_F(LidarScanTest, OverATenthOfFaultyPointsIsTooMany) {
   EXPECT_NO_THROW(require_few_dropped({900, 0, 0, 10}, 90, "drive"));
   EXPECT_THAT(
-      error_of<InputError>([] {
-        require_few_dropped({0, 0, 0, 11}, 89, "d");
-      }),
+      error_of<InputError>([] { require_few_dropped({0, 0, 0, 11}, 89, "d"); }),
       testing::AllOf(HasSubstr("11 of 100 points (11 %)"), HasSubstr("11 over 1 s off the stamp"),
                      HasSubstr("time_unit"), HasSubstr("--allow-dropped")));
 }

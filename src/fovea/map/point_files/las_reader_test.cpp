@@ -134,9 +134,8 @@ TEST_F(LasReaderTest, PointsOf64KiBTakeNoMemoryWhereThereAreNone) {
 
 TEST_F(LasReaderTest, DamageIsHarmless) {
   for (const Format& format : {kFormats[0], kFormats[3]}) {
-    expect_damage_is_harmless(las(format, {{1, 2, 3}, {4, 5, 6}}), [](const auto& file) {
-      read_las(file, {0, 0, 0});
-    });
+    expect_damage_is_harmless(las(format, {{1, 2, 3}, {4, 5, 6}}),
+                              [](const auto& file) { read_las(file, {0, 0, 0}); });
   }
 }
 
