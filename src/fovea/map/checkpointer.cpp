@@ -87,6 +87,7 @@ void Checkpointer::finish(TileMap& map, MapRows rows) {
   for (TileSnapshot& tile : changes.changed) newest[tile.id] = std::move(tile.points);
   write({std::move(rows), std::move(changes.removed)});
   std::vector<TileSnapshot> tiles;
+  tiles.reserve(newest.size());
   for (auto& [id, points] : newest) tiles.push_back({id, std::move(points)});
   newest.clear();
   writer_->put_tiles(tiles.size(), [&](std::size_t i) {

@@ -223,7 +223,7 @@ void MapRun::checkpoint_if_due() {
 void MapRun::finish() {
   if (!log_.has_mapped() || !views_.passed()) {
     require_no_stop(job_);
-    if (lost_) throw *lost_;
+    if (lost_) throw DriveLostError(*lost_);
   }
   if (!log_.has_mapped()) {
     throw InputError("no frame could be mapped", latest_ ? latest_->note : drive_.path.string(),
