@@ -1,5 +1,5 @@
-// Angles by a polynomial, for many at a time: loops over these the compiler works eight wide, which
-// it cannot do with the library's functions.
+// Arc tangent by a polynomial. Compilers vectorize loops over it, which they cannot do with
+// std::atan2.
 #pragma once
 
 #include <algorithm>
@@ -9,18 +9,18 @@
 
 namespace fovea {
 
-/// std::atan2(y, x) to 1e-6 rad, of finite numbers; 0 of (0, 0).
+/// std::atan2(y, x) of finite numbers, with an error below 1e-6 rad; 0 for (0, 0).
 inline float quick_atan2(float y, float x) {
   const float a = std::abs(x), b = std::abs(y);
   const float t = std::min(a, b) / (std::max(a, b) + std::numeric_limits<float>::min());
   const float s = t * t;
-  // Minimax polynomial of degree 13 of the arc tangent on [0, 1].
+  // Minimax polynomial of degree 13 for the arc tangent on [0, 1].
   const float eighth =
       t * (0.9999961f +
            s * (-0.3331738f +
                 s * (0.1980786f +
                      s * (-0.1323335f + s * (0.0796255f + s * (-0.0336058f + s * 0.0068118f))))));
-  // Computed always and then chosen, for the compiler to do without branches.
+  // Selections instead of branches.
   const float turned = std::numbers::pi_v<float> / 2 - eighth;
   const float quarter = b > a ? turned : eighth;
   const float mirrored = std::numbers::pi_v<float> - quarter;

@@ -1,4 +1,4 @@
-// Sorting by whole numbers.
+// Sorting by unsigned keys.
 #pragma once
 
 #include <array>
@@ -8,8 +8,9 @@
 
 namespace fovea {
 
-/// Stable sort by `key`, an unsigned number, least significant digit first.
-/// @param bits  that keys have at most
+/// Stable sort by the member `key`, an unsigned number: least significant digit first (Knuth, The
+/// Art of Computer Programming 3, 5.2.5).
+/// @param bits  largest number of bits of a key
 template <class Keyed>
 void radix_sort(std::vector<Keyed>& items, int bits) {
   constexpr int kDigitBits = 11;

@@ -13,12 +13,13 @@
 namespace fovea {
 namespace {
 
-/// Some points of a sweep, or directions there, and when they were measured: a row for each number,
-/// on which the compiler works four wide.
+/// A block of points or directions of a sweep and their times: one array for each value, so that
+/// loops vectorize.
 struct SweepBlock {
   static constexpr std::size_t kSize = 256;
   using Row = std::array<double, kSize>;
-  alignas(64) Row x{}, y{}, z{}, dt{}, sine{}, versine{};  // m, s; of the angle turned in dt
+  alignas(64) Row x{}, y{}, z{}, dt{}, sine{},
+      versine{};  // m, s; sine and versine (1 - cosine) of the angle turned in dt
 
   void take(std::span<const Eigen::Vector3f> from) {
     for (std::size_t i = 0; i < from.size(); ++i) {
@@ -33,9 +34,9 @@ struct SweepBlock {
   }
 };
 
-/// exp_se3(velocity * dt) after half the acceleration times dt^2, for many dt: the axis does not
-/// change, only the angle along it does, so a point costs one sine and one cosine. What the
-/// acceleration adds is a few milliradians at most, for which no sine is needed.
+/// Motion over a time dt from the stamp: exp_se3(velocity * dt), after half the acceleration times
+/// dt^2. The axis of rotation is constant, so a point needs one sine and one cosine. The
+/// acceleration adds a few milliradians at most: its first-order rotation suffices.
 class SweptMotion {
  public:
   explicit SweptMotion(const SweepMotion& motion)
@@ -54,8 +55,8 @@ class SweptMotion {
     turned_ = axis_.cross(v) / rate_;
   }
 
-  /// The angles of a block's times. Of the small ones within a sweep by their series, to 1e-14: a
-  /// library's sine for each of 100,000 points takes as long as all else.
+  /// Sines and versines for the times of a block. Angles within a sweep are small: their series has
+  /// an error below 1e-14 and vectorizes.
   void turn(SweepBlock& block) const {
     constexpr double kSmall = 0.25;
     double largest = 0;
@@ -73,10 +74,12 @@ class SweptMotion {
     }
   }
 
-  /// Moves a block's points by the motion over their times, or turns its directions (Rodrigues).
+  /// Moves the points of a block by the motion over their times, or rotates its directions
+  /// (Rodrigues' formula).
+  /// @tparam kPoints  false: directions
   template <bool kPoints>
   void move(SweepBlock& block) const {
-    // Copies: the compiler cannot know that the rows do not overlap what `this` refers to.
+    // Local copies cannot alias the arrays, so the loop vectorizes.
     const Eigen::Vector3d axis = axis_, turning = turning_, along = along_, across = across_,
                           turned = turned_, speeding = speeding_;
     for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
@@ -106,7 +109,7 @@ class SweptMotion {
   }
 
  private:
-  static constexpr double kNegligibleRate = 1e-9;  // rad/s: below a micrometre at 1 km in a second
+  static constexpr double kNegligibleRate = 1e-9;  // rad/s: below a micrometer at 1 km in a second
 
   double rate_;
   Eigen::Vector3d turning_, speeding_;  // half the acceleration

@@ -1,4 +1,4 @@
-// Sets of cells of a fine grid, for surfaces: a piece of surface fills some cells, space none.
+// Sets of cells of a fine grid. Bricks suit surfaces, which fill some cells near each other.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,35 +19,35 @@ inline std::uint64_t cell_key(const Eigen::Array3i& cell) {
   return key;
 }
 
-/// Of positions that are rounded to steps many lie just where a cell ends. Whoever looks for the
-/// cell of one goes so many steps on, or it depended on how his floats round.
+/// Quantized positions often lie on cell borders. Offset them by this many steps before flooring,
+/// so that the result does not depend on rounding.
 inline constexpr double kStepsOn = 0.1;
 
-/// 8 x 8 x 8 cells, one bit each.
+/// 8 x 8 x 8 cells, one bit for each.
 class CellBrick {
  public:
   static constexpr int kEdge = 8;  ///< cells
 
-  /// A number that no brick of any cell has.
+  /// A number that belongs to no brick.
   static Eigen::Array3i no_number() {
     return Eigen::Array3i::Constant(std::numeric_limits<int>::min());
   }
-  /// Whether two bricks' numbers are the same, with one branch: for who mostly asks for the brick
-  /// of the cell before.
+  /// Whether two numbers of bricks are equal, with one branch. Most searches are for the same brick
+  /// as the search before.
   static bool same(const Eigen::Array3i& a, const Eigen::Array3i& b) {
     return ((a.x() ^ b.x()) | (a.y() ^ b.y()) | (a.z() ^ b.z())) == 0;
   }
 
-  /// Number of a cell's brick: that of the cell over kEdge, rounded down along each axis.
+  /// Number of a cell's brick: the cell's coordinates divided by kEdge, rounded down.
   static Eigen::Array3i number_of(const Eigen::Array3i& cell) {
-    return cell.unaryExpr([](int i) { return i >> 3; });  // a division would round towards zero
+    return cell.unaryExpr([](int i) { return i >> 3; });  // a division would round toward zero
   }
 
-  /// @param cell  of the grid: what counts is its place in its brick
+  /// @param cell  of the grid; only its place in its brick counts
   bool test(const Eigen::Array3i& cell) const {
     return (layers_[layer(cell)] >> bit(cell) & 1) != 0;
   }
-  /// @return whether it was not marked before
+  /// @return whether the cell is new
   bool mark(const Eigen::Array3i& cell) {
     std::uint64_t& bits = layers_[layer(cell)];
     const std::uint64_t before = bits;
@@ -63,11 +63,11 @@ class CellBrick {
   std::array<std::uint64_t, kEdge> layers_{};
 };
 
-/// Any cells; fast where one is near the one before.
+/// A set of cells; fast if successive cells are near each other.
 class CellSet {
  public:
   /// @param cell  each coordinate within 2^23
-  /// @return whether it was not marked before
+  /// @return whether the cell is new
   bool mark(const Eigen::Array3i& cell) {
     const Eigen::Array3i brick = CellBrick::number_of(cell);
     if (!CellBrick::same(brick, last_brick_)) go_to(brick);
@@ -85,7 +85,7 @@ class CellSet {
 
   FlatMap<std::uint32_t> number_of_brick_;
   std::vector<CellBrick> bricks_;
-  std::uint32_t last_ = 0;  // place of the brick last asked for
+  std::uint32_t last_ = 0;  // place of the brick of the last cell
   Eigen::Array3i last_brick_ = CellBrick::no_number();
 };
 

@@ -9,14 +9,14 @@ namespace fovea {
 namespace {
 
 struct VoxelMean {
-  Eigen::Vector3f anchor;                         // its first point, which keeps the sum precise
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // of what the others are off it
+  Eigen::Vector3f anchor;                         // its first point
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();  // of offsets from the anchor, for precision
   std::uint32_t count = 0;
-  std::uint32_t nearest = 0;  // point to the mean
+  std::uint32_t nearest = 0;  // index of the point nearest to the mean
   float squared_distance = std::numeric_limits<float>::infinity();
 };
 
-/// Points that follow each other and lie in one voxel, as points in the order of a sweep mostly do.
+/// Consecutive points in one voxel. In the order of a sweep most points are part of such a run.
 struct Run {
   std::uint32_t voxel, begin, end;
 };
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> voxel_sample(std::span<const Eigen::Vector3f> points,
   }
   std::vector<std::uint8_t> is_chosen(points.size(), 0);
   for (const VoxelMean& mean : means) is_chosen[mean.nearest] = 1;
-  // Written always and kept if it is one: nobody could foresee which are.
+  // Branch-free compaction.
   std::vector<std::uint32_t> chosen(means.size() + 1);
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -1,4 +1,4 @@
-// A sparse grid of voxels, each with a number of its own in the order of its first appearance.
+// A sparse grid of voxels, numbered in the order of their first appearance.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,25 +11,26 @@
 
 namespace fovea {
 
-/// Hash table from voxels to numbers 0, 1, 2, ...; of bricks of 4 x 4 x 4 voxels, because who asks
-/// for a voxel asks for its neighbours next: they are in the cache. Holds coordinates within +-4
-/// million voxels.
+/// Maps voxels to numbers 0, 1, 2, ... The hash table holds bricks of 4 x 4 x 4 voxels: searches
+/// for neighboring voxels follow each other and find their brick in the cache. Coordinates are
+/// within
+/// +-4 million voxels.
 class VoxelTable {
  public:
   using Voxel = Eigen::Vector3i;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// @param edge  of a voxel, m
+  /// @param edge  of a voxel (m)
   explicit VoxelTable(float edge);
 
   Voxel voxel_of(const Eigen::Vector3f& p) const {
     return (p * inverse_edge_).array().floor().cast<int>();
   }
   std::size_t size() const { return voxels_.size(); }
-  /// The voxel of a number.
+  /// The voxel with a number.
   const Voxel& voxel(std::uint32_t id) const { return voxels_[id]; }
 
-  /// Number of a voxel, a new one where it had none.
+  /// Number of a voxel; a new number if the voxel has none.
   std::uint32_t insert(const Voxel& voxel);
   /// Number of a voxel, or kNone. Thread-safe while nothing is inserted.
   std::uint32_t find(const Voxel& voxel) const {
@@ -37,14 +38,14 @@ class VoxelTable {
     return brick == nullptr ? kNone : (*brick)[place_in_brick(voxel)];
   }
 
-  /// The voxel and its 26 neighbours.
+  /// The voxel and its 26 neighbors.
   static std::array<Voxel, 27> block_around(const Voxel& center);
 
-  /// Calls f(number) for those of them that have one, in the same order. Thread-safe while nothing
-  /// is inserted.
+  /// Calls f(number) for those of the 27 voxels that have a number, in the same order. Thread-safe
+  /// while nothing is inserted.
   template <class F>
   void for_each_around(const Voxel& center, F&& f) const {
-    // They lie in two bricks along an axis at most, which are looked up once.
+    // They lie in at most two bricks along each axis. Each brick is searched once.
     const Voxel low = brick_of(center.array() - 1), high = brick_of(center.array() + 1);
     std::array<const Brick*, 8> bricks{};
     for (int z = low.z(); z <= high.z(); ++z) {
@@ -69,7 +70,7 @@ class VoxelTable {
   }
 
  private:
-  static constexpr int kBits = 2;  // of a coordinate, in its brick
+  static constexpr int kBits = 2;  // of a coordinate within its brick
   using Brick = std::array<std::uint32_t, 1 << 3 * kBits>;
   static Voxel brick_of(const Voxel& voxel) {
     return voxel.unaryExpr([](int i) { return i >> kBits; });
@@ -78,7 +79,7 @@ class VoxelTable {
     const std::uint32_t* number = number_of_brick_.find(cell_key(brick));
     return number == nullptr ? nullptr : &bricks_[*number];
   }
-  /// Of two bricks along each axis.
+  /// Place of a brick among two along each axis.
   static std::size_t place_among(const Voxel& step) {
     return static_cast<std::size_t>(step.x() | step.y() << 1 | step.z() << 2);
   }

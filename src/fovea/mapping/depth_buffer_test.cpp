@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+#include <vector>
+
 #include "fovea/core/random.h"
 
 namespace fovea::depth_buffer_test {
@@ -125,6 +129,46 @@ TEST(DepthBuffer, ABlockOfSamplesAndAJoinedBufferAreAsAllOneByOne) {
     for (float v = 0; v <= 50; ++v) {
       for (float depth = 0.5; depth < 10; depth += 0.37f) {
         ASSERT_EQ(first.hides({u, v}, depth), one_by_one.hides({u, v}, depth)) << u << " " << v;
+      }
+    }
+  }
+}
+
+/// Plain version of DepthBuffer::add() for one sample: all pixels within the radius.
+/// @param pixel, radius  pixels of the buffer
+void add_plainly(const Eigen::Vector2f& pixel, float depth, float radius, int width, int height,
+                 std::vector<float>& depths) {
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (std::abs(float(x) - pixel.x()) > radius || std::abs(float(y) - pixel.y()) > radius) {
+        continue;
+      }
+      float& nearest = depths[static_cast<std::size_t>(y * width + x)];
+      nearest = std::min(nearest, depth);
+    }
+  }
+}
+
+// Most samples cover at most 2 x 2 pixels, a case of its own.
+TEST(DepthBuffer, SamplesOfEachSizeCoverThePixelsWithinTheirRadius) {
+  constexpr int kWidth = 61, kHeight = 31;  // of the buffer
+  for (const float radius : {0.2f, 0.6f, 0.9f, 1.3f, 3.2f}) {
+    DepthBuffer buffer(camera_of(2 * kWidth - 1, 2 * kHeight - 1));
+    std::vector<float> plain(kWidth * kHeight, std::numeric_limits<float>::infinity());
+    Random random(3);
+    for (int i = 0; i < 60; ++i) {
+      const Eigen::Vector2f pixel(float(random.uniform(0, 2 * kWidth - 2)),
+                                  float(random.uniform(0, 2 * kHeight - 2)));
+      const auto depth = static_cast<float>(random.uniform(1, 9));
+      add(buffer, pixel, depth, 2 * radius);
+      add_plainly(pixel / 2, depth, std::max(radius, 0.5f), kWidth, kHeight, plain);
+    }
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const float front = plain[static_cast<std::size_t>(y * kWidth + x)];
+        const Eigen::Vector2f pixel = 2 * Eigen::Vector2f(float(x), float(y));
+        EXPECT_FALSE(buffer.hides(pixel, std::min(front, 100.f))) << radius << " " << pixel;
+        EXPECT_EQ(buffer.hides(pixel, front + 1), front < 100) << radius << " " << pixel;
       }
     }
   }
