@@ -73,14 +73,14 @@ TEST(FramePipeline, DeferredWorkRunsBeforeEachFrame) {
 }
 
 TEST(FramePipeline, ErrorsOfAnyStageComeAfterTheFramesBefore) {
-  NumberedFrames source;
-  source.error_at = 5;
+  NumberedFrames all, fifth_fails;
+  fifth_fails.error_at = 5;
   const auto fails_at_4 = [](const Frame& frame) {
     if (frame.index == 4) throw OutputError("no pose", "frame", "give one");
     return number_of(frame);
   };
   for (const bool threaded : {false, true}) {
-    NumberedRun reading(source, 0, 9, threaded), tracking(source, 0, 9, threaded, fails_at_4);
+    NumberedRun reading(fifth_fails, 0, 9, threaded), tracking(all, 0, 9, threaded, fails_at_4);
     for (int i = 0; i < 5; ++i) ASSERT_TRUE(reading.frames.next()) << i;
     EXPECT_THROW(reading.frames.next(), InputError);
     for (int i = 0; i < 4; ++i) ASSERT_TRUE(tracking.frames.next()) << i;

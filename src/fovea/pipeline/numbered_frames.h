@@ -11,7 +11,7 @@
 
 namespace fovea {
 
-/// One frame is skipped, and one may be an error.
+/// One frame is skipped, and one may be an error. One reader at a time.
 class NumberedFrames : public FrameSource {
  public:
   static constexpr int kSkipped = 3;
