@@ -74,10 +74,17 @@ class SweptMotion {
     }
   }
 
-  /// Moves the points of a block by the motion over their times, or rotates its directions
-  /// (Rodrigues' formula).
-  /// @tparam kPoints  false: directions
-  template <bool kPoints>
+  /// The same rotation without a translation: for directions.
+  SweptMotion rotation() const {
+    SweptMotion rotation = *this;
+    for (auto* translation :
+         {&rotation.speeding_, &rotation.along_, &rotation.across_, &rotation.turned_}) {
+      translation->setZero();
+    }
+    return rotation;
+  }
+
+  /// Moves a block by the motion over its times (Rodrigues' formula).
   void move(SweepBlock& block) const {
     // Local copies cannot alias the arrays, so the loop vectorizes.
     const Eigen::Vector3d axis = axis_, turning = turning_, along = along_, across = across_,
@@ -85,26 +92,16 @@ class SweptMotion {
     for (std::size_t i = 0; i < SweepBlock::kSize; ++i) {
       const double dt = block.dt[i], s = block.sine[i], v = block.versine[i], dt2 = dt * dt;
       const double x = block.x[i], y = block.y[i], z = block.z[i];
-      double qx = x + dt2 * (turning.y() * z - turning.z() * y);
-      double qy = y + dt2 * (turning.z() * x - turning.x() * z);
-      double qz = z + dt2 * (turning.x() * y - turning.y() * x);
-      if constexpr (kPoints) {
-        qx += dt2 * speeding.x();
-        qy += dt2 * speeding.y();
-        qz += dt2 * speeding.z();
-      }
+      const double qx = x + dt2 * (turning.y() * z - turning.z() * y) + dt2 * speeding.x();
+      const double qy = y + dt2 * (turning.z() * x - turning.x() * z) + dt2 * speeding.y();
+      const double qz = z + dt2 * (turning.x() * y - turning.y() * x) + dt2 * speeding.z();
       const double on_axis = axis.x() * qx + axis.y() * qy + axis.z() * qz;
-      double px = qx + s * (axis.y() * qz - axis.z() * qy) + v * (on_axis * axis.x() - qx);
-      double py = qy + s * (axis.z() * qx - axis.x() * qz) + v * (on_axis * axis.y() - qy);
-      double pz = qz + s * (axis.x() * qy - axis.y() * qx) + v * (on_axis * axis.z() - qz);
-      if constexpr (kPoints) {
-        px += dt * along.x() + s * across.x() + v * turned.x();
-        py += dt * along.y() + s * across.y() + v * turned.y();
-        pz += dt * along.z() + s * across.z() + v * turned.z();
-      }
-      block.x[i] = px;
-      block.y[i] = py;
-      block.z[i] = pz;
+      block.x[i] = qx + s * (axis.y() * qz - axis.z() * qy) + v * (on_axis * axis.x() - qx) +
+                   (dt * along.x() + s * across.x() + v * turned.x());
+      block.y[i] = qy + s * (axis.z() * qx - axis.x() * qz) + v * (on_axis * axis.y() - qy) +
+                   (dt * along.y() + s * across.y() + v * turned.y());
+      block.z[i] = qz + s * (axis.x() * qy - axis.y() * qx) + v * (on_axis * axis.z() - qz) +
+                   (dt * along.z() + s * across.z() + v * turned.z());
     }
   }
 
@@ -150,7 +147,7 @@ void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, const S
     throw std::invalid_argument("a sweep's origin must be the LiDAR: azimuths are taken from it");
   }
   constexpr std::size_t kGrain = 32 * SweepBlock::kSize;
-  const SweptMotion swept(motion);
+  const SweptMotion swept(motion), swept_rotation = swept.rotation();
   const AzimuthTime azimuth_time(sweep);
   parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     SweepBlock block;
@@ -167,11 +164,11 @@ void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, const S
         std::ranges::copy(of_block(scan_lidar.time), block.dt.begin());
       }
       swept.turn(block);
-      swept.move<true>(block);
+      swept.move(block);
       block.give(of_block(scan_lidar.position));
       if (scan_lidar.normal.empty()) continue;
       block.take(of_block(scan_lidar.normal));
-      swept.move<false>(block);
+      swept_rotation.move(block);
       block.give(of_block(scan_lidar.normal));
     }
   });
