@@ -29,9 +29,9 @@ TEST(ReadMap, AScriptInAnotherLanguageReadsEveryColouredPoint) {
       const Eigen::Vector3d expected =
           T_local_submap[submap] * (tile.origin + tile.position[i].cast<double>());
       EXPECT_LT((p_local - expected).cwiseAbs().maxCoeff(), 6e-5);
-      EXPECT_EQ(red, tile.color[i].r);
-      EXPECT_EQ(green, tile.color[i].g);
-      EXPECT_EQ(blue, tile.color[i].b);
+      EXPECT_EQ(red, to_rgb(tile.color[i]).r);
+      EXPECT_EQ(green, to_rgb(tile.color[i]).g);
+      EXPECT_EQ(blue, to_rgb(tile.color[i]).b);
       ++points;
     }
   });

@@ -35,7 +35,7 @@ Rgb color_of_range(float range, const FovealOptions& options) {
   return to_rgb((1 - share) * kStops[stop] + share * kStops[stop + 1]);
 }
 
-ColoredPoints as_coloured(const PointCloud& points_lidar, const std::vector<Rgb>& color) {
+ColoredPoints as_coloured(const PointCloud& points_lidar, const std::vector<LogColor>& color) {
   ColoredPoints points;
   points.position = points_lidar.position;
   points.color = color;
@@ -44,8 +44,8 @@ ColoredPoints as_coloured(const PointCloud& points_lidar, const std::vector<Rgb>
   return points;
 }
 
-std::vector<Rgb> range_colors(const PointCloud& points_lidar, const FovealOptions& options) {
-  std::vector<Rgb> colors;
+std::vector<LogColor> range_colors(const PointCloud& points_lidar, const FovealOptions& options) {
+  std::vector<LogColor> colors;
   for (const Eigen::Vector3f& p : points_lidar.position) {
     colors.push_back(color_of_range(p.norm(), options));
   }

@@ -20,11 +20,6 @@ struct ColumnEntry<Eigen::Vector3f> {
   using Scalar = float;
   static constexpr int kWidth = 3;
 };
-template <>
-struct ColumnEntry<Rgb> {
-  using Scalar = std::uint8_t;
-  static constexpr int kWidth = 3;
-};
 
 /// N or N x 3 numbers.
 template <class Entry>

@@ -9,17 +9,28 @@
 
 namespace fovea::python {
 namespace py = pybind11;
+namespace {
+
+py::array color_array(const PointCloud& cloud) {
+  auto colors = std::make_shared<std::vector<Rgb>>();
+  colors->reserve(cloud.size());
+  for (const LogColor& color : cloud.color) colors->push_back(to_rgb(color));
+  return shared_array(py::dtype::of<std::uint8_t>(), {py::ssize_t(colors->size()), 3},
+                      colors->data(), colors);
+}
+
+}  // namespace
 
 void bind_points(py::module_& module) {
-  py::class_<Points> points(module, "Points",
-                            "N points of a map as columns: read-only arrays without copies, which "
-                            "live on after this object and the map.");
+  py::class_<Points> points(
+      module, "Points",
+      "N points of a map as columns: read-only arrays, which live on after this "
+      "object and the map. None but color is a copy.");
   const auto add = [&](const char* name, auto column, const char* doc) {
     points.def_property_readonly(
         name, [column](const Points& self) { return column_array(self.cloud, column); }, doc);
   };
   add("position", &PointCloud::position, "N x 3 float32, m, relative to origin.");
-  add("color", &PointCloud::color, "N x 3 uint8, RGB; of meaning where camera is not -1.");
   add("camera", &PointCloud::camera, "N int8: the camera that coloured the point, or -1.");
   add("frame", &PointCloud::frame, "N int32: index of the frame that the point comes from.");
   add("range", &PointCloud::range, "N float32, m, from the sensor that measured or saw the point.");
@@ -35,6 +46,9 @@ void bind_points(py::module_& module) {
           "intensity",
           [](const Points& self) { return optional_column(self.cloud, &PointCloud::intensity); },
           "N float32, 0-1, or None in a map without.")
+      .def_property_readonly(
+          "color", [](const Points& self) { return color_array(*self.cloud); },
+          "N x 3 uint8, RGB; of meaning where camera is not -1.")
       .def_property_readonly(
           "origin",
           [](const Points& self) { return py::array_t<double>(3, self.cloud->origin.data()); },

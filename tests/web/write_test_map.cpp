@@ -38,7 +38,7 @@ TileMap map_points() {
 
 nlohmann::json point_json(const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
   return {{"local", {p_local.x(), p_local.y(), p_local.z()}},
-          {"color", {tile.color[i].r, tile.color[i].g, tile.color[i].b}},
+          {"color", {to_rgb(tile.color[i]).r, to_rgb(tile.color[i]).g, to_rgb(tile.color[i]).b}},
           {"camera", tile.camera[i]},
           {"frame", tile.frame[i]},
           {"range", tile.range[i]},

@@ -42,7 +42,9 @@ TEST(Image, BilinearIsExactOnLinearRampAndAtPixelCentres) {
   EXPECT_EQ(bilinear(image, -3, 99), bilinear(image, 0, 5));  // clamped
 }
 
-TEST(Image, ColourRoundsAndClamps) { EXPECT_EQ(to_rgb({-3.f, 12.5f, 300.f}), (Rgb{0, 13, 255})); }
+TEST(Image, ColourRoundsAndClamps) {
+  EXPECT_EQ(to_rgb(Eigen::Vector3f{-3.f, 12.5f, 300.f}), (Rgb{0, 13, 255}));
+}
 
 TEST(PointCloud, CheckNamesTheUnequalColumn) {
   PointCloud cloud;

@@ -10,7 +10,7 @@ namespace fovea {
 
 /// One colour from many views (mapping/color_fusion.h).
 struct FusedColor {
-  Rgb color;                 ///< meaningful where a camera gave one
+  LogColor color;            ///< meaningful where a camera gave one
   std::uint8_t views = 0;    ///< images that gave the colour; 255: or more
   std::uint8_t spread = 0;   ///< RMS of their differences from it, grey values
   std::uint16_t weight = 0;  ///< sum of their weights

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/core/image.h"
+#include "fovea/core/log_color.h"
 #include "fovea/core/point_reason.h"
 
 namespace fovea {
@@ -27,7 +27,7 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> normal;     ///< unit, towards the sensor; zero where unknown
   std::vector<float> range;                ///< m, from the sensor that measured or saw the point
   std::vector<float> incidence;            ///< rad, between view ray and normal; NaN if unknown
-  std::vector<Rgb> color;                  ///< meaningful where camera != kNoCamera
+  std::vector<LogColor> color;             ///< meaningful where camera != kNoCamera
   std::vector<std::int32_t> frame;         ///< frame index the point comes from
   std::vector<std::int8_t> camera;         ///< camera that coloured it, or kNoCamera
   std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling, 0 if measured

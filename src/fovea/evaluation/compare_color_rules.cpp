@@ -84,7 +84,7 @@ std::vector<HeldOutView> load_held_out(const Comparison& c) {
       for (std::uint32_t p = 0; p < held_out.nearest.size(); ++p) {
         // The map's own colour is some training view's, though not always of one that still sees
         // the point once the whole map stands.
-        improve_floor(held_out, p, c.points.color[held_out.nearest[p]]);
+        improve_floor(held_out, p, to_rgb(c.points.color[held_out.nearest[p]]));
       }
       held_out.view.position = {};
       by_frame[i].push_back(std::move(held_out));
@@ -164,7 +164,7 @@ std::vector<ColorState> show_training_frames(const Comparison& c,
 struct RuleColors {
   ColoredPoints points;              // without colours
   std::vector<std::uint32_t> place;  // of each map point among them, or kNone
-  std::map<ColorRule, std::vector<Rgb>> color;
+  std::map<ColorRule, std::vector<LogColor>> color;
   std::map<ColorRule, std::size_t> coloured;  // of all map points
 };
 
@@ -180,10 +180,10 @@ RuleColors apply_rules(const ColoredPoints& points, const std::vector<ColorState
   colors.points.runs = make_runs(colors.points.position, 1024);
   for (const ColorRule rule : kColorRules) {
     if (rule == ColorRule::kFloor) continue;
-    std::vector<Rgb>& own = colors.color[rule];
+    std::vector<LogColor>& own = colors.color[rule];
     for (std::size_t i = 0; i < states.size(); ++i) {
-      const std::optional<Rgb> color =
-          rule == ColorRule::kFovea ? points.color[i] : color_by(rule, states[i]);
+      std::optional<LogColor> color = points.color[i];
+      if (rule != ColorRule::kFovea) color = color_by(rule, states[i]);
       if (color) ++colors.coloured[rule];
       if (colors.place[i] != kNone) own.push_back(color.value());
     }
@@ -200,8 +200,8 @@ PointErrors errors_by(ColorRule rule, const HeldOutView& held_out, const RuleCol
     if (place == kNone) continue;
     view.color.push_back(held_out.view.color[i]);
     nearest.distance.push_back(held_out.distance[i]);
-    nearest.color.push_back(
-        to_float(rule == ColorRule::kFloor ? held_out.floor[i] : colors.color.at(rule)[place]));
+    nearest.color.push_back(to_float(rule == ColorRule::kFloor ? LogColor(held_out.floor[i])
+                                                               : colors.color.at(rule)[place]));
   }
   return point_errors(view, nearest, fit_gains(view.color, nearest.color, view.grey));
 }

@@ -90,7 +90,7 @@ void CrossViewTest::add_view(const SplatView& drawn, const Camera& camera,
       const std::size_t place = static_cast<std::size_t>(y) * photograph.width + x;
       if (drawn.covered[place] == 0 || p_cam.z() > 0.05 + 1.02 * drawn.depth[place]) continue;
       const std::uint8_t* p = photograph.pixel(x, y);
-      const Rgb own = map_.color[i];
+      const Rgb own = to_rgb(map_.color[i]);
       Sums& sums = sums_[i / kStride];
       add(sums.views, 1);
       add(sums.r, p[0]);

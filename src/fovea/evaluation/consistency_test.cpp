@@ -39,7 +39,7 @@ TEST(Roughness, IsWhatThePhotographHasNot) {
 TEST(CrossView, KnowsTheMapsErrorAndTheFloor) {
   // Photographs 100 and 120 of a map of 105: errors 5 and 15 a channel, 10 about their mean.
   PointCloud points = WallScene::map(0.1);
-  for (Rgb& color : points.color) color = {105, 105, 105};
+  for (LogColor& color : points.color) color = {105, 105, 105};
   const ColoredPoints map = colored_points(points);
   const Camera camera = forward_camera();
   const SplatView view = drawn(even(camera.width, camera.height, 105));

@@ -93,7 +93,7 @@ TEST(Evaluate, AShiftedTextureShowsInTheColorErrorOnly) {
 
 TEST(Evaluate, AWrongExposureIsFittedByTheGains) {
   PointCloud dark = WallScene::map(0.01);
-  for (Rgb& c : dark.color) c = to_rgb(0.5f * to_float(c));
+  for (LogColor& c : dark.color) c = to_rgb(0.5f * to_float(c));
   const EvaluationReport report = evaluate_held_out(dark);
   EXPECT_GT(report.figures.te_mean, 80);
   EXPECT_LT(report.figures.te_gain_mean, 7);
@@ -164,8 +164,8 @@ TEST(Evaluate, GreyCamerasScoreIntensity) {
   EXPECT_LT(report.figures.te_mean, 0.5);
   PointCloud black = evaluated_points(drive);
   double mean = 0;
-  for (Rgb& c : black.color) {
-    mean += c.r;
+  for (LogColor& c : black.color) {
+    mean += to_rgb(c).r;
     c = {};
   }
   mean /= static_cast<double>(black.size());

@@ -119,14 +119,15 @@ TEST_F(EvaluateTruth, AHoleLowersCompletenessOnly) {
 
 TEST_F(EvaluateTruth, ColorsAreComparedWithWhatThePerfectCameraSaw) {
   PointCloud shifted = WallScene::map(0.02);
-  for (Rgb& c : shifted.color) c.g = static_cast<std::uint8_t>(c.g + 30);
+  for (LogColor& c : shifted.color) c = to_rgb(to_float(c) + Eigen::Vector3f(0, 30, 0));
   const TruthReport green = evaluate(shifted);
   EXPECT_NEAR(green.color_view.raw.mean, 30, 1);
   EXPECT_EQ(green.color_view.within_20, 0);
   EXPECT_GT(green.color_view.gain.mean, 5);  // an offset is no gain
 
   PointCloud dark = WallScene::map(0.02);
-  for (Rgb& c : dark.color) c = to_rgb(to_float(c).cwiseProduct(Eigen::Vector3f(0.5f, 0.8f, 0.6f)));
+  for (LogColor& c : dark.color)
+    c = to_rgb(to_float(c).cwiseProduct(Eigen::Vector3f(0.5f, 0.8f, 0.6f)));
   const TruthReport report = evaluate(dark);
   EXPECT_GT(report.color_view.raw.mean, 60);
   EXPECT_LT(report.color_view.gain.mean, 3);
@@ -147,7 +148,8 @@ TEST_F(EvaluateTruth, ColorsAreComparedWithTheAlbedo) {
   EXPECT_LT(exact.color_albedo.raw.mean, 0.6);  // the wall's middle belongs to both
   EXPECT_LT(exact.color_albedo_matte.raw.mean, 0.6);
 
-  for (Rgb& c : points.color) c.r = static_cast<std::uint8_t>(c.r / 2);
+  for (LogColor& c : points.color)
+    c = to_rgb(to_float(c).cwiseProduct(Eigen::Vector3f(0.5f, 1, 1)));
   const TruthReport dark = evaluate(points);
   EXPECT_GT(dark.color_albedo.raw.mean, 50);
   EXPECT_LT(dark.color_albedo.gain.mean, 2);

@@ -40,7 +40,7 @@ float color_error(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool
 }
 
 NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
-                               std::span<const Rgb> color,
+                               std::span<const LogColor> color,
                                std::span<const std::uint8_t> interpolated) {
   constexpr std::size_t kGrain = 2048;
   NearestSamples found{std::vector<float>(positions.size()),

@@ -32,7 +32,7 @@ struct NearestSamples {
 /// @param color         of the same points
 /// @param interpolated  of the same points, or empty
 NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
-                               std::span<const Rgb> color,
+                               std::span<const LogColor> color,
                                std::span<const std::uint8_t> interpolated = {});
 
 /// The gains that take the map's exposure to this view's: per channel the g_c of least squares,

@@ -45,7 +45,7 @@ TEST(Gains, OfAGreyCameraIsOne) {
 
 TEST(NearestSamples, GiveDistanceAndColorOfTheNearest) {
   const Colors points = {{0, 0, 0}, {1, 0, 0}};
-  const std::vector<Rgb> colors = {{1, 2, 3}, {4, 5, 6}};
+  const std::vector<LogColor> colors = {{1, 2, 3}, {4, 5, 6}};
   const NearestSamples found = nearest_samples({{0.75f, 0, 0}, {-3, 4, 0}}, KdTree(points), colors);
   EXPECT_THAT(found.distance, ElementsAre(0.25f, 5.0f));
   EXPECT_EQ(found.color[0], Eigen::Vector3f(4, 5, 6));

@@ -34,7 +34,7 @@ std::vector<int> cameras_of(const PointCloud& points) {
 
 /// Gives points without color their intensity as gray, for pictures. Scores of colors leave these
 /// points out.
-void show_intensity(const PointCloud& tile, std::vector<Rgb>& color) {
+void show_intensity(const PointCloud& tile, std::vector<LogColor>& color) {
   for (std::size_t i = 0; i < tile.size(); ++i) {
     if (tile.camera[i] == kNoCamera) {
       color[i] = to_rgb(Eigen::Vector3f::Constant(255 * std::clamp(tile.intensity[i], 0.0f, 1.0f)));

@@ -38,7 +38,7 @@ Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions opt
     all_tree_.emplace(map_.position);
     all_color_ = map_.color;
     for (std::size_t i = 0; i < map_.size(); ++i) {
-      if (map_.camera[i] == kNoCamera) all_color_[i] = Rgb{};
+      if (map_.camera[i] == kNoCamera) all_color_[i] = LogColor();
     }
   }
   if (options_.moving) leave_out_moving(map.frames);

@@ -100,7 +100,7 @@ class Scorer {
   ColoredPoints static_;  // without what moved; empty unless boxes are known
   std::optional<KdTree> static_tree_;
   std::optional<KdTree> all_tree_;  // where there are uncoloured points
-  std::vector<Rgb> all_color_;
+  std::vector<LogColor> all_color_;
 };
 
 }  // namespace fovea

@@ -20,7 +20,7 @@ struct Samples {
   std::vector<Eigen::Vector3f> truth, map;
   std::vector<std::uint8_t> matte;
 
-  void add(const Eigen::Vector3f& true_color, Rgb map_color, std::uint8_t is_matte) {
+  void add(const Eigen::Vector3f& true_color, LogColor map_color, std::uint8_t is_matte) {
     truth.push_back(true_color);
     map.push_back(to_float(map_color));
     matte.push_back(is_matte);

@@ -78,7 +78,7 @@ TEST(Warnings, FattenedPositions) {
 
 TEST(Warnings, BlurredColors) {
   PointCloud blurred = WallScene::map(0.01);
-  for (Rgb& color : blurred.color) {  // what a wide blur leaves of a sine
+  for (LogColor& color : blurred.color) {  // what a wide blur leaves of a sine
     color = to_rgb(0.4f * to_float(color) + Eigen::Vector3f::Constant(0.6f * 128));
   }
   EXPECT_THAT(warnings_of(blurred), ElementsAre(HasSubstr("sharpness is 0.4")));

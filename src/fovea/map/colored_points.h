@@ -24,7 +24,7 @@ struct PointRun {
 struct ColoredPoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3f> position;  ///< local frame, relative to origin
-  std::vector<Rgb> color;
+  std::vector<LogColor> color;
   std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling; empty where not known
   std::vector<std::uint8_t> reason;        ///< core/point_reason.h; empty where not known
   std::vector<std::int32_t> frame;         ///< that the point comes from; empty where not known

@@ -104,9 +104,9 @@ TEST(MapFormat, IsReadWithSqliteAndZstdAlone) {
                                 red = plane(color, 2 * count, count),
                                 blue = plane(color, 4 * count, count);
     for (std::size_t i = 0; i < count; ++i) {
-      ASSERT_EQ(byte_of(green[i]), tile.color[i].g);
-      ASSERT_EQ(byte_of((green[i] + red[i]) % 65536), tile.color[i].r);
-      ASSERT_EQ(byte_of((green[i] + blue[i]) % 65536), tile.color[i].b);
+      ASSERT_EQ(byte_of(green[i]), to_rgb(tile.color[i]).g);
+      ASSERT_EQ(byte_of((green[i] + red[i]) % 65536), to_rgb(tile.color[i]).r);
+      ASSERT_EQ(byte_of((green[i] + blue[i]) % 65536), to_rgb(tile.color[i]).b);
     }
     const std::vector<unsigned> range = plane(inflate<std::uint8_t>(row, 13, 2 * count), 0, count);
     const auto incidence = inflate<std::uint8_t>(row, 14, count);

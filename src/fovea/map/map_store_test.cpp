@@ -427,7 +427,7 @@ TEST(MapDigest, ChangesWithAnyBitOfATile) {
   changed.position[last].z() += 0.001f;
   expect_new(changed);
   changed = tile;
-  changed.color[last].b ^= 1;
+  changed.color[last].code[2] ^= 1;
   expect_new(changed);
   changed = tile;
   changed.camera[0] = 3;

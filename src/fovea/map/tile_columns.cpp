@@ -6,7 +6,6 @@
 #include <cstring>
 #include <type_traits>
 
-#include "fovea/map/color_code.h"
 #include "fovea/map/value_plane.h"
 
 namespace fovea {
@@ -62,15 +61,13 @@ void copy(std::span<const std::byte> bytes, const ColorColumn<Colors, kPart>& co
 constexpr std::size_t kChannels = 3;
 
 void pack_colors(const std::vector<FusedColor>& colors, std::vector<std::byte>& bytes) {
-  const std::array<std::uint16_t, 256>& codes = codes_of_bytes();
   std::array<std::vector<std::uint16_t>, kChannels> planes;
   for (std::vector<std::uint16_t>& plane : planes) plane.resize(colors.size());
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    const Rgb& color = colors[i].color;
-    const std::uint16_t green = codes[color.g];
+    const auto& [red, green, blue] = colors[i].color.code;
     planes[0][i] = green;
-    planes[1][i] = static_cast<std::uint16_t>(codes[color.r] - green);
-    planes[2][i] = static_cast<std::uint16_t>(codes[color.b] - green);
+    planes[1][i] = static_cast<std::uint16_t>(red - green);
+    planes[2][i] = static_cast<std::uint16_t>(blue - green);
   }
   bytes.resize(kChannels * kPlaneBytes * colors.size());
   std::byte* to = bytes.data();
@@ -93,7 +90,7 @@ bool unpack_colors(std::size_t n, const std::byte* bytes, std::vector<FusedColor
     const auto red = static_cast<std::uint16_t>(planes[1][i] + green);
     const auto blue = static_cast<std::uint16_t>(planes[2][i] + green);
     largest = std::max({largest, unsigned{red}, unsigned{green}, unsigned{blue}});
-    colors[i].color = {nearest_byte(red), nearest_byte(green), nearest_byte(blue)};
+    colors[i].color = LogColor::of_codes(red, green, blue);
   }
   return largest <= unsigned{kMaxColorCode};
 }

@@ -20,9 +20,10 @@ std::uint8_t rounded(float value, float chance) {
 
 void FusedColors::load(std::span<const FusedColor> colors) {
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    red[i] = colors[i].color.r;
-    green[i] = colors[i].color.g;
-    blue[i] = colors[i].color.b;
+    const Rgb color = to_rgb(colors[i].color);
+    red[i] = color.r;
+    green[i] = color.g;
+    blue[i] = color.b;
     views[i] = colors[i].views;
     spread[i] = colors[i].spread;
     weight[i] = colors[i].weight;
@@ -77,7 +78,8 @@ FusedColor fused(const FusedColor& a, const FusedColor& b) {
     return rounded(from + share_b * difference, 0.5f);
   };
   FusedColor both;
-  both.color = {mean(a.color.r, b.color.r), mean(a.color.g, b.color.g), mean(a.color.b, b.color.b)};
+  const Rgb of_a = to_rgb(a.color), of_b = to_rgb(b.color);
+  both.color = {mean(of_a.r, of_b.r), mean(of_a.g, of_b.g), mean(of_a.b, of_b.b)};
   const auto spread_a = static_cast<float>(a.spread), spread_b = static_cast<float>(b.spread);
   const float variance = (1 - share_b) * spread_a * spread_a + share_b * spread_b * spread_b +
                          share_b * (1 - share_b) * square / 3;

@@ -16,9 +16,10 @@ struct SeenView {
 };
 
 void put(FusedColors& points, std::size_t i, const FusedColor& point) {
-  points.red[i] = point.color.r;
-  points.green[i] = point.color.g;
-  points.blue[i] = point.color.b;
+  const Rgb color = to_rgb(point.color);
+  points.red[i] = color.r;
+  points.green[i] = color.g;
+  points.blue[i] = color.b;
   points.views[i] = point.views;
   points.spread[i] = point.spread;
   points.weight[i] = point.weight;
@@ -158,7 +159,7 @@ TEST(ColorFusion, RoundsUpWithTheProbabilityOfTheFraction) {
   int up = 0;
   constexpr int kDraws = 20'000;
   for (int i = 0; i < kDraws; ++i) {
-    const Rgb color = fuse(first, {103, 103, 103}, 1, random.next()).color;  // mean 100.27
+    const Rgb color = to_rgb(fuse(first, {103, 103, 103}, 1, random.next()).color);  // mean 100.27
     for (const int channel : {color.r, color.g, color.b}) {
       ASSERT_TRUE(channel == 100 || channel == 101);
       up += channel - 100;
@@ -263,9 +264,9 @@ TEST(ColorFusion, ColorsStayInRange) {
   for (int i = 0; i < 2000; ++i) {
     const FusedColor before{{255, 0, 255}, 3, 255, 30};
     const FusedColor fused = fuse(before, {255, 0, 0}, 10, random.next());
-    ASSERT_EQ(fused.color.r, 255);
-    ASSERT_EQ(fused.color.g, 0);
-    ASSERT_NEAR(fused.color.b, 191.25, 1);
+    ASSERT_EQ(to_rgb(fused.color).r, 255);
+    ASSERT_EQ(to_rgb(fused.color).g, 0);
+    ASSERT_NEAR(to_rgb(fused.color).b, 191.25, 1);
   }
 }
 

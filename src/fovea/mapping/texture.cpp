@@ -16,7 +16,7 @@ Rgb sample(const Image& image, const Eigen::Vector2d& pixel, ImageSampling sampl
 
 void color_points(PointCloud& points_cam, const View& view, ImageSampling sampling) {
   const std::size_t n = points_cam.size();
-  points_cam.color.assign(n, Rgb{});
+  points_cam.color.assign(n, LogColor());
   points_cam.camera.assign(n, kNoCamera);
   points_cam.frame.assign(n, view.frame);
   points_cam.views.assign(n, 0);

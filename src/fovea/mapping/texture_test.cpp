@@ -39,10 +39,10 @@ TEST(Texture, NearestSamplingUsesTheNearestPixelCenter) {
   PointCloud cloud;
   cloud.position = {{1.4f, 0, 1}, {1.6f, 0, 1}};
   color_points(cloud, {image, camera, 0}, ImageSampling::kNearest);
-  EXPECT_EQ(cloud.color[0].r, 100);
-  EXPECT_EQ(cloud.color[1].r, 200);
+  EXPECT_EQ(to_rgb(cloud.color[0]).r, 100);
+  EXPECT_EQ(to_rgb(cloud.color[1]).r, 200);
   color_points(cloud, {image, camera, 0});
-  EXPECT_EQ(cloud.color[0].r, 140);
+  EXPECT_EQ(to_rgb(cloud.color[0]).r, 140);
 }
 
 TEST(Texture, AnEmptyImageColorsNothing) {

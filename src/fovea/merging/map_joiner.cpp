@@ -33,9 +33,8 @@ void match_exposure(const Eigen::Array3f& gain, TilePoints& tile) {
   tile.camera.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::int8_t camera) {
     if (camera == kNoCamera) return;
     for (std::uint32_t i = begin; i < end; ++i) {
-      Rgb& rgb = tile.colors[i].color;
-      const Eigen::Array3f color = (to_float(rgb).array() * gain + 0.5f).min(255.0f);
-      rgb = {std::uint8_t(color[0]), std::uint8_t(color[1]), std::uint8_t(color[2])};
+      LogColor& color = tile.colors[i].color;
+      color = to_rgb(to_float(color).array() * gain);
       reasons[i] |= mark;
     }
   });

@@ -25,8 +25,8 @@ inline std::vector<MapPoint> points_of(const TileMap& map) {
       const PointCloud tile = stored.points->cloud();
       for (std::size_t i = 0; i < tile.size(); ++i) {
         points.push_back({submap.T_local_submap * (tile.origin + tile.position[i].cast<double>()),
-                          tile.color[i], tile.frame[i], tile.camera[i], tile.interpolated[i] != 0,
-                          tile.reason[i]});
+                          to_rgb(tile.color[i]), tile.frame[i], tile.camera[i],
+                          tile.interpolated[i] != 0, tile.reason[i]});
       }
     }
   }

@@ -27,9 +27,9 @@ TEST(NewColors, AreThoseOfTheViewAtThePoints) {
   const Camera camera = test_camera();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d pixel = *camera.project(points.position[i].cast<double>());
-    EXPECT_NEAR(points.color[i].r, (pixel.x() - 1.5) / 4, 1) << i;
-    EXPECT_NEAR(points.color[i].g, pixel.y(), 1) << i;
-    EXPECT_EQ(points.color[i].b, 50);
+    EXPECT_NEAR(to_rgb(points.color[i]).r, (pixel.x() - 1.5) / 4, 1) << i;
+    EXPECT_NEAR(to_rgb(points.color[i]).g, pixel.y(), 1) << i;
+    EXPECT_EQ(to_rgb(points.color[i]).b, 50);
     EXPECT_EQ(points.weight[i], view_weight(points.position[i].norm()));
   }
   EXPECT_EQ(points.views, std::vector<std::uint8_t>(3, 1));

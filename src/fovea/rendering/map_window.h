@@ -18,7 +18,7 @@ struct MapSurfels {
   std::vector<Eigen::Vector3f> normal;  ///< unit, either way round; zero where the points say none
   std::vector<float> spacing;           ///< m, between neighbouring points
   std::vector<float> intensity;         ///< 0-1; luminance where the map has no reflectance
-  std::vector<Rgb> color;
+  std::vector<LogColor> color;
   std::vector<std::uint8_t> colored;  ///< 1 where a camera has seen it
 
   std::size_t size() const { return position.size(); }

@@ -51,7 +51,7 @@ TEST(Splat, ANearerSurfaceHidesWhatIsBehind) {
   PointCloud points = WallScene::map(0.02);
   PointCloud behind = points;
   for (Eigen::Vector3f& p : behind.position) p = p * 1.1f;
-  for (Rgb& color : behind.color) color = {255, 0, 255};
+  for (LogColor& color : behind.color) color = {255, 0, 255};
   points.append(behind);
   const SplatView both = draw(colored_points(points));
   const SplatView front = draw(colored_points(WallScene::map(0.02)));

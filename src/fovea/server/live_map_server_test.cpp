@@ -152,7 +152,7 @@ class LiveRun : public testing::Test {
                             [&](const TileId& id, const TilePoints&) { near.push_back(id); });
     for (const TileId& id : near) {
       for (FusedColor& of_point : map_.colors(id)) {
-        of_point.color.g = static_cast<std::uint8_t>(index);
+        of_point.color.code[1] = codes_of_bytes()[std::size_t(index)];
       }
     }
     if (index % 7 == 3 && !near.empty()) {
@@ -236,9 +236,9 @@ class LiveRun : public testing::Test {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         point[axis] = static_cast<int>(std::lround(tile.position[i][int(axis)] * 1000));
       }
-      point[3] = tile.color[i].r;
-      point[4] = tile.color[i].g;
-      point[5] = tile.color[i].b;
+      point[3] = to_rgb(tile.color[i]).r;
+      point[4] = to_rgb(tile.color[i]).g;
+      point[5] = to_rgb(tile.color[i]).b;
       there.insert(point);
       cells.emplace(cell(point), 0);
     }

@@ -64,7 +64,7 @@ void append_section(std::string& message, const TileId& id, const TilePoints* ti
   }
   to += padding;
   for (const std::uint32_t i : points) {
-    const Rgb color = tile->colors[i].color;
+    const Rgb color = to_rgb(tile->colors[i].color);
     put(std::array{color.r, color.g, color.b, static_cast<std::uint8_t>(tile->camera[i])});
   }
   for (const std::uint32_t i : points) {

@@ -111,8 +111,8 @@ Image from_yuv(const Bytes& bytes, const Encoding& encoding, Image image) {
       const float luma = 1.164f * float(pair[encoding.order[0] + 2 * (x % 2)] - 16);
       const float u = float(pair[encoding.order[1]] - 128),
                   v = float(pair[encoding.order[2]] - 128);
-      const Rgb color =
-          to_rgb({luma + 1.596f * v, luma - 0.392f * u - 0.813f * v, luma + 2.017f * u});
+      const Rgb color = to_rgb(
+          Eigen::Vector3f{luma + 1.596f * v, luma - 0.392f * u - 0.813f * v, luma + 2.017f * u});
       std::uint8_t* pixel = image.pixel(x, y);
       pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b;
     }

@@ -120,7 +120,7 @@ TEST_F(LasWriter, EveryFieldOfEveryPoint) {
     EXPECT_EQ(las.at<std::uint8_t>(at + 14), 0x11);
     EXPECT_EQ(las.at<std::uint8_t>(at + 15), tile.interpolated[i]);
     EXPECT_EQ(las.at<std::uint8_t>(at + 16), 1);
-    const Rgb color = tile.camera[i] == kNoCamera ? kUncolored : tile.color[i];
+    const Rgb color = tile.camera[i] == kNoCamera ? kUncolored : to_rgb(tile.color[i]);
     EXPECT_EQ(las.at<std::uint16_t>(at + 30), color.r * 257);
     EXPECT_EQ(las.at<std::uint16_t>(at + 32), color.g * 257);
     EXPECT_EQ(las.at<std::uint16_t>(at + 34), color.b * 257);

@@ -67,7 +67,7 @@ class PcdWriter : public testing::Test {
           const Eigen::Vector3d p(pcd.at<Real>(row, "x"), pcd.at<Real>(row, "y"),
                                   pcd.at<Real>(row, "z"));
           EXPECT_LT((p - p_local).norm(), tolerance);
-          const Rgb color = colored ? tile.color[i] : kUncolored;
+          const Rgb color = colored ? to_rgb(tile.color[i]) : kUncolored;
           EXPECT_EQ(pcd.at<std::uint32_t>(row, "rgb"),
                     std::uint32_t{color.r} << 16 | std::uint32_t{color.g} << 8 | color.b);
           EXPECT_EQ(pcd.at<std::int8_t>(row, "camera"), tile.camera[i]);

@@ -126,9 +126,9 @@ TEST_F(PlyWriter, ColoredPointsWithAllProperties) {
     ASSERT_LT(row, ply.count);
     const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
     EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-5);
-    EXPECT_EQ(at("red"), tile.color[i].r);
-    EXPECT_EQ(at("green"), tile.color[i].g);
-    EXPECT_EQ(at("blue"), tile.color[i].b);
+    EXPECT_EQ(at("red"), to_rgb(tile.color[i]).r);
+    EXPECT_EQ(at("green"), to_rgb(tile.color[i]).g);
+    EXPECT_EQ(at("blue"), to_rgb(tile.color[i]).b);
     EXPECT_EQ(at("camera"), tile.camera[i]);
     EXPECT_EQ(at("frame"), tile.frame[i]);
     EXPECT_EQ(at("range"), tile.range[i]);
@@ -157,7 +157,7 @@ TEST_F(PlyWriter, DoublePositionsAndUncolouredPoints) {
     const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
     EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-12);
     EXPECT_EQ(at("camera"), tile.camera[i]);
-    const Rgb color = tile.camera[i] == kNoCamera ? Rgb{128, 128, 128} : tile.color[i];
+    const Rgb color = tile.camera[i] == kNoCamera ? Rgb{128, 128, 128} : to_rgb(tile.color[i]);
     EXPECT_EQ(at("red"), color.r);
     EXPECT_EQ(at("green"), color.g);
     EXPECT_EQ(at("blue"), color.b);

@@ -54,7 +54,7 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
   if (!tile.intensity.empty()) point.intensity = tile.intensity[index];
   point.frame = tile.frame[index];
   point.camera = tile.camera[index];
-  if (point.camera != kNoCamera) point.color = tile.color[index];
+  if (point.camera != kNoCamera) point.color = to_rgb(tile.color[index]);
   point.interpolated = tile.interpolated[index];
   point.views = tile.views[index];
   point.spread = tile.spread[index];

@@ -1,11 +1,11 @@
-#include "fovea/map/color_code.h"
+#include "fovea/core/log_color.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace fovea::color_code_test {
+namespace fovea::log_color_test {
 
 TEST(ColorCode, EveryByteSurvives) {
   for (int value = 0; value < 256; ++value) {
@@ -52,4 +52,21 @@ TEST(ColorCode, ClampsWhatIsOutOfRange) {
   EXPECT_EQ(nearest_byte(color_code(0.4)), 0);
 }
 
-}  // namespace fovea::color_code_test
+TEST(LogColor, OfBytesIsExact) {
+  for (int value = 0; value < 256; ++value) {
+    const auto byte = static_cast<std::uint8_t>(value);
+    const LogColor color(byte, 255, 0);
+    EXPECT_EQ(to_rgb(color), (Rgb{byte, 255, 0}));
+    EXPECT_EQ(to_float(color), Eigen::Vector3f(float(value), 255, 0));
+  }
+}
+
+TEST(LogColor, OfOtherValuesIsWithinHalfAStep) {
+  const LogColor color = LogColor::of_codes(color_code(1000), color_code(300.5), color_code(1e9));
+  EXPECT_NEAR(to_float(color).x(), 1000, 1.4);
+  EXPECT_NEAR(to_float(color).y(), 300.5, 0.42);
+  EXPECT_NEAR(to_float(color).z(), 4084.9, 0.1);
+  EXPECT_EQ(to_rgb(color), (Rgb{255, 255, 255}));
+}
+
+}  // namespace fovea::log_color_test

@@ -1,4 +1,4 @@
-#include "fovea/map/color_code.h"
+#include "fovea/core/log_color.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +23,15 @@ std::array<std::uint8_t, kMaxColorCode + 1> make_bytes_of_codes() {
   return bytes;
 }
 
+std::array<float, kMaxColorCode + 1> make_values_of_codes() {
+  std::array<float, kMaxColorCode + 1> values;
+  for (std::size_t code = 0; code < values.size(); ++code) {
+    values[code] = static_cast<float>(color_value(static_cast<std::uint16_t>(code)));
+  }
+  for (std::size_t byte = 0; byte < 256; ++byte) values[codes_of_bytes()[byte]] = float(byte);
+  return values;
+}
+
 }  // namespace
 
 std::uint16_t color_code(double value) {
@@ -45,6 +54,14 @@ const std::array<std::uint16_t, 256>& codes_of_bytes() {
 std::uint8_t nearest_byte(std::uint16_t code) {
   static const std::array<std::uint8_t, kMaxColorCode + 1> bytes = make_bytes_of_codes();
   return bytes[std::min<std::size_t>(code, kMaxColorCode)];
+}
+
+Eigen::Vector3f to_float(LogColor color) {
+  static const std::array<float, kMaxColorCode + 1> values = make_values_of_codes();
+  const auto value_of = [](std::uint16_t code) {
+    return values[std::min<std::size_t>(code, kMaxColorCode)];
+  };
+  return {value_of(color.code[0]), value_of(color.code[1]), value_of(color.code[2])};
 }
 
 }  // namespace fovea
