@@ -22,6 +22,16 @@ const std::map<std::string, const char*>& explanations() {
        "TE after one gain a channel and view, fitted by least squares: without "
        "differences of exposure"},
       {"te_gain_within_20", "share within 20 after these gains"},
+      {"te_cross_mean",
+       "TE after one gain per channel, fitted to half of the view's blocks of 64 pixels and "
+       "applied "
+       "to the other half: the headline figure"},
+      {"te_cross_within_20", "share within 20 after these gains"},
+      {"log_cross_mean",
+       "RMS over channels of the difference of natural logarithms after these gains, mean: does "
+       "not "
+       "grow with brightness"},
+      {"psnr_cross", "of the scored points after these gains (dB)"},
       {"mtme", "mean of ME x TE of each point"},
       {"coverage_5cm", "share of points with a coloured map point within 5 cm"},
       {"coverage_20cm", "the same within 20 cm"},
@@ -35,6 +45,7 @@ const std::map<std::string, const char*>& explanations() {
        "95% interval of the mean ME (whole frames drawn again, 2000 times)"},
       {"intervals_95.te_mean", "95% interval of the mean TE"},
       {"intervals_95.mtme", "95% interval of MTME"},
+      {"intervals_95.te_cross_mean", "95% interval of the mean cross-fitted TE"},
       {"free_space_violations",
        "share of map points that stand over 20 cm in front of every return "
        "around their ray"},

@@ -27,6 +27,7 @@ FrameSums frame_sums(const PointErrors& errors) {
     sums.me += me;
     sums.te += te;
     sums.mtme += me * te;
+    sums.te_cross += errors.color_cross.empty() ? ErrorFigures::kNone : errors.color_cross[i];
   }
   return sums;
 }
@@ -37,7 +38,7 @@ MeanIntervals bootstrap_means(const std::vector<FrameSums>& frames) {
     if (frame.points > 0) filled.push_back(frame);
   }
   if (filled.size() < 2) return {};
-  std::vector<double> me, te, mtme;
+  std::vector<double> me, te, mtme, te_cross;
   for (std::size_t resample = 0; resample < kResamples; ++resample) {
     Random random = Random::of_item(kSeed, 0, resample);
     FrameSums drawn;
@@ -47,13 +48,15 @@ MeanIntervals bootstrap_means(const std::vector<FrameSums>& frames) {
       drawn.me += frame.me;
       drawn.te += frame.te;
       drawn.mtme += frame.mtme;
+      drawn.te_cross += frame.te_cross;
     }
     const auto points = static_cast<double>(drawn.points);
     me.push_back(drawn.me / points);
     te.push_back(drawn.te / points);
     mtme.push_back(drawn.mtme / points);
+    te_cross.push_back(drawn.te_cross / points);
   }
-  return {middle_95(me), middle_95(te), middle_95(mtme)};
+  return {middle_95(me), middle_95(te), middle_95(mtme), middle_95(te_cross)};
 }
 
 }  // namespace fovea

@@ -11,7 +11,7 @@ namespace fovea {
 /// What one frame adds to the means.
 struct FrameSums {
   std::size_t points = 0;
-  double me = 0, te = 0, mtme = 0;
+  double me = 0, te = 0, mtme = 0, te_cross = 0;
 };
 FrameSums frame_sums(const PointErrors& errors);
 
@@ -21,7 +21,7 @@ struct Interval {
   double high = std::numeric_limits<double>::quiet_NaN();
 };
 struct MeanIntervals {
-  Interval me, te, mtme;
+  Interval me, te, mtme, te_cross;
 };
 
 /// Percentile intervals, 2.5% to 97.5%, of the means over all points (Efron 1979, "Bootstrap

@@ -199,6 +199,7 @@ PointErrors errors_by(ColorRule rule, const HeldOutView& held_out, const RuleCol
     const std::uint32_t place = colors.place[held_out.nearest[i]];
     if (place == kNone) continue;
     view.color.push_back(held_out.view.color[i]);
+    view.pixel.push_back(held_out.view.pixel[i]);
     nearest.distance.push_back(held_out.distance[i]);
     nearest.color.push_back(to_float(rule == ColorRule::kFloor ? LogColor(held_out.floor[i])
                                                                : colors.color.at(rule)[place]));

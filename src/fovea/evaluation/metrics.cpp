@@ -5,6 +5,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/evaluation/ciede2000.h"
+#include "fovea/evaluation/cross_fit.h"
 
 namespace fovea {
 namespace {
@@ -79,6 +80,9 @@ void PointErrors::append(const PointErrors& other) {
   add(color_gain, other.color_gain);
   add(ciede2000, other.ciede2000);
   add(interpolated, other.interpolated);
+  add(color_cross, other.color_cross);
+  add(log_cross, other.log_cross);
+  add(square_cross, other.square_cross);
 }
 
 PointErrors PointErrors::select(const std::vector<std::uint8_t>& marks, std::uint8_t wanted) const {
@@ -93,6 +97,9 @@ PointErrors PointErrors::select(const std::vector<std::uint8_t>& marks, std::uin
   take(selected.color_gain, color_gain);
   take(selected.ciede2000, ciede2000);
   take(selected.interpolated, interpolated);
+  take(selected.color_cross, color_cross);
+  take(selected.log_cross, log_cross);
+  take(selected.square_cross, square_cross);
   return selected;
 }
 
@@ -112,6 +119,12 @@ PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
         view.grey ? Eigen::Vector3f::Constant(luma(map.color[i])) : map.color[i];
     errors.ciede2000.push_back(static_cast<float>(ciede2000(lab_of(view.color[i]), lab_of(seen))));
   }
+  const std::vector<Eigen::Vector3f> fitted = cross_fitted(view, map.color);
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    errors.color_cross.push_back(color_error(view.color[i], fitted[i], view.grey));
+    errors.log_cross.push_back(log_color_error(view.color[i], fitted[i], view.grey));
+    errors.square_cross.push_back((view.color[i] - fitted[i]).squaredNorm() / 3);
+  }
   return errors;
 }
 
@@ -129,6 +142,13 @@ ErrorFigures summarize(const PointErrors& errors) {
   figures.te_percent = 100 * figures.te_mean / 255;
   figures.te_gain_mean = mean_and_deviation(errors.color_gain).first;
   figures.te_gain_within_20 = share_up_to(errors.color_gain, kColorWithin);
+  if (!errors.color_cross.empty()) {
+    figures.te_cross_mean = mean_and_deviation(errors.color_cross).first;
+    figures.te_cross_within_20 = share_up_to(errors.color_cross, kColorWithin);
+    figures.log_cross_mean = mean_and_deviation(errors.log_cross).first;
+    figures.psnr_cross =
+        10 * std::log10(255.0 * 255.0 / mean_and_deviation(errors.square_cross).first);
+  }
   if (!errors.ciede2000.empty()) {
     figures.te_ciede2000_mean = mean_and_deviation(errors.ciede2000).first;
     figures.te_ciede2000_median = median(errors.ciede2000);

@@ -48,6 +48,10 @@ struct PointErrors {
   std::vector<float> color_gain;                ///< TE after the view's fitted gains
   std::vector<float> ciede2000 = {};            ///< TE as CIEDE2000, without gains
   std::vector<std::uint8_t> interpolated = {};  ///< of the nearest point; empty: not known
+  // After cross-fitted gains (cross_fit.h):
+  std::vector<float> color_cross = {};   ///< TE of the point
+  std::vector<float> log_cross = {};     ///< log_color_error()
+  std::vector<float> square_cross = {};  ///< squared difference, mean over channels
 
   void append(const PointErrors& other);
   /// Those of the points whose mark is `wanted` (0 or 1). @param marks  one a point
@@ -65,7 +69,10 @@ struct ErrorFigures {
   double te_mean = kNone, te_std = kNone, te_median = kNone;  ///< 0-441, or 0-255 for grey
   double te_within_20 = kNone;                                ///< share
   double te_percent = kNone;  ///< te_mean in % of 255, as the paper quotes it
-  double te_gain_mean = kNone, te_gain_within_20 = kNone;         ///< as te_mean and te_within_20
+  double te_gain_mean = kNone, te_gain_within_20 = kNone;    ///< as te_mean and te_within_20
+  double te_cross_mean = kNone, te_cross_within_20 = kNone;  ///< the same, cross-fitted
+  double log_cross_mean = kNone;                             ///< mean log_color_error()
+  double psnr_cross = kNone;  ///< of the points, dB: 10 log10(255^2 / mean squared difference)
   double te_ciede2000_mean = kNone, te_ciede2000_median = kNone;  ///< see ciede2000.h
   double mtme = kNone;                                            ///< mean of ME x TE of each point
   double coverage_5cm = kNone, coverage_20cm = kNone;             ///< shares

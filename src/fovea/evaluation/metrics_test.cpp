@@ -58,12 +58,15 @@ TEST(NearestSamples, GiveDistanceAndColorOfTheNearest) {
 }
 
 TEST(PointErrors, HoldRawAndGainErrors) {
-  EvaluatedView view{0, 2, false, {{0, 0, 0}}, {{100, 100, 100}}};
+  EvaluatedView view{0, 2, false, {{0, 0, 0}}, {{100, 100, 100}}, {{10, 10}}};
   const NearestSamples map{{0.5f}, {{50, 50, 50}}};
   const PointErrors errors = point_errors(view, map, Eigen::Vector3f::Constant(2));
   EXPECT_THAT(errors.position, ElementsAre(0.5f));
   EXPECT_FLOAT_EQ(errors.color[0], 50 * std::sqrt(3.0f));
   EXPECT_THAT(errors.color_gain, ElementsAre(0.0f));
+  EXPECT_FLOAT_EQ(errors.color_cross[0], 50 * std::sqrt(3.0f));  // the other set is empty
+  EXPECT_FLOAT_EQ(errors.log_cross[0], std::log(2.0f));
+  EXPECT_FLOAT_EQ(errors.square_cross[0], 2500);
   EXPECT_NEAR(errors.ciede2000[0], 17.0, 0.1);  // L* 42.4 against 20.8, weighed by 1.27
 }
 
@@ -92,6 +95,18 @@ TEST(Summary, OfAHandfulOfPoints) {
   EXPECT_NEAR(figures.mtme, (1.0 + 8.0 + 35.0) / 4, 1e-5);
   EXPECT_DOUBLE_EQ(figures.coverage_5cm, 0.5);
   EXPECT_DOUBLE_EQ(figures.coverage_20cm, 0.75);
+}
+
+TEST(Summary, OfCrossFittedColors) {
+  PointErrors errors{{0, 0}, {0, 0}, {0, 0}};
+  errors.color_cross = {10, 30};
+  errors.log_cross = {0.1f, 0.3f};
+  errors.square_cross = {25, 75};
+  const ErrorFigures figures = summarize(errors);
+  EXPECT_DOUBLE_EQ(figures.te_cross_mean, 20);
+  EXPECT_DOUBLE_EQ(figures.te_cross_within_20, 0.5);
+  EXPECT_NEAR(figures.log_cross_mean, 0.2, 1e-7);
+  EXPECT_NEAR(figures.psnr_cross, 10 * std::log10(255.0 * 255 / 50), 1e-9);
 }
 
 TEST(Summary, MedianOfAnOddNumber) {

@@ -22,6 +22,10 @@ void put_figures(Json& json, const ErrorFigures& figures) {
   json["te_within_20"] = figures.te_within_20;
   json["te_gain_mean"] = figures.te_gain_mean;
   json["te_gain_within_20"] = figures.te_gain_within_20;
+  json["te_cross_mean"] = figures.te_cross_mean;
+  json["te_cross_within_20"] = figures.te_cross_within_20;
+  json["log_cross_mean"] = figures.log_cross_mean;
+  json["psnr_cross"] = figures.psnr_cross;
   json["mtme"] = figures.mtme;
   json["coverage_5cm"] = figures.coverage_5cm;
   json["coverage_20cm"] = figures.coverage_20cm;
@@ -39,6 +43,7 @@ void put_intervals(Json& json, const MeanIntervals& intervals) {
   put("me_mean", intervals.me);
   put("te_mean", intervals.te);
   put("mtme", intervals.mtme);
+  put("te_cross_mean", intervals.te_cross);
 }
 
 void put_set(Json& json, const SetFigures& set) {
@@ -214,6 +219,9 @@ std::string to_text(const EvaluationReport& report) {
   };
   row("ME mean", number(f.me_mean, 4),
       "m, std " + number(f.me_std, 4) + ", " + interval(report.intervals.me, 4));
+  row("TE, cross-fitted", number(f.te_cross_mean, 2),
+      fmt::format("within 20: {:.3f}, log error {:.3f}, PSNR {:.2f} dB, {}", f.te_cross_within_20,
+                  f.log_cross_mean, f.psnr_cross, interval(report.intervals.te_cross, 2)));
   row("TE mean", number(f.te_mean, 2),
       fmt::format("std {:.2f}, {:.2f}% of 255, {}", f.te_std, f.te_percent,
                   interval(report.intervals.te, 2)));

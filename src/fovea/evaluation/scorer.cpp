@@ -20,6 +20,13 @@ void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera
   }
 }
 
+void apply_gains(const Eigen::Vector3f& gains, Image& image) {
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const float value = float(image.data[i]) * gains[Eigen::Index(i % 3)];
+    image.data[i] = static_cast<std::uint8_t>(std::min(value + 0.5f, 255.0f));
+  }
+}
+
 }  // namespace
 
 Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options)
@@ -210,7 +217,8 @@ void Scorer::compare_with_photograph(const PlacedFrame& placed, const Camera& ca
   options.min_depth = kEvaluatedDepth;
   options.max_depth = kEvaluatedFar;
   const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
-  const SplatView drawn = draw(placed, camera, options);
+  SplatView drawn = draw(placed, camera, options);
+  apply_gains(report.gains, drawn.image);
   report.gradients = compare_gradients(drawn, image);
   report.roughness = compare_roughness(drawn, image);
   report.pictures = compare_pictures(drawn, image);

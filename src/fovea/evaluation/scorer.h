@@ -79,6 +79,7 @@ class Scorer {
                  const SplatOptions& options) const;
   void score_view(const Frame& frame, const PointCloud& scan, const PlacedFrame& placed,
                   const Camera& camera, const Image& image, FrameScore& score);
+  /// Draws the map in the exposure of the view (`report.gains`).
   void compare_with_photograph(const PlacedFrame& placed, const Camera& camera, const Image& image,
                                ViewReport& report);
   /// Positions of the nearest map points in the camera's frame.
