@@ -36,8 +36,9 @@ void print(const MergeFigures& figures, const std::string& output) {
             alignment.registered, alignment.met, alignment.moved);
   print_out("points added: {}, known already: {}, coloured by both: {}\n", figures.merged.added,
             figures.merged.known, figures.merged.fused);
-  print_out("brightness of the second map: x {:.2f} {:.2f} {:.2f}\n", figures.gain[0],
-            figures.gain[1], figures.gain[2]);
+  const auto factor = [&](int channel) { return std::exp2(-figures.gain_of_b[channel]); };
+  print_out("brightness of the second map: x {:.2f} {:.2f} {:.2f}\n", factor(0), factor(1),
+            factor(2));
 }
 
 /// Of the two maps and of their alignment.

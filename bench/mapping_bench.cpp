@@ -35,8 +35,8 @@ struct MappedStreet {
   }
   const Frame& frame() const { return data.frames.back(); }
   RigidMotion T_cam_local() const { return data.camera.T_cam_lidar * last.T_local_lidar.inverse(); }
-  ColorView view(const ImagePyramid& image) const {
-    return {image, data.camera, frame().index, options.footprint};
+  ViewColors view(const ImagePyramid& image) const {
+    return {image, data.camera, options.footprint};
   }
 };
 
@@ -60,9 +60,9 @@ void bench_recolor(benchmark::State& state, const MappedStreet& street) {
   const ImagePyramid image(street.frame().images.front());
   std::size_t points = 0;
   solo(state, [&] {
-    const ColorView view = street.view(image);
-    benchmark::DoNotOptimize(seen.compare(view).gain);
-    return points = seen.recolor(map, view);
+    const ViewColors view = street.view(image);
+    benchmark::DoNotOptimize(gain_of(seen.differences(view)));
+    return points = seen.recolor(map, view, street.frame().index);
   });
   check(points > 1000, "nothing in view");
   state.counters["points"] = static_cast<double>(points);

@@ -29,7 +29,7 @@ inline void check_order(const MapReader& map) {
   for (const RigidMotion& T_local_submap : map.submaps()) in_memory.add_submap(T_local_submap);
   for (const auto& [id, points] : tiles) {
     in_memory.declare_stored(id, points);
-    read_or_refuse([&, id = id] { map.read_tile(id).check(); });
+    read_or_refuse([&] { map.read_tile(id).check(); });
   }
 }
 

@@ -46,17 +46,19 @@ TEST_F(SampleDrive, DefaultPresetOnHeldOutFrames) {
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(double(calibration["rotation_deg"].at(k))), 0.15);
   EXPECT_LT(std::abs(double(calibration["time_offset_ms"])), 5);
   const auto& scores = json["evaluate"];
-  EXPECT_LE(scores["te_mean"], 26.5);
+  EXPECT_LE(scores["te_cross_mean"], 15.9);
+  EXPECT_GE(scores["te_cross_within_20"], 0.78);
+  EXPECT_LE(scores["te_predicted_mean"], 16.4);
   EXPECT_LE(scores["me_mean"], 0.035);
-  EXPECT_LE(scores["mtme"], 1.4);
   EXPECT_GE(scores["coverage_5cm"], 0.84);
   EXPECT_GE(scores["coverage_20cm"], 0.98);
   EXPECT_LE(scores["free_space_violations"], 0.04);
   // Every key that the contract names is there.
   for (const char* key :
        {"protocol", "cameras", "points", "me_mean", "me_std", "te_mean", "te_std", "te_median",
-        "te_within_20", "te_gain_mean", "te_gain_within_20", "free_space_violations", "sharpness",
-        "mtme", "coverage_5cm", "coverage_20cm", "density_per_m2"}) {
+        "te_within_20", "te_predicted_mean", "te_predicted_within_20", "te_gain_mean",
+        "te_gain_within_20", "free_space_violations", "sharpness", "mtme", "coverage_5cm",
+        "coverage_20cm", "density_per_m2"}) {
     EXPECT_TRUE(scores.contains(key)) << key;
   }
 }

@@ -51,6 +51,7 @@ inline PointCloud one_point_each(const std::vector<Eigen::Vector3f>& positions) 
   points.views.assign(positions.size(), 1);
   points.spread.assign(positions.size(), 0);
   points.weight.assign(positions.size(), 1);
+  points.saturated.assign(positions.size(), 0);
   points.reason.assign(positions.size(), 0);
   for (std::size_t i = 0; i < positions.size(); ++i) points.frame.push_back(int(i));
   return points;

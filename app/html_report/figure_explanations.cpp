@@ -22,6 +22,9 @@ const std::map<std::string, const char*>& explanations() {
        "TE after one gain a channel and view, fitted by least squares: without "
        "differences of exposure"},
       {"te_gain_within_20", "share within 20 after these gains"},
+      {"te_predicted_mean",
+       "TE in the exposure that the map predicts for the view from its neighbors"},
+      {"te_predicted_within_20", "share within 20 in this exposure"},
       {"te_cross_mean",
        "TE after one gain per channel, fitted to half of the view's blocks of 64 pixels and "
        "applied "

@@ -52,7 +52,7 @@ class MapTest(unittest.TestCase):
         (view,) = first.views
         self.assertEqual(str(view.camera), self.map.meta["cameras"])
         self.assertEqual(view.stamp, first.stamp)
-        self.assertIsNone(view.log2_gain)
+        np.testing.assert_allclose(view.log2_gain, np.zeros(3))  # the map's exposure
         self.assertEqual(frames[sample.WITHOUT_SCAN].views, [])
 
     def test_columns_have_their_types(self):
@@ -112,9 +112,11 @@ class MapTest(unittest.TestCase):
 
     def test_arrays_share_their_memory_and_cannot_be_written(self):
         _, tile = next(iter(self.map))
-        self.assertTrue(np.shares_memory(tile.color, tile.color))
+        self.assertTrue(np.shares_memory(tile.position, tile.position))
         with self.assertRaises(ValueError):
             tile.color[0] = 0
+        with self.assertRaises(ValueError):
+            tile.position[0] = 0
 
     def test_reading_tiles_again_and_again_keeps_memory(self):
         tile_id = max(self.map.tiles().items(), key=lambda tile: tile[1])[0]

@@ -64,4 +64,14 @@ Eigen::Vector3f to_float(LogColor color) {
   return {value_of(color.code[0]), value_of(color.code[1]), value_of(color.code[2])};
 }
 
+LogColor with_offset(LogColor color, const Eigen::Array3f& codes) {
+  for (int c = 0; c < 3; ++c) {
+    std::uint16_t& code = color.code[std::size_t(c)];
+    if (code == 0) continue;
+    const float shifted = std::clamp(float(code) + codes[c], 1.0f, float(kMaxColorCode));
+    code = static_cast<std::uint16_t>(std::lround(shifted));
+  }
+  return color;
+}
+
 }  // namespace fovea

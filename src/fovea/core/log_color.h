@@ -50,7 +50,13 @@ struct LogColor {
 inline Rgb to_rgb(LogColor color) {
   return {nearest_byte(color.code[0]), nearest_byte(color.code[1]), nearest_byte(color.code[2])};
 }
+/// The codes as numbers.
+inline Eigen::Array3f codes_of(LogColor color) {
+  return {float(color.code[0]), float(color.code[1]), float(color.code[2])};
+}
 /// Values of the reference exposure, 0 to 4,085; exact for 8-bit values.
 Eigen::Vector3f to_float(LogColor color);
+/// The color under another exposure: its codes plus an offset, clamped. Black stays black.
+LogColor with_offset(LogColor color, const Eigen::Array3f& codes);
 
 }  // namespace fovea

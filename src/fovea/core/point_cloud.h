@@ -34,6 +34,7 @@ struct PointCloud {
   std::vector<std::uint8_t> views;         ///< images that gave the colour; 255: or more
   std::vector<std::uint8_t> spread;        ///< RMS of their differences from it, grey values
   std::vector<std::uint16_t> weight;       ///< sum of their weights (mapping/color_fusion.h)
+  std::vector<std::uint8_t> saturated;     ///< channels saturated in every view (fused_color.h)
   std::vector<std::uint8_t> reason;        ///< why it is there (core/point_reason.h)
 
   std::size_t size() const { return position.size(); }
@@ -71,6 +72,7 @@ void for_each_optional_column(Cloud& cloud, F&& f) {
   f("views", cloud.views);
   f("spread", cloud.spread);
   f("weight", cloud.weight);
+  f("saturated", cloud.saturated);
   f("reason", cloud.reason);
 }
 
@@ -90,6 +92,7 @@ void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("views", a.views, b.views);
   f("spread", a.spread, b.spread);
   f("weight", a.weight, b.weight);
+  f("saturated", a.saturated, b.saturated);
   f("reason", a.reason, b.reason);
 }
 

@@ -83,6 +83,7 @@ void PointErrors::append(const PointErrors& other) {
   add(color_cross, other.color_cross);
   add(log_cross, other.log_cross);
   add(square_cross, other.square_cross);
+  add(color_predicted, other.color_predicted);
 }
 
 PointErrors PointErrors::select(const std::vector<std::uint8_t>& marks, std::uint8_t wanted) const {
@@ -100,11 +101,13 @@ PointErrors PointErrors::select(const std::vector<std::uint8_t>& marks, std::uin
   take(selected.color_cross, color_cross);
   take(selected.log_cross, log_cross);
   take(selected.square_cross, square_cross);
+  take(selected.color_predicted, color_predicted);
   return selected;
 }
 
 PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
-                         const Eigen::Vector3f& gains) {
+                         const Eigen::Vector3f& gains,
+                         const std::optional<Eigen::Vector3f>& predicted_gains) {
   PointErrors errors;
   errors.position = map.distance;
   errors.color.reserve(map.color.size());
@@ -124,6 +127,10 @@ PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
     errors.color_cross.push_back(color_error(view.color[i], fitted[i], view.grey));
     errors.log_cross.push_back(log_color_error(view.color[i], fitted[i], view.grey));
     errors.square_cross.push_back((view.color[i] - fitted[i]).squaredNorm() / 3);
+  }
+  for (std::size_t i = 0; predicted_gains && i < map.color.size(); ++i) {
+    const Eigen::Vector3f predicted = map.color[i].cwiseProduct(*predicted_gains).cwiseMin(255.0f);
+    errors.color_predicted.push_back(color_error(view.color[i], predicted, view.grey));
   }
   return errors;
 }
@@ -148,6 +155,10 @@ ErrorFigures summarize(const PointErrors& errors) {
     figures.log_cross_mean = mean_and_deviation(errors.log_cross).first;
     figures.psnr_cross =
         10 * std::log10(255.0 * 255.0 / mean_and_deviation(errors.square_cross).first);
+  }
+  if (errors.color_predicted.size() == figures.points) {
+    figures.te_predicted_mean = mean_and_deviation(errors.color_predicted).first;
+    figures.te_predicted_within_20 = share_up_to(errors.color_predicted, kColorWithin);
   }
   if (!errors.ciede2000.empty()) {
     figures.te_ciede2000_mean = mean_and_deviation(errors.ciede2000).first;

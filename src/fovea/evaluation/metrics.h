@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,13 +53,16 @@ struct PointErrors {
   std::vector<float> color_cross = {};   ///< TE of the point
   std::vector<float> log_cross = {};     ///< log_color_error()
   std::vector<float> square_cross = {};  ///< squared difference, mean over channels
+  /// TE with the predicted gain (predicted_gain.h); empty where the map states no gains.
+  std::vector<float> color_predicted = {};
 
   void append(const PointErrors& other);
   /// Those of the points whose mark is `wanted` (0 or 1). @param marks  one a point
   PointErrors select(const std::vector<std::uint8_t>& marks, std::uint8_t wanted) const;
 };
 PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
-                         const Eigen::Vector3f& gains);
+                         const Eigen::Vector3f& gains,
+                         const std::optional<Eigen::Vector3f>& predicted_gains = {});
 
 /// Figures of a set of points; NaN where there is none. Standard deviations are the set's own (over
 /// N).
@@ -71,8 +75,9 @@ struct ErrorFigures {
   double te_percent = kNone;  ///< te_mean in % of 255, as the paper quotes it
   double te_gain_mean = kNone, te_gain_within_20 = kNone;    ///< as te_mean and te_within_20
   double te_cross_mean = kNone, te_cross_within_20 = kNone;  ///< the same, cross-fitted
-  double log_cross_mean = kNone;                             ///< mean log_color_error()
-  double psnr_cross = kNone;  ///< of the points, dB: 10 log10(255^2 / mean squared difference)
+  double te_predicted_mean = kNone, te_predicted_within_20 = kNone;
+  double log_cross_mean = kNone;  ///< mean log_color_error()
+  double psnr_cross = kNone;      ///< of the points, dB: 10 log10(255^2 / mean squared difference)
   double te_ciede2000_mean = kNone, te_ciede2000_median = kNone;  ///< see ciede2000.h
   double mtme = kNone;                                            ///< mean of ME x TE of each point
   double coverage_5cm = kNone, coverage_20cm = kNone;             ///< shares

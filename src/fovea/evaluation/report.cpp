@@ -22,6 +22,8 @@ void put_figures(Json& json, const ErrorFigures& figures) {
   json["te_within_20"] = figures.te_within_20;
   json["te_gain_mean"] = figures.te_gain_mean;
   json["te_gain_within_20"] = figures.te_gain_within_20;
+  json["te_predicted_mean"] = figures.te_predicted_mean;
+  json["te_predicted_within_20"] = figures.te_predicted_within_20;
   json["te_cross_mean"] = figures.te_cross_mean;
   json["te_cross_within_20"] = figures.te_cross_within_20;
   json["log_cross_mean"] = figures.log_cross_mean;
@@ -222,6 +224,8 @@ std::string to_text(const EvaluationReport& report) {
   row("TE, cross-fitted", number(f.te_cross_mean, 2),
       fmt::format("within 20: {:.3f}, log error {:.3f}, PSNR {:.2f} dB, {}", f.te_cross_within_20,
                   f.log_cross_mean, f.psnr_cross, interval(report.intervals.te_cross, 2)));
+  row("TE, predicted exposure", number(f.te_predicted_mean, 2),
+      "within 20: " + number(f.te_predicted_within_20, 3));
   row("TE mean", number(f.te_mean, 2),
       fmt::format("std {:.2f}, {:.2f}% of 255, {}", f.te_std, f.te_percent,
                   interval(report.intervals.te, 2)));

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "fovea/core/errors.h"
+#include "fovea/evaluation/predicted_gain.h"
 #include "fovea/evaluation/scored_frames.h"
 #include "fovea/mapping/scan_projection.h"
 
@@ -20,17 +21,11 @@ void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera
   }
 }
 
-void apply_gains(const Eigen::Vector3f& gains, Image& image) {
-  for (std::size_t i = 0; i < image.data.size(); ++i) {
-    const float value = float(image.data[i]) * gains[Eigen::Index(i % 3)];
-    image.data[i] = static_cast<std::uint8_t>(std::min(value + 0.5f, 255.0f));
-  }
-}
-
 }  // namespace
 
 Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options)
     : map_(map.points_local),
+      frames_(map.frames),
       drive_(drive),
       options_(std::move(options)),
       coloured_(colored_points(map_)),
@@ -122,7 +117,8 @@ Scorer::ScoredPoints Scorer::score_points(const Frame& frame, const PointCloud& 
       nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
   const NearestSamples& nearest = scored.nearest;
   scored.gains = fit_gains(view.color, nearest.color, view.grey);
-  scored.errors = point_errors(view, nearest, scored.gains);
+  scored.errors = point_errors(view, nearest, scored.gains,
+                               predicted_gain(frames_, placed.index, camera.index));
   return scored;
 }
 
@@ -144,9 +140,10 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
     Image& image = frame.images.at(options_.cameras[k]);
     if (image.empty()) continue;
     ScoredPoints scored = score_points(frame, scan, placed, camera, image);
-    pictures.push_back({placed.index, camera.index, std::move(image),
-                        draw(placed, camera, SplatOptions{.min_depth = kEvaluatedDepth}),
-                        std::move(scored.view), std::move(scored.errors)});
+    pictures.push_back(
+        {placed.index, camera.index, std::move(image),
+         draw(placed, camera, SplatOptions{.min_depth = kEvaluatedDepth, .gain = scored.gains}),
+         std::move(scored.view), std::move(scored.errors)});
   }
   return pictures;
 }
@@ -217,8 +214,8 @@ void Scorer::compare_with_photograph(const PlacedFrame& placed, const Camera& ca
   options.min_depth = kEvaluatedDepth;
   options.max_depth = kEvaluatedFar;
   const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
-  SplatView drawn = draw(placed, camera, options);
-  apply_gains(report.gains, drawn.image);
+  options.gain = report.gains;
+  const SplatView drawn = draw(placed, camera, options);
   report.gradients = compare_gradients(drawn, image);
   report.roughness = compare_roughness(drawn, image);
   report.pictures = compare_pictures(drawn, image);

@@ -90,6 +90,7 @@ class Scorer {
   void leave_out_moving(const std::vector<FrameRecord>& frames);
 
   const PointCloud& map_;
+  const std::vector<FrameRecord>& frames_;  // of the map
   const FrameSource& drive_;
   ScorerOptions options_;
   std::vector<Camera> cameras_;

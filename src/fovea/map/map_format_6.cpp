@@ -55,7 +55,7 @@ std::uint64_t checksum_6(const TileRow& row) {
                                                row.key.z,  row.points, row.colored};
   add(numbers.data(), sizeof(numbers));
   add(row.origin.data(), 3 * sizeof(double));
-  for (std::size_t i = 0; i < kFirstDefaultColumn; ++i) {
+  for (std::size_t i = 0; i < kSaturatedColumn; ++i) {
     const auto size = static_cast<std::int64_t>(row.blobs[i].size());
     add(&size, sizeof(size));
     add(row.blobs[i].data(), row.blobs[i].size());

@@ -153,7 +153,8 @@ TEST(MapStore, SubmapsKeyframesAndCheckpointsComeBackBitForBit) {
 TEST(MapStore, ColumnsWithDefaultsComeBack) {
   const TemporaryFolder folder;
   TilePoints tile = TilePoints::of(one_point_each({{1, 2, 3}, {3, 2, 1}, {2, 2, 2}}));
-  tile.saturated.append(std::vector<std::uint8_t>{0, 7, 1});
+  tile.colors[1].saturated = 7;
+  tile.colors[2].saturated = 1;
   tile.sensor.append(std::vector<std::uint16_t>{0, 300, 1});
   tile.sampling_level.append(std::vector<std::uint8_t>{4, 0, 0});
   tile.session.append(std::vector<std::uint16_t>{65535, 1, 1});
@@ -165,7 +166,7 @@ TEST(MapStore, ColumnsWithDefaultsComeBack) {
   }
   const auto read = MapReader(folder / "a.fovea").find_tile({0, {0, 0, 0}});
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->saturated, tile.saturated);
+  EXPECT_EQ(read->colors, tile.colors);
   EXPECT_EQ(read->sensor, tile.sensor);
   EXPECT_EQ(read->sampling_level, tile.sampling_level);
   EXPECT_EQ(read->session, tile.session);

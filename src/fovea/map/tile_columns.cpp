@@ -24,6 +24,23 @@ inline constexpr bool kIsColors = false;
 template <class Colors>
 inline constexpr bool kIsColors<ColorColumn<Colors, &FusedColor::color>> = true;
 
+/// Mostly 0 for each point: runs in the file.
+template <class Column>
+inline constexpr bool kIsSaturated = false;
+template <class Colors>
+inline constexpr bool kIsSaturated<ColorColumn<Colors, &FusedColor::saturated>> = true;
+
+RunColumn<std::uint8_t> saturated_of(const std::vector<FusedColor>& colors) {
+  RunColumn<std::uint8_t> saturated;
+  for (const FusedColor& color : colors) saturated.push_back(color.saturated, 1);
+  return saturated;
+}
+void put_saturated(const RunColumn<std::uint8_t>& saturated, std::vector<FusedColor>& colors) {
+  saturated.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::uint8_t value) {
+    for (std::uint32_t i = begin; i < end; ++i) colors[i].saturated = value;
+  });
+}
+
 /// A column as it is.
 template <class Value>
 void copy(const std::vector<Value>& values, std::vector<std::byte>& bytes) {
@@ -149,6 +166,10 @@ void by_packing(Tile& tile, Column& column, Planes&& planes, Color&& colors, Run
     &column == &tile.range ? planes(std::span(&column, 1)) : as_it_is(column);
   } else if constexpr (kIsColors<Values>) {
     colors(column.colors);
+  } else if constexpr (kIsSaturated<Values>) {
+    RunColumn<std::uint8_t> saturated = saturated_of(column.colors);
+    runs(saturated);
+    if constexpr (!std::is_const_v<Tile>) put_saturated(saturated, column.colors);
   } else if constexpr (kIsRuns<Values>) {
     runs(column);
   } else {
@@ -193,6 +214,7 @@ PackedColumns pack_columns(const TilePoints& tile) {
         [&](const auto& runs) { pack_runs(runs, bytes); },
         [&](const auto& values) { copy(values, bytes); });
   });
+  if (is_zero(saturated_of(tile.colors))) columns[kSaturatedColumn].clear();
   next = kFirstDefaultColumn;
   for_each_default_column(tile, [&](const auto& column) {
     if (is_zero(column)) columns[next].clear();

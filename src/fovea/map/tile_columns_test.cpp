@@ -45,7 +45,7 @@ TEST(PackedColumns, RunsOfAnyLengthComeBack) {
     const TilePoints tile = TilePoints::of(cloud);
     const PackedColumns columns = pack_columns(tile);
     TilePoints back;
-    for (std::size_t i = 0; i < kFirstDefaultColumn; ++i) {
+    for (std::size_t i = 0; i < kSaturatedColumn; ++i) {
       EXPECT_TRUE(packed_sizes(i, count).allow(columns[i].size())) << i << ' ' << count;
       EXPECT_TRUE(unpack_column(i, columns[i], count, back)) << i << ' ' << count;
     }

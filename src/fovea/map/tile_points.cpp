@@ -105,6 +105,7 @@ PointCloud TilePoints::cloud() const {
   tile.views.reserve(size());
   tile.spread.reserve(size());
   tile.weight.reserve(size());
+  tile.saturated.reserve(size());
   for (std::size_t i = 0; i < size(); ++i) {
     tile.position.push_back(position_at(i));
     tile.range.push_back(range_at(i));
@@ -113,6 +114,7 @@ PointCloud TilePoints::cloud() const {
     tile.views.push_back(colors[i].views);
     tile.spread.push_back(colors[i].spread);
     tile.weight.push_back(colors[i].weight);
+    tile.saturated.push_back(colors[i].saturated);
   }
   for_each_run_column(tile, *this, [](auto& to, const auto& from) {
     to.resize(from.size());

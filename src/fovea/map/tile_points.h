@@ -50,8 +50,7 @@ struct TilePoints {
   RunColumn<std::uint8_t> reason;
   RunColumn<float> intensity;
   // Empty: 0 for every point.
-  RunColumn<std::uint8_t> saturated;  ///< bits 0 to 2: red, green, blue is saturated in every view
-  RunColumn<std::uint16_t> sensor;    ///< number of the LiDAR in the map's table `sensors`
+  RunColumn<std::uint16_t> sensor;         ///< number of the LiDAR in the map's table `sensors`
   RunColumn<std::uint8_t> sampling_level;  ///< the point stands for a cell of spacing * 2^level
   RunColumn<std::uint16_t> session;        ///< number of the drive that gave the color
   /// Around some points, in steps, both ends included; without points it holds none.
@@ -80,7 +79,7 @@ struct TilePoints {
   /// nearest that can be kept. std::logic_error as check_tile_columns().
   static TilePoints of(const PointCloud& tile);
   /// The same as a cloud, which of() turns back into the tile, except for the columns that a cloud
-  /// does not have: `saturated`, `sensor`, `sampling_level` and `session`.
+  /// does not have: `sensor`, `sampling_level` and `session`.
   PointCloud cloud() const;
 
   /// Points of a cloud that follow each other: from `begin` up to before `end`.
@@ -114,7 +113,6 @@ ColorColumn<Colors, kPart> part_of(Colors& colors) {
 /// Calls `f(column)` for the columns of which an empty one means 0 for every point.
 template <class Tile, class F>
 void for_each_default_column(Tile& tile, F&& f) {
-  f(tile.saturated);
   f(tile.sensor);
   f(tile.sampling_level);
   f(tile.session);
@@ -136,12 +134,14 @@ void for_each_stored_column(Tile& tile, F&& f) {
   f(part_of<&FusedColor::weight>(tile.colors));
   f(tile.reason);
   f(tile.intensity);
+  f(part_of<&FusedColor::saturated>(tile.colors));
   for_each_default_column(tile, f);
 }
 inline constexpr std::size_t kStoredColumns = 16;
 inline constexpr std::size_t kColorColumn = 1;
 /// The columns from here on may be missing: first the intensity, then the default columns.
 inline constexpr std::size_t kFirstOptionalColumn = 11;
-inline constexpr std::size_t kFirstDefaultColumn = 12;
+inline constexpr std::size_t kSaturatedColumn = 12;  // missing: 0 for every point
+inline constexpr std::size_t kFirstDefaultColumn = 13;
 
 }  // namespace fovea

@@ -6,7 +6,6 @@
 #include "fovea/geometry/point_index.h"
 #include "fovea/map/tile_cache.h"
 #include "fovea/map/tile_place.h"
-#include "fovea/mapping/exposure.h"
 #include "fovea/merging/place_points.h"
 
 namespace fovea {
@@ -41,12 +40,12 @@ class TilesOfA {
 
 }  // namespace
 
-Eigen::Array3f gain_of_maps(const MapReader& a, const MapReader& b,
-                            const std::vector<RigidMotion>& T_a_submap_b, double tile_size) {
+LogGain gain_of_maps(const MapReader& a, const MapReader& b,
+                     const std::vector<RigidMotion>& T_a_submap_b, double tile_size) {
   const TilesOfA all_a(a, tile_size);
   const auto tiles_b = b.tile_sizes();
   const double radius = reach_of_tile(tile_size);
-  std::vector<Eigen::Array3f> gains;
+  CodeDifferences b_minus_a;
   for (std::size_t k = 0; k < tiles_b.size();
        k += std::max<std::size_t>(1, tiles_b.size() / kTiles)) {
     const TileId id = tiles_b[k].first;
@@ -65,11 +64,11 @@ Eigen::Array3f gain_of_maps(const MapReader& a, const MapReader& b,
       const FusedColor known = color_of(tiles_a[from.tile], from.point);
       const FusedColor seen = color_of(tile_b, points_b.from(i).point);
       if (seen.views < 2 || known.views < 2) continue;
-      const auto gain = gain_between(to_float(known.color).array(), to_float(seen.color).array());
-      if (gain) gains.push_back(*gain);
+      if (seen.saturated != 0 || known.saturated != 0) continue;
+      b_minus_a.add(codes_of(seen.color) - codes_of(known.color));
     }
   }
-  return median_gain(gains);
+  return gain_of(b_minus_a).value_or(LogGain::Zero());
 }
 
 }  // namespace fovea

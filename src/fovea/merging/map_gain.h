@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "fovea/map/map_store.h"
+#include "fovea/mapping/radiometry.h"
 
 namespace fovea {
 
-/// The gain, a channel, that brings B's colours to A's: median over some of the points that both
-/// have. 1 where too few tell.
-Eigen::Array3f gain_of_maps(const MapReader& a, const MapReader& b,
-                            const std::vector<RigidMotion>& T_a_submap_b, double tile_size);
+/// The gain of B: colors of B = colors of A * 2^gain. The mode over some of the points that both
+/// maps have; 0 if they have too few.
+LogGain gain_of_maps(const MapReader& a, const MapReader& b,
+                     const std::vector<RigidMotion>& T_a_submap_b, double tile_size);
 
 }  // namespace fovea

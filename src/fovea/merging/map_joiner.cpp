@@ -2,15 +2,13 @@
 
 #include <cstdint>
 
-#include "fovea/mapping/exposure.h"
-
 namespace fovea {
 namespace {
 
 /// A frame of a drive as it is in the merged map.
 FrameRecord moved_frame(FrameRecord frame, const AddedDrive& drive, const MapContent& b,
                         const MapAlignment& alignment, const RigidMotion& stated_T_a_b,
-                        std::size_t& latest_submap) {
+                        const LogGain& gain, std::size_t& latest_submap) {
   const int to_submap = drive.merged.first_submap - drive.in_b.first_submap;
   if (frame.submap >= 0) latest_submap = std::size_t(frame.submap);  // a skipped one goes along
   frame.T_local_lidar = alignment.T_a_submap.at(latest_submap) *
@@ -21,24 +19,17 @@ FrameRecord moved_frame(FrameRecord frame, const AddedDrive& drive, const MapCon
   frame.index = drive.number_of(frame.index);
   if (frame.submap >= 0) frame.submap += to_submap;
   if (frame.revisit && frame.revisit->submap >= 0) frame.revisit->submap += to_submap;
+  for (ViewRecord& view : frame.views) {
+    if (view.log2_gain) *view.log2_gain += gain.cast<double>().matrix();
+  }
   return frame;
 }
 
-/// B's colors, made as bright as A's.
-void match_exposure(const Eigen::Array3f& gain, TilePoints& tile) {
-  if ((gain == 1).all()) return;
-  const std::uint8_t mark = is_exposure_off(gain) ? kExposureMatched : 0;
-  std::vector<std::uint8_t> reasons(tile.size());
-  tile.reason.copy_to(reasons);
-  tile.camera.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::int8_t camera) {
-    if (camera == kNoCamera) return;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      LogColor& color = tile.colors[i].color;
-      color = to_rgb(to_float(color).array() * gain);
-      reasons[i] |= mark;
-    }
-  });
-  tile.reason = RunColumn<std::uint8_t>(reasons);
+/// B's colors in the exposure of A.
+void match_exposure(const LogGain& gain, TilePoints& tile) {
+  for (FusedColor& color : tile.colors) {
+    color.color = with_offset(color.color, -gain * kColorCodesPerStop);
+  }
 }
 
 /// Puts `number_of(value)` in the place of each value of a column.
@@ -105,7 +96,7 @@ void MapJoiner::copy_a(const MapContent& content) {
 
 void MapJoiner::add_b(const MapContent& content, const std::vector<AddedDrive>& drives,
                       const Renumbering& renumbering, const MapAlignment& alignment,
-                      const RigidMotion& stated_T_a_b, const Eigen::Array3f& gain) {
+                      const RigidMotion& stated_T_a_b, const LogGain& gain) {
   // Of each submap of B the drive that it comes with, if it does.
   std::vector<const AddedDrive*> drive_of(content.T_local_submap.size(), nullptr);
   for (const AddedDrive& drive : drives) {
@@ -113,7 +104,7 @@ void MapJoiner::add_b(const MapContent& content, const std::vector<AddedDrive>& 
       drive_of.at(std::size_t(id)) = &drive;
       add_submap(alignment.T_a_submap.at(std::size_t(id)), drive);
     }
-    add_frames(content, drive, alignment, stated_T_a_b);
+    add_frames(content, drive, alignment, stated_T_a_b, gain);
   }
   add_keyframes(drives, renumbering);
   b_.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
@@ -137,11 +128,13 @@ void MapJoiner::add_submap(const RigidMotion& T_local_submap, const AddedDrive& 
 }
 
 void MapJoiner::add_frames(const MapContent& content, const AddedDrive& drive,
-                           const MapAlignment& alignment, const RigidMotion& stated_T_a_b) {
+                           const MapAlignment& alignment, const RigidMotion& stated_T_a_b,
+                           const LogGain& gain) {
   auto latest_submap = std::size_t(drive.in_b.first_submap);
   for (const FrameRecord& frame : content.frames) {
     if (drive.number_of(frame.index) < 0) continue;
-    output_.put_frame(moved_frame(frame, drive, content, alignment, stated_T_a_b, latest_submap));
+    output_.put_frame(
+        moved_frame(frame, drive, content, alignment, stated_T_a_b, gain, latest_submap));
   }
 }
 

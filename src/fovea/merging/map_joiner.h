@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fovea/map/tile_map.h"
+#include "fovea/mapping/radiometry.h"
 #include "fovea/merging/alignment.h"
 #include "fovea/merging/map_content.h"
 
@@ -37,15 +38,15 @@ class MapJoiner {
       : a_(a), b_(b), output_(output), map_(map) {}
 
   void copy_a(const MapContent& content);
-  /// @param gain  makes B's colors as bright as A's
+  /// @param gain  of B, see gain_of_maps()
   void add_b(const MapContent& content, const std::vector<AddedDrive>& drives,
              const Renumbering& renumbering, const MapAlignment& alignment,
-             const RigidMotion& stated_T_a_b, const Eigen::Array3f& gain);
+             const RigidMotion& stated_T_a_b, const LogGain& gain);
 
  private:
   void add_submap(const RigidMotion& T_local_submap, const AddedDrive& drive);
   void add_frames(const MapContent& content, const AddedDrive& drive, const MapAlignment& alignment,
-                  const RigidMotion& stated_T_a_b);
+                  const RigidMotion& stated_T_a_b, const LogGain& gain);
   void add_keyframes(const std::vector<AddedDrive>& drives, const Renumbering& renumbering);
   void put_tile(const TileId& id, TilePoints tile);
 

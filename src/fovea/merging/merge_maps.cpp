@@ -95,7 +95,7 @@ RigidMotion compare(const MapReader& a, const MapReader& b, const MapContent& co
     MapSurfaces surfaces_a(a), surfaces_b(b);
     figures.alignment = align_maps(surfaces_a, surfaces_b, content_b.frames, T_a_b);
     if (!job.force) require_overlap(figures.alignment, where);
-    figures.gain = gain_of_maps(a, b, figures.alignment.T_a_submap, content_a.tile_size);
+    figures.gain_of_b = gain_of_maps(a, b, figures.alignment.T_a_submap, content_a.tile_size);
   }
   return T_a_b;
 }
@@ -120,7 +120,7 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
   } else {
     const Renumbering renumbering(content_a, content_b, added);
     put_drives(content_a, added, renumbering, T_a_b, *writer);
-    joiner.add_b(content_b, added, renumbering, figures.alignment, T_a_b, figures.gain);
+    joiner.add_b(content_b, added, renumbering, figures.alignment, T_a_b, figures.gain_of_b);
     for (const auto& [key, value] : merged_meta(content_a, content_b, added)) {
       writer->put_meta(key, value);
     }

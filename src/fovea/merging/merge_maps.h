@@ -1,10 +1,10 @@
 // Two maps of one place as one map.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
 
+#include "fovea/mapping/radiometry.h"
 #include "fovea/merging/alignment.h"
 #include "fovea/merging/point_merge.h"
 
@@ -23,7 +23,7 @@ struct MergeFigures {
   std::size_t drives_added = 0;  ///< 0: A has them all already
   bool georeferenced = false;    ///< the guess came from both maps' georeference, or one drive
   MapAlignment alignment;
-  Eigen::Array3f gain = Eigen::Array3f::Ones();  ///< that B's colours have been multiplied with
+  LogGain gain_of_b = LogGain::Zero();  ///< taken out of B's colors: B = A * 2^gain
   PointMergeFigures merged;
   std::size_t points = 0;  ///< of the result
 };

@@ -69,6 +69,13 @@ void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record) 
             [](const ViewRecord& a, const ViewRecord& b) { return a.camera < b.camera; });
 }
 
+void put_gains(const std::map<int, LogGain>& gains, FrameRecord& record) {
+  for (ViewRecord& view : record.views) {
+    const auto found = gains.find(view.camera);
+    if (found != gains.end()) view.log2_gain = found->second.cast<double>().matrix();
+  }
+}
+
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {
   FrameRecord record;
   record.index = skipped.index;

@@ -1,11 +1,13 @@
 // Records of the mapped drive in the map: its identity, its sensors, the stamps of its images.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_records.h"
+#include "fovea/mapping/radiometry.h"
 
 namespace fovea {
 
@@ -18,6 +20,9 @@ std::vector<SensorRecord> sensor_records(const DriveInfo& drive);
 /// Adds a view to the record for each image that the frame has.
 /// @param drive  its calibration has the frame's cameras
 void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record);
+
+/// States the gains of the record's views, by camera.
+void put_gains(const std::map<int, LogGain>& gains, FrameRecord& record);
 
 /// The record of a frame that the drive skips.
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp);

@@ -52,7 +52,6 @@ void report(const DynamicStats& stats, Figures& figures) {
 
 void report(const ColorStats& stats, Figures& figures) {
   figures["points_recolored"] = as_figure(stats.recolored);
-  if (stats.matched_exposures > 0) figures["exposure_off"] = stats.matched_exposures;
   if (stats.compared == 0) return;
   figures["texture_compared"] = as_figure(stats.compared);
   figures["texture_error"] = stats.error;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
 #include "fovea/map/frame_record.h"
+#include "fovea/mapping/radiometry.h"
 #include "fovea/pipeline/stage_clock.h"
 
 namespace fovea {
@@ -83,10 +85,10 @@ struct DynamicStats {
 
 /// Colors of the map from a frame's images.
 struct ColorStats {
-  std::size_t recolored = 0;  ///< map points in view again
-  int matched_exposures = 0;  ///< images whose exposure differs from that of the map
-  std::size_t compared = 0;   ///< map points, with the image before it is fused
-  double error = 0;           ///< mean color difference of the compared points, gray values
+  std::size_t recolored = 0;    ///< map points in view again
+  std::size_t compared = 0;     ///< map points, with the images before they are fused
+  double error = 0;             ///< mean difference of the compared points, percent
+  std::map<int, LogGain> gain;  ///< of each camera's image
 };
 
 struct FrameResult {

@@ -55,7 +55,6 @@ void DriveFigures::note_flaws(const FrameRecord& record) {
     restarted_.add(record.index);
   }
   if (record.has("images_blank")) blank_.add(record.index);
-  if (record.has("exposure_off")) exposed_.add(record.index);
 }
 
 void DriveFigures::add(const FrameRecord& record, bool is_new) {
@@ -120,8 +119,6 @@ MapSummary DriveFigures::summary() const {
        "before; a new part of the map begins at the last pose, where it may overlap the others");
   note(degenerate_,
        "the scan leaves a direction of motion open, which is taken from the first guess");
-  note(exposed_,
-       "an image is exposed otherwise than the map by over 40 % and colors new points only");
   warn(blank_, "an image shows nothing but black or white and colors no point");
   for (const auto& [camera, flaw] : missing_) {
     warn(flaw, fmt::format("camera {} has no image that can be read, the frame is used without it",

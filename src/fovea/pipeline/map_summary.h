@@ -90,7 +90,7 @@ class DriveFigures {
   NavigationFaults navigation_;
   MapSummary summary_;
   std::map<std::string, std::vector<float>> by_stage_;  // ms
-  Flaw absent_, jumped_, degenerate_, lost_, restarted_, unknown_, blank_, exposed_;
+  Flaw absent_, jumped_, degenerate_, lost_, restarted_, unknown_, blank_;
   std::map<int, Flaw> missing_;  // by camera
   PointCounts points_;
 };

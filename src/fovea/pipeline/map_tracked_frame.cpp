@@ -15,13 +15,15 @@ FrameRecord map_tracked_frame(IncrementalMapper& mapper, const FrameSource& sour
   }
   const WallClock::time_point mapping_began = WallClock::now();
   const Frame& frame = std::get<Frame>(tracked.read.result);
-  FrameRecord record = record_of(mapper.map_frame(frame, std::move(*tracked.tracked)));
+  const FrameResult result = mapper.map_frame(frame, std::move(*tracked.tracked));
+  FrameRecord record = record_of(result);
   record.milliseconds["frame"] = milliseconds_since(tracked.arrival());
   record.milliseconds["wait"] = milliseconds(tracked.tracking_began - tracked.arrival()) +
                                 milliseconds(mapping_began - tracked.tracking_ended);
   record.milliseconds["decode"] = tracked.read.decode_ms;
   note_missing_images(frame, record);
   add_views(frame, drive, record);
+  if (result.colors) put_gains(result.colors->gain, record);
   return record;
 }
 

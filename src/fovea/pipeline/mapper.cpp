@@ -7,6 +7,8 @@
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/surface_samples.h"
+#include "fovea/mapping/texture.h"
+#include "fovea/mapping/view_colors.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/scan_geometry.h"
 
@@ -21,18 +23,13 @@ double reach_of(const MapperOptions& options) {
   return std::max(dynamic, options.foveal.far_range) + 2 * kMargin;  // cells, and a margin for them
 }
 
-/// Brings the view to the map's exposure, if they differ.
-void match_exposure(const VisibleMap& visible_map, ColorView& view, ColorStats& stats) {
+/// Adds the differences of one view to the figures of a frame.
+void count_differences(const CodeDifferences& differences, const LogGain& gain, ColorStats& stats) {
   constexpr std::size_t kEnough = 100;  // of fewer points the error is chance
-  const VisibleMap::Comparison comparison = visible_map.compare(view);
-  if (comparison.points >= kEnough) {
-    stats.compared += comparison.points;
-    stats.error +=
-        (comparison.error - stats.error) * double(comparison.points) / double(stats.compared);
-  }
-  if (!is_exposure_off(comparison.gain)) return;
-  view.gain = matching_gain(comparison.gain);
-  ++stats.matched_exposures;
+  if (differences.size() < kEnough) return;
+  stats.compared += differences.size();
+  stats.error += (residual_percent(differences, gain) - stats.error) * double(differences.size()) /
+                 double(stats.compared);
 }
 
 /// Index of the first frame whose scan the filter of dynamic points depends on.
@@ -73,7 +70,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
   if (options_.dynamic.remove) {
-    // 7 for the map: points leave where this scan and those before it see free space.
+    // 8 for the map: points leave where this scan and those before it see free space.
     RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
     result.dynamic.emplace().removed = dynamic_points_.observe(
         map_, std::move(ranges), result.poses.T_odom_lidar, T_odom_local, frame.index);
@@ -109,7 +106,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
         stats.upsampled += new_cam.size();
         stats.oblique += limit_incidence(new_cam, options_.foveal.max_incidence);
       },
-      [&] {  // In parallel, on other data: what steps 5 and 6 compare with.
+      [&] {  // In parallel, on other data: what steps 5 to 7 compare with.
         visible_map_.render(map_, region, T_local_cam.inverse(), occupancy_.cell());
         if (!image.empty()) pyramid.emplace(image);
       });
@@ -121,16 +118,18 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   result.clock.lap("filter");
 
   if (pyramid) {
-    ColorStats& colors = stats_of(result.colors);
-    ColorView view{*pyramid, camera, result.index, options_.footprint};
-    // 6. Colors: an image of another exposure gets a gain, and leaves known colors alone. Otherwise
-    // known points fuse one more view. New points get their first.
-    match_exposure(visible_map_, view, colors);
-    run_both(
-        [&] {
-          if (!view.has_gain()) colors.recolored += visible_map_.recolor(map_, view);
-        },
-        [&] { color_new_points(new_cam, view); });
+    ColorStats& color_stats = stats_of(result.colors);
+    const ViewColors image_colors(*pyramid, camera, options_.footprint);
+    // 6. Light: the gain of the image relative to the exposure of the map.
+    const CodeDifferences differences = visible_map_.differences(image_colors);
+    const LogGain gain = view_gains_.next(camera.index, differences);
+    color_stats.gain[camera.index] = gain;
+    count_differences(differences, gain, color_stats);
+    // 7. Colors in the exposure of the map: known points fuse one more view, new points get their
+    // first.
+    const ViewColors colors = image_colors.without_gain(gain);
+    run_both([&] { color_stats.recolored += visible_map_.recolor(map_, colors, result.index); },
+             [&] { color_new_points(new_cam, colors, camera, result.index); });
   } else {
     color_points(new_cam, {image, camera, result.index});  // no image: empty columns
   }
@@ -138,12 +137,12 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   new_cam.normal.clear();  // a map has none
   PointCloud new_local =
       transform_cloud(std::move(new_cam), T_local_cam, T_local_lidar.translation());
-  // 7. Dynamic points: new points where other scans see free space.
+  // 8. Dynamic points: new points where other scans see free space.
   if (options_.dynamic.remove) {
     result.dynamic->dropped += new_local.drop(dynamic_points_.classify(new_local, T_odom_local));
   }
   result.clock.lap("filter");
-  // 8. Add.
+  // 9. Add.
   map_.add(new_local);
   occupancy_update_center_ = T_local_cam.translation();
   stats_of(result.added) += new_local.size();
@@ -174,6 +173,9 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
   std::vector<FrameResult> frames;
   for (const FrameRecord& record : records) {
     if (record.status != FrameStatus::kSkipped) frames.push_back(tracked_result(record));
+    for (const ViewRecord& view : record.views) {
+      if (view.log2_gain) view_gains_.resume(view.camera, view.log2_gain->cast<float>().array());
+    }
   }
   const int first_voting = first_voting_frame(frames);
   const int first_target = tracker_.first_target(frames);

@@ -21,7 +21,7 @@ class Mapper : public IncrementalMapper {
 
   /// Steps 1 and 2 of the method: deskew, registration to the local map.
   TrackedScan track(const Frame& frame, const FrameTask& task) override;
-  /// Steps 3 to 8: from visible points to the map.
+  /// Steps 3 to 9: from visible points to the map.
   FrameResult map_frame(const Frame& frame, TrackedScan tracked) override;
 
   void apply_deferred_tracking() override { tracker_.apply_deferred(); }
@@ -35,7 +35,7 @@ class Mapper : public IncrementalMapper {
               const FrameSource& source) override;
 
  private:
-  /// Steps 3 to 8 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
+  /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
   void map_view(const PointCloud& scan_lidar, const Image& image, const Camera& camera,
                 const RigidMotion& T_odom_local, FrameResult& result);
   /// Points and samples of the surface in free cells of the map.
@@ -49,6 +49,7 @@ class Mapper : public IncrementalMapper {
   Tracker tracker_;
   TileMap map_;
   VisibleMap visible_map_;
+  ViewGains view_gains_;
   DynamicPointFilter dynamic_points_;
   Occupancy occupancy_;
   std::optional<Eigen::Vector3d> occupancy_update_center_;  // where occupancy_ is out of date

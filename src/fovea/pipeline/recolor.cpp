@@ -24,11 +24,6 @@ void forget_colors(int drive, TilePoints& tile) {
   std::fill(tile.colors.begin(), tile.colors.end(), FusedColor{});
   tile.camera = {};
   tile.camera.push_back(kNoCamera, count);
-  std::vector<std::uint8_t> reasons(count);
-  tile.reason.copy_to(reasons);
-  for (std::uint8_t& reason : reasons) reason &= static_cast<std::uint8_t>(~kExposureMatched);
-  tile.reason = RunColumn<std::uint8_t>(reasons);
-  tile.saturated = {};
   tile.session = {};
   if (drive > 0) tile.session.push_back(static_cast<std::uint16_t>(drive), count);
 }
@@ -48,6 +43,14 @@ TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& w
     copy.declare_stored(id, tile.size());
   });
   return copy;
+}
+
+/// The gain under which the map contains an image. Maps of the paper mapper state none.
+LogGain gain_of_view(const FrameRecord& record, int camera) {
+  for (const ViewRecord& view : record.views) {
+    if (view.camera == camera && view.log2_gain) return view.log2_gain->cast<float>().array();
+  }
+  return LogGain::Zero();
 }
 
 class Recolorer {
@@ -78,11 +81,12 @@ class Recolorer {
       visible_map_.render(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(),
                           spacing_);
       const ImagePyramid pyramid(image);
-      const ColorView view{pyramid, camera, frame.index, footprint_};
-      if (is_blank(image) || is_exposure_off(visible_map_.compare(view).gain)) {
+      if (is_blank(image)) {
         ++figures.images_left_out;
       } else {
-        visible_map_.recolor(map_, view);
+        const ViewColors colors(pyramid, camera, footprint_);
+        visible_map_.recolor(map_, colors.without_gain(gain_of_view(record, camera.index)),
+                             frame.index);
       }
     }
     if (!cache_.is_full(map_)) return;

@@ -22,7 +22,7 @@ struct RecolorFigures {
   std::size_t points = 0;
   std::size_t uncolored = 0;   ///< points that no image shows, or none in the foveal region
   int frames = 0, unread = 0;  ///< used; of the map, but no longer to be had
-  int images_left_out = 0;     ///< blank, or exposed otherwise than the rest
+  int images_left_out = 0;     ///< blank
 };
 
 /// Shows the images of a map's frames to its points anew, in order, under the poses that the map

@@ -6,7 +6,6 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
-#include "fovea/mapping/color_fusion.h"
 #include "fovea/mapping/projected_block.h"
 #include "fovea/pipeline/view_frustum.h"
 
@@ -18,8 +17,8 @@ constexpr std::size_t kChunkSize = 8192, kBlock = ColorBlock::kSize;
 constexpr float kDiscRadius = 0.75f;
 /// Seed of the random rounding of colors.
 constexpr std::uint64_t kRoundingSeed = 0x636f6c6f7572ull;
-/// compare() takes one of this many points.
-constexpr std::size_t kCompareStep = 64;
+/// differences() takes one of this many points.
+constexpr std::size_t kCompareStep = 32;
 
 static_assert(kChunkSize / kCompareStep <= kBlock && kChunkSize <= 1 << 16);
 static_assert(kChunkSize % TilePoints::kBoxed == 0 && TilePoints::kBoxed <= ProjectedBlock::kSize);
@@ -156,95 +155,67 @@ std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_ca
   return marks;
 }
 
-VisibleMap::Differences VisibleMap::differences_of(const Chunk& chunk,
-                                                   const PatchColors& patches) const {
-  const TilePoints& tile = *chunk.points;
+CodeDifferences VisibleMap::differences_of(const Chunk& chunk, const ViewColors& view) const {
   const std::span<const PointInView> points = points_of(chunk);
   ProjectedPoints projected;
-  std::array<Eigen::Array3f, kBlock> known;
+  std::array<LogColor, kBlock> known;
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); i += kCompareStep) {
-    const PointInView& point = points[i];
-    const FusedColor& color = tile.colors[chunk.begin + point.index];
-    if (color.views < 2) continue;
-    const Eigen::Vector2f pixel = quantizer_.pixel(point);
-    if (depth_.hides(pixel, quantizer_.depth(point))) continue;
-    known[n] = to_float(color.color).array();
-    projected.put(n++, pixel, quantizer_.depth(point));
+    const FusedColor& color = chunk.points->colors[chunk.begin + points[i].index];
+    if (color.views == 0 || color.saturated != 0) continue;
+    const Eigen::Vector2f pixel = quantizer_.pixel(points[i]);
+    const float depth = quantizer_.depth(points[i]);
+    if (depth_.hides(pixel, depth)) continue;
+    known[n] = color.color;
+    projected.put(n++, pixel, depth);
   }
-  ColorBlock seen;
-  patches.at(projected, n, seen);
-  Differences differences;
-  differences.points = n;
-  for (std::size_t j = 0; j < n; ++j) {
-    const Eigen::Array3f color(seen.red[j], seen.green[j], seen.blue[j]);
-    differences.sum += double((known[j] - color).abs().mean());
-    if (const auto gain = gain_between(known[j], color)) differences.gains.push_back(*gain);
+  ViewColors::Samples seen;
+  view.sample(projected, n, seen);
+  const float dark = float(color_code(kDarkValue));
+  CodeDifferences differences;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (seen[i].saturated != 0 || seen[i].code.minCoeff() < dark) continue;
+    differences.add(seen[i].code - codes_of(known[i]));
   }
   return differences;
 }
 
-VisibleMap::Comparison VisibleMap::compare(const ColorView& view) const {
-  const PatchColors patches(view);
-  std::vector<Differences> of_chunk(chunks_.size());
+CodeDifferences VisibleMap::differences(const ViewColors& view) const {
+  std::vector<CodeDifferences> of_chunk(chunks_.size());
   parallel_for(chunks_.size(), 1,
-               [&](std::size_t k) { of_chunk[k] = differences_of(chunks_[k], patches); });
-  std::vector<Eigen::Array3f> gains;
-  Comparison comparison;
-  double sum = 0;
-  for (const Differences& chunk : of_chunk) {
-    gains.insert(gains.end(), chunk.gains.begin(), chunk.gains.end());
-    comparison.points += chunk.points;
-    sum += chunk.sum;
-  }
-  comparison.gain = median_gain(gains);
-  if (comparison.points > 0) comparison.error = sum / double(comparison.points);
-  return comparison;
+               [&](std::size_t k) { of_chunk[k] = differences_of(chunks_[k], view); });
+  CodeDifferences all;
+  for (const CodeDifferences& part : of_chunk) all.append(part);
+  return all;
 }
 
-void VisibleMap::find_weights(const ProjectedPoints& points, std::size_t count,
-                              std::span<std::uint16_t, kBlock> weight) const {
-  const auto fx = static_cast<float>(camera_.fx), fy = static_cast<float>(camera_.fy),
-             cx = static_cast<float>(camera_.cx), cy = static_cast<float>(camera_.cy);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float right = (points.u[i] - cx) * (1 / fx), down = (points.v[i] - cy) * (1 / fy);
-    weight[i] = view_weight(points.depth[i] * std::sqrt(1 + right * right + down * down));
-  }
-}
-
-std::size_t VisibleMap::recolor_block(std::span<const PointInView> points,
-                                      std::uint32_t chunk_begin, std::span<FusedColor> colors,
-                                      const PatchColors& patches, const NoiseSeeds& seeds,
+std::size_t VisibleMap::recolor_chunk(const Chunk& chunk, std::span<FusedColor> colors,
+                                      const ViewColors& view, std::uint32_t seed,
                                       std::vector<std::uint32_t>& first_colored) const {
-  ProjectedPoints all;
-  const ViewQuantizer quantizer = quantizer_;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    all.put(i, quantizer.pixel(points[i]), quantizer.depth(points[i]));
+  std::size_t count = 0;
+  const std::span<const PointInView> all = points_of(chunk);
+  for (std::size_t begin = 0; begin < all.size(); begin += kBlock) {
+    const auto points = all.subspan(begin, std::min(kBlock, all.size() - begin));
+    ProjectedPoints projected;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      projected.put(i, quantizer_.pixel(points[i]), quantizer_.depth(points[i]));
+    }
+    std::array<std::uint32_t, kBlock> visible;
+    const std::size_t n = depth_.find_visible(projected, points.size(), visible);
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::uint32_t i = visible[j];
+      projected.put(j, {projected.u[i], projected.v[i]}, projected.depth[i]);
+    }
+    ViewColors::Samples seen;
+    view.sample(projected, n, seen);
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::uint32_t index = chunk.begin + points[visible[j]].index;
+      if (colors[index].views == 0) first_colored.push_back(index);
+      fuse(seen[j], quick_bits(index, seed), colors[index]);
+    }
+    count += n;
   }
-  std::array<std::uint32_t, kBlock> visible;
-  const std::size_t n = depth_.find_visible(all, points.size(), visible);
-  ProjectedPoints projected;
-  ColorObservations seen;
-  std::array<std::uint32_t, kBlock> index;
-  std::array<FusedColor, kBlock> known;
-  for (std::size_t j = 0; j < n; ++j) {
-    const std::uint32_t i = visible[j];
-    projected.put(j, {all.u[i], all.v[i]}, all.depth[i]);
-    index[j] = chunk_begin + points[i].index;
-    known[j] = colors[index[j]];
-    if (known[j].views == 0) first_colored.push_back(index[j]);
-  }
-  find_weights(projected, n, seen.weight);
-  for (std::size_t word = 0; word < seeds.size(); ++word) {
-    for (std::size_t j = 0; j < n; ++j) seen.noise[word][j] = quick_bits(index[j], seeds[word]);
-  }
-  patches.at(projected, n, seen.color);
-  FusedColors fused;
-  fused.load(std::span(known).first(n));
-  fuse(fused, seen, n);
-  fused.store(std::span(known).first(n));
-  for (std::size_t j = 0; j < n; ++j) colors[index[j]] = known[j];
-  return n;
+  return count;
 }
 
 std::vector<std::span<FusedColor>> VisibleMap::colors_of_chunks(TileMap& map) const {
@@ -267,25 +238,17 @@ std::vector<std::span<FusedColor>> VisibleMap::colors_of_chunks(TileMap& map) co
   return colors;
 }
 
-std::size_t VisibleMap::recolor(TileMap& map, const ColorView& view) const {
-  const auto camera = static_cast<std::uint64_t>(view.camera.index);
+std::size_t VisibleMap::recolor(TileMap& map, const ViewColors& view, int frame) const {
+  const auto camera = static_cast<std::uint64_t>(camera_.index);
   Random random =
-      Random::of_item(static_cast<std::uint64_t>(view.frame) << 8 | camera, kRoundingSeed, 0);
-  const NoiseSeeds seeds{static_cast<std::uint32_t>(random.next()),
-                         static_cast<std::uint32_t>(random.next())};
-  const PatchColors patches(view);
+      Random::of_item(static_cast<std::uint64_t>(frame) << 8 | camera, kRoundingSeed, 0);
+  const auto seed = static_cast<std::uint32_t>(random.next());
   const std::vector<std::span<FusedColor>> colors = colors_of_chunks(map);
   std::vector<std::vector<std::uint32_t>> first_colored(chunks_.size());
-  const auto recolor_chunk = [&](std::size_t k, std::size_t) {
-    const std::span<const PointInView> points = points_of(chunks_[k]);
-    std::size_t count = 0;
-    for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
-      count += recolor_block(points.subspan(begin, std::min(kBlock, points.size() - begin)),
-                             chunks_[k].begin, colors[k], patches, seeds, first_colored[k]);
-    }
-    return count;
-  };
-  const std::size_t count = parallel_sum(chunks_.size(), 1, std::size_t{0}, recolor_chunk);
+  const std::size_t count =
+      parallel_sum(chunks_.size(), 1, std::size_t{0}, [&](std::size_t k, std::size_t) {
+        return recolor_chunk(chunks_[k], colors[k], view, seed, first_colored[k]);
+      });
   for (std::size_t k = 0; k < chunks_.size(); ++k) {
     if (first_colored[k].empty()) continue;
     map.put_camera(chunks_[k].tile, first_colored[k], static_cast<std::int8_t>(camera_.index));

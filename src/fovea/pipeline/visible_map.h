@@ -7,9 +7,8 @@
 
 #include "fovea/map/tile_map.h"
 #include "fovea/mapping/depth_buffer.h"
-#include "fovea/mapping/exposure.h"
 #include "fovea/mapping/foveal_region.h"
-#include "fovea/pipeline/patch_colors.h"
+#include "fovea/mapping/view_colors.h"
 #include "fovea/pipeline/point_in_view.h"
 
 namespace fovea {
@@ -33,20 +32,15 @@ class VisibleMap {
   /// Adds points to the depth buffer, so that recolor() skips the map behind them.
   void add_occluders(const PointCloud& points_cam);
 
-  /// Colors of a view compared with those of map points that have at least two views.
-  struct Comparison {
-    /// Median gain of each channel that matches the view to the map's colors; 1 if there are too
-    /// few points.
-    Eigen::Array3f gain = Eigen::Array3f::Ones();
-    std::size_t points = 0;  ///< compared
-    double error = 0;        ///< mean absolute difference, gray values, without any gain
-  };
-  Comparison compare(const ColorView& view) const;
+  /// Color codes of a view minus those of the map, at some of the visible points of the region.
+  /// Points that are saturated or dark in the view, or saturated in the map, are left out.
+  CodeDifferences differences(const ViewColors& view) const;
 
   /// Fuses a view's colors into the visible points of the region. At most once after render().
-  /// @param map  the rendered one
+  /// @param map    the rendered one
+  /// @param frame  of the view
   /// @return number of visible points
-  std::size_t recolor(TileMap& map, const ColorView& view) const;
+  std::size_t recolor(TileMap& map, const ViewColors& view, int frame) const;
 
  private:
   /// A range of a tile's points; chunks of equal size balance the threads' work.
@@ -72,26 +66,15 @@ class VisibleMap {
   template <class F>
   void for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
                       F&& f) const;
-  struct Differences {
-    std::vector<Eigen::Array3f> gains;
-    std::size_t points = 0;
-    double sum = 0;  // of the differences
-  };
-  Differences differences_of(const Chunk& chunk, const PatchColors& patches) const;
+  CodeDifferences differences_of(const Chunk& chunk, const ViewColors& view) const;
   /// The colors of each chunk's tile; empty if no point of the tile is in the region.
   std::vector<std::span<FusedColor>> colors_of_chunks(TileMap& map) const;
-  /// Seeds of the two random numbers for each fused point.
-  using NoiseSeeds = std::array<std::uint32_t, 2>;
-  /// @param chunk_begin    of the points' chunk
+  /// @param seed           of the random rounding
   /// @param first_colored  gets the points that had no color
   /// @return number of visible points
-  std::size_t recolor_block(std::span<const PointInView> points, std::uint32_t chunk_begin,
-                            std::span<FusedColor> colors, const PatchColors& patches,
-                            const NoiseSeeds& seeds,
+  std::size_t recolor_chunk(const Chunk& chunk, std::span<FusedColor> colors,
+                            const ViewColors& view, std::uint32_t seed,
                             std::vector<std::uint32_t>& first_colored) const;
-  /// Weights of the view at the first `count` points.
-  void find_weights(const ProjectedPoints& points, std::size_t count,
-                    std::span<std::uint16_t, ColorBlock::kSize> weight) const;
   std::span<const PointInView> points_of(const Chunk& chunk) const {
     return {shards_[chunk.shard].points.data() + chunk.first, chunk.count};
   }

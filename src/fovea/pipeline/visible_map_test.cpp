@@ -14,37 +14,38 @@ TEST(VisibleMap, AWallGetsTheWeightedMeanOfItsViews) {
   const struct {
     Rgb color;
     RigidMotion T_cam_local;
-  } views[] = {{{100, 40, 250}, camera_at(0, 0, 0)},
-               {{180, 40, 10}, camera_at(0.5, 0, 4)},
+  } views[] = {{{100, 40, 230}, camera_at(0, 0, 0)},
+               {{180, 40, 20}, camera_at(0.5, 0, 4)},
                {{30, 200, 90}, camera_at(-0.5, 0.1, 5)}};
   for (int frame = 0; const auto& [color, T_cam_local] : views) {
     const TestView view(image_of(color), T_cam_local, white_zone(1), ++frame);
     EXPECT_EQ(view.recolor(map), map.size());
   }
-  Eigen::Vector3d error = Eigen::Vector3d::Zero();
-  double spread_error = 0;
+  Eigen::Array3d error = Eigen::Array3d::Zero();
+  double spread_error = 0;  // codes
   for_each_point(map, [&](const Eigen::Vector3d& p, const PointCloud& tile, std::size_t i) {
     double weight = view_weight(5);
-    Eigen::Vector3d sum = weight * Eigen::Vector3d(1, 2, 3);
-    double squares = weight * Eigen::Vector3d(1, 2, 3).squaredNorm();
+    Eigen::Array3d sum = weight * codes_of(Rgb{1, 2, 3}).cast<double>();
+    double squares = weight * codes_of(Rgb{1, 2, 3}).cast<double>().square().sum();
     for (const auto& [color, T_cam_local] : views) {
       const double w = view_weight(static_cast<float>((T_cam_local * p).norm()));
-      const Eigen::Vector3d seen = to_float(color).cast<double>();
+      const Eigen::Array3d seen = codes_of(color).cast<double>();
       sum += w * seen;
-      squares += w * seen.squaredNorm();
+      squares += w * seen.square().sum();
       weight += w;
     }
     ASSERT_EQ(tile.views[i], 4);
-    ASSERT_NEAR(tile.weight[i], weight, 1);  // a distance at a step of the weights
-    const Eigen::Vector3d mean = sum / weight, found = to_float(tile.color[i]).cast<double>();
-    ASSERT_LT((found - mean).cwiseAbs().maxCoeff(), 4);
+    ASSERT_NEAR(tile.weight[i], weight, 3);  // distances at steps of the weights
+    const Eigen::Array3d mean = sum / weight, found = codes_of(tile.color[i]).cast<double>();
+    ASSERT_LT((found - mean).abs().maxCoeff(), 6);
     error += (found - mean) / double(map.size());
-    spread_error += (tile.spread[i] - std::sqrt((squares / weight - mean.squaredNorm()) / 3)) /
-                    double(map.size());
+    spread_error +=
+        (tile.spread[i] * kSpreadStep - std::sqrt((squares / weight - mean.square().sum()) / 3)) /
+        double(map.size());
     ASSERT_EQ(tile.frame[i], 0);  // the frame that measured the point
   });
-  EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.05);
-  EXPECT_LT(std::abs(spread_error), 0.1);
+  EXPECT_LT(error.abs().maxCoeff(), 1);
+  EXPECT_LT(std::abs(spread_error), 2);
 }
 
 // A wall behind a board keeps its colors where the board hides it, whether the board is in the map
@@ -72,7 +73,7 @@ TEST(VisibleMap, HiddenPointsKeepTheirColors) {
         ASSERT_EQ(tile.color[i], (Rgb{1, 2, 3}));
         ASSERT_EQ(tile.weight[i], view_weight(5));
       } else {
-        ASSERT_GT(to_rgb(tile.color[i]).r, 50);
+        ASSERT_GT(to_rgb(tile.color[i]).r, 5);
       }
     });
     EXPECT_EQ(count, seen);
@@ -192,48 +193,23 @@ TEST(VisibleMap, GivesTheSameAtAnyThreadCount) {
   }
 }
 
-// A wall whose points have two views of one color, and a third image of another exposure.
-TEST(Exposure, GainBringsAnImageToTheMap) {
-  const std::vector<Eigen::Vector3f> positions = wall(8, -2, 2, -0.8, 0.8);
-  TileMap map(4.0);
-  map.add_submap(RigidMotion::Identity());
-  PointCloud points = new_points(positions);
-  points.color.assign(points.size(), Rgb{100, 60, 80});
-  points.views.assign(points.size(), 2);
-  map.add(points);
-  const auto gain_of = [&](const Rgb& color) {
-    const TestView view(image_of(color));
-    return view.render(map).compare(view.view).gain;
+// An image of another exposure than a wall in the map.
+TEST(VisibleMap, DifferencesGiveTheGainOfAnImage) {
+  TileMap map = map_of(wall(8, -2, 2, -0.8, 0.8));
+  TestView(image_of({100, 60, 80})).recolor(map);
+  const LogGain first = *gain_of(TestView(image_of({100, 60, 80})).differences(map));
+  const auto gain_to_first = [&](const Rgb& color) -> LogGain {
+    return *gain_of(TestView(image_of(color)).differences(map)) - first;
   };
-  EXPECT_LT((gain_of({100, 60, 80}) - 1).abs().maxCoeff(), 1e-3);
-  EXPECT_LT((gain_of({200, 120, 160}) - 0.5f).abs().maxCoeff(), 1e-3);
-  EXPECT_LT((gain_of({50, 60, 40}) - Eigen::Array3f(2, 1, 2)).abs().maxCoeff(), 1e-3);
-  EXPECT_EQ(gain_of({255, 255, 255}).matrix(), Eigen::Vector3f::Ones());  // saturated
-  EXPECT_FALSE(is_exposure_off(gain_of({120, 72, 96})));
-  EXPECT_TRUE(is_exposure_off(gain_of({200, 120, 160})));
-  EXPECT_TRUE(is_exposure_off(gain_of({50, 30, 40})));
-
-  // Error of an image: (100, 60, 80) against (120, 60, 90).
-  const TestView other(image_of({120, 60, 90}));
-  const VisibleMap::Comparison off = other.render(map).compare(other.view);
-  EXPECT_GT(off.points, 100u);
-  EXPECT_NEAR(off.error, 10, 0.1);
-
-  // New points with the matching gain are close to the map's colors.
-  const TestView bright(image_of({200, 120, 160}));
-  ColorView view = bright.view;
-  view.gain = matching_gain(gain_of({200, 120, 160}));
-  PointCloud added;
-  added.position = {{0, 0, 8}};
-  color_new_points(added, view);
-  EXPECT_NEAR(to_rgb(added.color[0]).r, 100, 8);
-  EXPECT_GT(to_rgb(added.color[0]).r, 100);
+  EXPECT_LT((gain_to_first({200, 120, 160}) - 1).abs().maxCoeff(), 1e-3);
+  EXPECT_LT((gain_to_first({50, 60, 40}) - LogGain(-1, 0, -1)).abs().maxCoeff(), 1e-3);
 }
 
-TEST(Exposure, OfTooFewPointsIsUnknown) {
-  TileMap map = map_of(wall(8, -0.1, 0.1, -0.1, 0.1));
-  const TestView view(image_of({200, 200, 200}));
-  EXPECT_EQ(view.render(map).compare(view.view).gain.matrix(), Eigen::Vector3f::Ones());
+TEST(VisibleMap, SaturatedAndDarkValuesGiveNoDifference) {
+  TileMap map = map_of(wall(8, -2, 2, -0.8, 0.8));
+  EXPECT_GT(TestView(image_of({200, 120, 160})).differences(map).size(), 100u);
+  EXPECT_EQ(TestView(image_of({255, 120, 160})).differences(map).size(), 0u);
+  EXPECT_EQ(TestView(image_of({200, 5, 160})).differences(map).size(), 0u);
 }
 
 }  // namespace fovea::visible_map_test

@@ -36,15 +36,17 @@ struct TestView {
   Camera camera;
   FovealRegion region;
   RigidMotion T_cam_local;
-  ColorView view;
+  ViewColors view;
+  int frame;
 
   explicit TestView(const Image& picture, const RigidMotion& T_cam_local_ = RigidMotion::Identity(),
-                    const FovealOptions& options = white_zone(1), int frame = 7)
+                    const FovealOptions& options = white_zone(1), int frame_ = 7)
       : image(picture),
         camera(test_camera()),
         region(options, camera),
         T_cam_local(T_cam_local_),
-        view{image, camera, frame, kSpacing} {}
+        view(image, camera, kSpacing),
+        frame(frame_) {}
   TestView(const TestView&) = delete;
   TestView& operator=(const TestView&) = delete;
 
@@ -53,10 +55,11 @@ struct TestView {
     seen.render(map, region, T_cam_local, kSpacing);
     return seen;
   }
+  CodeDifferences differences(const TileMap& map) const { return render(map).differences(view); }
   std::size_t recolor(TileMap& map, const PointCloud& new_points_cam = {}) const {
     VisibleMap seen = render(map);
     seen.add_occluders(new_points_cam);
-    return seen.recolor(map, view);
+    return seen.recolor(map, view, frame);
   }
 };
 

@@ -13,6 +13,7 @@ namespace fovea {
 struct SplatOptions {
   double min_depth = 0.5;  ///< m; nothing nearer to the camera's plane is drawn
   double max_depth = std::numeric_limits<double>::infinity();
+  Eigen::Vector3f gain = Eigen::Vector3f::Ones();  ///< factors of red, green and blue
   float max_radius = 12;  ///< pixels; bounds the footprint of points right before the camera
 };
 

@@ -1,0 +1,107 @@
+#include "fovea/mapping/view_colors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/core/parallel.h"
+#include "fovea/mapping/projected_block.h"
+
+namespace fovea {
+namespace {
+
+constexpr float kWeightAtOneMeter = 1600;
+/// Share of the weight of a view that a saturated or black value keeps. It counts where the point
+/// has no other view.
+constexpr float kLeastShare = 1.0f / 64;
+
+/// How far a value can be trusted, 0 to 1: noise dominates dark values, bright ones are cut off.
+float trust(float darkest, float brightest) {
+  constexpr float kNoisy = 16, kNearlySaturated = 236;
+  const float above_noise = darkest / kNoisy;
+  const float below_saturation =
+      (kSaturatedValue - brightest) / (kSaturatedValue - kNearlySaturated);
+  return std::clamp(std::min(above_noise, below_saturation), kLeastShare, 1.0f);
+}
+
+float code_of(float value) {
+  constexpr float kLeastValue = 0.5f;  // half a gray value: a black pixel
+  return float(kColorCodeOfOne) +
+         float(kColorCodesPerStop) * std::log2(std::max(value, kLeastValue));
+}
+
+}  // namespace
+
+std::uint16_t view_weight(float distance) {
+  return static_cast<std::uint16_t>(
+      std::clamp(kWeightAtOneMeter / distance, 1.0f, kWeightAtOneMeter) + 0.5f);
+}
+
+ViewColors::ViewColors(const ImagePyramid& image, const Camera& camera, double footprint)
+    : image_(image),
+      footprint_(static_cast<float>(footprint * camera.fx)),
+      fx_(static_cast<float>(camera.fx)),
+      fy_(static_cast<float>(camera.fy)),
+      cx_(static_cast<float>(camera.cx)),
+      cy_(static_cast<float>(camera.cy)) {}
+
+ViewColors ViewColors::without_gain(const LogGain& gain) const {
+  ViewColors view = *this;
+  view.gain_ = gain;
+  return view;
+}
+
+void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Samples& samples) const {
+  std::array<float, ProjectedPoints::kSize> footprint;
+  for (std::size_t i = 0; i < count; ++i) footprint[i] = footprint_ / points.depth[i];
+  ColorBlock values;
+  image_.colors_at({points.u.data(), count}, {points.v.data(), count}, {footprint.data(), count},
+                   values);
+  const LogGain gain_codes = gain_ * kColorCodesPerStop;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Array3f value(values.red[i], values.green[i], values.blue[i]);
+    const float right = (points.u[i] - cx_) / fx_, down = (points.v[i] - cy_) / fy_;
+    const float distance = points.depth[i] * std::sqrt(1 + right * right + down * down);
+    ColorSample& sample = samples[i];
+    sample.code = value.unaryExpr(&code_of) - gain_codes;
+    sample.weight = static_cast<std::uint16_t>(
+        std::max(1.0f, float(view_weight(distance)) * trust(value.minCoeff(), value.maxCoeff())));
+    sample.saturated = 0;
+    for (int c = 0; c < 3; ++c) {
+      if (value[c] >= kSaturatedValue) sample.saturated |= static_cast<std::uint8_t>(1 << c);
+    }
+  }
+}
+
+void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
+                      int frame) {
+  const std::size_t n = points_cam.size();
+  points_cam.frame.assign(n, frame);
+  points_cam.camera.assign(n, static_cast<std::int8_t>(camera.index));
+  points_cam.color.resize(n);
+  points_cam.views.resize(n);
+  points_cam.spread.resize(n);
+  points_cam.weight.resize(n);
+  points_cam.saturated.resize(n);
+  parallel_chunks(n, ProjectedPoints::kSize, [&](std::size_t begin, std::size_t end) {
+    ProjectedBlock block(camera);
+    block.project(std::span(points_cam.position).subspan(begin, end - begin),
+                  Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero());
+    ProjectedPoints projected;
+    for (std::size_t i = 0; i < end - begin; ++i) {
+      projected.put(i, block.pixel(i), block.depth(i));
+    }
+    ViewColors::Samples samples;
+    view.sample(projected, end - begin, samples);
+    for (std::size_t i = begin; i < end; ++i) {
+      FusedColor fused;
+      fuse(samples[i - begin], /*random=*/0, fused);
+      points_cam.color[i] = fused.color;
+      points_cam.views[i] = fused.views;
+      points_cam.spread[i] = fused.spread;
+      points_cam.weight[i] = fused.weight;
+      points_cam.saturated[i] = fused.saturated;
+    }
+  });
+}
+
+}  // namespace fovea

@@ -1,0 +1,45 @@
+// The colors that one image gives to points (docs/method.md 6): means over the surface patches of
+// the points, with a weight for each point.
+#pragma once
+
+#include <array>
+
+#include "fovea/geometry/camera.h"
+#include "fovea/mapping/color_fusion.h"
+#include "fovea/mapping/image_pyramid.h"
+#include "fovea/mapping/projected_points.h"
+#include "fovea/mapping/radiometry.h"
+
+namespace fovea {
+
+/// Weight of a view: the inverse of its distance (m), since a near view shows more detail. An
+/// integer from 1 to 1600, so that sums are exact.
+std::uint16_t view_weight(float distance);
+
+class ViewColors {
+ public:
+  using Samples = std::array<ColorSample, ProjectedPoints::kSize>;
+
+  /// @param image      must outlive the object
+  /// @param footprint  edge of the surface patch whose mean color a point gets, m
+  ViewColors(const ImagePyramid& image, const Camera& camera, double footprint);
+
+  /// The same colors, brought to the exposure of the map.
+  ViewColors without_gain(const LogGain& gain) const;
+
+  /// Samples of the first `count` points. Saturated and noisy values get a small weight.
+  void sample(const ProjectedPoints& points, std::size_t count, Samples& samples) const;
+
+ private:
+  const ImagePyramid& image_;
+  float footprint_;  // pixels at a depth of 1 m
+  float fx_, fy_, cx_, cy_;
+  LogGain gain_ = LogGain::Zero();
+};
+
+/// Colors new points, all in view, from their first view.
+/// @param points_cam  camera frame. Sets frame, camera and the columns of the color.
+void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
+                      int frame);
+
+}  // namespace fovea
