@@ -29,7 +29,7 @@ namespace fovea::app {
 namespace {
 
 struct ExportArguments {
-  std::string map, output, format, where, crs = "local";
+  std::string map, output, format, where, crs = "local", exposure = "auto";
   PointChoice points;
   std::optional<double> utc_offset;  // h
   double voxel = MeshOptions().voxel;
@@ -68,6 +68,7 @@ void check_options(const CLI::App& command, const ExportArguments& arguments,
   only_for("--viewer", {"3dtiles", "mesh"});
   only_for("--uncolored", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
   only_for("--where", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
+  only_for("--exposure", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
 }
 
 void print_figures(const ExportArguments& arguments, const ExportFigures& figures) {
@@ -156,6 +157,7 @@ void write(const MapReader& map, ExportArguments& arguments, const std::string& 
   }
   if (!arguments.where.empty()) arguments.points.where = PointFilter::parse(arguments.where);
   arguments.points.crs = *crs_of(arguments.crs);
+  arguments.points.exposure = parse_exposure(arguments.exposure);
   const auto report = [&](const ExportFigures& figures) {
     if (!arguments.quiet) print_figures(arguments, figures);
   };
@@ -235,6 +237,9 @@ void add_export_command(CLI::App& app, Session& session) {
                     "3dtiles, mesh: with the page of 'fovea view', for any web server to show");
   command->add_flag("--uncolored", arguments->points.include_uncolored,
                     "Also points that no camera coloured, in grey with camera -1");
+  command->add_option("--exposure", arguments->exposure,
+                      "Of the colors: auto (the median exposure of the images), frame:N, or stops "
+                      "above the exposure of the map");
   command->add_option(
       "--where", arguments->where,
       "Only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "

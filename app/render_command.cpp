@@ -25,6 +25,7 @@
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
+#include "fovea/evaluation/predicted_gain.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -37,6 +38,7 @@ struct RenderArguments {
   RenderDriveArguments path;  // with --poses
   std::string map, drive, output, view = "behind";
   std::string camera = "2";
+  std::string exposure;  // empty: as the photograph, without one as auto
   int frame = -1, width = 1280, height = 720;
   bool force = false, foreign = false;
 };
@@ -59,11 +61,25 @@ const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string
       fmt::format("give --frame {} to {}", map.frames.front().index, map.frames.back().index));
 }
 
-SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam) {
+/// As exposed as the image of a frame, by the gain of the frame or of its neighbors.
+ColorDisplay exposure_of(const FrameRecord& frame, int camera,
+                         const std::vector<FrameRecord>& frames) {
+  for (const ViewRecord& view : frame.views) {
+    if (view.camera == camera && view.log2_gain) {
+      return {view.log2_gain->cast<float>().array(), /*tone_mapped=*/false};
+    }
+  }
+  const auto gain = predicted_gain(frames, frame.index, camera);
+  return gain ? ColorDisplay(gain->array().log2(), /*tone_mapped=*/false) : ColorDisplay();
+}
+
+SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam,
+               const ColorDisplay& display) {
   const ColoredPoints points =
       has_colors(map) ? colored_points(map.points_local) : all_points(map.points_local);
   SplatOptions options;
   options.max_radius = 20;
+  options.display = display;
   return splat(points, sample_spacing(points.position), camera, T_local_cam.inverse(), options);
 }
 
@@ -105,7 +121,10 @@ Image beside_photograph(const RenderArguments& arguments, const MapReader& reade
   const auto [frame, loaded] = load_frame(arguments, map, *drive);
   const Camera camera = drive->info().camera_at(0, frame.index).at_image(frame.motion);
   const Image& photograph = loaded.images.at(0);
-  const SplatView drawn = draw(map, camera, frame.T_local_lidar * camera.T_cam_lidar.inverse());
+  const SplatView drawn = draw(map, camera, frame.T_local_lidar * camera.T_cam_lidar.inverse(),
+                               arguments.exposure.empty()
+                                   ? exposure_of(frame, camera.index, map.frames)
+                                   : color_display(parse_exposure(arguments.exposure), map.frames));
   Image both(camera.width, 2 * camera.height, 3);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
@@ -123,8 +142,11 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map) {
   const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
   const Viewpoint& view = *std::find_if(
       kViews.begin(), kViews.end(), [&](const Viewpoint& v) { return v.name == arguments.view; });
-  return draw(map, viewpoint_camera(view, arguments.width, arguments.height),
-              viewpoint_pose(view, frame.T_local_lidar))
+  return draw(
+             map, viewpoint_camera(view, arguments.width, arguments.height),
+             viewpoint_pose(view, frame.T_local_lidar),
+             color_display(parse_exposure(arguments.exposure.empty() ? "auto" : arguments.exposure),
+                           map.frames))
       .image;
 }
 
@@ -191,6 +213,9 @@ void add_render_command(CLI::App& app, Session& session) {
   command->add_option("--height", arguments->height, "Pixels")
       ->capture_default_str()
       ->check(whole_number(16, 8192));
+  command->add_option("--exposure", arguments->exposure,
+                      "Of the colors: auto (the median exposure of the images), frame:N, or stops "
+                      "above the exposure of the map (default: that of the photograph, else auto)");
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   add_foreign_option(*command, arguments->foreign);
   RenderDriveArguments& path = arguments->path;
@@ -224,6 +249,7 @@ void add_render_command(CLI::App& app, Session& session) {
     drive.drive = arguments->drive;
     drive.force = arguments->force;
     drive.foreign = arguments->foreign;
+    if (!arguments->exposure.empty()) drive.exposure = parse_exposure(arguments->exposure);
     render_drive_command(drive, session.warnings);
   });
 }

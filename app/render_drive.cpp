@@ -144,6 +144,7 @@ void render_drive_command(const RenderDriveArguments& arguments, Warnings& warni
   job.T_local_lidar = read_poses(arguments.poses);
   job.period = from_seconds(1 / arguments.rate);
   job.reach = arguments.reach;
+  job.exposure = arguments.exposure;
   const RenderFigures figures = [&] {
     ProgressBar bar(arguments.quiet);
     return render_drive(map, job, [&](int done, int total) { bar.draw(done, total); });

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/warnings.h"
+#include "fovea/map/color_display.h"
 
 namespace fovea::app {
 
@@ -14,8 +15,9 @@ struct RenderDriveArguments {
   std::string camera;   ///< empty: none, or the drive's; "calib", six numbers, or a calibration
   std::string cameras;  ///< of that calibration: numbers, or empty: all
   std::string lidar;    ///< empty: none; its name
-  double rate = 10;     ///< frames a second
-  double reach = 80;    ///< m
+  ExposureChoice exposure;
+  double rate = 10;   ///< frames a second
+  double reach = 80;  ///< m
   int threads = 0;
   bool force = false, quiet = false, foreign = false;
 };

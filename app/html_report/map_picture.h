@@ -15,6 +15,7 @@ std::string hero_picture(const ScoredMap& map, const Scorer& scorer);
 /// @param T_local_lidar  in the points' frame
 /// @param alt  what the picture shows, plain text
 std::string picture_from_behind(const ColoredPoints& points, const std::vector<float>& spacing,
-                                const RigidMotion& T_local_lidar, const std::string& alt);
+                                const RigidMotion& T_local_lidar, const std::string& alt,
+                                const ColorDisplay& display = {});
 
 }  // namespace fovea::app

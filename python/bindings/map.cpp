@@ -17,7 +17,10 @@ namespace {
 /// A reader that Python's threads take turns with, each without holding up the others.
 class Map {
  public:
-  explicit Map(std::filesystem::path path) : path_(std::move(path)), reader_(path_) {}
+  explicit Map(std::filesystem::path path)
+      : path_(std::move(path)),
+        reader_(path_),
+        display_(std::make_shared<const ColorDisplay>(color_display({}, reader_.frames()))) {}
 
   template <class Read>
   auto read(Read&& read) const {
@@ -26,10 +29,12 @@ class Map {
     return read(reader_);
   }
   const std::filesystem::path& path() const { return path_; }
+  const std::shared_ptr<const ColorDisplay>& display() const { return display_; }
 
  private:
   std::filesystem::path path_;
   MapReader reader_;
+  std::shared_ptr<const ColorDisplay> display_;
   mutable std::mutex mutex_;
 };
 
@@ -46,8 +51,9 @@ class TileIterator {
   std::pair<TileTuple, Points> next() {
     if (next_ == tiles_.size()) throw py::stop_iteration();
     const TileId id = tiles_[next_++].first;
-    return {tuple_of(id),
-            map_->read([&](const MapReader& reader) { return Points(reader.read_tile(id)); })};
+    return {tuple_of(id), map_->read([&](const MapReader& reader) {
+              return Points(reader.read_tile(id), map_->display());
+            })};
   }
 
  private:
@@ -68,7 +74,8 @@ std::map<TileTuple, std::size_t> tiles_of(const Map& map) {
 Points points_of(const Map& map, const std::string& where) {
   return map.read([&](const MapReader& reader) {
     return Points(
-        reader.all_points_local(where.empty() ? PointFilter() : PointFilter::parse(where)));
+        reader.all_points_local(where.empty() ? PointFilter() : PointFilter::parse(where)),
+        map.display());
   });
 }
 
@@ -110,7 +117,8 @@ void bind_map(py::module_& module) {
       .def(
           "tile",
           [](const Map& map, const TileTuple& id) {
-            return map.read([&](const auto& r) { return Points(r.read_tile(id_of(id))); });
+            return map.read(
+                [&](const auto& r) { return Points(r.read_tile(id_of(id)), map.display()); });
           },
           py::arg("id"),
           "The points of a tile, in the frame of its submap. InputError if it is not there.")

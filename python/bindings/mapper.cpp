@@ -4,6 +4,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/make_mapper.h"
@@ -16,6 +17,23 @@
 namespace fovea::python {
 namespace py = pybind11;
 namespace {
+
+std::vector<RigidMotion> submaps_of(const TileMap& map) {
+  std::vector<RigidMotion> T_local_submap;
+  for (const Submap& submap : map.submaps()) T_local_submap.push_back(submap.T_local_submap);
+  return T_local_submap;
+}
+
+std::map<TileTuple, Points> tiles_of(const TileMap& map,
+                                     const std::shared_ptr<const ColorDisplay>& display) {
+  std::map<TileTuple, Points> tiles;
+  for (std::size_t number = 0; number < map.submaps().size(); ++number) {
+    for (const auto& [key, tile] : map.submaps()[number].tiles) {
+      tiles.emplace(tuple_of({number, key}), Points(tile.points->cloud(), display));
+    }
+  }
+  return tiles;
+}
 
 /// A mapper with its drive, that Python's threads take turns with.
 class DriveMapper {
@@ -31,7 +49,19 @@ class DriveMapper {
       throw std::invalid_argument("frames are mapped in the drive's order, each once");
     }
     last_ = frame.frame->index;
-    return record_of(mapper_->process(*frame.frame, {.held_out = held_out}));
+    const FrameResult result = mapper_->process(*frame.frame, {.held_out = held_out});
+    FrameRecord record = record_of(result);
+    add_views(*frame.frame, info_, record);
+    if (result.colors) put_gains(result.colors->gain, record);
+    return records_.emplace_back(std::move(record));
+  }
+
+  /// The points so far, as a file of them would show them.
+  std::map<TileTuple, Points> tiles() const {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard one_at_a_time(mutex_);
+    return tiles_of(std::as_const(*mapper_).map(),
+                    std::make_shared<const ColorDisplay>(color_display({}, records_)));
   }
 
   template <class Look>
@@ -55,24 +85,9 @@ class DriveMapper {
   DriveInfo info_;
   std::unique_ptr<IncrementalMapper> mapper_;
   std::optional<int> last_;
+  std::vector<FrameRecord> records_;
   mutable std::mutex mutex_;
 };
-
-std::vector<RigidMotion> submaps_of(const TileMap& map) {
-  std::vector<RigidMotion> T_local_submap;
-  for (const Submap& submap : map.submaps()) T_local_submap.push_back(submap.T_local_submap);
-  return T_local_submap;
-}
-
-std::map<TileTuple, Points> tiles_of(const TileMap& map) {
-  std::map<TileTuple, Points> tiles;
-  for (std::size_t number = 0; number < map.submaps().size(); ++number) {
-    for (const auto& [key, tile] : map.submaps()[number].tiles) {
-      tiles.emplace(tuple_of({number, key}), Points(tile.points->cloud()));
-    }
-  }
-  return tiles;
-}
 
 }  // namespace
 
@@ -97,7 +112,7 @@ void bind_mapper(py::module_& module) {
           "submaps", [](const DriveMapper& self) { return motion_arrays(self.look(&submaps_of)); },
           "T_local_submap as of the last frame, N x 4 x 4.")
       .def(
-          "tiles", [](const DriveMapper& self) { return self.look(&tiles_of); },
+          "tiles", &DriveMapper::tiles,
           "The points so far by (submap, x, y, z), in the frames of their submaps: not copied, and "
           "not changed by later frames.");
 }

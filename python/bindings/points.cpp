@@ -11,10 +11,10 @@ namespace fovea::python {
 namespace py = pybind11;
 namespace {
 
-py::array color_array(const PointCloud& cloud) {
+py::array color_array(const PointCloud& cloud, const ColorDisplay& display) {
   auto colors = std::make_shared<std::vector<Rgb>>();
   colors->reserve(cloud.size());
-  for (const LogColor& color : cloud.color) colors->push_back(to_rgb(color));
+  for (const LogColor& color : cloud.color) colors->push_back(display(color));
   return shared_array(py::dtype::of<std::uint8_t>(), {py::ssize_t(colors->size()), 3},
                       colors->data(), colors);
 }
@@ -47,8 +47,8 @@ void bind_points(py::module_& module) {
           [](const Points& self) { return optional_column(self.cloud, &PointCloud::intensity); },
           "N float32, 0-1, or None in a map without.")
       .def_property_readonly(
-          "color", [](const Points& self) { return color_array(*self.cloud); },
-          "N x 3 uint8, RGB; of meaning where camera is not -1.")
+          "color", [](const Points& self) { return color_array(*self.cloud, *self.display); },
+          "N x 3 uint8, RGB in the exposure of exports; of meaning where camera is not -1.")
       .def_property_readonly(
           "origin",
           [](const Points& self) { return py::array_t<double>(3, self.cloud->origin.data()); },

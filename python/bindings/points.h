@@ -7,15 +7,18 @@
 #include <utility>
 
 #include "fovea/core/point_cloud.h"
+#include "fovea/map/color_display.h"
 #include "fovea/map/tile_map.h"
 
 namespace fovea::python {
 
 /// Arrays over its columns share it.
 struct Points {
-  explicit Points(PointCloud points)
-      : cloud(std::make_shared<const PointCloud>(std::move(points))) {}
+  Points(PointCloud points, std::shared_ptr<const ColorDisplay> color_display)
+      : cloud(std::make_shared<const PointCloud>(std::move(points))),
+        display(std::move(color_display)) {}
   std::shared_ptr<const PointCloud> cloud;
+  std::shared_ptr<const ColorDisplay> display;  ///< of the colors
 };
 
 /// A TileId as a tuple: submap, x, y, z.

@@ -28,6 +28,9 @@ const std::array<std::uint16_t, 256>& codes_of_bytes();
 /// 4095 count as 4095.
 std::uint8_t nearest_byte(std::uint16_t code);
 
+/// Base-2 logarithms of the gains of red, green and blue: image = map * 2^gain.
+using LogGain = Eigen::Array3f;
+
 /// A color as the file of a map stores it (docs/map-format.md): a code for each channel.
 struct LogColor {
   std::array<std::uint16_t, 3> code{};  ///< red, green, blue

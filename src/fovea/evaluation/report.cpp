@@ -1,3 +1,4 @@
+// Over 300 lines: the report in two forms, figure by figure.
 #include "fovea/evaluation/report.h"
 
 #include <fmt/format.h>

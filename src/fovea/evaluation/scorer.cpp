@@ -21,6 +21,11 @@ void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera
   }
 }
 
+/// @param gains  factors of the channels
+ColorDisplay exposure_of(const Eigen::Vector3f& gains) {
+  return {gains.array().max(1e-6f).log2(), /*tone_mapped=*/false};
+}
+
 }  // namespace
 
 Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options)
@@ -142,7 +147,8 @@ std::vector<ViewPicture> Scorer::pictures(const PlacedFrame& placed) const {
     ScoredPoints scored = score_points(frame, scan, placed, camera, image);
     pictures.push_back(
         {placed.index, camera.index, std::move(image),
-         draw(placed, camera, SplatOptions{.min_depth = kEvaluatedDepth, .gain = scored.gains}),
+         draw(placed, camera,
+              SplatOptions{.min_depth = kEvaluatedDepth, .display = exposure_of(scored.gains)}),
          std::move(scored.view), std::move(scored.errors)});
   }
   return pictures;
@@ -214,7 +220,7 @@ void Scorer::compare_with_photograph(const PlacedFrame& placed, const Camera& ca
   options.min_depth = kEvaluatedDepth;
   options.max_depth = kEvaluatedFar;
   const RigidMotion T_cam_local = camera.T_cam_lidar * placed.T_local_lidar.inverse();
-  options.gain = report.gains;
+  options.display = exposure_of(report.gains);
   const SplatView drawn = draw(placed, camera, options);
   report.gradients = compare_gradients(drawn, image);
   report.roughness = compare_roughness(drawn, image);

@@ -126,11 +126,12 @@ TEST(Checkpointer, ReadsOfTilesGoBeforeQueuedTiles) {
   file.checkpoint(map, rows_of(map));
   file.wait();
   map.add(points_at(100, random));
-  writer.tiles_allowed = writer.tiles + 1;
   const int written = writer.tiles;
+  writer.tiles_allowed = written;  // none, until the read is in the queue
   file.checkpoint(map, {});
   EXPECT_TRUE(file.is_writing());
   std::future<TilePoints> tile = file.read_tile(first);
+  writer.tiles_allowed = written + 1;
   EXPECT_EQ(tile.get().size(), map.submaps()[0].tiles.at(first.key).points->size());
   EXPECT_LE(writer.tiles, written + 1);
   EXPECT_TRUE(file.is_writing());

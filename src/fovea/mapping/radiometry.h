@@ -12,9 +12,6 @@
 
 namespace fovea {
 
-/// Base-2 logarithms of the gains of red, green and blue: image = map * 2^gain.
-using LogGain = Eigen::Array3f;
-
 /// Gray values from here on are saturated; values up to kDarkValue are noise.
 inline constexpr float kSaturatedValue = 248, kDarkValue = 6;
 

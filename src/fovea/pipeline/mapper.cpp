@@ -23,15 +23,6 @@ double reach_of(const MapperOptions& options) {
   return std::max(dynamic, options.foveal.far_range) + 2 * kMargin;  // cells, and a margin for them
 }
 
-/// Adds the differences of one view to the figures of a frame.
-void count_differences(const CodeDifferences& differences, const LogGain& gain, ColorStats& stats) {
-  constexpr std::size_t kEnough = 100;  // of fewer points the error is chance
-  if (differences.size() < kEnough) return;
-  stats.compared += differences.size();
-  stats.error += (residual_percent(differences, gain) - stats.error) * double(differences.size()) /
-                 double(stats.compared);
-}
-
 /// Index of the first frame whose scan the filter of dynamic points depends on.
 int first_voting_frame(const std::vector<FrameResult>& frames) {
   constexpr std::size_t kScans = DynamicPointFilter::kVotingScans;
@@ -121,10 +112,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
     ColorStats& color_stats = stats_of(result.colors);
     const ViewColors image_colors(*pyramid, camera, options_.footprint);
     // 6. Light: the gain of the image relative to the exposure of the map.
-    const CodeDifferences differences = visible_map_.differences(image_colors);
-    const LogGain gain = view_gains_.next(camera.index, differences);
-    color_stats.gain[camera.index] = gain;
-    count_differences(differences, gain, color_stats);
+    const LogGain gain = find_gain(image_colors, camera.index, color_stats);
     // 7. Colors in the exposure of the map: known points fuse one more view, new points get their
     // first.
     const ViewColors colors = image_colors.without_gain(gain);
@@ -147,6 +135,19 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   occupancy_update_center_ = T_local_cam.translation();
   stats_of(result.added) += new_local.size();
   result.clock.lap("store");
+}
+
+LogGain Mapper::find_gain(const ViewColors& image_colors, int camera, ColorStats& stats) {
+  constexpr std::size_t kEnough = 100;  // of fewer points the error is chance
+  const CodeDifferences differences = visible_map_.differences(image_colors);
+  const LogGain gain = view_gains_.next(camera, differences);
+  stats.gain[camera] = gain;
+  if (differences.size() >= kEnough) {
+    stats.compared += differences.size();
+    stats.error += (residual_percent(differences, gain) - stats.error) *
+                   double(differences.size()) / double(stats.compared);
+  }
+  return gain;
 }
 
 PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& camera,

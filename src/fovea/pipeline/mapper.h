@@ -38,6 +38,8 @@ class Mapper : public IncrementalMapper {
   /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
   void map_view(const PointCloud& scan_lidar, const Image& image, const Camera& camera,
                 const RigidMotion& T_odom_local, FrameResult& result);
+  /// Gain of an image relative to the exposure of the map; adds to the figures.
+  LogGain find_gain(const ViewColors& image_colors, int camera, ColorStats& stats);
   /// Points and samples of the surface in free cells of the map.
   PointCloud new_points_of(const PointCloud& points_cam, const Camera& camera,
                            const RigidMotion& T_local_cam);

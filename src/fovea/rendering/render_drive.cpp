@@ -44,7 +44,10 @@ std::vector<std::uint8_t> depth_png(const SplatView& view) {
 class DriveRenderer {
  public:
   DriveRenderer(const MapReader& map, const RenderJob& job)
-      : job_(job), window_(map, job.reach), writer_(job.output, job.force) {
+      : job_(job),
+        display_(color_display(job.exposure, map.frames())),
+        window_(map, job.reach),
+        writer_(job.output, job.force) {
     if (job.lidar) {
       lidar_ = *job.lidar;
       lidar_.max_range = std::min(lidar_.max_range, job.reach);
@@ -94,6 +97,7 @@ class DriveRenderer {
     SplatOptions options;
     options.max_radius = 40;  // what is near fills the image, too
     options.max_depth = job_.reach;
+    options.display = display_;
     const Camera& camera = rendered.camera;
     const SplatView view = splat(coloured_.points, coloured_.spacing, camera,
                                  camera.T_cam_lidar * T_local_lidar.inverse(), options);
@@ -119,6 +123,7 @@ class DriveRenderer {
 
   const RenderJob& job_;
   LidarPattern lidar_;  // cut at the reach
+  ColorDisplay display_;
   MapWindow window_;
   GenericDriveWriter writer_;
   ColouredSurfels coloured_;

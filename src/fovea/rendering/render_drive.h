@@ -9,6 +9,7 @@
 
 #include "fovea/core/time.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/map/color_display.h"
 #include "fovea/map/map_store.h"
 #include "fovea/rendering/virtual_lidar.h"
 
@@ -27,6 +28,7 @@ struct RenderJob {
   std::vector<RenderedCamera> cameras;
   std::optional<LidarPattern> lidar;
   double reach = 80;  ///< m, how far is seen
+  ExposureChoice exposure = {};
 };
 
 struct RenderFigures {

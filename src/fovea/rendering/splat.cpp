@@ -132,7 +132,7 @@ SplatView splat(const ColoredPoints& map, const std::vector<float>& spacing, con
     for_each_pixel(disc, width, height, [&](std::size_t pixel, float squared) {
       if (disc.depth > front[pixel] + disc.surface || squared >= nearest[pixel]) return;
       nearest[pixel] = squared;
-      const Rgb color = to_rgb(to_float(map.color[disc.index]).cwiseProduct(options.gain));
+      const Rgb color = options.display(map.color[disc.index]);
       std::uint8_t* out = view.image.data.data() + 3 * pixel;
       out[0] = color.r, out[1] = color.g, out[2] = color.b;
       view.depth[pixel] = disc.depth;

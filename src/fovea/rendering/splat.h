@@ -6,6 +6,7 @@
 
 #include "fovea/core/image.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/map/color_display.h"
 #include "fovea/map/colored_points.h"
 
 namespace fovea {
@@ -13,8 +14,8 @@ namespace fovea {
 struct SplatOptions {
   double min_depth = 0.5;  ///< m; nothing nearer to the camera's plane is drawn
   double max_depth = std::numeric_limits<double>::infinity();
-  Eigen::Vector3f gain = Eigen::Vector3f::Ones();  ///< factors of red, green and blue
-  float max_radius = 12;  ///< pixels; bounds the footprint of points right before the camera
+  ColorDisplay display = {};  ///< exposure of the image
+  float max_radius = 12;      ///< pixels; bounds the footprint of points right before the camera
 };
 
 /// A map as one camera sees it; every column has width x height entries, rows from the top.

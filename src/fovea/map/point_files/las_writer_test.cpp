@@ -112,6 +112,7 @@ TEST_F(LasWriter, EveryFieldOfEveryPoint) {
   const LasFigures figures = write(options);
   const Las las(folder_ / "a.las");
   ASSERT_EQ(las.count(), sample_tile_map().size());
+  const ColorDisplay display = color_display({}, MapReader(folder_ / "a.fovea").frames());
   std::size_t row = 0, without_time = 0;
   for_each_sample_point([&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
     const std::size_t at = las.point(row);
@@ -120,7 +121,7 @@ TEST_F(LasWriter, EveryFieldOfEveryPoint) {
     EXPECT_EQ(las.at<std::uint8_t>(at + 14), 0x11);
     EXPECT_EQ(las.at<std::uint8_t>(at + 15), tile.interpolated[i]);
     EXPECT_EQ(las.at<std::uint8_t>(at + 16), 1);
-    const Rgb color = tile.camera[i] == kNoCamera ? kUncolored : to_rgb(tile.color[i]);
+    const Rgb color = tile.camera[i] == kNoCamera ? kUncolored : display(tile.color[i]);
     EXPECT_EQ(las.at<std::uint16_t>(at + 30), color.r * 257);
     EXPECT_EQ(las.at<std::uint16_t>(at + 32), color.g * 257);
     EXPECT_EQ(las.at<std::uint16_t>(at + 34), color.b * 257);

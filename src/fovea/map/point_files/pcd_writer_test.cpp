@@ -59,6 +59,7 @@ class PcdWriter : public testing::Test {
   /// Compares what was written with the sample map.
   template <class Real>
   void expect_sample_points(const Pcd& pcd, bool uncolored, double tolerance) {
+    const ColorDisplay display = color_display({}, MapReader(folder_ / "a.fovea").frames());
     std::size_t row = 0;
     for_each_sample_point(
         [&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
@@ -67,7 +68,7 @@ class PcdWriter : public testing::Test {
           const Eigen::Vector3d p(pcd.at<Real>(row, "x"), pcd.at<Real>(row, "y"),
                                   pcd.at<Real>(row, "z"));
           EXPECT_LT((p - p_local).norm(), tolerance);
-          const Rgb color = colored ? to_rgb(tile.color[i]) : kUncolored;
+          const Rgb color = colored ? display(tile.color[i]) : kUncolored;
           EXPECT_EQ(pcd.at<std::uint32_t>(row, "rgb"),
                     std::uint32_t{color.r} << 16 | std::uint32_t{color.g} << 8 | color.b);
           EXPECT_EQ(pcd.at<std::int8_t>(row, "camera"), tile.camera[i]);

@@ -117,6 +117,7 @@ TEST_F(PlyWriter, ColoredPointsWithAllProperties) {
   EXPECT_THAT(ply.comments,
               Contains(HasSubstr("latitude 49.011212804408 longitude 8.4228850417969")));
 
+  const ColorDisplay display = color_display({}, MapReader(folder_ / "a.fovea").frames());
   std::size_t row = 0, left_out = 0;
   for_each_sample_point([&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
     if (tile.camera[i] == kNoCamera) {
@@ -126,9 +127,9 @@ TEST_F(PlyWriter, ColoredPointsWithAllProperties) {
     ASSERT_LT(row, ply.count);
     const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
     EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-5);
-    EXPECT_EQ(at("red"), to_rgb(tile.color[i]).r);
-    EXPECT_EQ(at("green"), to_rgb(tile.color[i]).g);
-    EXPECT_EQ(at("blue"), to_rgb(tile.color[i]).b);
+    EXPECT_EQ(at("red"), display(tile.color[i]).r);
+    EXPECT_EQ(at("green"), display(tile.color[i]).g);
+    EXPECT_EQ(at("blue"), display(tile.color[i]).b);
     EXPECT_EQ(at("camera"), tile.camera[i]);
     EXPECT_EQ(at("frame"), tile.frame[i]);
     EXPECT_EQ(at("range"), tile.range[i]);
@@ -152,12 +153,13 @@ TEST_F(PlyWriter, DoublePositionsAndUncolouredPoints) {
   EXPECT_EQ(figures.uncolored_left_out, 0u);
   ASSERT_EQ(ply.count, figures.points);
   EXPECT_EQ(ply.properties[2].second, "double");
+  const ColorDisplay display = color_display({}, MapReader(folder_ / "a.fovea").frames());
   std::size_t row = 0;
   for_each_sample_point([&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
     const auto at = [&](const char* name) { return ply.columns.at(name)[row]; };
     EXPECT_LT((Eigen::Vector3d(at("x"), at("y"), at("z")) - p_local).norm(), 1e-12);
     EXPECT_EQ(at("camera"), tile.camera[i]);
-    const Rgb color = tile.camera[i] == kNoCamera ? Rgb{128, 128, 128} : to_rgb(tile.color[i]);
+    const Rgb color = tile.camera[i] == kNoCamera ? Rgb{128, 128, 128} : display(tile.color[i]);
     EXPECT_EQ(at("red"), color.r);
     EXPECT_EQ(at("green"), color.g);
     EXPECT_EQ(at("blue"), color.b);

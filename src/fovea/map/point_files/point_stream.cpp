@@ -20,7 +20,8 @@ PointStream::PointStream(const MapReader& map, const PointChoice& choice)
       choice_(choice),
       held_state_(map.hold_state()),
       T_local_submap_(map.submaps()),
-      georeference_(choice.crs, map_origin(map.meta()), "the map's table 'meta'") {
+      georeference_(choice.crs, map_origin(map.meta()), "the map's table 'meta'"),
+      display_(color_display(choice.exposure, map.frames())) {
   const std::size_t total = map_.size();
   const std::size_t unfiltered = choice_.include_uncolored ? total : map_.colored_size();
   figures_.points = choice_.where.empty() ? unfiltered : count_chosen();
@@ -54,7 +55,7 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
   if (!tile.intensity.empty()) point.intensity = tile.intensity[index];
   point.frame = tile.frame[index];
   point.camera = tile.camera[index];
-  if (point.camera != kNoCamera) point.color = to_rgb(tile.color[index]);
+  if (point.camera != kNoCamera) point.color = display_(tile.color[index]);
   point.interpolated = tile.interpolated[index];
   point.views = tile.views[index];
   point.spread = tile.spread[index];

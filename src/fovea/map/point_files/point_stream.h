@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fovea/geometry/georeference.h"
+#include "fovea/map/color_display.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_filter.h"
 
@@ -21,6 +22,7 @@ struct PointChoice {
   bool include_uncolored = false;  ///< also points that no camera has coloured: grey, camera -1
   PointFilter where = {};          ///< only points that pass
   Crs crs = Crs::kLocal;           ///< coordinates of the positions
+  ExposureChoice exposure = {};    ///< of the colors
 };
 
 struct ExportFigures {
@@ -46,7 +48,8 @@ class PointStream {
  public:
   /// @param map     outlives the stream
   /// @param choice  likewise
-  /// InputError if the map is damaged, or has no georeference and `choice.crs` needs one.
+  /// InputError if the map is damaged, has no georeference and `choice.crs` needs one, or states no
+  /// exposure of the chosen frame.
   PointStream(const MapReader& map, const PointChoice& choice);
 
   /// Lets go of the state, which a writer of the map would have to wait for. From now on
@@ -78,6 +81,7 @@ class PointStream {
   std::shared_ptr<const void> held_state_;
   std::vector<RigidMotion> T_local_submap_;
   Georeference georeference_;
+  ColorDisplay display_;
   ExportFigures figures_;
 };
 

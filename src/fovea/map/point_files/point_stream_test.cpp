@@ -38,11 +38,12 @@ class PointStreamTest : public testing::Test {
 
 TEST_F(PointStreamTest, GivesEveryColumn) {
   const std::vector<ExportPoint> points = all({.include_uncolored = true});
+  const ColorDisplay display = color_display({}, MapReader(path()).frames());
   std::size_t row = 0;
   for_each_sample_point([&](const Eigen::Vector3d& p_local, const PointCloud& tile, std::size_t i) {
     const ExportPoint& point = points.at(row++);
     EXPECT_EQ(point.position, p_local);
-    EXPECT_EQ(point.color, tile.camera[i] == kNoCamera ? kUncolored : tile.color[i]);
+    EXPECT_EQ(point.color, tile.camera[i] == kNoCamera ? kUncolored : display(tile.color[i]));
     EXPECT_EQ(point.camera, tile.camera[i]);
     EXPECT_EQ(point.frame, tile.frame[i]);
     EXPECT_EQ(point.range, tile.range[i]);

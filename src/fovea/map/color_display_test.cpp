@@ -1,0 +1,76 @@
+#include "fovea/map/color_display.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fovea/core/errors.h"
+
+namespace fovea::color_display_test {
+
+LogColor gray(double value) {
+  const std::uint16_t code = color_code(value);
+  return LogColor::of_codes(code, code, code);
+}
+
+FrameRecord frame_of(int index, std::optional<double> log2_gain) {
+  FrameRecord record;
+  record.index = index;
+  ViewRecord view;
+  if (log2_gain) view.log2_gain = Eigen::Vector3d(*log2_gain, 0, 1);
+  record.views = {view};
+  return record;
+}
+
+TEST(ColorDisplay, OfTheReferenceExposureIsTheNearestByte) {
+  const ColorDisplay display;
+  for (const double value : {0.0, 1.0, 17.0, 128.0, 254.0, 255.0, 300.0, 4000.0}) {
+    EXPECT_EQ(display(gray(value)), to_rgb(gray(value))) << value;
+  }
+}
+
+TEST(ColorDisplay, AppliesAGainToEachChannel) {
+  const ColorDisplay display(LogGain(-2, 0, 0.5f), /*tone_mapped=*/false);
+  EXPECT_EQ(display(gray(160)), (Rgb{40, 160, 226}));
+  EXPECT_EQ(display(gray(800)), (Rgb{200, 255, 255}));
+}
+
+TEST(ColorDisplay, ToneMappingKeepsDifferencesOfBrightValues) {
+  const ColorDisplay display(LogGain::Zero(), /*tone_mapped=*/true);
+  EXPECT_EQ(display(gray(200)), (Rgb{200, 200, 200}));
+  std::uint8_t last = 200;
+  for (const double value : {220.0, 255.0, 300.0, 350.0, 400.0}) {
+    const std::uint8_t shown = display(gray(value)).g;
+    EXPECT_GT(shown, last) << value;
+    last = shown;
+  }
+  EXPECT_EQ(display(gray(4000)).r, 255);
+}
+
+TEST(Exposure, AutoIsTheMedianOfTheImages) {
+  const std::vector<FrameRecord> frames = {frame_of(0, 0), frame_of(1, -1), frame_of(2, {}),
+                                           frame_of(3, -4)};
+  EXPECT_EQ(color_display({}, frames)(gray(80)), (Rgb{40, 80, 160}));
+  EXPECT_EQ(color_display({}, {frame_of(2, {})})(gray(250)).r, 250);  // no gains: as it is
+}
+
+TEST(Exposure, OfAFrameIsThatOfItsImage) {
+  const std::vector<FrameRecord> frames = {frame_of(0, 0), frame_of(1, -1), frame_of(2, {})};
+  EXPECT_EQ(color_display(parse_exposure("frame:1"), frames)(gray(80)), (Rgb{40, 80, 160}));
+  EXPECT_THROW(color_display(parse_exposure("frame:2"), frames), InputError);
+  EXPECT_THROW(color_display(parse_exposure("frame:7"), frames), InputError);
+}
+
+TEST(Exposure, OfStopsIsRelativeToTheMap) {
+  EXPECT_EQ(color_display(parse_exposure("-1"), {frame_of(0, 3)})(gray(80)), (Rgb{40, 40, 40}));
+  EXPECT_EQ(color_display(parse_exposure("0.5"), {})(gray(100)).r, 141);
+}
+
+TEST(Exposure, OtherTextIsAnError) {
+  for (const char* text : {"", "bright", "frame:", "frame:x", "frame:-1", "frame:1.5", "1 2", "17",
+                           "nan", "inf", "frame:99999999999"}) {
+    EXPECT_THROW(parse_exposure(text), ConfigError) << text;
+  }
+}
+
+}  // namespace fovea::color_display_test
