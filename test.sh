@@ -59,8 +59,8 @@ fi
 
 [[ ${#sanitizers[@]} -gt 0 ]] || sanitizers=(address thread)
 # Under the address sanitizer each of these takes over half a minute. The release runs them, too.
-long_tests='^(RegistrationKitti\.AitkenAcceleration|LocalMap\.SparseRingsInAnOpenPlace|RecordingPause\..*Without)'
-long_tests+='|^(Localize|EvaluateTruth)$'
+long_tests='^(RegistrationKitti\.AitkenAcceleration|LocalMap\.SparseRingsInAnOpenPlace|RecordingPause\..*Without'
+long_tests+='|TrackingLoss\.|InitialVelocity\.|MapDriveResume\.ADriveThatBeginsAtSpeed)|^(Localize|EvaluateTruth)$'
 export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 for sanitizer in "${sanitizers[@]}"; do

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include <chrono>
 #include <cstring>
 #include <fstream>
 
@@ -44,8 +43,9 @@ Image test_image(int width, int height, int channels) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < channels; ++c) {
-        image.pixel(x, y)[c] = std::uint8_t(100 + 60 * std::sin(x * 0.02 + c) +
-                                            40 * std::cos(y * 0.03) + 3 * random.normal());
+        const double value =
+            100 + 60 * std::sin(x * 0.02 + c) + 40 * std::cos(y * 0.03) + 3 * random.normal();
+        image.pixel(x, y)[c] = static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0));
       }
     }
   }
@@ -233,16 +233,12 @@ TEST(KittiDriveWriter, FreeSpaceIsCheckedByNeed) {
               Not(HasSubstr("no OutputError")));
 }
 
-TEST(KittiDriveWriter, KittisImagesArePackedFast) {
+TEST(KittiDriveWriter, ImagesOfKittisSizeArePacked) {
   const TemporaryFolder folder;
   const Image image = test_image(1242, 375, 3);
   KittiDriveWriter writer(folder / "d");
-  const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 5; ++i) writer.write_image(2, i, 0, image);
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  RecordProperty("ms_an_image", std::to_string(took.count() / 5));
   const fs::path file = writer.finish() / "image_02/data/0000000004.png";
-  RecordProperty("bytes", std::to_string(fs::file_size(file)));
   EXPECT_EQ(read_image(file).data, image.data);
   EXPECT_LT(double(fs::file_size(file)), 0.8 * double(image.data.size()));
 }
