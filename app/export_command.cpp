@@ -16,6 +16,7 @@
 #include "app/print.h"
 #include "app/viewer_page.h"
 #include "fovea/drive/command_files.h"
+#include "fovea/exporting/frame_table.h"
 #include "fovea/exporting/mesh/mesh_file_writer.h"
 #include "fovea/exporting/mesh/mesh_tileset_writer.h"
 #include "fovea/exporting/pose_writer.h"
@@ -36,7 +37,7 @@ struct ExportArguments {
   bool double_positions = false, viewer = false, force = false, quiet = false;
 };
 
-constexpr const char* kFormats = "ply, pcd, las, 3dtiles, mesh, glb or kitti-poses";
+constexpr const char* kFormats = "ply, pcd, las, 3dtiles, mesh, glb, frames or kitti-poses";
 
 /// The format asked for, or else the one of the output's ending; CLI::ValidationError without
 /// either.
@@ -131,11 +132,10 @@ void write_mesh(const MapReader& map, const ExportArguments& arguments, bool lev
 CommandFiles files_of(const ExportArguments& arguments, const std::string& format) {
   CommandFiles files;
   files.inputs = {arguments.map};
-  const std::map<std::string, ContentKind> kinds{{"ply", ContentKind::kPly},
-                                                 {"pcd", ContentKind::kPcd},
-                                                 {"las", ContentKind::kLas},
-                                                 {"glb", ContentKind::kGlb},
-                                                 {"kitti-poses", ContentKind::kPoses}};
+  const std::map<std::string, ContentKind> kinds{
+      {"ply", ContentKind::kPly},           {"pcd", ContentKind::kPcd},
+      {"las", ContentKind::kLas},           {"glb", ContentKind::kGlb},
+      {"frames", ContentKind::kFrameTable}, {"kitti-poses", ContentKind::kPoses}};
   if (const auto kind = kinds.find(format); kind != kinds.end()) {
     files.outputs = {{arguments.output, kind->second, arguments.force}};
   } else {
@@ -146,8 +146,13 @@ CommandFiles files_of(const ExportArguments& arguments, const std::string& forma
 
 void write(const MapReader& map, ExportArguments& arguments, const std::string& format,
            Warnings& warnings) {
+  if (format == "frames") {
+    map.check();  // frames need no tile
+    write_frame_table(map.frames(), arguments.output, arguments.force);
+    return;
+  }
   if (format == "kitti-poses") {
-    map.check();  // poses need no tile
+    map.check();
     write_kitti_poses(map.frames(), arguments.output, arguments.force);
     return;
   }
@@ -212,9 +217,10 @@ void add_export_command(CLI::App& app, Session& session) {
   command
       ->add_option("--format", arguments->format,
                    "ply, pcd, las or 3dtiles (points; the last a folder), mesh (triangles as "
-                   "3dtiles, a folder), glb (triangles, a file), or kitti-poses (T_local_lidar a "
-                   "line); default: by OUT's ending")
-      ->check(CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "kitti-poses"}));
+                   "3dtiles, a folder), glb (triangles, a file), frames (CSV: stamps, poses "
+                   "and gains), or kitti-poses (T_local_lidar a line); default: by OUT's ending")
+      ->check(
+          CLI::IsMember({"ply", "pcd", "las", "3dtiles", "mesh", "glb", "frames", "kitti-poses"}));
   command
       ->add_option("--crs", arguments->crs,
                    "Coordinates: local (the map's), utm (the origin's zone on WGS 84, ellipsoidal "

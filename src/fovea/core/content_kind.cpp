@@ -101,6 +101,7 @@ ContentKind content_kind_of(const std::filesystem::path& file) {
     return ContentKind::kHtml;
   if (text.starts_with('{')) return kind_of_json_object(text);
   if (text.starts_with("frame,time_ns,")) return ContentKind::kPoseTable;
+  if (text.starts_with("index,time_ns,")) return ContentKind::kFrameTable;
   if (text.starts_with("# Results\n\n    fovea reproduce")) return ContentKind::kMarkdown;
   return is_pose_file(text) ? ContentKind::kPoses : ContentKind::kOther;
 }
@@ -129,6 +130,8 @@ const char* describe(ContentKind kind) {
       return "a pose file";
     case ContentKind::kPoseTable:
       return "a table of poses";
+    case ContentKind::kFrameTable:
+      return "a table of frames";
     case ContentKind::kMarkdown:
       return "a results page";
     case ContentKind::kSqlite:

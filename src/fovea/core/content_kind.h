@@ -15,11 +15,12 @@ enum class ContentKind {
   kLas,
   kGlb,
   kPng,
-  kPoses,      ///< 12 numbers a line
-  kPoseTable,  ///< CSV of `localize`
-  kMarkdown,   ///< of `reproduce`
-  kSqlite,     ///< a database that is no map
-  kJson,       ///< no report of Fovea
+  kPoses,       ///< 12 numbers a line
+  kPoseTable,   ///< CSV of `localize`
+  kFrameTable,  ///< CSV of `export --format frames`
+  kMarkdown,    ///< of `reproduce`
+  kSqlite,      ///< a database that is no map
+  kJson,        ///< no report of Fovea
   kOther,
 };
 
