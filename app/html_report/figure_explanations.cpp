@@ -81,10 +81,10 @@ const std::map<std::string, const char*>& explanations() {
        "the colour of the nearest map point against the photograph at that very place"},
       {"consistency.roughness", "luma noise of the map where the photograph is smooth"},
       {"consistency.roughness_patches", "smooth patches of 8 x 8 pixels"},
-      {"consistency.cross_view_rms",
+      {"consistency.cross_view_log_rms",
        "distance of a map point's colour to the held-out views' that "
        "show it, RMS"},
-      {"consistency.cross_view_floor", "what no map with one colour a point undercuts"},
+      {"consistency.cross_view_log_floor", "what no map with one colour a point undercuts"},
       {"consistency.cross_view_points", "map points that several views show"},
       {"geometry.plane_thickness",
        "RMS distance of points to the plane on flat surfaces (m), "

@@ -39,11 +39,28 @@ bool patch_covered(const SplatView& drawn, int left, int top) {
   return true;
 }
 
-void add(std::uint64_t& sum, std::uint64_t value) {
-  std::atomic_ref<std::uint64_t>(sum).fetch_add(value, std::memory_order_relaxed);
+void add(std::int64_t& sum, std::int64_t value) {
+  std::atomic_ref<std::int64_t>(sum).fetch_add(value, std::memory_order_relaxed);
 }
 
-std::uint64_t squared(int value) { return static_cast<std::uint64_t>(value * value); }
+/// Color codes of a pixel; nothing if a channel is saturated or noise.
+std::optional<Eigen::Array3i> codes_at(const Image& photograph, int x, int y) {
+  constexpr int kSaturated = 248, kDark = 6;
+  const std::uint8_t* pixel = photograph.pixel(x, y);
+  Eigen::Array3i codes;
+  for (int c = 0; c < 3; ++c) {
+    const std::uint8_t value = pixel[photograph.channels == 1 ? 0 : c];
+    if (value < kDark || value >= kSaturated) return std::nullopt;
+    codes[c] = codes_of_bytes()[value];
+  }
+  return codes;
+}
+
+/// Of a gray view the luma counts.
+Eigen::Array3i own_codes(LogColor color, bool gray) {
+  if (!gray) return codes_of(color).cast<int>();
+  return Eigen::Array3i::Constant(color_code(double(luma(to_float(color)))));
+}
 
 }  // namespace
 
@@ -76,7 +93,10 @@ CrossViewTest::CrossViewTest(const ColoredPoints& map)
     : map_(map), sums_((map.position.size() + kStride - 1) / kStride) {}
 
 void CrossViewTest::add_view(const SplatView& drawn, const Camera& camera,
-                             const RigidMotion& T_cam_local, const Image& photograph) {
+                             const RigidMotion& T_cam_local, const Image& photograph,
+                             const Eigen::Vector3f& gains) {
+  const Eigen::Array3i gain_codes =
+      (gains.array().max(1e-6f).log2() * kColorCodesPerStop).round().cast<int>();
   const RigidMotion T_cam_map = T_cam_local * Eigen::Translation3d(map_.origin);
   const Eigen::Vector3f center = T_cam_map.inverse().translation().cast<float>();
   for (const PointRun& run : map_.runs) {
@@ -89,21 +109,15 @@ void CrossViewTest::add_view(const SplatView& drawn, const Camera& camera,
       const int y = static_cast<int>(std::lround(pixel->y()));
       const std::size_t place = static_cast<std::size_t>(y) * photograph.width + x;
       if (drawn.covered[place] == 0 || p_cam.z() > 0.05 + 1.02 * drawn.depth[place]) continue;
-      const std::uint8_t* p = photograph.pixel(x, y);
-      const Rgb own = to_rgb(map_.color[i]);
+      const std::optional<Eigen::Array3i> seen = codes_at(photograph, x, y);
+      if (!seen) continue;
+      const Eigen::Array3i in_map = *seen - gain_codes;
+      const Eigen::Array3i error = in_map - own_codes(map_.color[i], photograph.channels == 1);
       Sums& sums = sums_[i / kStride];
       add(sums.views, 1);
-      add(sums.r, p[0]);
-      if (photograph.channels == 1) {
-        const int grey = static_cast<int>(std::lround(luma(to_float(own))));
-        add(sums.squares, squared(p[0]));
-        add(sums.errors, squared(p[0] - grey));
-        continue;
-      }
-      add(sums.g, p[1]);
-      add(sums.b, p[2]);
-      add(sums.squares, squared(p[0]) + squared(p[1]) + squared(p[2]));
-      add(sums.errors, squared(p[0] - own.r) + squared(p[1] - own.g) + squared(p[2] - own.b));
+      for (int c = 0; c < 3; ++c) add(sums.codes[std::size_t(c)], in_map[c]);
+      add(sums.squares, in_map.square().sum());
+      add(sums.errors, error.square().sum());
     }
   }
 }
@@ -114,13 +128,16 @@ CrossViewTest::Result CrossViewTest::result() const {
     if (sums.views < 2) continue;
     ++result.points;
     const auto n = static_cast<double>(sums.views);
-    const Eigen::Vector3d mean(double(sums.r) / n, double(sums.g) / n, double(sums.b) / n);
+    const Eigen::Array3d mean =
+        Eigen::Array3d(double(sums.codes[0]), double(sums.codes[1]), double(sums.codes[2])) / n;
     result.map += static_cast<double>(sums.errors) / n;
-    result.floor += static_cast<double>(sums.squares) / n - mean.squaredNorm();
+    result.floor += static_cast<double>(sums.squares) / n - mean.square().sum();
   }
-  const auto points = static_cast<double>(result.points);
-  result.map = result.points == 0 ? kNone : std::sqrt(result.map / points);
-  result.floor = result.points == 0 ? kNone : std::sqrt(std::max(0.0, result.floor / points));
+  const auto values = static_cast<double>(3 * result.points);
+  const double per_code = std::log(2.0) / kColorCodesPerStop;
+  result.map = result.points == 0 ? kNone : per_code * std::sqrt(result.map / values);
+  result.floor =
+      result.points == 0 ? kNone : per_code * std::sqrt(std::max(0.0, result.floor / values));
   return result;
 }
 

@@ -2,6 +2,7 @@
 // and a point should look alike from wherever it is seen.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,16 +33,18 @@ class CrossViewTest {
   /// @param map  must outlive the test
   explicit CrossViewTest(const ColoredPoints& map);
 
-  /// Takes the colours (nearest pixel) of the points that the view shows: those not over 5 cm and
-  /// 2% behind what is drawn there. Thread-safe; sums are of integers, so that the order of views
-  /// does not matter. Colours of a grey photograph are intensities.
+  /// Takes the colors (nearest pixel) of the points that the view shows: those not over 5 cm and
+  /// 2% behind the drawn surface. Saturated and dark pixels do not count. Thread-safe; sums are of
+  /// integers, so that the order of views does not matter. Colors of a gray photograph are lumas.
   /// @param drawn  the map in this view
+  /// @param gains  factors of the channels: photograph = map * gain
   void add_view(const SplatView& drawn, const Camera& camera, const RigidMotion& T_cam_local,
-                const Image& photograph);
+                const Image& photograph, const Eigen::Vector3f& gains);
 
   struct Result {
     std::size_t points = 0;  ///< that two views or more show
-    double map = 0;          ///< root mean square of |C_n - C_view|: mean of each point's views
+    /// RMS of the natural logarithm of view / map, per channel: mean of each point's views.
+    double map = 0;
     /// The same about the mean of the point's views: no map of one colour a point can be better.
     double floor = 0;
   };
@@ -49,7 +52,8 @@ class CrossViewTest {
 
  private:
   struct Sums {
-    std::uint64_t views = 0, r = 0, g = 0, b = 0, squares = 0, errors = 0;
+    std::int64_t views = 0, squares = 0, errors = 0;
+    std::array<std::int64_t, 3> codes{};  // in the exposure of the map
   };
   const ColoredPoints& map_;
   std::vector<Sums> sums_;  // of points 0, kStride, ...

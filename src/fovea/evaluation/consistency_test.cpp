@@ -36,27 +36,38 @@ TEST(Roughness, IsWhatThePhotographHasNot) {
   EXPECT_EQ(compare_roughness(holed, even(32, 16, 50, 1)).patches, 7u);
 }
 
-TEST(CrossView, KnowsTheMapsErrorAndTheFloor) {
-  // Photographs 100 and 120 of a map of 105: errors 5 and 15 a channel, 10 about their mean.
+TEST(CrossView, StatesTheErrorOfTheMapAndTheFloor) {
+  // Photographs 100 and 120 of a map of 105.
   PointCloud points = WallScene::map(0.1);
   for (LogColor& color : points.color) color = {105, 105, 105};
   const ColoredPoints map = colored_points(points);
   const Camera camera = forward_camera();
   const SplatView view = drawn(even(camera.width, camera.height, 105));
+  const Eigen::Vector3f one = Eigen::Vector3f::Ones();
   CrossViewTest test(map);
-  test.add_view(view, camera, camera.T_cam_lidar, even(camera.width, camera.height, 100));
+  test.add_view(view, camera, camera.T_cam_lidar, even(camera.width, camera.height, 100), one);
   EXPECT_EQ(test.result().points, 0u);
   EXPECT_TRUE(std::isnan(test.result().map));
-  test.add_view(view, camera, camera.T_cam_lidar, even(camera.width, camera.height, 120));
+  test.add_view(view, camera, camera.T_cam_lidar, even(camera.width, camera.height, 120), one);
   EXPECT_GT(test.result().points, 500u);
-  EXPECT_NEAR(test.result().map, std::sqrt(3 * (25 + 225) / 2.0), 1e-9);
-  EXPECT_NEAR(test.result().floor, std::sqrt(300.0), 1e-9);
+  const double a = std::log(100.0 / 105), b = std::log(120.0 / 105);
+  EXPECT_NEAR(test.result().map, std::sqrt((a * a + b * b) / 2), 0.003);  // a code is 0.27 %
+  EXPECT_NEAR(test.result().floor, (b - a) / 2, 0.003);
+  // Two photographs in one exposure after their gains; a saturated one does not count.
+  CrossViewTest exposed(map);
+  for (const float gain : {0.5f, 2.0f, 2.5f}) {
+    exposed.add_view(view, camera, camera.T_cam_lidar,
+                     even(camera.width, camera.height, static_cast<std::uint8_t>(105 * gain)),
+                     gain * one);
+  }
+  EXPECT_LT(exposed.result().map, 0.01);
 
   SplatView before = view;  // something stands before the wall
   std::fill(before.depth.begin(), before.depth.end(), 7.5f);
   CrossViewTest hidden(map);
   for (int i = 0; i < 2; ++i) {
-    hidden.add_view(before, camera, camera.T_cam_lidar, even(camera.width, camera.height, 100));
+    hidden.add_view(before, camera, camera.T_cam_lidar, even(camera.width, camera.height, 100),
+                    one);
   }
   EXPECT_EQ(hidden.result().points, 0u);
 }

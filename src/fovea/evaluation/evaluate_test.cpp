@@ -73,7 +73,7 @@ TEST(Evaluate, AGoodMapOfTheWallHasGoodStructure) {
   const WallDrive drive(16);
   const EvaluationReport both = evaluate(wall_map(WallScene::map(0.01), 16), drive, {});
   EXPECT_GT(both.cross_view.points, 5000u);
-  EXPECT_LT(both.cross_view.map, 15);  // nearest pixels: half a pixel off is up to 18 a channel
+  EXPECT_LT(both.cross_view.map, 0.15);  // nearest pixels: half a pixel off is up to 18 a channel
   EXPECT_LE(both.cross_view.floor, both.cross_view.map);
 }
 

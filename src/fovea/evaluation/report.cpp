@@ -89,8 +89,8 @@ void put_structure(Json& json, const EvaluationReport& report) {
                    {"te_same_place", split.mean(split.same_place)}};
   json["consistency"] = {{"roughness", report.roughness.roughness()},
                          {"roughness_patches", report.roughness.patches},
-                         {"cross_view_rms", report.cross_view.map},
-                         {"cross_view_floor", report.cross_view.floor},
+                         {"cross_view_log_rms", report.cross_view.map},
+                         {"cross_view_log_floor", report.cross_view.floor},
                          {"cross_view_points", report.cross_view.points}};
   Json& geometry = json["geometry"];
   geometry["plane_thickness"] = report.thickness.thickness;
@@ -261,8 +261,8 @@ std::string to_text(const EvaluationReport& report) {
   }
   row("roughness", number(report.roughness.roughness(), 2),
       fmt::format("on {} smooth patches", report.roughness.patches));
-  row("cross-view RMS", number(report.cross_view.map, 2),
-      fmt::format("no less than {:.2f}; {} points", report.cross_view.floor,
+  row("cross-view log RMS", number(report.cross_view.map, 3),
+      fmt::format("no less than {:.3f}; {} points", report.cross_view.floor,
                   report.cross_view.points));
   row("plane thickness", number(report.thickness.thickness, 4),
       fmt::format("m, median of {} patches", report.thickness.patches));

@@ -226,7 +226,7 @@ void Scorer::compare_with_photograph(const PlacedFrame& placed, const Camera& ca
   report.roughness = compare_roughness(drawn, image);
   report.pictures = compare_pictures(drawn, image);
   report.shift = compare_shifts(drawn, image);
-  cross_view_.add_view(drawn, camera, T_cam_local, image);
+  cross_view_.add_view(drawn, camera, T_cam_local, image, report.gains);
 }
 
 }  // namespace fovea
