@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kRounding = 1e3;  // a thousandth of a millisecond is noise
+constexpr double kTimeSteps = 1e3;  // per ms: a smaller difference is noise
 
 std::optional<MapDescription::Foveal> foveal_of(const MapMeta& meta) {
   const auto config = meta.find(meta_key::kConfig);
@@ -101,7 +101,7 @@ nlohmann::json score_json(const FrameRecord& frame) {
 nlohmann::json milliseconds_json(const FrameRecord& frame) {
   Json json = Json::object();
   for (const auto& [stage, ms] : frame.milliseconds) {
-    json[stage] = std::round(ms * kRounding) / kRounding;
+    json[stage] = std::round(ms * kTimeSteps) / kTimeSteps;
   }
   return json;
 }
