@@ -86,6 +86,7 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
   const Frame& frame = std::get<Frame>(loaded);
   const PointCloud scan = compensated_scan(frame.scan, placed, drive_.info());
   std::vector<Camera> cameras;
+  cameras.reserve(options_.cameras.size());
   for (const std::size_t place : options_.cameras) {
     cameras.push_back(drive_.info().camera_at(place, placed.index).at_image(placed.motion));
   }

@@ -167,9 +167,14 @@ void by_packing(Tile& tile, Column& column, Planes&& planes, Color&& colors, Run
   } else if constexpr (kIsColors<Values>) {
     colors(column.colors);
   } else if constexpr (kIsSaturated<Values>) {
-    RunColumn<std::uint8_t> saturated = saturated_of(column.colors);
-    runs(saturated);
-    if constexpr (!std::is_const_v<Tile>) put_saturated(saturated, column.colors);
+    if constexpr (std::is_const_v<Tile>) {
+      const RunColumn<std::uint8_t> saturated = saturated_of(column.colors);
+      runs(saturated);
+    } else {
+      RunColumn<std::uint8_t> saturated;
+      runs(saturated);
+      put_saturated(saturated, column.colors);
+    }
   } else if constexpr (kIsRuns<Values>) {
     runs(column);
   } else {
