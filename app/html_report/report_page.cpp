@@ -89,7 +89,7 @@ std::string left_out(const std::vector<ShownView>& shown, const EvaluationReport
   for (const ShownView& view : shown) here.emplace(view.report.frame, view.report.camera);
   std::vector<std::string> missing;
   for (const ViewReport& view : report.views) {
-    if (here.count({view.frame, view.camera}) == 0) {
+    if (!here.contains({view.frame, view.camera})) {
       missing.push_back(report.cameras.size() > 1
                             ? fmt::format("{} (camera {})", view.frame, view.camera)
                             : std::to_string(view.frame));

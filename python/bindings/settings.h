@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/map_settings.h"
 
 namespace fovea::python {
 
