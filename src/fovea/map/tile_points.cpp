@@ -34,7 +34,8 @@ void for_each_run_column(A& a, B& b, F&& f) {
 
 /// Bytes of the block in which an allocator puts so many: jemalloc's classes, four to a doubling.
 std::size_t block_size(std::size_t bytes) {
-  const std::size_t step = std::bit_floor(std::max<std::size_t>(bytes - 1, 64)) / 4;
+  const std::size_t step = std::size_t{1}
+                           << (std::bit_width(std::max<std::size_t>(bytes - 1, 64)) - 3);
   return (bytes + step - 1) / step * step;
 }
 
