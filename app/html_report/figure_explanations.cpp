@@ -27,13 +27,11 @@ const std::map<std::string, const char*>& explanations() {
       {"te_predicted_within_20", "share within 20 in this exposure"},
       {"te_cross_mean",
        "TE after one gain per channel, fitted to half of the view's blocks of 64 pixels and "
-       "applied "
-       "to the other half: the headline figure"},
+       "applied to the other half: the headline figure"},
       {"te_cross_within_20", "share within 20 after these gains"},
       {"log_cross_mean",
        "RMS over channels of the difference of natural logarithms after these gains, mean: does "
-       "not "
-       "grow with brightness"},
+       "not grow with brightness"},
       {"psnr_cross", "of the scored points after these gains (dB)"},
       {"mtme", "mean of ME x TE of each point"},
       {"coverage_5cm", "share of points with a coloured map point within 5 cm"},

@@ -5,6 +5,7 @@
 
 #include "fovea/evaluation/evaluated_set.h"
 #include "fovea/evaluation/metrics.h"
+#include "fovea/mapping/radiometry.h"
 
 namespace fovea {
 namespace {
@@ -45,12 +46,11 @@ void add(std::int64_t& sum, std::int64_t value) {
 
 /// Color codes of a pixel; nothing if a channel is saturated or noise.
 std::optional<Eigen::Array3i> codes_at(const Image& photograph, int x, int y) {
-  constexpr int kSaturated = 248, kDark = 6;
   const std::uint8_t* pixel = photograph.pixel(x, y);
   Eigen::Array3i codes;
   for (int c = 0; c < 3; ++c) {
     const std::uint8_t value = pixel[photograph.channels == 1 ? 0 : c];
-    if (value < kDark || value >= kSaturated) return std::nullopt;
+    if (value < kDarkValue || value >= kSaturatedValue) return std::nullopt;
     codes[c] = codes_of_bytes()[value];
   }
   return codes;

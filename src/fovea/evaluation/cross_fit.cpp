@@ -3,10 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "fovea/evaluation/metrics.h"
+#include "fovea/mapping/radiometry.h"
+
 namespace fovea {
 namespace {
 
-constexpr float kSaturated = 248, kDark = 8;  // gray values
+constexpr float kDark = 8;  // gray value
 
 int set_of(const Eigen::Vector2d& pixel) {
   const Eigen::Array2i block = (pixel.array() / kCrossFitBlock).floor().cast<int>();
@@ -21,21 +24,19 @@ Eigen::Array3f in_channels(const Eigen::Vector3f& color, bool gray) {
 
 std::vector<Eigen::Vector3f> cross_fitted(const EvaluatedView& view,
                                           const std::vector<Eigen::Vector3f>& map) {
-  struct Fit {
-    Eigen::Array3d products = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
-    Eigen::Array3f gain() const {
-      return (squares > 0).select(products / squares, 1.0).cast<float>();
-    }
+  struct Set {
+    std::vector<Eigen::Vector3f> truth, map;  // 0 where the truth is saturated: fits nothing
+    Eigen::Array3f gain(bool gray) const { return fit_gains(truth, map, gray).array(); }
   };
-  std::array<Fit, 2> fits;
+  std::array<Set, 2> sets;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    const Eigen::Array3f truth = view.color[i].array(), seen = in_channels(map[i], view.grey);
-    const Eigen::Array3d use = (truth < kSaturated).cast<double>();
-    Fit& fit = fits[std::size_t(set_of(view.pixel[i]))];
-    fit.products += use * (truth * seen).cast<double>();
-    fit.squares += use * seen.square().cast<double>();
+    const Eigen::Array3f use = (view.color[i].array() < kSaturatedValue).cast<float>();
+    Set& set = sets[std::size_t(set_of(view.pixel[i]))];
+    set.truth.push_back(view.color[i].cwiseProduct(use.matrix()));
+    set.map.push_back(map[i].cwiseProduct(use.matrix()));
   }
-  const std::array<Eigen::Array3f, 2> gain_of_other{fits[1].gain(), fits[0].gain()};
+  const std::array<Eigen::Array3f, 2> gain_of_other{sets[1].gain(view.grey),
+                                                    sets[0].gain(view.grey)};
   std::vector<Eigen::Vector3f> fitted(map.size());
   for (std::size_t i = 0; i < map.size(); ++i) {
     const Eigen::Array3f& gain = gain_of_other[std::size_t(set_of(view.pixel[i]))];

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/median.h"
 #include "fovea/core/read_file.h"
 
 namespace fovea {
@@ -47,10 +49,7 @@ std::optional<LogGain> median_gain(const std::vector<FrameRecord>& frames) {
   if (gains[0].empty()) return std::nullopt;
   LogGain median;
   for (int c = 0; c < 3; ++c) {
-    std::vector<double>& of_channel = gains[std::size_t(c)];
-    const auto middle = of_channel.begin() + std::ptrdiff_t(of_channel.size() / 2);
-    std::nth_element(of_channel.begin(), middle, of_channel.end());
-    median[c] = static_cast<float>(*middle);
+    median[c] = static_cast<float>(median_of(std::move(gains[std::size_t(c)])));
   }
   return median;
 }
