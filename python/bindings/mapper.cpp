@@ -51,8 +51,7 @@ class DriveMapper {
     last_ = frame.frame->index;
     const FrameResult result = mapper_->process(*frame.frame, {.held_out = held_out});
     FrameRecord record = record_of(result);
-    add_views(*frame.frame, info_, record);
-    if (result.colors) put_gains(result.colors->gain, record);
+    add_views(*frame.frame, info_, result, record);
     return records_.emplace_back(std::move(record));
   }
 

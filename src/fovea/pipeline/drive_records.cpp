@@ -56,24 +56,23 @@ std::vector<SensorRecord> sensor_records(const DriveInfo& drive) {
   return sensors;
 }
 
-void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record) {
+void add_views(const Frame& frame, const DriveInfo& drive, const FrameResult& result,
+               FrameRecord& record) {
+  const std::map<int, LogGain> gains =
+      result.colors ? result.colors->gain : std::map<int, LogGain>();
   for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
     if (frame.images[slot].empty()) continue;
     const Camera camera = drive.camera_at(slot, frame.index);
     ViewRecord view;
     view.camera = camera.index;
     view.stamp = frame.stamp + from_seconds(camera.image_delay);
+    if (const auto gain = gains.find(view.camera); gain != gains.end()) {
+      view.log2_gain = gain->second.cast<double>().matrix();
+    }
     record.views.push_back(view);
   }
   std::sort(record.views.begin(), record.views.end(),
             [](const ViewRecord& a, const ViewRecord& b) { return a.camera < b.camera; });
-}
-
-void put_gains(const std::map<int, LogGain>& gains, FrameRecord& record) {
-  for (ViewRecord& view : record.views) {
-    const auto found = gains.find(view.camera);
-    if (found != gains.end()) view.log2_gain = found->second.cast<double>().matrix();
-  }
 }
 
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp) {

@@ -1,13 +1,12 @@
 // Records of the mapped drive in the map: its identity, its sensors, the stamps of its images.
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_records.h"
-#include "fovea/mapping/radiometry.h"
+#include "fovea/pipeline/frame_result.h"
 
 namespace fovea {
 
@@ -17,12 +16,10 @@ DriveRecord drive_record(const FrameSource& source);
 /// The LiDARs of a drive (DriveInfo::lidars).
 std::vector<SensorRecord> sensor_records(const DriveInfo& drive);
 
-/// Adds a view to the record for each image that the frame has.
+/// Adds a view to the record for each image that the frame has, with its gain in the result.
 /// @param drive  its calibration has the frame's cameras
-void add_views(const Frame& frame, const DriveInfo& drive, FrameRecord& record);
-
-/// States the gains of the record's views, by camera.
-void put_gains(const std::map<int, LogGain>& gains, FrameRecord& record);
+void add_views(const Frame& frame, const DriveInfo& drive, const FrameResult& result,
+               FrameRecord& record);
 
 /// The record of a frame that the drive skips.
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp);

@@ -22,8 +22,7 @@ FrameRecord map_tracked_frame(IncrementalMapper& mapper, const FrameSource& sour
                                 milliseconds(mapping_began - tracked.tracking_ended);
   record.milliseconds["decode"] = tracked.read.decode_ms;
   note_missing_images(frame, record);
-  add_views(frame, drive, record);
-  if (result.colors) put_gains(result.colors->gain, record);
+  add_views(frame, drive, result, record);
   return record;
 }
 
