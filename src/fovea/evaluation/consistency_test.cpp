@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fovea/evaluation/test_scene.h"
@@ -56,8 +57,9 @@ TEST(CrossView, StatesTheErrorOfTheMapAndTheFloor) {
   // Two photographs in one exposure after their gains; a saturated one does not count.
   CrossViewTest exposed(map);
   for (const float gain : {0.5f, 2.0f, 2.5f}) {
+    const float value = std::min(105 * gain, 255.0f);
     exposed.add_view(view, camera, camera.T_cam_lidar,
-                     even(camera.width, camera.height, static_cast<std::uint8_t>(105 * gain)),
+                     even(camera.width, camera.height, static_cast<std::uint8_t>(value)),
                      gain * one);
   }
   EXPECT_LT(exposed.result().map, 0.01);
