@@ -27,7 +27,7 @@ constexpr std::array<std::array<double, 2>, 4> kCoarsePlaces{
 constexpr double kNear = 0.02;
 
 // Kinds of random numbers.
-constexpr std::uint64_t kNoise = 0xca3e5a, kExposure = 0xe59051;
+constexpr std::uint64_t kNoise = 0xca3e5a, kExposure = 0xe59051, kWhiteBalance = 0x3ba1a;
 
 /// Whether light differs by more than kEdge once it is encoded. sRGB is steepest in the dark, where
 /// it is about 13 times linear: what differs less than that allows need not be encoded.
@@ -45,6 +45,15 @@ bool same_plane(const RayHit& a, const RayHit& b) {
 Vector3d direction(const LensCamera& camera, const RigidMotion& T_world_cam, double u, double v) {
   // The options are checked for lenses that reach all of the image.
   return (T_world_cam.linear() * camera.ray({u, v}).value()).normalized();
+}
+
+/// From 1 for the first camera to the options' ratio for the last, evenly in the logarithm.
+double exposure_factor(const CameraOptions& options, int camera) {
+  const auto place = std::find_if(options.cameras.begin(), options.cameras.end(),
+                                  [&](const SimulatedCamera& c) { return c.number == camera; });
+  if (place == options.cameras.end() || options.cameras.size() < 2) return 1;
+  const auto last = static_cast<double>(options.cameras.size() - 1);
+  return std::pow(options.exposure_ratio, double(place - options.cameras.begin()) / last);
 }
 
 }  // namespace
@@ -201,17 +210,20 @@ Rendering CameraModel::render_rows(const std::function<View(double)>& view_of) c
 
 Image develop(const Rendering& rendering, const Development& development) {
   Image image(rendering.width, rendering.height, development.grey ? 1 : 3);
-  const double center_x = 0.5 * (rendering.width - 1), center_y = 0.5 * (rendering.height - 1);
-  const double corner2 = center_x * center_x + center_y * center_y;
+  const Eigen::Vector2d last(rendering.width - 1, rendering.height - 1);
+  const Eigen::Vector2d center =
+      development.center.minCoeff() < 0 ? Eigen::Vector2d(0.5 * last) : development.center;
+  const double corner2 = center.cwiseMax(last - center).squaredNorm();
   parallel_for(static_cast<std::size_t>(rendering.height), 8, [&](std::size_t row) {
     const int v = static_cast<int>(row);
     Random random = Random::of_item(development.seed, kNoise, row);
     for (int u = 0; u < rendering.width; ++u) {
-      const double away2 = (u - center_x) * (u - center_x) + (v - center_y) * (v - center_y);
+      const double away2 = (Eigen::Vector2d(u, v) - center).squaredNorm();
       const double gain = development.exposure * (1 - development.vignetting * away2 / corner2);
       Vector3f light = rendering.light[row * static_cast<std::size_t>(rendering.width) +
                                        static_cast<std::size_t>(u)] *
                        static_cast<float>(gain);
+      light = light.cwiseProduct(development.white_balance);
       if (development.grey) {
         light.setConstant(light.dot(Vector3f(0.299f, 0.587f, 0.114f)));
       }
@@ -231,7 +243,8 @@ Image develop(const Rendering& rendering, const Development& development) {
 }
 
 double exposure_at(const CameraOptions& options, int camera, double time, int seed) {
-  if (options.exposure_variation == 0) return options.exposure;
+  const double own_exposure = options.exposure * exposure_factor(options, camera);
+  if (options.exposure_variation == 0) return own_exposure;
   Random random = Random::of_item(static_cast<std::uint64_t>(seed), kExposure, 100);
   const double a = random.uniform(0, 2 * std::numbers::pi),
                b = random.uniform(0, 2 * std::numbers::pi);
@@ -240,7 +253,19 @@ double exposure_at(const CameraOptions& options, int camera, double time, int se
   Random own = Random::of_item(static_cast<std::uint64_t>(seed), kExposure,
                                static_cast<std::uint64_t>(camera));
   const double trim = 0.08 * own.uniform(-1, 1);
-  return options.exposure * std::exp(options.exposure_variation * (swing + trim));
+  return own_exposure * std::exp(options.exposure_variation * (swing + trim));
+}
+
+Vector3f white_balance_at(const CameraOptions& options, int camera, double time, int seed) {
+  constexpr double kDuration = 4;  // s
+  constexpr std::uint64_t kCameras = 16;
+  const auto step = static_cast<std::int64_t>(std::floor(time / kDuration));
+  Random random = Random::of_item(
+      static_cast<std::uint64_t>(seed), kWhiteBalance,
+      static_cast<std::uint64_t>(step) * kCameras + static_cast<std::uint64_t>(camera));
+  const double red = options.white_balance_step * random.normal();
+  const double blue = options.white_balance_step * random.normal();
+  return {static_cast<float>(std::exp(red)), 1, static_cast<float>(std::exp(blue))};
 }
 
 }  // namespace fovea

@@ -71,11 +71,19 @@ class CameraModel {
   LensCamera camera_;
 };
 
+/// How much of the light an image takes.
+struct ImageLight {
+  double exposure;
+  Eigen::Vector3f white_balance;
+};
+
 /// How light becomes numbers in one image.
 struct Development {
-  double exposure = 1;    ///< factor on linear light
-  double vignetting = 0;  ///< light lost in the corners
-  double noise = 0;       ///< grey levels at half light
+  double exposure = 1;                                      ///< factor on linear light
+  Eigen::Vector3f white_balance = Eigen::Vector3f::Ones();  ///< factors on linear red, green, blue
+  double vignetting = 0;                                    ///< light lost in the farthest corner
+  Eigen::Vector2d center = {-1, -1};  ///< optical axis, pixels; negative: the middle
+  double noise = 0;                   ///< grey levels at half light
   bool grey = false;
   std::uint64_t seed = 0;  ///< of this image's noise
 };
@@ -83,5 +91,10 @@ Image develop(const Rendering& rendering, const Development& development);
 
 /// Exposure of an image: a smooth function of time, a little different for each camera.
 double exposure_at(const CameraOptions& options, int camera, double time, int seed);
+/// Factors on linear red, green and blue: constant for four seconds, then others.
+Eigen::Vector3f white_balance_at(const CameraOptions& options, int camera, double time, int seed);
+inline ImageLight image_light_at(const CameraOptions& options, int camera, double time, int seed) {
+  return {exposure_at(options, camera, time, seed), white_balance_at(options, camera, time, seed)};
+}
 
 }  // namespace fovea

@@ -395,4 +395,40 @@ TEST(Exposure, IsConstantWhereItsVariationIsOff) {
   for (double t = 0; t < 20; t += 0.7) EXPECT_EQ(exposure_at(options, int(t) % 4, t, 3), 1.5);
 }
 
+TEST(Exposure, OfTheLastCameraIsTheRatioTimesThatOfTheFirst) {
+  CameraOptions options;
+  options.exposure_variation = 0;
+  options.exposure_ratio = 4;
+  options.cameras = {kitti_camera(2), kitti_camera(3), kitti_camera(0)};
+  EXPECT_DOUBLE_EQ(exposure_at(options, 2, 1, 7), 1);
+  EXPECT_DOUBLE_EQ(exposure_at(options, 3, 1, 7), 2);
+  EXPECT_DOUBLE_EQ(exposure_at(options, 0, 1, 7), 4);
+}
+
+TEST(WhiteBalance, ChangesInSteps) {
+  CameraOptions options;
+  EXPECT_EQ(white_balance_at(options, 2, 1, 7), Vector3f::Ones());
+  options.white_balance_step = 0.1;
+  double squares = 0;
+  for (int step = 0; step < 200; ++step) {
+    const Vector3f gains = white_balance_at(options, 2, 4.0 * step, 7);
+    EXPECT_EQ(gains, white_balance_at(options, 2, 4.0 * step + 3.99, 7));
+    EXPECT_EQ(gains.y(), 1);
+    squares += std::pow(std::log(gains.x()), 2) + std::pow(std::log(gains.z()), 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / 400), 0.1, 0.01);
+}
+
+TEST(Develop, TakesTheWhiteBalanceAndTheCenterOfTheVignetting) {
+  const auto developed = [](const Development& development) {
+    return develop(even(5, 5, Vector3f::Constant(0.2f)), development);
+  };
+  const Image tinted = developed({.white_balance = {2, 1, 0.5f}});
+  EXPECT_EQ(tinted.pixel(2, 2)[1], developed({}).pixel(2, 2)[1]);
+  EXPECT_EQ(tinted.pixel(2, 2)[0], developed({.exposure = 2}).pixel(2, 2)[0]);
+  const Image dark = developed({.vignetting = 0.5, .center = {0, 0}});
+  EXPECT_EQ(dark.pixel(0, 0)[1], developed({}).pixel(0, 0)[1]);
+  EXPECT_EQ(dark.pixel(4, 4)[1], developed({.exposure = 0.5}).pixel(4, 4)[1]);
+}
+
 }  // namespace fovea::camera_model_test

@@ -32,6 +32,11 @@ void GenericSimulationWriter::write_image(int camera, int number, TimeNs stamp,
   writer_.write_image(camera_name(camera), number, stamp, image);
 }
 
+void GenericSimulationWriter::write_exposure(int camera, int number, double exposure) {
+  constexpr double kUsual = 0.004;  // s
+  writer_.set_exposure(camera_name(camera), number, kUsual * exposure);
+}
+
 void GenericSimulationWriter::write_texts(const Rig& rig,
                                           const std::vector<NavigationRecord>& records,
                                           const SimulationOptions&) {

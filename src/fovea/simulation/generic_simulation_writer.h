@@ -15,6 +15,7 @@ class GenericSimulationWriter : public SimulationWriter {
 
   void write_scan(int frame, const SimulatedScan& scan) override;
   void write_image(int camera, int number, TimeNs stamp, const Image& image) override;
+  void write_exposure(int camera, int number, double exposure) override;
   void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
                    const SimulationOptions& options) override;
   std::filesystem::path truth_folder() const override { return writer_.truth_folder(); }

@@ -116,11 +116,12 @@ class Simulation {
     Shot shot;
     Image image, perfect;
     std::vector<float> depth;
+    double exposure;
   };
   /// The truth of a camera that grows with the drive.
   struct CameraTruth {
-    std::string poses, exposures;       // by frame
-    std::map<int, std::string> images;  // by number
+    std::string poses, exposures, white_balances;  // by frame
+    std::map<int, std::string> images;             // by number
   };
 
   /// KITTI's boxes turn about the LiDAR's z axis alone, which must be upright for that.
@@ -151,13 +152,14 @@ class Simulation {
     const Camera& camera = rig_.cameras[k];
     const double time = seconds(shot.stamp - stamp_of(0, options_)) + options_.camera.trigger_delay;
     const CameraModel::View middle = view(camera, time);
-    const double exposure = exposure_at(options_.camera, camera.index, time, options_.pass_seed());
-    note_truth(k, frame, shot, T_world_local_.inverse() * middle.T_world_cam, exposure);
-    Picture picture{k, shot, {}, {}, {}};
+    const ImageLight light =
+        image_light_at(options_.camera, camera.index, time, options_.pass_seed());
+    note_truth(k, frame, shot, T_world_local_.inverse() * middle.T_world_cam, light);
+    Picture picture{k, shot, {}, {}, {}, light.exposure};
     Rendering seen;
     if (shot.image) {
       seen = taken(k, middle, time);
-      picture.image = develop(seen, development(k, *shot.image, exposure));
+      picture.image = develop(seen, development(k, *shot.image, light));
     }
     if (!shot.is_of_frame) return picture;
     // The truth is that of the rectified camera, all of it at one time.
@@ -173,10 +175,12 @@ class Simulation {
     return picture;
   }
 
-  Development development(std::size_t k, int image, double exposure) const {
+  Development development(std::size_t k, int image, const ImageLight& light) const {
     Development real;
     real.grey = options_.camera.cameras[k].grey;
-    real.exposure = exposure;
+    real.exposure = light.exposure;
+    real.white_balance = light.white_balance;
+    real.center = {rig_.optics[k].cx, rig_.optics[k].cy};
     real.vignetting = options_.camera.vignetting;
     real.noise = options_.camera.noise;
     real.seed = Random::of_item(static_cast<std::uint64_t>(options_.pass_seed()),
@@ -187,18 +191,21 @@ class Simulation {
   }
 
   void note_truth(std::size_t k, int frame, const Shot& shot, const RigidMotion& T_local_cam,
-                  double exposure) {
+                  const ImageLight& light) {
     CameraTruth& truth = truth_[k];
     if (shot.is_of_frame) {
       truth.poses += pose_line(T_local_cam);
-      truth.exposures += fmt::format("{:.9g}\n", exposure);
+      truth.exposures += fmt::format("{:.9g}\n", light.exposure);
+      const Eigen::Vector3f& gains = light.white_balance;
+      truth.white_balances +=
+          fmt::format("{:.9g} {:.9g} {:.9g}\n", gains.x(), gains.y(), gains.z());
     }
     if (!shot.image) return;
     std::string pose = pose_line(T_local_cam);
     std::replace(pose.begin(), pose.end(), ' ', ',');
     truth.images[*shot.image] =
         fmt::format("{},{},{},{:.9g},{}", *shot.image, shot.stamp,
-                    shot.is_of_frame ? std::to_string(frame) : "", exposure, pose);
+                    shot.is_of_frame ? std::to_string(frame) : "", light.exposure, pose);
   }
 
   /// Compressing the images costs as much as drawing them: all files of a frame at once.
@@ -212,6 +219,9 @@ class Simulation {
       const std::size_t file = (task - 2) % 3;
       if (file == 0 && shot.image) {
         writer_->write_image(camera.index, *shot.image, shot.stamp, picture.image);
+        if (options_.camera.exposure_times) {
+          writer_->write_exposure(camera.index, *shot.image, picture.exposure);
+        }
       } else if (file == 1 && shot.is_of_frame) {
         writer_->write_perfect_image(camera.index, frame, picture.perfect);
       } else if (file == 2 && shot.is_of_frame) {
@@ -224,6 +234,7 @@ class Simulation {
     const std::string folder = fmt::format("truth/image_{:02d}/", rig_.cameras[k].index);
     writer_->write_file(folder + "poses.txt", truth_[k].poses);
     writer_->write_file(folder + "exposure.txt", truth_[k].exposures);
+    writer_->write_file(folder + "white_balance.txt", truth_[k].white_balances);
     // Else each frame has the image of its number.
     if (image_rate(options_.camera, options_.camera.cameras[k]) == 0) return;
     std::string images = "index,time_ns,frame,exposure,r11,r12,r13,x,r21,r22,r23,y,r31,r32,r33,z\n";

@@ -169,6 +169,9 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("camera.cy", o.camera.cy);
   visit("camera.exposure", o.camera.exposure);
   visit("camera.exposure_variation", o.camera.exposure_variation);
+  visit("camera.exposure_ratio", o.camera.exposure_ratio);
+  visit("camera.white_balance_step", o.camera.white_balance_step);
+  visit("camera.exposure_times", o.camera.exposure_times);
   visit("camera.vignetting", o.camera.vignetting);
   visit("camera.noise", o.camera.noise);
   visit("camera.rotation_error_x", Degrees{o.camera.rotation_error.x()});

@@ -63,6 +63,8 @@ void check(const CameraOptions& camera) {
   check_range("camera.cy", camera.cy, -1e5, 1e5, "pixels");
   check_range("camera.exposure", camera.exposure, 0.01, 100);
   check_range("camera.exposure_variation", camera.exposure_variation, 0, 3);
+  check_range("camera.exposure_ratio", camera.exposure_ratio, 0.01, 100);
+  check_range("camera.white_balance_step", camera.white_balance_step, 0, 1);
   check_range("camera.vignetting", camera.vignetting, 0, 1);
   check_range("camera.noise", camera.noise, 0, 100, "grey levels");
   check_degrees("camera.rotation_error_x", camera.rotation_error.x(), -5, 5);

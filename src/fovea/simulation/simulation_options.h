@@ -80,8 +80,13 @@ struct CameraOptions {
   double cx = 609.6, cy = 172.9;     ///< pixel centres at integers
   double exposure = 1.0;             ///< factor on linear light
   double exposure_variation = 0.35;  ///< natural logarithm, amplitude over the drive
-  double vignetting = 0.25;          ///< light lost in the image's corners
-  double noise = 1.5;                ///< grey levels of 255 at half light, standard deviation
+  double exposure_ratio = 1;         ///< of the last camera's exposure to the first's
+  /// Natural logarithm, standard deviation of the gains of red and blue. They change every four
+  /// seconds in steps.
+  double white_balance_step = 0;
+  bool exposure_times = false;  ///< a generic drive states the exposure of each image
+  double vignetting = 0.25;     ///< light lost in the image's corners
+  double noise = 1.5;           ///< grey levels of 255 at half light, standard deviation
   /// What the calibration files leave out: the cameras are turned, all as one round camera 0, by
   /// this rotation vector in camera 0's rectified axes (rad).
   Eigen::Vector3d rotation_error = Eigen::Vector3d::Zero();

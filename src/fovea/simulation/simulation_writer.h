@@ -26,6 +26,9 @@ class SimulationWriter {
   virtual void write_scan(int frame, const SimulatedScan& scan) = 0;
   /// @param stamp  of the image; KITTI's drives have that of its scan
   virtual void write_image(int camera, int number, TimeNs stamp, const Image& image) = 0;
+  /// Exposure of an image that write_image() writes, relative to the usual one. KITTI's drives have
+  /// no place for it.
+  virtual void write_exposure(int /*camera*/, int /*number*/, double /*exposure*/) {}
   /// The calibration, all time stamps and the records of GPS/INS.
   virtual void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
                            const SimulationOptions& options) = 0;

@@ -56,9 +56,15 @@ std::string kitti_text(const PointCloud& scan) {
   return bytes;
 }
 
-std::string stamps_text(const std::map<int, TimeNs>& stamps) {
-  std::string text = "index,time_ns\n";
-  for (const auto& [number, time] : stamps) text += fmt::format("{},{}\n", number, time);
+/// @param exposures  s, of all files or of none
+std::string stamps_text(const std::map<int, TimeNs>& stamps,
+                        const std::map<int, double>& exposures = {}) {
+  std::string text = exposures.empty() ? "index,time_ns\n" : "index,time_ns,exposure_s\n";
+  for (const auto& [number, time] : stamps) {
+    text += fmt::format("{},{}", number, time);
+    if (!exposures.empty()) text += fmt::format(",{}", exposures.at(number));
+    text += '\n';
+  }
   return text;
 }
 
@@ -185,6 +191,11 @@ void GenericDriveWriter::write_image(const std::string& camera, int number, Time
                       {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, ".png");
 }
 
+void GenericDriveWriter::set_exposure(const std::string& camera, int number, double exposure) {
+  const std::lock_guard lock(mutex_);
+  exposures_[camera][number] = exposure;
+}
+
 void GenericDriveWriter::write_encoded_image(const std::string& camera, int number, TimeNs stamp,
                                              std::string_view bytes, const std::string& extension) {
   folder_.write(image_folder(camera) / file_name(number, extension), bytes);
@@ -201,7 +212,7 @@ void GenericDriveWriter::finish(const RecordedDrive& drive) {
   folder_.write("drive.toml", drive_text(drive));
   folder_.write("lidar/stamps.csv", stamps_text(scan_stamps_));
   for (const auto& [camera, stamps] : image_stamps_) {
-    folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps));
+    folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps, exposures_[camera]));
   }
   if (!drive.poses.empty()) folder_.write("poses.csv", poses_text(drive.poses));
   if (!drive.positions.empty()) folder_.write("gnss.csv", positions_text(drive.positions));

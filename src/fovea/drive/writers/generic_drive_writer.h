@@ -85,6 +85,8 @@ class GenericDriveWriter {
                   ScanFile format = ScanFile::kPcd);
   /// As PNG. std::invalid_argument for a name that RecordedCamera does not allow.
   void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
+  /// States the exposure time of an image, s. Of a camera all images have one, or none.
+  void set_exposure(const std::string& camera, int number, double exposure);
   /// An image that is encoded already; as above.
   /// @param extension  ".png" or ".jpg"
   void write_encoded_image(const std::string& camera, int number, TimeNs stamp,
@@ -105,7 +107,8 @@ class GenericDriveWriter {
   OutputFolder folder_;
   std::mutex mutex_;  // of the stamps
   Stamps scan_stamps_;
-  std::map<std::string, Stamps> image_stamps_;  // by camera
+  std::map<std::string, Stamps> image_stamps_;              // by camera
+  std::map<std::string, std::map<int, double>> exposures_;  // by camera, s
 };
 
 }  // namespace fovea
