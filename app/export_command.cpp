@@ -34,6 +34,7 @@ struct ExportArguments {
   PointChoice points;
   std::optional<double> utc_offset;  // h
   double voxel = MeshOptions().voxel;
+  int color_depth = 8;  // bits
   bool double_positions = false, viewer = false, force = false, quiet = false;
 };
 
@@ -69,6 +70,7 @@ void check_options(const CLI::App& command, const ExportArguments& arguments,
   only_for("--viewer", {"3dtiles", "mesh"});
   only_for("--uncolored", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
   only_for("--where", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
+  only_for("--color-depth", {"ply", "pcd", "las"});
   only_for("--exposure", {"ply", "pcd", "las", "3dtiles", "mesh", "glb"});
 }
 
@@ -163,6 +165,7 @@ void write(const MapReader& map, ExportArguments& arguments, const std::string& 
   if (!arguments.where.empty()) arguments.points.where = PointFilter::parse(arguments.where);
   arguments.points.crs = *crs_of(arguments.crs);
   arguments.points.exposure = parse_exposure(arguments.exposure);
+  arguments.points.deep_colors = arguments.color_depth == 16;
   const auto report = [&](const ExportFigures& figures) {
     if (!arguments.quiet) print_figures(arguments, figures);
   };
@@ -246,6 +249,13 @@ void add_export_command(CLI::App& app, Session& session) {
   command->add_option("--exposure", arguments->exposure,
                       "Of the colors: auto (the median exposure of the images), frame:N, or stops "
                       "above the exposure of the map");
+  command
+      ->add_option(
+          "--color-depth", arguments->color_depth,
+          "PLY, PCD, LAS: 16 bits a channel: 257 times the 8-bit value, not tone-mapped; auto is "
+          "then the exposure of the map, lowered until 0.1 % of the points are cut off; "
+          "default: 8")
+      ->check(CLI::IsMember({8, 16}));
   command->add_option(
       "--where", arguments->where,
       "Only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "

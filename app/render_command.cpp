@@ -25,7 +25,7 @@
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
-#include "fovea/evaluation/predicted_gain.h"
+#include "fovea/evaluation/predicted_light.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -64,13 +64,10 @@ const FrameRecord& find_frame(const ScoredMap& map, int index, const std::string
 /// As exposed as the image of a frame, by the gain of the frame or of its neighbors.
 ColorDisplay exposure_of(const FrameRecord& frame, int camera,
                          const std::vector<FrameRecord>& frames) {
-  for (const ViewRecord& view : frame.views) {
-    if (view.camera == camera && view.log2_gain) {
-      return {view.log2_gain->cast<float>().array(), /*tone_mapped=*/false};
-    }
-  }
-  const auto gain = predicted_gain(frames, frame.index, camera);
-  return gain ? ColorDisplay(gain->array().log2(), /*tone_mapped=*/false) : ColorDisplay();
+  const ViewRecord* view = frame.find_view(camera);
+  if (view != nullptr && view->log2_gain) return {view->light(), /*tone_mapped=*/false};
+  const auto light = predicted_light(frames, frame.index, camera);
+  return light ? ColorDisplay(*light, /*tone_mapped=*/false) : ColorDisplay();
 }
 
 SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam,

@@ -21,7 +21,7 @@ namespace fovea::app {
 namespace {
 
 struct ViewArguments {
-  std::string map;
+  std::string map, exposure = "auto";
   DriveArguments drive;
   WebServerOptions server;
   int port = -1;
@@ -48,9 +48,10 @@ std::shared_ptr<const DriveImages> open_images(const MapReader& map,
 void run(const ViewArguments& arguments, Session& session) {
   // The map is not kept open: its writer could not merge the log.
   const auto images = open_images(open_map(arguments.map), arguments);
+  const ExposureChoice exposure = parse_exposure(arguments.exposure);
   std::optional<MapServer> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
-    show.emplace(arguments.map, viewer_page(), images, options);
+    show.emplace(arguments.map, viewer_page(), images, options, exposure);
   });
   if (!arguments.quiet) {
     print_out("{} is shown at {} (Ctrl-C ends)\n", arguments.map, show->url());
@@ -86,6 +87,9 @@ void add_view_command(CLI::App& app, Session& session) {
       ->add_option("--address", arguments->server.address,
                    "Address to serve at: 0.0.0.0 shows the map to all that reach this machine")
       ->capture_default_str();
+  command->add_option("--exposure", arguments->exposure,
+                      "Of the colors: auto (the median exposure of the images), frame:N, or stops "
+                      "above the exposure of the map");
   add_foreign_option(*command, arguments->foreign);
   command->add_flag("--no-browser", arguments->no_browser, "Open no browser");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

@@ -32,7 +32,7 @@ void put_other_rows(MapWriter& map) {
   map.put_sensor(0, sensor);
   SubmapRecord submap;
   submap.covariance = Eigen::Matrix<double, 6, 6>::Identity();
-  submap.gains = {{2, {0, 1, 2}}};
+  submap.log2_gain = Eigen::Vector3d(0, 1, 2);
   map.put_submap(0, submap);
   map.put_keyframe({0, 0, {0.1, -0.1}, 2, 0, 0.01, {0, 1, 700, 65535}});
   map.put_checkpoint("tracker", {1, {std::byte{7}}});

@@ -100,6 +100,9 @@ inline std::vector<FrameRecord> sample_frames() {
   frames[0].milliseconds = {{"decode", 12.5}, {"frame", 1.0 / 7}};
   frames[0].views = {{2, frames[0].stamp, std::nullopt},
                      {3, 1'317'046'453'082'943'357, Eigen::Vector3d(0.25, -1.0 / 3, 1e-12)}};
+  frames[0].views[1].response = {14.025, {-0.1, 1e-9, 1.0 / 7}};
+  frames[0].views[1].log2_color = Eigen::Vector3d(6.5, 1.0 / 3, -1e-12);
+  frames[0].views[1].revisit = {1, {0.5, -0.25, 1.0 / 3}};
   frames[1].index = 8;
   frames[1].status = FrameStatus::kHeldOut;
   frames[1].stamp = -5;
@@ -158,7 +161,6 @@ inline SubmapRecord sample_submap(const RigidMotion& T_local_submap) {
     const int row = i / 6, column = i % 6;
     (*submap.covariance)(row, column) = 1.0 / (1 + row + column);  // symmetric
   }
-  submap.gains = {{2, {0.1, -1.0 / 3, 2}}, {3, {0, 0, 1e-9}}};
   return submap;
 }
 

@@ -56,6 +56,12 @@ const std::map<std::string, const char*>& explanations() {
       {"color_albedo_matte", "the same on materials that mirror nothing"},
       {"color_view", "against the perfect image of the point's own frame and camera"},
       {"color_view_matte", "the same on materials that mirror nothing"},
+      {"exposure.one_gain_mean", "the same after one gain a channel for the whole map, mean"},
+      {"exposure.one_gain_median", "half are better"},
+      {"exposure.trend_percent_per_km", "slope of map over truth along the drive (%/km)"},
+      {"exposure.deviation_percent", "its standard deviation from view to view (%)"},
+      {"exposure.seam_p95_percent",
+       "steps of color between views within 3 cm (%), 95th percentile"},
       {"points", "points compared"},
       {"median", "half are better"},
       {"within_20", "share of points whose colour is right within 20"},
@@ -112,6 +118,7 @@ std::string truth_figure_tables(const Json& report) {
       {"completeness_", "Completeness", "Within 2, 5, 10 and 20 cm."},
       {"f_score_", "F-score", "Precision and completeness in one."},
       {"color_", "Colours", "Euclidean in 8-bit sRGB (0-441)."},
+      {"exposure", "One exposure", "Against the perfect images."},
       {"upsampling_", "Upsampling", "The method alone, on true scans: no map is involved."},
   };
   return figure_tables(report, groups, explain_truth_figure);

@@ -53,4 +53,30 @@ NumberedTimes read_image_stamps(const fs::path& file, const NumberedTimes& scans
   return numbered(rows, file, messages);
 }
 
+std::map<int, double> read_image_exposures(const fs::path& file, Messages& messages) {
+  constexpr std::array<CsvColumn, 3> kColumns = {
+      {{"index"}, {"exposure_s", /*required=*/false}, {"gain_db", /*required=*/false}}};
+  constexpr double kDecibelsPerStop = 6.0206;
+  const CsvRows rows = read_csv(file, kColumns);
+  std::map<int, double> exposures;
+  if (!rows.has[1] && !rows.has[2]) return exposures;
+  std::size_t unusable = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double index = rows.at(row, 0);
+    const double time = rows.has[1] ? rows.at(row, 1) : 1;
+    const double gain = rows.has[2] ? rows.at(row, 2) : 0;
+    const double exposure = std::log2(time) + gain / kDecibelsPerStop;
+    const bool is_index = index >= 0 && index < kMaxFileNumber && index == std::floor(index);
+    if (is_index && std::isfinite(exposure)) {
+      exposures.emplace(static_cast<int>(index), exposure);
+    } else {
+      ++unusable;
+    }
+  }
+  if (unusable > 0) {
+    messages.warn(fmt::format("{} lines of {} state no exposure", unusable, file.string()));
+  }
+  return exposures;
+}
+
 }  // namespace fovea

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 
 #include "fovea/core/messages.h"
 #include "fovea/drive/nearest_images.h"
@@ -19,5 +20,10 @@ NumberedTimes read_scan_stamps(const std::filesystem::path& file, Messages& mess
 /// @param scans  stamps of the scans, whose clock the images have; not empty
 NumberedTimes read_image_stamps(const std::filesystem::path& file, const NumberedTimes& scans,
                                 Messages& messages);
+
+/// Exposure time times amplification of images by their numbers, base-2 logarithms: columns
+/// exposure_s and gain_db of the table of stamps. Empty if it has neither. Warns of lines that
+/// cannot be used.
+std::map<int, double> read_image_exposures(const std::filesystem::path& file, Messages& messages);
 
 }  // namespace fovea

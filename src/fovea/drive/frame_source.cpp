@@ -51,6 +51,15 @@ bool DriveInfo::has_image_delays() const {
          std::any_of(image_offsets.begin(), image_offsets.end(), differs);
 }
 
+std::optional<double> DriveInfo::image_exposure(int camera, int index) const {
+  for (std::size_t slot = 0; slot < image_exposures.size(); ++slot) {
+    if (calibration.cameras[slot].index != camera) continue;
+    const auto found = image_exposures[slot].find(index);
+    if (found != image_exposures[slot].end()) return found->second;
+  }
+  return std::nullopt;
+}
+
 Camera DriveInfo::camera_at(std::size_t slot, int index) const {
   Camera camera = calibration.cameras.at(slot);
   camera.image_delay += image_offset(slot, index);

@@ -90,6 +90,9 @@ struct DriveInfo : Messages {
   /// Where they are: seconds from Camera::image_delay, the camera's median, to the delay of a
   /// frame's own image. By camera of the calibration, then by frame index; absent: 0.
   std::vector<std::map<int, double>> image_offsets;
+  /// Exposure time times amplification of the images, base-2 logarithms, where the drive states
+  /// them. By camera of the calibration, then by frame index.
+  std::vector<std::map<int, double>> image_exposures;
   /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR (or, with
   /// poses.csv, in the axes of its world); absent
   /// where the drive has no (usable) navigation.
@@ -104,6 +107,9 @@ struct DriveInfo : Messages {
   /// Seconds from Camera::image_delay to the delay of the camera's image of one frame.
   /// @param slot  place of the camera in the calibration
   double image_offset(std::size_t slot, int index) const;
+  /// Exposure of the image of a camera in one frame; absent where the drive does not state it.
+  /// @param camera  number of the camera
+  std::optional<double> image_exposure(int camera, int index) const;
   /// A camera with the delay of its own image of one frame. Camera::at_image() then moves the
   /// camera to the place where it took that image.
   Camera camera_at(std::size_t slot, int index) const;

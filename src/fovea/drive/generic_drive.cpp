@@ -174,12 +174,13 @@ class GenericDrive {
     camera.T_cam_lidar = described.T_cam_lidar;
     camera.image_delay = described.delay;
     info_.image_offsets.emplace_back();
+    info_.image_exposures.emplace_back();
     files_.images.push_back(images_of_scans(described, images, camera));
     info_.calibration.cameras.push_back(camera);
   }
 
-  /// The images by the numbers of the scans they belong to; sets the camera's median delay and
-  /// the offsets of its images from that median.
+  /// The images by the numbers of the scans they belong to; sets the camera's median delay, the
+  /// offsets of its images from that median, and their exposures.
   NumberedFiles images_of_scans(const CameraDescription& described, const NumberedFiles& images,
                                 Camera& camera) {
     const fs::path file = info_.path / described.folder / "stamps.csv";
@@ -205,8 +206,11 @@ class GenericDrive {
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size());
     info_.image_stamps_are_capture_times = true;
+    const std::map<int, double> exposures = read_image_exposures(file, info_);
     NumberedFiles result;
     for (const auto& [scan, image] : matches.image_of_scan) {
+      const auto exposure = exposures.find(image);
+      if (exposure != exposures.end()) info_.image_exposures.back()[scan] = exposure->second;
       result[scan] = images.at(image);
       const double delay = seconds(times.at(image) - scans.at(scan));
       info_.image_offsets.back()[scan] = delay - matches.median_delay;

@@ -313,6 +313,22 @@ TEST_F(GenericDrive, ImagesWithStampsBelongToTheScanNearestInTime) {
   EXPECT_EQ(std::get<SkippedFrame>(drive->load(4)).reason, SkipReason::kMissingImage);
 }
 
+TEST_F(GenericDrive, TablesOfImagesMayStateExposures) {
+  std::string text = "index,time_ns,exposure_s,gain_db\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string exposure = i == 2 ? "" : fmt::format("{}", 0.001 * (1 << i));
+    text += fmt::format("{},{},{},{}\n", i, kStart + i * kStep, exposure, 6.0206 * i);
+  }
+  write_text(folder_ / "images/left/stamps.csv", text);
+  const auto drive = open();
+  const DriveInfo& info = drive->info();
+  EXPECT_NEAR(*info.image_exposure(1, 0), std::log2(0.001), 1e-9);
+  EXPECT_NEAR(*info.image_exposure(1, 3), std::log2(0.001) + 6, 1e-9);
+  EXPECT_FALSE(info.image_exposure(1, 2));
+  EXPECT_FALSE(info.image_exposure(4, 0));
+  EXPECT_THAT(info.warnings, testing::Contains(HasSubstr("1 lines of")));
+}
+
 TEST_F(GenericDrive, ImagesAndScansOfDifferentClocksAreAnError) {
   const auto file = folder_ / "images/left/stamps.csv";
   // Seconds since the camera began, an hour of summer time, GPS time.

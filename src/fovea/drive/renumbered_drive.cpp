@@ -14,11 +14,13 @@ RenumberedDrive::RenumberedDrive(std::unique_ptr<FrameSource> drive,
   info_.begin = number_in_drive_.empty() ? 0 : number_in_drive_.begin()->first;
   info_.end = number_in_drive_.empty() ? 0 : number_in_drive_.rbegin()->first + 1;
   info_.reference_poses.clear();
-  for (std::map<int, double>& offsets : info_.image_offsets) {
-    const std::map<int, double> of_drive = std::exchange(offsets, {});
-    for (const auto& [number, in_drive] : number_in_drive_) {
-      const auto found = of_drive.find(in_drive);
-      if (found != of_drive.end()) offsets.emplace(number, found->second);
+  for (auto* of_cameras : {&info_.image_offsets, &info_.image_exposures}) {
+    for (std::map<int, double>& values : *of_cameras) {
+      const std::map<int, double> of_drive = std::exchange(values, {});
+      for (const auto& [number, in_drive] : number_in_drive_) {
+        const auto found = of_drive.find(in_drive);
+        if (found != of_drive.end()) values.emplace(number, found->second);
+      }
     }
   }
 }

@@ -1,10 +1,12 @@
 #include "fovea/evaluation/evaluate_truth.h"
 
+#include <cmath>
 #include <unordered_map>
 
 #include "fovea/core/errors.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/metrics.h"
+#include "fovea/evaluation/seams.h"
 #include "fovea/evaluation/truth_colors.h"
 #include "fovea/evaluation/truth_ghosts.h"
 #include "fovea/evaluation/truth_upsampling.h"
@@ -80,6 +82,42 @@ void put_accuracy(const SurfaceMatches& matches, const std::vector<std::uint8_t>
   report.accuracy_interpolated = distribution(std::move(parts[1]));
 }
 
+double percent_of_stops(double stops) { return 100 * (std::exp2(stops) - 1); }
+
+/// A line through the exposures of the views along the drive.
+ExposureFigures exposure_figures(const std::vector<ViewExposure>& views,
+                                 const std::vector<PosePair>& pairs) {
+  constexpr std::size_t kLeastPoints = 100;
+  constexpr double kLeastLength = 0.2;  // km
+  std::unordered_map<int, double> kilometers;
+  double path = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i > 0) {
+      path +=
+          0.001 *
+          (pairs[i].T_true_lidar.translation() - pairs[i - 1].T_true_lidar.translation()).norm();
+    }
+    kilometers[pairs[i].frame] = path;
+  }
+  std::vector<Eigen::Vector2d> points;  // km, stops
+  for (const ViewExposure& view : views) {
+    const auto place = kilometers.find(view.frame);
+    if (view.points < kLeastPoints || place == kilometers.end()) continue;
+    points.emplace_back(place->second, view.stops);
+  }
+  ExposureFigures figures;
+  if (points.size() < 2) return figures;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) mean += p / double(points.size());
+  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& p : points) moments += (p - mean) * (p - mean).transpose();
+  figures.deviation_percent = percent_of_stops(std::sqrt(moments(1, 1) / double(points.size())));
+  if (path >= kLeastLength) {
+    figures.trend_percent_per_km = percent_of_stops(moments(0, 1) / moments(0, 0));
+  }
+  return figures;
+}
+
 void put_colors(const ColouredTruth& coloured, const ScoredMap& map, const DriveTruth& truth,
                 const FrameSource& drive, const std::vector<PosePair>& pairs, TruthReport& report) {
   const ColorErrorSets albedo =
@@ -87,9 +125,12 @@ void put_colors(const ColouredTruth& coloured, const ScoredMap& map, const Drive
   report.color_albedo = figures(albedo.all);
   report.color_albedo_matte = figures(albedo.matte);
   if (coloured.points_true.frame.empty() || map.cameras.empty()) return;
-  const ColorErrorSets view = view_errors(coloured, truth, drive.info().calibration.cameras);
-  report.color_view = figures(view.all);
-  report.color_view_matte = figures(view.matte);
+  ViewErrors view = view_errors(coloured, truth, drive.info().calibration.cameras);
+  report.color_view = figures(view.errors.all);
+  report.color_view_matte = figures(view.errors.matte);
+  report.exposure = exposure_figures(view.exposures, pairs);
+  report.exposure.one_gain = distribution(std::move(view.one_gain));
+  report.exposure.seam_p95_percent = find_seams(coloured.points_true).p95_percent;
 }
 
 void put_upsampling(UpsamplingErrors errors, TruthReport& report) {

@@ -107,7 +107,7 @@ PointErrors PointErrors::select(const std::vector<std::uint8_t>& marks, std::uin
 
 PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
                          const Eigen::Vector3f& gains,
-                         const std::optional<Eigen::Vector3f>& predicted_gains) {
+                         const std::vector<Eigen::Vector3f>& predicted_colors) {
   PointErrors errors;
   errors.position = map.distance;
   errors.color.reserve(map.color.size());
@@ -128,9 +128,8 @@ PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
     errors.log_cross.push_back(log_color_error(view.color[i], fitted[i], view.grey));
     errors.square_cross.push_back((view.color[i] - fitted[i]).squaredNorm() / 3);
   }
-  for (std::size_t i = 0; predicted_gains && i < map.color.size(); ++i) {
-    const Eigen::Vector3f predicted = map.color[i].cwiseProduct(*predicted_gains).cwiseMin(255.0f);
-    errors.color_predicted.push_back(color_error(view.color[i], predicted, view.grey));
+  for (std::size_t i = 0; i < predicted_colors.size(); ++i) {
+    errors.color_predicted.push_back(color_error(view.color[i], predicted_colors[i], view.grey));
   }
   return errors;
 }

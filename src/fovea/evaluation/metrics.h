@@ -53,16 +53,18 @@ struct PointErrors {
   std::vector<float> color_cross = {};   ///< TE of the point
   std::vector<float> log_cross = {};     ///< log_color_error()
   std::vector<float> square_cross = {};  ///< squared difference, mean over channels
-  /// TE with the predicted gain (predicted_gain.h); empty where the map states no gains.
+  /// TE with the predicted gain (predicted_light.h); empty where the map states no gains.
   std::vector<float> color_predicted = {};
 
   void append(const PointErrors& other);
   /// Those of the points whose mark is `wanted` (0 or 1). @param marks  one a point
   PointErrors select(const std::vector<std::uint8_t>& marks, std::uint8_t wanted) const;
 };
+/// @param predicted_colors  of the map at the points of the view; empty where the map states no
+/// gains
 PointErrors point_errors(const EvaluatedView& view, const NearestSamples& map,
                          const Eigen::Vector3f& gains,
-                         const std::optional<Eigen::Vector3f>& predicted_gains = {});
+                         const std::vector<Eigen::Vector3f>& predicted_colors = {});
 
 /// Figures of a set of points; NaN where there is none. Standard deviations are the set's own (over
 /// N).

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "fovea/core/errors.h"
-#include "fovea/evaluation/predicted_gain.h"
+#include "fovea/evaluation/predicted_light.h"
 #include "fovea/evaluation/scored_frames.h"
 #include "fovea/mapping/scan_projection.h"
 
@@ -23,7 +23,7 @@ void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera
 
 /// @param gains  factors of the channels
 ColorDisplay exposure_of(const Eigen::Vector3f& gains) {
-  return {gains.array().max(1e-6f).log2(), /*tone_mapped=*/false};
+  return {{gains.array().max(1e-6f).log2(), {}}, /*tone_mapped=*/false};
 }
 
 }  // namespace
@@ -123,8 +123,11 @@ Scorer::ScoredPoints Scorer::score_points(const Frame& frame, const PointCloud& 
       nearest_samples(view.position, coloured_tree_, coloured_.color, coloured_.interpolated);
   const NearestSamples& nearest = scored.nearest;
   scored.gains = fit_gains(view.color, nearest.color, view.grey);
-  scored.errors = point_errors(view, nearest, scored.gains,
-                               predicted_gain(frames_, placed.index, camera.index));
+  std::vector<Eigen::Vector3f> predicted;
+  if (const auto light = predicted_light(frames_, placed.index, camera.index)) {
+    predicted = predicted_colors(view, nearest.color, *light, camera);
+  }
+  scored.errors = point_errors(view, nearest, scored.gains, predicted);
   return scored;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/median.h"
 #include "fovea/core/parallel.h"
 #include "fovea/evaluation/metrics.h"
 
@@ -19,6 +20,7 @@ constexpr int kEdgeReach = 2;                                   // pixels
 struct Samples {
   std::vector<Eigen::Vector3f> truth, map;
   std::vector<std::uint8_t> matte;
+  bool grey = false;
 
   void add(const Eigen::Vector3f& true_color, LogColor map_color, std::uint8_t is_matte) {
     truth.push_back(true_color);
@@ -128,15 +130,41 @@ std::map<std::pair<int, int>, std::vector<std::uint32_t>> points_by_view(const C
   return views;
 }
 
-ColorErrorSets errors_of_view(const ColouredTruth& map, const std::vector<std::uint32_t>& points,
-                              const TrueView& view) {
+Samples samples_of_view(const ColouredTruth& map, const std::vector<std::uint32_t>& points,
+                        const TrueView& view) {
   Samples samples;
+  samples.grey = view.grey();
   for (const std::uint32_t i : points) {
     const Eigen::Vector3d p = map.points_true.origin + map.points_true.position[i].cast<double>();
     const std::optional<Eigen::Vector3f> truth = view.color_at(p);
     if (truth) samples.add(*truth, map.points_true.color[i], map.matches.matte[i]);
   }
-  return errors_of(samples, view.grey());
+  return samples;
+}
+
+/// Median of the logarithms of map over truth.
+double stops_above_truth(const Samples& samples) {
+  std::vector<double> stops;
+  for (std::size_t i = 0; i < samples.truth.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const float map = samples.map[i][c], truth = samples.truth[i][c];
+      if (map > 0 && truth > 0) stops.push_back(double(std::log2(map / truth)));
+    }
+  }
+  return stops.empty() ? 0 : median_of(std::move(stops));
+}
+
+/// Least squares over the samples of all views.
+Eigen::Vector3f common_gains(const std::vector<Samples>& views) {
+  Eigen::Array3d products = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
+  for (const Samples& view : views) {
+    for (std::size_t i = 0; i < view.truth.size(); ++i) {
+      const Eigen::Array3d map = view.map[i].cast<double>().array();
+      products += map * view.truth[i].cast<double>().array();
+      squares += map.square();
+    }
+  }
+  return (squares > 0).select(products / squares, 1.0).cast<float>().matrix();
 }
 
 }  // namespace
@@ -160,23 +188,32 @@ ColorErrorSets albedo_errors(const ColouredTruth& map, const std::set<int>& grey
   return errors_of(samples, /*grey=*/false);
 }
 
-ColorErrorSets view_errors(const ColouredTruth& map, const DriveTruth& truth,
-                           const std::vector<Camera>& cameras) {
+ViewErrors view_errors(const ColouredTruth& map, const DriveTruth& truth,
+                       const std::vector<Camera>& cameras) {
   const auto by_view = points_by_view(map, truth.frames());
   const std::vector<std::pair<std::pair<int, int>, std::vector<std::uint32_t>>> views(
       by_view.begin(), by_view.end());
-  std::vector<ColorErrorSets> errors(views.size());
+  std::vector<Samples> samples(views.size());
   parallel_for(views.size(), 1, [&](std::size_t v) {
     const auto& [frame, number] = views[v].first;
     const auto camera = std::find_if(cameras.begin(), cameras.end(),
                                      [&, n = number](const Camera& c) { return c.index == n; });
     if (camera == cameras.end()) return;  // a camera that is not scored
-    errors[v] = errors_of_view(map, views[v].second, TrueView(truth, *camera, frame));
+    samples[v] = samples_of_view(map, views[v].second, TrueView(truth, *camera, frame));
   });
-  ColorErrorSets all;
-  for (const ColorErrorSets& part : errors) {
-    append(all.all, part.all);
-    append(all.matte, part.matte);
+  const Eigen::Vector3f gains = common_gains(samples);
+  ViewErrors all;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const ColorErrorSets errors = errors_of(samples[v], samples[v].grey);
+    append(all.errors.all, errors.all);
+    append(all.errors.matte, errors.matte);
+    for (std::size_t i = 0; i < samples[v].truth.size(); ++i) {
+      all.one_gain.push_back(
+          color_error(samples[v].truth[i], samples[v].map[i].cwiseProduct(gains), samples[v].grey));
+    }
+    const auto& [frame, camera] = views[v].first;
+    all.exposures.push_back(
+        {frame, camera, samples[v].truth.size(), stops_above_truth(samples[v])});
   }
   return all;
 }

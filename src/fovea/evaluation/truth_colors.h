@@ -33,11 +33,24 @@ std::set<int> grey_cameras(const DriveTruth& truth, const std::vector<int>& numb
 /// takes up its light. Points of grey cameras are left out.
 ColorErrorSets albedo_errors(const ColouredTruth& map, const std::set<int>& grey);
 
+/// What the points of one view say of the exposure of the map.
+struct ViewExposure {
+  int frame = 0, camera = 0;
+  std::size_t points = 0;
+  double stops = 0;  ///< map over truth, median over points and channels
+};
+
+struct ViewErrors {
+  ColorErrorSets errors;
+  std::vector<float> one_gain;  ///< errors after one gain a channel for the whole map
+  std::vector<ViewExposure> exposures;
+};
+
 /// Against the perfect image of each point's own frame and camera, bilinear where the true pose of
 /// that camera projects the point; one gain a channel and image, which takes up its exposure. Only
 /// points that are visible there by the true depth (within 5 cm or 1 %), and whose 5 x 5 pixels
 /// have no depth that differs by over 5 %. Column frame needed.
-ColorErrorSets view_errors(const ColouredTruth& map, const DriveTruth& truth,
-                           const std::vector<Camera>& cameras);
+ViewErrors view_errors(const ColouredTruth& map, const DriveTruth& truth,
+                       const std::vector<Camera>& cameras);
 
 }  // namespace fovea

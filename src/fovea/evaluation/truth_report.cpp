@@ -106,6 +106,11 @@ std::string to_json(const TruthReport& report) {
   json["color_albedo_matte"] = color_json(report.color_albedo_matte);
   json["color_view"] = color_json(report.color_view);
   json["color_view_matte"] = color_json(report.color_view_matte);
+  json["exposure"] = {{"one_gain_mean", report.exposure.one_gain.mean},
+                      {"one_gain_median", report.exposure.one_gain.median},
+                      {"trend_percent_per_km", report.exposure.trend_percent_per_km},
+                      {"deviation_percent", report.exposure.deviation_percent},
+                      {"seam_p95_percent", report.exposure.seam_p95_percent}};
   json["ghosts"] = or_null(report.ghosts);
   json["ghost_share"] = ghost_share(report);
   put_distances(json, "upsampling", report.upsampling.error);
@@ -172,6 +177,11 @@ std::string to_text(const TruthReport& report) {
     colors("  matte only", report.color_albedo_matte);
     colors("colour, perfect image", report.color_view);
     colors("  matte only", report.color_view_matte);
+    const ExposureFigures& e = report.exposure;
+    row("one exposure", fmt::format("one gain: mean {:.2f}, median {:.2f}; trend {:.2f} %/km, "
+                                    "deviation {:.2f} %, seams {:.2f} % (95%)",
+                                    e.one_gain.mean, e.one_gain.median, e.trend_percent_per_km,
+                                    e.deviation_percent, e.seam_p95_percent));
   }
   row("ghosts", report.ghosts
                     ? fmt::format("{} ({:.3f}%)", *report.ghosts, 100 * ghost_share(report))

@@ -22,6 +22,16 @@ struct ColorFigures {
   double within_20 = Distribution::kNone, gain_within_20 = Distribution::kNone;  ///< shares
 };
 
+/// Whether the map has one exposure.
+struct ExposureFigures {
+  Distribution one_gain;  ///< errors after one gain a channel for the whole map
+  /// Slope of the exposure of the map along the drive, %/km. NaN for a drive under 200 m.
+  double trend_percent_per_km = Distribution::kNone;
+  /// Standard deviation of the exposure from view to view, %.
+  double deviation_percent = Distribution::kNone;
+  double seam_p95_percent = Distribution::kNone;  ///< seams.h
+};
+
 struct UpsamplingFigures {
   Distribution error;                      ///< of interpolated points, m
   std::size_t hidden = 0;                  ///< true hits that were hidden
@@ -53,6 +63,7 @@ struct TruthReport {
   Distribution accuracy, accuracy_measured, accuracy_interpolated;  ///< m
   SurfaceShares shares;
   ColorFigures color_albedo, color_albedo_matte, color_view, color_view_matte;
+  ExposureFigures exposure;
   std::optional<std::size_t> ghosts;  ///< unknown where points do not name their frame
   UpsamplingFigures upsampling;
   std::vector<TruthFrame> frames;

@@ -42,9 +42,9 @@ std::string line_of(const FrameRecord& frame, const std::set<int>& cameras) {
   }
   for (const int camera : cameras) {
     std::string gains = ",,,";
-    for (const ViewRecord& view : frame.views) {
-      if (view.camera != camera || !view.log2_gain) continue;
-      const Eigen::Vector3d& log2 = *view.log2_gain;
+    const ViewRecord* view = frame.find_view(camera);
+    if (view != nullptr && view->log2_gain) {
+      const Eigen::Vector3d& log2 = *view->log2_gain;
       gains =
           fmt::format(",{},{},{}", std::exp2(log2.x()), std::exp2(log2.y()), std::exp2(log2.z()));
     }

@@ -45,6 +45,14 @@ struct Camera {
   Eigen::Vector3d center_lidar() const { return T_cam_lidar.inverse().translation(); }
 };
 
+/// Squared distance of a pixel from the principal point; 1 in the farthest corner of the image.
+inline float squared_distance_from_center(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const Eigen::Array2d center(camera.cx, camera.cy);
+  const Eigen::Array2d last(camera.width - 1, camera.height - 1);
+  const double corner = center.max(last - center).matrix().squaredNorm();
+  return static_cast<float>((pixel.array() - center).matrix().squaredNorm() / corner);
+}
+
 struct Calibration {
   std::vector<Camera> cameras;  ///< the cameras in use, in the order asked for
   std::optional<RigidMotion> T_imu_lidar;

@@ -106,7 +106,7 @@ void Checkpointer::write(const ChangedRows& changed) {
   }
   for (const FrameRecord& frame : rows.frames) writer_->put_frame(frame);
   for (const auto& [frame, T_local_lidar] : rows.poses) writer_->put_pose(frame, T_local_lidar);
-  for (const auto& [id, T_local_submap] : rows.submaps) writer_->put_submap(id, T_local_submap);
+  for (const auto& [id, submap] : rows.submaps) writer_->put_submap(id, submap);
   for (const TileId& id : changed.removed) writer_->remove_tile(id);
 }
 

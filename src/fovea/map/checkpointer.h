@@ -25,7 +25,7 @@ struct MapRows {
   std::vector<SensorRecord> sensors;  ///< by number; empty: no change
   std::vector<FrameRecord> frames;
   std::vector<std::pair<int, RigidMotion>> poses;  ///< T_local_lidar of frames written before
-  std::vector<std::pair<std::size_t, RigidMotion>> submaps;  ///< T_local_submap
+  std::vector<std::pair<std::size_t, SubmapRecord>> submaps;
 };
 
 struct CheckpointerOptions {

@@ -30,13 +30,13 @@ TEST(ColorDisplay, OfTheReferenceExposureIsTheNearestByte) {
 }
 
 TEST(ColorDisplay, AppliesAGainToEachChannel) {
-  const ColorDisplay display(LogGain(-2, 0, 0.5f), /*tone_mapped=*/false);
+  const ColorDisplay display({LogGain(-2, 0, 0.5f), {}}, /*tone_mapped=*/false);
   EXPECT_EQ(display(gray(160)), (Rgb{40, 160, 226}));
   EXPECT_EQ(display(gray(800)), (Rgb{200, 255, 255}));
 }
 
 TEST(ColorDisplay, ToneMappingKeepsDifferencesOfBrightValues) {
-  const ColorDisplay display(LogGain::Zero(), /*tone_mapped=*/true);
+  const ColorDisplay display({LogGain::Zero(), {}}, /*tone_mapped=*/true);
   EXPECT_EQ(display(gray(200)), (Rgb{200, 200, 200}));
   std::uint8_t last = 200;
   for (const double value : {220.0, 255.0, 300.0, 350.0, 400.0}) {
@@ -71,6 +71,39 @@ TEST(Exposure, OtherTextIsAnError) {
                            "nan", "inf", "frame:99999999999"}) {
     EXPECT_THROW(parse_exposure(text), ConfigError) << text;
   }
+}
+
+TEST(DeepColorDisplay, Is257TimesTheValue) {
+  const DeepColorDisplay display{ViewLight()};
+  for (const double value : {1.0, 17.0, 99.5, 255.0}) {
+    const LogColor color = gray(value);
+    EXPECT_NEAR(display(color)[0], 257 * double(to_float(color)[0]), 0.51) << value;
+  }
+  EXPECT_EQ(display(gray(300))[0], 65535);
+  EXPECT_EQ(display(LogColor())[0], 0);
+}
+
+TEST(DeepColorDisplay, CutsOffAtMostAThousandth) {
+  CodeCounts points{};
+  points[color_code(100)] = 9980;
+  points[color_code(400)] = 20;
+  // 400 becomes 200 after one stop. Half a stop would leave 283.
+  const DeepColorDisplay lowered = deep_color_display({}, {}, points);
+  EXPECT_NEAR(lowered(gray(400))[0], 257 * 200, 257);
+  points[color_code(400)] = 10;
+  points[color_code(100)] = 9990;
+  const DeepColorDisplay reference = deep_color_display({}, {}, points);
+  EXPECT_EQ(reference(gray(400))[0], 65535);
+  EXPECT_NEAR(reference(gray(100))[0], 257 * 100, 100);
+  // A stated exposure is kept.
+  const ExposureChoice stops = parse_exposure("0");
+  points[color_code(400)] = 5000;
+  EXPECT_NEAR(deep_color_display(stops, {}, points)(gray(100))[0], 257 * 100, 100);
+}
+
+TEST(ColorDisplay, AppliesTheResponseOfTheCamera) {
+  const ColorDisplay display({LogGain::Constant(1), {14, {-0.5, 0, 0}}}, /*tone_mapped=*/false);
+  EXPECT_EQ(display(gray(20)), (Rgb{54, 54, 54}));  // (20 + 14) * 2 - 14
 }
 
 }  // namespace fovea::color_display_test

@@ -1,5 +1,7 @@
 #include "fovea/map/frame_record.h"
 
+#include <algorithm>
+
 namespace fovea {
 
 const char* to_string(FrameStatus status) {
@@ -32,6 +34,17 @@ void FrameRecord::count_missing_image(int camera) {
 }
 
 bool FrameRecord::lacks_image(int camera) const { return has(missing_image_figure(camera)); }
+
+const ViewRecord* FrameRecord::find_view(int camera) const {
+  const auto view = std::find_if(views.begin(), views.end(),
+                                 [&](const ViewRecord& v) { return v.camera == camera; });
+  return view != views.end() ? &*view : nullptr;
+}
+
+ViewLight ViewRecord::light() const {
+  const LogGain gain = log2_gain ? LogGain(log2_gain->cast<float>().array()) : LogGain::Zero();
+  return {gain, response};
+}
 
 bool FrameRecord::has(const std::string& figure) const {
   const auto found = figures.find(figure);

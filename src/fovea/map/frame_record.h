@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fovea/core/time.h"
+#include "fovea/core/view_light.h"
 #include "fovea/geometry/sweep_motion.h"
 
 namespace fovea {
@@ -27,15 +28,30 @@ struct Revisit {
 /// A count as FrameRecord::figures has it.
 inline double as_figure(std::size_t count) { return static_cast<double>(count); }
 
+/// Gains of an image relative to the colors of an earlier submap that it shows, as log2_gain.
+struct RevisitedColors {
+  int submap = 0;
+  Eigen::Vector3d log2_gain = Eigen::Vector3d::Zero();
+
+  bool operator==(const RevisitedColors&) const = default;
+};
+
 /// The image of one camera in a frame: the `views` table.
 struct ViewRecord {
   int camera = 0;
   std::optional<TimeNs> stamp;  ///< when the image was taken
   /// Base-2 logarithms of the gains for red, green and blue: image = map * gain. Absent where
-  /// nothing has estimated them.
-  std::optional<Eigen::Vector3d> log2_gain;
+  /// nothing has estimated them. In the file they are relative to the frame's submap.
+  std::optional<Eigen::Vector3d> log2_gain = {};
+  CameraResponse response = {};  ///< under which the gain was estimated
+  /// The most frequent color in view, base-2 logarithms of map values; relative to the frame's
+  /// submap in the file.
+  std::optional<Eigen::Vector3d> log2_color = {};
+  std::optional<RevisitedColors> revisit = {};
 
   bool operator==(const ViewRecord&) const = default;
+  /// How the image shows the colors of the map.
+  ViewLight light() const;
 };
 
 struct FrameRecord {
@@ -67,6 +83,8 @@ struct FrameRecord {
   /// "images_missing" and "images_missing_K".
   void count_missing_image(int camera);
   bool lacks_image(int camera) const;
+  /// The image of a camera; null if none was used.
+  const ViewRecord* find_view(int camera) const;
 };
 
 }  // namespace fovea

@@ -27,7 +27,7 @@ std::string select_6(const Table& table) {
        "submap, revisited AS revisited_submap, revisited_pose, velocity AS motion, figures, "
        "timings AS timings_ms, NULL AS checksum FROM frames"},
       {"submaps",
-       "id, 0 AS drive, pose, NULL AS covariance, NULL AS log2_gains, NULL AS checksum "
+       "id, 0 AS drive, pose, NULL AS covariance, NULL AS log2_gain, NULL AS checksum "
        "FROM submaps"},
       {"tiles",
        "submap, x, y, z, points, colored, origin_x AS origin_x_m, origin_y AS origin_y_m, "

@@ -208,10 +208,10 @@ TEST(MapFormat, DigestIsAsStated) {
                "submap, revisited_submap, revisited_pose, motion, figures "
                "FROM frames ORDER BY frame");
   digest.table(raw.database, "views",
-               "SELECT frame, camera, stamp_ns, log2_gain_red, log2_gain_green, log2_gain_blue "
-               "FROM views ORDER BY frame, camera");
+               "SELECT frame, camera, stamp_ns, log2_gain_red, log2_gain_green, log2_gain_blue, "
+               "log2_color, response, revisit FROM views ORDER BY frame, camera");
   digest.table(raw.database, "submaps",
-               "SELECT id, drive, pose, covariance, log2_gains FROM submaps ORDER BY id");
+               "SELECT id, drive, pose, covariance, log2_gain FROM submaps ORDER BY id");
   digest.table(raw.database, "keyframes",
                "SELECT frame, sensor, elevations_rad, columns, first_azimuth_rad, "
                "azimuth_step_rad, range_cm FROM keyframes ORDER BY frame, sensor");

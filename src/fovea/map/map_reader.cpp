@@ -47,6 +47,30 @@ PointCloud passing(const PointCloud& tile, const PointFilter& where) {
   return tile.select(indices);
 }
 
+/// Zero for a submap whose colors have the exposure of the map.
+Eigen::Vector3d gain_of(const SubmapRecord& submap) {
+  return submap.log2_gain.value_or(Eigen::Vector3d::Zero());
+}
+
+void change_exposure(TilePoints& tile, const Eigen::Vector3d& log2_gain) {
+  if (log2_gain.isZero(0)) return;
+  const Eigen::Array3f codes = (kColorCodesPerStop * log2_gain).cast<float>().array();
+  for (FusedColor& color : tile.colors) color.color = with_offset(color.color, codes);
+}
+
+/// From gains relative to submaps to gains relative to the map.
+void change_exposure(FrameRecord& frame, const std::vector<SubmapRecord>& submaps) {
+  const auto gain = [&](int submap) -> Eigen::Vector3d {
+    const auto id = static_cast<std::size_t>(submap);
+    return submap >= 0 && id < submaps.size() ? gain_of(submaps[id]) : Eigen::Vector3d::Zero();
+  };
+  for (ViewRecord& view : frame.views) {
+    if (view.log2_gain) *view.log2_gain -= gain(frame.submap);
+    if (view.log2_color) *view.log2_color += gain(frame.submap);
+    if (view.revisit) view.revisit->log2_gain -= gain(view.revisit->submap);
+  }
+}
+
 }  // namespace
 
 MapReader::MapReader(const std::filesystem::path& path) : MapReader(path, {}) {}
@@ -80,6 +104,15 @@ std::vector<SensorRecord> MapReader::sensors() const {
 
 std::vector<FrameRecord> MapReader::frames() const {
   const Snapshot snapshot(file_->sqlite());
+  std::vector<FrameRecord> frames = stored_frames();
+  std::set<std::size_t> missing;
+  const std::vector<SubmapRecord> submaps = read_submaps(*file_, missing);
+  for (FrameRecord& frame : frames) change_exposure(frame, submaps);
+  return frames;
+}
+
+std::vector<FrameRecord> MapReader::stored_frames() const {
+  const Snapshot snapshot(file_->sqlite());
   const std::string where = file_->where();
   std::map<int, std::vector<ViewRecord>> views;
   file_->for_each_row(kViewsTable, [&](const Row& row) {
@@ -109,7 +142,9 @@ std::vector<FrameRecord> MapReader::frames() const {
 std::vector<SubmapRecord> MapReader::submap_records() const {
   const Snapshot snapshot(file_->sqlite());
   std::set<std::size_t> missing;
-  return read_submaps(*file_, missing);
+  std::vector<SubmapRecord> submaps = read_submaps(*file_, missing);
+  for (SubmapRecord& submap : submaps) submap.log2_gain.reset();  // the tiles have it
+  return submaps;
 }
 
 std::vector<RigidMotion> MapReader::submaps() const {
@@ -168,12 +203,24 @@ std::vector<std::pair<TileId, std::size_t>> MapReader::tile_sizes() const {
   return sizes;
 }
 
+Eigen::Vector3d MapReader::submap_gain(std::size_t submap) const {
+  const std::optional<Row> row = file_->find_row(kSubmapsTable, fmt::to_string(submap));
+  if (!row) return Eigen::Vector3d::Zero();
+  return gain_of(submap_of(RowCursor(kSubmapsTable, *row, file_->where())));
+}
+
 PointCloud MapReader::read_tile(const TileId& id) const {
-  return file_->tile().read(id, file_->where()).cloud();
+  const Snapshot snapshot(file_->sqlite());
+  TilePoints tile = file_->tile().read(id, file_->where());
+  change_exposure(tile, submap_gain(id.submap));
+  return tile.cloud();
 }
 
 std::optional<TilePoints> MapReader::find_tile(const TileId& id) const {
-  return file_->tile().find(id, file_->where());
+  const Snapshot snapshot(file_->sqlite());
+  std::optional<TilePoints> tile = file_->tile().find(id, file_->where());
+  if (tile) change_exposure(*tile, submap_gain(id.submap));
+  return tile;
 }
 
 void MapReader::for_each_tile(
@@ -187,11 +234,11 @@ void MapReader::for_each_stored_tile(
   const Snapshot snapshot(file_->sqlite());
   const std::string where = file_->where();
   std::set<std::size_t> missing;
-  const std::size_t submap_count = read_submaps(*file_, missing).size();
+  const std::vector<SubmapRecord> submaps = read_submaps(*file_, missing);
   TileDecoder decoder(file_->format().tile);
   TileOrder order(where);
   file_->for_each_tile_row([&](const TileRow& row) {
-    const bool exists = row.submap >= 0 && row.submap < static_cast<std::int64_t>(submap_count) &&
+    const bool exists = row.submap >= 0 && row.submap < static_cast<std::int64_t>(submaps.size()) &&
                         !missing.contains(static_cast<std::size_t>(row.submap));
     if (!exists) {
       throw InputError(fmt::format("a tile belongs to submap {}, which is missing", row.submap),
@@ -199,7 +246,9 @@ void MapReader::for_each_stored_tile(
     }
     const TileId id{static_cast<std::size_t>(row.submap), row.key};
     if (!file_->reports_damage()) order.require_after_last(id);
-    f(id, decoder.decode(row, where));
+    TilePoints tile = decoder.decode(row, where);
+    change_exposure(tile, gain_of(submaps[id.submap]));
+    f(id, tile);
   });
 }
 

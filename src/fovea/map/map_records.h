@@ -46,19 +46,14 @@ struct SensorRecord {
   SensorProfile profile;
 };
 
-struct CameraGain {
-  int camera = 0;
-  Eigen::Vector3d log2_gain = Eigen::Vector3d::Zero();  ///< red, green, blue: image = map * gain
-
-  bool operator==(const CameraGain&) const = default;
-};
-
 struct SubmapRecord {
   RigidMotion T_local_submap = RigidMotion::Identity();
   int drive = 0;  ///< number of the drive
   /// Of the pose, as a twist in the submap's frame, rotation first (rad, m).
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;
-  std::vector<CameraGain> gains;  ///< by camera
+  /// Base-2 logarithms of factors for red, green and blue: from the colors of the tiles to the
+  /// exposure of the map. Absent: no change.
+  std::optional<Eigen::Vector3d> log2_gain;
 };
 
 /// What one sensor measured in a keyframe, at the stamp of the frame.

@@ -76,11 +76,12 @@ inline constexpr Column kFrameColumns[] = {
 inline constexpr Column kViewColumns[] = {
     {"frame", "INTEGER NOT NULL"}, {"camera", "INTEGER NOT NULL"}, {"stamp_ns", "INTEGER"},
     {"log2_gain_red", "REAL"},     {"log2_gain_green", "REAL"},    {"log2_gain_blue", "REAL"},
+    {"log2_color", "TEXT"},        {"response", "TEXT"},           {"revisit", "TEXT"},
 };
 
 inline constexpr Column kSubmapColumns[] = {
     {"id", "INTEGER"},      {"drive", "INTEGER NOT NULL"}, {"pose", "TEXT NOT NULL"},
-    {"covariance", "TEXT"}, {"log2_gains", "TEXT"},
+    {"covariance", "TEXT"}, {"log2_gain", "TEXT"},
 };
 
 inline constexpr Column kKeyframeColumns[] = {

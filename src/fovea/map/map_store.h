@@ -108,11 +108,14 @@ class MapReader {
 
   int format_version() const;
   MapMeta meta() const;
-  std::vector<DriveRecord> drives() const;           ///< by number
-  std::vector<SensorRecord> sensors() const;         ///< by number
-  std::vector<FrameRecord> frames() const;           ///< by index
-  std::vector<RigidMotion> submaps() const;          ///< T_local_submap by id
-  std::vector<SubmapRecord> submap_records() const;  ///< by id
+  std::vector<DriveRecord> drives() const;    ///< by number
+  std::vector<SensorRecord> sensors() const;  ///< by number
+  std::vector<FrameRecord> frames() const;    ///< by index
+  /// As the file has them: gains are relative to the frame's submap.
+  std::vector<FrameRecord> stored_frames() const;
+  std::vector<RigidMotion> submaps() const;  ///< T_local_submap by id
+  /// By id, without gains: the tiles that this reader returns have the exposure of the map.
+  std::vector<SubmapRecord> submap_records() const;
   /// Calls f(keyframe) in the order of frames and sensors.
   void for_each_keyframe(const std::function<void(const KeyframeRecord&)>& f) const;
   /// Nothing if there is no state under that name.
@@ -144,6 +147,8 @@ class MapReader {
   std::size_t check() const;
 
  private:
+  Eigen::Vector3d submap_gain(std::size_t submap) const;
+
   std::unique_ptr<MapFile> file_;
 };
 

@@ -119,6 +119,43 @@ TEST(MapStore, DrivesAndSensorsComeBackBitForBit) {
   EXPECT_EQ(sensors[1].drive, 1);
 }
 
+// The file has colors and gains as they were found. A reader returns the exposure of the map.
+TEST(MapStore, TheGainOfASubmapChangesItsColorsAndTheGainsOfItsFrames) {
+  const TemporaryFolder folder;
+  const Eigen::Vector3d gain(1, 0, -0.5);
+  {
+    auto writer = MapWriter::create(folder / "a.fovea", false);
+    put_sample_map(*writer, sample_tile_map());
+    SubmapRecord submap = sample_submap(RigidMotion::Identity());
+    submap.log2_gain = gain;
+    for (std::size_t id = 0; id < 2; ++id) writer->put_submap(id, submap);
+    FrameRecord frame = sample_frames()[0];
+    frame.submap = 0;
+    writer->put_frame(frame);
+    writer->commit();
+  }
+  write_sample_map(folder / "plain.fovea");
+  const MapReader changed(folder / "a.fovea"), plain(folder / "plain.fovea");
+  std::size_t tiles = 0;
+  plain.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) {
+    ++tiles;
+    TilePoints expected = tile;
+    for (FusedColor& color : expected.colors) {
+      color.color = with_offset(color.color, 256 * gain.cast<float>().array());
+    }
+    EXPECT_EQ(changed.find_tile(id)->colors, expected.colors);
+    EXPECT_EQ(changed.read_tile(id).color, expected.cloud().color);
+  });
+  changed.for_each_stored_tile([&](const TileId&, const TilePoints&) { --tiles; });
+  EXPECT_EQ(tiles, 0u);
+  const ViewRecord stored = plain.frames()[0].views[1], view = changed.frames()[0].views[1];
+  EXPECT_EQ(*view.log2_gain, *stored.log2_gain - gain);
+  EXPECT_EQ(*view.log2_color, *stored.log2_color + gain);
+  EXPECT_EQ(view.revisit->log2_gain, stored.revisit->log2_gain - gain);
+  EXPECT_EQ(changed.stored_frames()[0].views[1], stored);
+  for (const SubmapRecord& submap : changed.submap_records()) EXPECT_FALSE(submap.log2_gain);
+}
+
 TEST(MapStore, SubmapsKeyframesAndCheckpointsComeBackBitForBit) {
   const TemporaryFolder folder;
   write_sample_map(folder / "a.fovea");
@@ -128,7 +165,6 @@ TEST(MapStore, SubmapsKeyframesAndCheckpointsComeBackBitForBit) {
     EXPECT_EQ(submap.drive, 0);
     ASSERT_TRUE(submap.covariance);
     EXPECT_EQ(*submap.covariance, *expected.covariance);
-    EXPECT_EQ(submap.gains, expected.gains);
   }
   int keyframes = 0;
   reader.for_each_keyframe([&](const KeyframeRecord& keyframe) {
@@ -280,7 +316,7 @@ TEST(MapStore, RefusesWhatItCannotKeep) {
   sensor.profile.ring_elevations = {std::nan("")};
   EXPECT_THROW(writer->put_sensor(0, sensor), std::invalid_argument);
   SubmapRecord submap;
-  submap.gains = {{2, {0, std::nan(""), 0}}};
+  submap.log2_gain = Eigen::Vector3d(0, std::nan(""), 0);
   EXPECT_THROW(writer->put_submap(0, submap), std::invalid_argument);
   KeyframeRecord keyframe = sample_keyframe();
   keyframe.ranges.pop_back();

@@ -9,8 +9,6 @@
 namespace fovea {
 namespace {
 
-/// Numbers of a gain: its camera, red, green and blue.
-constexpr std::size_t kGainNumbers = 4;
 /// Numbers in the upper triangle of a symmetric 6 x 6 matrix.
 constexpr std::size_t kCovarianceNumbers = 21;
 
@@ -50,6 +48,28 @@ std::optional<HeightType> optional_height_type(RowCursor& row) {
     if (name == to_string(type)) return type;
   }
   row.fail();
+}
+
+std::optional<Eigen::Vector3d> optional_vector(RowCursor& row) {
+  if (row.skip_null()) return std::nullopt;
+  const std::vector<double> numbers = row.numbers();
+  if (numbers.size() != 3) row.fail();
+  return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+}
+
+CameraResponse response_of(RowCursor& row) {
+  const std::vector<double> numbers = row.numbers();
+  if (numbers.size() != 4 || !(numbers[0] >= 0 && numbers[0] <= 255)) row.fail();
+  return {numbers[0], {numbers[1], numbers[2], numbers[3]}};
+}
+
+RevisitedColors revisit_of(RowCursor& row) {
+  const std::vector<double> numbers = row.numbers();
+  constexpr double kMaxSubmap = 1e9;
+  const bool is_whole = numbers.size() == 4 && numbers[0] >= 0 && numbers[0] <= kMaxSubmap &&
+                        numbers[0] == std::floor(numbers[0]);
+  if (!is_whole) row.fail();
+  return {static_cast<int>(numbers[0]), {numbers[1], numbers[2], numbers[3]}};
 }
 
 }  // namespace
@@ -130,6 +150,9 @@ std::pair<int, ViewRecord> view_of(RowCursor row) {
   }
   if (known == 3) view.log2_gain = log2_gain;
   if (known != 0 && known != 3) row.fail();
+  view.log2_color = optional_vector(row);
+  if (!row.skip_null()) view.response = response_of(row);
+  if (!row.skip_null()) view.revisit = revisit_of(row);
   return {frame, view};
 }
 
@@ -143,16 +166,7 @@ SubmapRecord submap_of(RowCursor row) {
     if (numbers.size() != kCovarianceNumbers) row.fail();
     submap.covariance = covariance_of(numbers);
   }
-  if (row.skip_null()) return submap;
-  const std::vector<double> numbers = row.numbers();
-  if (numbers.size() % kGainNumbers != 0) row.fail();
-  for (std::size_t i = 0; i < numbers.size(); i += kGainNumbers) {
-    constexpr double kMaxCamera = 127;
-    const bool is_camera = numbers[i] >= 0 && numbers[i] <= kMaxCamera;
-    if (!is_camera || numbers[i] != std::floor(numbers[i])) row.fail();
-    submap.gains.push_back(
-        {static_cast<int>(numbers[i]), {numbers[i + 1], numbers[i + 2], numbers[i + 3]}});
-  }
+  submap.log2_gain = optional_vector(row);
   return submap;
 }
 

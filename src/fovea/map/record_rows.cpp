@@ -35,15 +35,28 @@ Cell covariance_cell(const SubmapRecord& submap, const std::string& what) {
   return to_text(numbers);
 }
 
-Cell gains_cell(const SubmapRecord& submap, const std::string& what) {
-  if (submap.gains.empty()) return {};
-  std::vector<double> numbers;
-  for (const CameraGain& gain : submap.gains) {
-    require_finite(gain.log2_gain.allFinite(), what);
-    numbers.push_back(gain.camera);
-    numbers.insert(numbers.end(), gain.log2_gain.begin(), gain.log2_gain.end());
-  }
+Cell numbers_cell(const std::vector<double>& numbers, const std::string& what) {
+  for (const double number : numbers) require_finite(std::isfinite(number), what);
   return to_text(numbers);
+}
+
+Cell vector_cell(const std::optional<Eigen::Vector3d>& vector, const std::string& what) {
+  if (!vector) return {};
+  return numbers_cell({vector->x(), vector->y(), vector->z()}, what);
+}
+
+/// Offset and vignetting; absent for a plain camera.
+Cell response_cell(const CameraResponse& response, const std::string& what) {
+  if (response == CameraResponse()) return {};
+  std::vector<double> numbers{response.offset};
+  numbers.insert(numbers.end(), response.vignetting.begin(), response.vignetting.end());
+  return numbers_cell(numbers, what);
+}
+
+Cell revisit_cell(const std::optional<RevisitedColors>& revisit, const std::string& what) {
+  if (!revisit) return {};
+  const Eigen::Vector3d& gain = revisit->log2_gain;
+  return numbers_cell({double(revisit->submap), gain.x(), gain.y(), gain.z()}, what);
 }
 
 }  // namespace
@@ -116,6 +129,10 @@ Row view_row(int frame, const ViewRecord& view) {
     require_finite(std::isfinite(gain), fmt::format("frame {}: a gain", frame));
     row.push_back(view.log2_gain ? cell(gain) : Cell());
   }
+  const std::string what = fmt::format("frame {}: a color, response or revisit", frame);
+  row.push_back(vector_cell(view.log2_color, what));
+  row.push_back(response_cell(view.response, what));
+  row.push_back(revisit_cell(view.revisit, what));
   return row;
 }
 
@@ -123,7 +140,7 @@ Row submap_row(std::size_t id, const SubmapRecord& submap) {
   const std::string what = fmt::format("submap {}: a pose, covariance or gain", id);
   return {cell(static_cast<std::int64_t>(id)), cell(std::int64_t{submap.drive}),
           pose_cell(submap.T_local_submap, what), covariance_cell(submap, what),
-          gains_cell(submap, what)};
+          vector_cell(submap.log2_gain, what)};
 }
 
 std::vector<std::byte> packed_ranges(const KeyframeRecord& keyframe) {

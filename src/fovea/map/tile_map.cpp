@@ -69,7 +69,7 @@ void TileMap::add_submap(const RigidMotion& T_local_submap) {
   if (!T_local_submap.matrix().allFinite()) {
     throw std::invalid_argument("the pose of a submap is not finite");
   }
-  submaps_.push_back({T_local_submap, {}, {}, {}, {}});
+  submaps_.emplace_back().T_local_submap = T_local_submap;
 }
 
 void TileMap::move_submap(std::size_t submap, const RigidMotion& T_local_submap) {
@@ -90,6 +90,11 @@ void TileMap::place_submaps(const std::vector<RigidMotion>& poses) {
       add_submap(poses[id]);
     }
   }
+}
+
+void TileMap::set_gains(const std::vector<LogGain>& log2_gains) {
+  if (log2_gains.size() > submaps_.size()) throw std::logic_error("a gain of no submap");
+  for (std::size_t id = 0; id < log2_gains.size(); ++id) submaps_[id].log2_gain = log2_gains[id];
 }
 
 void TileMap::add(const PointCloud& points_local) {

@@ -58,9 +58,11 @@ class Tile {
   bool has_changed_ = false;  // since take_snapshot(): no snapshot shares the points
 };
 
-/// Some seconds of drive. A closed loop moves a submap's pose and never rewrites its points.
+/// Some seconds of drive. A closed loop changes a submap's pose and gain, never its points.
 struct Submap {
   RigidMotion T_local_submap = RigidMotion::Identity();
+  /// From the colors of its points to the exposure of the map, base-2 logarithms.
+  LogGain log2_gain = LogGain::Zero();
   std::map<TileKey, Tile> tiles;
   /// Tiles that a store keeps while they are out of reach, and how many points each has.
   std::map<TileKey, std::size_t> stored;
@@ -100,6 +102,8 @@ class TileMap {
 
   /// Moves submaps to these poses (T_local_submap), and opens those that do not exist yet.
   void place_submaps(const std::vector<RigidMotion>& poses);
+  /// Sets the gains of the first submaps.
+  void set_gains(const std::vector<LogGain>& log2_gains);
 
   /// Adds points to the last submap; std::logic_error without one, if a column of a tile is
   /// missing, if intensity is there in some calls only, if a position is not finite or if a tile

@@ -3,17 +3,19 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "fovea/core/eigen_alignment.h"
-#include "fovea/core/log_color.h"
+#include "fovea/core/view_light.h"
 
 namespace fovea {
 
 /// Gray values from here on are saturated; values up to kDarkValue are noise.
 inline constexpr float kSaturatedValue = 248, kDarkValue = 6;
+
+/// Stops between the limits of values and the mean of two values that are compared.
+inline constexpr float kExposureMargin = 0.4f;
 
 /// Color codes of an image minus those of the map, at the same points.
 struct CodeDifferences {
@@ -29,26 +31,27 @@ struct CodeDifferences {
 /// The most frequent gain: the mode of the differences, since ratios at moving shadows and at
 /// surfaces that moved are a second, smaller peak. Absent with fewer than 150 differences.
 std::optional<LogGain> gain_of(const CodeDifferences& image_minus_map);
-
-/// The gains of a drive's views, in the order of the views.
-class ViewGains {
- public:
-  /// The gain of the next view of a camera. A view that shows too little of the map has the gain
-  /// of the camera's view before; the first view of a drive has the exposure of the map.
-  LogGain next(int camera, const CodeDifferences& image_minus_map);
-  /// Continues after the views of an earlier run.
-  void resume(int camera, const LogGain& gain) { last_[camera] = gain; }
-
- private:
-  std::map<int, LogGain> last_;  // by camera
-};
+/// The same of the points whose mean of image and map is far from dark and from saturated: a limit
+/// for the image alone would favor points whose noise goes one way.
+/// @param map     codes of the points in the map
+/// @param offset  of the camera's response, in the exposure codes of which both are
+std::optional<LogGain> gain_of(const CodeDifferences& image_minus_map, const CodeDifferences& map,
+                               double offset);
 
 /// Mean absolute difference that a gain leaves, percent.
 double residual_percent(const CodeDifferences& image_minus_map, const LogGain& gain);
 
-/// The most frequent value: the center of the fullest window of 12 codes, refined by Tukey's
-/// biweight.
+/// The most frequent of some values.
+struct Mode {
+  float value = 0;
+  float reach = 0;  ///< values farther off do not count
+};
+/// The center of the fullest window, refined by Tukey's biweight. Its reach is three times the
+/// median absolute deviation: hidden points and depth edges make one tail of the differences long.
 /// @param values  at least one
-float mode_of(std::vector<float> values);
+/// @param window  width of the window; the reach is one to eight times this
+Mode mode_of(std::vector<float> values, float window);
+/// Tukey's biweight of a value, 0 to 1.
+double biweight(double value, const Mode& mode);
 
 }  // namespace fovea

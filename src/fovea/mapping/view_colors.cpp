@@ -42,11 +42,12 @@ ViewColors::ViewColors(const ImagePyramid& image, const Camera& camera, double f
       fx_(static_cast<float>(camera.fx)),
       fy_(static_cast<float>(camera.fy)),
       cx_(static_cast<float>(camera.cx)),
-      cy_(static_cast<float>(camera.cy)) {}
+      cy_(static_cast<float>(camera.cy)),
+      s_per_pixel_(squared_distance_from_center(camera, {camera.cx + 1, camera.cy})) {}
 
-ViewColors ViewColors::without_gain(const LogGain& gain) const {
+ViewColors ViewColors::in_light(const ViewLight& light) const {
   ViewColors view = *this;
-  view.gain_ = gain;
+  view.light_ = light;
   return view;
 }
 
@@ -56,13 +57,21 @@ void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Sample
   ColorBlock values;
   image_.colors_at({points.u.data(), count}, {points.v.data(), count}, {footprint.data(), count},
                    values);
-  const LogGain gain_codes = gain_ * kColorCodesPerStop;
+  const auto offset = static_cast<float>(light_.response.offset);
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Array3f value(values.red[i], values.green[i], values.blue[i]);
-    const float right = (points.u[i] - cx_) / fx_, down = (points.v[i] - cy_) / fy_;
+    const float x = points.u[i] - cx_, y = points.v[i] - cy_;
+    const float right = x / fx_, down = y / fy_;
     const float distance = points.depth[i] * std::sqrt(1 + right * right + down * down);
     ColorSample& sample = samples[i];
-    sample.code = value.unaryExpr(&code_of) - gain_codes;
+    const LogGain gain =
+        light_.gain + light_.response.vignetting_at((x * x + y * y) * s_per_pixel_);
+    if (offset == 0) {
+      sample.code = value.unaryExpr(&code_of) - gain * kColorCodesPerStop;
+    } else {
+      const Eigen::Array3f factor = gain.unaryExpr([](float log2) { return std::exp2(-log2); });
+      sample.code = ((value + offset) * factor - offset).unaryExpr(&code_of);
+    }
     sample.weight = static_cast<std::uint16_t>(
         std::max(1.0f, float(view_weight(distance)) * trust(value.minCoeff(), value.maxCoeff())));
     sample.saturated = 0;
@@ -73,7 +82,7 @@ void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Sample
 }
 
 void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
-                      int frame) {
+                      int frame, const LogGain& submap_gain) {
   const std::size_t n = points_cam.size();
   points_cam.frame.assign(n, frame);
   points_cam.camera.assign(n, static_cast<std::int8_t>(camera.index));
@@ -94,6 +103,7 @@ void color_new_points(PointCloud& points_cam, const ViewColors& view, const Came
     view.sample(projected, end - begin, samples);
     for (std::size_t i = begin; i < end; ++i) {
       FusedColor fused;
+      samples[i - begin].code -= float(kColorCodesPerStop) * submap_gain;
       fuse(samples[i - begin], /*random=*/0, fused);
       points_cam.color[i] = fused.color;
       points_cam.views[i] = fused.views;

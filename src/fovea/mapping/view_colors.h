@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "fovea/core/view_light.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/mapping/color_fusion.h"
 #include "fovea/mapping/image_pyramid.h"
@@ -24,22 +25,27 @@ class ViewColors {
   /// @param footprint  edge of the surface patch whose mean color a point gets, m
   ViewColors(const ImagePyramid& image, const Camera& camera, double footprint);
 
-  /// The same colors, brought to the exposure of the map.
-  ViewColors without_gain(const LogGain& gain) const;
+  /// The same colors, brought to the exposure of the map, without vignetting.
+  ViewColors in_light(const ViewLight& light) const;
 
   /// Samples of the first `count` points. Saturated and noisy values get a small weight.
   void sample(const ProjectedPoints& points, std::size_t count, Samples& samples) const;
+
+  const CameraResponse& response() const { return light_.response; }
 
  private:
   const ImagePyramid& image_;
   float footprint_;  // pixels at a depth of 1 m
   float fx_, fy_, cx_, cy_;
-  LogGain gain_ = LogGain::Zero();
+  float s_per_pixel_;  // squared_distance_from_center() for one pixel
+  ViewLight light_;
 };
 
 /// Colors new points, all in view, from their first view.
-/// @param points_cam  camera frame. Sets frame, camera and the columns of the color.
+/// @param points_cam   camera frame. Sets frame, camera and the columns of the color
+/// @param submap_gain  of their submap: base-2 logarithms, from its colors to the exposure of the
+///                     map
 void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
-                      int frame);
+                      int frame, const LogGain& submap_gain);
 
 }  // namespace fovea

@@ -17,12 +17,12 @@ Image gray(std::uint8_t value) {
 constexpr double kFootprint = 0.02;
 
 PointCloud colored(const Image& image, const std::vector<Eigen::Vector3f>& positions,
-                   const LogGain& gain = LogGain::Zero()) {
+                   const ViewLight& light = {}, const LogGain& submap_gain = LogGain::Zero()) {
   const ImagePyramid pyramid(image);
   PointCloud points;
   points.position = positions;
-  color_new_points(points, ViewColors(pyramid, test_camera(), kFootprint).without_gain(gain),
-                   test_camera(), /*frame=*/7);
+  color_new_points(points, ViewColors(pyramid, test_camera(), kFootprint).in_light(light),
+                   test_camera(), /*frame=*/7, submap_gain);
   return points;
 }
 
@@ -54,10 +54,29 @@ TEST(ViewColors, NewPointsHaveTheColorsOfTheViewThere) {
 
 TEST(ViewColors, AGainIsTakenOut) {
   const Eigen::Vector3f color =
-      to_float(colored(gray(120), {{0, 0, 6}}, LogGain(-2, 0.5f, 1)).color[0]);
+      to_float(colored(gray(120), {{0, 0, 6}}, {LogGain(-2, 0.5f, 1), {}}).color[0]);
   EXPECT_NEAR(color.x(), 480, 1);
   EXPECT_NEAR(color.y(), 120 / std::sqrt(2.0), 0.2);
   EXPECT_NEAR(color.z(), 60, 0.1);
+}
+
+TEST(ViewColors, TheResponseIsTakenOut) {
+  const ViewLight light{LogGain::Constant(0.7f), {14, {-0.1, -0.2, 0.05}}};
+  const std::vector<Eigen::Vector3f> positions{{0, 0, 6}, {4, 1, 6}, {-4.5f, -1, 6}};
+  const PointCloud points = colored(gray(120), positions, light);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d pixel = *test_camera().project(positions[i].cast<double>());
+    const float s = squared_distance_from_center(test_camera(), pixel);
+    const Eigen::Array3f seen = image_color(to_float(points.color[i]).array(), light, s);
+    EXPECT_LT((seen - 120).abs().maxCoeff(), 0.4) << i;  // a code is 0.3 %
+  }
+}
+
+TEST(ViewColors, PointsAreStoredInTheExposureOfTheirSubmap) {
+  const LogGain submap_gain(0.5f, 0, -1);
+  const PointCloud points = colored(gray(100), {{0, 0, 6}}, {}, submap_gain);
+  const Eigen::Array3f in_map = codes_of(points.color[0]) + float(kColorCodesPerStop) * submap_gain;
+  EXPECT_LE((in_map - float(color_code(100))).abs().maxCoeff(), 0.5);
 }
 
 TEST(ViewColors, SaturatedAndNoisyValuesCountLittle) {

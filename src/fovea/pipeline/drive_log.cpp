@@ -9,11 +9,27 @@ namespace {
 /// Motion after which a pose is written again. Each new submap moves the thousands before it by
 /// very little.
 constexpr double kNoticeable = 1e-3;  // m, and a hundred times that in radians
+/// Change of a gain after which a submap is written again, stops: less than a color code.
+constexpr double kVisible = 1e-3;
 
 bool has_moved(const RigidMotion& from, const RigidMotion& to, bool exact) {
   if (exact) return from.matrix() != to.matrix();
   return (from.translation() - to.translation()).norm() > kNoticeable ||
          (from.linear() - to.linear()).norm() > kNoticeable / 100;
+}
+
+SubmapRecord record_of(const Submap& submap) {
+  SubmapRecord record;
+  record.T_local_submap = submap.T_local_submap;
+  if ((submap.log2_gain != 0).any()) record.log2_gain = submap.log2_gain.cast<double>().matrix();
+  return record;
+}
+
+bool has_changed(const SubmapRecord& from, const SubmapRecord& to, bool exact) {
+  if (has_moved(from.T_local_submap, to.T_local_submap, exact)) return true;
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d before = from.log2_gain.value_or(zero), now = to.log2_gain.value_or(zero);
+  return exact ? before != now : (before - now).cwiseAbs().maxCoeff() > kVisible;
 }
 
 }  // namespace
@@ -97,15 +113,15 @@ MapRows DriveLog::rows(const TileMap& map, bool exact) {
   }
   rows.frames = std::exchange(fresh_, {});
   for (std::size_t id = 0; id < map.submaps().size(); ++id) {
-    const RigidMotion& T_local_submap = map.submaps()[id].T_local_submap;
-    if (id == T_local_submap_.size()) {
-      T_local_submap_.push_back(T_local_submap);
-    } else if (has_moved(T_local_submap_[id], T_local_submap, exact)) {
-      T_local_submap_[id] = T_local_submap;
+    const SubmapRecord submap = record_of(map.submaps()[id]);
+    if (id == submaps_.size()) {
+      submaps_.push_back(submap);
+    } else if (has_changed(submaps_[id], submap, exact)) {
+      submaps_[id] = submap;
     } else {
       continue;
     }
-    rows.submaps.emplace_back(id, T_local_submap);
+    rows.submaps.emplace_back(id, submap);
   }
   return rows;
 }

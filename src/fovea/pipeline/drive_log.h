@@ -39,9 +39,9 @@ class DriveLog {
   std::vector<RigidMotion> poses(const TileMap& map) const;
 
   std::vector<Frame> frames_;
-  std::vector<FrameRecord> fresh_;           // of the last frames
-  std::vector<RigidMotion> T_odom_submap_;   // by submap
-  std::vector<RigidMotion> T_local_submap_;  // as last returned
+  std::vector<FrameRecord> fresh_;          // of the last frames
+  std::vector<RigidMotion> T_odom_submap_;  // by submap
+  std::vector<SubmapRecord> submaps_;       // as last returned
 };
 
 }  // namespace fovea

@@ -58,17 +58,15 @@ std::vector<SensorRecord> sensor_records(const DriveInfo& drive) {
 
 void add_views(const Frame& frame, const DriveInfo& drive, const FrameResult& result,
                FrameRecord& record) {
-  const std::map<int, LogGain> gains =
-      result.colors ? result.colors->gain : std::map<int, LogGain>();
+  FrameRecord colored;
+  if (result.colors) colored.views = result.colors->views;
   for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
     if (frame.images[slot].empty()) continue;
     const Camera camera = drive.camera_at(slot, frame.index);
-    ViewRecord view;
+    const ViewRecord* known = colored.find_view(camera.index);
+    ViewRecord view = known != nullptr ? *known : ViewRecord();
     view.camera = camera.index;
     view.stamp = frame.stamp + from_seconds(camera.image_delay);
-    if (const auto gain = gains.find(view.camera); gain != gains.end()) {
-      view.log2_gain = gain->second.cast<double>().matrix();
-    }
     record.views.push_back(view);
   }
   std::sort(record.views.begin(), record.views.end(),

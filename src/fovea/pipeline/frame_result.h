@@ -85,10 +85,10 @@ struct DynamicStats {
 
 /// Colors of the map from a frame's images.
 struct ColorStats {
-  std::size_t recolored = 0;    ///< map points in view again
-  std::size_t compared = 0;     ///< map points, with the images before they are fused
-  double error = 0;             ///< mean difference of the compared points, percent
-  std::map<int, LogGain> gain;  ///< of each camera's image
+  std::size_t recolored = 0;      ///< map points in view again
+  std::size_t compared = 0;       ///< map points, with the images before they are fused
+  double error = 0;               ///< mean difference of the compared points, percent
+  std::vector<ViewRecord> views;  ///< of each camera's image; as in the file, without stamps
 };
 
 struct FrameResult {

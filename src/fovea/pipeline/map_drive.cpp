@@ -139,7 +139,7 @@ void MapRun::resume_from_file() {
   const MapReader reader(job_.output);
   require_same_run(reader, meta_, drive_records_.front(), source_, job_.output);
   keep_names(reader, meta_, drive_records_.front());
-  const std::vector<FrameRecord> records = reader.frames();
+  const std::vector<FrameRecord> records = reader.stored_frames();
   for (const FrameRecord& record : records) {
     log_.add_stored(record);
     figures_.add(record, /*is_new=*/false);

@@ -5,6 +5,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/scan_projection.h"
 #include "fovea/mapping/surface_samples.h"
 #include "fovea/mapping/texture.h"
@@ -56,6 +57,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   result.clock.start();
   apply_deferred_mapping();  // before observe() removes points, see Occupancy::follow
   map_.place_submaps(tracked.submaps);
+  light_.follow(std::size_t(result.poses.submap), result.poses.T_odom_lidar, map_);
   services_.load_near(map_, result.poses.T_local_lidar.translation(), reach_);
   if (tracked.task.held_out) return result;
 
@@ -83,12 +85,12 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   const RigidMotion& T_local_lidar = result.poses.T_local_lidar;
   const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
   FovealStats& stats = stats_of(result.foveal);
-  PointCloud new_cam;
+  PointCloud visible_cam, new_cam;
   std::optional<ImagePyramid> pyramid;
   run_both(
       [&] {
         // 3. Visible points: in the foveal region, not hidden by another point of the scan.
-        PointCloud visible_cam = foveal_points(scan_lidar, region);
+        visible_cam = foveal_points(scan_lidar, region);
         stats.measured += visible_cam.size();
         result.clock.lap("fovea");
         stats_of(result.hidden) += drop_hidden(visible_cam, scan_lidar, camera);
@@ -109,15 +111,16 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   result.clock.lap("filter");
 
   if (pyramid) {
-    ColorStats& color_stats = stats_of(result.colors);
     const ViewColors image_colors(*pyramid, camera, options_.footprint);
-    // 6. Light: the gain of the image relative to the exposure of the map.
-    const LogGain gain = find_gain(image_colors, camera.index, color_stats);
-    // 7. Colors in the exposure of the map: known points fuse one more view, new points get their
-    // first.
-    const ViewColors colors = image_colors.without_gain(gain);
-    run_both([&] { color_stats.recolored += visible_map_.recolor(map_, colors, result.index); },
-             [&] { color_new_points(new_cam, colors, camera, result.index); });
+    // 6. Light: the response of the camera, and the gain of the image.
+    const RigidMotion T_odom_cam = result.poses.T_odom_lidar * camera.T_cam_lidar.inverse();
+    light_.learn_response(visible_cam.position, *pyramid, camera, T_odom_cam, options_.footprint);
+    const ViewColors colors = image_colors.in_light(find_light(image_colors, camera.index, result));
+    // 7. Colors in the exposure of the map: known points fuse one more view, new ones get a first.
+    const LogGain& submap_gain = map_.submaps().back().log2_gain;
+    std::size_t& recolored = stats_of(result.colors).recolored;
+    run_both([&] { recolored += visible_map_.recolor(map_, colors, result.index); },
+             [&] { color_new_points(new_cam, colors, camera, result.index, submap_gain); });
   } else {
     color_points(new_cam, {image, camera, result.index});  // no image: empty columns
   }
@@ -137,17 +140,21 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Ca
   result.clock.lap("store");
 }
 
-LogGain Mapper::find_gain(const ViewColors& image_colors, int camera, ColorStats& stats) {
+ViewLight Mapper::find_light(const ViewColors& image_colors, int camera, FrameResult& result) {
   constexpr std::size_t kEnough = 100;  // of fewer points the error is chance
-  const CodeDifferences differences = visible_map_.differences(image_colors);
-  const LogGain gain = view_gains_.next(camera, differences);
-  stats.gain[camera] = gain;
-  if (differences.size() >= kEnough) {
-    stats.compared += differences.size();
-    stats.error += (residual_percent(differences, gain) - stats.error) *
-                   double(differences.size()) / double(stats.compared);
+  const ViewColors colors = image_colors.in_light({LogGain::Zero(), light_.response(camera)});
+  const MapDifferences differences = visible_map_.differences(colors);
+  const std::optional<double> exposure = drive_.image_exposure(camera, result.index);
+  ColorStats& stats = stats_of(result.colors);
+  stats.views.push_back(light_.next(camera, differences, exposure, map_));
+  const ViewLight light = light_.light(stats.views.back(), map_.submaps().size() - 1);
+  const std::size_t compared = differences.recent.size();
+  if (compared >= kEnough) {
+    stats.compared += compared;
+    stats.error += (residual_percent(differences.recent, light.gain) - stats.error) *
+                   double(compared) / double(stats.compared);
   }
-  return gain;
+  return light;
 }
 
 PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& camera,
@@ -172,32 +179,62 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
                     const FrameSource& source) {
   map_ = std::move(map);
   std::vector<FrameResult> frames;
+  std::vector<const FrameRecord*> of_frames;
   for (const FrameRecord& record : records) {
-    if (record.status != FrameStatus::kSkipped) frames.push_back(tracked_result(record));
-    for (const ViewRecord& view : record.views) {
-      if (view.log2_gain) view_gains_.resume(view.camera, view.log2_gain->cast<float>().array());
-    }
+    if (record.status == FrameStatus::kSkipped) continue;
+    frames.push_back(tracked_result(record));
+    of_frames.push_back(&record);
   }
+  const bool needs_images = light_.needs_images(records);
   const int first_voting = first_voting_frame(frames);
   const int first_target = tracker_.first_target(frames);
-  for (const FrameResult& frame : frames) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FrameResult& frame = frames[i];
     tracker_.follow(frame);
     map_.place_submaps(tracker_.submaps());
-    if (frame.status == FrameStatus::kHeldOut) continue;
+    if (frame.status == FrameStatus::kHeldOut) {
+      light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
+      continue;
+    }
     const bool votes = frame.index >= first_voting;
-    if (!votes && !tracker_.needs_scan(first_target)) continue;
-    const LoadedFrame loaded = source.load(frame.index);
-    if (!std::holds_alternative<Frame>(loaded)) continue;
-    const PointCloud scan_lidar =
-        tracker_.compensated(std::get<Frame>(loaded).scan, frame.poses.motion);
-    tracker_.replay(scan_lidar, frame);
-    map_.place_submaps(tracker_.submaps());
-    if (!votes) continue;
-    const RigidMotion T_local_lidar = tracker_.T_local_odom() * frame.poses.T_odom_lidar;
-    services_.load_near(map_, T_local_lidar.translation(), reach_);
-    dynamic_points_.replay(map_, RangeImage(scan_lidar.position, options_.dynamic.row_height),
-                           frame.poses.T_odom_lidar, tracker_.T_local_odom().inverse(),
-                           frame.index);
+    if (votes || needs_images || tracker_.needs_scan(first_target)) {
+      const LoadedFrame loaded = source.load(frame.index);
+      if (const auto* read = std::get_if<Frame>(&loaded)) {
+        replay(*read, frame, votes, needs_images);
+      }
+    }
+    // After replay(), which may have moved submaps.
+    light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
+    for (const Camera& camera : drive_.calibration.cameras) {
+      const ViewRecord* view = of_frames[i]->find_view(camera.index);
+      if (view == nullptr) continue;
+      light_.replay(*view, drive_.image_exposure(camera.index, frame.index), map_);
+    }
+  }
+}
+
+void Mapper::replay(const Frame& read, const FrameResult& frame, bool votes, bool needs_images) {
+  const PointCloud scan_lidar = tracker_.compensated(read.scan, frame.poses.motion);
+  tracker_.replay(scan_lidar, frame);
+  map_.place_submaps(tracker_.submaps());
+  if (needs_images) replay_response(read, scan_lidar, frame);
+  if (!votes) return;
+  const RigidMotion T_local_lidar = tracker_.T_local_odom() * frame.poses.T_odom_lidar;
+  services_.load_near(map_, T_local_lidar.translation(), reach_);
+  dynamic_points_.replay(map_, RangeImage(scan_lidar.position, options_.dynamic.row_height),
+                         frame.poses.T_odom_lidar, tracker_.T_local_odom().inverse(), frame.index);
+}
+
+void Mapper::replay_response(const Frame& read, const PointCloud& scan_lidar,
+                             const FrameResult& frame) {
+  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, frame.poses.motion);
+  for (std::size_t k = 0; k < read.images.size(); ++k) {
+    if (read.images[k].empty() || is_blank(read.images[k])) continue;
+    PointCloud visible_cam = foveal_points(scan_lidar, FovealRegion(options_.foveal, cameras[k]));
+    drop_hidden(visible_cam, scan_lidar, cameras[k]);
+    light_.learn_response(visible_cam.position, ImagePyramid(read.images[k]), cameras[k],
+                          frame.poses.T_odom_lidar * cameras[k].T_cam_lidar.inverse(),
+                          options_.footprint);
   }
 }
 

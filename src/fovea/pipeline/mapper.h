@@ -7,6 +7,7 @@
 #include "fovea/map/occupancy.h"
 #include "fovea/pipeline/dynamic_points.h"
 #include "fovea/pipeline/incremental_mapper.h"
+#include "fovea/pipeline/map_light.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/tracker.h"
 #include "fovea/pipeline/visible_map.h"
@@ -38,8 +39,13 @@ class Mapper : public IncrementalMapper {
   /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
   void map_view(const PointCloud& scan_lidar, const Image& image, const Camera& camera,
                 const RigidMotion& T_odom_local, FrameResult& result);
-  /// Gain of an image relative to the exposure of the map; adds to the figures.
-  LogGain find_gain(const ViewColors& image_colors, int camera, ColorStats& stats);
+  /// Light of an image relative to that of the map; adds to the figures.
+  ViewLight find_light(const ViewColors& image_colors, int camera, FrameResult& result);
+  /// Enters a frame of an earlier run that later frames depend on.
+  /// @param votes         its scan decides which points are dynamic
+  /// @param needs_images  the responses of the cameras depend on its images
+  void replay(const Frame& read, const FrameResult& frame, bool votes, bool needs_images);
+  void replay_response(const Frame& read, const PointCloud& scan_lidar, const FrameResult& frame);
   /// Points and samples of the surface in free cells of the map.
   PointCloud new_points_of(const PointCloud& points_cam, const Camera& camera,
                            const RigidMotion& T_local_cam);
@@ -51,7 +57,7 @@ class Mapper : public IncrementalMapper {
   Tracker tracker_;
   TileMap map_;
   VisibleMap visible_map_;
-  ViewGains view_gains_;
+  MapLight light_;
   DynamicPointFilter dynamic_points_;
   Occupancy occupancy_;
   std::optional<Eigen::Vector3d> occupancy_update_center_;  // where occupancy_ is out of date

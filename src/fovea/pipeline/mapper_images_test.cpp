@@ -102,7 +102,7 @@ TEST(Mapper, AMapHasOneExposure) {
     if (is_dark) {
       for (std::uint8_t& value : frame.images[0].data) value = std::uint8_t(value * 2 / 5);
     }
-    const LogGain gain = mapper.process(frame).colors.value().gain.at(2);
+    const LogGain gain = mapper.process(frame).colors.value().views.at(0).light().gain;
     EXPECT_LT((gain - (is_dark ? std::log2(0.4f) : 0.0f)).abs().maxCoeff(), 0.02) << i;
   }
   double color_error = 0;

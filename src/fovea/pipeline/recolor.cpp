@@ -45,14 +45,6 @@ TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& w
   return copy;
 }
 
-/// The gain under which the map contains an image. Maps of the paper mapper state none.
-LogGain gain_of_view(const FrameRecord& record, int camera) {
-  for (const ViewRecord& view : record.views) {
-    if (view.camera == camera && view.log2_gain) return view.log2_gain->cast<float>().array();
-  }
-  return LogGain::Zero();
-}
-
 class Recolorer {
  public:
   Recolorer(const DriveInfo& drive, const MapSettings& settings, TileMap map, Checkpointer& file,
@@ -84,9 +76,11 @@ class Recolorer {
       if (is_blank(image)) {
         ++figures.images_left_out;
       } else {
+        // Maps of the paper mapper state no view.
+        const ViewRecord* view = record.find_view(camera.index);
+        const ViewLight light = view != nullptr ? view->light() : ViewLight();
         const ViewColors colors(pyramid, camera, footprint_);
-        visible_map_.recolor(map_, colors.without_gain(gain_of_view(record, camera.index)),
-                             frame.index);
+        visible_map_.recolor(map_, colors.in_light(light), frame.index);
       }
     }
     if (!cache_.is_full(map_)) return;

@@ -17,6 +17,8 @@ constexpr std::size_t kChunkSize = 8192, kBlock = ColorBlock::kSize;
 constexpr float kDiscRadius = 0.75f;
 /// Seed of the random rounding of colors.
 constexpr std::uint64_t kRoundingSeed = 0x636f6c6f7572ull;
+/// Submaps that the vehicle has not left for long.
+constexpr std::size_t kRecentSubmaps = 16;
 /// differences() takes one of this many points.
 constexpr std::size_t kCompareStep = 32;
 
@@ -33,11 +35,14 @@ void VisibleMap::collect_chunks(const TileMap& map, const FovealRegion& region,
       lidar_local, region.far_range(), [&](const TileId& id, const TilePoints& points) {
         const RigidMotion T_cam_tile = T_cam_local * map.submaps()[id.submap].T_local_submap *
                                        Eigen::Translation3d(points.origin);
+        const Eigen::Array3f gain_codes =
+            float(kColorCodesPerStop) * map.submaps()[id.submap].log2_gain;
         if (points.empty() || !ViewFrustum(camera_, T_cam_tile).may_contain(points.box)) return;
         const auto size = static_cast<std::uint32_t>(points.size());
         for (std::uint32_t begin = 0; begin < size; begin += std::uint32_t(kChunkSize)) {
           const std::uint32_t end = std::min(size, begin + std::uint32_t(kChunkSize));
-          chunks_.push_back({id, &points, T_cam_tile, begin, end, chunks_.size() % kShards, 0, 0});
+          chunks_.push_back(
+              {id, &points, T_cam_tile, gain_codes, begin, end, chunks_.size() % kShards, 0, 0});
         }
       });
 }
@@ -49,6 +54,8 @@ void VisibleMap::render(const TileMap& map, const FovealRegion& region,
       ViewQuantizer(camera_, region.far_range() + camera_.T_cam_lidar.translation().norm());
   disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
   collect_chunks(map, region, T_cam_local);
+  const std::size_t submaps = map.submaps().size();
+  first_recent_submap_ = submaps - std::min(submaps, kRecentSubmaps);
   parallel_for(kShards, 1, [&](std::size_t shard) {
     shards_[shard].depth.clear(camera_);
     std::size_t first = 0;
@@ -155,10 +162,11 @@ std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_ca
   return marks;
 }
 
-CodeDifferences VisibleMap::differences_of(const Chunk& chunk, const ViewColors& view) const {
+CodeDifferences VisibleMap::differences_of(const Chunk& chunk, const ViewColors& view,
+                                           CodeDifferences& colors) const {
   const std::span<const PointInView> points = points_of(chunk);
   ProjectedPoints projected;
-  std::array<LogColor, kBlock> known;
+  std::array<Eigen::Array3f, kBlock> known;
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); i += kCompareStep) {
     const FusedColor& color = chunk.points->colors[chunk.begin + points[i].index];
@@ -166,7 +174,7 @@ CodeDifferences VisibleMap::differences_of(const Chunk& chunk, const ViewColors&
     const Eigen::Vector2f pixel = quantizer_.pixel(points[i]);
     const float depth = quantizer_.depth(points[i]);
     if (depth_.hides(pixel, depth)) continue;
-    known[n] = color.color;
+    known[n] = codes_of(color.color) + chunk.gain_codes;
     projected.put(n++, pixel, depth);
   }
   ViewColors::Samples seen;
@@ -175,17 +183,28 @@ CodeDifferences VisibleMap::differences_of(const Chunk& chunk, const ViewColors&
   CodeDifferences differences;
   for (std::size_t i = 0; i < n; ++i) {
     if (seen[i].saturated != 0 || seen[i].code.minCoeff() < dark) continue;
-    differences.add(seen[i].code - codes_of(known[i]));
+    const double offset = view.response().offset;
+    const Eigen::Array3f in_map = exposure_codes(known[i], offset);
+    differences.add(exposure_codes(seen[i].code, offset) - in_map);
+    colors.add(in_map);
   }
   return differences;
 }
 
-CodeDifferences VisibleMap::differences(const ViewColors& view) const {
-  std::vector<CodeDifferences> of_chunk(chunks_.size());
+MapDifferences VisibleMap::differences(const ViewColors& view) const {
+  std::vector<CodeDifferences> of_chunk(chunks_.size()), colors(chunks_.size());
   parallel_for(chunks_.size(), 1,
-               [&](std::size_t k) { of_chunk[k] = differences_of(chunks_[k], view); });
-  CodeDifferences all;
-  for (const CodeDifferences& part : of_chunk) all.append(part);
+               [&](std::size_t k) { of_chunk[k] = differences_of(chunks_[k], view, colors[k]); });
+  MapDifferences all;
+  for (std::size_t k = 0; k < chunks_.size(); ++k) {
+    const std::size_t submap = chunks_[k].tile.submap;
+    if (submap < first_recent_submap_) {
+      all.earlier[submap].append(of_chunk[k]);
+    } else {
+      all.recent.append(of_chunk[k]);
+      all.colors.append(colors[k]);
+    }
+  }
   return all;
 }
 
@@ -211,6 +230,7 @@ std::size_t VisibleMap::recolor_chunk(const Chunk& chunk, std::span<FusedColor> 
     for (std::size_t j = 0; j < n; ++j) {
       const std::uint32_t index = chunk.begin + points[visible[j]].index;
       if (colors[index].views == 0) first_colored.push_back(index);
+      seen[j].code -= chunk.gain_codes;
       fuse(seen[j], quick_bits(index, seed), colors[index]);
     }
     count += n;

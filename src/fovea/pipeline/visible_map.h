@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <span>
 
 #include "fovea/map/tile_map.h"
@@ -12,6 +13,13 @@
 #include "fovea/pipeline/point_in_view.h"
 
 namespace fovea {
+
+/// Color codes of an image minus those of the map.
+struct MapDifferences {
+  CodeDifferences recent;  ///< to the latest submaps
+  CodeDifferences colors;  ///< the codes of these points in the map, not differences
+  std::map<std::size_t, CodeDifferences> earlier;  ///< to earlier submaps, by number
+};
 
 /// The points of a map in one view of one camera. Reuse one object for all views: it keeps its
 /// memory.
@@ -32,9 +40,9 @@ class VisibleMap {
   /// Adds points to the depth buffer, so that recolor() skips the map behind them.
   void add_occluders(const PointCloud& points_cam);
 
-  /// Color codes of a view minus those of the map, at some of the visible points of the region.
-  /// Points that are saturated or dark in the view, or saturated in the map, are left out.
-  CodeDifferences differences(const ViewColors& view) const;
+  /// Compares a view with the map, at some of the visible points of the region. Points that are
+  /// saturated or dark in the view, or saturated in the map, are left out.
+  MapDifferences differences(const ViewColors& view) const;
 
   /// Fuses a view's colors into the visible points of the region. At most once after render().
   /// @param map    the rendered one
@@ -48,7 +56,8 @@ class VisibleMap {
     TileId tile;
     const TilePoints* points;
     RigidMotion T_cam_tile;
-    std::uint32_t begin, end;  // in the tile
+    Eigen::Array3f gain_codes;  // from the tile's colors to the exposure of the map
+    std::uint32_t begin, end;   // in the tile
     std::size_t shard;
     std::size_t first, count;  // its points in the region, in the shard's `points`
   };
@@ -66,7 +75,9 @@ class VisibleMap {
   template <class F>
   void for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
                       F&& f) const;
-  CodeDifferences differences_of(const Chunk& chunk, const ViewColors& view) const;
+  /// @param colors  takes the codes of the points in the map
+  CodeDifferences differences_of(const Chunk& chunk, const ViewColors& view,
+                                 CodeDifferences& colors) const;
   /// The colors of each chunk's tile; empty if no point of the tile is in the region.
   std::vector<std::span<FusedColor>> colors_of_chunks(TileMap& map) const;
   /// @param seed           of the random rounding
@@ -83,6 +94,7 @@ class VisibleMap {
   ViewQuantizer quantizer_;
   float disc_radius_ = 0;  // of a point's disc, pixels at a depth of 1 m
   std::vector<Chunk> chunks_;
+  std::size_t first_recent_submap_ = 0;
   std::array<Shard, kShards> shards_;
   DepthBuffer depth_;
 };

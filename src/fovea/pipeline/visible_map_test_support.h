@@ -55,7 +55,9 @@ struct TestView {
     seen.render(map, region, T_cam_local, kSpacing);
     return seen;
   }
-  CodeDifferences differences(const TileMap& map) const { return render(map).differences(view); }
+  CodeDifferences differences(const TileMap& map) const {
+    return render(map).differences(view).recent;
+  }
   std::size_t recolor(TileMap& map, const PointCloud& new_points_cam = {}) const {
     VisibleMap seen = render(map);
     seen.add_occluders(new_points_cam);

@@ -15,7 +15,8 @@ namespace fovea {
 class MapServer {
  public:
   MapServer(const std::filesystem::path& map, std::span<const PageFile> page,
-            std::shared_ptr<const DriveImages> images, const WebServerOptions& options);
+            std::shared_ptr<const DriveImages> images, const WebServerOptions& options,
+            const ExposureChoice& exposure = {});
   ~MapServer();
 
   std::string url() const { return server_.url(); }

@@ -79,8 +79,8 @@ WebResponse DriveImages::response(std::string_view path) const {
 }
 
 MapSite::MapSite(const std::filesystem::path& map, std::span<const PageFile> page,
-                 std::shared_ptr<const DriveImages> images)
-    : page_(page), images_(std::move(images)), tiles_(map) {
+                 std::shared_ptr<const DriveImages> images, const ExposureChoice& exposure)
+    : page_(page), images_(std::move(images)), tiles_(map, exposure) {
   const MapReader reader(map);
   MapDescription description = describe_map(reader);
   description.tileset = "tiles/tileset.json";

@@ -40,11 +40,12 @@ class DriveImages {
 /// The HTTP part of docs/viewer-protocol.md. Thread-safe.
 class MapSite {
  public:
-  /// @param page    must outlive the site
-  /// @param images  may be null
+  /// @param page      must outlive the site
+  /// @param images    may be null
+  /// @param exposure  of the colors
   /// @throws InputError  if the map cannot be read
   MapSite(const std::filesystem::path& map, std::span<const PageFile> page,
-          std::shared_ptr<const DriveImages> images);
+          std::shared_ptr<const DriveImages> images, const ExposureChoice& exposure = {});
 
   void answer(const std::string& path, WebServer::Reply reply);
 

@@ -12,16 +12,12 @@ namespace {
 /// Ends the making of the coarse levels.
 struct Stopped {};
 
-const PointChoice& all_points() {
-  static const PointChoice choice{.include_uncolored = true};
-  return choice;
-}
-
 }  // namespace
 
 /// What one thread needs to read points.
 struct TileSource::Reader {
-  explicit Reader(const std::filesystem::path& path) : map(path), points(map, all_points()) {
+  Reader(const std::filesystem::path& path, const PointChoice& choice)
+      : map(path), points(map, choice) {
     // The program that writes the map could not end it while an earlier state is held.
     points.release_state();
   }
@@ -30,8 +26,9 @@ struct TileSource::Reader {
   LeafReader leaves{points};
 };
 
-TileSource::TileSource(const std::filesystem::path& map) : map_(map) {
-  auto reader = std::make_unique<Reader>(map);
+TileSource::TileSource(const std::filesystem::path& map, const ExposureChoice& exposure)
+    : map_(map), choice_{.include_uncolored = true, .exposure = exposure} {
+  auto reader = std::make_unique<Reader>(map, choice_);
   root_ = make_tile_tree(reader->map);
   index(root_);
   tileset_ = std::make_shared<const std::string>(
@@ -62,7 +59,7 @@ std::string TileSource::failure() const {
 
 void TileSource::make_coarse_levels(const std::stop_token& stop) {
   try {
-    Reader reader(map_);
+    Reader reader(map_, choice_);
     for_each_node(root_, reader.leaves,
                   [&](const TileNode& node, const std::vector<ExportPoint>& points) {
                     if (stop.stop_requested()) throw Stopped();
@@ -115,7 +112,7 @@ TileSource::Bytes TileSource::make_leaf(const TileNode& leaf) {
       idle_readers_.pop_back();
     }
   }
-  if (!reader) reader = std::make_unique<Reader>(map_);
+  if (!reader) reader = std::make_unique<Reader>(map_, choice_);
   Bytes tile = std::make_shared<const std::string>(make_glb(reader->leaves.read(leaf), true).bytes);
   const std::lock_guard lock(guard_);
   idle_readers_.push_back(std::move(reader));

@@ -26,7 +26,7 @@ class TileSource {
   using Receiver = std::function<void(Bytes tile, const std::string& error)>;
 
   /// InputError if the map cannot be read.
-  explicit TileSource(const std::filesystem::path& map);
+  explicit TileSource(const std::filesystem::path& map, const ExposureChoice& exposure = {});
   /// Drops the receivers that still wait.
   ~TileSource();
   TileSource(const TileSource&) = delete;
@@ -51,6 +51,7 @@ class TileSource {
   Bytes make_leaf(const TileNode& leaf);
 
   std::filesystem::path map_;
+  PointChoice choice_;
   TileNode root_;
   std::unordered_map<std::string, const TileNode*> node_of_name_;
   std::size_t leaves_ = 0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -35,6 +36,16 @@ enum CloudColumn : std::size_t {
   kCloudColumns
 };
 using CloudRow = std::array<double, kCloudColumns>;  ///< metres of the file's frame; colours 0-255
+
+/// White in colors of 16 bits.
+inline constexpr double kDeepWhite = 65535;
+/// Brings colors to 0-255, rounded.
+inline void scale_colors(CloudRow& row, double white) {
+  if (white == 255) return;
+  for (const CloudColumn channel : {kRed, kGreen, kBlue}) {
+    row[channel] = std::round(row[channel] * 255 / white);
+  }
+}
 
 /// Gathers the points of a file, checking each.
 class CloudBuilder {

@@ -78,9 +78,10 @@ std::string extra_bytes_content() {
   return bytes;
 }
 
-std::string variable_length_records(const Georeference& georeference) {
+std::string variable_length_records(const PointStream& points) {
   return variable_length_record("LASF_Projection", 2112, "OGC coordinate system WKT",
-                                georeference.wkt1() + '\0') +
+                                points.georeference().wkt1() + '\0') +
+         variable_length_record("fovea", 1, "Exposure of the colors", points.exposure()) +
          variable_length_record("LASF_Spec", 4, "Extra bytes", extra_bytes_content());
 }
 
@@ -202,7 +203,7 @@ std::string public_header(std::size_t points, std::size_t record_bytes, const Fr
   packer.put(times.date().second);
   packer.put(kHeaderBytes);
   packer.put(static_cast<std::uint32_t>(kHeaderBytes + record_bytes));
-  packer.put(std::uint32_t{2});
+  packer.put(std::uint32_t{3});
   packer.put(kPointFormat);
   packer.put(static_cast<std::uint16_t>(kFormatBytes + kExtraBytes));
   packer.put_zeros(4 + 5 * 4);
@@ -225,7 +226,7 @@ std::uint16_t intensity(float reflectance) {
 }
 
 /// Table 21 and the extra bytes.
-void pack(const ExportPoint& point, const Eigen::Vector3i& cell, double gps_time,
+void pack(const ExportPoint& point, const Eigen::Vector3i& cell, double gps_time, bool deep_colors,
           BytePacker& packer) {
   for (const int coordinate : cell) packer.put(std::int32_t{coordinate});
   packer.put(intensity(point.intensity));
@@ -234,8 +235,12 @@ void pack(const ExportPoint& point, const Eigen::Vector3i& cell, double gps_time
   packer.put(kUnclassified);
   packer.put_zeros(1 + 2 + 2);  // user data, scan angle, source: this file
   packer.put(gps_time);
-  for (const std::uint8_t channel : {point.color.r, point.color.g, point.color.b}) {
-    packer.put(static_cast<std::uint16_t>(channel * 257));
+  if (deep_colors) {
+    pack_deep_color(point, packer);
+  } else {
+    for (const std::uint8_t channel : {point.color.r, point.color.g, point.color.b}) {
+      packer.put(static_cast<std::uint16_t>(channel * 257));
+    }
   }
   pack_provenance(point, packer);
 }
@@ -247,7 +252,7 @@ LasFigures write_las(const MapReader& map, const std::filesystem::path& path,
   OutputFile file(path, options.force);
   const PointStream points(map, options.points);
   const FrameTimes times(map, options.utc_offset);
-  const std::string records = variable_length_records(points.georeference());
+  const std::string records = variable_length_records(points);
   LasFigures figures{points.figures(), 0, times.dated()};
   Grid grid(points.georeference().from_local(Eigen::Vector3d::Zero()));
   const auto write_header = [&] {
@@ -258,7 +263,7 @@ LasFigures write_las(const MapReader& map, const std::filesystem::path& path,
   write_points(points, file.stream(), [&](const ExportPoint& point, BytePacker& packer) {
     const std::optional<double> time = times.of(point.frame);
     figures.points_without_time += !time;
-    pack(point, grid.add(point.position), time.value_or(0), packer);
+    pack(point, grid.add(point.position), time.value_or(0), options.points.deep_colors, packer);
   });
   file.stream().seekp(0);
   write_header();  // now with the box

@@ -87,7 +87,7 @@ TEST_F(LasWriter, HeaderSaysWhatFollows) {
   EXPECT_EQ(las.at<std::uint16_t>(90), 269);  // 26 September, the drive's day
   EXPECT_EQ(las.at<std::uint16_t>(92), 2011);
   EXPECT_EQ(las.at<std::uint16_t>(94), 375);
-  EXPECT_EQ(las.at<std::uint32_t>(100), 2u);
+  EXPECT_EQ(las.at<std::uint32_t>(100), 3u);
   EXPECT_EQ(las.at<std::uint8_t>(104), 7);
   EXPECT_EQ(las.at<std::uint16_t>(105), kRecord);
   for (std::size_t legacy = 107; legacy < 131; legacy += 4) {

@@ -32,6 +32,7 @@ class ColoredPoints : public CloudRows {
       if (types[column]) packed_ = column;  // rgb, before rgba
     }
     if (packed_) has[kRed] = has[kGreen] = has[kBlue] = true;
+    if (!packed_ && types[kRed] == Scalar::kUint16) white_ = kDeepWhite;
     cloud_.expect(points, has);
   }
 
@@ -45,6 +46,7 @@ class ColoredPoints : public CloudRows {
       values[kGreen] = color >> 8 & 0xff;
       values[kBlue] = color & 0xff;
     }
+    scale_colors(values, white_);
     cloud_.add(values, number);
   }
 
@@ -54,6 +56,7 @@ class ColoredPoints : public CloudRows {
   std::string name_;
   CloudBuilder cloud_;
   std::optional<std::size_t> packed_;  // column
+  double white_ = 255;
 };
 
 }  // namespace

@@ -17,15 +17,21 @@ std::string pcd_header(const PointStream& points, const PointFileOptions& option
   if (georeference.origin()) {
     text += fmt::format("# {}\n# crs {}\n", georeference.description(), georeference.wkt2());
   }
-  const char real = options.doubles() ? '8' : '4';
+  text += fmt::format("# {}\n", points.exposure());
+  struct Color {
+    const char *fields, *size, *type, *count;
+  };
+  const Color color = options.points.deep_colors ? Color{"r g b", "2 2 2", "U U U", "1 1 1"}
+                                                 : Color{"rgb", "4", "F", "1"};
   return text + fmt::format(
                     "VERSION 0.7\n"
-                    "FIELDS x y z rgb camera frame range interpolated views spread reason\n"
-                    "SIZE {0} {0} {0} 4 1 4 4 1 1 1 1\n"
-                    "TYPE F F F F I I F U U U U\n"
-                    "COUNT 1 1 1 1 1 1 1 1 1 1 1\n"
+                    "FIELDS x y z {2} camera frame range interpolated views spread reason\n"
+                    "SIZE {0} {0} {0} {3} 1 4 4 1 1 1 1\n"
+                    "TYPE F F F {4} I I F U U U U\n"
+                    "COUNT 1 1 1 {5} 1 1 1 1 1 1 1\n"
                     "WIDTH {1}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA binary\n",
-                    real, points.figures().points);
+                    options.doubles() ? '8' : '4', points.figures().points, color.fields,
+                    color.size, color.type, color.count);
 }
 
 }  // namespace
@@ -35,10 +41,14 @@ ExportFigures write_pcd(const MapReader& map, const std::filesystem::path& path,
   return write_point_file(map, path, options, pcd_header,
                           [&](const ExportPoint& point, BytePacker& packer) {
                             pack_position(point, options.doubles(), packer);
-                            packer.put(point.color.b);
-                            packer.put(point.color.g);
-                            packer.put(point.color.r);
-                            packer.put(std::uint8_t{0});
+                            if (options.points.deep_colors) {
+                              pack_deep_color(point, packer);
+                            } else {
+                              packer.put(point.color.b);
+                              packer.put(point.color.g);
+                              packer.put(point.color.r);
+                              packer.put(std::uint8_t{0});
+                            }
                             pack_provenance(point, packer);
                           });
 }

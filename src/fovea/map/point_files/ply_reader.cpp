@@ -26,10 +26,10 @@ class ColoredVertices : public CloudRows {
     std::transform(types.begin(), types.end(), has.begin(),
                    [](const auto& type) { return !!type; });
     for (const CloudColumn channel : {kRed, kGreen, kBlue}) {
-      if (has[channel] && types[channel] != Scalar::kUint8) {
-        reject("red, green, blue must be uchar");
-      }
+      const bool is_known = types[channel] == Scalar::kUint8 || types[channel] == Scalar::kUint16;
+      if (has[channel] && !is_known) reject("red, green, blue must be uchar or ushort");
     }
+    if (types[kRed] == Scalar::kUint16) white_ = kDeepWhite;
     if (has[kRed] != has[kGreen] || has[kRed] != has[kBlue]) {
       reject("red, green and blue are not all there");
     }
@@ -39,6 +39,7 @@ class ColoredVertices : public CloudRows {
   void add(std::span<const double> row, std::size_t number) override {
     CloudRow values;
     std::copy(row.begin(), row.end(), values.begin());
+    scale_colors(values, white_);
     cloud_.add(values, number);
   }
 
@@ -51,6 +52,7 @@ class ColoredVertices : public CloudRows {
 
   std::string name_;
   CloudBuilder cloud_;
+  double white_ = 255;
 };
 
 }  // namespace

@@ -22,11 +22,16 @@ std::string ply_header(const PointStream& points, const PointFileOptions& option
     text += fmt::format("comment camera -1: no camera saw the point, its colour {} {} {} is none\n",
                         kUncolored.r, kUncolored.g, kUncolored.b);
   }
+  text += fmt::format("comment {}\n", points.exposure());
   text += fmt::format("element vertex {}\n", points.figures().points);
   const char* real = options.doubles() ? "double" : "float";
   for (const char* axis : {"x", "y", "z"}) text += fmt::format("property {} {}\n", real, axis);
+  const char* color = options.points.deep_colors ? "ushort" : "uchar";
+  for (const char* name : {"red", "green", "blue"}) {
+    text += fmt::format("property {} {}\n", color, name);
+  }
   return text +
-         "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty char camera\n"
+         "property char camera\n"
          "property int frame\nproperty float range\nproperty uchar interpolated\n"
          "property uchar views\nproperty uchar spread\nproperty uchar reason\nend_header\n";
 }
@@ -38,9 +43,13 @@ ExportFigures write_ply(const MapReader& map, const std::filesystem::path& path,
   return write_point_file(map, path, options, ply_header,
                           [&](const ExportPoint& point, BytePacker& packer) {
                             pack_position(point, options.doubles(), packer);
-                            packer.put(point.color.r);
-                            packer.put(point.color.g);
-                            packer.put(point.color.b);
+                            if (options.points.deep_colors) {
+                              pack_deep_color(point, packer);
+                            } else {
+                              packer.put(point.color.r);
+                              packer.put(point.color.g);
+                              packer.put(point.color.b);
+                            }
                             pack_provenance(point, packer);
                           });
 }

@@ -57,6 +57,7 @@ struct Ply {
     if (type == "float") return raw<float>(file);
     if (type == "int") return raw<std::int32_t>(file);
     if (type == "char") return raw<std::int8_t>(file);
+    if (type == "ushort") return raw<std::uint16_t>(file);
     EXPECT_EQ(type, "uchar");
     return raw<std::uint8_t>(file);
   }
@@ -225,7 +226,27 @@ TEST_F(PlyWriter, AnEmptyMapGivesAnEmptyCloud) {
   EXPECT_EQ(figures.points, 0u);
   const Ply ply(folder_ / "b.ply");
   EXPECT_EQ(ply.count, 0u);
-  EXPECT_EQ(ply.comments.size(), 1u);  // not georeferenced: no origin
+  EXPECT_EQ(ply.comments.size(), 2u);  // not georeferenced: no origin
+}
+
+TEST(DeepPly, HasColorsOf16Bits) {
+  const TemporaryFolder folder;
+  write_sample_map(folder / "a.fovea");
+  const MapReader map(folder / "a.fovea");
+  write_ply(map, folder / "a.ply", {.points = {.exposure = parse_exposure("0")}});
+  write_ply(map, folder / "deep.ply",
+            {.points = {.exposure = parse_exposure("0"), .deep_colors = true}});
+  const Ply plain(folder / "a.ply"), deep(folder / "deep.ply");
+  for (const auto& [name, type] : deep.properties) {
+    if (name == "red") EXPECT_EQ(type, "ushort");
+  }
+  EXPECT_THAT(deep.comments, Contains(HasSubstr("exposure +0.00 +0.00 +0.00 stops")));
+  ASSERT_GT(deep.count, 0u);
+  for (const char* channel : {"red", "green", "blue"}) {
+    for (std::size_t i = 0; i < deep.count; ++i) {
+      EXPECT_EQ(std::lround(deep.columns.at(channel)[i] / 257), plain.columns.at(channel)[i]);
+    }
+  }
 }
 
 }  // namespace fovea::ply_writer_test

@@ -19,6 +19,11 @@ inline void pack_position(const ExportPoint& point, bool doubles, BytePacker& pa
   }
 }
 
+/// red, green, blue (uint16)
+inline void pack_deep_color(const ExportPoint& point, BytePacker& packer) {
+  for (const std::uint16_t channel : point.deep_color) packer.put(channel);
+}
+
 /// camera (int8), frame (int32), range (float), interpolated, views, spread, reason (uint8).
 inline void pack_provenance(const ExportPoint& point, BytePacker& packer) {
   packer.put(point.camera);

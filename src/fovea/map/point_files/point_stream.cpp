@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,9 @@ PointStream::PointStream(const MapReader& map, const PointChoice& choice)
   figures_.points = choice_.where.empty() ? unfiltered : count_chosen();
   figures_.uncolored_left_out = total - unfiltered;
   figures_.filtered_out = unfiltered - figures_.points;
+  if (choice_.deep_colors) {
+    deep_display_ = deep_color_display(choice.exposure, map.frames(), count_codes());
+  }
 }
 
 bool PointStream::is_chosen(const PointCloud& tile, std::size_t index) const {
@@ -42,6 +46,17 @@ std::size_t PointStream::count_chosen() const {
   return count;
 }
 
+CodeCounts PointStream::count_codes() const {
+  CodeCounts counts{};
+  map_.for_each_tile([&](std::size_t, const TileKey&, const PointCloud& tile) {
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      if (!is_chosen(tile, i) || tile.camera[i] == kNoCamera) continue;
+      ++counts[*std::max_element(tile.color[i].code.begin(), tile.color[i].code.end())];
+    }
+  });
+  return counts;
+}
+
 ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
                                std::size_t submap) const {
   ExportPoint point;
@@ -55,7 +70,12 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
   if (!tile.intensity.empty()) point.intensity = tile.intensity[index];
   point.frame = tile.frame[index];
   point.camera = tile.camera[index];
-  if (point.camera != kNoCamera) point.color = display_(tile.color[index]);
+  const bool is_colored = point.camera != kNoCamera;
+  if (is_colored) point.color = display_(tile.color[index]);
+  if (deep_display_) {
+    const auto gray = static_cast<std::uint16_t>(257 * kUncolored.r);
+    point.deep_color = is_colored ? (*deep_display_)(tile.color[index]) : DeepRgb{gray, gray, gray};
+  }
   point.interpolated = tile.interpolated[index];
   point.views = tile.views[index];
   point.spread = tile.spread[index];

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct PointChoice {
   PointFilter where = {};          ///< only points that pass
   Crs crs = Crs::kLocal;           ///< coordinates of the positions
   ExposureChoice exposure = {};    ///< of the colors
+  bool deep_colors = false;        ///< colors of 16 bits, too: see deep_color_display()
 };
 
 struct ExportFigures {
@@ -39,6 +41,7 @@ struct ExportPoint {
   float intensity = 0;  ///< 0 in a map without
   std::int32_t frame = 0;
   Rgb color = kUncolored;
+  DeepRgb deep_color{};  ///< if asked for
   std::int8_t camera = kNoCamera;
   std::uint8_t interpolated = 0, views = 0, spread = 0, reason = 0;
 };
@@ -59,6 +62,10 @@ class PointStream {
 
   const ExportFigures& figures() const { return figures_; }
   const Georeference& georeference() const { return georeference_; }
+  /// Of the colors: "exposure ...".
+  const std::string& exposure() const {
+    return deep_display_ ? deep_display_->description() : display_.description();
+  }
 
   /// Calls f with the chosen points in the map's order, at most 65536 of one tile at a time, whose
   /// memory is f's until it returns. InputError if the map is damaged, if a position is not finite,
@@ -75,6 +82,7 @@ class PointStream {
   bool is_chosen(const PointCloud& tile, std::size_t index) const;
   ExportPoint point(const PointCloud& tile, std::size_t index, std::size_t submap) const;
   std::size_t count_chosen() const;
+  CodeCounts count_codes() const;
 
   const MapReader& map_;
   const PointChoice& choice_;
@@ -82,6 +90,7 @@ class PointStream {
   std::vector<RigidMotion> T_local_submap_;
   Georeference georeference_;
   ColorDisplay display_;
+  std::optional<DeepColorDisplay> deep_display_;
   ExportFigures figures_;
 };
 
