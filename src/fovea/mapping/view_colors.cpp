@@ -81,20 +81,14 @@ void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Sample
   }
 }
 
-void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
-                      int frame, const LogGain& submap_gain) {
-  const std::size_t n = points_cam.size();
-  points_cam.frame.assign(n, frame);
-  points_cam.camera.assign(n, static_cast<std::int8_t>(camera.index));
-  points_cam.color.resize(n);
-  points_cam.views.resize(n);
-  points_cam.spread.resize(n);
-  points_cam.weight.resize(n);
-  points_cam.saturated.resize(n);
-  parallel_chunks(n, ProjectedPoints::kSize, [&](std::size_t begin, std::size_t end) {
+std::vector<FusedColor> first_colors(std::span<const Eigen::Vector3f> points_cam,
+                                     const ViewColors& view, const Camera& camera,
+                                     const LogGain& submap_gain) {
+  std::vector<FusedColor> colors(points_cam.size());
+  parallel_chunks(colors.size(), ProjectedPoints::kSize, [&](std::size_t begin, std::size_t end) {
     ProjectedBlock block(camera);
-    block.project(std::span(points_cam.position).subspan(begin, end - begin),
-                  Eigen::Matrix3f::Identity(), Eigen::Vector3f::Zero());
+    block.project(points_cam.subspan(begin, end - begin), Eigen::Matrix3f::Identity(),
+                  Eigen::Vector3f::Zero());
     ProjectedPoints projected;
     for (std::size_t i = 0; i < end - begin; ++i) {
       projected.put(i, block.pixel(i), block.depth(i));
@@ -102,16 +96,25 @@ void color_new_points(PointCloud& points_cam, const ViewColors& view, const Came
     ViewColors::Samples samples;
     view.sample(projected, end - begin, samples);
     for (std::size_t i = begin; i < end; ++i) {
-      FusedColor fused;
       samples[i - begin].code -= float(kColorCodesPerStop) * submap_gain;
-      fuse(samples[i - begin], /*random=*/0, fused);
-      points_cam.color[i] = fused.color;
-      points_cam.views[i] = fused.views;
-      points_cam.spread[i] = fused.spread;
-      points_cam.weight[i] = fused.weight;
-      points_cam.saturated[i] = fused.saturated;
+      fuse(samples[i - begin], /*random=*/0, colors[i]);
     }
   });
+  return colors;
+}
+
+void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
+                      int frame, const LogGain& submap_gain) {
+  const std::size_t n = points_cam.size();
+  points_cam.frame.assign(n, frame);
+  points_cam.camera.assign(n, static_cast<std::int8_t>(camera.index));
+  for (const FusedColor& color : first_colors(points_cam.position, view, camera, submap_gain)) {
+    points_cam.color.push_back(color.color);
+    points_cam.views.push_back(color.views);
+    points_cam.spread.push_back(color.spread);
+    points_cam.weight.push_back(color.weight);
+    points_cam.saturated.push_back(color.saturated);
+  }
 }
 
 }  // namespace fovea

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <vector>
 
 #include "fovea/core/view_light.h"
 #include "fovea/geometry/camera.h"
@@ -40,6 +42,13 @@ class ViewColors {
   float s_per_pixel_;  // squared_distance_from_center() for one pixel
   ViewLight light_;
 };
+
+/// The colors of points from their first view.
+/// @param points_cam   camera frame, all in view
+/// @param submap_gain  as below
+std::vector<FusedColor> first_colors(std::span<const Eigen::Vector3f> points_cam,
+                                     const ViewColors& view, const Camera& camera,
+                                     const LogGain& submap_gain);
 
 /// Colors new points, all in view, from their first view.
 /// @param points_cam   camera frame. Sets frame, camera and the columns of the color

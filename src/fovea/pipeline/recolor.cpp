@@ -45,6 +45,53 @@ TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& w
   return copy;
 }
 
+/// Colors the points that a frame added and that recolor() has not reached: points at the border of
+/// the region, and points that others have hidden since. Each gets the color of its first view, as
+/// when the map was made.
+/// @param reach  of the region, with a margin, m
+void color_own_points(TileMap& map, const ViewColors& view, const Camera& camera,
+                      const RigidMotion& T_local_cam, double reach, int frame) {
+  struct OwnPoints {
+    TileId tile;
+    RigidMotion T_cam_tile;
+    LogGain gain;
+    std::vector<std::uint32_t> indices;
+  };
+  std::vector<OwnPoints> all;
+  map.for_each_tile_near(
+      T_local_cam.translation(), reach, [&](const TileId& id, const TilePoints& tile) {
+        const Submap& submap = map.submaps()[id.submap];
+        OwnPoints own{
+            id,
+            T_local_cam.inverse() * submap.T_local_submap * Eigen::Translation3d(tile.origin),
+            submap.log2_gain,
+            {}};
+        tile.frame.for_each_run([&](std::uint32_t begin, std::uint32_t end, std::int32_t of_run) {
+          for (std::uint32_t i = begin; of_run == frame && i < end; ++i) {
+            if (tile.colors[i].views == 0) own.indices.push_back(i);
+          }
+        });
+        if (!own.indices.empty()) all.push_back(std::move(own));
+      });
+  for (const OwnPoints& own : all) {
+    std::vector<std::uint32_t> colored;
+    std::vector<Eigen::Vector3f> points_cam;
+    const TilePoints& tile = *map.submaps()[own.tile.submap].tiles.at(own.tile.key).points;
+    for (const std::uint32_t i : own.indices) {
+      const Eigen::Vector3d p_cam = own.T_cam_tile * tile.position_at(i).cast<double>();
+      const auto pixel = camera.project(p_cam);
+      const bool is_near = (p_cam - camera.T_cam_lidar.translation()).norm() <= reach;
+      if (!is_near || !pixel || !camera.in_view(*pixel)) continue;
+      colored.push_back(i);
+      points_cam.push_back(p_cam.cast<float>());
+    }
+    const std::vector<FusedColor> colors = first_colors(points_cam, view, camera, own.gain);
+    const std::span<FusedColor> of_tile = map.colors(own.tile);
+    for (std::size_t k = 0; k < colored.size(); ++k) of_tile[colored[k]] = colors[k];
+    map.put_camera(own.tile, colored, static_cast<std::int8_t>(camera.index));
+  }
+}
+
 class Recolorer {
  public:
   Recolorer(const DriveInfo& drive, const MapSettings& settings, TileMap map, Checkpointer& file,
@@ -81,6 +128,8 @@ class Recolorer {
         const ViewLight light = view != nullptr ? view->light() : ViewLight();
         const ViewColors colors(pyramid, camera, footprint_);
         visible_map_.recolor(map_, colors.in_light(light), frame.index);
+        color_own_points(map_, colors.in_light(light), camera,
+                         record.T_local_lidar * camera.T_cam_lidar.inverse(), reach_, frame.index);
       }
     }
     if (!cache_.is_full(map_)) return;

@@ -9,11 +9,13 @@
 namespace fovea {
 namespace {
 
+constexpr int kGreen = 1;
 // Standard deviations, stops.
 constexpr double kChainPerMeter = 0.0004;  // between submaps that follow each other
 constexpr double kDriftPerMeter = 0.0002;
 constexpr double kRevisit = 0.01;      // of a revisited place
 constexpr double kMetered = 0.03;      // of images with a known exposure
+constexpr double kTypicalTint = 0.05;  // of red and blue against green
 constexpr double kTypicalColor = 0.1;  // of the most frequent color
 constexpr double kAnchor = 0.0001;     // of the first submap
 constexpr double kRobust = 1.5;        // width of Huber's kernel, standard deviations
@@ -136,14 +138,20 @@ std::vector<ExposureGraph::Prior> ExposureGraph::priors_of(const Camera& camera,
     const Level& level = camera.levels[submap];
     // What the gain of the submap is, but for a constant.
     double gain = 0;
-    if (is_metered && level.images > 0) {
+    double deviation = is_metered ? kMetered : kTypicalColor;
+    if (channel != kGreen && level.colors > 0) {
+      // White balance is in no exposure, but the tint of the road is the same everywhere.
+      const double tint = (level.color[channel] - level.color[kGreen]) / level.colors;
+      gain = double(gains_[submap][kGreen]) - tint;
+      deviation = kTypicalTint;
+    } else if (is_metered && level.images > 0) {
       gain = (level.gain[channel] - camera.slope() * level.exposure) / level.images;
     } else if (!is_metered && level.colors > 0) {
       gain = -level.color[channel] / level.colors;
     } else {
       continue;
     }
-    priors.push_back({submap, gain, is_metered ? kMetered : kTypicalColor});
+    priors.push_back({submap, gain, deviation});
     constants.push_back(gain - gains[submap]);
   }
   if (priors.empty()) return {};
@@ -190,7 +198,7 @@ void ExposureGraph::optimize() {
   if (gains_.empty()) return;
   const bool is_local = used_revisits_ == revisits_.size() && gains_.size() > kRecentSubmaps;
   const std::size_t first = is_local ? gains_.size() - kRecentSubmaps : 0;
-  for (int channel = 0; channel < 3; ++channel) optimize_channel(channel, first);
+  for (const int channel : {kGreen, 0, 2}) optimize_channel(channel, first);
   used_revisits_ = revisits_.size();
 }
 

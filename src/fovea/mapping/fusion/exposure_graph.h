@@ -26,7 +26,8 @@ struct ImageLevel {
 ///   amount per meter: vignetting that remains biases each of them alike.
 /// - A revisited place gives the difference of two submaps.
 /// - Images prevent drift: the gain of an image is in proportion to its exposure. Where that is
-///   unknown, the most frequent color in view is near its median over the drive.
+///   unknown, the most frequent color in view is near its median over the drive. Its tint is so in
+///   any case, since no exposure states the white balance.
 ///
 /// The result depends only on the order of calls.
 class ExposureGraph {

@@ -90,6 +90,21 @@ TEST(ExposureGraph, KnownExposuresOfALinearCameraRemoveDrift) {
   EXPECT_LT(std::abs(error(graph_of(drift, 100), drift, 99)), 0.01);
 }
 
+TEST(ExposureGraph, TheTintOfTheRoadLimitsTheDriftOfTheWhiteBalance) {
+  ExposureGraph graph;
+  Random random(1);
+  for (int submap = 0; submap < 100; ++submap) {
+    graph.optimize();
+    graph.add_submap(kLength);
+    const LogGain drift = 0.005f * float(submap) * LogGain(1, 0, -1);
+    const LogGain step = LogGain(float(0.1 * random.normal()), 0, float(0.1 * random.normal()));
+    graph.add({2, step - drift, LogGain(6.5f + drift), 0.0});
+  }
+  graph.optimize();
+  const LogGain gain = graph.gains()[99] + 0.005f * 99 * LogGain(1, 0, -1);
+  EXPECT_LT(gain.abs().maxCoeff(), 0.03);
+}
+
 TEST(ExposureGraph, ARevisitedPlaceClosesTheLoop) {
   const Drift drift{.per_submap = 0.003, .shows_color = false};
   ExposureGraph graph = graph_of(drift, 100);
