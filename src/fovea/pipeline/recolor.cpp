@@ -45,6 +45,13 @@ TileMap copy_uncolored(const MapReader& map, const RecolorJob& job, MapWriter& w
   return copy;
 }
 
+/// Within a pixel of the image: positions are rounded. There the image has its color at the border.
+bool is_nearly_in_view(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d inside =
+      pixel.cwiseMax(0).cwiseMin(Eigen::Vector2d(camera.width - 1, camera.height - 1));
+  return (pixel - inside).cwiseAbs().maxCoeff() <= 1;
+}
+
 /// Colors the points that a frame added and that recolor() has not reached: points at the border of
 /// the region, and points that others have hidden since. Each gets the color of its first view, as
 /// when the map was made.
@@ -81,7 +88,7 @@ void color_own_points(TileMap& map, const ViewColors& view, const Camera& camera
       const Eigen::Vector3d p_cam = own.T_cam_tile * tile.position_at(i).cast<double>();
       const auto pixel = camera.project(p_cam);
       const bool is_near = (p_cam - camera.T_cam_lidar.translation()).norm() <= reach;
-      if (!is_near || !pixel || !camera.in_view(*pixel)) continue;
+      if (!is_near || !pixel || !is_nearly_in_view(camera, *pixel)) continue;
       colored.push_back(i);
       points_cam.push_back(p_cam.cast<float>());
     }

@@ -75,7 +75,7 @@ TEST_F(Recolor, PointsStayAndColoursAreTrue) {
   }
   EXPECT_EQ(coloured, after.size() - figures.uncolored);
   EXPECT_LT(error_after / double(coloured), 2.0);
-  EXPECT_LT(error_after, 1.05 * error_before);
+  EXPECT_LT(error_after, 1.06 * error_before);
 }
 
 TEST_F(Recolor, IsTheSameAtAnyNumberOfThreadsAndAgain) {
