@@ -1,14 +1,13 @@
 #include "fovea/evaluation/seams.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "fovea/core/median.h"
+#include "fovea/evaluation/distribution.h"
 #include "fovea/geometry/voxel_members.h"
 
 namespace fovea {
@@ -59,19 +58,16 @@ SeamFigures find_seams(const PointCloud& points) {
     }
   }
   SeamFigures figures;
-  std::vector<double> sizes;
+  std::vector<float> sizes;
   for (auto& [views, of_pair] : steps) {
     if (of_pair[0].size() < kLeastPlaces) continue;
     ++figures.pairs;
     for (std::vector<double>& of_channel : of_pair) {
       const double codes = std::abs(median_of(std::move(of_channel)));
-      sizes.push_back(100 * (std::exp2(codes / kColorCodesPerStop) - 1));
+      sizes.push_back(static_cast<float>(100 * (std::exp2(codes / kColorCodesPerStop) - 1)));
     }
   }
-  if (sizes.empty()) return {0, std::numeric_limits<double>::quiet_NaN()};
-  const auto p95 = sizes.begin() + std::ptrdiff_t(sizes.size() * 95 / 100);
-  std::nth_element(sizes.begin(), p95, sizes.end());
-  figures.p95_percent = *p95;
+  figures.p95_percent = distribution(std::move(sizes)).p95;
   return figures;
 }
 

@@ -56,7 +56,7 @@ std::optional<ViewLight> median_light(const std::vector<FrameRecord>& frames) {
   return light;
 }
 
-/// Of a code, as a view with this light shows it; not above 255.
+/// Of a code, as a view with this light shows it; may exceed 255.
 Eigen::Array3f shown_value(int code, const ViewLight& light) {
   const auto number = static_cast<std::uint16_t>(code);
   const Eigen::Vector3f in_map = to_float(LogColor::of_codes(number, number, number));

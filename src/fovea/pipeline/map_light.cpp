@@ -5,7 +5,7 @@
 namespace fovea {
 namespace {
 
-/// A place counts as revisited if so many of its points are compared.
+/// A place counts as revisited from this number of compared points on.
 constexpr std::size_t kRevisitedPoints = 400;
 
 /// The earlier submap of which an image shows most, if that is enough to compare.

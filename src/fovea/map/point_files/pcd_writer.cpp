@@ -38,19 +38,12 @@ std::string pcd_header(const PointStream& points, const PointFileOptions& option
 
 ExportFigures write_pcd(const MapReader& map, const std::filesystem::path& path,
                         const PointFileOptions& options) {
-  return write_point_file(map, path, options, pcd_header,
-                          [&](const ExportPoint& point, BytePacker& packer) {
-                            pack_position(point, options.doubles(), packer);
-                            if (options.points.deep_colors) {
-                              pack_deep_color(point, packer);
-                            } else {
-                              packer.put(point.color.b);
-                              packer.put(point.color.g);
-                              packer.put(point.color.r);
-                              packer.put(std::uint8_t{0});
-                            }
-                            pack_provenance(point, packer);
-                          });
+  return write_point_file(map, path, options, pcd_header, [](Rgb color, BytePacker& packer) {
+    packer.put(color.b);
+    packer.put(color.g);
+    packer.put(color.r);
+    packer.put(std::uint8_t{0});
+  });
 }
 
 }  // namespace fovea

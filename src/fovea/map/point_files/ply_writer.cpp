@@ -40,18 +40,11 @@ std::string ply_header(const PointStream& points, const PointFileOptions& option
 
 ExportFigures write_ply(const MapReader& map, const std::filesystem::path& path,
                         const PointFileOptions& options) {
-  return write_point_file(map, path, options, ply_header,
-                          [&](const ExportPoint& point, BytePacker& packer) {
-                            pack_position(point, options.doubles(), packer);
-                            if (options.points.deep_colors) {
-                              pack_deep_color(point, packer);
-                            } else {
-                              packer.put(point.color.r);
-                              packer.put(point.color.g);
-                              packer.put(point.color.b);
-                            }
-                            pack_provenance(point, packer);
-                          });
+  return write_point_file(map, path, options, ply_header, [](Rgb color, BytePacker& packer) {
+    packer.put(color.r);
+    packer.put(color.g);
+    packer.put(color.b);
+  });
 }
 
 }  // namespace fovea

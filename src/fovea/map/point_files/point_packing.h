@@ -47,16 +47,26 @@ void write_points(const PointStream& points, std::ostream& stream, Pack&& pack) 
   });
 }
 
-/// Writes a file of a header and all points, with `pack(point, packer)`; it appears when it is
+/// Writes a file of a header and all points: position, color, provenance. It appears when it is
 /// whole.
-/// @param header  the text of `header(points, options)`
-template <class Header, class Pack>
+/// @param header      the text of `header(points, options)`
+/// @param pack_color  packs a color of 8 bits: `pack_color(color, packer)`
+template <class Header, class PackColor>
 ExportFigures write_point_file(const MapReader& map, const std::filesystem::path& path,
-                               const PointFileOptions& options, Header&& header, Pack&& pack) {
+                               const PointFileOptions& options, Header&& header,
+                               PackColor&& pack_color) {
   OutputFile file(path, options.force);
   const PointStream points(map, options.points);
   file.stream() << header(points, options);
-  write_points(points, file.stream(), pack);
+  write_points(points, file.stream(), [&](const ExportPoint& point, BytePacker& packer) {
+    pack_position(point, options.doubles(), packer);
+    if (options.points.deep_colors) {
+      pack_deep_color(point, packer);
+    } else {
+      pack_color(point.color, packer);
+    }
+    pack_provenance(point, packer);
+  });
   file.commit();
   return points.figures();
 }

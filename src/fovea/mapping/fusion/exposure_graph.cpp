@@ -20,7 +20,7 @@ constexpr double kTypicalColor = 0.1;  // of the most frequent color
 constexpr double kAnchor = 0.0001;     // of the first submap
 constexpr double kRobust = 1.5;        // width of Huber's kernel, standard deviations
 constexpr int kRounds = 5;
-/// A new submap that closes no loop changes only so many of the last ones.
+/// If no loop closes, the gains of older submaps stay.
 constexpr std::size_t kRecentSubmaps = 256;
 /// Of a camera whose exposure has hardly changed: sRGB's.
 constexpr double kUsualSlope = 1 / 2.4;
