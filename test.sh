@@ -52,6 +52,7 @@ if ! $sanitize; then
   scripts/check_layers.sh
   scripts/check_format.sh
   scripts/check_sizes.sh
+  scripts/check_types.sh
   scripts/build.sh release
   run_tests release
   exit 0

@@ -11,7 +11,7 @@ constexpr std::size_t kViewsBetween = 5;              // half a second at 10 Hz
 constexpr std::size_t kFirstFit = 5, kLastFit = 160;  // pairs
 constexpr std::size_t kPointsOfView = 1500;
 
-bool can_be_compared(const SeenPoint& point) {
+bool can_be_compared(const PointInImage& point) {
   return point.value.minCoeff() >= kDarkValue && point.value.maxCoeff() < kSaturatedValue;
 }
 
@@ -26,8 +26,8 @@ void for_each_seen(const std::vector<Eigen::Vector3d>& points_cam, const ImagePy
     const float width = float(footprint * camera.fx / points_cam[i].z());
     ColorBlock color;
     image.colors_at({&u, 1}, {&v, 1}, {&width, 1}, color);
-    f(i, SeenPoint{{color.red[0], color.green[0], color.blue[0]},
-                   squared_distance_from_center(camera, *pixel)});
+    f(i, PointInImage{{color.red[0], color.green[0], color.blue[0]},
+                      squared_distance_from_center(camera, *pixel)});
   }
 }
 
@@ -48,10 +48,11 @@ void ResponseEstimate::add(const std::vector<Eigen::Vector3f>& points_cam,
   if (views_.size() == kViewsBetween) {
     const View& before = views_.front();
     std::vector<Eigen::Vector3d> now_cam;
+    now_cam.reserve(before.points_odom.size());
     const RigidMotion T_cam_odom = T_odom_cam.inverse();
     for (const Eigen::Vector3d& p : before.points_odom) now_cam.push_back(T_cam_odom * p);
     std::vector<SharedPoint> pair;
-    for_each_seen(now_cam, image, camera, footprint, [&](std::size_t i, const SeenPoint& seen) {
+    for_each_seen(now_cam, image, camera, footprint, [&](std::size_t i, const PointInImage& seen) {
       if (can_be_compared(seen)) pair.push_back({before.seen[i], seen});
     });
     views_.pop_front();
@@ -66,7 +67,7 @@ void ResponseEstimate::add(const std::vector<Eigen::Vector3f>& points_cam,
     chosen_cam.push_back(points_cam[i].cast<double>());
   }
   View& view = views_.emplace_back();
-  for_each_seen(chosen_cam, image, camera, footprint, [&](std::size_t i, const SeenPoint& seen) {
+  for_each_seen(chosen_cam, image, camera, footprint, [&](std::size_t i, const PointInImage& seen) {
     if (!can_be_compared(seen)) return;
     view.points_odom.push_back(T_odom_cam * chosen_cam[i]);
     view.seen.push_back(seen);

@@ -31,7 +31,7 @@ class ResponseEstimate {
   /// The points of one scan in its image.
   struct View {
     std::vector<Eigen::Vector3d> points_odom;
-    std::vector<SeenPoint> seen;
+    std::vector<PointInImage> seen;
   };
   std::deque<View> views_;  // the last ones
   ResponseFit fit_;

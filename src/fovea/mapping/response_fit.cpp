@@ -34,6 +34,7 @@ Eigen::Vector3d powers(double s) { return {s, s * s, s * s * s}; }
 /// of both: a limit for each would favor points whose noise goes one way.
 std::vector<SharedPoint> well_exposed(const std::vector<SharedPoint>& points, int channel) {
   std::vector<float> ratios;
+  ratios.reserve(points.size());
   for (const SharedPoint& point : points) {
     ratios.push_back(std::log2(point.second.value[channel] / point.first.value[channel]));
   }
@@ -125,6 +126,7 @@ void ResponseFit::add(const std::vector<SharedPoint>& points) {
   constexpr std::size_t kLeastPoints = 50;
   if (points.size() < kLeastPoints) return;
   std::vector<float> distances;
+  distances.reserve(points.size());
   for (const SharedPoint& point : points) distances.push_back(point.second.squared_distance);
   const auto far = distances.begin() + std::ptrdiff_t(distances.size() * 9 / 10);
   std::nth_element(distances.begin(), far, distances.end());

@@ -10,14 +10,14 @@
 namespace fovea {
 
 /// A point in an image.
-struct SeenPoint {
+struct PointInImage {
   Eigen::Array3f value;        ///< 0 to 255
   float squared_distance = 0;  ///< from the principal point; 1: the farthest corner
 };
 
 /// A point in two images.
 struct SharedPoint {
-  SeenPoint first, second;
+  PointInImage first, second;
 };
 
 /// The response under which the points of each pair of images differ by one gain per channel:

@@ -42,7 +42,7 @@ std::vector<SharedPoint> pair_of(const TrueCamera& camera, const Scene& scene, i
     point.second = {
         Eigen::Array3f::Constant(camera.value(second_exposure * light * (is_hidden ? 0.4 : 1), s2)),
         float(s2)};
-    for (SeenPoint* seen : {&point.first, &point.second}) {
+    for (PointInImage* seen : {&point.first, &point.second}) {
       for (int c = 0; c < 3; ++c) {
         seen->value[c] *= static_cast<float>(std::exp(scene.noise * random.normal()));
       }

@@ -133,6 +133,7 @@ std::vector<ExposureGraph::Prior> ExposureGraph::priors_of(const Camera& camera,
                                                            const std::vector<double>& gains) const {
   std::vector<Prior> priors;
   std::vector<double> constants;  // of the camera, as each submap has it
+  constants.reserve(camera.levels.size());
   const bool is_metered = camera.is_metered();
   for (std::size_t submap = 0; submap < camera.levels.size(); ++submap) {
     const Level& level = camera.levels[submap];
@@ -162,6 +163,7 @@ std::vector<ExposureGraph::Prior> ExposureGraph::priors_of(const Camera& camera,
 
 void ExposureGraph::optimize_channel(int channel, std::size_t first) {
   std::vector<double> gains;
+  gains.reserve(gains_.size());
   for (const LogGain& gain : gains_) gains.push_back(double(gain[channel]));
   for (int round = 0; round < kRounds; ++round) {
     Equations equations(first, gains, drift_[channel]);
