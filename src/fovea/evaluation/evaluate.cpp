@@ -102,6 +102,7 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
       report.roughness += view.roughness;
       report.pictures += view.pictures;
       report.shift += view.shift;
+      report.far_field += view.far_field;
       report.views.push_back(view);
     }
     score = {};

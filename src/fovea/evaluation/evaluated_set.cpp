@@ -40,7 +40,7 @@ PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& pla
 
 EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud& compensated_lidar,
                              const PlacedFrame& placed, const Camera& camera, const Image& image,
-                             const Eigen::Vector3d& origin_local) {
+                             const Eigen::Vector3d& origin_local, const RangeBand& band) {
   if (measured_lidar.size() != compensated_lidar.size()) {
     throw std::invalid_argument("the measured and the compensated scan differ in length");
   }
@@ -50,7 +50,7 @@ EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud&
   EvaluatedView view{placed.index, camera.index, image.channels == 1, {}, {}, {}, {}};
   for (std::size_t i = 0; i < measured_lidar.size(); ++i) {
     const float range = measured_lidar.position[i].norm();
-    if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
+    if (!(range > band.near && range < band.far)) continue;
     const Eigen::Vector3d p_lidar = compensated_lidar.position[i].cast<double>();
     const std::optional<Eigen::Vector2d> pixel =
         scored_pixel(camera, Eigen::Vector3d(camera.T_cam_lidar * p_lidar));

@@ -14,6 +14,11 @@ inline constexpr float kEvaluatedNear = 3.0f, kEvaluatedFar = 15.0f;
 /// ... and this far in front of the scored camera (m, excluded).
 inline constexpr double kEvaluatedDepth = 0.5;
 
+/// Ranges as measured, m, both excluded.
+struct RangeBand {
+  float near = kEvaluatedNear, far = kEvaluatedFar;
+};
+
 /// Where a frame's scan is placed.
 struct PlacedFrame {
   int index = 0;
@@ -49,8 +54,9 @@ PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& pla
 /// @param compensated_lidar  the same points in the same order, motion compensated
 /// @param image              of `camera`
 /// @param origin_local       that the positions are made relative to
+/// @param band               other ranges than those of the evaluated set
 EvaluatedView evaluated_view(const PointCloud& measured_lidar, const PointCloud& compensated_lidar,
                              const PlacedFrame& placed, const Camera& camera, const Image& image,
-                             const Eigen::Vector3d& origin_local);
+                             const Eigen::Vector3d& origin_local, const RangeBand& band = {});
 
 }  // namespace fovea

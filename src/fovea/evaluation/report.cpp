@@ -113,6 +113,33 @@ void put_structure(Json& json, const EvaluationReport& report) {
   json["warnings"] = report.warnings;
 }
 
+Json far_json(const FarSums& sums) {
+  const auto share = [](double part, std::size_t whole) {
+    return whole == 0 ? ErrorFigures::kNone : part / double(whole);
+  };
+  return {{"points", sums.points},
+          {"coverage_5cm", share(double(sums.covered_5cm), sums.points)},
+          {"coverage_10cm", share(double(sums.covered_10cm), sums.points)},
+          {"te_cross_mean", share(sums.color, sums.points)},
+          {"double_layers", share(double(sums.double_layer), sums.flat)}};
+}
+
+void put_far_field(Json& json, const FarField& field) {
+  json["explanation"] =
+      "visible returns from 15 to 60 m; coverage within 5 or 10 cm, or the footprint of a pixel";
+  json["all"] = far_json(field.all());
+  json["bands"] = Json::array();
+  for (std::size_t band = 0; band < kFarBands.size(); ++band) {
+    json["bands"].push_back({{"near_m", kFarBands[band].near},
+                             {"far_m", kFarBands[band].far},
+                             {"ground", far_json(field.bands[band].ground)},
+                             {"upright", far_json(field.bands[band].upright)}});
+  }
+  json["holes"] = field.share_of_holes();
+  json["psnr_measured"] = field.psnr();
+  json["measured_pixels"] = field.measured;
+}
+
 void put_rules(Json& json, const ErrorsByRule& by_rule) {
   json = Json::object();
   for (std::size_t rule = 0; rule < kPointRules; ++rule) {
@@ -163,6 +190,7 @@ std::string to_json(const EvaluationReport& report) {
   json["density_per_m2"] = report.density_per_m2;
   put_set(json["visible"], report.visible);
   put_structure(json, report);
+  put_far_field(json["far_field"], report.far_field);
   put_rules(json["by_rule"], report.by_rule);
   put_moving(json["without_moving"], report.without_moving);
   if (!report.blocks.empty()) put_blocks(json["blocks"], report);
@@ -272,6 +300,28 @@ std::string to_text(const EvaluationReport& report) {
       fmt::format("dB, SSIM {:.3f} on the {:.1f}% covered; all {:.2f} dB, {:.3f}",
                   report.pictures.mean_ssim_covered(), 100 * report.pictures.share_covered(),
                   report.pictures.psnr_all(), report.pictures.mean_ssim_all()));
+  const auto far_row = [&](std::string_view name, const FarSums& sums) {
+    if (sums.points == 0) return;
+    const Json far = far_json(sums);
+    const auto figure = [&](const char* key, int digits) {
+      return number(far[key].get<double>(), digits);
+    };
+    row(name, figure("coverage_10cm", 3),
+        fmt::format("within 10 cm or a pixel; 5 cm {}, TE {}, double layers {}; {} points",
+                    figure("coverage_5cm", 3), figure("te_cross_mean", 1),
+                    figure("double_layers", 3), sums.points));
+  };
+  far_row("coverage 15 to 60 m", report.far_field.all());
+  for (std::size_t band = 0; band < kFarBands.size(); ++band) {
+    const auto name = [&](const char* kind) {
+      return fmt::format("  {} to {} m, {}", kFarBands[band].near, kFarBands[band].far, kind);
+    };
+    far_row(name("ground"), report.far_field.bands[band].ground);
+    far_row(name("upright"), report.far_field.bands[band].upright);
+  }
+  row("PSNR of all measured", number(report.far_field.psnr(), 2),
+      fmt::format("dB, holes {:.3f} of {} pixels up to {} m", report.far_field.share_of_holes(),
+                  report.far_field.measured, kFarBands.back().far));
   row("points per m^2", number(report.density_per_m2, 0),
       fmt::format("{} coloured of {}", report.map_points_coloured, report.map_points));
   row("interpolated", number(f.share_interpolated, 3),

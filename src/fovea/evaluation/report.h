@@ -8,6 +8,7 @@
 #include "fovea/evaluation/color_rules_report.h"
 #include "fovea/evaluation/consistency.h"
 #include "fovea/evaluation/error_split.h"
+#include "fovea/evaluation/far_field.h"
 #include "fovea/evaluation/free_space.h"
 #include "fovea/evaluation/map_geometry.h"
 #include "fovea/evaluation/metrics.h"
@@ -30,6 +31,7 @@ struct ViewReport {
   RoughnessSums roughness = {};
   PictureSums pictures = {};
   ShiftSums shift = {};
+  FarField far_field = {};
 };
 
 /// A selected frame that the drive could not give.
@@ -92,6 +94,7 @@ struct EvaluationReport {
   ScanScores scan_scores;
   PictureSums pictures;
   ShiftSums shift;
+  FarField far_field;
   double share_within_2mm = ErrorFigures::kNone;  ///< of the points, of a map point
   PoseStray stray;
   std::vector<std::string> warnings;  ///< see warnings.h

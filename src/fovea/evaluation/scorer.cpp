@@ -167,6 +167,7 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   report.gains = gains;
   report.figures = summarize(errors);
   compare_with_photograph(placed, camera, image, report);
+  compare_far(frame.scan, scan, placed, camera, image, report);
   score.errors.append(errors);
   mark_points(view, scan, camera, score);
   score.split.append(
@@ -180,6 +181,16 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   }
   score.positions.insert(score.positions.end(), view.position.begin(), view.position.end());
   score.views.push_back(report);
+}
+
+void Scorer::compare_far(const PointCloud& measured, const PointCloud& scan,
+                         const PlacedFrame& placed, const Camera& camera, const Image& image,
+                         ViewReport& report) const {
+  SplatOptions options{.min_depth = kEvaluatedDepth, .display = exposure_of(report.gains)};
+  options.max_depth = double(kFarBands.back().far);
+  report.far_field =
+      compare_far_field({coloured_.position, coloured_.color, coloured_tree_, coloured_.origin},
+                        measured, scan, placed, camera, image, draw(placed, camera, options));
 }
 
 std::vector<Eigen::Vector3d> Scorer::nearest_in(const PlacedFrame& placed, const Camera& camera,

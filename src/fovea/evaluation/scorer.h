@@ -82,6 +82,8 @@ class Scorer {
   /// Draws the map in the exposure of the view (`report.gains`).
   void compare_with_photograph(const PlacedFrame& placed, const Camera& camera, const Image& image,
                                ViewReport& report);
+  void compare_far(const PointCloud& measured, const PointCloud& scan, const PlacedFrame& placed,
+                   const Camera& camera, const Image& image, ViewReport& report) const;
   /// Positions of the nearest map points in the camera's frame.
   std::vector<Eigen::Vector3d> nearest_in(const PlacedFrame& placed, const Camera& camera,
                                           const NearestSamples& nearest) const;
