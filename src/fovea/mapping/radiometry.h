@@ -50,7 +50,7 @@ struct Mode {
 /// median absolute deviation: hidden points and depth edges make one tail of the differences long.
 /// @param values  at least one
 /// @param window  width of the window; the reach is one to eight times this
-Mode mode_of(std::vector<float> values, float window);
+Mode mode_of(const std::vector<float>& values, float window);
 /// Tukey's biweight of a value, 0 to 1.
 double biweight(double value, const Mode& mode);
 

@@ -38,7 +38,7 @@ std::vector<SharedPoint> well_exposed(const std::vector<SharedPoint>& points, in
   for (const SharedPoint& point : points) {
     ratios.push_back(std::log2(point.second.value[channel] / point.first.value[channel]));
   }
-  const float half_gain = std::abs(mode_of(std::move(ratios), kWindow).value) / 2;
+  const float half_gain = std::abs(mode_of(ratios, kWindow).value) / 2;
   const float least = std::log2(kDarkValue) + half_gain + kExposureMargin;
   const float most = std::log2(kSaturatedValue) - half_gain - kExposureMargin;
   std::vector<SharedPoint> chosen;
