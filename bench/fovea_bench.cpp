@@ -98,7 +98,7 @@ void sample(benchmark::State& state, const BenchData& data) {
   const PointCloud scan = data.scan_cam.select(near);
   const SurfaceOptions options;
   const SampleGrid grid{RigidMotion::Identity(), options.spacing,
-                        [](const Eigen::Vector3d&) { return false; }};
+                        [](const Eigen::Vector3d&, int) { return false; }};
   const auto ours = [&] { return sample_surfaces(scan, data.camera, options, grid).size(); };
   const std::size_t points = ours();
   check(points > scan.size(), "no sample");

@@ -69,7 +69,7 @@ PointCloud densified(const PointCloud& measured_cam, const Camera& camera,
   if (settings.is_paper()) return upsample(measured_cam, camera, settings.paper().upsample);
   const MapperOptions options = suited_to(lidar, settings.mapper());
   const SampleGrid grid{camera.T_cam_lidar.inverse(), options.surface.spacing,
-                        [](const Eigen::Vector3d&) { return false; }};
+                        [](const Eigen::Vector3d&, int) { return false; }};
   return sample_surfaces(measured_cam, camera, options.surface, grid);
 }
 

@@ -14,6 +14,9 @@ namespace fovea {
 /// Provenance camera number of a point that no camera has coloured.
 inline constexpr std::int8_t kNoCamera = -1;
 
+/// At sampling level 0, 1, ... a point stands for a cell of 1, 2, 4, 8 or 16 times the spacing.
+inline constexpr int kSamplingLevels = 5;
+
 /// N points as columns. `position` is always there; every other column is empty or has N entries.
 /// Positions are in metres, in the frame that the variable's name says (`points_lidar`), relative
 /// to `origin` (of that same frame): float keeps a tenth of a millimetre within 1 km of it.
@@ -36,6 +39,7 @@ struct PointCloud {
   std::vector<std::uint16_t> weight;       ///< sum of their weights (mapping/color_fusion.h)
   std::vector<std::uint8_t> saturated;     ///< channels saturated in every view (fused_color.h)
   std::vector<std::uint8_t> reason;        ///< why it is there (core/point_reason.h)
+  std::vector<std::uint8_t> sampling_level;
 
   std::size_t size() const { return position.size(); }
   bool empty() const { return position.empty(); }
@@ -74,6 +78,7 @@ void for_each_optional_column(Cloud& cloud, F&& f) {
   f("weight", cloud.weight);
   f("saturated", cloud.saturated);
   f("reason", cloud.reason);
+  f("sampling_level", cloud.sampling_level);
 }
 
 /// Calls `f(name, column_a, column_b)` for each optional column of two clouds.
@@ -94,6 +99,7 @@ void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("weight", a.weight, b.weight);
   f("saturated", a.saturated, b.saturated);
   f("reason", a.reason, b.reason);
+  f("sampling_level", a.sampling_level, b.sampling_level);
 }
 
 }  // namespace fovea

@@ -61,9 +61,9 @@ class HeightSquares {
 Eigen::Vector3f upright_normal(const PointCloud& scan_lidar, const KdTree& tree,
                                const Eigen::Vector3f& p) {
   constexpr std::size_t kNeighbors = 16;
-  constexpr double kFlat = 0.03;      // m, deviation from the plane
-  constexpr double kWide = 0.1;       // m, deviation along the plane
-  constexpr float kUpright = 0.5f;    // most of the normal that is vertical
+  constexpr double kFlat = 0.03;    // m, deviation from the plane
+  constexpr double kWide = 0.1;     // m, deviation along the plane
+  constexpr float kUpright = 0.5f;  // most of the normal that is vertical
   std::vector<Neighbor> neighbors;
   tree.nearest_k(p, kNeighbors, neighbors);
   Eigen::Matrix3Xd offsets(3, neighbors.size());
@@ -112,8 +112,8 @@ class BandComparison {
         heights_(scan) {}
 
   FarBand compare(const RangeBand& band, const Image& photograph) const {
-    EvaluatedView view = evaluated_view(measured_, scan_, placed_, camera_, photograph,
-                                        map_.origin_local, band);
+    EvaluatedView view =
+        evaluated_view(measured_, scan_, placed_, camera_, photograph, map_.origin_local, band);
     std::vector<std::uint8_t> visible;
     for (std::size_t i = 0; i < view.pixel.size(); ++i) {
       visible.push_back(hiding_.hidden(view.pixel[i], p_cam(view, i).norm()) ? 0 : 1);
@@ -191,8 +191,10 @@ std::vector<std::uint8_t> measured_pixels(const PointCloud& scan, const Camera& 
   std::vector<std::uint32_t> in_view;
   for (std::uint32_t i = 0; i < scan.size(); ++i) {
     const Eigen::Vector3d p = scan.position[i].cast<double>();
-    const bool is_near = p.norm() > double(kEvaluatedNear) && p.norm() < double(kFarBands.back().far);
-    if (is_near && scored_pixel(camera, Eigen::Vector3d(camera.T_cam_lidar * p))) in_view.push_back(i);
+    const bool is_near =
+        p.norm() > double(kEvaluatedNear) && p.norm() < double(kFarBands.back().far);
+    if (is_near && scored_pixel(camera, Eigen::Vector3d(camera.T_cam_lidar * p)))
+      in_view.push_back(i);
   }
   PointCloud points_cam = transform_cloud(scan.select(in_view), camera.T_cam_lidar);
   drop_hidden(points_cam, scan, camera);
@@ -260,8 +262,8 @@ FarField compare_far_field(const FarMap& map, const PointCloud& measured_lidar,
     field.holes += drawn.covered[pixel] == 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t in_photograph = photograph.channels == 1 ? pixel : 3 * pixel + c;
-      const double difference = double(drawn.image.data[3 * pixel + c]) -
-                                double(photograph.data[in_photograph]);
+      const double difference =
+          double(drawn.image.data[3 * pixel + c]) - double(photograph.data[in_photograph]);
       field.squared += difference * difference / 3;
     }
   }

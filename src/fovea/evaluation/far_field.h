@@ -1,4 +1,5 @@
-// What a map shows beyond the evaluated set: from 15 m, where that ends, to 60 m (docs/method.md 7).
+// What a map shows beyond the evaluated set: from 15 m, where that ends, to 60 m (docs/method.md
+// 7).
 #pragma once
 
 #include <array>

@@ -47,6 +47,20 @@ class CellBrick {
   bool test(const Eigen::Array3i& cell) const {
     return (layers_[layer(cell)] >> bit(cell) & 1) != 0;
   }
+  /// Whether a cell of a cube is marked.
+  /// @param low   its lowest cell: multiples of `edge`
+  /// @param edge  in cells: 1, 2, 4 or 8
+  bool test_cube(const Eigen::Array3i& low, int edge) const {
+    if (edge == 1) return test(low);
+    std::uint64_t square = 0;  // of a layer
+    for (int y = 0; y < edge; ++y) {
+      square |= (~std::uint64_t{0} >> (64 - edge)) << bit(low + Eigen::Array3i(0, y, 0));
+    }
+    for (int z = 0; z < edge; ++z) {
+      if ((layers_[layer(low) + std::size_t(z)] & square) != 0) return true;
+    }
+    return false;
+  }
   /// @return whether the cell is new
   bool mark(const Eigen::Array3i& cell) {
     std::uint64_t& bits = layers_[layer(cell)];

@@ -35,6 +35,21 @@ TEST(CellBrick, MarksAddUp) {
   for (int i = 0; i < 512; ++i) ASSERT_TRUE(brick.test({i & 7, i >> 3 & 7, i >> 6}));
 }
 
+TEST(CellBrick, ACubeIsMarkedIfOneOfItsCellsIs) {
+  for (int marked = 0; marked < 512; ++marked) {
+    CellBrick brick;
+    const Eigen::Array3i cell(marked & 7, marked >> 3 & 7, marked >> 6);
+    brick.mark(cell);
+    for (const int edge : {1, 2, 4, 8}) {
+      for (int i = 0; i < 512; ++i) {
+        const Eigen::Array3i low = Eigen::Array3i(i & 7, i >> 3 & 7, i >> 6) / edge * edge;
+        const bool holds = (cell >= low).all() && (cell < low + edge).all();
+        ASSERT_EQ(brick.test_cube(low, edge), holds);
+      }
+    }
+  }
+}
+
 TEST(CellSet, CellsOnBothSidesOfBordersAreTheirOwn) {
   CellSet cells;
   std::set<Key> expected;

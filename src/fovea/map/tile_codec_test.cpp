@@ -26,8 +26,8 @@ TEST(TileDecoder, AForgedSizeTakesNoMemory) {
 
 // A column that is the same everywhere compresses to a thousandth and less.
 TEST(TileDecoder, LargeTilesOfOneValueComeBack) {
-  const PointCloud tile =
-      one_point_each(std::vector<Eigen::Vector3f>(1 << 20, Eigen::Vector3f::Zero()));
+  PointCloud tile = one_point_each(std::vector<Eigen::Vector3f>(1 << 20, Eigen::Vector3f::Zero()));
+  tile.sampling_level.assign(tile.size(), 0);
   TileEncoder encoder;
   TileDecoder decoder;
   const TileRow row = encoder.encode(pack_tile({}, TilePoints::of(tile)));

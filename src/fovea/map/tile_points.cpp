@@ -50,6 +50,11 @@ Value* grow(std::vector<Value>& column, std::size_t count) {
   return column.data() + before;
 }
 
+bool has_coarse_points(const PointCloud& points) {
+  return std::any_of(points.sampling_level.begin(), points.sampling_level.end(),
+                     [](std::uint8_t level) { return level > 0; });
+}
+
 }  // namespace
 
 void TilePoints::check() const {
@@ -92,6 +97,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   points.colors.reserve(tile.size());
   for (std::size_t i = 0; i < tile.size(); ++i) points.colors.push_back(color_of(tile, i));
   for_each_run_column(points, tile, [](auto& to, const auto& from) { to.append(from); });
+  if (has_coarse_points(tile)) points.sampling_level.append(tile.sampling_level);
   points.widen_boxes(0);
   return points;
 }
@@ -121,6 +127,8 @@ PointCloud TilePoints::cloud() const {
     to.resize(from.size());
     from.copy_to(to);
   });
+  tile.sampling_level.resize(size());  // empty: 0
+  sampling_level.copy_to(tile.sampling_level);
   return tile;
 }
 
@@ -148,8 +156,14 @@ void TilePoints::append(const PointCloud& points, const TilePlaces& places,
     if (from.empty()) return;
     for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));
   });
+  if (has_coarse_points(points) || (!sampling_level.empty() && !points.sampling_level.empty())) {
+    if (before > 0 && sampling_level.empty()) sampling_level.push_back(0, std::uint32_t(before));
+    for (const auto& [begin, end] : ranges) {
+      sampling_level.append(std::span(points.sampling_level).subspan(begin, end - begin));
+    }
+  }
   for_each_default_column(*this, [&](auto& column) {
-    if (!column.empty()) column.push_back({}, static_cast<std::uint32_t>(count));
+    if (!column.empty() && column.size() < size()) column.push_back({}, std::uint32_t(count));
   });
   widen_boxes(before);
 }

@@ -79,7 +79,7 @@ struct TilePoints {
   /// nearest that can be kept. std::logic_error as check_tile_columns().
   static TilePoints of(const PointCloud& tile);
   /// The same as a cloud, which of() turns back into the tile, except for the columns that a cloud
-  /// does not have: `sensor`, `sampling_level` and `session`.
+  /// does not have: `sensor` and `session`.
   PointCloud cloud() const;
 
   /// Points of a cloud that follow each other: from `begin` up to before `end`.

@@ -46,10 +46,10 @@ class DepthBuffer {
                            std::span<std::uint32_t, ProjectedPoints::kSize> visible) const;
 
   /// Whether a point lies in front of the added surfaces, and is no part of them.
-  bool is_in_front(const Eigen::Vector2f& pixel, float depth) const {
+  /// @param farthest  depth of surfaces that count, m
+  bool is_in_front(const Eigen::Vector2f& pixel, float depth, float farthest) const {
     const float front = depth_[cell_of(pixel)];
-    return front != std::numeric_limits<float>::infinity() &&
-           front - depth > std::max(kBefore, kBeforeShare * depth);
+    return front < farthest && front - depth > std::max(kBefore, kBeforeShare * depth);
   }
 
  private:

@@ -23,7 +23,8 @@ FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
       camera_(camera),
       lidar_in_cam_(camera.T_cam_lidar.translation().cast<float>()),
       near_range2_(static_cast<float>(options.near_range * options.near_range)),
-      far_range2_(static_cast<float>(options.far_range * options.far_range)) {
+      far_range2_(static_cast<float>(options.far_range * options.far_range)),
+      reach2_(static_cast<float>(options.reach() * options.reach())) {
   for (const AngularSlice& s : options.slices_of(camera.index)) {
     slices_.push_back({float(std::tan(s.azimuth_min)), float(std::tan(s.azimuth_max)),
                        float(std::tan(s.elevation_min)), float(std::tan(s.elevation_max))});
@@ -32,7 +33,8 @@ FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
 
 bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const {
   if (!(p_cam.z() > float(Camera::kMinDepth))) return false;
-  if (!in_white_zone(p_cam)) return false;
+  const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
+  if (!(range2 > near_range2_ && range2 < reach2_)) return false;
   const float inverse_depth = 1 / p_cam.z();
   pixel = {float(camera_.fx) * p_cam.x() * inverse_depth + float(camera_.cx),
            float(camera_.fy) * p_cam.y() * inverse_depth + float(camera_.cy)};

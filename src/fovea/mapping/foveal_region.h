@@ -2,6 +2,7 @@
 // 4).
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -19,7 +20,9 @@ struct AngularSlice {
 
 struct FovealOptions {
   double near_range = 3.0;  ///< m from the LiDAR: end of the near blind zone (the vehicle)
-  double far_range = 18.0;  ///< m from the LiDAR: start of the far blind zone
+  double far_range = 18.0;  ///< m from the LiDAR: end of the white zone
+  /// m from the LiDAR: end of the periphery, which has coarser points; 0: there is none.
+  double periphery_range = 0;
   /// Slices whose union is processed; empty: the whole view of the camera.
   std::vector<AngularSlice> slices = {};
   /// Slices of single cameras by number, in place of `slices`.
@@ -28,6 +31,7 @@ struct FovealOptions {
   /// about 70 degrees), rad; pi / 2: no limit. Points without a normal pass.
   double max_incidence = 1.5707963267948966;
 
+  double reach() const { return std::max(far_range, periphery_range); }
   /// Slices of a camera. Views of a LiDAR without cameras (kNoCamera) have none.
   std::vector<AngularSlice> slices_of(int camera) const;
 };
@@ -38,16 +42,23 @@ class FovealRegion {
   FovealRegion(const FovealOptions& options, const Camera& camera);
 
   const Camera& camera() const { return camera_; }
+  /// End of the white zone, m from the LiDAR.
   double far_range() const { return options_.far_range; }
+  /// End of the region, m from the LiDAR.
+  double reach() const { return options_.reach(); }
 
-  /// Whether a point in the camera's frame lies in the white zone, the image and a slice.
+  /// Whether a point in the camera's frame lies in the white zone or the periphery, the image and a
+  /// slice.
   /// @param pixel  the projection, if the result is true
   bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
 
-  /// Whether a point in the camera's frame lies in the white zone.
-  bool in_white_zone(const Eigen::Vector3f& p_cam) const {
+  /// Whether a view may color a point of the map: in the white zone, and in the periphery from no
+  /// farther than it was measured.
+  /// @param p_cam  camera frame
+  /// @param range  from which the point was measured, m
+  bool may_color(const Eigen::Vector3f& p_cam, float range) const {
     const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
-    return (range2 > near_range2_) & (range2 < far_range2_);  // & avoids a branch
+    return (range2 > near_range2_) & (range2 < std::clamp(range * range, far_range2_, reach2_));
   }
   /// Whether a point in front of the camera lies in one of its slices.
   bool in_slices(const Eigen::Vector3f& p_cam) const;
@@ -63,7 +74,7 @@ class FovealRegion {
   FovealOptions options_;
   Camera camera_;
   Eigen::Vector3f lidar_in_cam_;
-  float near_range2_, far_range2_;  // m^2
+  float near_range2_, far_range2_, reach2_;  // m^2
   std::vector<SlopeBounds> slices_;
 };
 

@@ -42,19 +42,6 @@ bool is_flat(const ImageMesh& mesh, const std::vector<Eigen::Vector3f>& area, st
   return true;
 }
 
-/// Number of halvings of the samples after which at most `max_per_pixel` project to a pixel.
-/// @param normal  of length 1
-std::uint8_t halvings_for(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& normal,
-                          const Camera& camera, const SurfaceOptions& options) {
-  // Area of a plane in a pixel: depth^3 / (fx fy |normal . p|).
-  const double limit = options.max_per_pixel * options.spacing * options.spacing * camera.fx *
-                       camera.fy * std::abs(normal.dot(p_cam));
-  double shown = p_cam.z() * p_cam.z() * p_cam.z();
-  std::uint8_t halvings = 0;
-  for (; halvings < Surface::kMostHalvings && shown > limit; ++halvings) shown /= 2;
-  return halvings;
-}
-
 /// @return the normal of each triangle, with the length of twice its area
 std::vector<Eigen::Vector3f> find_triangles(const GridProjection& project,
                                             const SurfaceOptions& options, Surface& surface) {
@@ -103,19 +90,33 @@ void find_normals(const std::vector<Eigen::Vector3f>& area, Surface& surface) {
   }
 }
 
-void find_halvings(const GridProjection& project, const Camera& camera,
-                   const SurfaceOptions& options, Surface& surface) {
-  surface.halvings.assign(surface.triangles.size(), 0);
-  if (options.max_per_pixel == 0) return;
+void find_levels(const GridProjection& project, const Camera& camera, const SurfaceOptions& options,
+                 Surface& surface) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& [a, b, c] = surface.triangles[t];
     const std::vector<Eigen::Vector3f>& p = surface.mesh.position;
-    surface.halvings[t] = halvings_for(project.from_camera((p[a] + p[b] + p[c]) / 3),
-                                       surface.triangle_normal[t].cast<double>(), camera, options);
+    surface.level.push_back(sampling_level(project.from_camera((p[a] + p[b] + p[c]) / 3),
+                                           surface.triangle_normal[t].cast<double>(), camera,
+                                           options));
   }
 }
 
 }  // namespace
+
+std::uint8_t sampling_level(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& normal,
+                            const Camera& camera, const SurfaceOptions& options) {
+  const bool is_far = p_cam.norm() > options.full_density_range;
+  if (!is_far && options.max_per_pixel == 0) return 0;
+  const double per_pixel = is_far ? 1 : options.max_per_pixel;
+  // Area of a plane in a pixel, m^2.
+  const double cubed = p_cam.z() * p_cam.z() * p_cam.z();
+  const double area = cubed / (camera.fx * camera.fy * std::abs(normal.dot(p_cam)));
+  std::uint8_t level = 0;
+  for (double cell = options.spacing; level + 1 < kSamplingLevels; cell *= 2, ++level) {
+    if (!(area > 2 * per_pixel * cell * cell)) break;
+  }
+  return level;
+}
 
 Surface find_surface(const PointCloud& points_cam, const Camera& camera,
                      const SurfaceOptions& options) {
@@ -123,7 +124,7 @@ Surface find_surface(const PointCloud& points_cam, const Camera& camera,
   const GridProjection project(camera, points_cam.origin);
   Surface surface{ImageMesh(points_cam, project), {}, {}, {}, {}, {}};
   find_normals(find_triangles(project, options, surface), surface);
-  find_halvings(project, camera, options, surface);
+  find_levels(project, camera, options, surface);
   return surface;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "fovea/core/point_cloud.h"
@@ -16,9 +17,11 @@ struct SurfaceOptions {
   double max_edge = 0.4;                     ///< m: triangles with shorter edges are surface
   double planar_edge = 1.0;                  ///< m: the same where the surface is flat
   double planar_angle = 0.5235987755982988;  ///< rad, between the normals on both sides of an edge
-  /// Largest number of samples in a pixel; 0: no limit. If more cells project to a pixel, only
-  /// every second, fourth or eighth is sampled: the image cannot resolve more.
+  /// About this many samples in a pixel, 0: no limit. If more of the finest cells project to a
+  /// pixel, cells of 2, 4, 8 or 16 times their edge are sampled: the image cannot resolve more.
   double max_per_pixel = 4;
+  /// m from the camera: beyond, one sample in a pixel suffices.
+  double full_density_range = std::numeric_limits<double>::infinity();
 };
 
 /// The surface triangles between a cloud's projected points, and their normals.
@@ -28,10 +31,14 @@ struct Surface {
   std::vector<PointRule> rule;                   ///< by triangle: the rule that admits it
   std::vector<Eigen::Vector3f> vertex_normal;    ///< by vertex of the mesh; zero without a triangle
   std::vector<Eigen::Vector3f> triangle_normal;  ///< mean of its corners
-  std::vector<std::uint8_t> halvings;  ///< by triangle: one in 2^n of its cells is sampled
-
-  static constexpr std::uint8_t kMostHalvings = 3;
+  std::vector<std::uint8_t> level;               ///< by triangle: the sampling level
 };
+
+/// The level at which a surface is sampled, so that a pixel has between half and twice as many
+/// samples as the options say.
+/// @param normal  of length 1
+std::uint8_t sampling_level(const Eigen::Vector3d& p_cam, const Eigen::Vector3d& normal,
+                            const Camera& camera, const SurfaceOptions& options);
 
 /// Selects the surface among the triangles between the projected points (2D Delaunay, as in
 /// upsample()).

@@ -6,35 +6,33 @@
 
 #include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
-#include "fovea/geometry/cell_brick.h"
 #include "fovea/mapping/surface.h"
 
 namespace fovea {
 
-/// The grid of the samples.
+/// The grid of the samples: cells of the finest level; at each further level twice as large.
 struct SampleGrid {
   RigidMotion T_grid_cam;
-  double cell = 0;  ///< edge of a cell, m
-  /// Whether the cell of a point already has a point; called from several threads.
-  std::function<bool(const Eigen::Vector3d& p_grid)> taken;
-  /// More cells that have a point: a brick by its number (CellBrick::number_of), or nullptr. Faster
-  /// than `taken`, since neighbors share a brick.
-  std::function<const CellBrick*(const Eigen::Array3i& brick)> taken_brick =
-      [](const Eigen::Array3i&) { return nullptr; };
+  double cell = 0;  ///< edge of a finest cell, m
+  /// Whether the cell of a level around a point already has a point, of this level or a finer one;
+  /// called from several threads.
+  std::function<bool(const Eigen::Vector3d& p_grid, int level)> taken;
   /// Positions will be rounded to multiples of this, m; 0: not rounded. The cell of a point is that
   /// of its rounded position. Otherwise each scan would add the point again.
   double step = 0;
 };
 
-/// Samples each triangle where the centers of the grid's cells project onto it along one axis: that
-/// nearest to its normal. Samples of all frames and triangles therefore share the same positions.
+/// Samples each triangle where the centers of the cells of its level project onto it along one
+/// axis: that nearest to its normal. Samples of all frames and triangles therefore share the same
+/// positions.
 ///
 /// @param points_cam  the points of the surface
+/// @param options     for the levels of the points
 /// @return the points in free cells in their order, then the samples with the mean intensity of
-/// their
-///         corners. At most one for each cell. Has the columns of upsample() and
-///         normals; `reason` tells which rule admitted the triangle.
+///         their corners: at most one for each cell of a level. Has the columns of upsample(),
+///         normals and levels; `reason` tells which rule admitted the triangle.
 PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
+                          const Camera& camera, const SurfaceOptions& options,
                           const SampleGrid& grid);
 
 /// find_surface() and sample_surface().

@@ -43,7 +43,7 @@ inline PointCloud scan(const BoxScene& scene, const Rings& rings = {}) {
 
 inline Box wall_at(double depth) { return {{-20, -10, depth}, {20, 10, depth + 1}}; }
 
-inline bool nothing_taken(const Eigen::Vector3d&) { return false; }
+inline bool nothing_taken(const Eigen::Vector3d&, int) { return false; }
 
 inline SampleGrid grid_at(const RigidMotion& T_grid_cam) {
   return {T_grid_cam, kCell, nothing_taken};
@@ -64,14 +64,14 @@ inline RigidMotion random_motion(Random& random) {
 
 using CellKey = std::array<int, 3>;
 
-inline CellKey cell_of(const Eigen::Vector3d& p_grid) {
-  const Eigen::Array3i cell = (p_grid.array() / kCell).floor().cast<int>();
+inline CellKey cell_of(const Eigen::Vector3d& p_grid, int level = 0) {
+  const Eigen::Array3i cell = (p_grid.array() / (kCell * (1 << level))).floor().cast<int>();
   return {cell.x(), cell.y(), cell.z()};
 }
 
-inline double off_center(double coordinate) {
-  const double cells = coordinate / kCell - 0.5;
-  return std::abs(cells - std::round(cells)) * kCell;
+inline double off_center(double coordinate, int level = 0) {
+  const double edge = kCell * (1 << level), cells = coordinate / edge - 0.5;
+  return std::abs(cells - std::round(cells)) * edge;
 }
 
 }  // namespace fovea::surface_test

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "fovea/core/parallel.h"
 #include "fovea/mapping/projected_block.h"
@@ -23,10 +24,29 @@ float trust(float darkest, float brightest) {
   return std::clamp(std::min(above_noise, below_saturation), kLeastShare, 1.0f);
 }
 
-float code_of(float value) {
+/// Replaces gray values by color codes.
+void to_codes(std::span<float> values) {
   constexpr float kLeastValue = 0.5f;  // half a gray value: a black pixel
-  return float(kColorCodeOfOne) +
-         float(kColorCodesPerStop) * std::log2(std::max(value, kLeastValue));
+  constexpr float kCodesPerE = float(kColorCodesPerStop) * std::numbers::log2e_v<float>;
+  Eigen::Map<Eigen::ArrayXf> codes(values.data(), Eigen::Index(values.size()));
+  codes = float(kColorCodeOfOne) + kCodesPerE * codes.max(kLeastValue).log();
+}
+
+/// Replaces the gray values of a channel by color codes in the exposure of the map.
+/// @param vignetting, gain  stops
+void to_map_codes(std::span<float> values, std::span<const float> vignetting, float gain,
+                  float offset) {
+  if (offset == 0) {
+    to_codes(values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] -= (gain + vignetting[i]) * float(kColorCodesPerStop);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = (values[i] + offset) * std::exp2(-(gain + vignetting[i])) - offset;
+  }
+  to_codes(values);
 }
 
 }  // namespace
@@ -57,27 +77,26 @@ void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Sample
   ColorBlock values;
   image_.colors_at({points.u.data(), count}, {points.v.data(), count}, {footprint.data(), count},
                    values);
-  const auto offset = static_cast<float>(light_.response.offset);
+  std::array<float, ProjectedPoints::kSize> vignetting;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Array3f value(values.red[i], values.green[i], values.blue[i]);
     const float x = points.u[i] - cx_, y = points.v[i] - cy_;
     const float right = x / fx_, down = y / fy_;
     const float distance = points.depth[i] * std::sqrt(1 + right * right + down * down);
+    vignetting[i] = light_.response.vignetting_at((x * x + y * y) * s_per_pixel_);
     ColorSample& sample = samples[i];
-    const LogGain gain =
-        light_.gain + light_.response.vignetting_at((x * x + y * y) * s_per_pixel_);
-    if (offset == 0) {
-      sample.code = value.unaryExpr(&code_of) - gain * kColorCodesPerStop;
-    } else {
-      const Eigen::Array3f factor = gain.unaryExpr([](float log2) { return std::exp2(-log2); });
-      sample.code = ((value + offset) * factor - offset).unaryExpr(&code_of);
-    }
     sample.weight = static_cast<std::uint16_t>(
         std::max(1.0f, float(view_weight(distance)) * trust(value.minCoeff(), value.maxCoeff())));
     sample.saturated = 0;
     for (int c = 0; c < 3; ++c) {
       if (value[c] >= kSaturatedValue) sample.saturated |= static_cast<std::uint8_t>(1 << c);
     }
+  }
+  const std::array channels{values.red.data(), values.green.data(), values.blue.data()};
+  for (int c = 0; c < 3; ++c) {
+    const std::span<float> channel(channels[std::size_t(c)], count);
+    to_map_codes(channel, vignetting, light_.gain[c], static_cast<float>(light_.response.offset));
+    for (std::size_t i = 0; i < count; ++i) samples[i].code[c] = channel[i];
   }
 }
 

@@ -52,6 +52,7 @@ MapperOptions suited_to(const SensorProfile& profile, MapperOptions options) {
     surface.planar_edge =
         std::clamp(ring_gap_on_ground(profile, kRange), kLeastPlanarEdge, kMostPlanarEdge);
   }
+  surface.full_density_range = options.foveal.far_range;
   // A margin: motion compensation scatters the elevations of a ring.
   const double spacing = ring_spacing_at(profile, elevation_on_ground(profile, kRange));
   options.dynamic.row_height = std::max(RangeImage::kLeastRowHeight, 1.1 * spacing);

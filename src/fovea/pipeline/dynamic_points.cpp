@@ -238,6 +238,15 @@ std::size_t DynamicPointFilter::observe(TileMap& map, RangeImage scan,
   return before - map.size();
 }
 
+void DynamicPointFilter::follow_removal(const TileId& id, std::span<const std::uint32_t> kept) {
+  const auto found = evidence_.find(id);
+  if (found == evidence_.end()) return;
+  std::size_t& known = found->second.known_points;
+  known =
+      static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), known) - kept.begin());
+  if (kept.empty()) evidence_.erase(found);
+}
+
 void DynamicPointFilter::replay(const TileMap& map, RangeImage scan,
                                 const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
                                 int frame) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "fovea/core/flat_map.h"
@@ -40,6 +41,10 @@ class DynamicPointFilter {
   /// @return number of removed points
   std::size_t observe(TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
                       const RigidMotion& T_odom_local, int frame);
+
+  /// To be told when others remove points of a tile.
+  /// @param kept  indices of the points that stay, ascending
+  void follow_removal(const TileId& id, std::span<const std::uint32_t> kept);
 
   /// Adds the evidence of a scan that is already in the map (resume), and removes no points.
   void replay(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fovea/core/angle.h"
 #include "fovea/core/parallel.h"
 #include "fovea/geometry/transform_cloud.h"
 #include "fovea/mapping/blank_image.h"
@@ -11,6 +12,7 @@
 #include "fovea/mapping/texture.h"
 #include "fovea/mapping/view_colors.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/replaced_points.h"
 #include "fovea/pipeline/scan_geometry.h"
 
 namespace fovea {
@@ -21,7 +23,7 @@ constexpr double kMargin = 1;  // m: samples may lie beyond the foveal region
 
 double reach_of(const MapperOptions& options) {
   const double dynamic = options.dynamic.remove ? options.dynamic.range : 0;
-  return std::max(dynamic, options.foveal.far_range) + 2 * kMargin;  // cells, and a margin for them
+  return std::max(dynamic, options.foveal.reach()) + 2 * kMargin;  // cells, and a margin for them
 }
 
 /// Index of the first frame whose scan the filter of dynamic points depends on.
@@ -55,13 +57,25 @@ TrackedScan Mapper::track(const Frame& frame, const FrameTask& task) {
 FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   FrameResult result = std::move(tracked.result);
   result.clock.start();
-  apply_deferred_mapping();  // before observe() removes points, see Occupancy::follow
+  apply_deferred_mapping();  // before points are removed, see Occupancy::follow
   map_.place_submaps(tracked.submaps);
   light_.follow(std::size_t(result.poses.submap), result.poses.T_odom_lidar, map_);
   services_.load_near(map_, result.poses.T_local_lidar.translation(), reach_);
   if (tracked.task.held_out) return result;
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
+  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, result.poses.motion);
+  const bool with_periphery = periphery_is_due(result.poses.T_odom_lidar);
+  if (with_periphery) {
+    occupancy_.follow(map_, result.poses.T_local_lidar.translation(),
+                      options_.foveal.reach() + kMargin);
+    for (const Camera& camera : cameras) {
+      remove_replaced_points(map_, occupancy_, camera,
+                             result.poses.T_local_lidar * camera.T_cam_lidar.inverse(),
+                             options_.foveal.reach(), frame.index, dynamic_points_);
+    }
+  }
+  result.clock.lap("filter");
   if (options_.dynamic.remove) {
     // 8 for the map: points leave where this scan and those before it see free space.
     RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
@@ -69,19 +83,35 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
         map_, std::move(ranges), result.poses.T_odom_lidar, T_odom_local, frame.index);
     result.clock.lap("filter");
   }
-  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, result.poses.motion);
   const bool has_image = !frame.images.empty();  // a LiDAR without cameras has views alone
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     if (has_image && !has_content(frame.images[k], result)) continue;
-    map_view(tracked.scan_lidar, has_image ? frame.images[k] : kNoImage, cameras[k], T_odom_local,
-             result);
+    map_view(tracked.scan_lidar, has_image ? frame.images[k] : kNoImage,
+             FovealRegion(foveal_options(with_periphery), cameras[k]), T_odom_local, result);
   }
   return result;
 }
 
-void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Camera& camera,
+bool Mapper::periphery_is_due(const RigidMotion& T_odom_lidar) {
+  constexpr double kDistance = 1.5, kAngle = 5 * kDegree;  // m, rad
+  if (last_periphery_odom_) {
+    const RigidMotion moved = last_periphery_odom_->inverse() * T_odom_lidar;
+    const double angle = Eigen::AngleAxisd(moved.linear()).angle();
+    if (moved.translation().norm() < kDistance && angle < kAngle) return false;
+  }
+  last_periphery_odom_ = T_odom_lidar;
+  return options_.foveal.periphery_range > options_.foveal.far_range;
+}
+
+FovealOptions Mapper::foveal_options(bool with_periphery) const {
+  FovealOptions foveal = options_.foveal;
+  if (!with_periphery) foveal.periphery_range = 0;
+  return foveal;
+}
+
+void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const FovealRegion& region,
                       const RigidMotion& T_odom_local, FrameResult& result) {
-  const FovealRegion region(options_.foveal, camera);
+  const Camera& camera = region.camera();
   const RigidMotion& T_local_lidar = result.poses.T_local_lidar;
   const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
   FovealStats& stats = stats_of(result.foveal);
@@ -160,17 +190,17 @@ ViewLight Mapper::find_light(const ViewColors& image_colors, int camera, FrameRe
 PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& camera,
                                  const RigidMotion& T_local_cam) {
   const Surface surface = find_surface(points_cam, camera, options_.surface);
-  occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.far_range + kMargin);
+  occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.reach() + kMargin);
   const SampleGrid grid{
       map_.submaps().back().T_local_submap.inverse() * T_local_cam, occupancy_.cell(),
-      [&](const Eigen::Vector3d& p) { return occupancy_.taken_before(p); },
-      [&](const Eigen::Array3i& brick) { return occupancy_.brick(brick); }, kPositionStep};
-  return sample_surface(points_cam, surface, grid);
+      [&](const Eigen::Vector3d& p, int level) { return occupancy_.holds_point(p, level, level); },
+      kPositionStep};
+  return sample_surface(points_cam, surface, camera, options_.surface, grid);
 }
 
 void Mapper::apply_deferred_mapping() {
   if (occupancy_update_center_) {
-    occupancy_.follow(map_, *occupancy_update_center_, options_.foveal.far_range + kMargin);
+    occupancy_.follow(map_, *occupancy_update_center_, options_.foveal.reach() + kMargin);
   }
   occupancy_update_center_.reset();
 }
@@ -192,6 +222,8 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
     const FrameResult& frame = frames[i];
     tracker_.follow(frame);
     map_.place_submaps(tracker_.submaps());
+    const bool with_periphery =
+        frame.status == FrameStatus::kMapped && periphery_is_due(frame.poses.T_odom_lidar);
     if (frame.status == FrameStatus::kHeldOut) {
       light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
       continue;
@@ -200,7 +232,7 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
     if (votes || needs_images || tracker_.needs_scan(first_target)) {
       const LoadedFrame loaded = source.load(frame.index);
       if (const auto* read = std::get_if<Frame>(&loaded)) {
-        replay(*read, frame, votes, needs_images);
+        replay(*read, frame, {votes, needs_images, with_periphery});
       }
     }
     // After replay(), which may have moved submaps.
@@ -213,12 +245,14 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
   }
 }
 
-void Mapper::replay(const Frame& read, const FrameResult& frame, bool votes, bool needs_images) {
+void Mapper::replay(const Frame& read, const FrameResult& frame, const ReplayedParts& parts) {
   const PointCloud scan_lidar = tracker_.compensated(read.scan, frame.poses.motion);
   tracker_.replay(scan_lidar, frame);
   map_.place_submaps(tracker_.submaps());
-  if (needs_images) replay_response(read, scan_lidar, frame);
-  if (!votes) return;
+  if (parts.response) {
+    replay_response(read, scan_lidar, frame, foveal_options(parts.with_periphery));
+  }
+  if (!parts.votes) return;
   const RigidMotion T_local_lidar = tracker_.T_local_odom() * frame.poses.T_odom_lidar;
   services_.load_near(map_, T_local_lidar.translation(), reach_);
   dynamic_points_.replay(map_, RangeImage(scan_lidar.position, options_.dynamic.row_height),
@@ -226,11 +260,11 @@ void Mapper::replay(const Frame& read, const FrameResult& frame, bool votes, boo
 }
 
 void Mapper::replay_response(const Frame& read, const PointCloud& scan_lidar,
-                             const FrameResult& frame) {
+                             const FrameResult& frame, const FovealOptions& foveal) {
   const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, frame.poses.motion);
   for (std::size_t k = 0; k < read.images.size(); ++k) {
     if (read.images[k].empty() || is_blank(read.images[k])) continue;
-    PointCloud visible_cam = foveal_points(scan_lidar, FovealRegion(options_.foveal, cameras[k]));
+    PointCloud visible_cam = foveal_points(scan_lidar, FovealRegion(foveal, cameras[k]));
     drop_hidden(visible_cam, scan_lidar, cameras[k]);
     light_.learn_response(visible_cam.position, ImagePyramid(read.images[k]), cameras[k],
                           frame.poses.T_odom_lidar * cameras[k].T_cam_lidar.inverse(),

@@ -37,15 +37,23 @@ class Mapper : public IncrementalMapper {
 
  private:
   /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
-  void map_view(const PointCloud& scan_lidar, const Image& image, const Camera& camera,
+  void map_view(const PointCloud& scan_lidar, const Image& image, const FovealRegion& region,
                 const RigidMotion& T_odom_local, FrameResult& result);
+  /// Whether the LiDAR has moved since the periphery was mapped: far surfaces change slowly. To be
+  /// called once for each mapped frame, in their order.
+  bool periphery_is_due(const RigidMotion& T_odom_lidar);
   /// Light of an image relative to that of the map; adds to the figures.
   ViewLight find_light(const ViewColors& image_colors, int camera, FrameResult& result);
-  /// Enters a frame of an earlier run that later frames depend on.
-  /// @param votes         its scan decides which points are dynamic
-  /// @param needs_images  the responses of the cameras depend on its images
-  void replay(const Frame& read, const FrameResult& frame, bool votes, bool needs_images);
-  void replay_response(const Frame& read, const PointCloud& scan_lidar, const FrameResult& frame);
+  /// What later frames need of a frame of an earlier run.
+  struct ReplayedParts {
+    bool votes = false;           ///< its scan decides which points are dynamic
+    bool response = false;        ///< the responses of the cameras depend on its images
+    bool with_periphery = false;  ///< it was mapped with the periphery
+  };
+  void replay(const Frame& read, const FrameResult& frame, const ReplayedParts& parts);
+  void replay_response(const Frame& read, const PointCloud& scan_lidar, const FrameResult& frame,
+                       const FovealOptions& foveal);
+  FovealOptions foveal_options(bool with_periphery) const;
   /// Points and samples of the surface in free cells of the map.
   PointCloud new_points_of(const PointCloud& points_cam, const Camera& camera,
                            const RigidMotion& T_local_cam);
@@ -60,6 +68,7 @@ class Mapper : public IncrementalMapper {
   MapLight light_;
   DynamicPointFilter dynamic_points_;
   Occupancy occupancy_;
+  std::optional<RigidMotion> last_periphery_odom_;  // T_odom_lidar of the frame that mapped it
   std::optional<Eigen::Vector3d> occupancy_update_center_;  // where occupancy_ is out of date
 };
 

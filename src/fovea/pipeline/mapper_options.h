@@ -26,7 +26,7 @@ struct RefinementOptions {
 struct MapperOptions {
   bool compensate_motion = true;  ///< sweep motion, where the drive's scans are raw
   RefinementOptions refinement;
-  FovealOptions foveal;
+  FovealOptions foveal{.periphery_range = 60};
   /// 0: derived from the LiDAR's ring spacing (pipeline/drive_sensors.h).
   SurfaceOptions surface{.max_edge = 0, .planar_edge = 0};
   double footprint = 0.02;  ///< m, edge of the surface patch whose mean color a point gets

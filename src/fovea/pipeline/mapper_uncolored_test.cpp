@@ -47,6 +47,7 @@ TEST_F(MapperUncolored, SurfacesAllAroundAreSampledWithoutColors) {
 TEST_F(MapperUncolored, MeasuredPointsAreExactAndWithinTheFovealRanges) {
   MapperOptions options;
   options.foveal.far_range = 10;
+  options.foveal.periphery_range = 0;
   std::size_t measured = 0;
   for (const MapPoint& point : map(options)) {
     if (point.interpolated) continue;

@@ -108,7 +108,7 @@ class Recolorer {
         map_(std::move(map)),
         file_(file),
         cache_(file, memory),
-        reach_(foveal_.far_range + kMargin) {
+        reach_(foveal_.reach() + kMargin) {
     // A map of the paper's method has no spacing: colors are those of patches as by default.
     const MapperOptions options = settings.is_paper() ? MapperOptions() : settings.mapper();
     footprint_ = options.footprint;

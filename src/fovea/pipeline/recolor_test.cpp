@@ -96,6 +96,7 @@ TEST_F(Recolor, IsTheSameAtAnyNumberOfThreadsAndAgain) {
 TEST_F(Recolor, OtherSettingsGiveOtherColours) {
   MapperOptions near;
   near.foveal.far_range = 8;
+  near.foveal.periphery_range = 0;
   const RecolorFigures figures = recolor(near);
   EXPECT_EQ(figures.points, map_.size());
   EXPECT_GT(figures.uncolored, figures.points / 20);  // seen from farther away alone

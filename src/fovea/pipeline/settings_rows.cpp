@@ -77,6 +77,13 @@ Setting far_range_row(FovealOptions& foveal, double default_value) {
                  [&foveal] { return foveal.far_range > foveal.near_range; });
 }
 
+Setting periphery_row(FovealOptions& foveal) {
+  return {
+      "foveal.periphery_range_m", foveal.periphery_range, 60, zero_or(1, 1000),
+      "Distance from the LiDAR at which the periphery ends, which has coarser points; 0 maps the "
+      "foveal region alone."};
+}
+
 Setting incidence_row(FovealOptions& foveal) {
   return {"foveal.max_incidence_deg", Degrees{foveal.max_incidence}, 90, above(0, 90),
           "Largest angle between view ray and surface normal; 90 switches the limit off."};
@@ -142,8 +149,8 @@ SettingsTable default_rows(MapperOptions& o) {
     std::move(rows.begin(), rows.end(), std::back_inserter(table));
   };
   add(registration_rows(o.refinement));
-  add({far_range_row(o.foveal, 18), incidence_row(o.foveal), slices_row(o.foveal.slices),
-       camera_slices_row(o.foveal.camera_slices)});
+  add({far_range_row(o.foveal, 18), periphery_row(o.foveal), incidence_row(o.foveal),
+       slices_row(o.foveal.slices), camera_slices_row(o.foveal.camera_slices)});
   add(surface_rows(o.surface));
   add({
       {"texture.footprint_m", o.footprint, 0.02, between(0, 1),

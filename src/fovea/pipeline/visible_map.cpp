@@ -32,7 +32,7 @@ void VisibleMap::collect_chunks(const TileMap& map, const FovealRegion& region,
   chunks_.clear();
   const Eigen::Vector3d lidar_local = T_cam_local.inverse() * camera_.T_cam_lidar.translation();
   map.for_each_tile_near(
-      lidar_local, region.far_range(), [&](const TileId& id, const TilePoints& points) {
+      lidar_local, region.reach(), [&](const TileId& id, const TilePoints& points) {
         const RigidMotion T_cam_tile = T_cam_local * map.submaps()[id.submap].T_local_submap *
                                        Eigen::Translation3d(points.origin);
         const Eigen::Array3f gain_codes =
@@ -50,8 +50,8 @@ void VisibleMap::collect_chunks(const TileMap& map, const FovealRegion& region,
 void VisibleMap::render(const TileMap& map, const FovealRegion& region,
                         const RigidMotion& T_cam_local, double spacing) {
   camera_ = region.camera();
-  quantizer_ =
-      ViewQuantizer(camera_, region.far_range() + camera_.T_cam_lidar.translation().norm());
+  quantizer_ = ViewQuantizer(camera_, region.reach() + camera_.T_cam_lidar.translation().norm());
+  white_zone_end_ = static_cast<float>(region.far_range());
   disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
   collect_chunks(map, region, T_cam_local);
   const std::size_t submaps = map.submaps().size();
@@ -90,8 +90,8 @@ void VisibleMap::render_chunk(const FovealRegion& region, Chunk& chunk) {
       return std::span(chunk.points->position[axis]).subspan(begin, n);
     };
     block.project({steps(0), steps(1), steps(2)}, kPositionStep, R, t);
-    for (std::size_t i = 0; i < in_zone.size(); ++i) {
-      in_zone[i] = region.in_white_zone(block.p_cam(i));
+    for (std::uint32_t i = 0; i < n; ++i) {
+      in_zone[i] = region.may_color(block.p_cam(i), chunk.points->range_at(begin + i));
     }
     if (region.has_slices()) {
       for (std::uint32_t i = 0; i < n; ++i) {
@@ -155,7 +155,8 @@ std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_ca
                    [&](std::size_t begin, std::size_t end, const ProjectedBlock& block) {
                      for (std::size_t i = 0; i < end - begin; ++i) {
                        marks[begin + i] =
-                           block.in_view(i) && depth_.is_in_front(block.pixel(i), block.depth(i));
+                           block.in_view(i) &&
+                           depth_.is_in_front(block.pixel(i), block.depth(i), white_zone_end_);
                      }
                    });
   });

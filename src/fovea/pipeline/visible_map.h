@@ -33,8 +33,8 @@ class VisibleMap {
               double spacing);
 
   /// Marks (1) points that lie in front of a surface of the map: a new object hides the surface.
-  /// Near surfaces enter the foveal region first, so a static surface is in the map before its
-  /// background.
+  /// Near surfaces enter the white zone first, so a static surface is in the map before its
+  /// background. Surfaces beyond that zone are no such evidence.
   std::vector<std::uint8_t> find_occluding(const PointCloud& points_cam) const;
 
   /// Adds points to the depth buffer, so that recolor() skips the map behind them.
@@ -92,7 +92,8 @@ class VisibleMap {
 
   Camera camera_;
   ViewQuantizer quantizer_;
-  float disc_radius_ = 0;  // of a point's disc, pixels at a depth of 1 m
+  float white_zone_end_ = 0;  // m
+  float disc_radius_ = 0;     // of a point's disc, pixels at a depth of 1 m
   std::vector<Chunk> chunks_;
   std::size_t first_recent_submap_ = 0;
   std::array<Shard, kShards> shards_;
