@@ -40,8 +40,27 @@ HoldOut parse_frame_set(const std::string& spec, const std::string& option) {
 
 HoldOut parse_hold_out(const std::string& spec) { return parse_frame_set(spec, "--hold-out"); }
 
+void add_mask_option(CLI::App& command, DriveArguments& arguments) {
+  command
+      .add_option("--mask", arguments.masks,
+                  "Picture whose dark pixels camera K does not use; may be repeated")
+      ->type_name("K=FILE")
+      ->allow_extra_args(false);
+}
+
 DriveOptions DriveArguments::options() const {
   DriveOptions options;
+  for (const std::string& mask : masks) {
+    const char* form = "a camera and a picture, e.g. 2=mask.png";
+    const std::size_t equals = mask.find('=');
+    if (equals == std::string::npos || equals + 1 == mask.size()) {
+      throw CLI::ValidationError("--mask", form);
+    }
+    const int camera = parse_number(std::string_view(mask).substr(0, equals), "--mask", form);
+    if (!options.masks.emplace(camera, mask.substr(equals + 1)).second) {
+      throw CLI::ValidationError("--mask", "one mask for each camera");
+    }
+  }
   options.use_images = cameras != kNoCameras;
   if (options.use_images && !cameras.empty()) options.cameras = parse_cameras(cameras);
   if (!frames.empty()) {

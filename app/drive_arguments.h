@@ -18,11 +18,15 @@ inline constexpr const char* kNoCameras = "none";
 /// The drive and what of it is wanted, as typed.
 struct DriveArguments {
   std::string drive, frames, cameras;
+  std::vector<std::string> masks;  ///< "K=FILE"
 
   /// Opens the drive. CLI::ValidationError (wrong usage) for a malformed range or camera list.
   std::unique_ptr<FrameSource> open(bool use_navigation = true) const;
   DriveOptions options() const;
 };
+
+/// --mask of a command that takes colors from the images of a drive.
+void add_mask_option(CLI::App& command, DriveArguments& arguments);
 
 /// "2,3" -> {2, 3}; CLI::ValidationError otherwise.
 std::vector<int> parse_cameras(const std::string& text);

@@ -177,6 +177,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->check(whole_number(0));
   command->add_option("--cameras", arguments->drive.cameras, "Scored cameras (default: the map's)")
       ->type_name("K,...");
+  add_mask_option(*command, arguments->drive);
   command
       ->add_option("--hold-out", arguments->hold_out,
                    "Frames to score (default: those the map held out)")

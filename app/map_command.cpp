@@ -184,6 +184,7 @@ void add_map_command(CLI::App& app, Session& session) {
       ->add_option("--cameras", arguments->drive.cameras,
                    "Cameras, in turn (default: 2), or none: the scans alone")
       ->type_name("K,...");
+  add_mask_option(*command, arguments->drive);
   command
       ->add_option("--hold-out", arguments->hold_out,
                    "Frames that only get a pose: N:R (index % N == R) or blocks A-B,C-D")

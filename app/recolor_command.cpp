@@ -102,6 +102,7 @@ void add_recolor_command(CLI::App& app, Session& session) {
       ->type_name("OUT.fovea");
   command->add_option("--cameras", arguments->drive.cameras, "Cameras (default: the map's)")
       ->type_name("K,...");
+  add_mask_option(*command, arguments->drive);
   command->add_option("--config", arguments->config, "Keys that differ from the map's settings")
       ->type_name("FILE.toml");
   command->add_option("--set", arguments->settings, "One key, may be repeated")

@@ -18,6 +18,7 @@
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/render_drive.h"
+#include "app/render_views.h"
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
@@ -28,6 +29,7 @@
 #include "fovea/evaluation/predicted_light.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/geometry/lidar_data_sheet.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/stored_calibration.h"
 #include "fovea/rendering/splat.h"
 
@@ -39,6 +41,7 @@ struct RenderArguments {
   std::string map, drive, output, view = "behind";
   std::string camera = "2";
   std::string exposure;  // empty: as the photograph, without one as auto
+  std::string from, to;  // places of a free camera
   int frame = -1, width = 1280, height = 720;
   bool force = false, foreign = false;
 };
@@ -70,6 +73,12 @@ ColorDisplay exposure_of(const FrameRecord& frame, int camera,
   return light ? ColorDisplay(*light, /*tone_mapped=*/false) : ColorDisplay();
 }
 
+/// Edge of a finest cell of a map, m.
+double cell_of(const MapMeta& meta) {
+  return meta.contains(meta_key::kConfig) ? stored_settings(meta, "the map").spacing()
+                                          : MapperOptions().surface.spacing;
+}
+
 SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam,
                const ColorDisplay& display) {
   const ColoredPoints points =
@@ -77,7 +86,8 @@ SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_
   SplatOptions options;
   options.max_radius = 20;
   options.display = display;
-  return splat(points, sample_spacing(points.position), camera, T_local_cam.inverse(), options);
+  return splat(points, sample_spacing(points, cell_of(map.meta)), camera, T_local_cam.inverse(),
+               options);
 }
 
 /// A frame of the map with its scan and image.
@@ -106,7 +116,7 @@ RecordedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
 
 /// The map as one of the drive's cameras sees it, above the photograph that it took.
 Image beside_photograph(const RenderArguments& arguments, const MapReader& reader, ScoredMap& map) {
-  const DriveArguments drive_arguments{arguments.drive, "", arguments.camera};
+  const DriveArguments drive_arguments{arguments.drive, "", arguments.camera, {}};
   auto drive = drive_arguments.open();
   const auto match =
       find_drive_in_map(reader, arguments.map, *drive, arguments.foreign, /*quiet=*/true);
@@ -136,12 +146,19 @@ Image beside_photograph(const RenderArguments& arguments, const MapReader& reade
 }
 
 Image from_view(const RenderArguments& arguments, const ScoredMap& map) {
-  const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
-  const Viewpoint& view = *std::find_if(
-      kViews.begin(), kViews.end(), [&](const Viewpoint& v) { return v.name == arguments.view; });
+  const auto placed = [&]() -> PlacedCamera {
+    if (!arguments.from.empty())
+      return free_camera(arguments.from, arguments.to, arguments.width, arguments.height);
+    if (arguments.view == "map")
+      return above_map(map.points_local, arguments.width, arguments.height);
+    const FrameRecord& frame = find_frame(map, arguments.frame, arguments.map);
+    const Viewpoint& view = *std::find_if(
+        kViews.begin(), kViews.end(), [&](const Viewpoint& v) { return v.name == arguments.view; });
+    return {viewpoint_camera(view, arguments.width, arguments.height),
+            viewpoint_pose(view, frame.T_local_lidar)};
+  }();
   return draw(
-             map, viewpoint_camera(view, arguments.width, arguments.height),
-             viewpoint_pose(view, frame.T_local_lidar),
+             map, placed.camera, placed.T_local_cam,
              color_display(parse_exposure(arguments.exposure.empty() ? "auto" : arguments.exposure),
                            map.frames))
       .image;
@@ -150,7 +167,7 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map) {
 /// What would otherwise be ignored without a word.
 void check_options(const CLI::App& command) {
   const bool drive = command.count("--poses") > 0;
-  for (const char* option : {"--view", "--frame", "--width", "--height"}) {
+  for (const char* option : {"--view", "--frame", "--width", "--height", "--from", "--to"}) {
     if (drive && command.count(option) > 0) {
       throw CLI::ValidationError(option, "is for a single picture, without --poses");
     }
@@ -199,11 +216,26 @@ void add_render_command(CLI::App& app, Session& session) {
                    "Camera of DRIVE; with --poses calib (all of DRIVE's), W,H,fx,fy,cx,cy, or a "
                    "drive or calibration folder")
       ->capture_default_str();
-  command->add_option("--view", arguments->view, "Without DRIVE: driver, behind or above")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"driver", "behind", "above"}));
+  CLI::Option* view =
+      command
+          ->add_option("--view", arguments->view,
+                       "Without DRIVE: driver, behind or above the vehicle, or map: all of it from "
+                       "above")
+          ->capture_default_str()
+          ->check(CLI::IsMember({"driver", "behind", "above", "map"}));
+  CLI::Option* from =
+      command
+          ->add_option("--from", arguments->from,
+                       "Without DRIVE: a free camera at this place of the local frame, m")
+          ->type_name("X,Y,Z")
+          ->excludes(view);
+  CLI::Option* to = command->add_option("--to", arguments->to, "Where the free camera looks")
+                        ->type_name("X,Y,Z")
+                        ->needs(from);
+  from->needs(to);
   command->add_option("--frame", arguments->frame, "From where the vehicle was (default: half way)")
-      ->check(whole_number(0));
+      ->check(whole_number(0))
+      ->excludes(from);
   command->add_option("--width", arguments->width, "Pixels")
       ->capture_default_str()
       ->check(whole_number(16, 8192));

@@ -74,7 +74,7 @@ void run(const ReproduceArguments& arguments, Warnings& warnings) {
   job.output = arguments.output;
   job.command = command_line(arguments);
   for (const std::string& drive : arguments.drives) {
-    job.drives.push_back(DriveArguments{drive, arguments.frames, arguments.cameras}.open());
+    job.drives.push_back(DriveArguments{drive, arguments.frames, arguments.cameras, {}}.open());
     require_cameras(job.drives.back()->info(), "the paper's method");
   }
   job.names = paper::drive_names(arguments.drives);

@@ -61,7 +61,7 @@ void bench_recolor(benchmark::State& state, const MappedStreet& street) {
   std::size_t points = 0;
   solo(state, [&] {
     const ViewColors view = street.view(image);
-    benchmark::DoNotOptimize(gain_of(seen.differences(view).recent));
+    benchmark::DoNotOptimize(gain_of(seen.differences(view, /*below=*/1).recent));
     return points = seen.recolor(map, view, street.frame().index);
   });
   check(points > 1000, "nothing in view");

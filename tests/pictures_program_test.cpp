@@ -37,9 +37,9 @@ TemporaryFolder* Pictures::scratch_ = nullptr;
 std::filesystem::path Pictures::drive_;
 
 TEST_F(Pictures, AViewHasTheSizeAskedForAndIsNotEmpty) {
-  for (const char* view : {"driver", "behind", "above"}) {
-    const ProgramRun run =
-        render(std::string("--force --width 320 --height 200 --frame 2 --view ") + view);
+  for (const char* view : {"--frame 2 --view driver", "--frame 2 --view behind",
+                           "--frame 2 --view above", "--from=-3,0,4 --to=10,0,0"}) {
+    const ProgramRun run = render(std::string("--force --width 320 --height 200 ") + view);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const Image image = read_image(picture());
     EXPECT_EQ(image.width, 320);
@@ -48,6 +48,25 @@ TEST_F(Pictures, AViewHasTheSizeAskedForAndIsNotEmpty) {
                                      [](std::uint8_t value) { return value > 0; });
     EXPECT_GT(drawn, 20'000) << view;
   }
+}
+
+TEST_F(Pictures, TheWholeMapIsInThePictureFromAbove) {
+  ASSERT_EQ(render("--width 400 --height 400 --view map").exit_code, 0);
+  const Image image = read_image(picture());
+  const auto is_drawn = [&](int u, int v) {
+    const std::uint8_t* pixel = image.pixel(u, v);
+    return pixel[0] + pixel[1] + pixel[2] > 0;
+  };
+  int left = 400, right = 0, top = 400, bottom = 0;
+  for (int v = 0; v < 400; ++v) {
+    for (int u = 0; u < 400; ++u) {
+      if (!is_drawn(u, v)) continue;
+      left = std::min(left, u), right = std::max(right, u);
+      top = std::min(top, v), bottom = std::max(bottom, v);
+    }
+  }
+  EXPECT_GT(std::min({left, top, 399 - right, 399 - bottom}), 0);
+  EXPECT_GT(std::max(right - left, bottom - top), 330);
 }
 
 // The synthetic camera sees what the map was coloured with: where the map is drawn, both agree.
@@ -76,6 +95,9 @@ TEST_F(Pictures, WrongRequestsAreOneLine) {
   EXPECT_THAT(unknown.err, HasSubstr("frame 77 is not in the map"));
   EXPECT_FALSE(std::filesystem::exists(picture()));
   EXPECT_EQ(render("--view sideways").exit_code, 2);
+  EXPECT_EQ(render("--from=1,2,3").exit_code, 2);
+  EXPECT_EQ(render("--from=1,2,3 --to=1,2,3").exit_code, 2);
+  EXPECT_THAT(render("--from=1,2 --to=1,2,3").err, HasSubstr("X,Y,Z"));
   ASSERT_EQ(render("").exit_code, 0);
   EXPECT_EQ(render("").exit_code, 1) << "an existing picture is not overwritten without --force";
 }

@@ -28,6 +28,8 @@ const std::vector<FigureGroup>& groups() {
       {"consistency", "Consistency of colours", ""},
       {"geometry", "Geometry", "Precision, recall and F-score within 5, 10 and 20 cm."},
       {"pictures", "Pictures", "The map drawn into the scored views."},
+      {"far_field", "Far field",
+       "Visible returns from 15 to 60 m, on the ground and on what stands on it."},
       {"pose_stray", "Stray of poses", "Poses fitted to held-out colours would leave the course."},
       {"worst_frame", "Worst frame", ""},
       {"blocks", "Blocks of held-out frames",

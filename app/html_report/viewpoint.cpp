@@ -28,4 +28,16 @@ RigidMotion viewpoint_pose(const Viewpoint& view, const RigidMotion& T_local_lid
   return T_local_view * T_view_cam;
 }
 
+RigidMotion pose_looking_at(const Eigen::Vector3d& from_local, const Eigen::Vector3d& to_local) {
+  constexpr double kSteep = 1e-3;
+  const Eigen::Vector3d forward = (to_local - from_local).normalized();
+  Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
+  if (right.norm() < kSteep) right = forward.cross(Eigen::Vector3d::UnitY());
+  right.normalize();
+  RigidMotion T_local_cam = RigidMotion::Identity();
+  T_local_cam.translation() = from_local;
+  T_local_cam.linear() << right, forward.cross(right), forward;
+  return T_local_cam;
+}
+
 }  // namespace fovea::app

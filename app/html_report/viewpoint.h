@@ -21,4 +21,8 @@ Camera viewpoint_camera(const Viewpoint& view, int width, int height);
 /// by yaw and pitched down.
 RigidMotion viewpoint_pose(const Viewpoint& view, const RigidMotion& T_local_lidar);
 
+/// T_local_cam of a camera that looks from one place to another, its rows level. Straight down, the
+/// top of the picture is north (y of the local frame).
+RigidMotion pose_looking_at(const Eigen::Vector3d& from_local, const Eigen::Vector3d& to_local);
+
 }  // namespace fovea::app

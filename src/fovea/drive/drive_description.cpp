@@ -77,6 +77,7 @@ class CameraKeys {
     visit(key("D"), D_);
     visit(key("field_of_view"), Degrees{camera_.max_field_of_view});
     visit(key("delay"), camera_.delay);
+    visit(key("mask"), mask_);
     T_cam_lidar_.visit(visit);
   }
 
@@ -85,6 +86,7 @@ class CameraKeys {
     camera_.index = required(index_, "index", "give a number of 0 to 9");
     check(key("index"), camera_.index, 0, kMaxCamera);
     camera_.folder = folder_;
+    camera_.mask = mask_;
     camera_.optics.width = required(width_, "width", "give the images' width in pixels");
     camera_.optics.height = required(height_, "height", "give the images' height in pixels");
     check(key("width"), camera_.optics.width, 8, kMaxImageSide);
@@ -143,7 +145,7 @@ class CameraKeys {
   std::string table_;
   CameraDescription camera_;
   std::optional<int> index_, width_, height_;
-  std::string folder_;
+  std::string folder_, mask_;
   std::optional<std::vector<double>> K_;
   LensModel model_ = LensModel::kNone;
   std::vector<double> D_;

@@ -22,8 +22,9 @@ struct CameraDescription {
   LensCamera optics;
   RigidMotion T_cam_lidar = RigidMotion::Identity();
   double max_field_of_view =
-      100 * kDegree;  ///< rad, of the rectified image; not of pinhole cameras
-  double delay = 0;   ///< s from an image's stamp (or its scan's, if it has none) to its exposure
+      100 * kDegree;           ///< rad, of the rectified image; not of pinhole cameras
+  std::filesystem::path mask;  ///< a picture, below the drive's folder; empty: none
+  double delay = 0;  ///< s from an image's stamp (or its scan's, if it has none) to its exposure
 };
 
 /// What drive.toml states of SweepTiming.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "fovea/core/errors.h"
+#include "fovea/drive/images/image_decode.h"
 
 namespace fovea {
 namespace {
@@ -118,6 +119,32 @@ void find_images(const KittiCalibration& calibration, const DriveOptions& option
   for (const int index : choose_cameras(present, options, info.path)) {
     info.calibration.cameras.push_back(calibration.cameras.at(index));
     files.images.push_back(std::move(found.at(index)));
+    const auto mask = options.masks.find(index);
+    if (mask != options.masks.end()) {
+      info.masks.emplace(index, read_mask(mask->second, info.calibration.cameras.back(), nullptr));
+    }
+  }
+  require_cameras_of_masks(options, info);
+}
+
+ImageMask read_mask(const std::filesystem::path& file, const Camera& camera,
+                    const ImageRectifier* rectifier) {
+  const Image picture = read_image(file);
+  const int width = rectifier != nullptr ? rectifier->width() : camera.width;
+  const int height = rectifier != nullptr ? rectifier->height() : camera.height;
+  if (picture.width != width || picture.height != height) {
+    throw ConfigError(fmt::format("the mask has {} x {} pixels, the images of camera {} {} x {}",
+                                  picture.width, picture.height, camera.index, width, height),
+                      file.string(), "give a mask of the size of the images");
+  }
+  return ImageMask(rectifier != nullptr ? rectifier->rectify(picture) : picture);
+}
+
+void require_cameras_of_masks(const DriveOptions& options, const DriveInfo& info) {
+  for (const auto& [camera, file] : options.masks) {
+    if (info.masks.contains(camera)) continue;
+    throw ConfigError(fmt::format("a mask of camera {}, which is not used", camera), file.string(),
+                      "name the camera in --cameras, or leave the mask out");
   }
 }
 

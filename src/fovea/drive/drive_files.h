@@ -65,6 +65,14 @@ void find_images(const KittiCalibration& calibration, const DriveOptions& option
                  const std::string& folder_prefix, const std::string& subfolder, DriveInfo& info,
                  DriveFiles& files);
 
+/// Reads the mask of a camera. InputError if it cannot be read, ConfigError if it is not of the
+/// size of the camera's images.
+/// @param rectifier  of the images; nullptr: they are rectified
+ImageMask read_mask(const std::filesystem::path& file, const Camera& camera,
+                    const ImageRectifier* rectifier);
+/// ConfigError for a mask of a camera that is not used.
+void require_cameras_of_masks(const DriveOptions& options, const DriveInfo& info);
+
 /// Reads the time stamps and the sweep's period into `info` and `files`, with notes of what is
 /// missing.
 /// @param read  read_date_times or read_seconds

@@ -60,6 +60,11 @@ std::optional<double> DriveInfo::image_exposure(int camera, int index) const {
   return std::nullopt;
 }
 
+const ImageMask* DriveInfo::mask(int camera) const {
+  const auto found = masks.find(camera);
+  return found == masks.end() ? nullptr : &found->second;
+}
+
 Camera DriveInfo::camera_at(std::size_t slot, int index) const {
   Camera camera = calibration.cameras.at(slot);
   camera.image_delay += image_offset(slot, index);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fovea/core/image.h"
+#include "fovea/core/image_mask.h"
 #include "fovea/core/messages.h"
 #include "fovea/core/point_cloud.h"
 #include "fovea/core/time.h"
@@ -67,6 +68,8 @@ struct DriveOptions {
   /// Half-open range of frame indices; an open end is the drive's own.
   std::optional<int> begin, end;
   bool use_navigation = true;
+  /// Masks by number of the camera, in place of those that the drive has.
+  std::map<int, std::filesystem::path> masks;
   /// False: scans alone are read; the calibration has no cameras, and the drive needs none.
   bool use_images = true;
 };
@@ -93,6 +96,8 @@ struct DriveInfo : Messages {
   /// Exposure time times amplification of the images, base-2 logarithms, where the drive states
   /// them. By camera of the calibration, then by frame index.
   std::vector<std::map<int, double>> image_exposures;
+  /// Pixels that show no scene, by number of the camera.
+  std::map<int, ImageMask> masks;
   /// T_local_lidar by GPS/INS, local = east-north-up at the first usable frame's LiDAR (or, with
   /// poses.csv, in the axes of its world); absent
   /// where the drive has no (usable) navigation.
@@ -110,6 +115,8 @@ struct DriveInfo : Messages {
   /// Exposure of the image of a camera in one frame; absent where the drive does not state it.
   /// @param camera  number of the camera
   std::optional<double> image_exposure(int camera, int index) const;
+  /// nullptr: every pixel of the camera shows the scene.
+  const ImageMask* mask(int camera) const;
   /// A camera with the delay of its own image of one frame. Camera::at_image() then moves the
   /// camera to the place where it took that image.
   Camera camera_at(std::size_t slot, int index) const;

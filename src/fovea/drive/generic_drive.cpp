@@ -177,6 +177,13 @@ class GenericDrive {
     info_.image_exposures.emplace_back();
     files_.images.push_back(images_of_scans(described, images, camera));
     info_.calibration.cameras.push_back(camera);
+    const auto asked = options_.masks.find(camera.index);
+    const fs::path mask = asked != options_.masks.end() ? asked->second
+                          : described.mask.empty()      ? fs::path()
+                                                        : info_.path / described.mask;
+    if (mask.empty()) return;
+    const auto& rectifier = files_.rectifiers.back();
+    info_.masks.emplace(camera.index, read_mask(mask, camera, rectifier ? &*rectifier : nullptr));
   }
 
   /// The images by the numbers of the scans they belong to; sets the camera's median delay, the

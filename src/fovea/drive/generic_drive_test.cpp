@@ -684,4 +684,35 @@ TEST_F(GenericNavigation, TablesThatAreNoneAreErrors) {
   EXPECT_THAT(notes(), ElementsAre(HasSubstr("3 lines of"), HasSubstr("no pose that can be used")));
 }
 
+TEST_F(GenericDrive, CamerasMayHaveMasks) {
+  Image picture(24, 10, 1);
+  std::fill(picture.data.begin(), picture.data.end(), std::uint8_t{255});
+  *picture.pixel(3, 8) = 0;
+  write_png(folder_ / "masks/left.png", picture);
+  std::string toml = test::read_text(toml_);
+  toml.insert(toml.find("index = 1"), "mask = 'masks/left.png'\n");
+  write_text(toml_, toml);
+  options_.cameras = {1, 4};
+  const auto drive = open();
+  ASSERT_NE(drive->info().mask(1), nullptr);
+  EXPECT_TRUE(drive->info().mask(1)->covers(3, 8, 0));
+  EXPECT_FALSE(drive->info().mask(1)->covers(4, 8, 0));
+  EXPECT_EQ(drive->info().mask(4), nullptr);
+
+  // A mask of the command line replaces it.
+  *picture.pixel(3, 8) = 255;
+  *picture.pixel(20, 1) = 0;
+  write_png(folder_ / "other.png", picture);
+  options_.masks[1] = folder_ / "other.png";
+  EXPECT_FALSE(open()->info().mask(1)->covers(3, 8, 0));
+  EXPECT_TRUE(open()->info().mask(1)->covers(20, 1, 0));
+
+  options_.masks = {{4, folder_ / "small.png"}};
+  write_png(folder_ / "small.png", Image(23, 10, 1));
+  EXPECT_THAT(error_of<ConfigError>([&] { open(); }),
+              AllOf(HasSubstr("23 x 10"), HasSubstr("24 x 10"), HasSubstr("small.png")));
+  options_.masks = {{4, folder_ / "missing.png"}};
+  EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("missing.png"));
+}
+
 }  // namespace fovea::generic_drive_test

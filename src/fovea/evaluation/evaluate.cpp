@@ -28,7 +28,7 @@ std::vector<std::uint8_t> select(const std::vector<std::uint8_t>& marks,
 
 BleedingFigures bleeding_figures(const PointErrors& edges, const PointErrors& elsewhere) {
   const ErrorFigures at = summarize(edges), off = summarize(elsewhere);
-  return {at.points, at.te_mean, off.te_mean, at.coverage_5cm, off.coverage_5cm};
+  return {at.points, at.te_gain_mean, off.te_gain_mean, at.coverage_5cm, off.coverage_5cm};
 }
 
 /// The collected scores of blocks of frames, each on its own.

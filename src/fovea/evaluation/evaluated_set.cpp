@@ -27,6 +27,16 @@ EvaluatedView select(const EvaluatedView& view, const std::vector<std::uint8_t>&
   return selected;
 }
 
+EvaluatedView without_masked(const EvaluatedView& view, const ImageMask* mask) {
+  if (mask == nullptr) return view;
+  std::vector<std::uint8_t> is_seen;
+  for (const Eigen::Vector2d& pixel : view.pixel) {
+    constexpr float kNeighbor = 0.5f;  // of the interpolation, pixels
+    is_seen.push_back(mask->covers(float(pixel.x()), float(pixel.y()), kNeighbor) ? 0 : 1);
+  }
+  return select(view, is_seen);
+}
+
 PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& placed,
                             const DriveInfo& drive) {
   PointCloud compensated;

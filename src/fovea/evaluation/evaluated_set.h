@@ -41,6 +41,9 @@ struct EvaluatedView {
 /// The points whose mark is 1. @param marks  one a point
 EvaluatedView select(const EvaluatedView& view, const std::vector<std::uint8_t>& marks);
 
+/// The points whose pixels a mask does not cover. @param mask  nullptr: all
+EvaluatedView without_masked(const EvaluatedView& view, const ImageMask* mask);
+
 /// Pixel of a point that a camera can score: over 0.5 m in front of it and inside [0, W-1) x [0,
 /// H-1).
 std::optional<Eigen::Vector2d> scored_pixel(const Camera& camera, const Eigen::Vector3d& p_cam);

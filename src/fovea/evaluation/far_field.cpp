@@ -111,10 +111,13 @@ class BandComparison {
         scan_tree_(scan.position),
         heights_(scan) {}
 
-  FarBand compare(const RangeBand& band, const Image& photograph) const {
+  FarBand compare(const RangeBand& band, const FarPictures& pictures) const {
     EvaluatedView view =
-        evaluated_view(measured_, scan_, placed_, camera_, photograph, map_.origin_local, band);
+        without_masked(evaluated_view(measured_, scan_, placed_, camera_, pictures.photograph,
+                                      map_.origin_local, band),
+                       pictures.mask);
     std::vector<std::uint8_t> visible;
+    visible.reserve(view.pixel.size());
     for (std::size_t i = 0; i < view.pixel.size(); ++i) {
       visible.push_back(hiding_.hidden(view.pixel[i], p_cam(view, i).norm()) ? 0 : 1);
     }
@@ -249,11 +252,13 @@ double FarField::psnr() const {
 
 FarField compare_far_field(const FarMap& map, const PointCloud& measured_lidar,
                            const PointCloud& compensated_lidar, const PlacedFrame& placed,
-                           const Camera& camera, const Image& photograph, const SplatView& drawn) {
+                           const Camera& camera, const FarPictures& pictures) {
+  const Image& photograph = pictures.photograph;
+  const SplatView& drawn = pictures.drawn;
   FarField field;
   const BandComparison comparison(map, measured_lidar, compensated_lidar, placed, camera);
   for (std::size_t band = 0; band < kFarBands.size(); ++band) {
-    field.bands[band] = comparison.compare(kFarBands[band], photograph);
+    field.bands[band] = comparison.compare(kFarBands[band], pictures);
   }
   const std::vector<std::uint8_t> measured = measured_pixels(compensated_lidar, camera);
   for (std::size_t pixel = 0; pixel < measured.size(); ++pixel) {

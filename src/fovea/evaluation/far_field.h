@@ -49,13 +49,19 @@ struct FarMap {
   Eigen::Vector3d origin_local;
 };
 
+/// A photograph, and the map drawn in its view and exposure.
+struct FarPictures {
+  const Image& photograph;
+  SplatView drawn;
+  const ImageMask* mask = nullptr;  ///< absent: every pixel shows the scene
+};
+
 /// Compares one scan and one photograph with a map: visible returns in the bands, and every pixel
 /// between the returns of a surface up to 60 m.
 /// @param measured_lidar     scan as measured: its ranges decide
 /// @param compensated_lidar  the same, motion compensated
-/// @param drawn              the map in the view, in the exposure of the photograph
 FarField compare_far_field(const FarMap& map, const PointCloud& measured_lidar,
                            const PointCloud& compensated_lidar, const PlacedFrame& placed,
-                           const Camera& camera, const Image& photograph, const SplatView& drawn);
+                           const Camera& camera, const FarPictures& pictures);
 
 }  // namespace fovea

@@ -55,7 +55,7 @@ FarField compare(const Map& map, bool draws_map = true) {
   }
   const PointCloud scan = scan_of_road_and_wall();
   return compare_far_field({map.position, color, tree, Eigen::Vector3d::Zero()}, scan, scan,
-                           PlacedFrame{}, camera, photograph, drawn);
+                           PlacedFrame{}, camera, {photograph, drawn});
 }
 
 TEST(FarField, APerfectMapIsCoveredAndHasOneLayer) {

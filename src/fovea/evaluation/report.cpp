@@ -80,6 +80,7 @@ void put_structure(Json& json, const EvaluationReport& report) {
   json["bleeding"] = {{"points_edges", bleeding.points_edges},
                       {"te_edges", bleeding.te_edges},
                       {"te_elsewhere", bleeding.te_elsewhere},
+                      {"te_excess", bleeding.excess()},
                       {"coverage_5cm_edges", bleeding.coverage_5cm_edges},
                       {"coverage_5cm_elsewhere", bleeding.coverage_5cm_elsewhere}};
   const ErrorSplit& split = report.split;
@@ -128,12 +129,10 @@ void put_far_field(Json& json, const FarField& field) {
   json["explanation"] =
       "visible returns from 15 to 60 m; coverage within 5 or 10 cm, or the footprint of a pixel";
   json["all"] = far_json(field.all());
-  json["bands"] = Json::array();
   for (std::size_t band = 0; band < kFarBands.size(); ++band) {
-    json["bands"].push_back({{"near_m", kFarBands[band].near},
-                             {"far_m", kFarBands[band].far},
-                             {"ground", far_json(field.bands[band].ground)},
-                             {"upright", far_json(field.bands[band].upright)}});
+    const auto& [near, far] = kFarBands[band];
+    json[fmt::format("{}_to_{}_m", near, far)] = {{"ground", far_json(field.bands[band].ground)},
+                                                  {"upright", far_json(field.bands[band].upright)}};
   }
   json["holes"] = field.share_of_holes();
   json["psnr_measured"] = field.psnr();
@@ -275,8 +274,9 @@ std::string to_text(const EvaluationReport& report) {
                   report.gradients.detail()));
   const BleedingFigures& b = report.bleeding;
   row("TE at depth edges", number(b.te_edges, 2),
-      fmt::format("elsewhere {:.2f}; coverage 5 cm {:.3f}, elsewhere {:.3f}; {} points",
-                  b.te_elsewhere, b.coverage_5cm_edges, b.coverage_5cm_elsewhere, b.points_edges));
+      fmt::format("elsewhere {:.2f}, {:+.0f}%; coverage 5 cm {:.3f}, elsewhere {:.3f}; {} points",
+                  b.te_elsewhere, 100 * b.excess(), b.coverage_5cm_edges, b.coverage_5cm_elsewhere,
+                  b.points_edges));
   const ErrorSplit& s = report.split;
   row("TE of sampling", number(s.mean(s.sampling), 2),
       fmt::format("by the nearest point's distance; {:.2f} by its colour", s.mean(s.same_place)));

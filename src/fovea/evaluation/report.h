@@ -62,8 +62,12 @@ struct BlockReport {
 /// the others: colours of a foreground that bleed onto what lies behind it show here.
 struct BleedingFigures {
   std::size_t points_edges = 0;
+  /// With the fitted gain of the view.
   double te_edges = ErrorFigures::kNone, te_elsewhere = ErrorFigures::kNone;
   double coverage_5cm_edges = ErrorFigures::kNone, coverage_5cm_elsewhere = ErrorFigures::kNone;
+
+  /// How much larger TE is at edges, as a share.
+  double excess() const { return te_edges / te_elsewhere - 1; }
 };
 
 /// Width of the bins of EvaluationReport::te_histogram.

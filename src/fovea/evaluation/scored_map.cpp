@@ -96,6 +96,7 @@ ScoredMap load_scored_map(const MapReader& reader) {
     part.frame = tile.frame;
     part.interpolated = tile.interpolated;
     part.reason = tile.reason;
+    part.sampling_level = tile.sampling_level;
     map.points_local.append(
         transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
   });

@@ -112,7 +112,8 @@ Scorer::ScoredPoints Scorer::score_points(const Frame& frame, const PointCloud& 
                                           const Image& image) const {
   ScoredPoints scored;
   EvaluatedView& view = scored.view;
-  view = evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin);
+  view = without_masked(evaluated_view(frame.scan, scan, placed, camera, image, coloured_.origin),
+                        drive_.info().mask(camera.index));
   if (options_.reach) {
     const std::size_t all = view.position.size();
     view = select(view, options_.reach->reached(view.position, coloured_.origin,
@@ -188,9 +189,9 @@ void Scorer::compare_far(const PointCloud& measured, const PointCloud& scan,
                          ViewReport& report) const {
   SplatOptions options{.min_depth = kEvaluatedDepth, .display = exposure_of(report.gains)};
   options.max_depth = double(kFarBands.back().far);
-  report.far_field =
-      compare_far_field({coloured_.position, coloured_.color, coloured_tree_, coloured_.origin},
-                        measured, scan, placed, camera, image, draw(placed, camera, options));
+  report.far_field = compare_far_field(
+      {coloured_.position, coloured_.color, coloured_tree_, coloured_.origin}, measured, scan,
+      placed, camera, {image, draw(placed, camera, options), drive_.info().mask(camera.index)});
 }
 
 std::vector<Eigen::Vector3d> Scorer::nearest_in(const PlacedFrame& placed, const Camera& camera,

@@ -37,6 +37,9 @@ ColoredPoints chosen_points(const PointCloud& map_local, IsWanted&& is_wanted) {
     }
     if (!map_local.reason.empty()) coloured.reason.push_back(map_local.reason[i]);
     if (!map_local.frame.empty()) coloured.frame.push_back(map_local.frame[i]);
+    if (!map_local.sampling_level.empty()) {
+      coloured.sampling_level.push_back(map_local.sampling_level[i]);
+    }
   }
   coloured.runs = make_runs(coloured.position, kRunLength);
   return coloured;
@@ -67,7 +70,10 @@ std::vector<PointRun> make_runs(const std::vector<Eigen::Vector3f>& position, st
   return runs;
 }
 
-std::vector<float> sample_spacing(const std::vector<Eigen::Vector3f>& position) {
+namespace {
+
+/// As sample_spacing(), without a limit.
+std::vector<float> spacing_by_density(const std::vector<Eigen::Vector3f>& position) {
   VoxelTable table(kVoxelEdge);
   std::vector<std::uint32_t> voxel(position.size()), count;
   for (std::size_t i = 0; i < position.size(); ++i) {
@@ -82,11 +88,30 @@ std::vector<float> sample_spacing(const std::vector<Eigen::Vector3f>& position) 
     std::uint32_t points = 0;
     table.for_each_around(table.voxel(static_cast<std::uint32_t>(id)),
                           [&](std::uint32_t near) { points += count[near]; });
-    spacing[id] = std::min(kMaxSpacing, 3 * kVoxelEdge / std::sqrt(static_cast<float>(points)));
+    spacing[id] = 3 * kVoxelEdge / std::sqrt(static_cast<float>(points));
   });
   std::vector<float> per_point(position.size());
   parallel_for(position.size(), kGrain, [&](std::size_t i) { per_point[i] = spacing[voxel[i]]; });
   return per_point;
+}
+
+}  // namespace
+
+std::vector<float> sample_spacing(const std::vector<Eigen::Vector3f>& position) {
+  std::vector<float> spacing = spacing_by_density(position);
+  for (float& value : spacing) value = std::min(value, kMaxSpacing);
+  return spacing;
+}
+
+std::vector<float> sample_spacing(const ColoredPoints& map, double cell) {
+  if (map.sampling_level.empty()) return sample_spacing(map.position);
+  constexpr float kMargin = 1.5f, kIsolated = 2;  // cells
+  std::vector<float> spacing = spacing_by_density(map.position);
+  for (std::size_t i = 0; i < spacing.size(); ++i) {
+    const float own = static_cast<float>(cell) * float(1 << map.sampling_level[i]);
+    spacing[i] = spacing[i] > kIsolated * own ? own / 2 : std::min(spacing[i], kMargin * own);
+  }
+  return spacing;
 }
 
 double surface_density(const std::vector<Eigen::Vector3f>& map,

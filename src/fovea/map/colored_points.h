@@ -25,10 +25,11 @@ struct ColoredPoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3f> position;  ///< local frame, relative to origin
   std::vector<LogColor> color;
-  std::vector<std::uint8_t> interpolated;  ///< 1 if made by upsampling; empty where not known
-  std::vector<std::uint8_t> reason;        ///< core/point_reason.h; empty where not known
-  std::vector<std::int32_t> frame;         ///< that the point comes from; empty where not known
-  std::vector<PointRun> runs;              ///< covering all points in order
+  std::vector<std::uint8_t> interpolated;    ///< 1 if made by upsampling; empty where not known
+  std::vector<std::uint8_t> reason;          ///< core/point_reason.h; empty where not known
+  std::vector<std::int32_t> frame;           ///< that the point comes from; empty where not known
+  std::vector<std::uint8_t> sampling_level;  ///< empty where not known
+  std::vector<PointRun> runs;                ///< covering all points in order
 };
 
 /// The points of a map (local frame, columns color and camera) that some camera has coloured.
@@ -44,6 +45,11 @@ std::vector<PointRun> make_runs(const std::vector<Eigen::Vector3f>& position, st
 /// square that is each point's share of it, from the points in the 30-cm cube around its 10-cm
 /// voxel; at most 0.1 m.
 std::vector<float> sample_spacing(const std::vector<Eigen::Vector3f>& position);
+
+/// The same by the cells that the points stand for: at most 1.5 of their edges, which closes a
+/// surface, and half an edge for an isolated point, which is none.
+/// @param cell  edge of a finest cell, m
+std::vector<float> sample_spacing(const ColoredPoints& map, double cell);
 
 /// Map points per m^2 of surface: the mean, over one evaluated point a 10-cm voxel (so that every
 /// patch of surface counts alike), of the map points within 10 cm of it over the disc pi (0.1 m)^2.

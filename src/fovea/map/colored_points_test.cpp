@@ -51,6 +51,20 @@ TEST(SampleSpacing, IsThatOfAPlane) {
   EXPECT_FLOAT_EQ(sample_spacing({{5, 5, 5}})[0], 0.1f);
 }
 
+TEST(SampleSpacing, OfACoarseSurfaceClosesItAndOfAnIsolatedPointIsSmall) {
+  constexpr double kCell = 0.02;
+  ColoredPoints map;
+  map.position = plane(2, 0.16f, {0, 0, 1});
+  map.position.push_back({0, 0, 5});
+  map.sampling_level.assign(map.position.size(), 3);
+  map.sampling_level.back() = 1;
+  const std::vector<float> spacing = sample_spacing(map, kCell);
+  EXPECT_FLOAT_EQ(spacing.back(), float(kCell));  // half of a cell of 4 cm
+  std::size_t closed = 0;
+  for (std::size_t i = 0; i + 1 < spacing.size(); ++i) closed += spacing[i] > 0.11f;
+  EXPECT_GT(double(closed), 0.7 * double(spacing.size()));  // the others are at the rim
+}
+
 TEST(SurfaceDensity, IsExactOnAPlaneHoweverItLies) {
   for (const Eigen::Vector3f& normal : std::vector<Eigen::Vector3f>{
            {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {0.3f, -0.5f, 0.8f}}) {

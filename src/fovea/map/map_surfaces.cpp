@@ -22,7 +22,10 @@ void MapSurfaces::read(std::size_t submap, Tile& tile) {
   const PointCloud points = map_.read_tile({submap, tile.key});
   std::vector<Eigen::Vector3f> measured;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points.interpolated[i] == 0) measured.push_back(points.position[i]);
+    // Coarse points are of the periphery, and off by the errors of their frame's heading.
+    if (points.interpolated[i] == 0 && points.sampling_level[i] == 0) {
+      measured.push_back(points.position[i]);
+    }
   }
   tile.points = file_.append(voxel_thinned(std::move(measured), kVoxel));
   tile.origin = points.origin;

@@ -14,6 +14,7 @@ inline constexpr const char* kFoveaVersion = "fovea.version";
 inline constexpr const char* kDriveName = "drive.name";
 inline constexpr const char* kDriveKind = "drive.kind";
 inline constexpr const char* kCameras = "cameras";
+inline constexpr const char* kMasks = "masks";  // of the images: camera and fingerprint
 inline constexpr const char* kFramesBegin = "frames.begin";
 inline constexpr const char* kFramesEnd = "frames.end";
 inline constexpr const char* kHoldOut = "hold_out";

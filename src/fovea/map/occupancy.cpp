@@ -14,7 +14,8 @@ constexpr std::int32_t kNoBrick = -1;
 constexpr int kCoarsest = 1 << (kSamplingLevels - 1);  // finest cells along a coarsest one
 
 std::size_t place_in(const Eigen::Array3i& place, const Eigen::Array3i& size) {
-  return static_cast<std::size_t>((place.z() * size.y() + place.y()) * size.x() + place.x());
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  return (at(place.z()) * at(size.y()) + at(place.y())) * at(size.x()) + at(place.x());
 }
 
 Eigen::Array3i number_of(const TileKey& key) { return {key.x, key.y, key.z}; }

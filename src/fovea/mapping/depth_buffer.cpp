@@ -30,6 +30,7 @@ void DepthBuffer::clear(const Camera& camera) {
   width_ = camera.width / 2 + 1;
   height_ = camera.height / 2 + 1;
   depth_.assign(static_cast<std::size_t>(width_) * height_, std::numeric_limits<float>::infinity());
+  is_doubtful_.assign(depth_.size(), 0);
 }
 
 void DepthBuffer::add(const ProjectedPoints& samples, std::size_t count, float radius) {
@@ -70,6 +71,38 @@ std::size_t DepthBuffer::find_visible(
     found += !is_behind(points.depth[i], depth_[cell[i]]);
   }
   return found;
+}
+
+void DepthBuffer::find_edges() {
+  const auto width = static_cast<std::size_t>(width_), size = depth_.size();
+  // The range of depths in each cell and its neighbors: along the rows, then along the columns.
+  std::vector<float> low(size), high(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const float before = depth_[i > 0 ? i - 1 : i], after = depth_[i + 1 < size ? i + 1 : i];
+    low[i] = std::min({before, depth_[i], after});
+    high[i] = std::max({before, depth_[i], after});
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t above = i >= width ? i - width : i, below = i + width < size ? i + width : i;
+    const float nearest = std::min({low[above], low[i], low[below]});
+    const float farthest = std::max({high[above], high[i], high[below]});
+    is_doubtful_[i] = farthest > nearest + std::max(kBefore, kBeforeShare * nearest) ? 1 : 0;
+  }
+}
+
+void DepthBuffer::doubt(const Eigen::Vector2f& pixel, float radius) {
+  const Eigen::Vector2f center = pixel / 2;
+  const float r = radius / 2;
+  const int top = std::max(0, static_cast<int>(std::ceil(center.y() - r)));
+  const int bottom = std::min(height_ - 1, static_cast<int>(std::floor(center.y() + r)));
+  for (int y = top; y <= bottom; ++y) {
+    const float half =
+        std::sqrt(std::max(0.0f, r * r - (float(y) - center.y()) * (float(y) - center.y())));
+    const int left = std::max(0, static_cast<int>(std::ceil(center.x() - half)));
+    const int right = std::min(width_ - 1, static_cast<int>(std::floor(center.x() + half)));
+    for (int x = left; x <= right; ++x)
+      is_doubtful_[std::size_t(y) * std::size_t(width_) + std::size_t(x)] = 1;
+  }
 }
 
 void DepthBuffer::add(const DepthBuffer& other) {

@@ -35,6 +35,14 @@ class DepthBuffer {
   /// Adds all samples of a buffer of the same camera.
   void add(const DepthBuffer& other);
 
+  /// Marks the edges of depth as doubtful, where a pixel may show another surface: where a depth
+  /// within about a pixel differs from another there as in is_in_front(), or is unknown. To be
+  /// called after all samples are added.
+  void find_edges();
+  /// Marks the pixels around one as doubtful, too.
+  void doubt(const Eigen::Vector2f& pixel, float radius);
+  bool is_doubtful(const Eigen::Vector2f& pixel) const { return is_doubtful_[cell_of(pixel)] != 0; }
+
   /// Whether an added surface hides a point.
   bool hides(const Eigen::Vector2f& pixel, float depth) const {
     return is_behind(depth, depth_[cell_of(pixel)]);
@@ -63,6 +71,7 @@ class DepthBuffer {
   }
   int width_ = 0, height_ = 0;
   std::vector<float> depth_;
+  std::vector<std::uint8_t> is_doubtful_;
 };
 
 }  // namespace fovea

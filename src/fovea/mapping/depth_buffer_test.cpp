@@ -196,4 +196,46 @@ TEST(DepthBuffer, VisiblePointsAreThoseThatNothingHides) {
   }
 }
 
+// A board at 5 m before a wall at 10 m.
+TEST(DepthBuffer, EdgesOfDepthAreDoubtful) {
+  DepthBuffer buffer(camera_of(100, 60));
+  for (int x = 0; x < 100; ++x) {
+    for (int y = 0; y < 60; ++y) add(buffer, {float(x), float(y)}, x < 50 ? 5 : 10, 1);
+  }
+  EXPECT_FALSE(buffer.is_doubtful({50, 30}));  // not asked for yet
+  buffer.find_edges();
+  for (int x = 4; x < 96; ++x) {
+    const bool at_edge = std::abs(x - 50) <= 1;
+    if (at_edge || std::abs(x - 50) > 4) {
+      EXPECT_EQ(buffer.is_doubtful({float(x), 30}), at_edge) << x;
+    }
+  }
+}
+
+TEST(DepthBuffer, TheBorderOfWhatIsKnownIsDoubtfulAndASlantSurfaceIsNot) {
+  DepthBuffer buffer(camera_of(100, 60));
+  for (int x = 20; x < 80; ++x) {
+    for (int y = 0; y < 60; ++y) add(buffer, {float(x), float(y)}, 5 + 0.03f * float(x), 1);
+  }
+  buffer.find_edges();
+  EXPECT_TRUE(buffer.is_doubtful({20, 30}));
+  EXPECT_TRUE(buffer.is_doubtful({79, 30}));
+  for (int x = 26; x < 74; ++x) EXPECT_FALSE(buffer.is_doubtful({float(x), 30})) << x;
+}
+
+TEST(DepthBuffer, DoubtReachesAsFarAsItsRadius) {
+  DepthBuffer buffer(camera_of(100, 60));
+  buffer.doubt({40, 20}, 10);
+  buffer.doubt({99, 59}, 10);
+  buffer.doubt({-200, 20}, 10);
+  for (int x = 0; x < 100; ++x) {
+    for (int y = 0; y < 60; ++y) {
+      const double distance = std::min(std::hypot(x - 40, y - 20), std::hypot(x - 99, y - 59));
+      if (std::abs(distance - 10) > 2) {
+        ASSERT_EQ(buffer.is_doubtful({float(x), float(y)}), distance < 10) << x << " " << y;
+      }
+    }
+  }
+}
+
 }  // namespace fovea::depth_buffer_test

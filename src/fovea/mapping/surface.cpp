@@ -111,11 +111,13 @@ std::uint8_t sampling_level(const Eigen::Vector3d& p_cam, const Eigen::Vector3d&
   // Area of a plane in a pixel, m^2.
   const double cubed = p_cam.z() * p_cam.z() * p_cam.z();
   const double area = cubed / (camera.fx * camera.fy * std::abs(normal.dot(p_cam)));
-  std::uint8_t level = 0;
-  for (double cell = options.spacing; level + 1 < kSamplingLevels; cell *= 2, ++level) {
+  int level = is_far ? 1 : 0;
+  while (level + 1 < kSamplingLevels) {
+    const double cell = options.spacing * (1 << level);
     if (!(area > 2 * per_pixel * cell * cell)) break;
+    ++level;
   }
-  return level;
+  return static_cast<std::uint8_t>(level);
 }
 
 Surface find_surface(const PointCloud& points_cam, const Camera& camera,

@@ -20,7 +20,8 @@ struct SurfaceOptions {
   /// About this many samples in a pixel, 0: no limit. If more of the finest cells project to a
   /// pixel, cells of 2, 4, 8 or 16 times their edge are sampled: the image cannot resolve more.
   double max_per_pixel = 4;
-  /// m from the camera: beyond, one sample in a pixel suffices.
+  /// m from the camera: beyond, one sample in a pixel suffices, and no cell is of the finest level.
+  /// Nearer frames will measure the surface better, and replace these samples.
   double full_density_range = std::numeric_limits<double>::infinity();
 };
 

@@ -70,7 +70,7 @@ TEST(SurfaceSamples, BeyondTheRangeOfFullDensityAPixelHasAboutOne) {
     return std::set<std::uint8_t>(points.sampling_level.begin(), points.sampling_level.end());
   };
   EXPECT_EQ(levels(20), std::set<std::uint8_t>{0});
-  EXPECT_EQ(levels(5), std::set<std::uint8_t>{0});  // a pixel is 1.7 cm wide
+  EXPECT_EQ(levels(5), std::set<std::uint8_t>{1});  // a pixel is 1.7 cm wide, but it is far
   // At twelve times the focal length's usual depth the levels follow the pixel's area.
   const Camera camera = test_camera();
   for (const double depth : {18.0, 30.0, 60.0, 120.0, 500.0}) {
@@ -81,7 +81,7 @@ TEST(SurfaceSamples, BeyondTheRangeOfFullDensityAPixelHasAboutOne) {
     if (level < kSamplingLevels - 1) {
       EXPECT_LE(pixel * pixel, 2 * cell * cell) << depth;
     }
-    EXPECT_GT(pixel * pixel, level == 0 ? 0 : cell * cell / 2) << depth;
+    EXPECT_GT(pixel * pixel, level == 1 ? 0 : cell * cell / 2) << depth;
   }
 }
 

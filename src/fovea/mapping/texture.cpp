@@ -26,6 +26,9 @@ void color_points(PointCloud& points_cam, const View& view, ImageSampling sampli
   parallel_for(n, kGrain, [&](std::size_t i) {
     const auto pixel = view.camera.project(points_cam.position[i].cast<double>());
     if (!pixel || !view.camera.in_view(*pixel)) return;
+    constexpr float kNeighbor = 0.5f;  // of the interpolation, pixels
+    const Eigen::Vector2f at = pixel->cast<float>();
+    if (view.mask != nullptr && view.mask->covers(at.x(), at.y(), kNeighbor)) return;
     points_cam.color[i] = sample(view.image, *pixel, sampling);
     points_cam.camera[i] = static_cast<std::int8_t>(view.camera.index);
     points_cam.views[i] = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fovea/core/image.h"
+#include "fovea/core/image_mask.h"
 #include "fovea/core/point_cloud.h"
 #include "fovea/geometry/camera.h"
 
@@ -15,11 +16,12 @@ struct View {
   const Image& image;
   const Camera& camera;
   int frame = 0;
+  const ImageMask* mask = nullptr;  ///< absent: every pixel shows the scene
 };
 
 /// Colors each point from the image at its projection, and sets frame and camera. Points outside
-/// the image get kNoCamera; so do all points if the image is empty. Averaging views would blur
-/// edges.
+/// the image or in its mask get kNoCamera; so do all points if the image is empty. Averaging views
+/// would blur edges.
 /// @param points_cam  camera frame, origin 0
 void color_points(PointCloud& points_cam, const View& view,
                   ImageSampling sampling = ImageSampling::kBilinear);

@@ -56,14 +56,16 @@ std::uint16_t view_weight(float distance) {
       std::clamp(kWeightAtOneMeter / distance, 1.0f, kWeightAtOneMeter) + 0.5f);
 }
 
-ViewColors::ViewColors(const ImagePyramid& image, const Camera& camera, double footprint)
+ViewColors::ViewColors(const ImagePyramid& image, const Camera& camera, double footprint,
+                       const ImageMask* mask)
     : image_(image),
       footprint_(static_cast<float>(footprint * camera.fx)),
       fx_(static_cast<float>(camera.fx)),
       fy_(static_cast<float>(camera.fy)),
       cx_(static_cast<float>(camera.cx)),
       cy_(static_cast<float>(camera.cy)),
-      s_per_pixel_(squared_distance_from_center(camera, {camera.cx + 1, camera.cy})) {}
+      s_per_pixel_(squared_distance_from_center(camera, {camera.cx + 1, camera.cy})),
+      mask_(mask) {}
 
 ViewColors ViewColors::in_light(const ViewLight& light) const {
   ViewColors view = *this;
@@ -87,6 +89,9 @@ void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Sample
     ColorSample& sample = samples[i];
     sample.weight = static_cast<std::uint16_t>(
         std::max(1.0f, float(view_weight(distance)) * trust(value.minCoeff(), value.maxCoeff())));
+    // A mean reaches over three footprints at most (ImagePyramid::colors_at), and a pixel beyond.
+    const float half = 1.5f * footprint[i] + 1;
+    if (mask_ != nullptr && mask_->covers(points.u[i], points.v[i], half)) sample.weight = 0;
     sample.saturated = 0;
     for (int c = 0; c < 3; ++c) {
       if (value[c] >= kSaturatedValue) sample.saturated |= static_cast<std::uint8_t>(1 << c);
@@ -102,7 +107,7 @@ void ViewColors::sample(const ProjectedPoints& points, std::size_t count, Sample
 
 std::vector<FusedColor> first_colors(std::span<const Eigen::Vector3f> points_cam,
                                      const ViewColors& view, const Camera& camera,
-                                     const LogGain& submap_gain) {
+                                     const DepthBuffer* depth, const LogGain& submap_gain) {
   std::vector<FusedColor> colors(points_cam.size());
   parallel_chunks(colors.size(), ProjectedPoints::kSize, [&](std::size_t begin, std::size_t end) {
     ProjectedBlock block(camera);
@@ -114,20 +119,24 @@ std::vector<FusedColor> first_colors(std::span<const Eigen::Vector3f> points_cam
     }
     ViewColors::Samples samples;
     view.sample(projected, end - begin, samples);
-    for (std::size_t i = begin; i < end; ++i) {
-      samples[i - begin].code -= float(kColorCodesPerStop) * submap_gain;
-      fuse(samples[i - begin], /*random=*/0, colors[i]);
+    for (std::size_t i = 0; i < end - begin; ++i) {
+      if (samples[i].weight == 0) continue;
+      samples[i].code -= float(kColorCodesPerStop) * submap_gain;
+      if (depth != nullptr && depth->is_doubtful(block.pixel(i))) samples[i].trust_less();
+      fuse(samples[i], /*random=*/0, colors[begin + i]);
     }
   });
   return colors;
 }
 
 void color_new_points(PointCloud& points_cam, const ViewColors& view, const Camera& camera,
-                      int frame, const LogGain& submap_gain) {
+                      const DepthBuffer* depth, int frame, const LogGain& submap_gain) {
   const std::size_t n = points_cam.size();
   points_cam.frame.assign(n, frame);
-  points_cam.camera.assign(n, static_cast<std::int8_t>(camera.index));
-  for (const FusedColor& color : first_colors(points_cam.position, view, camera, submap_gain)) {
+  for (const FusedColor& color :
+       first_colors(points_cam.position, view, camera, depth, submap_gain)) {
+    points_cam.camera.push_back(color.views == 0 ? kNoCamera
+                                                 : static_cast<std::int8_t>(camera.index));
     points_cam.color.push_back(color.color);
     points_cam.views.push_back(color.views);
     points_cam.spread.push_back(color.spread);

@@ -22,7 +22,7 @@ PointCloud colored(const Image& image, const std::vector<Eigen::Vector3f>& posit
   PointCloud points;
   points.position = positions;
   color_new_points(points, ViewColors(pyramid, test_camera(), kFootprint).in_light(light),
-                   test_camera(), /*frame=*/7, submap_gain);
+                   test_camera(), /*depth=*/nullptr, /*frame=*/7, submap_gain);
   return points;
 }
 

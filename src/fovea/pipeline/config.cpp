@@ -65,6 +65,9 @@ void apply_setting(std::string_view setting, MapSettings& settings) {
 MapSettings stored_settings(std::string_view text, std::string_view name) {
   MapSettings settings;
   apply_config_text(convert_settings(text, name), name, settings);
+  // Maps of versions before the periphery have none.
+  const bool is_older = text.find("periphery_range_m") == std::string_view::npos;
+  if (is_older && !settings.is_paper()) apply_setting("foveal.periphery_range_m=0", settings);
   return settings;
 }
 

@@ -57,28 +57,51 @@ int free_since_filled(std::uint32_t filled, std::uint32_t seen_free) {
 }
 
 /// The voxels of a cloud, each with one of its points.
-struct CloudVoxels {
-  std::vector<std::uint32_t> voxel_of_point, first_point;
-
-  explicit CloudVoxels(const PointCloud& points) : voxel_of_point(points.size()) {
-    FlatMap<std::uint32_t> voxel_of_key;
+class CloudVoxels {
+ public:
+  explicit CloudVoxels(const PointCloud& points) : voxel_of_point_(points.size()) {
     const float inverse = static_cast<float>(1 / kVoxel);
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      const std::uint64_t key =
-          cell_key((points.position[i].array() * inverse).floor().cast<int>());
-      const auto [voxel, is_new] = voxel_of_key.try_emplace(key, std::uint32_t(first_point.size()));
-      if (is_new) first_point.push_back(i);
-      voxel_of_point[i] = *voxel;
+      const Eigen::Array3i cell = (points.position[i].array() * inverse).floor().cast<int>();
+      const auto [voxel, is_new] =
+          voxel_of_key_.try_emplace(cell_key(cell), std::uint32_t(first_point.size()));
+      if (is_new) {
+        first_point.push_back(i);
+        cells_.push_back(cell);
+      }
+      voxel_of_point_[i] = *voxel;
     }
   }
+
+  /// Marks of the points from marks of the voxels. Marked voxels mark those below them, too.
+  std::vector<std::uint8_t> marks_of_points(const std::vector<std::uint8_t>& of_voxels) const {
+    std::vector<std::uint8_t> with_below = of_voxels;
+    for (std::size_t voxel = 0; voxel < of_voxels.size(); ++voxel) {
+      for (std::uint32_t k = 1; of_voxels[voxel] != 0 && k <= kVoxelsBelow; ++k) {
+        const Eigen::Array3i below = cells_[voxel] - Eigen::Array3i(0, 0, int(k));
+        if (const auto* found = voxel_of_key_.find(cell_key(below))) with_below[*found] = 1;
+      }
+    }
+    std::vector<std::uint8_t> marks(voxel_of_point_.size());
+    for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = with_below[voxel_of_point_[i]];
+    return marks;
+  }
+
+  std::vector<std::uint32_t> first_point;
+
+ private:
+  std::vector<std::uint32_t> voxel_of_point_;
+  std::vector<Eigen::Array3i> cells_;
+  FlatMap<std::uint32_t> voxel_of_key_;
 };
 
 }  // namespace
 
 std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_local,
                                                        const RigidMotion& T_odom_local) const {
-  std::vector<std::uint8_t> marks(points_local.size(), 0);
-  if (!options_.remove || scans_.size() < std::size_t(kMinFree)) return marks;
+  if (!options_.remove || scans_.size() < std::size_t(kMinFree)) {
+    return std::vector<std::uint8_t>(points_local.size(), 0);
+  }
 
   const CloudVoxels voxels(points_local);
   std::vector<std::uint8_t> is_dynamic(voxels.first_point.size());
@@ -105,8 +128,7 @@ std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_
       is_dynamic[begin + i] = free[i] >= kMinFree && free[i] > filled[i];
     }
   });
-  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = is_dynamic[voxels.voxel_of_point[i]];
-  return marks;
+  return voxels.marks_of_points(is_dynamic);
 }
 
 std::vector<DynamicPointFilter::Tile> DynamicPointFilter::add_scan(const TileMap& map,

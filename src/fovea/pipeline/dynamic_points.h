@@ -16,7 +16,7 @@ namespace fovea {
 
 struct DynamicPointOptions {
   bool remove = true;   ///< false: moving objects stay in the map, as in the paper
-  double range = 25.0;  ///< m from the LiDAR: scans observe map points up to this range
+  double range = 60.0;  ///< m from the LiDAR: scans observe map points up to this range
   int free_scans = 4;   ///< a voxel loses its points if this many scans see through it
   double row_height = RangeImage::kLeastRowHeight;  ///< rad, from the LiDAR's rings; not a setting
 };
@@ -31,7 +31,8 @@ class DynamicPointFilter {
   explicit DynamicPointFilter(const DynamicPointOptions& options) : options_(options) {}
 
   /// Marks (1) points of a new scan in space that most of the voting scans observed as free: an
-  /// object has moved there since. One decision for each voxel of 0.2 m.
+  /// object has moved there since. One decision for each voxel of 0.2 m, which includes the points
+  /// up to 40 cm below: rays graze the road and never see through the lowest part of an object.
   /// @param T_odom_local  inverse of T_local_odom (fusion.h)
   std::vector<std::uint8_t> classify(const PointCloud& points_local,
                                      const RigidMotion& T_odom_local) const;

@@ -140,6 +140,23 @@ TEST(DynamicPointFilter, ClassifiesPointsInFreeSpaceAsDynamic) {
   EXPECT_EQ(marked(10), 0);
 }
 
+// Rays graze the road, and see nothing of the lowest part of an object. The lowest ring points 24
+// degrees down: 2.2 m below the LiDAR at 5 m.
+TEST(DynamicPointFilter, PointsBelowDynamicOnesAreDynamic) {
+  DynamicPointFilter filter({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  for (int frame = 0; frame < 6; ++frame) filter.observe(map, seen(0), kHere, kHere, frame);
+  const auto is_dynamic = [&](const std::vector<float>& heights) {
+    PointCloud points;
+    for (const float z : heights) points.position.push_back({5, 0, z});
+    return filter.classify(points, kHere);
+  };
+  EXPECT_EQ(is_dynamic({-1.9f}), (std::vector<std::uint8_t>{1}));
+  EXPECT_EQ(is_dynamic({-2.5f}), (std::vector<std::uint8_t>{0}));
+  EXPECT_EQ(is_dynamic({-1.9f, -2.1f, -2.3f, -2.5f}), (std::vector<std::uint8_t>{1, 1, 1, 0}));
+}
+
 TEST(DynamicPointFilter, SwitchedOffItRemovesNothing) {
   DynamicPointOptions off;
   off.remove = false;

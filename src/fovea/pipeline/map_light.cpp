@@ -60,7 +60,7 @@ ViewRecord MapLight::next(int camera, const MapDifferences& differences,
   }
   const LogGain stored = gain.value_or(gain_before(camera)) + graph_.gains()[submap];
   view.log2_gain = stored.cast<double>().matrix();
-  if (const std::optional<LogGain> color = gain_of(differences.colors)) {
+  if (const std::optional<LogGain> color = gain_of(differences.ground)) {
     constexpr float kOne = float(kColorCodeOfOne) / float(kColorCodesPerStop);
     view.log2_color = (*color - kOne - graph_.gains()[submap]).cast<double>().matrix();
   }

@@ -9,6 +9,7 @@ MapDifferences differences(float stops, int count) {
   for (int i = 0; i < count; ++i) {
     all.recent.add(Eigen::Array3f::Constant(256 * stops + float(i % 11 - 5)));
     all.colors.add(Eigen::Array3f::Constant(2600));
+    all.ground.add(Eigen::Array3f::Constant(2600));
   }
   return all;
 }

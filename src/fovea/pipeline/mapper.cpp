@@ -21,20 +21,26 @@ namespace {
 const Image kNoImage;
 constexpr double kMargin = 1;  // m: samples may lie beyond the foveal region
 
+/// Points of the map are ground from this share of the LiDAR's height below it.
+constexpr double kLow = 0.7;
+
+double height_of_lidar(const DriveInfo& drive) {
+  return drive.lidars.empty() ? kUsualSensorHeight
+                              : drive.lidars.front().height.value_or(kUsualSensorHeight);
+}
+
 double reach_of(const MapperOptions& options) {
   const double dynamic = options.dynamic.remove ? options.dynamic.range : 0;
   return std::max(dynamic, options.foveal.reach()) + 2 * kMargin;  // cells, and a margin for them
 }
 
-/// Index of the first frame whose scan the filter of dynamic points depends on.
-int first_voting_frame(const std::vector<FrameResult>& frames) {
-  constexpr std::size_t kScans = DynamicPointFilter::kVotingScans;
-  std::vector<int> mapped;
-  for (const FrameResult& frame : frames) {
-    if (frame.status == FrameStatus::kMapped) mapped.push_back(frame.index);
+std::vector<Eigen::Vector3f> marked(const std::vector<Eigen::Vector3f>& points,
+                                    const std::vector<std::uint8_t>& marks) {
+  std::vector<Eigen::Vector3f> chosen;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (marks[i] != 0) chosen.push_back(points[i]);
   }
-  if (mapped.size() <= kScans) return 0;
-  return std::min(mapped[mapped.size() - kScans], mapped.back() - DynamicPointFilter::kMemory + 1);
+  return chosen;
 }
 
 }  // namespace
@@ -45,6 +51,7 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       options_(suited_to(drive, options)),
       services_(std::move(services)),
       reach_(reach_of(options)),
+      ground_below_(kLow * height_of_lidar(drive)),
       tracker_(drive, options_, pose_source, services_.initial_velocity),
       map_(options.tile_size),
       dynamic_points_(options_.dynamic),
@@ -77,7 +84,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   }
   result.clock.lap("filter");
   if (options_.dynamic.remove) {
-    // 8 for the map: points leave where this scan and those before it see free space.
+    // 6 for the map: points leave where this scan and those before it see free space.
     RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
     result.dynamic.emplace().removed = dynamic_points_.observe(
         map_, std::move(ranges), result.poses.T_odom_lidar, T_odom_local, frame.index);
@@ -138,42 +145,57 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Fo
   const std::vector<std::uint8_t> is_occluding = visible_map_.find_occluding(new_cam);
   visible_map_.add_occluders(new_cam);  // also the dropped ones: a passing object hides the map
   stats.occluding += new_cam.drop(is_occluding);
+  // 6. Dynamic points: new points where other scans see free space.
+  PointCloud placed;
+  placed.position = new_cam.position;
+  placed = transform_cloud(std::move(placed), T_local_cam, T_local_lidar.translation());
+  visible_map_.find_edges();
+  if (options_.dynamic.remove) {
+    const std::vector<std::uint8_t> is_dynamic = dynamic_points_.classify(placed, T_odom_local);
+    visible_map_.doubt_around(marked(new_cam.position, is_dynamic));
+    placed.drop(is_dynamic);
+    result.dynamic->dropped += new_cam.drop(is_dynamic);
+  }
   result.clock.lap("filter");
 
   if (pyramid) {
-    const ViewColors image_colors(*pyramid, camera, options_.footprint);
-    // 6. Light: the response of the camera, and the gain of the image.
-    const RigidMotion T_odom_cam = result.poses.T_odom_lidar * camera.T_cam_lidar.inverse();
-    light_.learn_response(visible_cam.position, *pyramid, camera, T_odom_cam, options_.footprint);
-    const ViewColors colors = image_colors.in_light(find_light(image_colors, camera.index, result));
-    // 7. Colors in the exposure of the map: known points fuse one more view, new ones get a first.
-    const LogGain& submap_gain = map_.submaps().back().log2_gain;
-    std::size_t& recolored = stats_of(result.colors).recolored;
-    run_both([&] { recolored += visible_map_.recolor(map_, colors, result.index); },
-             [&] { color_new_points(new_cam, colors, camera, result.index, submap_gain); });
+    color_view(visible_cam, *pyramid, camera, new_cam, result);
   } else {
     color_points(new_cam, {image, camera, result.index});  // no image: empty columns
   }
   result.clock.lap("texture");
   new_cam.normal.clear();  // a map has none
-  PointCloud new_local =
-      transform_cloud(std::move(new_cam), T_local_cam, T_local_lidar.translation());
-  // 8. Dynamic points: new points where other scans see free space.
-  if (options_.dynamic.remove) {
-    result.dynamic->dropped += new_local.drop(dynamic_points_.classify(new_local, T_odom_local));
-  }
-  result.clock.lap("filter");
+  new_cam.origin = placed.origin;
+  new_cam.position = std::move(placed.position);
   // 9. Add.
-  map_.add(new_local);
+  map_.add(new_cam);
   occupancy_update_center_ = T_local_cam.translation();
-  stats_of(result.added) += new_local.size();
+  stats_of(result.added) += new_cam.size();
   result.clock.lap("store");
+}
+
+void Mapper::color_view(const PointCloud& visible_cam, const ImagePyramid& image,
+                        const Camera& camera, PointCloud& new_cam, FrameResult& result) {
+  const ImageMask* mask = drive_.mask(camera.index);
+  const ViewColors image_colors(image, camera, options_.footprint, mask);
+  // 7. Light: the response of the camera, and the gain of the image.
+  light_.learn_response(unmasked(visible_cam.position, camera, mask), image, camera,
+                        result.poses.T_odom_lidar * camera.T_cam_lidar.inverse(),
+                        options_.footprint);
+  const ViewColors colors = image_colors.in_light(find_light(image_colors, camera.index, result));
+  // 8. Colors in the exposure of the map: known points fuse one more view, new ones get a first.
+  std::size_t& recolored = stats_of(result.colors).recolored;
+  run_both([&] { recolored += visible_map_.recolor(map_, colors, result.index); },
+           [&] {
+             color_new_points(new_cam, colors, camera, &visible_map_.depth(), result.index,
+                              map_.submaps().back().log2_gain);
+           });
 }
 
 ViewLight Mapper::find_light(const ViewColors& image_colors, int camera, FrameResult& result) {
   constexpr std::size_t kEnough = 100;  // of fewer points the error is chance
   const ViewColors colors = image_colors.in_light({LogGain::Zero(), light_.response(camera)});
-  const MapDifferences differences = visible_map_.differences(colors);
+  const MapDifferences differences = visible_map_.differences(colors, ground_below_);
   const std::optional<double> exposure = drive_.image_exposure(camera, result.index);
   ColorStats& stats = stats_of(result.colors);
   stats.views.push_back(light_.next(camera, differences, exposure, map_));
@@ -203,73 +225,6 @@ void Mapper::apply_deferred_mapping() {
     occupancy_.follow(map_, *occupancy_update_center_, options_.foveal.reach() + kMargin);
   }
   occupancy_update_center_.reset();
-}
-
-void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
-                    const FrameSource& source) {
-  map_ = std::move(map);
-  std::vector<FrameResult> frames;
-  std::vector<const FrameRecord*> of_frames;
-  for (const FrameRecord& record : records) {
-    if (record.status == FrameStatus::kSkipped) continue;
-    frames.push_back(tracked_result(record));
-    of_frames.push_back(&record);
-  }
-  const bool needs_images = light_.needs_images(records);
-  const int first_voting = first_voting_frame(frames);
-  const int first_target = tracker_.first_target(frames);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const FrameResult& frame = frames[i];
-    tracker_.follow(frame);
-    map_.place_submaps(tracker_.submaps());
-    const bool with_periphery =
-        frame.status == FrameStatus::kMapped && periphery_is_due(frame.poses.T_odom_lidar);
-    if (frame.status == FrameStatus::kHeldOut) {
-      light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
-      continue;
-    }
-    const bool votes = frame.index >= first_voting;
-    if (votes || needs_images || tracker_.needs_scan(first_target)) {
-      const LoadedFrame loaded = source.load(frame.index);
-      if (const auto* read = std::get_if<Frame>(&loaded)) {
-        replay(*read, frame, {votes, needs_images, with_periphery});
-      }
-    }
-    // After replay(), which may have moved submaps.
-    light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
-    for (const Camera& camera : drive_.calibration.cameras) {
-      const ViewRecord* view = of_frames[i]->find_view(camera.index);
-      if (view == nullptr) continue;
-      light_.replay(*view, drive_.image_exposure(camera.index, frame.index), map_);
-    }
-  }
-}
-
-void Mapper::replay(const Frame& read, const FrameResult& frame, const ReplayedParts& parts) {
-  const PointCloud scan_lidar = tracker_.compensated(read.scan, frame.poses.motion);
-  tracker_.replay(scan_lidar, frame);
-  map_.place_submaps(tracker_.submaps());
-  if (parts.response) {
-    replay_response(read, scan_lidar, frame, foveal_options(parts.with_periphery));
-  }
-  if (!parts.votes) return;
-  const RigidMotion T_local_lidar = tracker_.T_local_odom() * frame.poses.T_odom_lidar;
-  services_.load_near(map_, T_local_lidar.translation(), reach_);
-  dynamic_points_.replay(map_, RangeImage(scan_lidar.position, options_.dynamic.row_height),
-                         frame.poses.T_odom_lidar, tracker_.T_local_odom().inverse(), frame.index);
-}
-
-void Mapper::replay_response(const Frame& read, const PointCloud& scan_lidar,
-                             const FrameResult& frame, const FovealOptions& foveal) {
-  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, frame.poses.motion);
-  for (std::size_t k = 0; k < read.images.size(); ++k) {
-    if (read.images[k].empty() || is_blank(read.images[k])) continue;
-    PointCloud visible_cam = foveal_points(scan_lidar, FovealRegion(foveal, cameras[k]));
-    drop_hidden(visible_cam, scan_lidar, cameras[k]);
-    light_.learn_response(visible_cam.position, ImagePyramid(read.images[k]), cameras[k],
-                          frame.poses.T_odom_lidar * cameras[k].T_cam_lidar.inverse(),
-                          options_.footprint);
-  }
 }
 
 }  // namespace fovea

@@ -42,6 +42,11 @@ class Mapper : public IncrementalMapper {
   /// Whether the LiDAR has moved since the periphery was mapped: far surfaces change slowly. To be
   /// called once for each mapped frame, in their order.
   bool periphery_is_due(const RigidMotion& T_odom_lidar);
+  /// Steps 7 and 8.
+  /// @param visible_cam  points of the scan
+  /// @param new_cam      gets colors
+  void color_view(const PointCloud& visible_cam, const ImagePyramid& image, const Camera& camera,
+                  PointCloud& new_cam, FrameResult& result);
   /// Light of an image relative to that of the map; adds to the figures.
   ViewLight find_light(const ViewColors& image_colors, int camera, FrameResult& result);
   /// What later frames need of a frame of an earlier run.
@@ -62,6 +67,7 @@ class Mapper : public IncrementalMapper {
   MapperOptions options_;
   MapperServices services_;
   double reach_;
+  double ground_below_;  // m, below the LiDAR
   Tracker tracker_;
   TileMap map_;
   VisibleMap visible_map_;

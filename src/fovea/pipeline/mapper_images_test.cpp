@@ -136,4 +136,54 @@ TEST(Mapper, TwoCamerasTakeTurns) {
   EXPECT_LT(color_error / double(mapper.map().size()), 3.0);
 }
 
+/// The part of the images of frames 0 to 5 that the vehicle covers: red, in the middle below.
+bool is_covered(int x, int y) { return x > 200 && x < 420 && y > 120; }
+
+template <class AnyMapper>
+std::size_t red_points_of_masked_drive(bool has_mask) {
+  DriveInfo info = street().info();
+  if (has_mask) {
+    Image picture(621, 188, 1);
+    for (int y = 0; y < 188; ++y) {
+      for (int x = 0; x < 621; ++x) *picture.pixel(x, y) = is_covered(x, y) ? 0 : 255;
+    }
+    info.masks.emplace(2, ImageMask(picture));
+  }
+  AnyMapper mapper(info, {}, PoseSource::kNavigation);
+  for (int i = 0; i < 6; ++i) {
+    Frame frame = std::get<Frame>(street().load(i));
+    Image& image = frame.images[0];
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        if (!is_covered(x, y)) continue;
+        std::uint8_t* pixel = image.pixel(x, y);
+        pixel[0] = 255, pixel[1] = pixel[2] = 10;
+      }
+    }
+    mapper.process(frame);
+  }
+  std::size_t red = 0;
+  for (const auto& [key, stored] : mapper.map().submaps()[0].tiles) {
+    const PointCloud tile = stored.points->cloud();
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      const Eigen::Vector3f color = to_float(tile.color[i]);
+      red += tile.views[i] > 0 && color.x() > 150 && color.y() < 60;
+      EXPECT_EQ(tile.views[i] == 0, tile.camera[i] == kNoCamera);
+    }
+  }
+  return red;
+}
+
+TEST(Mapper, MaskedPixelsColorNoPoint) {
+  const std::size_t without = red_points_of_masked_drive<Mapper>(false);
+  EXPECT_GT(without, 10'000u);
+  EXPECT_LE(red_points_of_masked_drive<Mapper>(true), without / 1000);
+}
+
+TEST(PaperMapper, MaskedPixelsColorNoPoint) {
+  const std::size_t without = red_points_of_masked_drive<PaperMapper>(false);
+  EXPECT_GT(without, 100u);
+  EXPECT_LE(red_points_of_masked_drive<PaperMapper>(true), without / 100);
+}
+
 }  // namespace fovea::mapper_images_test

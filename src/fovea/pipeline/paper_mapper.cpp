@@ -41,7 +41,6 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   FrameResult result = std::move(tracked.result);
   StageClock& clock = result.clock;
   clock.start();
-
   // Sec. Pose Refinement: "with the raw poses as initial guess".
   const MotionGuess raw = raw_pose(frame, tracked.task, result);
   RigidMotion T_local_lidar = raw.T_odom_lidar;
@@ -89,7 +88,8 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
     PointCloud new_cam = visible_points(dense_cam, region, T_local_lidar, result);
     clock.lap("filter");
     // 5.5 Texture "by projecting them into the image": one view, no average.
-    color_points(new_cam, {frame.images[k], cameras[k], frame.index}, options_.sampling);
+    color_points(new_cam, {frame.images[k], cameras[k], frame.index, drive_.mask(cameras[k].index)},
+                 options_.sampling);
     clock.lap("texture");
     // 5.6 Accumulation: "later add them to the accumulated cloud".
     add_points(std::move(new_cam), T_local_lidar * cameras[k].T_cam_lidar.inverse(), result);
@@ -203,8 +203,10 @@ void PaperMapper::add_whole_scan(const PointCloud& scan_lidar, const Frame& fram
     limit_incidence(points_cam, std::numeric_limits<double>::infinity());
     const Image none;
     const bool is_seen = !is_last && has_content(frame.images[slot], result);
-    color_points(points_cam, {is_seen ? frame.images[slot] : none, camera, frame.index},
-                 options_.sampling);
+    color_points(
+        points_cam,
+        {is_seen ? frame.images[slot] : none, camera, frame.index, drive_.mask(camera.index)},
+        options_.sampling);
     std::vector<std::uint32_t> added, unseen;
     for (std::uint32_t i = 0; i < points_cam.size(); ++i) {
       (is_last || points_cam.camera[i] != kNoCamera ? added : unseen).push_back(i);

@@ -57,7 +57,8 @@ bool is_nearly_in_view(const Camera& camera, const Eigen::Vector2d& pixel) {
 /// when the map was made.
 /// @param reach  of the region, with a margin, m
 void color_own_points(TileMap& map, const ViewColors& view, const Camera& camera,
-                      const RigidMotion& T_local_cam, double reach, int frame) {
+                      const DepthBuffer& depth, const RigidMotion& T_local_cam, double reach,
+                      int frame) {
   struct OwnPoints {
     TileId tile;
     RigidMotion T_cam_tile;
@@ -92,10 +93,15 @@ void color_own_points(TileMap& map, const ViewColors& view, const Camera& camera
       colored.push_back(i);
       points_cam.push_back(p_cam.cast<float>());
     }
-    const std::vector<FusedColor> colors = first_colors(points_cam, view, camera, own.gain);
+    const std::vector<FusedColor> colors = first_colors(points_cam, view, camera, &depth, own.gain);
     const std::span<FusedColor> of_tile = map.colors(own.tile);
-    for (std::size_t k = 0; k < colored.size(); ++k) of_tile[colored[k]] = colors[k];
-    map.put_camera(own.tile, colored, static_cast<std::int8_t>(camera.index));
+    std::vector<std::uint32_t> seen;  // not masked
+    for (std::size_t k = 0; k < colored.size(); ++k) {
+      if (colors[k].views == 0) continue;
+      of_tile[colored[k]] = colors[k];
+      seen.push_back(colored[k]);
+    }
+    map.put_camera(own.tile, seen, static_cast<std::int8_t>(camera.index));
   }
 }
 
@@ -133,9 +139,10 @@ class Recolorer {
         // Maps of the paper mapper state no view.
         const ViewRecord* view = record.find_view(camera.index);
         const ViewLight light = view != nullptr ? view->light() : ViewLight();
-        const ViewColors colors(pyramid, camera, footprint_);
+        const ViewColors colors(pyramid, camera, footprint_, drive_.mask(camera.index));
+        visible_map_.find_edges();
         visible_map_.recolor(map_, colors.in_light(light), frame.index);
-        color_own_points(map_, colors.in_light(light), camera,
+        color_own_points(map_, colors.in_light(light), camera, visible_map_.depth(),
                          record.T_local_lidar * camera.T_cam_lidar.inverse(), reach_, frame.index);
       }
     }

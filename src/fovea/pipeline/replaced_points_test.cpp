@@ -44,7 +44,8 @@ TEST(ReplacedPoints, PointsOfOneLevelStay) {
   TileMap map(kTile);
   map.add_submap(RigidMotion::Identity());
   for (int level = 0; level < kSamplingLevels; ++level) {
-    map.add(points_of_level({{float(level) + 0.31f, 0, 20}, {float(level) + 0.312f, 0, 20}}, level));
+    map.add(
+        points_of_level({{float(level) + 0.31f, 0, 20}, {float(level) + 0.312f, 0, 20}}, level));
   }
   EXPECT_EQ(remove_replaced(map), 0u);
 }

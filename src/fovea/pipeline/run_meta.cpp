@@ -32,8 +32,15 @@ MapMeta meta_of_run(const DriveInfo& drive, const MapJob& job) {
   meta[meta_key::kDriveName] = name_of(drive.path);
   meta[meta_key::kDriveKind] = drive.kind;
   std::vector<int> cameras;
+  cameras.reserve(drive.calibration.cameras.size());
   for (const Camera& camera : drive.calibration.cameras) cameras.push_back(camera.index);
   meta[meta_key::kCameras] = fmt::format("{}", fmt::join(cameras, ","));
+  std::vector<std::string> masks;
+  masks.reserve(drive.masks.size());
+  for (const auto& [camera, mask] : drive.masks) {
+    masks.push_back(fmt::format("{}:{:08x}", camera, mask.fingerprint()));
+  }
+  if (!masks.empty()) meta[meta_key::kMasks] = fmt::format("{}", fmt::join(masks, ","));
   meta[meta_key::kFramesBegin] = fmt::format("{}", drive.begin);
   meta[meta_key::kFramesEnd] = fmt::format("{}", drive.end);
   meta[meta_key::kHoldOut] = job.hold_out.spec();

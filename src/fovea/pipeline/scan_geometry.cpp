@@ -18,10 +18,22 @@ std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
                                   const std::optional<SweepMotion>& motion) {
   if (drive.calibration.cameras.empty()) return lidar_views();
   std::vector<Camera> cameras;
+  cameras.reserve(drive.calibration.cameras.size());
   for (std::size_t slot = 0; slot < drive.calibration.cameras.size(); ++slot) {
     cameras.push_back(drive.camera_at(slot, frame).at_image(motion));
   }
   return cameras;
+}
+
+std::vector<Eigen::Vector3f> unmasked(const std::vector<Eigen::Vector3f>& points_cam,
+                                      const Camera& camera, const ImageMask* mask) {
+  if (mask == nullptr) return points_cam;
+  std::vector<Eigen::Vector3f> seen;
+  for (const Eigen::Vector3f& p : points_cam) {
+    const Eigen::Vector2f pixel = camera.project(p.cast<double>()).value().cast<float>();
+    if (!mask->covers(pixel.x(), pixel.y(), 1)) seen.push_back(p);
+  }
+  return seen;
 }
 
 }  // namespace fovea

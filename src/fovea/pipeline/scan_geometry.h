@@ -18,4 +18,10 @@ PointCloud deskewed(const PointCloud& scan, const std::optional<SweepMotion>& mo
 std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
                                   const std::optional<SweepMotion>& motion);
 
+/// The points that a mask does not cover.
+/// @param points_cam  camera frame, all in view
+/// @param mask        nullptr: all
+std::vector<Eigen::Vector3f> unmasked(const std::vector<Eigen::Vector3f>& points_cam,
+                                      const Camera& camera, const ImageMask* mask);
+
 }  // namespace fovea

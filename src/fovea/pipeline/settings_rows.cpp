@@ -157,7 +157,7 @@ SettingsTable default_rows(MapperOptions& o) {
        "Edge of the patch whose mean color a view gives to a point."},
       {"dynamic.remove", o.dynamic.remove, true,
        "Removes points that scans before or after them see through."},
-      {"dynamic.range_m", o.dynamic.range, 25, above(0, 200),
+      {"dynamic.range_m", o.dynamic.range, 60, above(0, 200),
        "Distance from the LiDAR up to which each scan checks the points of the map."},
       {"dynamic.free_scans", o.dynamic.free_scans, 4, between(1, DynamicPointFilter::kMemory),
        "Scans that see through a place before its points are removed."},

@@ -6,6 +6,7 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
+#include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/projected_block.h"
 #include "fovea/pipeline/view_frustum.h"
 
@@ -19,10 +20,7 @@ constexpr float kDiscRadius = 0.75f;
 constexpr std::uint64_t kRoundingSeed = 0x636f6c6f7572ull;
 /// Submaps that the vehicle has not left for long.
 constexpr std::size_t kRecentSubmaps = 16;
-/// differences() takes one of this many points.
-constexpr std::size_t kCompareStep = 32;
-
-static_assert(kChunkSize / kCompareStep <= kBlock && kChunkSize <= 1 << 16);
+static_assert(kChunkSize <= 1 << 16);
 static_assert(kChunkSize % TilePoints::kBoxed == 0 && TilePoints::kBoxed <= ProjectedBlock::kSize);
 
 }  // namespace
@@ -148,6 +146,15 @@ void VisibleMap::add_occluders(const PointCloud& points_cam) {
   for (const Shard& shard : shards_) depth_.add(shard.depth);
 }
 
+void VisibleMap::doubt_around(std::vector<Eigen::Vector3f> moving_cam) {
+  constexpr float kThinning = 0.5f, kReach = 1.5f;  // m
+  for (const Eigen::Vector3f& p : voxel_thinned(std::move(moving_cam), kThinning)) {
+    const auto pixel = camera_.project(p.cast<double>());
+    if (!pixel) continue;
+    depth_.doubt(pixel->cast<float>(), kReach * static_cast<float>(camera_.fx) / p.z());
+  }
+}
+
 std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_cam) const {
   std::vector<std::uint8_t> marks(points_cam.size());
   parallel_chunks(marks.size(), kChunkSize, [&](std::size_t chunk_begin, std::size_t chunk_end) {
@@ -161,52 +168,6 @@ std::vector<std::uint8_t> VisibleMap::find_occluding(const PointCloud& points_ca
                    });
   });
   return marks;
-}
-
-CodeDifferences VisibleMap::differences_of(const Chunk& chunk, const ViewColors& view,
-                                           CodeDifferences& colors) const {
-  const std::span<const PointInView> points = points_of(chunk);
-  ProjectedPoints projected;
-  std::array<Eigen::Array3f, kBlock> known;
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < points.size(); i += kCompareStep) {
-    const FusedColor& color = chunk.points->colors[chunk.begin + points[i].index];
-    if (color.views == 0 || color.saturated != 0) continue;
-    const Eigen::Vector2f pixel = quantizer_.pixel(points[i]);
-    const float depth = quantizer_.depth(points[i]);
-    if (depth_.hides(pixel, depth)) continue;
-    known[n] = codes_of(color.color) + chunk.gain_codes;
-    projected.put(n++, pixel, depth);
-  }
-  ViewColors::Samples seen;
-  view.sample(projected, n, seen);
-  const float dark = float(color_code(kDarkValue));
-  CodeDifferences differences;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (seen[i].saturated != 0 || seen[i].code.minCoeff() < dark) continue;
-    const double offset = view.response().offset;
-    const Eigen::Array3f in_map = exposure_codes(known[i], offset);
-    differences.add(exposure_codes(seen[i].code, offset) - in_map);
-    colors.add(in_map);
-  }
-  return differences;
-}
-
-MapDifferences VisibleMap::differences(const ViewColors& view) const {
-  std::vector<CodeDifferences> of_chunk(chunks_.size()), colors(chunks_.size());
-  parallel_for(chunks_.size(), 1,
-               [&](std::size_t k) { of_chunk[k] = differences_of(chunks_[k], view, colors[k]); });
-  MapDifferences all;
-  for (std::size_t k = 0; k < chunks_.size(); ++k) {
-    const std::size_t submap = chunks_[k].tile.submap;
-    if (submap < first_recent_submap_) {
-      all.earlier[submap].append(of_chunk[k]);
-    } else {
-      all.recent.append(of_chunk[k]);
-      all.colors.append(colors[k]);
-    }
-  }
-  return all;
 }
 
 std::size_t VisibleMap::recolor_chunk(const Chunk& chunk, std::span<FusedColor> colors,
@@ -229,9 +190,11 @@ std::size_t VisibleMap::recolor_chunk(const Chunk& chunk, std::span<FusedColor> 
     ViewColors::Samples seen;
     view.sample(projected, n, seen);
     for (std::size_t j = 0; j < n; ++j) {
+      if (seen[j].weight == 0) continue;
       const std::uint32_t index = chunk.begin + points[visible[j]].index;
       if (colors[index].views == 0) first_colored.push_back(index);
       seen[j].code -= chunk.gain_codes;
+      if (depth_.is_doubtful({projected.u[j], projected.v[j]})) seen[j].trust_less();
       fuse(seen[j], quick_bits(index, seed), colors[index]);
     }
     count += n;

@@ -18,6 +18,7 @@ namespace fovea {
 struct MapDifferences {
   CodeDifferences recent;  ///< to the latest submaps
   CodeDifferences colors;  ///< the codes of these points in the map, not differences
+  CodeDifferences ground;  ///< the same of those among them that are low
   std::map<std::size_t, CodeDifferences> earlier;  ///< to earlier submaps, by number
 };
 
@@ -40,9 +41,16 @@ class VisibleMap {
   /// Adds points to the depth buffer, so that recolor() skips the map behind them.
   void add_occluders(const PointCloud& points_cam);
 
+  /// Finds the edges of depth, at which recolor() trusts the view less: with all points added.
+  void find_edges() { depth_.find_edges(); }
+  /// Has recolor() trust the view less around points that move, and where their shadows fall.
+  void doubt_around(std::vector<Eigen::Vector3f> moving_cam);
+  const DepthBuffer& depth() const { return depth_; }
+
   /// Compares a view with the map, at some of the visible points of the region. Points that are
   /// saturated or dark in the view, or saturated in the map, are left out.
-  MapDifferences differences(const ViewColors& view) const;
+  /// @param below  points so far below the LiDAR are ground, m
+  MapDifferences differences(const ViewColors& view, double below) const;
 
   /// Fuses a view's colors into the visible points of the region. At most once after render().
   /// @param map    the rendered one
@@ -75,9 +83,11 @@ class VisibleMap {
   template <class F>
   void for_each_block(const PointCloud& points_cam, std::size_t begin, std::size_t end,
                       F&& f) const;
-  /// @param colors  takes the codes of the points in the map
-  CodeDifferences differences_of(const Chunk& chunk, const ViewColors& view,
-                                 CodeDifferences& colors) const;
+  /// One in `step` points of a chunk, all as `recent`.
+  MapDifferences differences_of(const Chunk& chunk, std::size_t step, const ViewColors& view,
+                                double below) const;
+  /// Height of a point over the LiDAR, m.
+  float height_of(const Eigen::Vector2f& pixel, float depth) const;
   /// The colors of each chunk's tile; empty if no point of the tile is in the region.
   std::vector<std::span<FusedColor>> colors_of_chunks(TileMap& map) const;
   /// @param seed           of the random rounding

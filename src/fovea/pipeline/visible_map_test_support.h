@@ -56,7 +56,7 @@ struct TestView {
     return seen;
   }
   CodeDifferences differences(const TileMap& map) const {
-    return render(map).differences(view).recent;
+    return render(map).differences(view, /*below=*/1).recent;
   }
   std::size_t recolor(TileMap& map, const PointCloud& new_points_cam = {}) const {
     VisibleMap seen = render(map);
