@@ -124,7 +124,6 @@ void find_images(const KittiCalibration& calibration, const DriveOptions& option
       info.masks.emplace(index, read_mask(mask->second, info.calibration.cameras.back(), nullptr));
     }
   }
-  require_cameras_of_masks(options, info);
 }
 
 ImageMask read_mask(const std::filesystem::path& file, const Camera& camera,

@@ -711,6 +711,8 @@ TEST_F(GenericDrive, CamerasMayHaveMasks) {
   write_png(folder_ / "small.png", Image(23, 10, 1));
   EXPECT_THAT(error_of<ConfigError>([&] { open(); }),
               AllOf(HasSubstr("23 x 10"), HasSubstr("24 x 10"), HasSubstr("small.png")));
+  options_.masks = {{7, folder_ / "other.png"}};  // not ignored without a word
+  EXPECT_THAT(error_of<ConfigError>([&] { open(); }), HasSubstr("camera 7, which is not used"));
   options_.masks = {{4, folder_ / "missing.png"}};
   EXPECT_THAT(error_of<InputError>([&] { open(); }), HasSubstr("missing.png"));
 }

@@ -6,6 +6,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/path_remedy.h"
+#include "fovea/drive/drive_files.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/generic_drive.h"
 #include "fovea/drive/kitti/kitti_drives.h"
@@ -87,7 +88,9 @@ std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOp
 
 std::unique_ptr<FrameSource> open_drive(const fs::path& path, const DriveOptions& options) {
   try {
-    return open_recognised(path, options);
+    auto drive = open_recognised(path, options);
+    require_cameras_of_masks(options, drive->info());
+    return drive;
   } catch (const fs::filesystem_error& error) {  // no permission, a broken disk
     throw InputError("the drive cannot be read (" + error.code().message() + ")",
                      error.path1().string(),
