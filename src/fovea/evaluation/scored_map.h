@@ -15,7 +15,7 @@ namespace fovea {
 
 struct ScoredMap {
   /// Local frame, relative to any origin near the drive; columns color and camera always, frame,
-  /// interpolated and reason where they are known.
+  /// interpolated, reason and sampling level where known.
   PointCloud points_local;
   std::vector<FrameRecord> frames;  ///< by index
   MapMeta meta;                     ///< empty for a cloud

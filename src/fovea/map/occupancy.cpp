@@ -142,7 +142,7 @@ bool Occupancy::holds_point(const Tile& tile, const Eigen::Array3i& cell, int le
 }
 
 bool Occupancy::holds_point(const Eigen::Vector3d& p_last, int level, int most) const {
-  // The latest submap last: most places are in it.
+  // The latest submap first: most places are in it.
   for (auto window = windows_.rbegin(); window != windows_.rend(); ++window) {
     if (!window->box_last[std::size_t(most)].contains(p_last)) continue;
     const Eigen::Array3d at = window->R_cells_last * p_last + window->t_cells_last;

@@ -50,9 +50,8 @@ Value* grow(std::vector<Value>& column, std::size_t count) {
   return column.data() + before;
 }
 
-bool has_coarse_points(const PointCloud& points) {
-  return std::any_of(points.sampling_level.begin(), points.sampling_level.end(),
-                     [](std::uint8_t level) { return level > 0; });
+bool has_coarse(std::span<const std::uint8_t> levels) {
+  return std::any_of(levels.begin(), levels.end(), [](std::uint8_t level) { return level > 0; });
 }
 
 }  // namespace
@@ -97,7 +96,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   points.colors.reserve(tile.size());
   for (std::size_t i = 0; i < tile.size(); ++i) points.colors.push_back(color_of(tile, i));
   for_each_run_column(points, tile, [](auto& to, const auto& from) { to.append(from); });
-  if (has_coarse_points(tile)) points.sampling_level.append(tile.sampling_level);
+  if (has_coarse(tile.sampling_level)) points.sampling_level.append(tile.sampling_level);
   points.widen_boxes(0);
   return points;
 }
@@ -156,10 +155,17 @@ void TilePoints::append(const PointCloud& points, const TilePlaces& places,
     if (from.empty()) return;
     for (const auto& [begin, end] : ranges) to.append(std::span(from).subspan(begin, end - begin));
   });
-  if (has_coarse_points(points) || (!sampling_level.empty() && !points.sampling_level.empty())) {
-    if (before > 0 && sampling_level.empty()) sampling_level.push_back(0, std::uint32_t(before));
-    for (const auto& [begin, end] : ranges) {
-      sampling_level.append(std::span(points.sampling_level).subspan(begin, end - begin));
+  if (!points.sampling_level.empty()) {
+    const auto levels = [&](const Range& part) {
+      return std::span(points.sampling_level).subspan(part.begin, part.end - part.begin);
+    };
+    const bool is_coarse = std::any_of(ranges.begin(), ranges.end(),
+                                       [&](const Range& part) { return has_coarse(levels(part)); });
+    if (is_coarse && sampling_level.empty() && before > 0) {
+      sampling_level.push_back(0, std::uint32_t(before));
+    }
+    if (is_coarse || !sampling_level.empty()) {
+      for (const Range& part : ranges) sampling_level.append(levels(part));
     }
   }
   for_each_default_column(*this, [&](auto& column) {

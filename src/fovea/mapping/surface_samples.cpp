@@ -170,9 +170,9 @@ void add_samples(const PointCloud& points_cam, const Surface& surface, const Sam
 
 }  // namespace
 
-PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
-                          const Camera& camera, const SurfaceOptions& options,
-                          const SampleGrid& grid) {
+PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
+                           const SurfaceOptions& options, const SampleGrid& grid) {
+  const Surface surface = find_surface(points_cam, camera, options);
   MarkedCells marked(grid);
   PointCloud points = measured_points(points_cam, surface, camera, options, grid, marked);
   const std::vector<Eigen::Vector3d> vertices = vertices_in_grid(surface, grid);
@@ -194,12 +194,6 @@ PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
       });
   add_samples(points_cam, surface, grid, samples, points);
   return points;
-}
-
-PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
-                           const SurfaceOptions& options, const SampleGrid& grid) {
-  return sample_surface(points_cam, find_surface(points_cam, camera, options), camera, options,
-                        grid);
 }
 
 }  // namespace fovea

@@ -22,20 +22,14 @@ struct SampleGrid {
   double step = 0;
 };
 
-/// Samples each triangle where the centers of the cells of its level project onto it along one
-/// axis: that nearest to its normal. Samples of all frames and triangles therefore share the same
-/// positions.
+/// Finds the surface, and samples each of its triangles where the centers of the cells of its level
+/// project onto it along one axis: that nearest to its normal. Samples of all frames and triangles
+/// therefore share the same positions.
 ///
-/// @param points_cam  the points of the surface
-/// @param options     for the levels of the points
+/// @param points_cam  as for find_surface()
 /// @return the points in free cells in their order, then the samples with the mean intensity of
 ///         their corners: at most one for each cell of a level. Has the columns of upsample(),
 ///         normals and levels; `reason` tells which rule admitted the triangle.
-PointCloud sample_surface(const PointCloud& points_cam, const Surface& surface,
-                          const Camera& camera, const SurfaceOptions& options,
-                          const SampleGrid& grid);
-
-/// find_surface() and sample_surface().
 PointCloud sample_surfaces(const PointCloud& points_cam, const Camera& camera,
                            const SurfaceOptions& options, const SampleGrid& grid);
 

@@ -16,6 +16,10 @@ SensorProfile first_lidar(const DriveInfo& drive) {
 
 }  // namespace
 
+double lidar_height(const DriveInfo& drive) {
+  return first_lidar(drive).height.value_or(kUsualSensorHeight);
+}
+
 SensorProfile lidar_profile(const FrameSource& source) {
   constexpr std::size_t kScans = 2;
   const DriveInfo& drive = source.info();
@@ -66,7 +70,7 @@ MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options) {
 
 PaperOptions suited_to(const DriveInfo& drive, PaperOptions options) {
   if (options.ground.sensor_height == 0) {
-    options.ground.sensor_height = first_lidar(drive).height.value_or(kUsualSensorHeight);
+    options.ground.sensor_height = lidar_height(drive);
   }
   return options;
 }

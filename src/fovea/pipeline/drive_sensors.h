@@ -21,4 +21,7 @@ MapperOptions suited_to(const SensorProfile& profile, MapperOptions options);
 MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options);
 PaperOptions suited_to(const DriveInfo& drive, PaperOptions options);
 
+/// Height of the first LiDAR over the road, m; the usual one where it is unknown.
+double lidar_height(const DriveInfo& drive);
+
 }  // namespace fovea

@@ -24,11 +24,6 @@ constexpr double kMargin = 1;  // m: samples may lie beyond the foveal region
 /// Points of the map are ground from this share of the LiDAR's height below it.
 constexpr double kLow = 0.7;
 
-double height_of_lidar(const DriveInfo& drive) {
-  return drive.lidars.empty() ? kUsualSensorHeight
-                              : drive.lidars.front().height.value_or(kUsualSensorHeight);
-}
-
 double reach_of(const MapperOptions& options) {
   const double dynamic = options.dynamic.remove ? options.dynamic.range : 0;
   return std::max(dynamic, options.foveal.reach()) + 2 * kMargin;  // cells, and a margin for them
@@ -51,7 +46,7 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       options_(suited_to(drive, options)),
       services_(std::move(services)),
       reach_(reach_of(options)),
-      ground_below_(kLow * height_of_lidar(drive)),
+      ground_below_(kLow * lidar_height(drive)),
       tracker_(drive, options_, pose_source, services_.initial_velocity),
       map_(options.tile_size),
       dynamic_points_(options_.dynamic),
@@ -149,7 +144,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Fo
   PointCloud placed;
   placed.position = new_cam.position;
   placed = transform_cloud(std::move(placed), T_local_cam, T_local_lidar.translation());
-  visible_map_.find_edges();
+  if (pyramid) visible_map_.find_edges();
   if (options_.dynamic.remove) {
     const std::vector<std::uint8_t> is_dynamic = dynamic_points_.classify(placed, T_odom_local);
     visible_map_.doubt_around(marked(new_cam.position, is_dynamic));
@@ -211,13 +206,12 @@ ViewLight Mapper::find_light(const ViewColors& image_colors, int camera, FrameRe
 
 PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& camera,
                                  const RigidMotion& T_local_cam) {
-  const Surface surface = find_surface(points_cam, camera, options_.surface);
   occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.reach() + kMargin);
   const SampleGrid grid{
       map_.submaps().back().T_local_submap.inverse() * T_local_cam, occupancy_.cell(),
       [&](const Eigen::Vector3d& p, int level) { return occupancy_.holds_point(p, level, level); },
       kPositionStep};
-  return sample_surface(points_cam, surface, camera, options_.surface, grid);
+  return sample_surfaces(points_cam, camera, options_.surface, grid);
 }
 
 void Mapper::apply_deferred_mapping() {

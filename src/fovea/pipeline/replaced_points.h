@@ -12,7 +12,7 @@ namespace fovea {
 /// @param occupancy  of the map as it is
 /// @param reach      of the view, m from the camera
 /// @param frame      index of the frame
-/// @param filter     is told of the removed points
+/// @param filter     forgets the removed points
 /// @return number of removed points
 std::size_t remove_replaced_points(TileMap& map, const Occupancy& occupancy, const Camera& camera,
                                    const RigidMotion& T_local_cam, double reach, int frame,
