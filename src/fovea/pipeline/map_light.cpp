@@ -5,13 +5,14 @@
 namespace fovea {
 namespace {
 
-/// A place counts as revisited from this number of compared points on.
-constexpr std::size_t kRevisitedPoints = 400;
+/// A place counts as revisited from this number of compared points on. Fewer are far away, and
+/// their colors differ: means over larger patches.
+constexpr std::size_t kRevisitedPoints = 2000;
 
-/// The earlier submap of which an image shows most, if that is enough to compare.
-std::optional<std::size_t> revisited_submap(const MapDifferences& differences) {
+/// The earlier submap of which an image shows most.
+std::optional<std::size_t> earlier_submap(const MapDifferences& differences) {
   std::optional<std::size_t> best;
-  std::size_t most = kRevisitedPoints - 1;
+  std::size_t most = 0;
   for (const auto& [submap, of_submap] : differences.earlier) {
     if (of_submap.size() > most) best = submap, most = of_submap.size();
   }
@@ -50,9 +51,10 @@ ViewRecord MapLight::next(int camera, const MapDifferences& differences,
   view.response = response(camera);
   std::optional<LogGain> gain =
       gain_of(differences.recent, differences.colors, view.response.offset);
-  if (const auto earlier = revisited_submap(differences)) {
-    const std::optional<LogGain> to_earlier = gain_of(differences.earlier.at(*earlier));
-    if (gain && !revisiting_.contains(submap)) {
+  if (const auto earlier = earlier_submap(differences)) {
+    const CodeDifferences& seen = differences.earlier.at(*earlier);
+    const std::optional<LogGain> to_earlier = gain_of(seen);
+    if (gain && seen.size() >= kRevisitedPoints && !revisiting_.contains(submap)) {
       const LogGain stored = *to_earlier + graph_.gains()[*earlier];
       view.revisit = {static_cast<int>(*earlier), stored.cast<double>().matrix()};
     }

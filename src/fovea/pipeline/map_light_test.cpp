@@ -57,21 +57,29 @@ TEST(MapLight, ARevisitedPlaceBringsTheSubmapsTogether) {
   // The image is 0.1 stops above the recent points and 0.3 above those of submap 1: these are
   // darker by 0.2 stops.
   const ViewRecord view =
-      light.next(2, with_earlier(differences(0.1f, 2000), 1, 0.3f, 1000), {}, map);
+      light.next(2, with_earlier(differences(0.1f, 2000), 1, 0.3f, 3000), {}, map);
   ASSERT_TRUE(view.revisit);
   EXPECT_EQ(view.revisit->submap, 1);
   const float difference = map.submaps()[1].log2_gain[1] - map.submaps()[39].log2_gain[1];
   EXPECT_NEAR(difference, 0.2, 0.03);
   // One comparison a submap.
   EXPECT_FALSE(
-      light.next(2, with_earlier(differences(0.1f, 2000), 1, 0.3f, 1000), {}, map).revisit);
+      light.next(2, with_earlier(differences(0.1f, 2000), 1, 0.3f, 3000), {}, map).revisit);
+}
+
+TEST(MapLight, FewPointsAreNoRevisitedPlace) {
+  TileMap map;
+  MapLight light;
+  drive_on(40, light, map);
+  EXPECT_FALSE(
+      light.next(2, with_earlier(differences(0.1f, 2000), 1, 0.3f, 1500), {}, map).revisit);
 }
 
 TEST(MapLight, WithoutRecentPointsTheEarlierOnesGiveTheGain) {
   TileMap map;
   MapLight light;
   drive_on(40, light, map);
-  const ViewRecord view = light.next(2, with_earlier({}, 1, 0.3f, 1000), {}, map);
+  const ViewRecord view = light.next(2, with_earlier({}, 1, 0.3f, 3000), {}, map);
   EXPECT_NEAR(gain(light, view, 39), 0.3, 0.01);
   EXPECT_FALSE(view.revisit);
 }
@@ -82,7 +90,7 @@ TEST(MapLight, ContinuesAnEarlierRun) {
   drive_on(30, light, map);
   drive_on(30, resumed, resumed_map);
   for (const MapDifferences& seen :
-       {differences(0.4f, 800), with_earlier(differences(0.1f, 2000), 1, 0.3f, 1000)}) {
+       {differences(0.4f, 800), with_earlier(differences(0.1f, 2000), 1, 0.3f, 3000)}) {
     resumed.replay(light.next(2, seen, {}, map), {}, resumed_map);
   }
   drive_on(31, light, map);

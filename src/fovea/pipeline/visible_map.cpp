@@ -18,10 +18,22 @@ constexpr std::size_t kChunkSize = 8192, kBlock = ColorBlock::kSize;
 constexpr float kDiscRadius = 0.75f;
 /// Seed of the random rounding of colors.
 constexpr std::uint64_t kRoundingSeed = 0x636f6c6f7572ull;
-/// Submaps that the vehicle has not left for long.
-constexpr std::size_t kRecentSubmaps = 16;
+/// A submap counts as recent until the vehicle has driven this far from its end, m: a camera that
+/// looks back sees the surfaces that a camera ahead has colored.
+constexpr double kRecentPath = 120;
 static_assert(kChunkSize <= 1 << 16);
 static_assert(kChunkSize % TilePoints::kBoxed == 0 && TilePoints::kBoxed <= ProjectedBlock::kSize);
+
+std::size_t find_first_recent(const std::vector<Submap>& submaps) {
+  double path = 0;
+  std::size_t first = submaps.size() - std::min<std::size_t>(submaps.size(), 1);
+  for (; first > 0 && path < kRecentPath; --first) {
+    path += (submaps[first].T_local_submap.translation() -
+             submaps[first - 1].T_local_submap.translation())
+                .norm();
+  }
+  return first;
+}
 
 }  // namespace
 
@@ -52,8 +64,7 @@ void VisibleMap::render(const TileMap& map, const FovealRegion& region,
   white_zone_end_ = static_cast<float>(region.far_range());
   disc_radius_ = kDiscRadius * static_cast<float>(spacing * camera_.fx);
   collect_chunks(map, region, T_cam_local);
-  const std::size_t submaps = map.submaps().size();
-  first_recent_submap_ = submaps - std::min(submaps, kRecentSubmaps);
+  first_recent_submap_ = find_first_recent(map.submaps());
   parallel_for(kShards, 1, [&](std::size_t shard) {
     shards_[shard].depth.clear(camera_);
     std::size_t first = 0;

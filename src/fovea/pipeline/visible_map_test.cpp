@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "fovea/core/parallel.h"
 #include "fovea/pipeline/visible_map_test_support.h"
@@ -203,6 +204,28 @@ TEST(VisibleMap, DifferencesGiveTheGainOfAnImage) {
   };
   EXPECT_LT((gain_to_first({200, 120, 160}) - 1).abs().maxCoeff(), 1e-3);
   EXPECT_LT((gain_to_first({50, 60, 40}) - LogGain(-1, 0, -1)).abs().maxCoeff(), 1e-3);
+}
+
+// A submap counts as left 120 m down the path, however many submaps that makes.
+TEST(VisibleMap, DifferencesTellRevisitedSubmapsApart) {
+  const Image image = image_of({100, 60, 80});
+  const auto differences_on_a_circle = [&](double circumference) {
+    TileMap map = map_of(wall(8, -2, 2, -0.8, 0.8));  // submap 0
+    TestView(image).recolor(map);
+    for (int k = 1; k <= 12; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 12;
+      const double radius = circumference / (2 * std::numbers::pi);
+      map.add_submap(RigidMotion(
+          Eigen::Translation3d(5 + radius * std::sin(angle), 0, radius * (1 - std::cos(angle)))));
+    }
+    const TestView view(image);
+    return view.render(map).differences(view.view, /*below=*/1);
+  };
+  const MapDifferences small = differences_on_a_circle(100), large = differences_on_a_circle(200);
+  EXPECT_GT(small.recent.size(), 100u);
+  EXPECT_TRUE(small.earlier.empty());
+  EXPECT_EQ(large.recent.size(), 0u);
+  EXPECT_EQ(large.earlier.at(0).size(), small.recent.size());
 }
 
 TEST(VisibleMap, SaturatedAndDarkValuesGiveNoDifference) {
