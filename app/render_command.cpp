@@ -73,12 +73,6 @@ ColorDisplay exposure_of(const FrameRecord& frame, int camera,
   return light ? ColorDisplay(*light, /*tone_mapped=*/false) : ColorDisplay();
 }
 
-/// Edge of a finest cell of a map, m.
-double cell_of(const MapMeta& meta) {
-  return meta.contains(meta_key::kConfig) ? stored_settings(meta, "the map").spacing()
-                                          : MapperOptions().surface.spacing;
-}
-
 SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_local_cam,
                const ColorDisplay& display) {
   const ColoredPoints points =
@@ -86,8 +80,7 @@ SplatView draw(const ScoredMap& map, const Camera& camera, const RigidMotion& T_
   SplatOptions options;
   options.max_radius = 20;
   options.display = display;
-  return splat(points, sample_spacing(points, cell_of(map.meta)), camera, T_local_cam.inverse(),
-               options);
+  return splat(points, spacing_of(points, map.meta), camera, T_local_cam.inverse(), options);
 }
 
 /// A frame of the map with its scan and image.

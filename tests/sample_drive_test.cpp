@@ -46,13 +46,14 @@ TEST_F(SampleDrive, DefaultPresetOnHeldOutFrames) {
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(double(calibration["rotation_deg"].at(k))), 0.15);
   EXPECT_LT(std::abs(double(calibration["time_offset_ms"])), 5);
   const auto& scores = json["evaluate"];
-  EXPECT_LE(scores["te_cross_mean"], 15.9);
+  EXPECT_LE(scores["te_cross_mean"], 16.2);
   EXPECT_GE(scores["te_cross_within_20"], 0.78);
   EXPECT_LE(scores["te_predicted_mean"], 16.4);
-  EXPECT_LE(scores["me_mean"], 0.035);
-  EXPECT_GE(scores["coverage_5cm"], 0.84);
+  EXPECT_GE(scores["sharpness"], 0.85);
+  EXPECT_LE(scores["me_mean"], 0.016);
+  EXPECT_GE(scores["coverage_5cm"], 0.972);
   EXPECT_GE(scores["coverage_20cm"], 0.98);
-  EXPECT_LE(scores["free_space_violations"], 0.04);
+  EXPECT_LE(scores["free_space_violations"], 0.021);
   // Every key that the contract names is there.
   for (const char* key :
        {"protocol", "cameras", "points", "me_mean", "me_std", "te_mean", "te_std", "te_median",

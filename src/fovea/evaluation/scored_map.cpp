@@ -9,8 +9,10 @@
 #include "fovea/core/errors.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/geometry/transform_cloud.h"
+#include "fovea/map/meta_keys.h"
 #include "fovea/map/point_files/cloud_format.h"
 #include "fovea/map/point_files/las_reader.h"
+#include "fovea/pipeline/config.h"
 
 namespace fovea {
 namespace {
@@ -102,6 +104,13 @@ ScoredMap load_scored_map(const MapReader& reader) {
   });
   map.cameras = cameras_of(map.points_local);
   return map;
+}
+
+std::vector<float> spacing_of(const ColoredPoints& points, const MapMeta& meta) {
+  const auto config = meta.find(meta_key::kConfig);
+  if (config == meta.end()) return sample_spacing(points.position);
+  const double cell = stored_settings(config->second, "the map").spacing();
+  return cell > 0 ? sample_spacing(points, cell) : sample_spacing(points.position);
 }
 
 void choose_frames(const std::map<int, int>& number_in_drive, ScoredMap& map) {

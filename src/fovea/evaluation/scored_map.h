@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fovea/core/point_cloud.h"
+#include "fovea/map/colored_points.h"
 #include "fovea/map/frame_record.h"
 #include "fovea/map/map_store.h"
 
@@ -36,6 +37,10 @@ struct ScoredMapOptions {
 ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOptions& options);
 /// The same of a map that is open.
 ScoredMap load_scored_map(const MapReader& reader);
+
+/// Distance between neighboring samples around each point, m (sample_spacing). If the settings of
+/// the map are known, by its cells.
+std::vector<float> spacing_of(const ColoredPoints& points, const MapMeta& meta);
 
 /// Leaves the frames of one drive, under their numbers in the drive. Points of other frames then
 /// are of frame -1. If a merged map has a frame twice, it counts as mapped if either is mapped.

@@ -35,7 +35,7 @@ Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions opt
       options_(std::move(options)),
       coloured_(colored_points(map_)),
       coloured_tree_(coloured_.position),
-      spacing_(sample_spacing(coloured_.position)),
+      spacing_(spacing_of(coloured_, map.meta)),
       free_space_(coloured_),
       cross_view_(coloured_) {
   for (const std::size_t place : options_.cameras) {

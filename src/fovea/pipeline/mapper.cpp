@@ -67,16 +67,9 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
   const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, result.poses.motion);
+  // One frame later than the periphery, so that the slowest frames do less.
+  if (frame_before_has_periphery_) remove_replaced(cameras, result);
   const bool with_periphery = periphery_is_due(result.poses.T_odom_lidar);
-  if (with_periphery) {
-    occupancy_.follow(map_, result.poses.T_local_lidar.translation(),
-                      options_.foveal.reach() + kMargin);
-    for (const Camera& camera : cameras) {
-      remove_replaced_points(map_, occupancy_, camera,
-                             result.poses.T_local_lidar * camera.T_cam_lidar.inverse(),
-                             options_.foveal.reach(), frame.index, dynamic_points_);
-    }
-  }
   result.clock.lap("filter");
   if (options_.dynamic.remove) {
     // 6 for the map: points leave where this scan and those before it see free space.
@@ -94,15 +87,27 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   return result;
 }
 
+void Mapper::remove_replaced(const std::vector<Camera>& cameras, const FrameResult& result) {
+  const RigidMotion& T_local_lidar = result.poses.T_local_lidar;
+  const double reach = options_.foveal.reach();
+  occupancy_.follow(map_, T_local_lidar.translation(), reach + kMargin);
+  for (const Camera& camera : cameras) {
+    remove_replaced_points(map_, occupancy_, camera, T_local_lidar * camera.T_cam_lidar.inverse(),
+                           reach, result.index, dynamic_points_);
+  }
+}
+
 bool Mapper::periphery_is_due(const RigidMotion& T_odom_lidar) {
   constexpr double kDistance = 1.5, kAngle = 5 * kDegree;  // m, rad
+  frame_before_has_periphery_ = false;
   if (last_periphery_odom_) {
     const RigidMotion moved = last_periphery_odom_->inverse() * T_odom_lidar;
     const double angle = Eigen::AngleAxisd(moved.linear()).angle();
     if (moved.translation().norm() < kDistance && angle < kAngle) return false;
   }
   last_periphery_odom_ = T_odom_lidar;
-  return options_.foveal.periphery_range > options_.foveal.far_range;
+  frame_before_has_periphery_ = options_.foveal.periphery_range > options_.foveal.far_range;
+  return frame_before_has_periphery_;
 }
 
 FovealOptions Mapper::foveal_options(bool with_periphery) const {

@@ -39,6 +39,8 @@ class Mapper : public IncrementalMapper {
   /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
   void map_view(const PointCloud& scan_lidar, const Image& image, const FovealRegion& region,
                 const RigidMotion& T_odom_local, FrameResult& result);
+  /// Removes coarse points that finer ones replace, in view of the cameras.
+  void remove_replaced(const std::vector<Camera>& cameras, const FrameResult& result);
   /// Whether the LiDAR has moved since the periphery was mapped: far surfaces change slowly. To be
   /// called once for each mapped frame, in their order.
   bool periphery_is_due(const RigidMotion& T_odom_lidar);
@@ -75,6 +77,7 @@ class Mapper : public IncrementalMapper {
   DynamicPointFilter dynamic_points_;
   Occupancy occupancy_;
   std::optional<RigidMotion> last_periphery_odom_;  // T_odom_lidar of the frame that mapped it
+  bool frame_before_has_periphery_ = false;         // the last mapped frame
   std::optional<Eigen::Vector3d> occupancy_update_center_;  // where occupancy_ is out of date
 };
 

@@ -29,7 +29,7 @@ struct MapperOptions {
   FovealOptions foveal{.periphery_range = 60};
   /// 0: derived from the LiDAR's ring spacing (pipeline/drive_sensors.h).
   SurfaceOptions surface{.max_edge = 0, .planar_edge = 0};
-  double footprint = 0.02;  ///< m, edge of the surface patch whose mean color a point gets
+  double footprint = 0.015;  ///< m, edge of the surface patch whose mean color a point gets
   DynamicPointOptions dynamic;
   FusionOptions fusion;
   double tile_size = 4.0;  ///< m

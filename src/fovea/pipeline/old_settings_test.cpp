@@ -261,6 +261,7 @@ TEST(OldSettings, TheConfigurationOfAnEarlierMapIsRead) {
   MapSettings expected = load_preset("default");
   apply_setting("foveal.periphery_range_m=0", expected);
   apply_setting("dynamic.range_m=25", expected);
+  apply_setting("texture.footprint_m=0.02", expected);
   EXPECT_EQ(to_toml(stored_settings(kOldDefault, "map")), to_toml(expected));
   EXPECT_EQ(to_toml(stored_settings(kOldPaper, "map")), to_toml(load_preset("paper")));
 }

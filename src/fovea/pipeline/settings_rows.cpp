@@ -153,7 +153,7 @@ SettingsTable default_rows(MapperOptions& o) {
        slices_row(o.foveal.slices), camera_slices_row(o.foveal.camera_slices)});
   add(surface_rows(o.surface));
   add({
-      {"texture.footprint_m", o.footprint, 0.02, between(0, 1),
+      {"texture.footprint_m", o.footprint, 0.015, between(0, 1),
        "Edge of the patch whose mean color a view gives to a point."},
       {"dynamic.remove", o.dynamic.remove, true,
        "Removes points that scans before or after them see through."},
