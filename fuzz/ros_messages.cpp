@@ -1,9 +1,11 @@
-// Messages of ROS 2, and the scans, images and cameras in them: the first byte says of which type.
+// Messages of ROS, and the scans, images and cameras in them. The first byte gives the type, and its
+// highest bit the encoding.
 #include "fovea/drive/recordings/ros_messages.h"
 
 #include <array>
 #include <vector>
 
+#include "fovea/drive/recordings/bag_sink.h"
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/pixels.h"
 #include "fovea/drive/recordings/point_cloud_rows.h"
@@ -14,7 +16,7 @@ using namespace fovea;
 
 namespace {
 
-void read_scan(CdrReader& message) {
+void read_scan(MessageReader& message) {
   const ros::PointCloud2 cloud = ros::read_point_cloud(message);
   ScanNumberRows numbers(cloud.header.stamp);
   read_cloud_rows(cloud, "t", numbers);
@@ -31,12 +33,12 @@ void read_scan(CdrReader& message) {
   require(!scan.points.empty(), "a scan has points");
 }
 
-void read_pixels(CdrReader& message) {
+void read_pixels(MessageReader& message) {
   const Image image = image_of(ros::read_image(message), "t");
   require(image.width > 0 && image.height > 0, "an image has pixels");
 }
 
-void read_optics(CdrReader& message) {
+void read_optics(MessageReader& message) {
   const ros::CameraInfo info = ros::read_camera_info(message);
   for (const bool rectified : {false, true}) {
     read_or_refuse([&] {
@@ -49,21 +51,22 @@ void read_optics(CdrReader& message) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using Reader = void (*)(CdrReader&);
+  using Reader = void (*)(MessageReader&);
   constexpr std::array<Reader, 8> kReaders = {
       read_scan,
       read_pixels,
       read_optics,
-      [](CdrReader& message) { ros::read_compressed_image(message); },
-      [](CdrReader& message) { ros::read_nav_sat_fix(message); },
-      [](CdrReader& message) { ros::read_imu(message); },
-      [](CdrReader& message) { ros::read_odometry(message); },
-      [](CdrReader& message) { ros::read_transforms(message); },
+      [](MessageReader& message) { ros::read_compressed_image(message); },
+      [](MessageReader& message) { ros::read_nav_sat_fix(message); },
+      [](MessageReader& message) { ros::read_imu(message); },
+      [](MessageReader& message) { ros::read_odometry(message); },
+      [](MessageReader& message) { ros::read_transforms(message); },
   };
   if (size == 0) return 0;
   read_or_refuse([&] {
-    CdrReader message(as_text(data + 1, size - 1), "t");
-    kReaders[data[0] % kReaders.size()](message);
+    const std::string_view encoding = data[0] < 0x80 ? kCdrEncoding : kRos1Encoding;
+    MessageReader message(as_text(data + 1, size - 1), encoding, "t");
+    kReaders[(data[0] & 0x7f) % kReaders.size()](message);
   });
   return 0;
 }

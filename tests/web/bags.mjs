@@ -1,5 +1,5 @@
-// A generic drive folder as what a vehicle with ROS 2 would have recorded of it; mcap_bag.mjs and
-// rosbag2_folder.mjs write that to files.
+// A generic drive folder as a vehicle with ROS 2 or ROS 1 would have recorded it. mcap_bag.mjs, rosbag2_folder.mjs and
+// ros1_bag.mjs write that to files.
 import { readFileSync } from 'node:fs';
 
 import { numberOf, readScan } from './drive_folder.mjs';
@@ -15,11 +15,16 @@ const numbersOf = (row, names) => names.map((name) => numberOf(row[name]));
 class Recording {
   messages = [];
 
+  constructor(ros1) {
+    this.encode = ros1 ? ros.encodeRos1 : ros.encode;
+    this.typeOf = ros1 ? ros.ros1Type : (type) => type;
+  }
+
   /// @param delay  ms from the stamp until the message has come
   add(topic, type, time, delay, message) {
     const jitter = BigInt((this.messages.length * 7919) % 1000) * 1000n;
     const recorded = time + BigInt(delay) * 1_000_000n + jitter;
-    this.messages.push({ topic, type, time: recorded, data: ros.encode(type, message) });
+    this.messages.push({ topic, type: this.typeOf(type), time: recorded, data: this.encode(type, message) });
   }
 
   inOrder() {
@@ -94,9 +99,10 @@ function addNavigation(recording, drive) {
 /// Messages of a drive of readDrive(): {topic, type, time, data}, in the order of their times.
 /// @param poses  "odometry", "tf" or "gnss"
 /// @param images  "compressed", "rgb8" or "bgr8"
+/// @param ros1  messages of ROS 1 instead of ROS 2
 export function record(drive, { poses = 'odometry', images = 'compressed', lidars = ['/lidar/points'],
-  cameraInfos = true, cameraTransforms = true } = {}) {
-  const recording = new Recording();
+  cameraInfos = true, cameraTransforms = true, ros1 = false } = {}) {
+  const recording = new Recording(ros1);
   addScans(recording, drive, lidars);
   for (const camera of drive.cameras) addImages(recording, camera, images, cameraInfos);
   addStaticTransforms(recording, drive, cameraTransforms);

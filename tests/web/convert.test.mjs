@@ -1,4 +1,4 @@
-// ROS 2 recordings, written by writers of other people: `fovea convert` gives the drive that was recorded.
+// Recordings of ROS 2 and ROS 1, written by writers of other people: `fovea convert` gives the drive that was recorded.
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -6,15 +6,18 @@ import { after, before, test } from 'node:test';
 import { record } from './bags.mjs';
 import { ConvertDrives } from './convert_drives.mjs';
 import { opcodes, recordsOf, writeMcap } from './mcap_bag.mjs';
+import { ros1SchemaOf } from './ros_messages.mjs';
+import { ros1BagRecords, writeRos1Bag } from './ros1_bag.mjs';
 import { writeRosbag2 } from './rosbag2_folder.mjs';
 
-let drives, plain;
+let drives, plain, ros1;
 before(() => {
   drives = new ConvertDrives();
   drives.simulate('simulated', 'camera.numbers=[0]', 'lidar.columns=900');
   drives.derive('simulated', 'poses', 'poses');
   drives.derive('simulated', 'gnss', 'gnss');
   plain = record(drives.drive('poses'));
+  ros1 = record(drives.drive('poses'), { ros1: true });
 });
 after(() => drives.remove());
 
@@ -51,6 +54,29 @@ test('MCAP in two files', async () => {
   await writeMcap(bags[0], plain.slice(0, half));
   await writeMcap(bags[1], plain.slice(half));
   checkConverted(bags[0], 'poses', 'halves', bags[1]);
+});
+
+const ros1Mcap = { profile: 'ros1', messageEncoding: 'ros1',
+  schema: (type) => ({ encoding: 'ros1msg', data: ros1SchemaOf(type) }) };
+
+test('MCAP with messages of ROS 1', async () => {
+  const bag = drives.path('ros1.mcap');
+  await writeMcap(bag, ros1, ros1Mcap);
+  checkConverted(bag, 'poses', 'ros1_mcap');
+});
+
+for (const compression of ['none', 'bz2', 'lz4']) {
+  test(`a bag of ROS 1, ${compression}`, () => {
+    const bag = drives.path(`ros1_${compression}.bag`);
+    writeRos1Bag(bag, ros1, { compression });
+    checkConverted(bag, 'poses', `ros1_${compression}`);
+  });
+}
+
+test('a bag of ROS 1, GNSS and IMU, raw images', () => {
+  const bag = drives.path('ros1_gnss.bag');
+  writeRos1Bag(bag, record(drives.drive('gnss'), { poses: 'gnss', images: 'bgr8', ros1: true }));
+  checkConverted(bag, 'gnss', 'ros1_gnss');
 });
 
 test('a bag folder, GNSS and IMU', () => {
@@ -138,24 +164,56 @@ test('no CameraInfo', () => refusal('no_info', { cameraInfos: false }, ['camera_
 test('no tf to the camera', () => refusal('no_tf', { cameraTransforms: false }, ['camera_0_optical_frame']));
 test('no LiDAR', () => refusal('no_lidar', { lidars: [] }, ['PointCloud2']));
 test('unknown compression', () => refusal('br', {}, ["'br'"], { compression: 'br' }));
-test('ROS 1 messages', () => refusal('ros1', {}, ["'ros1'", 'ROS 2'], { profile: 'ros1', messageEncoding: 'ros1',
-  schema: () => ({ encoding: 'ros1msg', data: 'Header header' }) }));
+test('messages of ROS 1 that are of ROS 2', () => refusal('no_ros1', {}, ['/lidar/points'], ros1Mcap));
 test('protobuf', () => refusal('protobuf', {}, ["'protobuf'", 'ROS 2'], { profile: '', messageEncoding: 'protobuf',
   schema: () => ({ encoding: 'protobuf', data: 'descriptor' }) }));
+
+/// A recording that ends early gives the scans up to there, and a warning that says so.
+function checkCut(bag, bytes, length, scans) {
+  writeFileSync(bag, bytes.subarray(0, length));
+  const { status, stderr } = drives.convertWithWarnings(bag, 'cut', '--force');
+  assert.equal(status, 0, stderr);
+  assert.match(stderr, /cut short/);
+  assert.equal(drives.drive('cut').scans.length, scans);
+}
 
 test('MCAP cut short', async () => {
   await writeMcap(drives.path('cut.mcap'), plain);
   const bytes = readFileSync(drives.path('cut.mcap')), records = recordsOf(bytes);
   const first = (opcode) => records.find((r) => r.opcode === opcode);
   const middle = ({ begin, end }) => (begin + end) >> 1;
+  const chunks = records.filter((r) => r.opcode === opcodes.chunk);
+  // Without its first chunk a recording has no scans.
   const places = { nothing: 0, magic: 5, header: middle(first(opcodes.header)),
-    length: first(opcodes.chunk).begin + 4, chunk: middle(first(opcodes.chunk)),
-    chunks: records.filter((r) => r.opcode === opcodes.chunk)[2].begin, footer: first(opcodes.footer).begin,
-    end: bytes.length - 3 };
+    length: first(opcodes.chunk).begin + 4, chunk: middle(first(opcodes.chunk)) };
   for (const [place, length] of Object.entries(places)) {
     const bag = drives.path(`cut_${place}.mcap`);
     writeFileSync(bag, bytes.subarray(0, length));
     drives.refuses(bag, [`cut_${place}.mcap`]);
+  }
+  const bag = drives.path('short.mcap'), all = drives.drive('poses').scans.length;
+  checkCut(bag, bytes, first(opcodes.footer).begin, all);
+  checkCut(bag, bytes, bytes.length - 3, all);
+  checkCut(bag, bytes, middle(chunks.at(-1)), all - 1);
+});
+
+test('a bag of ROS 1 cut short, or not closed', () => {
+  const bag = drives.path('short.bag'), all = drives.drive('poses').scans.length;
+  for (const compression of ['none', 'bz2', 'lz4']) {
+    writeRos1Bag(bag, ros1, { compression });
+    const bytes = readFileSync(bag), records = ros1BagRecords(bytes);
+    const chunks = records.filter(({ operation }) => operation === 5);
+    checkCut(bag, bytes, chunks.at(-1).begin + 10, all - 1);
+    // Its recorder was killed: the header has no index, the last chunk no size.
+    bytes.writeBigUInt64LE(0n, bytes.indexOf('index_pos=') + 'index_pos='.length);
+    const { begin, data, size } = chunks.at(-1);
+    bytes.writeUInt32LE(0, bytes.indexOf('size=', begin) + 'size='.length);
+    bytes.writeUInt32LE(0, data - 4);
+    writeFileSync(bag, bytes.subarray(0, data + size));
+    const { status, stderr } = drives.convertWithWarnings(bag, 'open', '--force');
+    assert.equal(status, 0, stderr);
+    assert.match(stderr, compression === 'none' ? /not closed/ : /cut short/);
+    assert.equal(drives.drive('open').scans.length, all);
   }
 });
 
@@ -201,7 +259,7 @@ test('a bag folder without its file, or without its list', () => {
 
 test('other files', () => {
   for (const [name, text, ...words] of [['text.mcap', 'This is a text.\n'], ['text.db3', 'This is a text.\n'],
-    ['old.bag', '#ROSBAG V2.0\nE\0\0\0', 'ROS 1'], ['old.mcap', '#ROSBAG V2.0\nE\0\0\0', 'ROS 1']]) {
+    ['empty.bag', '#ROSBAG V2.0\nE\0\0\0', 'no point clouds'], ['old.bag', '#ROSBAG V1.2\n', 'V1.2']]) {
     writeFileSync(drives.path(name), text);
     drives.refuses(drives.path(name), [name, ...words]);
   }

@@ -101,9 +101,13 @@ export class ConvertDrives {
 
   /// `fovea convert` of a recording to the drive `name`: {status, stderr}.
   convert(recording, name, ...options) {
+    return this.convertWithWarnings(recording, name, '--quiet', ...options);
+  }
+
+  convertWithWarnings(recording, name, ...options) {
     mkdirSync(this.path(name), { recursive: true });
-    return spawnSync(this.#program,
-      ['convert', recording, '-o', this.path(name, 'drive'), '--quiet', ...options], { encoding: 'utf8' });
+    return spawnSync(this.#program, ['convert', recording, '-o', this.path(name, 'drive'), ...options],
+      { encoding: 'utf8' });
   }
 
   /// It ends with one line that says all of `words`, and leaves nothing.

@@ -1,26 +1,67 @@
-// Messages of ROS 2 (Humble) as CDR, by encoders and definitions of other people.
+// Messages of ROS 2 (Humble) as CDR, and of ROS 1, by encoders and definitions of other people.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { dirname, join } from 'node:path';
 
 import rosmsg from '@foxglove/rosmsg';
-import { MessageWriter } from '@foxglove/rosmsg2-serialization';
+import { MessageWriter as Ros1Writer } from '@foxglove/rosmsg-serialization';
+import { MessageWriter as Ros2Writer } from '@foxglove/rosmsg2-serialization';
 import { PNG } from 'pngjs';
 
-const folder = join(dirname(createRequire(import.meta.url).resolve('@foxglove/rosmsg-msgs-common')),
-  '../msgdefs/ros2humble');
+const folder = join(dirname(createRequire(import.meta.url).resolve('@foxglove/rosmsg-msgs-common')), '../msgdefs');
 const time = `${'='.repeat(80)}\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n`;
 
-/// What a bag says about "sensor_msgs/msg/Imu": its text, and those of the types in it.
+/// The definition of "sensor_msgs/msg/Imu" in ROS 2: its text, and those of the types in it.
 export function schemaOf(type) {
-  return readFileSync(join(folder, `${type}.msg`), 'utf8') + time;
+  return readFileSync(join(folder, 'ros2humble', `${type}.msg`), 'utf8') + time;
+}
+
+/// "sensor_msgs/Imu" of ROS 1.
+export const ros1Type = (type) => type.replace('/msg/', '/');
+export function ros1SchemaOf(type) {
+  return readFileSync(join(folder, 'ros1', `${ros1Type(type)}.msg`), 'utf8');
 }
 
 const writers = new Map();
 
+function writerOf(type, make) {
+  if (!writers.has(type)) writers.set(type, make());
+  return writers.get(type);
+}
+
 export function encode(type, message) {
-  if (!writers.has(type)) writers.set(type, new MessageWriter(rosmsg.parse(schemaOf(type), { ros2: true })));
-  return writers.get(type).writeMessage(message);
+  const make = () => new Ros2Writer(rosmsg.parse(schemaOf(type), { ros2: true }));
+  return writerOf(type, make).writeMessage(message);
+}
+
+/// The fields that ROS 1 names differently.
+const ros1Names = { nanosec: 'nsec', d: 'D', k: 'K', r: 'R', p: 'P' };
+
+function withRos1Names(value) {
+  if (Array.isArray(value)) return value.map(withRos1Names);
+  if (value === null || typeof value !== 'object' || ArrayBuffer.isView(value)) return value;
+  return Object.fromEntries(Object.entries(value).map(([name, part]) =>
+    [ros1Names[name] ?? name, withRos1Names(part)]));
+}
+
+/// The message with all arrays and parts that it leaves out: zeros.
+function completed(message, definitions, type) {
+  const { definitions: fields } = definitions.find(({ name }) => name === type);
+  const parts = fields.filter(({ isComplex, isArray }) => isComplex || isArray).map((field) => {
+    const { name, type: part, isArray, isComplex, arrayLength = 0 } = field;
+    const complete = (value) => (isComplex ? completed(value ?? {}, definitions, part) : value);
+    if (!isArray) return [name, complete(message[name])];
+    const values = message[name] ?? Array(arrayLength).fill(0);
+    return [name, isComplex ? values.map(complete) : values];
+  });
+  return { ...message, ...Object.fromEntries(parts) };
+}
+
+/// The message in the encoding of ROS 1.
+export function encodeRos1(type, message) {
+  const definitions = rosmsg.parse(ros1SchemaOf(type));
+  const whole = completed(withRos1Names(message), definitions, undefined);
+  return writerOf(ros1Type(type), () => new Ros1Writer(definitions)).writeMessage(whole);
 }
 
 export function header(time, frame) {

@@ -8,6 +8,7 @@
 #include "fovea/core/input_file.h"
 #include "fovea/drive/recordings/decompress.h"
 #include "fovea/drive/recordings/mcap_file.h"
+#include "fovea/drive/recordings/ros1_bag.h"
 #include "fovea/drive/recordings/sqlite_bag.h"
 
 namespace fovea {
@@ -68,6 +69,7 @@ class Unpacker : public BagSink {
     sink_.add(topic, unpacked);
   }
   void skip(const BagTopic& topic) override { sink_.skip(topic); }
+  void report_loss(const std::string& problem) override { sink_.report_loss(problem); }
 
  private:
   BagSink& sink_;
@@ -82,11 +84,10 @@ void read_plain(const fs::path& file, const fs::path& shown, BagSink& sink) {
     case FileFormat::kSqlite:
       return read_sqlite_bag(file, shown, sink);
     case FileFormat::kRosBag1:
-      throw InputError("this is a recording of ROS 1", shown.string(),
-                       "turn it into one of ROS 2 ('rosbags-convert', 'mcap convert')");
+      return read_ros1_bag(file, shown, sink);
     default:
-      throw InputError(fmt::format("this is no recording of ROS 2, but {}", found.name),
-                       shown.string(), "give an .mcap file, a .db3 file or a bag's folder");
+      throw InputError(fmt::format("this is no recording of ROS, but {}", found.name),
+                       shown.string(), "give a .bag, .mcap or .db3 file, or a bag's folder");
   }
 }
 

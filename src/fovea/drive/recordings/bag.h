@@ -1,4 +1,4 @@
-// Recordings of ROS 2, whatever they are stored as.
+// Recordings of ROS 2 and ROS 1, in any file format.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 namespace fovea {
 
 /// Files of a recording in their order.
-/// @param path  an .mcap or .db3 file, or a folder with the metadata.yaml that rosbag2 writes
-/// InputError for anything else, with a word on recordings of ROS 1.
+/// @param path  a .bag, .mcap or .db3 file, or a folder with the metadata.yaml that rosbag2 writes
+/// InputError for anything else.
 std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path);
 
 /// Reads such a file, compressed by zstd as a whole (`.db3.zstd`), message by message or not at
-/// all. InputError as read_mcap and read_sqlite_bag.
+/// all. InputError as read_mcap, read_sqlite_bag and read_ros1_bag.
 /// @param scratch  folder for what a whole file is decompressed to
 void read_bag_file(const std::filesystem::path& file, const std::filesystem::path& scratch,
                    BagSink& sink);

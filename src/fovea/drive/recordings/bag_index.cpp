@@ -44,11 +44,12 @@ class BagIndexer : public BagSink {
   }
 
   void skip(const BagTopic& topic) override { ++index_.messages[topic.name]; }
+  void report_loss(const std::string& problem) override { index_.losses.push_back(problem); }
 
   void add(const BagTopic& topic, std::string_view bytes) override {
     ++index_.messages[topic.name];
     try {
-      CdrReader message(bytes, topic.name);
+      MessageReader message(bytes, topic.encoding, topic.name);
       (this->*readers().at(topic.type))(topic.name, message);
     } catch (const InputError& error) {
       index_.unusable[topic.name].add(error.problem());
@@ -67,7 +68,7 @@ class BagIndexer : public BagSink {
   }
 
  private:
-  using Reader = void (BagIndexer::*)(const std::string&, CdrReader&);
+  using Reader = void (BagIndexer::*)(const std::string&, MessageReader&);
 
   static const std::map<std::string_view, Reader>& readers() {
     static const std::map<std::string_view, Reader> kReaders = {
@@ -98,7 +99,7 @@ class BagIndexer : public BagSink {
     if (header.stamp <= 0) throw InputError("it has no stamp", "", "");
   }
 
-  void add_cloud(const std::string& name, CdrReader& message) {
+  void add_cloud(const std::string& name, MessageReader& message) {
     const ros::PointCloud2 cloud = ros::read_point_cloud(message);
     ScanNumberRows rows(cloud.header.stamp);
     read_cloud_rows(cloud, name, rows);
@@ -119,7 +120,7 @@ class BagIndexer : public BagSink {
       if (without != scans.end()) *without = std::move(numbers);
     }
   }
-  void add_image(const std::string& name, CdrReader& message) {
+  void add_image(const std::string& name, MessageReader& message) {
     const ros::ImageMessage image = ros::read_image(message);
     SensorTopic& topic = index_.images[name];
     if (!add_stamp(image.header, topic)) return;
@@ -128,23 +129,23 @@ class BagIndexer : public BagSink {
       topic.unread = fmt::format("images of encoding '{:.40}' are not read", image.encoding);
     }
   }
-  void add_compressed(const std::string& name, CdrReader& message) {
+  void add_compressed(const std::string& name, MessageReader& message) {
     const ros::CompressedImage image = ros::read_compressed_image(message);
     SensorTopic& topic = index_.images[name];
     if (add_stamp(image.header, topic)) topic.unread = why_unread(image);
   }
-  void add_camera_info(const std::string& name, CdrReader& message) {
+  void add_camera_info(const std::string& name, MessageReader& message) {
     ros::CameraInfo info = ros::read_camera_info(message);
     const auto [known, fresh] = index_.camera_infos.try_emplace(name, info);
     if (!fresh && known->second.k[0] == 0) known->second = std::move(info);
   }
-  void add_fix(const std::string& name, CdrReader& message) {
+  void add_fix(const std::string& name, MessageReader& message) {
     keep(ros::read_nav_sat_fix(message), index_.fixes[name]);
   }
-  void add_imu(const std::string& name, CdrReader& message) {
+  void add_imu(const std::string& name, MessageReader& message) {
     keep(ros::read_imu(message), index_.imus[name]);
   }
-  void add_odometry(const std::string& name, CdrReader& message) {
+  void add_odometry(const std::string& name, MessageReader& message) {
     keep(ros::read_odometry(message), index_.odometries[name]);
   }
   template <class Message>
@@ -152,7 +153,7 @@ class BagIndexer : public BagSink {
     check_stamp(message.header);
     messages.push_back(std::move(message));
   }
-  void add_transforms(const std::string& name, CdrReader& message) {
+  void add_transforms(const std::string& name, MessageReader& message) {
     const bool fixed = name.ends_with("tf_static");
     for (const ros::Transform& transform : ros::read_transforms(message)) {
       index_.transforms.add(transform.header.frame, transform.child_frame, transform.header.stamp,

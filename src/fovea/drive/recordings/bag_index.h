@@ -46,6 +46,7 @@ struct BagIndex {
   std::map<std::string, std::vector<ros::Odometry>> odometries;
   TransformTree transforms;
   std::map<std::string, UnusableMessages> unusable;
+  std::vector<std::string> losses;  ///< files that could be read in part only
 };
 
 /// Reads recordings that belong together. A message that cannot be read or has no stamp, and a scan

@@ -1,4 +1,4 @@
-// What the readers of recordings have in common: topics, and who wants their messages.
+// What the readers of recordings have in common: topics, and the receiver of their messages.
 #pragma once
 
 #include <string>
@@ -6,26 +6,34 @@
 
 namespace fovea {
 
-/// The only encoding of messages that is read: what ROS 2 writes.
-inline constexpr std::string_view kCdrEncoding = "cdr";
+/// The encodings of messages that are read: those of ROS 2 and of ROS 1.
+inline constexpr std::string_view kCdrEncoding = "cdr", kRos1Encoding = "ros1";
 
 struct BagTopic {
   std::string name;      ///< "/lidar/points"
-  std::string type;      ///< "sensor_msgs/msg/PointCloud2"; empty where the recording does not say
-  std::string encoding;  ///< of its messages: "cdr", or what is not read
+  std::string type;      ///< "sensor_msgs/msg/PointCloud2"; empty where the recording has none
+  std::string encoding;  ///< of its messages: "cdr", "ros1", or another one, which is not read
+
+  bool is_readable() const { return encoding == kCdrEncoding || encoding == kRos1Encoding; }
 };
+
+/// A type of ROS 1 under its name in ROS 2: "sensor_msgs/msg/Imu" for "sensor_msgs/Imu".
+std::string ros2_type(std::string_view ros1_type);
 
 class BagSink {
  public:
   virtual ~BagSink() = default;
 
-  /// Called for each topic of a file before its messages; whether these are wanted.
+  /// Called for each topic of a file before its messages. Returns whether they are requested.
   virtual bool is_requested(const BagTopic& topic) = 0;
-  /// Called for each message that is wanted, in the file's order.
+  /// Called for each requested message, in the file's order.
   /// @param message  valid during the call
   virtual void add(const BagTopic& topic, std::string_view message) = 0;
   /// Called for each message of the other topics.
   virtual void skip(const BagTopic& /*topic*/) {}
+  /// Called if a file could be read in part only.
+  /// @param problem  where it ends, and what is lost
+  virtual void report_loss(const std::string& /*problem*/) {}
 };
 
 }  // namespace fovea

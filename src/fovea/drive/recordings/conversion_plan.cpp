@@ -18,9 +18,13 @@ namespace {
                      "restore it from a copy, or see docs/drives.md for what is read");
   }
   for (const auto& [name, topic] : index.topics) {
-    if (topic.encoding == kCdrEncoding) continue;
+    if (topic.is_readable()) continue;
     throw InputError(fmt::format("messages are of encoding '{:.40}'", topic.encoding), name,
-                     "give a recording of ROS 2 (encoding 'cdr')");
+                     "give a recording of ROS 2 or ROS 1 (encoding 'cdr' or 'ros1')");
+  }
+  if (!index.losses.empty()) {
+    throw InputError(fmt::format("there are no point clouds ({})", index.losses.front()),
+                     std::string(ros::kPointCloud), "give a whole copy of the recording");
   }
   throw InputError("the recording has no point clouds", std::string(ros::kPointCloud),
                    "record the LiDAR's topic, not its packets");

@@ -62,6 +62,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   figures.notes = plan.notes;
   naming(bags, [&] { drive_writer.finish(plan.drive, figures); });
   note_unused_topics(index, plan, figures);
+  for (const std::string& loss : index.losses) figures.warn(loss);
   for (const auto& [topic, unusable] : index.unusable) {
     figures.warn(unusable.note(topic));
   }

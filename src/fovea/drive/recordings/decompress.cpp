@@ -1,5 +1,6 @@
 #include "fovea/drive/recordings/decompress.h"
 
+#include <bzlib.h>
 #include <fmt/format.h>
 #include <lz4frame.h>
 #include <unistd.h>
@@ -73,7 +74,8 @@ std::string decompress_zstd(std::string_view bytes, std::size_t max_size,
   return result;
 }
 
-std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const std::string& where) {
+std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const std::string& where,
+                           LossyEnd end) {
   LZ4F_dctx* created = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&created, LZ4F_VERSION)) != 0) {
     throw std::bad_alloc();
@@ -86,11 +88,43 @@ std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const s
   while (left != 0) {
     std::size_t out = block.size(), in = bytes.size();
     left = LZ4F_decompress(context.get(), block.data(), &out, bytes.data(), &in, nullptr);
-    if (LZ4F_isError(left) != 0) throw_damaged("LZ4", LZ4F_getErrorName(left), where);
-    if (left != 0 && in == 0 && out == 0) throw_damaged("LZ4", "they end early", where);
+    if (LZ4F_isError(left) != 0) {
+      if (end == LossyEnd::kAllowed) return result;
+      throw_damaged("LZ4", LZ4F_getErrorName(left), where);
+    }
+    if (left != 0 && in == 0 && out == 0) {
+      if (end == LossyEnd::kAllowed) return result;
+      throw_damaged("LZ4", "they end early", where);
+    }
     check_size(result.size() + out, max_size, "LZ4", where);
     result.append(block.data(), out);
     bytes.remove_prefix(in);
+  }
+  return result;
+}
+
+std::string decompress_bz2(std::string_view bytes, std::size_t max_size, const std::string& where,
+                           LossyEnd end) {
+  bz_stream stream{};
+  if (BZ2_bzDecompressInit(&stream, /*verbosity=*/0, /*small=*/0) != BZ_OK) throw std::bad_alloc();
+  const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> closed(&stream,
+                                                                          &BZ2_bzDecompressEnd);
+  std::vector<char> block(kBlock);
+  std::string result;
+  stream.next_in = const_cast<char*>(bytes.data());  // which the library only reads
+  stream.avail_in = static_cast<unsigned>(bytes.size());
+  for (int state = BZ_OK; state != BZ_STREAM_END;) {
+    stream.next_out = block.data();
+    stream.avail_out = static_cast<unsigned>(block.size());
+    state = BZ2_bzDecompress(&stream);
+    const std::size_t out = block.size() - stream.avail_out;
+    check_size(result.size() + out, max_size, "bz2", where);
+    result.append(block.data(), out);
+    const bool ends_early = state == BZ_OK && out == 0 && stream.avail_in == 0;
+    if (state != BZ_STREAM_END && (state != BZ_OK || ends_early)) {
+      if (end == LossyEnd::kAllowed) return result;
+      throw_damaged("bz2", ends_early ? "they end early" : "their content is wrong", where);
+    }
   }
   return result;
 }

@@ -14,10 +14,16 @@ inline constexpr std::size_t kMaxBagBlock = std::size_t{1} << 28;
 /// Whether bytes begin as a frame of zstd does; no CDR message begins so.
 bool is_zstd(std::string_view bytes);
 
-/// One frame of zstd, or of LZ4. InputError that names `where` for damaged data and for more than
-/// `max_size` bytes.
+/// Whether data may end early: then what comes before the end is returned.
+enum class LossyEnd { kRefused, kAllowed };
+
+/// One frame of zstd or of LZ4, or one stream of bz2. InputError that names `where` for damaged
+/// data and for more than `max_size` bytes.
 std::string decompress_zstd(std::string_view bytes, std::size_t max_size, const std::string& where);
-std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const std::string& where);
+std::string decompress_lz4(std::string_view bytes, std::size_t max_size, const std::string& where,
+                           LossyEnd end = LossyEnd::kRefused);
+std::string decompress_bz2(std::string_view bytes, std::size_t max_size, const std::string& where,
+                           LossyEnd end = LossyEnd::kRefused);
 
 /// What a file compressed by zstd holds, as a file in `folder`, which is removed with the object.
 class DecompressedFile {

@@ -37,7 +37,7 @@ bool DriveWriter::is_requested(const BagTopic& topic) {
 void DriveWriter::add(const BagTopic& topic, std::string_view bytes) {
   Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
   try {
-    CdrReader message(bytes, topic.name);
+    MessageReader message(bytes, topic.encoding, topic.name);
     if (topic.type == ros::kPointCloud) {
       write_scan(ros::read_point_cloud(message));
     } else if (topic.type == ros::kImage) {

@@ -70,14 +70,15 @@ class McapReader {
   }
 
  private:
-  [[noreturn]] void throw_cut_short() const {
-    throw InputError("the recording is cut short", fmt::format("{}, byte {}", name_, at_),
-                     "give a whole copy, or what 'mcap recover' makes of it");
+  /// @param place  up to which it was read
+  void end_early(std::uint64_t place) {
+    ended_ = true;
+    sink_.report_loss(
+        fmt::format("{}: the recording is cut short; it was read up to byte {}", name_, place));
   }
 
   /// The next bytes of the file, valid until the next call.
   std::string_view take(std::uint64_t size) {
-    if (size > size_ - at_) throw_cut_short();
     if (size > kMaxBagBlock) {
       throw InputError(fmt::format("a record has {} bytes", size),
                        fmt::format("{}, byte {}", name_, at_),
@@ -85,7 +86,10 @@ class McapReader {
     }
     buffer_.resize(size);
     stream_.read(buffer_.data(), std::streamsize(size));
-    if (std::uint64_t(stream_.gcount()) != size) throw_cut_short();
+    if (std::uint64_t(stream_.gcount()) != size) {
+      throw InputError("the file cannot be read", fmt::format("{}, byte {}", name_, at_),
+                       "restore the recording from a copy");
+    }
     at_ += size;
     return buffer_;
   }
@@ -93,9 +97,13 @@ class McapReader {
   /// Reads a record.
   void next() {
     const std::string where = fmt::format("{}, byte {}", name_, at_);
-    Fields head(take(9), where);
+    const std::uint64_t begin = at_;
+    constexpr std::uint64_t kHead = 9;
+    if (kHead > size_ - at_) return end_early(begin);
+    Fields head(take(kHead), where);
     const auto opcode = head.number<std::uint8_t>();
     const auto size = head.number<std::uint64_t>();
+    if (size > size_ - at_) return end_early(begin);
     switch (opcode) {
       case kChunk:
         return read_chunk(take(size), where);
@@ -105,11 +113,10 @@ class McapReader {
         return read_record(opcode, take(size), where);
       case kFooter:
         take(size);
-        if (take(kMagic.size()) != kMagic) throw_cut_short();
+        if (kMagic.size() > size_ - at_ || take(kMagic.size()) != kMagic) return end_early(begin);
         ended_ = true;
         return;
       default:  // of no interest, or of a later version
-        if (size > size_ - at_) throw_cut_short();
         at_ += size;
         stream_.seekg(std::streamoff(at_));
     }
@@ -185,7 +192,8 @@ class McapReader {
     if (schema != schemas_.end()) topic.type = schema->second;
     topic.name = record.text();
     topic.encoding = record.text();
-    const bool wanted = sink_.is_requested(topic) && topic.encoding == kCdrEncoding;
+    if (topic.encoding == kRos1Encoding) topic.type = ros2_type(topic.type);
+    const bool wanted = sink_.is_requested(topic) && topic.is_readable();
     channels_.emplace(id, Channel{std::move(topic), wanted});
   }
 

@@ -31,7 +31,6 @@ struct Column {
 class Cloud {
  public:
   Cloud(const PointCloud2& cloud, const std::string& where) : cloud_(cloud), where_(where) {
-    if (cloud.big_endian) refuse("its numbers are big endian");
     if (cloud.width == 0 || cloud.height == 0) refuse("it has no points");
     if (cloud.point_step == 0) refuse("its points have no bytes");
     const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
@@ -61,8 +60,12 @@ class Cloud {
     return cloud_.data.data() + number / cloud_.width * row_step_ +
            number % cloud_.width * cloud_.point_step;
   }
-  static double value(const char* point, const Column& column) {
-    return decode(column.type, point + column.offset);
+  double value(const char* point, const Column& column) const {
+    const char* bytes = point + column.offset;
+    if (!cloud_.big_endian) return decode(column.type, bytes);
+    std::array<char, sizeof(double)> swapped;
+    std::reverse_copy(bytes, bytes + size_of(column.type), swapped.begin());
+    return decode(column.type, swapped.data());
   }
 
   [[noreturn]] void refuse(const char* why) const {
@@ -98,7 +101,7 @@ void read_cloud_rows(const PointCloud2& message, const std::string& where, Cloud
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const char* point = cloud.point(i);
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      if (columns[k]) row[k] = Cloud::value(point, *columns[k]);
+      if (columns[k]) row[k] = cloud.value(point, *columns[k]);
     }
     rows.add(row, i);
   }

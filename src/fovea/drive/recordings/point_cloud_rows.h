@@ -7,7 +7,7 @@
 namespace fovea {
 
 /// Passes the points on. InputError that names `where` for a cloud whose fields do not fit its
-/// data, without x y z, or big endian.
+/// data, or without x y z.
 void read_cloud_rows(const ros::PointCloud2& message, const std::string& where, CloudRows& rows);
 
 }  // namespace fovea

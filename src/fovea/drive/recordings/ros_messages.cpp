@@ -12,12 +12,12 @@ std::string frame_name(std::string_view text) {
   return std::string(text);
 }
 
-Eigen::Vector3d read_vector(CdrReader& message) {
+Eigen::Vector3d read_vector(MessageReader& message) {
   const auto v = message.doubles<3>();
   return {v[0], v[1], v[2]};
 }
 
-Eigen::Quaterniond read_quaternion(CdrReader& message) {
+Eigen::Quaterniond read_quaternion(MessageReader& message) {
   const auto q = message.doubles<4>();
   return {q[3], q[0], q[1], q[2]};
 }
@@ -26,7 +26,7 @@ bool is_rotation_of_length_1(const Eigen::Quaterniond& q) {
   return std::abs(q.norm() - 1) < 0.01;  // NaN is not
 }
 
-QuaternionMotion read_motion(CdrReader& message) {
+QuaternionMotion read_motion(MessageReader& message) {
   QuaternionMotion T;
   T.translation = read_vector(message);
   T.rotation = read_quaternion(message);
@@ -41,8 +41,9 @@ QuaternionMotion read_motion(CdrReader& message) {
 
 }  // namespace
 
-Header read_header(CdrReader& message) {
+Header read_header(MessageReader& message) {
   Header header;
+  if (message.is_ros1()) message.number<std::uint32_t>();  // sequence number
   const auto sec = message.number<std::int32_t>();
   const auto nanosec = message.number<std::uint32_t>();
   header.stamp = TimeNs{sec} * kNsPerSecond + TimeNs{nanosec};
@@ -50,7 +51,7 @@ Header read_header(CdrReader& message) {
   return header;
 }
 
-PointCloud2 read_point_cloud(CdrReader& message) {
+PointCloud2 read_point_cloud(MessageReader& message) {
   PointCloud2 cloud;
   cloud.header = read_header(message);
   cloud.height = message.number<std::uint32_t>();
@@ -70,7 +71,7 @@ PointCloud2 read_point_cloud(CdrReader& message) {
   return cloud;
 }
 
-ImageMessage read_image(CdrReader& message) {
+ImageMessage read_image(MessageReader& message) {
   ImageMessage image;
   image.header = read_header(message);
   image.height = message.number<std::uint32_t>();
@@ -82,7 +83,7 @@ ImageMessage read_image(CdrReader& message) {
   return image;
 }
 
-CompressedImage read_compressed_image(CdrReader& message) {
+CompressedImage read_compressed_image(MessageReader& message) {
   CompressedImage image;
   image.header = read_header(message);
   image.format = message.text();
@@ -90,7 +91,7 @@ CompressedImage read_compressed_image(CdrReader& message) {
   return image;
 }
 
-CameraInfo read_camera_info(CdrReader& message) {
+CameraInfo read_camera_info(MessageReader& message) {
   CameraInfo info;
   info.header = read_header(message);
   info.height = message.number<std::uint32_t>();
@@ -110,7 +111,7 @@ CameraInfo read_camera_info(CdrReader& message) {
   return info;
 }
 
-NavSatFix read_nav_sat_fix(CdrReader& message) {
+NavSatFix read_nav_sat_fix(MessageReader& message) {
   NavSatFix fix;
   fix.header = read_header(message);
   fix.fix = message.number<std::int8_t>() >= 0;
@@ -123,7 +124,7 @@ NavSatFix read_nav_sat_fix(CdrReader& message) {
   return fix;
 }
 
-Imu read_imu(CdrReader& message) {
+Imu read_imu(MessageReader& message) {
   Imu imu;
   imu.header = read_header(message);
   const Eigen::Quaterniond orientation = read_quaternion(message);
@@ -135,7 +136,7 @@ Imu read_imu(CdrReader& message) {
   return imu;
 }
 
-Odometry read_odometry(CdrReader& message) {
+Odometry read_odometry(MessageReader& message) {
   Odometry odometry;
   odometry.header = read_header(message);
   odometry.child_frame = frame_name(message.text());
@@ -143,7 +144,7 @@ Odometry read_odometry(CdrReader& message) {
   return odometry;
 }
 
-std::vector<Transform> read_transforms(CdrReader& message) {
+std::vector<Transform> read_transforms(MessageReader& message) {
   constexpr std::size_t kLeastBytes = 8 + 4 + 4 + 7 * 8;
   std::vector<Transform> transforms(message.count(kLeastBytes));
   for (Transform& transform : transforms) {

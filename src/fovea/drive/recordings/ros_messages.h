@@ -1,6 +1,7 @@
-// The messages that a drive is made of, as ROS 2's interfaces define them (sensor_msgs, nav_msgs,
-// tf2_msgs). Fields that nothing here looks at are left out. Texts and data of the structures point
-// into the message they were read from. Every function throws InputError as CdrReader.
+// The messages that a drive is made of, as the interfaces of ROS 2 and ROS 1 define them
+// (sensor_msgs, nav_msgs, tf2_msgs). Both have the same fields in the same order; ROS 1 has a
+// sequence number in the header. Unused fields are left out. Texts and data of the structures point
+// into the message that they were read from. Every function throws InputError as MessageReader.
 #pragma once
 
 #include <array>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "fovea/core/time.h"
-#include "fovea/drive/recordings/cdr_reader.h"
+#include "fovea/drive/recordings/message_reader.h"
 #include "fovea/geometry/quaternion_motion.h"
 
 namespace fovea::ros {
@@ -29,7 +30,7 @@ struct Header {
   TimeNs stamp = 0;
   std::string frame;  ///< without the slash that ROS 1 put before it
 };
-Header read_header(CdrReader& message);
+Header read_header(MessageReader& message);
 
 struct PointField {
   std::string_view name;
@@ -45,7 +46,7 @@ struct PointCloud2 {
   std::uint32_t point_step = 0, row_step = 0;  ///< bytes
   std::string_view data;
 };
-PointCloud2 read_point_cloud(CdrReader& message);
+PointCloud2 read_point_cloud(MessageReader& message);
 
 struct ImageMessage {
   Header header;
@@ -55,14 +56,14 @@ struct ImageMessage {
   std::uint32_t step = 0;  ///< bytes of a row
   std::string_view data;
 };
-ImageMessage read_image(CdrReader& message);
+ImageMessage read_image(MessageReader& message);
 
 struct CompressedImage {
   Header header;
   std::string_view format;
   std::string_view data;
 };
-CompressedImage read_compressed_image(CdrReader& message);
+CompressedImage read_compressed_image(MessageReader& message);
 
 struct CameraInfo {
   Header header;
@@ -74,7 +75,7 @@ struct CameraInfo {
   std::uint32_t binning_x = 0, binning_y = 0;
   std::uint32_t roi_x = 0, roi_y = 0, roi_height = 0, roi_width = 0;
 };
-CameraInfo read_camera_info(CdrReader& message);
+CameraInfo read_camera_info(MessageReader& message);
 
 struct NavSatFix {
   Header header;
@@ -83,7 +84,7 @@ struct NavSatFix {
   std::array<double, 9> covariance{};                ///< m^2, east-north-up
   bool covariance_known = false;
 };
-NavSatFix read_nav_sat_fix(CdrReader& message);
+NavSatFix read_nav_sat_fix(MessageReader& message);
 
 struct Imu {
   Header header;
@@ -91,7 +92,7 @@ struct Imu {
   Eigen::Vector3d angular_velocity;               ///< rad/s
   Eigen::Vector3d acceleration;                   ///< m/s^2
 };
-Imu read_imu(CdrReader& message);
+Imu read_imu(MessageReader& message);
 
 struct Odometry {
   Header header;
@@ -99,7 +100,7 @@ struct Odometry {
   QuaternionMotion T_header_child;
 };
 /// InputError, too, for a pose that is none.
-Odometry read_odometry(CdrReader& message);
+Odometry read_odometry(MessageReader& message);
 
 struct Transform {
   Header header;
@@ -107,6 +108,6 @@ struct Transform {
   QuaternionMotion T_header_child;
 };
 /// InputError, too, for a motion that is none.
-std::vector<Transform> read_transforms(CdrReader& message);
+std::vector<Transform> read_transforms(MessageReader& message);
 
 }  // namespace fovea::ros

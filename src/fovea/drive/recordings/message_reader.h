@@ -1,5 +1,5 @@
-// Numbers, texts and sequences of a CDR message (OMG Common Data Representation, XCDR version 1),
-// as ROS 2 writes them.
+// Numbers, texts and sequences of a message: of ROS 2 (CDR, OMG Common Data Representation, XCDR
+// version 1), and of ROS 1 (wiki.ros.org/roscpp/Overview/MessagesSerializationAndAdaptingTypes).
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,15 @@
 
 namespace fovea {
 
-/// Reads one after the other, aligned as CDR says. InputError that names `where` where the message
-/// ends early or is of another representation.
-class CdrReader {
+/// Reads one after the other. CDR aligns numbers to their size; ROS 1 has no gaps. InputError that
+/// names `where` if the message ends early or has another representation.
+class MessageReader {
  public:
-  /// @param message  with its four bytes of encapsulation
-  CdrReader(std::string_view message, std::string where);
+  /// @param message   of CDR: with its four bytes of encapsulation
+  /// @param encoding  kCdrEncoding or kRos1Encoding
+  MessageReader(std::string_view message, std::string_view encoding, std::string where);
+
+  bool is_ros1() const { return is_ros1_; }
 
   template <class T>
   T number() {
@@ -45,6 +48,7 @@ class CdrReader {
   std::string_view aligned(std::size_t alignment, std::size_t size);
   [[noreturn]] void throw_too_short() const;
 
+  bool is_ros1_;
   std::string_view body_;  // alignment counts from its beginning
   std::size_t at_ = 0;
   std::string where_;

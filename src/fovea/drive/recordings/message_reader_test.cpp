@@ -1,14 +1,15 @@
-#include "fovea/drive/recordings/cdr_reader.h"
+#include "fovea/drive/recordings/message_reader.h"
 
 #include <gtest/gtest.h>
 
 #include "../../../../tests/cdr_writer.h"
 #include "fovea/core/errors.h"
+#include "fovea/drive/recordings/bag_sink.h"
 #include "fovea/drive/recordings/ros_messages.h"
 
-namespace fovea::cdr_reader_test {
+namespace fovea::message_reader_test {
 
-TEST(CdrReader, ReadsNumbersTextsAndSequencesOfEitherByteOrder) {
+TEST(MessageReader, ReadsNumbersTextsAndSequencesOfEitherByteOrder) {
   for (const bool big_endian : {false, true}) {
     const std::string message = CdrWriter(big_endian)
                                     .number(std::uint8_t{7})
@@ -19,7 +20,7 @@ TEST(CdrReader, ReadsNumbersTextsAndSequencesOfEitherByteOrder) {
                                     .number(std::int32_t{-5})
                                     .number(1.5f)
                                     .message();
-    CdrReader reader(message, "m");
+    MessageReader reader(message, kCdrEncoding, "m");
     EXPECT_EQ(reader.number<std::uint8_t>(), 7);
     EXPECT_EQ(reader.number<double>(), 0.1);
     EXPECT_EQ(reader.text(), "abc");
@@ -31,31 +32,46 @@ TEST(CdrReader, ReadsNumbersTextsAndSequencesOfEitherByteOrder) {
   }
 }
 
-TEST(CdrReader, BytesAreThoseOfTheStandard) {
+TEST(MessageReader, BytesAreThoseOfTheStandard) {
   // Little endian; a byte, three of padding, a 32-bit number, a text with its length and end.
   const std::string message("\0\1\0\0\x09\0\0\0\x78\x56\x34\x12\3\0\0\0hi\0", 4 + 4 + 4 + 4 + 3);
-  CdrReader reader(message, "m");
+  MessageReader reader(message, kCdrEncoding, "m");
   EXPECT_EQ(reader.number<std::uint8_t>(), 9);
   EXPECT_EQ(reader.number<std::uint32_t>(), 0x12345678u);
   EXPECT_EQ(reader.text(), "hi");
 }
 
-TEST(CdrReader, RefusesWhatEndsEarlyOrIsNoPlainCdr) {
+TEST(MessageReader, RefusesWhatEndsEarlyOrIsNoPlainCdr) {
   const std::string whole = CdrWriter().text("frame").bytes("0123456789").message();
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_THROW(
         {
-          CdrReader reader(std::string_view(whole).substr(0, size), "/topic");
+          MessageReader reader(std::string_view(whole).substr(0, size), kCdrEncoding, "/topic");
           reader.text();
           reader.bytes();
         },
         InputError)
         << size;
   }
-  EXPECT_THROW(CdrReader(std::string("\0\3\0\0abcd", 8), "m"), InputError);  // parameter list
+  EXPECT_THROW(MessageReader(std::string("\0\3\0\0abcd", 8), kCdrEncoding, "m"),
+               InputError);  // parameter list
   const std::string endless = CdrWriter().number(std::uint32_t{0xffffffff}).message();
-  CdrReader huge(endless, "m");
+  MessageReader huge(endless, kCdrEncoding, "m");
   EXPECT_THROW(huge.count(8), InputError);
+}
+
+TEST(MessageReader, Ros1HasNoGapsAndNoEncapsulation) {
+  // A byte, a number, a text without an end, and the header: sequence number, time, frame.
+  const std::string message("\x09\x78\x56\x34\x12\2\0\0\0hi\7\0\0\0\5\0\0\0\6\0\0\0\3\0\0\0/ab",
+                            1 + 4 + 6 + 12 + 7);
+  MessageReader reader(message, kRos1Encoding, "m");
+  EXPECT_EQ(reader.number<std::uint8_t>(), 9);
+  EXPECT_EQ(reader.number<std::uint32_t>(), 0x12345678u);
+  EXPECT_EQ(reader.text(), "hi");
+  const ros::Header header = ros::read_header(reader);
+  EXPECT_EQ(header.stamp, 5'000'000'006);
+  EXPECT_EQ(header.frame, "ab");
+  EXPECT_THROW(reader.number<std::uint8_t>(), InputError);
 }
 
 TEST(RosMessages, EachFieldIsWhereItsInterfaceHasIt) {
@@ -77,7 +93,7 @@ TEST(RosMessages, EachFieldIsWhereItsInterfaceHasIt) {
                                .number(std::uint32_t{6})
                                .number(std::uint8_t{0})
                                .message();
-  CdrReader reader(info, "m");
+  MessageReader reader(info, kCdrEncoding, "m");
   const ros::CameraInfo camera = ros::read_camera_info(reader);
   EXPECT_EQ(camera.header.stamp, 5'000'000'006);
   EXPECT_EQ(camera.header.frame, "front");
@@ -103,7 +119,7 @@ TEST(RosMessages, EachFieldIsWhereItsInterfaceHasIt) {
                                  .doubles(3, 9.8)
                                  .doubles(9)
                                  .message();
-    CdrReader reader_of_imu(body, "m");
+    MessageReader reader_of_imu(body, kCdrEncoding, "m");
     return ros::read_imu(reader_of_imu);
   };
   EXPECT_EQ(imu(0.1, 1).orientation->w(), 1);
@@ -113,4 +129,4 @@ TEST(RosMessages, EachFieldIsWhereItsInterfaceHasIt) {
   EXPECT_FALSE(imu(0.1, 0).orientation);  // as many drivers do
 }
 
-}  // namespace fovea::cdr_reader_test
+}  // namespace fovea::message_reader_test
