@@ -1,4 +1,4 @@
-// fovea convert: recordings of ROS 2 as a folder with a drive.toml.
+// fovea convert: recordings of ROS 2 and ROS 1 as a folder with a drive.toml.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -73,14 +73,16 @@ void run(const ConvertArguments& arguments, Warnings& warnings) {
 void add_convert_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ConvertArguments>();
   ConvertOptions& options = arguments->options;
-  CLI::App* command = app.add_subcommand(
-      "convert", "Turn recordings of ROS 2 (MCAP, bags) into a drive, without ROS");
-  command->add_option("BAG", arguments->bags, "Files (.mcap, .db3) or bags' folders of one drive")
+  CLI::App* command =
+      app.add_subcommand("convert", "Turn recordings of ROS 2 or ROS 1 into a drive, without ROS");
+  command
+      ->add_option("BAG", arguments->bags,
+                   "Files (.mcap, .bag, .db3) or bags' folders of one drive")
       ->required();
   command->add_option("-o,--output", arguments->output, "Folder to make (docs/drives.md)")
       ->required()
       ->type_name("DIR");
-  command->add_option("--lidar", options.lidar, "The scans (default: the only PointCloud2)")
+  command->add_option("--lidar", options.lidar, "The scans (default: the only topic of scans)")
       ->type_name("TOPIC");
   command
       ->add_option("--camera", arguments->cameras,

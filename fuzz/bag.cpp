@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   std::string lidar_frame = "lidar";
-  for (const auto& [name, cloud] : index.clouds) check(cloud), lidar_frame = cloud.frame;
+  for (const auto& [name, cloud] : index.lidars) check(cloud), lidar_frame = cloud.frame;
   for (const auto& [name, images] : index.images) check(images);
   std::vector<std::string> notes;
   read_or_refuse([&] {

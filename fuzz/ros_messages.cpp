@@ -1,5 +1,5 @@
-// Messages of ROS, and the scans, images and cameras in them. The first byte gives the type, and its
-// highest bit the encoding.
+// Messages of ROS, and the scans, images and cameras in them. The first byte gives the type, and
+// its highest bit the encoding.
 #include "fovea/drive/recordings/ros_messages.h"
 
 #include <array>
@@ -8,7 +8,7 @@
 #include "fovea/drive/recordings/bag_sink.h"
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/pixels.h"
-#include "fovea/drive/recordings/point_cloud_rows.h"
+#include "fovea/drive/recordings/scan_message.h"
 #include "fovea/drive/scans/recognized_format.h"
 #include "fuzz_input.h"
 
@@ -16,18 +16,19 @@ using namespace fovea;
 
 namespace {
 
-void read_scan(MessageReader& message) {
-  const ros::PointCloud2 cloud = ros::read_point_cloud(message);
-  ScanNumberRows numbers(cloud.header.stamp);
-  read_cloud_rows(cloud, "t", numbers);
+void read_scan(std::string_view type, MessageReader& message) {
+  const ScanMessage scan_message(type, message);
+  const TimeNs stamp = scan_message.header().stamp;
+  ScanNumberRows numbers(stamp);
+  scan_message.read("t", numbers);
   ScanFormat format;
   try {
     format = recognize_format(std::vector{numbers.take()}, {}).format;
   } catch (const ConfigError&) {
     format.time_reference = TimeReference::kNone;
   }
-  ScanRows rows(format, cloud.header.stamp);
-  read_cloud_rows(cloud, "t", rows);
+  ScanRows rows(format, stamp);
+  scan_message.read("t", rows);
   const LidarScan scan = rows.take("t");
   scan.points.check();
   require(!scan.points.empty(), "a scan has points");
@@ -52,8 +53,8 @@ void read_optics(MessageReader& message) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using Reader = void (*)(MessageReader&);
-  constexpr std::array<Reader, 8> kReaders = {
-      read_scan,
+  constexpr std::array<Reader, 10> kReaders = {
+      [](MessageReader& message) { read_scan(ros::kPointCloud, message); },
       read_pixels,
       read_optics,
       [](MessageReader& message) { ros::read_compressed_image(message); },
@@ -61,6 +62,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       [](MessageReader& message) { ros::read_imu(message); },
       [](MessageReader& message) { ros::read_odometry(message); },
       [](MessageReader& message) { ros::read_transforms(message); },
+      [](MessageReader& message) { read_scan(ros::kLivox, message); },
+      [](MessageReader& message) { read_scan(ros::kVelodyneScan, message); },
   };
   if (size == 0) return 0;
   read_or_refuse([&] {

@@ -259,7 +259,7 @@ test('a bag folder without its file, or without its list', () => {
 
 test('other files', () => {
   for (const [name, text, ...words] of [['text.mcap', 'This is a text.\n'], ['text.db3', 'This is a text.\n'],
-    ['empty.bag', '#ROSBAG V2.0\nE\0\0\0', 'no point clouds'], ['old.bag', '#ROSBAG V1.2\n', 'V1.2']]) {
+    ['empty.bag', '#ROSBAG V2.0\nE\0\0\0', 'no scans'], ['old.bag', '#ROSBAG V1.2\n', 'V1.2']]) {
     writeFileSync(drives.path(name), text);
     drives.refuses(drives.path(name), [name, ...words]);
   }

@@ -17,7 +17,7 @@ namespace fovea {
 
 enum class TimeUnit { kAuto, kSecond, kMillisecond, kMicrosecond, kNanosecond };
 enum class LengthUnit { kAuto, kMeter, kCentimeter, kMillimeter };
-enum class ReferenceKey { kAuto, kStamp, kAbsolute, kNone };
+enum class ReferenceKey { kAuto, kStamp, kAbsolute, kFirstPoint, kNone };
 
 constexpr auto names_of(TimeUnit) {
   return std::array{EnumName<TimeUnit>{TimeUnit::kAuto, "auto"},
@@ -38,6 +38,7 @@ constexpr auto names_of(ReferenceKey) {
   return std::array{EnumName<ReferenceKey>{ReferenceKey::kAuto, "auto"},
                     EnumName<ReferenceKey>{ReferenceKey::kStamp, "stamp"},
                     EnumName<ReferenceKey>{ReferenceKey::kAbsolute, "absolute"},
+                    EnumName<ReferenceKey>{ReferenceKey::kFirstPoint, "first_point"},
                     EnumName<ReferenceKey>{ReferenceKey::kNone, "none"}};
 }
 
@@ -208,9 +209,9 @@ class DriveKeys {
     check("lidar.intensity_max", format.intensity_max.value_or(1), 1e-6, 1e9);
     constexpr std::array<double, 5> kTimeUnits = {0, 1, 1e-3, 1e-6, 1e-9};
     constexpr std::array<double, 4> kLengthUnits = {0, 1, 1e-2, 1e-3};
-    constexpr std::array<TimeReference, 4> kReferences = {
+    constexpr std::array<TimeReference, 5> kReferences = {
         TimeReference::kStamp, TimeReference::kStamp, TimeReference::kAbsolute,
-        TimeReference::kNone};
+        TimeReference::kFirstPoint, TimeReference::kNone};
     const auto stated = [](const auto& values, auto choice, auto& value) {
       if (choice != decltype(choice){}) value = values.at(static_cast<std::size_t>(choice));
     };

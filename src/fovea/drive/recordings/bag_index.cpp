@@ -8,7 +8,7 @@
 #include "fovea/core/stable_order.h"
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/pixels.h"
-#include "fovea/drive/recordings/point_cloud_rows.h"
+#include "fovea/drive/recordings/scan_message.h"
 
 namespace fovea {
 namespace {
@@ -50,9 +50,9 @@ class BagIndexer : public BagSink {
     ++index_.messages[topic.name];
     try {
       MessageReader message(bytes, topic.encoding, topic.name);
-      (this->*readers().at(topic.type))(topic.name, message);
+      (this->*readers().at(topic.type))(topic, message);
     } catch (const InputError& error) {
-      index_.unusable[topic.name].add(error.problem());
+      index_.unusable[topic.name].add(error.problem(), error.remedy());
     }
   }
 
@@ -60,7 +60,7 @@ class BagIndexer : public BagSink {
     sort(index_.fixes);
     sort(index_.imus);
     sort(index_.odometries);
-    for (auto* topics : {&index_.clouds, &index_.images}) {
+    for (auto* topics : {&index_.lidars, &index_.images}) {
       std::erase_if(*topics, [](const auto& topic) { return topic.second.stamps.empty(); });
       for (auto& [name, topic] : *topics) keep_each_once(name, topic.stamps);
     }
@@ -68,11 +68,14 @@ class BagIndexer : public BagSink {
   }
 
  private:
-  using Reader = void (BagIndexer::*)(const std::string&, MessageReader&);
+  using Reader = void (BagIndexer::*)(const BagTopic&, MessageReader&);
 
   static const std::map<std::string_view, Reader>& readers() {
     static const std::map<std::string_view, Reader> kReaders = {
-        {ros::kPointCloud, &BagIndexer::add_cloud},
+        {ros::kPointCloud, &BagIndexer::add_scan},
+        {ros::kLivox, &BagIndexer::add_scan},
+        {ros::kLivox2, &BagIndexer::add_scan},
+        {ros::kVelodyneScan, &BagIndexer::add_scan},
         {ros::kImage, &BagIndexer::add_image},
         {ros::kCompressedImage, &BagIndexer::add_compressed},
         {ros::kCameraInfo, &BagIndexer::add_camera_info},
@@ -99,13 +102,13 @@ class BagIndexer : public BagSink {
     if (header.stamp <= 0) throw InputError("it has no stamp", "", "");
   }
 
-  void add_cloud(const std::string& name, MessageReader& message) {
-    const ros::PointCloud2 cloud = ros::read_point_cloud(message);
-    ScanNumberRows rows(cloud.header.stamp);
-    read_cloud_rows(cloud, name, rows);
-    SensorTopic& topic = index_.clouds[name];
-    add_stamp(cloud.header, topic);
-    keep_first(rows.take(), topic.first_scans);
+  void add_scan(const BagTopic& topic, MessageReader& message) {
+    const ScanMessage scan(topic.type, message);
+    ScanNumberRows rows(scan.header().stamp);
+    scan.read(topic.name, rows);
+    SensorTopic& lidar = index_.lidars[topic.name];
+    add_stamp(scan.header(), lidar);
+    keep_first(rows.take(), lidar.first_scans);
   }
   /// Keeps the first scans, and the first ones with times that differ.
   static void keep_first(ScanNumbers numbers, std::vector<ScanNumbers>& scans) {
@@ -120,41 +123,41 @@ class BagIndexer : public BagSink {
       if (without != scans.end()) *without = std::move(numbers);
     }
   }
-  void add_image(const std::string& name, MessageReader& message) {
+  void add_image(const BagTopic& topic, MessageReader& message) {
     const ros::ImageMessage image = ros::read_image(message);
-    SensorTopic& topic = index_.images[name];
-    if (!add_stamp(image.header, topic)) return;
-    topic.width = image.width, topic.height = image.height;
+    SensorTopic& camera = index_.images[topic.name];
+    if (!add_stamp(image.header, camera)) return;
+    camera.width = image.width, camera.height = image.height;
     if (!is_known_encoding(image.encoding)) {
-      topic.unread = fmt::format("images of encoding '{:.40}' are not read", image.encoding);
+      camera.unread = fmt::format("images of encoding '{:.40}' are not read", image.encoding);
     }
   }
-  void add_compressed(const std::string& name, MessageReader& message) {
+  void add_compressed(const BagTopic& topic, MessageReader& message) {
     const ros::CompressedImage image = ros::read_compressed_image(message);
-    SensorTopic& topic = index_.images[name];
-    if (add_stamp(image.header, topic)) topic.unread = why_unread(image);
+    SensorTopic& camera = index_.images[topic.name];
+    if (add_stamp(image.header, camera)) camera.unread = why_unread(image);
   }
-  void add_camera_info(const std::string& name, MessageReader& message) {
+  void add_camera_info(const BagTopic& topic, MessageReader& message) {
     ros::CameraInfo info = ros::read_camera_info(message);
-    const auto [known, fresh] = index_.camera_infos.try_emplace(name, info);
+    const auto [known, fresh] = index_.camera_infos.try_emplace(topic.name, info);
     if (!fresh && known->second.k[0] == 0) known->second = std::move(info);
   }
-  void add_fix(const std::string& name, MessageReader& message) {
-    keep(ros::read_nav_sat_fix(message), index_.fixes[name]);
+  void add_fix(const BagTopic& topic, MessageReader& message) {
+    keep(ros::read_nav_sat_fix(message), index_.fixes[topic.name]);
   }
-  void add_imu(const std::string& name, MessageReader& message) {
-    keep(ros::read_imu(message), index_.imus[name]);
+  void add_imu(const BagTopic& topic, MessageReader& message) {
+    keep(ros::read_imu(message), index_.imus[topic.name]);
   }
-  void add_odometry(const std::string& name, MessageReader& message) {
-    keep(ros::read_odometry(message), index_.odometries[name]);
+  void add_odometry(const BagTopic& topic, MessageReader& message) {
+    keep(ros::read_odometry(message), index_.odometries[topic.name]);
   }
   template <class Message>
   static void keep(Message message, std::vector<Message>& messages) {
     check_stamp(message.header);
     messages.push_back(std::move(message));
   }
-  void add_transforms(const std::string& name, MessageReader& message) {
-    const bool fixed = name.ends_with("tf_static");
+  void add_transforms(const BagTopic& topic, MessageReader& message) {
+    const bool fixed = topic.name.ends_with("tf_static");
     for (const ros::Transform& transform : ros::read_transforms(message)) {
       index_.transforms.add(transform.header.frame, transform.child_frame, transform.header.stamp,
                             transform.T_header_child, fixed);

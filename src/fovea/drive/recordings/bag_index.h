@@ -17,10 +17,10 @@ namespace fovea {
 /// Messages that cannot be used.
 struct UnusableMessages {
   std::size_t count = 0;
-  std::string first_problem;
+  std::string first_problem, first_remedy;
 
-  void add(const std::string& problem) {
-    if (count++ == 0) first_problem = problem;
+  void add(const std::string& problem, const std::string& remedy = "") {
+    if (count++ == 0) first_problem = problem, first_remedy = remedy;
   }
   /// What to tell of them.
   std::string note(const std::string& topic) const;
@@ -39,7 +39,7 @@ struct SensorTopic {
 struct BagIndex {
   std::map<std::string, BagTopic> topics;       ///< all
   std::map<std::string, std::size_t> messages;  ///< their numbers, of all topics
-  std::map<std::string, SensorTopic> clouds, images;
+  std::map<std::string, SensorTopic> lidars, images;
   std::map<std::string, ros::CameraInfo> camera_infos;  ///< the first of each that has a K
   std::map<std::string, std::vector<ros::NavSatFix>> fixes;
   std::map<std::string, std::vector<ros::Imu>> imus;

@@ -5,17 +5,26 @@
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/navigation_topics.h"
 #include "fovea/drive/recordings/only_topic.h"
+#include "fovea/drive/recordings/scan_message.h"
 #include "fovea/drive/scans/recognized_format.h"
 
 namespace fovea {
 namespace {
 
-[[noreturn]] void throw_no_clouds(const BagIndex& index) {
+[[noreturn]] void throw_no_scans(const BagIndex& index) {
   for (const auto& [name, unusable] : index.unusable) {
     const auto topic = index.topics.find(name);
-    if (topic == index.topics.end() || topic->second.type != ros::kPointCloud) continue;
-    throw InputError(fmt::format("no point cloud can be used ({})", unusable.first_problem), name,
-                     "restore it from a copy, or see docs/drives.md for what is read");
+    if (topic == index.topics.end() || !is_scan_type(topic->second.type)) continue;
+    throw InputError(fmt::format("no scan can be used ({})", unusable.first_problem), name,
+                     unusable.first_remedy.empty()
+                         ? "restore it from a copy, or see docs/drives.md for what is read"
+                         : unusable.first_remedy);
+  }
+  for (const auto& [name, topic] : index.topics) {
+    const std::string_view driver = driver_of_packets(topic.type);
+    if (driver.empty()) continue;
+    throw InputError(fmt::format("packets of type {} are not read", topic.type), name,
+                     fmt::format("run the driver {}, and record its PointCloud2", driver));
   }
   for (const auto& [name, topic] : index.topics) {
     if (topic.is_readable()) continue;
@@ -23,11 +32,11 @@ namespace {
                      "give a recording of ROS 2 or ROS 1 (encoding 'cdr' or 'ros1')");
   }
   if (!index.losses.empty()) {
-    throw InputError(fmt::format("there are no point clouds ({})", index.losses.front()),
+    throw InputError(fmt::format("there are no scans ({})", index.losses.front()),
                      std::string(ros::kPointCloud), "give a whole copy of the recording");
   }
   throw InputError("the recording has no point clouds", std::string(ros::kPointCloud),
-                   "record the LiDAR's topic, not its packets");
+                   "record the PointCloud2 of the LiDAR's driver");
 }
 
 /// InputError if the two have no time in common: they were stamped by different clocks.
@@ -47,8 +56,8 @@ void check_count(const SensorTopic& sensor, const std::string& topic) {
 }
 
 void check_sensors(const BagIndex& index, const ConversionPlan& plan) {
-  check_count(index.clouds.at(plan.lidar), plan.lidar);
-  const std::vector<TimeNs>& scans = index.clouds.at(plan.lidar).stamps;
+  check_count(index.lidars.at(plan.lidar), plan.lidar);
+  const std::vector<TimeNs>& scans = index.lidars.at(plan.lidar).stamps;
   const auto check = [&](const std::string& other, TimeNs first, TimeNs last) {
     check_clocks(plan.lidar, scans, other, first, last);
   };
@@ -82,20 +91,39 @@ ScanFormat recognize_scans(const SensorTopic& lidar, const std::string& topic,
     if (!error.where().starts_with("lidar.time_")) {
       throw InputError(error.problem(), topic, "record coordinates in m, in the LiDAR's frame");
     }
-    notes.push_back("the times of points are not used: " + error.problem());
-    StatedScanFormat untimed;
-    untimed.time_reference = TimeReference::kNone;
-    return recognize(untimed);
   }
+  StatedScanFormat stated;
+  try {
+    stated.time_reference = TimeReference::kFirstPoint;
+    const ScanFormat format = recognize(stated);
+    notes.emplace_back(
+        "the points' times are of another clock than the stamps: the stamp of a scan "
+        "counts as the time of its first point");
+    return format;
+  } catch (const ConfigError& error) {
+    notes.push_back("the times of points are not used: " + error.problem());
+    stated.time_reference = TimeReference::kNone;
+    return recognize(stated);
+  }
+}
+
+/// The topics that may be the LiDAR: packets only if there are no point clouds.
+std::map<std::string, SensorTopic> lidar_topics(const BagIndex& index,
+                                                const ConvertOptions& options) {
+  std::map<std::string, SensorTopic> clouds = index.lidars;
+  std::erase_if(clouds, [&](const auto& lidar) {
+    return index.topics.at(lidar.first).type == ros::kVelodyneScan;
+  });
+  return clouds.empty() || !options.lidar.empty() ? index.lidars : clouds;
 }
 
 }  // namespace
 
 ConversionPlan plan_conversion(const BagIndex& index, const ConvertOptions& options) {
   ConversionPlan plan;
-  if (index.clouds.empty()) throw_no_clouds(index);
-  plan.lidar = only_topic(index.clouds, options.lidar, "PointCloud2", "--lidar");
-  const SensorTopic& lidar = index.clouds.at(plan.lidar);
+  if (index.lidars.empty()) throw_no_scans(index);
+  plan.lidar = only_topic(lidar_topics(index, options), options.lidar, "scans", "--lidar");
+  const SensorTopic& lidar = index.lidars.at(plan.lidar);
   plan.drive.sweep_compensated = options.sweep_compensated;
   plan.scan_format = recognize_scans(lidar, plan.lidar, plan.notes);
   plan.cameras = plan_cameras(index, options, lidar.frame, plan.notes);

@@ -1,4 +1,4 @@
-// Recordings of ROS 2 as a folder with a drive.toml (docs/drives.md), without ROS.
+// Recordings of ROS as a folder with a drive.toml (docs/drives.md), without ROS.
 #pragma once
 
 #include <filesystem>

@@ -6,14 +6,14 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/pixels.h"
-#include "fovea/drive/recordings/point_cloud_rows.h"
+#include "fovea/drive/scans/lidar_scan.h"
 
 namespace fovea {
 
 DriveWriter::DriveWriter(const BagIndex& index, const ConversionPlan& plan,
                          GenericDriveWriter& writer, bool allow_dropped,
                          const std::function<void(int, int)>& progress)
-    : lidar_(plan.lidar, index.clouds.at(plan.lidar)),
+    : lidar_(plan.lidar, index.lidars.at(plan.lidar)),
       format_(plan.scan_format),
       allow_dropped_(allow_dropped),
       writer_(writer),
@@ -29,7 +29,7 @@ DriveWriter::DriveWriter(const BagIndex& index, const ConversionPlan& plan,
 }
 
 bool DriveWriter::is_requested(const BagTopic& topic) {
-  return (topic.name == lidar_.topic && topic.type == ros::kPointCloud) ||
+  return (topic.name == lidar_.topic && is_scan_type(topic.type)) ||
          (cameras_.contains(topic.name) &&
           (topic.type == ros::kImage || topic.type == ros::kCompressedImage));
 }
@@ -38,8 +38,8 @@ void DriveWriter::add(const BagTopic& topic, std::string_view bytes) {
   Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
   try {
     MessageReader message(bytes, topic.encoding, topic.name);
-    if (topic.type == ros::kPointCloud) {
-      write_scan(ros::read_point_cloud(message));
+    if (is_scan_type(topic.type)) {
+      write_scan(ScanMessage(topic.type, message));
     } else if (topic.type == ros::kImage) {
       write_plain(ros::read_image(message), sensor);
     } else {
@@ -93,11 +93,11 @@ void DriveWriter::use(Numbered& sensor, const ros::Header& header, Write&& write
   }
 }
 
-void DriveWriter::write_scan(const ros::PointCloud2& cloud) {
-  const TimeNs stamp = cloud.header.stamp;
-  use(lidar_, cloud.header, [&](int number) {
+void DriveWriter::write_scan(const ScanMessage& message) {
+  const TimeNs stamp = message.header().stamp;
+  use(lidar_, message.header(), [&](int number) {
     ScanRows rows(format_, stamp);
-    read_cloud_rows(cloud, lidar_.topic, rows);
+    message.read(lidar_.topic, rows);
     const LidarScan scan = rows.take(lidar_.topic);
     dropped_ += scan.dropped;
     kept_ += scan.points.size();

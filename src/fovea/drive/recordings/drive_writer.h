@@ -11,6 +11,7 @@
 
 #include "fovea/drive/recordings/conversion_plan.h"
 #include "fovea/drive/recordings/convert_bags.h"
+#include "fovea/drive/recordings/scan_message.h"
 #include "fovea/drive/scans/dropped_points.h"
 #include "fovea/drive/scans/intensity_scale.h"
 #include "fovea/drive/scans/scan_format.h"
@@ -50,7 +51,7 @@ class DriveWriter : public BagSink {
 
   template <class Write>
   static void use(Numbered& sensor, const ros::Header& header, Write&& write);
-  void write_scan(const ros::PointCloud2& cloud);
+  void write_scan(const ScanMessage& message);
   void write_plain(const ros::ImageMessage& image, Numbered& camera);
   void write_compressed(const ros::CompressedImage& image, Numbered& camera);
   static void account_for(const Numbered& sensor, ConvertFigures& figures);

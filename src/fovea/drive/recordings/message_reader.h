@@ -33,6 +33,8 @@ class MessageReader {
   std::string_view text();
   /// A sequence of bytes, or of characters.
   std::string_view bytes();
+  /// An array of as many bytes.
+  std::string_view block(std::size_t size) { return aligned(1, size); }
   /// How many elements follow, of at least `min_bytes` each.
   std::size_t count(std::size_t min_bytes);
   template <std::size_t N>

@@ -6,7 +6,9 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/camera_topics.h"
+#include "fovea/drive/recordings/conversion_plan.h"
 #include "fovea/drive/recordings/navigation_topics.h"
+#include "fovea/drive/recordings/scan_message.h"
 
 namespace fovea::plan_test {
 
@@ -340,6 +342,68 @@ TEST_F(PlanNavigation, RefusesWhatTheRecordingDoesNotHave) {
   EXPECT_THAT(error(), HasSubstr("'nobody'"));
   options_.odometry = "/none";
   EXPECT_THAT(error(), HasSubstr("/none"));
+}
+
+void add_scans(BagIndex& index, const std::string& topic, std::string_view type,
+               double clock_ahead = 0) {
+  index.topics[topic] = {topic, std::string(type), std::string(kCdrEncoding)};
+  SensorTopic& lidar = index.lidars[topic];
+  lidar.frame = "lidar";
+  for (int i = 0; i < 5; ++i) {
+    const TimeNs stamp = 1'700'000'000 * kNsPerSecond + i * kNsPerSecond / 10;
+    ScanNumberRows rows(stamp);
+    const std::vector<std::optional<Scalar>> types(rows.columns().size(), Scalar::kDouble);
+    rows.begin(100, types);
+    for (int k = 0; k < 100; ++k) {
+      const double time = seconds(stamp) + clock_ahead + 0.001 * k;
+      rows.add(std::vector<double>{5, 1, 1, 0.5, 0, time}, std::size_t(k));
+    }
+    lidar.stamps.push_back(stamp);
+    lidar.first_scans.push_back(rows.take());
+  }
+}
+
+ConversionPlan plan_of(const BagIndex& index, const std::string& lidar = "") {
+  ConvertOptions options;
+  options.lidar = lidar;
+  return plan_conversion(index, options);
+}
+
+TEST(PlanConversion, PacketsCountOnlyWithoutPointClouds) {
+  BagIndex index = one_camera();
+  index.images.clear();
+  add_scans(index, "/packets", ros::kVelodyneScan);
+  EXPECT_EQ(plan_of(index).lidar, "/packets");
+  add_scans(index, "/points", ros::kPointCloud);
+  EXPECT_EQ(plan_of(index).lidar, "/points");
+  EXPECT_EQ(plan_of(index, "/packets").lidar, "/packets");
+  add_scans(index, "/livox", ros::kLivox2);
+  EXPECT_THROW(plan_of(index), InputError);
+}
+
+TEST(PlanConversion, TimesOfAnotherClockCountFromTheFirstPoint) {
+  BagIndex index = one_camera();
+  index.images.clear();
+  add_scans(index, "/points", ros::kPointCloud);
+  EXPECT_EQ(plan_of(index).scan_format.time_reference, TimeReference::kAbsolute);
+  index.lidars.clear();
+  add_scans(index, "/points", ros::kPointCloud, /*clock_ahead=*/-1.69e9);
+  const ConversionPlan plan = plan_of(index);
+  EXPECT_EQ(plan.scan_format.time_reference, TimeReference::kFirstPoint);
+  EXPECT_EQ(plan.scan_format.time_unit, 1);
+  EXPECT_THAT(plan.notes, Contains(HasSubstr("another clock")));
+}
+
+TEST(PlanConversion, PacketsOfOtherLidarsAreRefusedByName) {
+  BagIndex index = one_camera();
+  index.topics["/ouster/packets"] = {"/ouster/packets", "ouster_ros/msg/PacketMsg", "cdr"};
+  try {
+    plan_of(index);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("/ouster/packets"), HasSubstr("PacketMsg"),
+                                             HasSubstr("driver ouster_ros")));
+  }
 }
 
 }  // namespace fovea::plan_test

@@ -15,10 +15,10 @@
 namespace fovea {
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 constexpr std::size_t kLength = 4;  // bytes of a length
 
-enum Operation : std::uint8_t {
+enum class Operation : std::uint8_t {
   kMessage = 0x02,
   kBagHeader = 0x03,
   kChunk = 0x05,
@@ -26,19 +26,19 @@ enum Operation : std::uint8_t {
 };
 
 template <class T>
-T number_at(std::string_view bytes) {
+T read_number(std::string_view bytes) {
   T value;
   std::memcpy(&value, bytes.data(), sizeof value);
   return value;
 }
 
 /// The fields of a header: each has a length, a name, '=' and a value.
-class Fields {
+class RecordHeader {
  public:
-  Fields(std::string_view bytes, const std::string& where) : where_(where) {
+  RecordHeader(std::string_view bytes, const std::string& where) : where_(where) {
     while (!bytes.empty()) {
       if (bytes.size() < kLength) throw_damaged();
-      const auto size = number_at<std::uint32_t>(bytes);
+      const auto size = read_number<std::uint32_t>(bytes);
       bytes.remove_prefix(kLength);
       if (size > bytes.size()) throw_damaged();
       const std::string_view field = bytes.substr(0, size);
@@ -58,7 +58,7 @@ class Fields {
   T number(std::string_view name) const {
     const std::string_view value = text(name);
     if (value.size() != sizeof(T)) throw_damaged();
-    return number_at<T>(value);
+    return read_number<T>(value);
   }
 
  private:
@@ -82,8 +82,8 @@ class Ros1BagReader {
         size_(input_.size()) {}
 
   void read() {
-    const std::string magic = take(std::min<std::uint64_t>(kMagic.size(), size_));
-    if (magic != kMagic) {
+    const std::string magic = take(std::min<std::uint64_t>(kRos1Magic.size(), size_));
+    if (magic != kRos1Magic) {
       throw InputError(fmt::format("bags of format '{:.12}' are not read", printable(magic)), name_,
                        "turn it into format 2.0 ('rosbag fix')");
     }
@@ -121,7 +121,7 @@ class Ros1BagReader {
   /// A length and that many bytes; empty if the file ends before.
   std::optional<std::string> take_block() {
     if (left() < kLength) return std::nullopt;
-    const auto size = number_at<std::uint32_t>(take(kLength));
+    const auto size = read_number<std::uint32_t>(take(kLength));
     if (size > left()) return std::nullopt;
     return take(size);
   }
@@ -131,11 +131,11 @@ class Ros1BagReader {
     const std::string where = here();
     const std::optional<std::string> header = take_block();
     if (!header || left() < kLength) return cut_at(begin);
-    const Fields fields(*header, where);
-    const auto operation = fields.number<std::uint8_t>("op");
-    const auto size = number_at<std::uint32_t>(take(kLength));
+    const RecordHeader fields(*header, where);
+    const auto operation = Operation(fields.number<std::uint8_t>("op"));
+    const auto size = read_number<std::uint32_t>(take(kLength));
     const bool is_whole = size <= left();
-    if (operation == kChunk) {
+    if (operation == Operation::kChunk) {
       // A recorder enters the size when a chunk is full: 0 in the last one of an open recording.
       const bool is_open = size == 0 && fields.number<std::uint32_t>("size") == 0;
       if (is_open && fields.text("compression") == "none") return;
@@ -144,15 +144,16 @@ class Ros1BagReader {
       return read_chunk(fields, chunk, where);
     }
     if (!is_whole) return cut_at(begin);
-    if (operation == kBagHeader) is_open_ = fields.number<std::uint64_t>("index_pos") == 0;
-    if (operation == kMessage || operation == kConnection) {
+    if (operation == Operation::kBagHeader)
+      is_open_ = fields.number<std::uint64_t>("index_pos") == 0;
+    if (operation == Operation::kMessage || operation == Operation::kConnection) {
       return use_record(operation, fields, take(size), where);
     }
     at_ += size;  // an index, or of a later version
     stream_.seekg(std::streamoff(at_));
   }
 
-  void read_chunk(const Fields& fields, const std::string& stored, const std::string& where) {
+  void read_chunk(const RecordHeader& fields, const std::string& stored, const std::string& where) {
     const std::string_view compression = fields.text("compression");
     const LossyEnd end = is_cut_ ? LossyEnd::kAllowed : LossyEnd::kRefused;
     std::string records;
@@ -179,24 +180,24 @@ class Ros1BagReader {
         throw InputError("a chunk is damaged (a record ends early)", where,
                          "restore the recording from a copy");
       }
-      const Fields record(*header, where);
-      use_record(record.number<std::uint8_t>("op"), record, *data, where);
+      const RecordHeader record(*header, where);
+      use_record(Operation(record.number<std::uint8_t>("op")), record, *data, where);
     }
   }
   /// A length and that many bytes; empty if there are fewer.
   static std::optional<std::string_view> next_block(std::string_view& rest) {
     if (rest.size() < kLength) return std::nullopt;
-    const auto size = number_at<std::uint32_t>(rest);
+    const auto size = read_number<std::uint32_t>(rest);
     if (size > rest.size() - kLength) return std::nullopt;
     const std::string_view block = rest.substr(kLength, size);
     rest.remove_prefix(kLength + size);
     return block;
   }
 
-  void use_record(std::uint8_t operation, const Fields& fields, std::string_view data,
+  void use_record(Operation operation, const RecordHeader& fields, std::string_view data,
                   const std::string& where) {
-    if (operation == kConnection) add_connection(fields, data, where);
-    if (operation != kMessage) return;
+    if (operation == Operation::kConnection) add_connection(fields, data, where);
+    if (operation != Operation::kMessage) return;
     const auto connection = connections_.find(fields.number<std::uint32_t>("conn"));
     if (connection == connections_.end()) {
       throw InputError("a message is of a connection that was not announced", where,
@@ -207,10 +208,10 @@ class Ros1BagReader {
     sink_.skip(topic);
   }
 
-  void add_connection(const Fields& fields, std::string_view data, const std::string& where) {
+  void add_connection(const RecordHeader& fields, std::string_view data, const std::string& where) {
     const auto id = fields.number<std::uint32_t>("conn");
     if (connections_.contains(id)) return;  // announced again in the index
-    const Fields description(data, where);
+    const RecordHeader description(data, where);
     const BagTopic topic{std::string(fields.text("topic")), ros2_type(description.text("type")),
                          std::string(kRos1Encoding)};
     connections_.emplace(id, std::pair(topic, sink_.is_requested(topic)));
@@ -222,7 +223,7 @@ class Ros1BagReader {
   BagSink& sink_;
   std::uint64_t size_, at_ = 0;
   bool is_open_ = false, is_cut_ = false;
-  std::uint64_t cut_ = 0;  // where
+  std::uint64_t cut_ = 0;                                           // where
   std::map<std::uint32_t, std::pair<BagTopic, bool>> connections_;  // with whether requested
 };
 

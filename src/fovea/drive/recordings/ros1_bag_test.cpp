@@ -123,9 +123,9 @@ TEST_F(Ros1Bag, AFileCutShortIsReadUpToItsEnd) {
 
 // Its recorder was killed: no index, and the last chunk has no size yet.
 TEST_F(Ros1Bag, ARecordingThatWasNotClosedIsReadWhole) {
-  for (const auto& [compression, stored] : {std::pair{"none", kRecords},
-                                            std::pair{"bz2", bz2(kRecords)},
-                                            std::pair{"lz4", lz4(kRecords)}}) {
+  for (const auto& [compression, stored] :
+       {std::pair{"none", kRecords}, std::pair{"bz2", bz2(kRecords)},
+        std::pair{"lz4", lz4(kRecords)}}) {
     const Listener open = read(file_of(chunk("", compression, "") + stored, /*index_pos=*/0));
     EXPECT_THAT(open.messages, ElementsAre("/a:one", "/other", "/a:two")) << compression;
     EXPECT_EQ(open.losses.size(), 1u);

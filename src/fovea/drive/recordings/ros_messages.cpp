@@ -41,12 +41,16 @@ QuaternionMotion read_motion(MessageReader& message) {
 
 }  // namespace
 
+TimeNs read_time(MessageReader& message) {
+  const auto sec = message.number<std::int32_t>();
+  const auto nanosec = message.number<std::uint32_t>();
+  return TimeNs{sec} * kNsPerSecond + TimeNs{nanosec};
+}
+
 Header read_header(MessageReader& message) {
   Header header;
   if (message.is_ros1()) message.number<std::uint32_t>();  // sequence number
-  const auto sec = message.number<std::int32_t>();
-  const auto nanosec = message.number<std::uint32_t>();
-  header.stamp = TimeNs{sec} * kNsPerSecond + TimeNs{nanosec};
+  header.stamp = read_time(message);
   header.frame = frame_name(message.text());
   return header;
 }

@@ -31,6 +31,7 @@ struct Header {
   std::string frame;  ///< without the slash that ROS 1 put before it
 };
 Header read_header(MessageReader& message);
+TimeNs read_time(MessageReader& message);
 
 struct PointField {
   std::string_view name;

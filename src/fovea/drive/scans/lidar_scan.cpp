@@ -101,8 +101,22 @@ void ScanRows::add(std::span<const double> row, std::size_t /*number*/) {
   if (is_usable && has_rings_) scan_->add_ring(row[kScanRing]);
 }
 
-double ScanRows::seconds_from_stamp(double time) const {
+LidarScan ScanRows::take(const std::filesystem::path& file) {
+  LidarScan scan = scan_->take(file);
+  if (has_times_ && format_.time_reference == TimeReference::kFirstPoint) {
+    std::vector<float>& times = scan.points.time;
+    const float first = *std::min_element(times.begin(), times.end());
+    for (float& time : times) time -= first;
+  }
+  return scan;
+}
+
+double ScanRows::seconds_from_stamp(double time) {
   if (format_.time_reference == TimeReference::kStamp) return time * time_unit_;
+  if (format_.time_reference == TimeReference::kFirstPoint) {
+    if (!any_time_ && std::isfinite(time)) any_time_ = time;
+    return (time - any_time_.value_or(time)) * time_unit_;
+  }
   // Nanoseconds since 1970 take 61 bits: of numbers as large, doubles have but every 256th.
   return (time - static_cast<double>(stamp_) * 1e-9 / time_unit_) * time_unit_;
 }

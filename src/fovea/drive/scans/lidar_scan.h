@@ -94,15 +94,17 @@ class ScanRows : public CloudRows {
   void add(std::span<const double> row, std::size_t number) override;
 
   /// As ScanBuilder::take.
-  LidarScan take(const std::filesystem::path& file) { return scan_->take(file); }
+  LidarScan take(const std::filesystem::path& file);
 
  private:
-  double seconds_from_stamp(double time) const;
+  /// From any point, for TimeReference::kFirstPoint.
+  double seconds_from_stamp(double time);
 
   ScanFormat format_;
   TimeNs stamp_;
   bool organized_ = false, has_times_ = false, has_rings_ = false;
-  double time_unit_ = 1;  // s
+  double time_unit_ = 1;            // s
+  std::optional<double> any_time_;  // of a point
   std::optional<ScanBuilder> scan_;
 };
 

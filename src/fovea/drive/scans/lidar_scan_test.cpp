@@ -223,4 +223,22 @@ TEST_F(LidarScanTest, AFileLargerThanAnyScanIsRefused) {
       testing::AllOf(HasSubstr("6000000000 bytes, more than any scan"), HasSubstr("a.bin")));
 }
 
+TEST(ScanRows, TimesOfAnyClockMayCountFromTheFirstPoint) {
+  ScanFormat format;
+  format.time_reference = TimeReference::kFirstPoint;
+  format.time_unit = 1e-9;
+  ScanRows rows(format, 1'700'000'000 * kNsPerSecond);
+  const std::vector<std::optional<Scalar>> types(rows.columns().size(), Scalar::kDouble);
+  rows.begin(3, types);
+  // The first in the file need not be the first in time.
+  for (const double time : {5e15 + 2e7, 5e15, 5e15 + 9e7}) {
+    rows.add(std::vector<double>{1, 2, 3, 0.5, 0, time}, 0);
+  }
+  const LidarScan scan = rows.take("a");
+  ASSERT_EQ(scan.points.time.size(), 3u);
+  EXPECT_FLOAT_EQ(scan.points.time[0], 0.02f);
+  EXPECT_EQ(scan.points.time[1], 0);
+  EXPECT_FLOAT_EQ(scan.points.time[2], 0.09f);
+}
+
 }  // namespace fovea::lidar_scan_test

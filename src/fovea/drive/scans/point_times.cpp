@@ -111,8 +111,9 @@ double unit_of(const SweepTimes& times, std::optional<double> stated) {
   throw ConfigError(
       fmt::format("the points' times are {:.6g} s off the stamps of their scans", distance),
       kReferenceKey,
-      "give stamps of the points' clock in stamps.csv, or state \"none\" to read the points "
-      "without times");
+      "give stamps of the points' clock in stamps.csv, state \"first_point\" if the stamps are "
+      "those "
+      "of the first points, or \"none\" to read the points without times");
 }
 
 /// The reference of a single scan, or of scans of one stamp.
@@ -146,7 +147,8 @@ TimeReference reference_of(const SweepTimes& times, double unit,
     return std::abs(median_of(reference == TimeReference::kStamp ? from_stamp : from_epoch));
   };
   if (stated) {
-    if (distance(*stated) <= kFarthest) return *stated;
+    const bool is_near = *stated == TimeReference::kFirstPoint || distance(*stated) <= kFarthest;
+    if (is_near) return *stated;
     throw ConfigError(fmt::format("the points' times are {:.6g} s off the stamps of their scans by "
                                   "this reference",
                                   distance(*stated)),
@@ -165,8 +167,11 @@ TimeReference reference_of(const SweepTimes& times, double unit,
 std::string note_of(double unit, TimeReference reference) {
   const auto* named =
       std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& u) { return u.seconds == unit; });
+  const char* from = reference == TimeReference::kStamp      ? "scan's stamp"
+                     : reference == TimeReference::kAbsolute ? "epoch of the stamps"
+                                                             : "first point of the scan";
   return fmt::format("recognized: the points' times are in {} and count from the {}", named->name,
-                     reference == TimeReference::kStamp ? "scan's stamp" : "epoch of the stamps");
+                     from);
 }
 
 }  // namespace

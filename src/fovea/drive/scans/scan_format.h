@@ -7,9 +7,10 @@ namespace fovea {
 
 /// What the time of a point counts from.
 enum class TimeReference {
-  kStamp,     ///< the scan's stamp
-  kAbsolute,  ///< the epoch of the stamps
-  kNone,      ///< nothing: points have no times, whatever their columns are called
+  kStamp,       ///< the scan's stamp
+  kAbsolute,    ///< the epoch of the stamps
+  kFirstPoint,  ///< any moment: the scan's stamp is the time of its first point
+  kNone,        ///< nothing: points have no times, whatever their columns are called
 };
 
 struct ScanFormat {
