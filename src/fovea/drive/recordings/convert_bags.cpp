@@ -8,7 +8,7 @@
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/conversion_plan.h"
-#include "fovea/drive/recordings/drive_writer.h"
+#include "fovea/drive/recordings/recording_writer.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
@@ -57,10 +57,10 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   const std::filesystem::path scratch = writer.folder();
   const BagIndex index = index_bags(files, scratch);
   ConversionPlan plan = naming(bags, [&] { return plan_conversion(index, options); });
-  DriveWriter drive_writer(index, plan, writer, options.allow_dropped, progress);
-  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, drive_writer);
+  RecordingWriter recording_writer(index, plan, writer, options.allow_dropped, progress);
+  for (const std::filesystem::path& file : files) read_bag_file(file, scratch, recording_writer);
   figures.notes = plan.notes;
-  naming(bags, [&] { drive_writer.finish(plan.drive, figures); });
+  naming(bags, [&] { recording_writer.finish(plan.drive, figures); });
   note_unused_topics(index, plan, figures);
   for (const std::string& loss : index.losses) figures.warn(loss);
   for (const auto& [topic, unusable] : index.unusable) {

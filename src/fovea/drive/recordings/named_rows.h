@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fovea/core/point_formats/column_names.h"
 #include "fovea/core/point_formats/cloud_rows.h"
+#include "fovea/core/point_formats/column_names.h"
 
 namespace fovea {
 

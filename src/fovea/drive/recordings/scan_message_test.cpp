@@ -39,9 +39,11 @@ struct TestPoint {
   std::uint8_t reflectivity;
 };
 
-const std::vector<TestPoint> kPoints = {{0, 3, 0},           {20'000'000, 4, 51},
+const std::vector<TestPoint> kPoints = {{0, 3, 0},
+                                        {20'000'000, 4, 51},
                                         {40'000'000, 0, 0},  // nothing came back
-                                        {60'000'000, 5, 255}, {99'000'001, 6, 102}};
+                                        {60'000'000, 5, 255},
+                                        {99'000'001, 6, 102}};
 
 std::string livox_cdr() {
   CdrWriter message;
@@ -125,17 +127,17 @@ class TestVelodyne {
   static double azimuth(double time) { return 350 + 3600 * time; }  // degrees, ten turns a second
 
   void fire(double time, bool is_noted, std::string& data) {
-    static const std::vector<double> kVlp16 = {-15, 1,  -13, 3,  -11, 5,  -9, 7,
-                                               -7,  9,  -5,  11, -3,  13, -1, 15};
-    static const std::vector<double> kVlp16Above = {11.2, -0.7, 9.7, -2.2, 8.1,  -3.7, 6.6, -5.1,
+    static const std::vector<double> kVlp16 = {-15, 1, -13, 3,  -11, 5,  -9, 7,
+                                               -7,  9, -5,  11, -3,  13, -1, 15};
+    static const std::vector<double> kVlp16Above = {11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
                                                     5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
     static const std::vector<double> kVlp32 = {
-        -25,    -1,     -1.667, -15.639, -11.31, 0,     -0.667, -8.843, -7.254, 0.333,  -0.333,
-        -6.148, -5.333, 1.333,  0.667,   -4,     -4.667, 1.667, 1,      -3.667, -3.333, 3.333,
-        2.333,  -2.667, -3,     7,       4.667,  -2.333, -2,    15,     10.333, -1.333};
+        -25,    -1,     -1.667, -15.639, -11.31, 0,      -0.667, -8.843, -7.254, 0.333,  -0.333,
+        -6.148, -5.333, 1.333,  0.667,   -4,     -4.667, 1.667,  1,      -3.667, -3.333, 3.333,
+        2.333,  -2.667, -3,     7,       4.667,  -2.333, -2,     15,     10.333, -1.333};
     static const std::vector<double> kVlp32Turned = {
-        1.4, -4.2, 1.4,  -1.4, 1.4,  -1.4, 4.2, -1.4, 1.4, -4.2, 1.4,  -1.4, 4.2, -1.4, 4.2, -1.4,
-        1.4, -4.2, 1.4,  -4.2, 4.2,  -1.4, 1.4, -1.4, 1.4, -1.4, 1.4,  -4.2, 4.2, -1.4, 1.4, -1.4};
+        1.4, -4.2, 1.4, -1.4, 1.4, -1.4, 4.2, -1.4, 1.4, -4.2, 1.4, -1.4, 4.2, -1.4, 4.2, -1.4,
+        1.4, -4.2, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4, 1.4, -1.4, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4};
     const bool is_16 = product_ == 0x22;
     const std::vector<double>& elevations = is_16 ? kVlp16 : kVlp32;
     for (std::size_t laser = 0; laser < elevations.size(); ++laser) {
@@ -157,8 +159,9 @@ class TestVelodyne {
       truth_.position.push_back((origin + range * ray).cast<float>());
       truth_.intensity.push_back(float(10 * (laser % 16)) / 255);
       truth_.time.push_back(float(at));
-      truth_.ring.push_back(std::uint16_t(std::count_if(
-          elevations.begin(), elevations.end(), [&](double other) { return other < elevations[laser]; })));
+      truth_.ring.push_back(
+          std::uint16_t(std::count_if(elevations.begin(), elevations.end(),
+                                      [&](double other) { return other < elevations[laser]; })));
     }
   }
 

@@ -22,17 +22,17 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kTurn = 36000;  // steps of the azimuth
 
 struct Laser {
-  double elevation;       // degrees
-  double azimuth = 0;     // degrees, to be added to that of the block
-  double above = 0;       // m, of its origin over that of the LiDAR
+  double elevation;    // degrees
+  double azimuth = 0;  // degrees, to be added to that of the block
+  double above = 0;    // m, of its origin over that of the LiDAR
 };
 
 struct Model {
   std::uint8_t product;
   const char* name;
-  double range_step;            // m
-  std::size_t at_once;          // lasers that fire at the same time
-  std::vector<Laser> lasers;    // in the order of the packets
+  double range_step;          // m
+  std::size_t at_once;        // lasers that fire at the same time
+  std::vector<Laser> lasers;  // in the order of the packets
 };
 
 const std::vector<Model>& models() {
@@ -41,21 +41,30 @@ const std::vector<Model>& models() {
        "VLP-16",
        0.002,
        1,
-       {{-15, 0, 0.0112},  {1, 0, -0.0007},  {-13, 0, 0.0097}, {3, 0, -0.0022},
-        {-11, 0, 0.0081},  {5, 0, -0.0037},  {-9, 0, 0.0066},  {7, 0, -0.0051},
-        {-7, 0, 0.0051},   {9, 0, -0.0066},  {-5, 0, 0.0037},  {11, 0, -0.0081},
-        {-3, 0, 0.0022},   {13, 0, -0.0097}, {-1, 0, 0.0007},  {15, 0, -0.0112}}},
-      {0x28,
-       "VLP-32C",
-       0.004,
-       2,
-       {{-25, 1.4},     {-1, -4.2},     {-1.667, 1.4},  {-15.639, -1.4}, {-11.31, 1.4},
-        {0, -1.4},      {-0.667, 4.2},  {-8.843, -1.4}, {-7.254, 1.4},   {0.333, -4.2},
-        {-0.333, 1.4},  {-6.148, -1.4}, {-5.333, 4.2},  {1.333, -1.4},   {0.667, 4.2},
-        {-4, -1.4},     {-4.667, 1.4},  {1.667, -4.2},  {1, 1.4},        {-3.667, -4.2},
-        {-3.333, 4.2},  {3.333, -1.4},  {2.333, 1.4},   {-2.667, -1.4},  {-3, 1.4},
-        {7, -1.4},      {4.667, 1.4},   {-2.333, -4.2}, {-2, 4.2},       {15, -1.4},
-        {10.333, 1.4},  {-1.333, -1.4}}}};
+       {{-15, 0, 0.0112},
+        {1, 0, -0.0007},
+        {-13, 0, 0.0097},
+        {3, 0, -0.0022},
+        {-11, 0, 0.0081},
+        {5, 0, -0.0037},
+        {-9, 0, 0.0066},
+        {7, 0, -0.0051},
+        {-7, 0, 0.0051},
+        {9, 0, -0.0066},
+        {-5, 0, 0.0037},
+        {11, 0, -0.0081},
+        {-3, 0, 0.0022},
+        {13, 0, -0.0097},
+        {-1, 0, 0.0007},
+        {15, 0, -0.0112}}},
+      {0x28, "VLP-32C", 0.004, 2, {{-25, 1.4},    {-1, -4.2},    {-1.667, 1.4}, {-15.639, -1.4},
+                                   {-11.31, 1.4}, {0, -1.4},     {-0.667, 4.2}, {-8.843, -1.4},
+                                   {-7.254, 1.4}, {0.333, -4.2}, {-0.333, 1.4}, {-6.148, -1.4},
+                                   {-5.333, 4.2}, {1.333, -1.4}, {0.667, 4.2},  {-4, -1.4},
+                                   {-4.667, 1.4}, {1.667, -4.2}, {1, 1.4},      {-3.667, -4.2},
+                                   {-3.333, 4.2}, {3.333, -1.4}, {2.333, 1.4},  {-2.667, -1.4},
+                                   {-3, 1.4},     {7, -1.4},     {4.667, 1.4},  {-2.333, -4.2},
+                                   {-2, 4.2},     {15, -1.4},    {10.333, 1.4}, {-1.333, -1.4}}}};
   return kModels;
 }
 
@@ -104,9 +113,8 @@ class PacketDecoder {
  public:
   PacketDecoder(const Model& model, NamedRows& rows) : model_(model), rows_(rows) {
     for (const Laser& laser : model.lasers) {
-      ring_.push_back(std::count_if(model.lasers.begin(), model.lasers.end(), [&](const Laser& l) {
-        return l.elevation < laser.elevation;
-      }));
+      ring_.push_back(std::count_if(model.lasers.begin(), model.lasers.end(),
+                                    [&](const Laser& l) { return l.elevation < laser.elevation; }));
     }
   }
 
@@ -122,8 +130,8 @@ class PacketDecoder {
         const bool is_second = block % stride == 1;
         if (range == 0 || (is_second && range == packet.range(block - 1, place))) continue;
         const std::size_t laser = place % lasers;
-        const double in_block = kFiring * double(place / lasers) +
-                                kLaser * double(laser / model_.at_once);
+        const double in_block =
+            kFiring * double(place / lasers) + kLaser * double(laser / model_.at_once);
         const double azimuth = 0.01 * (packet.azimuth(block) + turn * in_block / block_duration);
         const double time = begin + block_duration * double(block / stride) + in_block;
         add(laser, range, azimuth, packet.intensity(block, place), time);

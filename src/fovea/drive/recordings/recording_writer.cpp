@@ -1,4 +1,4 @@
-#include "fovea/drive/recordings/drive_writer.h"
+#include "fovea/drive/recordings/recording_writer.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 
 namespace fovea {
 
-DriveWriter::DriveWriter(const BagIndex& index, const ConversionPlan& plan,
-                         GenericDriveWriter& writer, bool allow_dropped,
-                         const std::function<void(int, int)>& progress)
+RecordingWriter::RecordingWriter(const BagIndex& index, const ConversionPlan& plan,
+                                 GenericDriveWriter& writer, bool allow_dropped,
+                                 const std::function<void(int, int)>& progress)
     : lidar_(plan.lidar, index.lidars.at(plan.lidar)),
       format_(plan.scan_format),
       allow_dropped_(allow_dropped),
@@ -28,13 +28,13 @@ DriveWriter::DriveWriter(const BagIndex& index, const ConversionPlan& plan,
   }
 }
 
-bool DriveWriter::is_requested(const BagTopic& topic) {
+bool RecordingWriter::is_requested(const BagTopic& topic) {
   return (topic.name == lidar_.topic && is_scan_type(topic.type)) ||
          (cameras_.contains(topic.name) &&
           (topic.type == ros::kImage || topic.type == ros::kCompressedImage));
 }
 
-void DriveWriter::add(const BagTopic& topic, std::string_view bytes) {
+void RecordingWriter::add(const BagTopic& topic, std::string_view bytes) {
   Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
   try {
     MessageReader message(bytes, topic.encoding, topic.name);
@@ -52,7 +52,7 @@ void DriveWriter::add(const BagTopic& topic, std::string_view bytes) {
   progress_(int(done_), int(total_));
 }
 
-void DriveWriter::finish(RecordedDrive& drive, ConvertFigures& figures) const {
+void RecordingWriter::finish(RecordedDrive& drive, ConvertFigures& figures) const {
   figures.scans = lidar_.written;
   figures.cameras = cameras_.size();
   account_for(lidar_, figures);
@@ -67,10 +67,10 @@ void DriveWriter::finish(RecordedDrive& drive, ConvertFigures& figures) const {
   drive.intensity_max = scale_.max();
 }
 
-DriveWriter::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
+RecordingWriter::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
     : topic(topic_name), frame(sensor.frame), stamps(sensor.stamps), taken(stamps.size()) {}
 
-std::optional<int> DriveWriter::Numbered::take(const ros::Header& header) {
+std::optional<int> RecordingWriter::Numbered::take(const ros::Header& header) {
   const auto found = std::lower_bound(stamps.begin(), stamps.end(), header.stamp);
   const auto number = std::size_t(found - stamps.begin());
   if (found == stamps.end() || *found != header.stamp || header.frame != frame || taken[number]) {
@@ -82,7 +82,7 @@ std::optional<int> DriveWriter::Numbered::take(const ros::Header& header) {
 
 /// Calls `write(number)` for a message that has not been there yet.
 template <class Write>
-void DriveWriter::use(Numbered& sensor, const ros::Header& header, Write&& write) {
+void RecordingWriter::use(Numbered& sensor, const ros::Header& header, Write&& write) {
   const auto number = sensor.take(header);
   if (!number) return;
   try {
@@ -93,7 +93,7 @@ void DriveWriter::use(Numbered& sensor, const ros::Header& header, Write&& write
   }
 }
 
-void DriveWriter::write_scan(const ScanMessage& message) {
+void RecordingWriter::write_scan(const ScanMessage& message) {
   const TimeNs stamp = message.header().stamp;
   use(lidar_, message.header(), [&](int number) {
     ScanRows rows(format_, stamp);
@@ -106,13 +106,13 @@ void DriveWriter::write_scan(const ScanMessage& message) {
   });
 }
 
-void DriveWriter::write_plain(const ros::ImageMessage& image, Numbered& camera) {
+void RecordingWriter::write_plain(const ros::ImageMessage& image, Numbered& camera) {
   use(camera, image.header, [&](int number) {
     writer_.write_image(camera.name, number, image.header.stamp, image_of(image, camera.topic));
   });
 }
 
-void DriveWriter::write_compressed(const ros::CompressedImage& image, Numbered& camera) {
+void RecordingWriter::write_compressed(const ros::CompressedImage& image, Numbered& camera) {
   use(camera, image.header, [&](int number) {
     const bool png = is_png(image.data);
     if (!png && !is_jpeg(image.data)) {
@@ -124,7 +124,7 @@ void DriveWriter::write_compressed(const ros::CompressedImage& image, Numbered& 
   });
 }
 
-void DriveWriter::account_for(const Numbered& sensor, ConvertFigures& figures) {
+void RecordingWriter::account_for(const Numbered& sensor, ConvertFigures& figures) {
   const UnusableMessages& unusable = sensor.unusable;
   if (sensor.written == 0) {
     throw InputError(fmt::format("none of the messages can be used ({})", unusable.first_problem),

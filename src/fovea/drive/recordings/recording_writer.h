@@ -20,12 +20,12 @@
 namespace fovea {
 
 /// Writes scans and images as they come, numbered by their stamps.
-class DriveWriter : public BagSink {
+class RecordingWriter : public BagSink {
  public:
   /// @param allow_dropped  whether many points may be left out
   /// @param progress  called with messages done and in all
-  DriveWriter(const BagIndex& index, const ConversionPlan& plan, GenericDriveWriter& writer,
-              bool allow_dropped, const std::function<void(int, int)>& progress);
+  RecordingWriter(const BagIndex& index, const ConversionPlan& plan, GenericDriveWriter& writer,
+                  bool allow_dropped, const std::function<void(int, int)>& progress);
 
   bool is_requested(const BagTopic& topic) override;
   void add(const BagTopic& topic, std::string_view bytes) override;
