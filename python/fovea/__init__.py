@@ -5,7 +5,9 @@ docs/python.md has examples.
 """
 from ._fovea import (
     Camera,
+    CameraModel,
     Drive,
+    DriveWriter,
     Frame,
     FrameRecord,
     Localization,
@@ -23,8 +25,10 @@ from .errors import ConfigError, Error, InputError, OutputError
 
 __all__ = [
     "Camera",
+    "CameraModel",
     "ConfigError",
     "Drive",
+    "DriveWriter",
     "Error",
     "Frame",
     "FrameRecord",

@@ -4,7 +4,18 @@ Poses are 4x4 matrices T_to_from, lengths metres, angles radians, times int nano
 """
 import os
 import pathlib
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +27,10 @@ from .errors import OutputError as OutputError
 
 __all__ = [
     "Camera",
+    "CameraModel",
     "ConfigError",
     "Drive",
+    "DriveWriter",
     "Error",
     "Frame",
     "FrameRecord",
@@ -198,6 +211,45 @@ class Drive:
     def notes(self) -> List[str]: ...
     def load(self, index: int) -> Frame: ...
     def __iter__(self) -> Iterator[Frame]: ...
+
+class CameraModel:
+    """A camera of a DriveWriter."""
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        K: npt.ArrayLike,
+        T_lidar_cam: npt.ArrayLike,
+        distortion_model: str = "none",
+        D: Sequence[float] = ...,
+    ) -> None: ...
+
+class DriveWriter:
+    """Writes a drive frame by frame: the base of an adapter for another data set."""
+
+    def __init__(
+        self,
+        path: _Path,
+        *,
+        cameras: Mapping[str, CameraModel] = ...,
+        force: bool = False,
+        compensated: bool = False,
+    ) -> None: ...
+    def add(
+        self,
+        points: npt.ArrayLike,
+        stamp: int,
+        *,
+        intensity: Optional[npt.ArrayLike] = None,
+        times: Optional[npt.ArrayLike] = None,
+        images: Mapping[str, Union[npt.NDArray[np.uint8], _Path]] = ...,
+        image_stamps: Mapping[str, int] = ...,
+        T_world_lidar: Optional[npt.ArrayLike] = None,
+    ) -> None: ...
+    def close(self) -> Dict[str, int]: ...
+    def __enter__(self) -> DriveWriter: ...
+    def __exit__(self, type: object, value: object, traceback: object) -> None: ...
 
 class Progress:
     """How far a run of map_drive() is, after a frame."""

@@ -1,0 +1,175 @@
+// fovea.DriveWriter: the base of adapters for other data sets.
+#include "fovea/drive/writers/drive_writer.h"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+
+#include "python/bindings/arrays.h"
+#include "python/bindings/bindings.h"
+
+namespace fovea::python {
+namespace py = pybind11;
+namespace {
+
+using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// A camera without its name.
+struct CameraModel {
+  LensCamera optics;
+  RigidMotion T_lidar_cam;
+};
+
+LensModel model_of(const std::string& name) {
+  for (const LensModel model : {LensModel::kNone, LensModel::kPlumbBob,
+                                LensModel::kRationalPolynomial, LensModel::kEquidistant}) {
+    if (to_string(model) == name) return model;
+  }
+  throw std::invalid_argument(
+      "distortion_model is '" + name +
+      "', not 'none', 'plumb_bob', 'rational_polynomial' or 'equidistant'");
+}
+
+CameraModel make_camera(int width, int height, const Eigen::Matrix3d& K, const Doubles& T_lidar_cam,
+                        const std::string& distortion_model, const std::vector<double>& D) {
+  const LensModel model = model_of(distortion_model);
+  const auto coefficients = lens_coefficients(model, D);
+  if (!coefficients) throw std::invalid_argument("D has no coefficients of " + distortion_model);
+  CameraModel camera{{width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2), Lens(model, *coefficients)},
+                     motion_from(T_lidar_cam)};
+  if (width < 1 || height < 1 || !camera.optics.has_pinhole()) {
+    throw std::invalid_argument("K, width and height are not those of a camera");
+  }
+  return camera;
+}
+
+PointCloud cloud_of(const Floats& points, const std::optional<Floats>& intensity,
+                    const std::optional<Floats>& times) {
+  if (points.ndim() != 2 || points.shape(1) != 3) {
+    throw std::invalid_argument("points are not N x 3");
+  }
+  PointCloud cloud;
+  for (py::ssize_t i = 0; i < points.shape(0); ++i) {
+    cloud.position.emplace_back(points.at(i, 0), points.at(i, 1), points.at(i, 2));
+  }
+  const auto column = [](const std::optional<Floats>& values) -> std::vector<float> {
+    if (!values) return {};
+    if (values->ndim() != 1) throw std::invalid_argument("intensity and times are of one dimension");
+    return {values->data(), values->data() + values->size()};
+  };
+  cloud.intensity = column(intensity);
+  cloud.time = column(times);
+  return cloud;
+}
+
+std::variant<Image, std::filesystem::path> content_of(const py::object& image) {
+  if (!py::isinstance<py::array>(image)) return image.cast<std::filesystem::path>();
+  const auto pixels = py::array_t<std::uint8_t, py::array::c_style>::ensure(image);
+  const bool is_gray = pixels && pixels.ndim() == 2;
+  if (!pixels || !(is_gray || (pixels.ndim() == 3 && (pixels.shape(2) == 1 || pixels.shape(2) == 3)))) {
+    throw std::invalid_argument("an image is no uint8 array, height x width or height x width x 3");
+  }
+  Image result(int(pixels.shape(1)), int(pixels.shape(0)), is_gray ? 1 : int(pixels.shape(2)));
+  std::copy_n(pixels.data(), result.data.size(), result.data.begin());
+  return result;
+}
+
+class PythonDriveWriter {
+ public:
+  PythonDriveWriter(const std::filesystem::path& path,
+                    const std::map<std::string, CameraModel>& cameras, bool force,
+                    bool compensated) {
+    std::vector<RecordedCamera> recorded;
+    for (const auto& [name, camera] : cameras) {
+      recorded.push_back({name, int(recorded.size()), camera.optics, camera.T_lidar_cam});
+    }
+    writer_.emplace(path, std::move(recorded), DriveWriterOptions{force, compensated, {}});
+  }
+
+  void add(const Floats& points, TimeNs stamp, const std::optional<Floats>& intensity,
+           const std::optional<Floats>& times, const std::map<std::string, py::object>& images,
+           const std::map<std::string, TimeNs>& image_stamps,
+           const std::optional<Doubles>& T_world_lidar) {
+    std::vector<DriveImage> added;
+    for (const auto& [name, image] : images) {
+      const auto own = image_stamps.find(name);
+      added.push_back({name, own == image_stamps.end() ? stamp : own->second, content_of(image)});
+    }
+    std::optional<RigidMotion> pose;
+    if (T_world_lidar) pose = motion_from(*T_world_lidar);
+    const DriveScan scan{stamp, cloud_of(points, intensity, times)};
+    DriveWriter& writer = opened();
+    const py::gil_scoped_release others_run;
+    writer.add(scan, added, pose);
+  }
+
+  py::dict close() {
+    const DriveWriterFigures figures = opened().close();
+    writer_.reset();
+    py::dict result;
+    result["scans"] = figures.scans;
+    result["images"] = figures.images;
+    result["poses"] = figures.poses;
+    result["points_dropped"] = figures.dropped.total();
+    return result;
+  }
+  void discard() { writer_.reset(); }
+  bool is_open() const { return writer_.has_value(); }
+
+ private:
+  DriveWriter& opened() {
+    if (!writer_) throw std::logic_error("the drive is closed");
+    return *writer_;
+  }
+
+  std::optional<DriveWriter> writer_;
+};
+
+}  // namespace
+
+void bind_drive_writer(py::module_& module) {
+  py::class_<CameraModel>(module, "CameraModel", "A camera of a DriveWriter.")
+      .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("K"),
+           py::arg("T_lidar_cam"), py::arg("distortion_model") = "none",
+           py::arg("D") = std::vector<double>(),
+           "K: 3x3, pixels, pixel centers at integers; T_lidar_cam: 4x4, optical frame (z ahead); "
+           "distortion_model: none, plumb_bob, rational_polynomial or equidistant, as in ROS; D: "
+           "its coefficients.");
+  py::class_<PythonDriveWriter>(module, "DriveWriter",
+                                "Writes a drive frame by frame: the base of an adapter for another "
+                                "data set. As a context manager, it closes the drive at the end, "
+                                "and keeps nothing after an exception.")
+      .def(py::init<const std::filesystem::path&, const std::map<std::string, CameraModel>&, bool,
+                    bool>(),
+           py::arg("path"), py::kw_only(), py::arg("cameras") = std::map<std::string, CameraModel>(),
+           py::arg("force") = false, py::arg("compensated") = false,
+           "cameras: by name; their numbers follow the names. compensated: the scans' motion was "
+           "undone already. OutputError if the folder exists (except with force).")
+      .def("add", &PythonDriveWriter::add, py::arg("points"), py::arg("stamp"), py::kw_only(),
+           py::arg("intensity") = py::none(), py::arg("times") = py::none(),
+           py::arg("images") = std::map<std::string, py::object>(),
+           py::arg("image_stamps") = std::map<std::string, TimeNs>(),
+           py::arg("T_world_lidar") = py::none(),
+           "Adds the next frame. points: N x 3, m, LiDAR frame; stamp: ns; intensity: N, up to 1, "
+           "255 or 65535; times: N, s from the stamp; images: by camera, uint8 arrays or PNG or "
+           "JPEG files; image_stamps: by camera, ns (default: the scan's); T_world_lidar: 4x4. "
+           "ValueError for what is no frame, InputError for files that are no images.")
+      .def("close", &PythonDriveWriter::close,
+           "Gives the drive its name. The numbers of scans, images, poses and dropped points.")
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", [](PythonDriveWriter& self, const py::object& type, const py::object&,
+                          const py::object&) {
+        if (!type.is_none()) {
+          self.discard();
+        } else if (self.is_open()) {
+          self.close();
+        }
+      });
+}
+
+}  // namespace fovea::python

@@ -1,0 +1,128 @@
+#include "fovea/drive/writers/drive_writer.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "fovea/core/errors.h"
+#include "fovea/core/file_format.h"
+#include "fovea/core/input_file.h"
+#include "fovea/drive/scans/lidar_scan.h"
+#include "fovea/drive/writers/camera_name.h"
+#include "fovea/geometry/pose_file.h"
+
+namespace fovea {
+namespace {
+
+template <class... Arguments>
+void require(bool condition, fmt::format_string<const Arguments&...> text,
+             const Arguments&... arguments) {
+  if (!condition) throw std::invalid_argument(fmt::format(text, arguments...));
+}
+
+/// The points that can be used.
+LidarScan usable_points(const PointCloud& points) {
+  const std::size_t size = points.size();
+  require(points.intensity.empty() || points.intensity.size() == size,
+          "a scan has {} points and {} intensities", size, points.intensity.size());
+  require(points.time.empty() || points.time.size() == size, "a scan has {} points and {} times",
+          size, points.time.size());
+  ScanBuilder builder(size, !points.time.empty());
+  for (std::size_t i = 0; i < size; ++i) {
+    builder.add(points.position[i], points.intensity.empty() ? 0 : points.intensity[i],
+                points.time.empty() ? 0 : double(points.time[i]));
+  }
+  return builder.take("scan");
+}
+
+}  // namespace
+
+DriveWriter::DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
+                         DriveWriterOptions options)
+    : writer_(root, options.force) {
+  drive_.sweep_compensated = options.sweep_compensated;
+  drive_.sweep = options.sweep;
+  std::set<int> numbers;
+  for (const RecordedCamera& camera : cameras) {
+    require(is_camera_name(camera.name), "'{}' is no name of a camera", camera.name);
+    require(camera.index >= 0 && camera.index <= 9, "camera '{}' has the number {}, not 0 to 9",
+            camera.name, camera.index);
+    require(numbers.insert(camera.index).second, "two cameras have the number {}", camera.index);
+    require(cameras_.try_emplace(camera.name, CameraState{camera, {}}).second,
+            "two cameras have the name '{}'", camera.name);
+  }
+  drive_.cameras = std::move(cameras);
+}
+
+void DriveWriter::add(const DriveScan& scan, const std::vector<DriveImage>& images,
+                      const std::optional<RigidMotion>& T_world_lidar) {
+  require(!is_closed_, "the drive is closed");
+  require(!last_ || scan.stamp > *last_, "the scan at {} ns is not after the one at {} ns",
+          scan.stamp, last_.value_or(0));
+  for (const DriveImage& image : images) check_image(image);
+  std::optional<RigidMotion> pose;
+  if (T_world_lidar) pose = checked_pose(T_world_lidar->matrix().topRows<3>());
+  write_scan(scan);
+  for (const DriveImage& image : images) write_image(image);
+  if (pose) drive_.poses.push_back({scan.stamp, *pose});
+}
+
+DriveWriter::CameraState& DriveWriter::find_camera(const std::string& name) {
+  const auto found = cameras_.find(name);
+  require(found != cameras_.end(), "the drive has no camera '{}'", name);
+  return found->second;
+}
+
+void DriveWriter::check_image(const DriveImage& image) {
+  const CameraState& state = find_camera(image.camera);
+  require(!state.last || image.stamp > *state.last,
+          "the image of '{}' at {} ns is not after the one at {} ns", image.camera, image.stamp,
+          state.last.value_or(0));
+  if (const auto* pixels = std::get_if<Image>(&image.content)) {
+    const LensCamera& optics = state.camera.optics;
+    require(pixels->width == optics.width && pixels->height == optics.height,
+            "an image of '{}' has {} x {} pixels, not {} x {}", image.camera, pixels->width,
+            pixels->height, optics.width, optics.height);
+  }
+}
+
+void DriveWriter::write_scan(const DriveScan& scan) {
+  const LidarScan usable = usable_points(scan.points);
+  writer_.write_scan(int(figures_.scans++), scan.stamp, usable.points);
+  figures_.dropped += usable.dropped;
+  scale_.add(usable.points.intensity);
+  last_ = scan.stamp;
+}
+
+void DriveWriter::write_image(const DriveImage& image) {
+  CameraState& state = find_camera(image.camera);
+  if (const auto* pixels = std::get_if<Image>(&image.content)) {
+    writer_.write_image(image.camera, state.images, image.stamp, *pixels);
+  } else {
+    const auto& path = std::get<std::filesystem::path>(image.content);
+    const std::vector<std::uint8_t> bytes = InputFile(path, kImageFile).bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const FileFormat format = sniff_format(text).format;
+    if (format != FileFormat::kPng && format != FileFormat::kJpeg) {
+      throw InputError("this is no PNG or JPEG image", path.string(), "convert it to PNG");
+    }
+    writer_.write_encoded_image(image.camera, state.images, image.stamp, text,
+                                format == FileFormat::kPng ? ".png" : ".jpg");
+  }
+  ++state.images;
+  ++figures_.images;
+  state.last = image.stamp;
+}
+
+DriveWriterFigures DriveWriter::close() {
+  if (is_closed_) throw std::logic_error("the drive is closed already");
+  if (figures_.scans == 0) throw std::logic_error("the drive has no scan");
+  is_closed_ = true;
+  drive_.intensity_max = scale_.max();
+  figures_.poses = drive_.poses.size();
+  writer_.finish(drive_);
+  return figures_;
+}
+
+}  // namespace fovea

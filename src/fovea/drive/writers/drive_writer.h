@@ -1,0 +1,90 @@
+// Writes a drive frame by frame (docs/drives.md, "Other data sets"): the base of an adapter.
+//
+//     DriveWriter writer("drive", {{"front", 0, optics, T_lidar_cam}});
+//     for (const MyFrame& f : frames) {
+//       writer.add({f.stamp, f.points}, {{"front", f.image_stamp, f.image_file}}, f.T_world_lidar);
+//     }
+//     writer.close();
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "fovea/core/image.h"
+#include "fovea/core/point_cloud.h"
+#include "fovea/drive/scans/dropped_points.h"
+#include "fovea/drive/scans/intensity_scale.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
+
+namespace fovea {
+
+struct DriveScan {
+  TimeNs stamp = 0;
+  /// LiDAR frame, m; with intensity (up to 1, 255 or 65535, or empty) and with the points' times (s
+  /// from the stamp, or empty).
+  PointCloud points;
+};
+
+struct DriveImage {
+  std::string camera;  ///< its name
+  TimeNs stamp = 0;
+  std::variant<Image, std::filesystem::path> content;  ///< a PNG or JPEG file is copied as it is
+};
+
+struct DriveWriterOptions {
+  bool force = false;                ///< replaces a drive at that place
+  bool sweep_compensated = false;    ///< the motion of the LiDAR during a sweep is undone already
+  std::optional<SweepTiming> sweep;  ///< of points without times
+};
+
+struct DriveWriterFigures {
+  std::size_t scans = 0, images = 0, poses = 0;
+  DroppedPoints dropped;
+};
+
+/// Every function throws OutputError as GenericDriveWriter. Without close() nothing stays.
+class DriveWriter {
+ public:
+  /// std::invalid_argument for cameras of one name or number, or of a name that RecordedCamera does
+  /// not allow.
+  DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
+              DriveWriterOptions options = {});
+
+  /// Adds the next frame. Images belong to their stamps: a frame may have any number of them.
+  /// @param T_world_lidar  pose at the scan's stamp, in any fixed frame; absent: not known
+  /// std::invalid_argument for a stamp that is not after the one before (of the scans, or of the
+  /// images of a camera), for a camera that the writer does not have, an image of another size, a
+  /// column of another length than the positions, or a pose that is none. InputError for a scan
+  /// without a usable point, and for an image file that is no PNG or JPEG.
+  void add(const DriveScan& scan, const std::vector<DriveImage>& images,
+           const std::optional<RigidMotion>& T_world_lidar = std::nullopt);
+
+  /// Writes the tables, and gives the drive its name. std::logic_error without a scan, or if it is
+  /// called again.
+  DriveWriterFigures close();
+
+ private:
+  struct CameraState {
+    RecordedCamera camera;
+    std::optional<TimeNs> last;  // stamp
+    int images = 0;
+  };
+  CameraState& find_camera(const std::string& name);
+  void check_image(const DriveImage& image);
+  void write_scan(const DriveScan& scan);
+  void write_image(const DriveImage& image);
+
+  GenericDriveWriter writer_;
+  RecordedDrive drive_;
+  std::map<std::string, CameraState> cameras_;
+  IntensityScale scale_;
+  std::optional<TimeNs> last_;  // stamp of a scan
+  DriveWriterFigures figures_;
+  bool is_closed_ = false;
+};
+
+}  // namespace fovea

@@ -1,0 +1,137 @@
+#include "fovea/drive/writers/drive_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "../../../../tests/temporary_folder.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/frame_source.h"
+#include "fovea/drive/writers/png_encode.h"
+
+namespace fovea::drive_writer_test {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr TimeNs kStart = 1'700'000'000 * kNsPerSecond, kStep = 100'000'000;
+
+RecordedCamera front() {
+  RecordedCamera camera;
+  camera.name = "front";
+  camera.index = 2;
+  camera.optics = {24, 16, 20, 20, 11.5, 7.5, Lens()};
+  camera.T_lidar_cam = exp_se3((Twist() << 0.1, 0.2, 0.3, 1, 2, 3).finished());
+  return camera;
+}
+
+PointCloud points(float first_x) {
+  PointCloud cloud;
+  for (int i = 0; i < 5; ++i) {
+    cloud.position.emplace_back(first_x + float(i), 1, -1);
+    cloud.intensity.push_back(float(50 * i));
+    cloud.time.push_back(0.02f * float(i) - 0.05f);
+  }
+  return cloud;
+}
+
+Image image(std::uint8_t value) {
+  Image image(24, 16, 3);
+  std::fill(image.data.begin(), image.data.end(), value);
+  return image;
+}
+
+RigidMotion pose(int frame) {
+  return exp_se3((Twist() << 0, 0, 0.1 * frame, double(frame), 0, 0).finished());
+}
+
+class DriveWriterTest : public testing::Test {
+ protected:
+  DriveWriter writer(const std::vector<RecordedCamera>& cameras = {front()}) {
+    return {folder_ / "drive", cameras};
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(DriveWriterTest, TheDriveHasWhatWasAdded) {
+  const std::filesystem::path file = folder_ / "photo";
+  const std::vector<std::uint8_t> png = encode_png(image(70));
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(png.data()),
+                                              std::streamsize(png.size()));
+  DriveWriter writer = this->writer();
+  writer.add({kStart, points(3)}, {{"front", kStart + 1, image(40)}}, pose(0));
+  PointCloud with_nan = points(4);
+  with_nan.position[2].x() = std::nanf("");
+  writer.add({kStart + kStep, with_nan}, {{"front", kStart + kStep, image(50)}}, pose(1));
+  writer.add({kStart + 2 * kStep, points(5)}, {{"front", kStart + 2 * kStep, file}}, pose(2));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "drive"));
+  const DriveWriterFigures figures = writer.close();
+  EXPECT_EQ(figures.scans, 3u);
+  EXPECT_EQ(figures.images, 3u);
+  EXPECT_EQ(figures.poses, 3u);
+  EXPECT_EQ(figures.dropped.not_finite, 1u);
+  EXPECT_THROW(writer.close(), std::logic_error);
+
+  DriveOptions options;
+  options.cameras = {2};
+  const auto drive = open_drive(folder_ / "drive", options);
+  ASSERT_EQ(drive->info().end - drive->info().begin, 3);
+  const Frame first = std::get<Frame>(drive->load(0)), last = std::get<Frame>(drive->load(2));
+  EXPECT_EQ(first.stamp, kStart);
+  EXPECT_EQ(first.scan.position, points(3).position);
+  EXPECT_EQ(first.scan.time, points(3).time);
+  EXPECT_FLOAT_EQ(first.scan.intensity[4], 200.0f / 255);
+  EXPECT_EQ(first.images[0].data, image(40).data);
+  EXPECT_EQ(last.images[0].data, image(70).data);
+  EXPECT_EQ(std::get<Frame>(drive->load(1)).scan.size(), 4u);
+  EXPECT_EQ(drive->info().calibration.cameras[0].cx, 11.5);
+}
+
+TEST_F(DriveWriterTest, WithoutCloseNothingStays) {
+  {
+    DriveWriter writer = this->writer();
+    writer.add({kStart, points(3)}, {});
+  }
+  EXPECT_THAT(folder_.names(), IsEmpty());
+}
+
+TEST_F(DriveWriterTest, RefusesWhatIsNoFrame) {
+  DriveWriter writer = this->writer();
+  writer.add({kStart, points(3)}, {{"front", kStart, image(1)}});
+  const auto refuses = [&](const DriveScan& scan, const std::vector<DriveImage>& images,
+                           const std::optional<RigidMotion>& T_world_lidar = std::nullopt) {
+    EXPECT_THROW(writer.add(scan, images, T_world_lidar), std::invalid_argument);
+  };
+  const DriveScan next{kStart + kStep, points(3)};
+  refuses({kStart, points(3)}, {});
+  refuses(next, {{"rear", kStart + kStep, image(1)}});
+  refuses(next, {{"front", kStart, image(1)}});
+  refuses(next, {{"front", kStart + kStep, Image(16, 24, 3)}});
+  RigidMotion stretched = RigidMotion::Identity();
+  stretched.linear() *= 2;
+  refuses(next, {}, stretched);
+  DriveScan uneven = next;
+  uneven.points.time.pop_back();
+  refuses(uneven, {});
+  EXPECT_THROW(writer.add({kStart + kStep, PointCloud()}, {}), InputError);
+  std::ofstream(folder_ / "text") << "text";
+  EXPECT_THROW(writer.add(next, {{"front", kStart + kStep, folder_ / "text"}}), InputError);
+}
+
+TEST_F(DriveWriterTest, RefusesCamerasThatAreNone) {
+  RecordedCamera other = front();
+  EXPECT_THROW(writer({front(), other}), std::invalid_argument);
+  other.name = "rear";
+  EXPECT_THROW(writer({front(), other}), std::invalid_argument);
+  other.index = 10;
+  EXPECT_THROW(writer({front(), other}), std::invalid_argument);
+  other.index = 3, other.name = "../rear";
+  EXPECT_THROW(writer({front(), other}), std::invalid_argument);
+  DriveWriter empty = writer();
+  EXPECT_THROW(empty.close(), std::logic_error);
+}
+
+}  // namespace fovea::drive_writer_test
