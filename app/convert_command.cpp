@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/convert_data_set.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/core/errors.h"
@@ -24,7 +25,7 @@ struct ConvertArguments {
   std::vector<std::string> bags, cameras;
   std::string output, poses = "auto";
   ConvertOptions options;
-  bool force = false, quiet = false;
+  bool list = false, force = false, quiet = false;
 };
 
 const std::map<std::string, NavigationSource> kSources = {{"auto", NavigationSource::kAuto},
@@ -51,7 +52,29 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
   return cameras;
 }
 
+std::string line_of(const RecordingContents::Topic& topic) {
+  std::string line = fmt::format("{:>8} {}  {}", topic.messages, topic.name, topic.type);
+  if (!topic.first) return line;
+  const double duration = seconds(*topic.last - *topic.first);
+  line += fmt::format(", frame {}, {:.2f} s", topic.frame, duration);
+  if (duration > 0) line += fmt::format(", {:.1f} Hz", double(topic.messages - 1) / duration);
+  return line;
+}
+
+void list(const ConvertArguments& arguments, Warnings& warnings) {
+  const RecordingContents contents = list_bags({arguments.bags.begin(), arguments.bags.end()});
+  for (const RecordingContents::Topic& topic : contents.topics) print_out("{}\n", line_of(topic));
+  warnings.add(contents, "", arguments.quiet);
+}
+
 void run(const ConvertArguments& arguments, Warnings& warnings) {
+  if (arguments.bags.empty()) {
+    throw ConfigError("there is no recording", "fovea convert", "name one, or see --help");
+  }
+  if (arguments.list) return list(arguments, warnings);
+  if (arguments.output.empty()) {
+    throw ConfigError("there is no folder to make", "-o", "name one");
+  }
   check_files({arguments.bags, {}, {arguments.output}});
   ConvertOptions options = arguments.options;
   options.cameras = parse_camera_topics(arguments.cameras);
@@ -73,15 +96,19 @@ void run(const ConvertArguments& arguments, Warnings& warnings) {
 void add_convert_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ConvertArguments>();
   ConvertOptions& options = arguments->options;
-  CLI::App* command =
-      app.add_subcommand("convert", "Turn recordings of ROS 2 or ROS 1 into a drive, without ROS");
-  command
-      ->add_option("BAG", arguments->bags,
-                   "Files (.mcap, .bag, .db3) or bags' folders of one drive")
-      ->required();
+  CLI::App* command = app.add_subcommand(
+      "convert", "Turn a recording of ROS 2 or ROS 1, or a scene of a data set, into a drive");
+  command->add_option("BAG", arguments->bags,
+                      "Files (.mcap, .bag, .db3) or bags' folders of one drive");
   command->add_option("-o,--output", arguments->output, "Folder to make (docs/drives.md)")
-      ->required()
       ->type_name("DIR");
+  command->add_flag("--list", arguments->list,
+                    "Print the topics of the recording, and make nothing");
+  command
+      ->add_option("--start", options.start, "Leave out what comes before, s from the first scan")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--duration", options.duration, "Length of the part to convert, s")
+      ->check(CLI::PositiveNumber);
   command->add_option("--lidar", options.lidar, "The scans (default: the only topic of scans)")
       ->type_name("TOPIC");
   command
@@ -110,7 +137,10 @@ void add_convert_command(CLI::App& app, Session& session) {
                     "Convert scans even if over 10 % of their points cannot be used");
   command->add_flag("--force", arguments->force, "Replace DIR");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments, &session] { run(*arguments, session.warnings); });
+  add_data_set_commands(*command, session);
+  command->callback([arguments, command, &session] {
+    if (command->get_subcommands().empty()) run(*arguments, session.warnings);
+  });
 }
 
 }  // namespace fovea::app

@@ -30,9 +30,8 @@ LensModel model_of(const std::string& name) {
                                 LensModel::kRationalPolynomial, LensModel::kEquidistant}) {
     if (to_string(model) == name) return model;
   }
-  throw std::invalid_argument(
-      "distortion_model is '" + name +
-      "', not 'none', 'plumb_bob', 'rational_polynomial' or 'equidistant'");
+  throw std::invalid_argument("distortion_model is '" + name +
+                              "', not 'none', 'plumb_bob', 'rational_polynomial' or 'equidistant'");
 }
 
 CameraModel make_camera(int width, int height, const Eigen::Matrix3d& K, const Doubles& T_lidar_cam,
@@ -40,8 +39,9 @@ CameraModel make_camera(int width, int height, const Eigen::Matrix3d& K, const D
   const LensModel model = model_of(distortion_model);
   const auto coefficients = lens_coefficients(model, D);
   if (!coefficients) throw std::invalid_argument("D has no coefficients of " + distortion_model);
-  CameraModel camera{{width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2), Lens(model, *coefficients)},
-                     motion_from(T_lidar_cam)};
+  CameraModel camera{
+      {width, height, K(0, 0), K(1, 1), K(0, 2), K(1, 2), Lens(model, *coefficients)},
+      motion_from(T_lidar_cam)};
   if (width < 1 || height < 1 || !camera.optics.has_pinhole()) {
     throw std::invalid_argument("K, width and height are not those of a camera");
   }
@@ -59,7 +59,8 @@ PointCloud cloud_of(const Floats& points, const std::optional<Floats>& intensity
   }
   const auto column = [](const std::optional<Floats>& values) -> std::vector<float> {
     if (!values) return {};
-    if (values->ndim() != 1) throw std::invalid_argument("intensity and times are of one dimension");
+    if (values->ndim() != 1)
+      throw std::invalid_argument("intensity and times are of one dimension");
     return {values->data(), values->data() + values->size()};
   };
   cloud.intensity = column(intensity);
@@ -71,7 +72,8 @@ std::variant<Image, std::filesystem::path> content_of(const py::object& image) {
   if (!py::isinstance<py::array>(image)) return image.cast<std::filesystem::path>();
   const auto pixels = py::array_t<std::uint8_t, py::array::c_style>::ensure(image);
   const bool is_gray = pixels && pixels.ndim() == 2;
-  if (!pixels || !(is_gray || (pixels.ndim() == 3 && (pixels.shape(2) == 1 || pixels.shape(2) == 3)))) {
+  if (!pixels ||
+      !(is_gray || (pixels.ndim() == 3 && (pixels.shape(2) == 1 || pixels.shape(2) == 3)))) {
     throw std::invalid_argument("an image is no uint8 array, height x width or height x width x 3");
   }
   Image result(int(pixels.shape(1)), int(pixels.shape(0)), is_gray ? 1 : int(pixels.shape(2)));
@@ -146,8 +148,9 @@ void bind_drive_writer(py::module_& module) {
                                 "and keeps nothing after an exception.")
       .def(py::init<const std::filesystem::path&, const std::map<std::string, CameraModel>&, bool,
                     bool>(),
-           py::arg("path"), py::kw_only(), py::arg("cameras") = std::map<std::string, CameraModel>(),
-           py::arg("force") = false, py::arg("compensated") = false,
+           py::arg("path"), py::kw_only(),
+           py::arg("cameras") = std::map<std::string, CameraModel>(), py::arg("force") = false,
+           py::arg("compensated") = false,
            "cameras: by name; their numbers follow the names. compensated: the scans' motion was "
            "undone already. OutputError if the folder exists (except with force).")
       .def("add", &PythonDriveWriter::add, py::arg("points"), py::arg("stamp"), py::kw_only(),

@@ -152,6 +152,26 @@ test('an existing folder is replaced with --force alone', async () => {
   assert.equal(drives.convert(bag, 'twice', '--force').status, 0);
 });
 
+test('a part of a recording', async () => {
+  const bag = drives.path('part.mcap'), { scans } = drives.drive('poses');
+  await writeMcap(bag, plain);
+  const { status, stderr } = drives.convert(bag, 'part', '--start', '0.05', '--duration', '0.2');
+  assert.equal(status, 0, stderr);
+  const { scans: part, cameras: [{ images }] } = drives.drive('part');
+  assert.deepEqual(part.map(({ time }) => time), scans.slice(1, 3).map(({ time }) => time));
+  assert.ok(images.length >= 2 && images.length <= 4);
+  drives.refuses(bag, ['--start'], '--start', '100');
+});
+
+test('the contents of a recording', async () => {
+  const bag = drives.path('listed.bag');
+  writeRos1Bag(bag, ros1);
+  const { status, stdout } = drives.list(bag);
+  assert.equal(status, 0);
+  assert.match(stdout, /4 \/lidar\/points +sensor_msgs\/msg\/PointCloud2, frame velodyne, 0\.3. s, 9\.. Hz/);
+  assert.match(stdout, /\/odom +nav_msgs\/msg\/Odometry/);
+});
+
 // What is no such recording.
 
 const refusal = async (name, recorded, words, options) => {

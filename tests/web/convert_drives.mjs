@@ -110,6 +110,11 @@ export class ConvertDrives {
       { encoding: 'utf8' });
   }
 
+  /// `fovea convert --list`: {status, stdout}.
+  list(recording) {
+    return spawnSync(this.#program, ['convert', '--list', recording], { encoding: 'utf8' });
+  }
+
   /// It ends with one line that says all of `words`, and leaves nothing.
   refuses(recording, words, ...options) {
     const { status, stderr } = this.convert(recording, 'refused', ...options);

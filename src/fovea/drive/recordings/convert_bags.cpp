@@ -14,6 +14,15 @@
 namespace fovea {
 namespace {
 
+std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& bags) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& bag : bags) {
+    const auto parts = bag_files(bag);
+    files.insert(files.end(), parts.begin(), parts.end());
+  }
+  return files;
+}
+
 /// Calls what knows of topics only: its errors say which recording they are in.
 template <class Step>
 auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
@@ -24,6 +33,27 @@ auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
                      fmt::format("{} in {}{}", error.where(), bags.front().string(),
                                  bags.size() > 1 ? " and others" : ""),
                      error.remedy());
+  }
+}
+
+/// Leaves the stamps of scans and images in the part of the recording that the options choose.
+void keep_part(const ConvertOptions& options, const ConversionPlan& plan, BagIndex& index) {
+  std::vector<TimeNs>& scans = index.lidars.at(plan.lidar).stamps;
+  const TimeNs first = scans.front();
+  const auto erase_outside = [&](std::vector<TimeNs>& stamps, double margin) {
+    std::erase_if(stamps, [&](TimeNs stamp) {
+      const double time = seconds(stamp - first);
+      return time < options.start - margin || time >= options.start + options.duration + margin;
+    });
+  };
+  constexpr double kMargin = 0.1;  // s: images of the first and of the last scan
+  erase_outside(scans, 0);
+  if (scans.empty()) {
+    throw ConfigError("no scan lies in this part of the recording", "--start, --duration",
+                      "choose an earlier start, or a longer part");
+  }
+  for (const PlannedCamera& camera : plan.cameras) {
+    erase_outside(index.images.at(camera.topic).stamps, kMargin);
   }
 }
 
@@ -47,16 +77,13 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
                             const std::filesystem::path& output, bool force,
                             const ConvertOptions& options,
                             const std::function<void(int, int)>& progress) {
-  std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& bag : bags) {
-    const auto parts = bag_files(bag);
-    files.insert(files.end(), parts.begin(), parts.end());
-  }
+  const std::vector<std::filesystem::path> files = files_of(bags);
   ConvertFigures figures;
   GenericDriveWriter writer(output, force);
   const std::filesystem::path scratch = writer.folder();
-  const BagIndex index = index_bags(files, scratch);
+  BagIndex index = index_bags(files, scratch);
   ConversionPlan plan = naming(bags, [&] { return plan_conversion(index, options); });
+  keep_part(options, plan, index);
   RecordingWriter recording_writer(index, plan, writer, options.allow_dropped, progress);
   for (const std::filesystem::path& file : files) read_bag_file(file, scratch, recording_writer);
   figures.notes = plan.notes;
@@ -68,6 +95,27 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   }
   writer.finish(plan.drive);
   return figures;
+}
+
+RecordingContents list_bags(const std::vector<std::filesystem::path>& bags) {
+  const BagIndex index = index_bags(files_of(bags), std::filesystem::temp_directory_path());
+  RecordingContents contents;
+  for (const auto& [name, topic] : index.topics) {
+    RecordingContents::Topic& listed = contents.topics.emplace_back();
+    listed.name = name;
+    listed.type = topic.type;
+    const auto count = index.messages.find(name);
+    if (count != index.messages.end()) listed.messages = count->second;
+    for (const auto* sensors : {&index.lidars, &index.images}) {
+      const auto sensor = sensors->find(name);
+      if (sensor == sensors->end()) continue;
+      listed.first = sensor->second.stamps.front(), listed.last = sensor->second.stamps.back();
+      listed.frame = sensor->second.frame;
+    }
+  }
+  for (const std::string& loss : index.losses) contents.warn(loss);
+  for (const auto& [topic, unusable] : index.unusable) contents.warn(unusable.note(topic));
+  return contents;
 }
 
 }  // namespace fovea

@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fovea/core/messages.h"
+#include "fovea/core/time.h"
 #include "fovea/drive/recordings/convert_options.h"
 
 namespace fovea {
@@ -29,5 +31,20 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
                             const std::filesystem::path& output, bool force,
                             const ConvertOptions& options,
                             const std::function<void(int, int)>& progress);
+
+/// What recordings contain. Its warnings name messages that cannot be used, and files that end
+/// early.
+struct RecordingContents : Messages {
+  struct Topic {
+    std::string name, type;
+    std::size_t messages = 0;
+    std::string frame;                  ///< of scans and images
+    std::optional<TimeNs> first, last;  ///< stamps of scans and images
+  };
+  std::vector<Topic> topics;  ///< by name
+};
+
+/// InputError for recordings that cannot be read.
+RecordingContents list_bags(const std::vector<std::filesystem::path>& bags);
 
 }  // namespace fovea

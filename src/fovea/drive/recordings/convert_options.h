@@ -1,6 +1,7 @@
 // What a user may say about a recording.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct ConvertOptions {
   NavigationSource poses = NavigationSource::kAuto;
   std::string fix, imu, odometry;  ///< topics
   std::string body, world;         ///< frames of tf
+  /// s, the part of the recording from its first scan on.
+  double start = 0, duration = std::numeric_limits<double>::infinity();
   bool allow_dropped = false;      ///< however many points are left out
   bool sweep_compensated = false;  ///< something has undone the sweep's motion already
 };

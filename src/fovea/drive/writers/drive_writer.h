@@ -63,6 +63,9 @@ class DriveWriter {
   void add(const DriveScan& scan, const std::vector<DriveImage>& images,
            const std::optional<RigidMotion>& T_world_lidar = std::nullopt);
 
+  /// Scans so far.
+  std::size_t scans() const { return figures_.scans; }
+
   /// Writes the tables, and gives the drive its name. std::logic_error without a scan, or if it is
   /// called again.
   DriveWriterFigures close();

@@ -59,8 +59,8 @@ class DriveWriterTest : public testing::Test {
 TEST_F(DriveWriterTest, TheDriveHasWhatWasAdded) {
   const std::filesystem::path file = folder_ / "photo";
   const std::vector<std::uint8_t> png = encode_png(image(70));
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(png.data()),
-                                              std::streamsize(png.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
   DriveWriter writer = this->writer();
   writer.add({kStart, points(3)}, {{"front", kStart + 1, image(40)}}, pose(0));
   PointCloud with_nan = points(4);

@@ -1,0 +1,187 @@
+// Layout: cvlibs.net/datasets/kitti-360/documentation.php.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+
+#include "fovea/core/errors.h"
+#include "fovea/core/input_file.h"
+#include "fovea/drive/data_sets/data_set.h"
+#include "fovea/drive/drive_files.h"
+#include "fovea/drive/kitti/kitti_scan.h"
+#include "fovea/drive/time_stamps.h"
+#include "fovea/geometry/pose_file.h"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void throw_damaged(const fs::path& file, const std::string& what) {
+  throw InputError(what, file.string(), "restore the file from the archive");
+}
+
+std::vector<std::string> lines_of(const fs::path& file) {
+  const std::vector<std::uint8_t> bytes = InputFile(file, kDescriptionFile).bytes();
+  std::vector<std::string> lines(1);
+  for (const std::uint8_t byte : bytes) {
+    if (byte == '\n') {
+      lines.emplace_back();
+    } else {
+      lines.back() += char(byte);
+    }
+  }
+  return lines;
+}
+
+/// Numbers of the lines "KEY: NUMBERS".
+using Numbers = std::map<std::string, std::vector<double>>;
+Numbers read_numbers(const fs::path& file) {
+  Numbers numbers;
+  for (const std::string& line : lines_of(file)) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    if (const auto values = parse_numbers(line.substr(colon + 1))) {
+      numbers[line.substr(0, colon)] = *values;
+    }
+  }
+  return numbers;
+}
+
+RigidMotion motion_of(const std::vector<double>& rows, const fs::path& file, const std::string& key) {
+  if (rows.size() != 12) throw_damaged(file, fmt::format("{} has not 12 numbers", key));
+  try {
+    return checked_pose(Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data()));
+  } catch (const std::invalid_argument& error) {
+    throw_damaged(file, fmt::format("{} is no pose ({})", key, error.what()));
+  }
+}
+
+struct Kitti360Calibration {
+  std::vector<RecordedCamera> cameras;
+  RigidMotion T_body_lidar;  // the body is that of the poses
+};
+
+/// Rectified cameras. T_lidar_cam_k = T_lidar_cam_0 * inv(T_body_cam_0) * T_body_cam_k * inv(R_rect_k)
+Kitti360Calibration read_calibration(const fs::path& folder) {
+  const fs::path to_lidar = folder / "calib_cam_to_velo.txt", to_body = folder / "calib_cam_to_pose.txt",
+                 optics = folder / "perspective.txt";
+  const auto row = parse_numbers(fmt::format("{}", fmt::join(lines_of(to_lidar), " ")));
+  const RigidMotion T_lidar_cam0 = motion_of(row.value_or(std::vector<double>()), to_lidar, "the line");
+  Numbers body = read_numbers(to_body), numbers = read_numbers(optics);
+  const RigidMotion T_body_cam0 = motion_of(body["image_00"], to_body, "image_00");
+  Kitti360Calibration calibration;
+  calibration.T_body_lidar = T_body_cam0 * T_lidar_cam0.inverse();
+  for (int k = 0; k < 2; ++k) {
+    const std::string suffix = fmt::format("_rect_{:02d}", k), name = fmt::format("image_{:02d}", k);
+    const std::vector<double>&P = numbers["P" + suffix], &R = numbers["R" + suffix],
+                        &size = numbers["S" + suffix];
+    if (P.size() != 12 || R.size() != 9 || size.size() != 2) {
+      throw_damaged(optics, fmt::format("P{0}, R{0} or S{0} is missing", suffix));
+    }
+    RigidMotion T_rect_cam = RigidMotion::Identity();
+    T_rect_cam.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
+    const RigidMotion T_body_cam = motion_of(body[name], to_body, name);
+    calibration.cameras.push_back(
+        {name, k, {int(size[0]), int(size[1]), P[0], P[5], P[2], P[6], Lens()},
+         T_lidar_cam0 * T_body_cam0.inverse() * T_body_cam * T_rect_cam.inverse()});
+  }
+  return calibration;
+}
+
+/// Poses of the body in the world, of those frames that have one.
+std::map<int, RigidMotion> read_body_poses(const fs::path& file) {
+  std::map<int, RigidMotion> poses;
+  for (const std::string& line : lines_of(file)) {
+    const auto numbers = parse_numbers(line);
+    if (!numbers || numbers->empty()) continue;
+    if (numbers->size() != 13) throw_damaged(file, "a line has not 13 numbers");
+    poses[int(numbers->front())] = motion_of({numbers->begin() + 1, numbers->end()}, file, "a line");
+  }
+  return poses;
+}
+
+std::string sequence_name(const DataSetOptions& options) {
+  std::vector<std::string> names, found;
+  std::error_code unknown;
+  for (const auto& entry : fs::directory_iterator(options.root / "data_3d_raw", unknown)) {
+    const std::string name = entry.path().filename().string();
+    names.push_back(name);
+    const auto number = parse_numbers(options.scene);
+    const bool is_number = number && number->size() == 1 &&
+                           name.find(fmt::format("_drive_{:04d}_", int(number->front()))) != std::string::npos;
+    if (options.scene.empty() || name == options.scene || is_number) found.push_back(name);
+  }
+  if (names.empty()) {
+    throw InputError("there are no sequences in data_3d_raw", options.root.string(),
+                     "give the folder of KITTI-360");
+  }
+  if (found.size() == 1) return found.front();
+  std::sort(names.begin(), names.end());
+  throw ConfigError(fmt::format("{} sequences have this name", found.size()), "--scene " + options.scene,
+                    fmt::format("choose one of {}", fmt::join(names, ", ")));
+}
+
+/// Files of a sensor by frame, with their stamps.
+struct SensorFiles {
+  explicit SensorFiles(const fs::path& folder, const char* data, const char* ending)
+      : files(list_numbered_files(folder / data, {ending})),
+        stamps(read_date_times(folder / "timestamps.txt")) {}
+
+  std::optional<TimeNs> stamp(int frame) const {
+    const bool is_known = frame >= 0 && std::size_t(frame) < stamps.times.size();
+    return is_known ? stamps.times[std::size_t(frame)] : std::nullopt;
+  }
+
+  NumberedFiles files;
+  TimeStamps stamps;
+};
+
+}  // namespace
+
+DataSetFigures convert_kitti360(const DataSetOptions& options) {
+  const std::string sequence = sequence_name(options);
+  const Kitti360Calibration calibration = read_calibration(options.root / "calibration");
+  const std::map<int, RigidMotion> poses =
+      read_body_poses(options.root / "data_poses" / sequence / "poses.txt");
+  const SensorFiles scans(options.root / "data_3d_raw" / sequence / "velodyne_points", "data", ".bin");
+  std::vector<SensorFiles> images;
+  for (const RecordedCamera& camera : calibration.cameras) {
+    images.emplace_back(options.root / "data_2d_raw" / sequence / camera.name, "data_rect", ".png");
+  }
+  DriveWriter writer(options.output, calibration.cameras, {options.force, false, {}});
+  DataSetFigures figures;
+  std::optional<TimeNs> first;
+  int done = 0, without_stamp = 0;
+  for (const auto& [frame, file] : scans.files) {
+    options.progress(++done, int(scans.files.size()));
+    const auto stamp = scans.stamp(frame);
+    without_stamp += !stamp;
+    if (!stamp) continue;
+    if (!first) first = stamp;
+    if (!options.contains(*stamp, *first)) continue;
+    std::vector<DriveImage> of_frame;
+    for (std::size_t k = 0; k < images.size(); ++k) {
+      const auto image = images[k].files.find(frame);
+      const auto image_stamp = images[k].stamp(frame);
+      if (image == images[k].files.end() || !image_stamp) continue;
+      of_frame.push_back({calibration.cameras[k].name, *image_stamp, image->second});
+    }
+    std::optional<RigidMotion> T_world_lidar;
+    if (const auto pose = poses.find(frame); pose != poses.end()) {
+      T_world_lidar = pose->second * calibration.T_body_lidar;
+    }
+    writer.add({*stamp, read_kitti_scan(file).points}, of_frame, T_world_lidar);
+  }
+  if (!first) {
+    throw InputError("no scan has a time stamp", (options.root / "data_3d_raw" / sequence).string(),
+                     "restore timestamps.txt from the archive");
+  }
+  if (writer.scans() == 0) options.throw_nothing_left();
+  static_cast<DriveWriterFigures&>(figures) = writer.close();
+  if (without_stamp > 0) figures.warn(fmt::format("{} scans have no time stamp", without_stamp));
+  figures.notes.emplace_back("not used: the fisheye cameras and the SICK scanners");
+  return figures;
+}
+
+}  // namespace fovea
