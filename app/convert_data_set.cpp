@@ -46,7 +46,8 @@ void add(CLI::App& parent, const char* name, const char* description, Convert co
   command->add_option("-o,--output", arguments->output, "Folder to make (docs/drives.md)")
       ->required()
       ->type_name("DIR");
-  command->add_option("--start", options.start, "Leave out what comes before, s from the first scan")
+  command
+      ->add_option("--start", options.start, "Leave out what comes before, s from the first scan")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--duration", options.duration, "Length of the part to convert, s")
       ->check(CLI::PositiveNumber);

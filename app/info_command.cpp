@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/print.h"
+#include "app/sensor_text.h"
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/map/map_meta.h"
@@ -77,23 +78,6 @@ Contents read_contents(const MapReader& reader) {
     }
   });
   return contents;
-}
-
-/// One line: rings, spacing, sweep, noise and height of a LiDAR.
-std::string to_text(const SensorProfile& profile) {
-  const auto& rings = profile.ring_elevations;
-  std::string text = "no rings";
-  if (!rings.empty()) {
-    text = fmt::format("{} rings from {:+.1f} to {:+.1f} degrees, {:.2f} degrees apart",
-                       rings.size(), rings.front() / kDegree, rings.back() / kDegree,
-                       profile.ring_spacing / kDegree);
-  }
-  const bool clockwise = profile.sweep.direction == SweepDirection::kClockwise;
-  text += fmt::format(", points {:.2f} degrees apart, {} sweeps of {:.4g} s, range noise {:.0f} mm",
-                      profile.point_spacing / kDegree, clockwise ? "clockwise" : "counterclockwise",
-                      profile.sweep.period, 1000 * profile.range_noise);
-  if (profile.height) text += fmt::format(", {:.2f} m above the ground", *profile.height);
-  return text;
 }
 
 /// " (repaired, unfinished)"; empty for a complete map of a drive.

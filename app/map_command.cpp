@@ -12,6 +12,7 @@
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
+#include "app/drive_check_text.h"
 #include "app/live_view.h"
 #include "app/number_checks.h"
 #include "app/print.h"
@@ -103,6 +104,20 @@ CommandFiles files_of(const MapArguments& arguments) {
   return files;
 }
 
+/// Prints the contents of the drive if something about it is odd. A drive that cannot be read is
+/// left to the run, whose error says more.
+void print_if_odd(const FrameSource& source, const MapArguments& arguments) {
+  constexpr int kSamples = 5;  // frames that are read
+  if (arguments.quiet || arguments.resume || arguments.rate > 0) return;
+  try {
+    const DriveCheck check = check_drive(source, kSamples);
+    if (check.oddities.empty()) return;
+    for (const std::string& line : lines_of(check, source.info())) print_out("{}\n", line);
+  } catch (const InputError&) {
+    return;
+  }
+}
+
 void run(const MapArguments& arguments, Session& session) {
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
@@ -131,6 +146,7 @@ void run(const MapArguments& arguments, Session& session) {
       job.pose_source = PoseSource::kGivenFirst;
     }
   }
+  print_if_odd(*source, arguments);
   // Played live, the first frames are as much in a hurry as any.
   if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
   job.stop = session.interrupt.stop_gently();

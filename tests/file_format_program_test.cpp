@@ -120,7 +120,7 @@ TEST_F(FormatProgram, OtherFormatsAreRefusedByTheirNames) {
   expect_error("info " + e57, "an E57 point cloud, not a Fovea map");
   expect_error("info " + bin, "not a Fovea map");
   expect_error("convert " + e57 + "-o '" + (folder_ / "out").string() + "'",
-               "this is no recording of ROS 2, but an E57 point cloud");
+               "this is no recording of ROS, but an E57 point cloud");
 }
 
 TEST_F(FormatProgram, ADriveOfTwentyBytePointsIsMapped) {

@@ -37,8 +37,8 @@ struct DataSetFigures : Messages, DriveWriterFigures {};
 
 /// nuScenes (nuscenes.org/nuscenes#data-format): LIDAR_TOP, the six cameras and the poses of a
 /// scene. The adapter reads the tables in ROOT/v1.0-* and the files that they name.
-/// InputError for tables and files that are missing or damaged, and for an unknown scene; OutputError
-/// as DriveWriter.
+/// InputError for tables and files that are missing or damaged, and for an unknown scene;
+/// OutputError as DriveWriter.
 DataSetFigures convert_nuscenes(const DataSetOptions& options);
 
 /// KITTI-360 (cvlibs.net/datasets/kitti-360/documentation.php): the Velodyne, the two perspective

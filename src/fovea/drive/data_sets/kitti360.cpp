@@ -48,10 +48,12 @@ Numbers read_numbers(const fs::path& file) {
   return numbers;
 }
 
-RigidMotion motion_of(const std::vector<double>& rows, const fs::path& file, const std::string& key) {
+RigidMotion motion_of(const std::vector<double>& rows, const fs::path& file,
+                      const std::string& key) {
   if (rows.size() != 12) throw_damaged(file, fmt::format("{} has not 12 numbers", key));
   try {
-    return checked_pose(Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data()));
+    return checked_pose(
+        Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data()));
   } catch (const std::invalid_argument& error) {
     throw_damaged(file, fmt::format("{} is no pose ({})", key, error.what()));
   }
@@ -62,20 +64,23 @@ struct Kitti360Calibration {
   RigidMotion T_body_lidar;  // the body is that of the poses
 };
 
-/// Rectified cameras. T_lidar_cam_k = T_lidar_cam_0 * inv(T_body_cam_0) * T_body_cam_k * inv(R_rect_k)
+/// Rectified cameras. T_lidar_cam_k = T_lidar_cam_0 * inv(T_body_cam_0) * T_body_cam_k *
+/// inv(R_rect_k)
 Kitti360Calibration read_calibration(const fs::path& folder) {
-  const fs::path to_lidar = folder / "calib_cam_to_velo.txt", to_body = folder / "calib_cam_to_pose.txt",
-                 optics = folder / "perspective.txt";
+  const fs::path to_lidar = folder / "calib_cam_to_velo.txt",
+                 to_body = folder / "calib_cam_to_pose.txt", optics = folder / "perspective.txt";
   const auto row = parse_numbers(fmt::format("{}", fmt::join(lines_of(to_lidar), " ")));
-  const RigidMotion T_lidar_cam0 = motion_of(row.value_or(std::vector<double>()), to_lidar, "the line");
+  const RigidMotion T_lidar_cam0 =
+      motion_of(row.value_or(std::vector<double>()), to_lidar, "the line");
   Numbers body = read_numbers(to_body), numbers = read_numbers(optics);
   const RigidMotion T_body_cam0 = motion_of(body["image_00"], to_body, "image_00");
   Kitti360Calibration calibration;
   calibration.T_body_lidar = T_body_cam0 * T_lidar_cam0.inverse();
   for (int k = 0; k < 2; ++k) {
-    const std::string suffix = fmt::format("_rect_{:02d}", k), name = fmt::format("image_{:02d}", k);
+    const std::string suffix = fmt::format("_rect_{:02d}", k),
+                      name = fmt::format("image_{:02d}", k);
     const std::vector<double>&P = numbers["P" + suffix], &R = numbers["R" + suffix],
-                        &size = numbers["S" + suffix];
+          &size = numbers["S" + suffix];
     if (P.size() != 12 || R.size() != 9 || size.size() != 2) {
       throw_damaged(optics, fmt::format("P{0}, R{0} or S{0} is missing", suffix));
     }
@@ -83,7 +88,9 @@ Kitti360Calibration read_calibration(const fs::path& folder) {
     T_rect_cam.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
     const RigidMotion T_body_cam = motion_of(body[name], to_body, name);
     calibration.cameras.push_back(
-        {name, k, {int(size[0]), int(size[1]), P[0], P[5], P[2], P[6], Lens()},
+        {name,
+         k,
+         {int(size[0]), int(size[1]), P[0], P[5], P[2], P[6], Lens()},
          T_lidar_cam0 * T_body_cam0.inverse() * T_body_cam * T_rect_cam.inverse()});
   }
   return calibration;
@@ -96,7 +103,8 @@ std::map<int, RigidMotion> read_body_poses(const fs::path& file) {
     const auto numbers = parse_numbers(line);
     if (!numbers || numbers->empty()) continue;
     if (numbers->size() != 13) throw_damaged(file, "a line has not 13 numbers");
-    poses[int(numbers->front())] = motion_of({numbers->begin() + 1, numbers->end()}, file, "a line");
+    poses[int(numbers->front())] =
+        motion_of({numbers->begin() + 1, numbers->end()}, file, "a line");
   }
   return poses;
 }
@@ -108,8 +116,9 @@ std::string sequence_name(const DataSetOptions& options) {
     const std::string name = entry.path().filename().string();
     names.push_back(name);
     const auto number = parse_numbers(options.scene);
-    const bool is_number = number && number->size() == 1 &&
-                           name.find(fmt::format("_drive_{:04d}_", int(number->front()))) != std::string::npos;
+    const bool is_number =
+        number && number->size() == 1 &&
+        name.find(fmt::format("_drive_{:04d}_", int(number->front()))) != std::string::npos;
     if (options.scene.empty() || name == options.scene || is_number) found.push_back(name);
   }
   if (names.empty()) {
@@ -118,7 +127,8 @@ std::string sequence_name(const DataSetOptions& options) {
   }
   if (found.size() == 1) return found.front();
   std::sort(names.begin(), names.end());
-  throw ConfigError(fmt::format("{} sequences have this name", found.size()), "--scene " + options.scene,
+  throw ConfigError(fmt::format("{} sequences have this name", found.size()),
+                    "--scene " + options.scene,
                     fmt::format("choose one of {}", fmt::join(names, ", ")));
 }
 
@@ -144,7 +154,8 @@ DataSetFigures convert_kitti360(const DataSetOptions& options) {
   const Kitti360Calibration calibration = read_calibration(options.root / "calibration");
   const std::map<int, RigidMotion> poses =
       read_body_poses(options.root / "data_poses" / sequence / "poses.txt");
-  const SensorFiles scans(options.root / "data_3d_raw" / sequence / "velodyne_points", "data", ".bin");
+  const SensorFiles scans(options.root / "data_3d_raw" / sequence / "velodyne_points", "data",
+                          ".bin");
   std::vector<SensorFiles> images;
   for (const RecordedCamera& camera : calibration.cameras) {
     images.emplace_back(options.root / "data_2d_raw" / sequence / camera.name, "data_rect", ".png");

@@ -33,10 +33,12 @@ class Kitti360 : public testing::Test {
     std::string stamps;
     for (int i = 0; i < 3; ++i) {
       stamps += fmt::format("2013-05-28 08:46:0{}.100000000\n", 2 + i);
-      write_points(folder_ / fmt::format("data_3d_raw/{}/velodyne_points/data/{:010d}.bin", kSequence, i),
-                   float(3 + i), 4);
+      write_points(
+          folder_ / fmt::format("data_3d_raw/{}/velodyne_points/data/{:010d}.bin", kSequence, i),
+          float(3 + i), 4);
       for (int k = 0; k < 2; ++k) {
-        write_png(folder_ / fmt::format("data_2d_raw/{}/image_{:02d}/data_rect/{:010d}.png", kSequence, k, i),
+        write_png(folder_ / fmt::format("data_2d_raw/{}/image_{:02d}/data_rect/{:010d}.png",
+                                        kSequence, k, i),
                   24, 16, std::uint8_t(50 + 10 * k + i));
       }
     }

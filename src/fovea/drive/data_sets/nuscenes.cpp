@@ -46,11 +46,12 @@ class Tables {
     Table table;
     InputFile input(file, kStreamedFile);
     try {
-      const json discarded = json::parse(input.stream(), [&](int depth, json::parse_event_t event, json& record) {
-        if (depth != 1 || event != json::parse_event_t::object_end) return true;
-        if (is_wanted(record)) table.emplace(record.at("token").get<std::string>(), record);
-        return false;
-      });
+      const json discarded =
+          json::parse(input.stream(), [&](int depth, json::parse_event_t event, json& record) {
+            if (depth != 1 || event != json::parse_event_t::object_end) return true;
+            if (is_wanted(record)) table.emplace(record.at("token").get<std::string>(), record);
+            return false;
+          });
     } catch (const json::exception& error) {
       throw InputError(fmt::format("the table is damaged ({})", error.what()), file.string(),
                        "restore it from the archive");
@@ -129,7 +130,8 @@ class Scene {
     }
     if (found.size() != 1) {
       std::sort(names.begin(), names.end());
-      throw ConfigError(fmt::format("{} scenes have this name", found.size()), "--scene " + options_.scene,
+      throw ConfigError(fmt::format("{} scenes have this name", found.size()),
+                        "--scene " + options_.scene,
                         fmt::format("choose one of {}", fmt::join(names, ", ")));
     }
     samples_ = tables_.read(
@@ -147,7 +149,8 @@ class Scene {
     for (const auto& [token, record] : data) {
       const std::string calibrated = record.at("calibrated_sensor_token");
       const json& sensor = record_of(
-          sensors, record_of(calibration_, calibrated, "calibrated_sensor").at("sensor_token"), "sensor");
+          sensors, record_of(calibration_, calibrated, "calibrated_sensor").at("sensor_token"),
+          "sensor");
       const std::string channel = sensor.at("channel");
       if (channel != kLidar && sensor.at("modality") != "camera") continue;
       poses.insert(record.at("ego_pose_token").get<std::string>());
@@ -161,7 +164,8 @@ class Scene {
                        "restore the tables from the archive");
     }
     for (auto& [channel, files] : data_) {
-      std::sort(files.begin(), files.end(), [](const Data& a, const Data& b) { return a.stamp < b.stamp; });
+      std::sort(files.begin(), files.end(),
+                [](const Data& a, const Data& b) { return a.stamp < b.stamp; });
     }
     poses_ = tables_.read("ego_pose", [&](const json& record) {
       return poses.contains(record.at("token").get<std::string>());
@@ -183,7 +187,8 @@ class Scene {
   }
 
   /// The images up to a stamp that no scan before has had.
-  std::vector<DriveImage> images_before(TimeNs stamp, std::map<std::string, std::size_t>& next) const {
+  std::vector<DriveImage> images_before(TimeNs stamp,
+                                        std::map<std::string, std::size_t>& next) const {
     std::vector<DriveImage> before;
     for (const auto& [channel, images] : data_) {
       if (channel == kLidar) continue;

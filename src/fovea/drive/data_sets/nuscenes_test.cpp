@@ -61,9 +61,9 @@ class NuScenes : public testing::Test {
         R"({}{{"token": "{}", "sample_token": "{}", "ego_pose_token": "{}",)"
         R"("calibrated_sensor_token": "c{}", "timestamp": {}, {} "filename": "data/{}.{}"}})",
         data_.empty() ? "" : ",", token, sample, token, sensor, time, more, token, ending);
-    poses_ += fmt::format(
-        R"({}{{"token": "{}", "translation": [{}, 5, 0], "rotation": [1, 0, 0, 0]}})",
-        poses_.empty() ? "" : ",", token, 100 + number);
+    poses_ +=
+        fmt::format(R"({}{{"token": "{}", "translation": [{}, 5, 0], "rotation": [1, 0, 0, 0]}})",
+                    poses_.empty() ? "" : ",", token, 100 + number);
   }
   std::string error() {
     try {

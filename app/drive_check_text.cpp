@@ -1,0 +1,64 @@
+#include "app/drive_check_text.h"
+
+#include <fmt/format.h>
+
+#include "app/sensor_text.h"
+
+namespace fovea::app {
+namespace {
+
+std::string frames_text(const DriveCheck& check) {
+  std::string text = fmt::format("frames       {}", check.frames);
+  if (check.duration) {
+    text += fmt::format(", {:.1f} s, {:.2f} Hz, {} pause{}", *check.duration, 1 / *check.period,
+                        check.gaps.size(), check.gaps.size() == 1 ? "" : "s");
+  }
+  return text;
+}
+
+std::string scans_text(const DriveCheck& check) {
+  return fmt::format(
+      "scans        {:.0f} points (median), 90 % of them {:.1f} to {:.1f} m away, {} times, {} "
+      "intensity",
+      check.points_per_scan, check.near_range, check.far_range,
+      check.has_point_times ? "with" : "without", check.has_intensity ? "with" : "without");
+}
+
+std::string camera_text(const DriveCheck::CameraFigures& camera, const DriveCheck& check) {
+  return fmt::format(
+      "camera {}     {} x {} pixels, focal length {:.0f}, images {:+.1f} ms from the scans, {} of "
+      "{} missing{}{}",
+      camera.number, camera.width, camera.height, camera.focal_px, 1000 * camera.delay,
+      camera.missing, check.sampled, camera.has_exposures ? ", exposures stated" : "",
+      camera.has_mask ? ", with a mask" : "");
+}
+
+std::string navigation_text(const DriveCheck& check) {
+  if (check.navigation_poses == 0) return "navigation   none";
+  std::string text = fmt::format("navigation   {} poses", check.navigation_poses);
+  if (check.navigation_accuracy)
+    text += fmt::format(", accuracy {:.2f} m (median)", *check.navigation_accuracy);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive) {
+  std::vector<std::string> lines = {fmt::format("{} ({})", drive.path.string(), drive.kind),
+                                    frames_text(check), "LiDAR        " + to_text(check.lidar),
+                                    scans_text(check)};
+  lines.push_back("dropped      " +
+                  (check.dropped.total() == 0 ? "no points" : reasons_of(check.dropped)) +
+                  fmt::format(" of {} frames read", check.sampled));
+  for (const DriveCheck::CameraFigures& camera : check.cameras)
+    lines.push_back(camera_text(camera, check));
+  if (check.cameras.empty()) lines.emplace_back("cameras      none");
+  lines.push_back(navigation_text(check));
+  lines.emplace_back("`fovea map` would do this:");
+  for (const std::string& step : check.plan) lines.push_back("  - " + step);
+  if (!check.oddities.empty()) lines.emplace_back("Look at this first:");
+  for (const std::string& oddity : check.oddities) lines.push_back("  - " + oddity);
+  return lines;
+}
+
+}  // namespace fovea::app
