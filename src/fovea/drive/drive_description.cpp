@@ -8,6 +8,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
+#include "fovea/drive/calibration_file.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/motion_keys.h"
 #include "fovea/drive/plausible_lens.h"
@@ -71,6 +72,7 @@ class CameraKeys {
   void visit(SettingVisitor& visit) {
     visit(key("index"), index_);
     visit(key("folder"), folder_);
+    visit(key("calibration"), calibration_);
     visit(key("width"), width_);
     visit(key("height"), height_);
     visit(key("K"), K_);
@@ -82,18 +84,23 @@ class CameraKeys {
     T_cam_lidar_.visit(visit);
   }
 
-  /// ConfigError whose place is the key.
-  CameraDescription camera() {
+  /// ConfigError whose place is the key. InputError for a calibration file that is not read.
+  /// @param drive_folder  holds that file
+  CameraDescription camera(const std::filesystem::path& drive_folder) {
     camera_.index = required(index_, "index", "give a number of 0 to 9");
     check(key("index"), camera_.index, 0, kMaxCamera);
     camera_.folder = folder_;
     camera_.mask = mask_;
-    camera_.optics.width = required(width_, "width", "give the images' width in pixels");
-    camera_.optics.height = required(height_, "height", "give the images' height in pixels");
+    if (calibration_.empty()) {
+      camera_.optics.width = required(width_, "width", "give the images' width in pixels");
+      camera_.optics.height = required(height_, "height", "give the images' height in pixels");
+      read_intrinsics();
+      read_distortion();
+    } else {
+      read_calibration(drive_folder);
+    }
     check(key("width"), camera_.optics.width, 8, kMaxImageSide);
     check(key("height"), camera_.optics.height, 8, kMaxImageSide);
-    read_intrinsics();
-    read_distortion();
     if (const auto problem = lens_problem(camera_.optics)) {
       reject_key(problem->what, key(problem->key), problem->remedy);
     }
@@ -117,6 +124,20 @@ class CameraKeys {
                     std::string_view remedy) const {
     if (!value) reject_key("a key is missing", key(name), remedy);
     return *value;
+  }
+
+  /// "FILE" or "FILE:CAMERA".
+  void read_calibration(const std::filesystem::path& drive_folder) {
+    if (width_ || height_ || K_ || !D_.empty()) {
+      reject_key("the file and this table both state the camera", key("calibration"),
+                 "state the file, or width, height, K and D");
+    }
+    const std::size_t colon = calibration_.rfind(':');
+    const std::string name = colon == std::string::npos ? "" : calibration_.substr(colon + 1);
+    camera_.optics = read_calibration_file(drive_folder / calibration_.substr(0, colon), name);
+    if (!camera_.optics.has_pinhole()) {
+      reject_key("the file has no camera's matrix", key("calibration"), "state K and D instead");
+    }
   }
 
   void read_intrinsics() {
@@ -146,7 +167,7 @@ class CameraKeys {
   std::string table_;
   CameraDescription camera_;
   std::optional<int> index_, width_, height_;
-  std::string folder_, mask_;
+  std::string folder_, mask_, calibration_;
   std::optional<std::vector<double>> K_;
   LensModel model_ = LensModel::kNone;
   std::vector<double> D_;
@@ -156,8 +177,9 @@ class CameraKeys {
 /// All keys of a drive.
 class DriveKeys {
  public:
-  explicit DriveKeys(const std::vector<std::string>& camera_names)
-      : cameras_(camera_names.begin(), camera_names.end()) {}
+  DriveKeys(const std::vector<std::string>& camera_names, std::filesystem::path drive_folder)
+      : drive_folder_(std::move(drive_folder)),
+        cameras_(camera_names.begin(), camera_names.end()) {}
 
   void visit(SettingVisitor& visit) {
     visit("version", version_);
@@ -230,7 +252,7 @@ class DriveKeys {
 
   void read_cameras() {
     for (CameraKeys& keys : cameras_) {
-      CameraDescription camera = keys.camera();
+      CameraDescription camera = keys.camera(drive_folder_);
       for (const CameraDescription& other : drive_.cameras) {
         if (other.index != camera.index) continue;
         reject_key(fmt::format("cameras {} and {} have the same index", other.name, camera.name),
@@ -242,6 +264,7 @@ class DriveKeys {
               [](const auto& a, const auto& b) { return a.index < b.index; });
   }
 
+  std::filesystem::path drive_folder_;
   DriveDescription drive_;
   std::optional<int> version_;
   std::string scans_ = "lidar";
@@ -254,8 +277,8 @@ class DriveKeys {
   std::vector<CameraKeys> cameras_;
 };
 
-DriveDescription read(const SettingsDocument& document) {
-  DriveKeys keys(document.tables("camera"));
+DriveDescription read(const SettingsDocument& document, const std::filesystem::path& drive_folder) {
+  DriveKeys keys(document.tables("camera"), drive_folder);
   document.apply([&](SettingVisitor& visit) { keys.visit(visit); }, [&] { keys.finish(); },
                  "see docs/drives.md for the keys");
   return keys.take();
@@ -264,11 +287,11 @@ DriveDescription read(const SettingsDocument& document) {
 }  // namespace
 
 DriveDescription read_drive_description(const std::filesystem::path& file) {
-  return read(SettingsDocument::from_file(file));
+  return read(SettingsDocument::from_file(file), file.parent_path());
 }
 
 DriveDescription parse_drive_description(std::string_view text, std::string_view name) {
-  return read(SettingsDocument::from_text(text, name));
+  return read(SettingsDocument::from_text(text, name), {});
 }
 
 }  // namespace fovea
