@@ -9,6 +9,7 @@
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/pixels.h"
 #include "fovea/drive/recordings/scan_message.h"
+#include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/scans/recognized_format.h"
 #include "fuzz_input.h"
 
