@@ -18,6 +18,7 @@ namespace {
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Rings = py::array_t<std::uint16_t, py::array::c_style | py::array::forcecast>;
 
 /// A camera without its name.
 struct CameraModel {
@@ -49,7 +50,7 @@ CameraModel make_camera(int width, int height, const Eigen::Matrix3d& K, const D
 }
 
 PointCloud cloud_of(const Floats& points, const std::optional<Floats>& intensity,
-                    const std::optional<Floats>& times) {
+                    const std::optional<Floats>& times, const std::optional<Rings>& rings) {
   if (points.ndim() != 2 || points.shape(1) != 3) {
     throw std::invalid_argument("points are not N x 3");
   }
@@ -57,14 +58,14 @@ PointCloud cloud_of(const Floats& points, const std::optional<Floats>& intensity
   for (py::ssize_t i = 0; i < points.shape(0); ++i) {
     cloud.position.emplace_back(points.at(i, 0), points.at(i, 1), points.at(i, 2));
   }
-  const auto column = [](const std::optional<Floats>& values) -> std::vector<float> {
-    if (!values) return {};
-    if (values->ndim() != 1)
-      throw std::invalid_argument("intensity and times are of one dimension");
-    return {values->data(), values->data() + values->size()};
+  const auto copy = [](const auto& from, auto& to) {
+    if (!from) return;
+    if (from->ndim() != 1) throw std::invalid_argument("a column is not of one dimension");
+    to.assign(from->data(), from->data() + from->size());
   };
-  cloud.intensity = column(intensity);
-  cloud.time = column(times);
+  copy(intensity, cloud.intensity);
+  copy(times, cloud.time);
+  copy(rings, cloud.ring);
   return cloud;
 }
 
@@ -94,7 +95,8 @@ class PythonDriveWriter {
   }
 
   void add(const Floats& points, TimeNs stamp, const std::optional<Floats>& intensity,
-           const std::optional<Floats>& times, const std::map<std::string, py::object>& images,
+           const std::optional<Floats>& times, const std::optional<Rings>& rings,
+           const std::map<std::string, py::object>& images,
            const std::map<std::string, TimeNs>& image_stamps,
            const std::optional<Doubles>& T_world_lidar) {
     std::vector<DriveImage> added;
@@ -104,7 +106,7 @@ class PythonDriveWriter {
     }
     std::optional<RigidMotion> pose;
     if (T_world_lidar) pose = motion_from(*T_world_lidar);
-    const DriveScan scan{stamp, cloud_of(points, intensity, times)};
+    const DriveScan scan{stamp, cloud_of(points, intensity, times, rings)};
     DriveWriter& writer = opened();
     const py::gil_scoped_release others_run;
     writer.add(scan, added, pose);
@@ -155,11 +157,12 @@ void bind_drive_writer(py::module_& module) {
            "undone already. OutputError if the folder exists (except with force).")
       .def("add", &PythonDriveWriter::add, py::arg("points"), py::arg("stamp"), py::kw_only(),
            py::arg("intensity") = py::none(), py::arg("times") = py::none(),
-           py::arg("images") = std::map<std::string, py::object>(),
+           py::arg("rings") = py::none(), py::arg("images") = std::map<std::string, py::object>(),
            py::arg("image_stamps") = std::map<std::string, TimeNs>(),
            py::arg("T_world_lidar") = py::none(),
            "Adds the next frame. points: N x 3, m, LiDAR frame; stamp: ns; intensity: N, up to 1, "
-           "255 or 65535; times: N, s from the stamp; images: by camera, uint8 arrays or PNG or "
+           "255 or 65535; times: N, s from the stamp; rings: N; images: by camera, uint8 arrays or "
+           "PNG or "
            "JPEG files; image_stamps: by camera, ns (default: the scan's); T_world_lidar: 4x4. "
            "ValueError for what is no frame, InputError for files that are no images.")
       .def("close", &PythonDriveWriter::close,

@@ -243,6 +243,7 @@ class DriveWriter:
         *,
         intensity: Optional[npt.ArrayLike] = None,
         times: Optional[npt.ArrayLike] = None,
+        rings: Optional[npt.ArrayLike] = None,
         images: Mapping[str, Union[npt.NDArray[np.uint8], _Path]] = ...,
         image_stamps: Mapping[str, int] = ...,
         T_world_lidar: Optional[npt.ArrayLike] = None,

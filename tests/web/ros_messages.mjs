@@ -69,11 +69,11 @@ export function header(time, frame) {
   return { stamp: { sec: Number(time / second), nanosec: Number(time % second) }, frame_id: frame };
 }
 
-/// A PointCloud2 as Velodyne's driver lays it out: ring as a uint16 amid the floats, time not aligned.
+/// A PointCloud2 as drivers lay it out: a uint16 amid the floats, time not aligned.
 export function pointCloud(time, frame, scan) {
   const kFloat = 7, kShort = 4, hasTime = scan.names.includes('time');
   const layout = [['x', 0, kFloat], ['y', 4, kFloat], ['z', 8, kFloat], ['intensity', 12, kFloat],
-    ['ring', 16, kShort], ...(hasTime ? [['time', 18, kFloat]] : [])];
+    ['azimuth', 16, kShort], ...(hasTime ? [['time', 18, kFloat]] : [])];
   const fields = layout.map(([name, offset, datatype]) => ({ name, offset, datatype, count: 1 }));
   const step = hasTime ? 22 : 18, from = 4 * scan.names.length, timeAt = 4 * scan.names.indexOf('time');
   const data = Buffer.alloc(step * scan.count);

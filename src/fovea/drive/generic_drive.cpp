@@ -97,7 +97,15 @@ class GenericDrive {
     const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
     sweep_middle_ = middle.value_or(info_.sweep.middle_time());
     if (!numbers.empty() && !middle) {
-      info_.warn(assumed_sweep_note(info_.sweep, description_.sweep, stamp_step_));
+      const SweepDescription& sweep = description_.sweep;
+      std::string note = assumed_sweep_note(info_.sweep, sweep, stamp_step_);
+      const bool all_stated =
+          sweep.period && sweep.direction && sweep.start_azimuth && sweep.stamp_phase;
+      if (all_stated) {
+        info_.notes.push_back(std::move(note));
+      } else {
+        info_.warn(std::move(note));
+      }
     }
   }
 

@@ -106,7 +106,7 @@ std::string motion_plan(const DriveInfo& drive, const DriveCheck& check) {
   const bool is_clockwise = sweep.direction == SweepDirection::kClockwise;
   return fmt::format(
       "the points have no times: the motion is undone for {} sweeps of {:.4g} s from {:.0f} "
-      "degrees on, stamped at {:.2g} of the sweep (assumed unless stated)",
+      "degrees on, stamped at {:.2g} of the sweep",
       is_clockwise ? "clockwise" : "counterclockwise", sweep.period,
       sweep.start_azimuth * 180 / std::numbers::pi, sweep.stamp_phase);
 }
@@ -207,7 +207,8 @@ Image calibration_overlay(const FrameSource& source, int frame, std::size_t slot
     const std::size_t from = photograph.channels == 3 ? i : i / 3;
     picture.data[i] = static_cast<std::uint8_t>(photograph.data[from] / 2);
   }
-  constexpr double kNear = 3, kFar = 25;  // m, red and blue
+  constexpr double kNear = 3, kFar = 25;               // m, red and blue
+  const int reach = std::max(1, picture.width / 600);  // of a dot, pixels
   const LidarEdges edges = find_lidar_edges(read->scan, camera, /*max_range=*/60);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Eigen::Vector3d p_lidar =
@@ -219,8 +220,8 @@ Image calibration_overlay(const FrameSource& source, int frame, std::size_t slot
                                                std::uint8_t(255 * 0.5 * share + 60),
                                                std::uint8_t(255 * share)};
     const int u = int(std::lround(pixel->x())), v = int(std::lround(pixel->y()));
-    for (int y = std::max(0, v - 1); y <= std::min(picture.height - 1, v + 1); ++y) {
-      for (int x = std::max(0, u - 1); x <= std::min(picture.width - 1, u + 1); ++x) {
+    for (int y = std::max(0, v - reach); y <= std::min(picture.height - 1, v + reach); ++y) {
+      for (int x = std::max(0, u - reach); x <= std::min(picture.width - 1, u + reach); ++x) {
         std::copy(color.begin(), color.end(),
                   picture.data.begin() + 3 * (std::ptrdiff_t(y) * picture.width + x));
       }

@@ -28,10 +28,14 @@ LidarScan usable_points(const PointCloud& points) {
           "a scan has {} points and {} intensities", size, points.intensity.size());
   require(points.time.empty() || points.time.size() == size, "a scan has {} points and {} times",
           size, points.time.size());
+  require(points.ring.empty() || points.ring.size() == size, "a scan has {} points and {} rings",
+          size, points.ring.size());
   ScanBuilder builder(size, !points.time.empty());
   for (std::size_t i = 0; i < size; ++i) {
-    builder.add(points.position[i], points.intensity.empty() ? 0 : points.intensity[i],
-                points.time.empty() ? 0 : double(points.time[i]));
+    const bool is_usable =
+        builder.add(points.position[i], points.intensity.empty() ? 0 : points.intensity[i],
+                    points.time.empty() ? 0 : double(points.time[i]));
+    if (is_usable && !points.ring.empty()) builder.add_ring(points.ring[i]);
   }
   return builder.take("scan");
 }

@@ -24,8 +24,8 @@ namespace fovea {
 
 struct DriveScan {
   TimeNs stamp = 0;
-  /// LiDAR frame, m; with intensity (up to 1, 255 or 65535, or empty) and with the points' times (s
-  /// from the stamp, or empty).
+  /// LiDAR frame, m. Each of these columns may be empty: intensity (up to 1, 255 or 65535), time (s
+  /// from the stamp), ring.
   PointCloud points;
 };
 

@@ -34,6 +34,7 @@ PointCloud points(float first_x) {
     cloud.position.emplace_back(first_x + float(i), 1, -1);
     cloud.intensity.push_back(float(50 * i));
     cloud.time.push_back(0.02f * float(i) - 0.05f);
+    cloud.ring.push_back(std::uint16_t(7 * i));
   }
   return cloud;
 }
@@ -83,10 +84,11 @@ TEST_F(DriveWriterTest, TheDriveHasWhatWasAdded) {
   EXPECT_EQ(first.stamp, kStart);
   EXPECT_EQ(first.scan.position, points(3).position);
   EXPECT_EQ(first.scan.time, points(3).time);
+  EXPECT_EQ(first.scan.ring, points(3).ring);
   EXPECT_FLOAT_EQ(first.scan.intensity[4], 200.0f / 255);
   EXPECT_EQ(first.images[0].data, image(40).data);
   EXPECT_EQ(last.images[0].data, image(70).data);
-  EXPECT_EQ(std::get<Frame>(drive->load(1)).scan.size(), 4u);
+  EXPECT_THAT(std::get<Frame>(drive->load(1)).scan.ring, ElementsAre(0, 7, 21, 28));
   EXPECT_EQ(drive->info().calibration.cameras[0].cx, 11.5);
 }
 

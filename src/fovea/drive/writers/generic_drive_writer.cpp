@@ -22,24 +22,25 @@ std::string file_name(int number, std::string_view extension) {
 }
 
 std::string pcd_text(const PointCloud& scan) {
-  const bool timed = !scan.time.empty();
-  const auto for_each_field = [&](std::string_view word) {
-    std::string text;
-    for (int i = 0; i < (timed ? 5 : 4); ++i) text += fmt::format(" {}", word);
-    return text;
+  const bool has_times = !scan.time.empty(), has_rings = !scan.ring.empty();
+  const auto columns = [&](const char* real, const char* ring) {
+    return fmt::format("{0} {0} {0} {0}{1}{2}", real, has_times ? fmt::format(" {}", real) : "",
+                       has_rings ? fmt::format(" {}", ring) : "");
   };
   std::string bytes = fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity{}\nSIZE{}\n"
-      "TYPE{}\nCOUNT{}\nWIDTH {}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
-      timed ? " time" : "", for_each_field("4"), for_each_field("F"), for_each_field("1"),
-      scan.size(), scan.size());
-  const auto put = [&](float value) {
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity{}{}\nSIZE "
+      "{}\n"
+      "TYPE {}\nCOUNT {}\nWIDTH {}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
+      has_times ? " time" : "", has_rings ? " ring" : "", columns("4", "2"), columns("F", "U"),
+      columns("1", "1"), scan.size(), scan.size());
+  const auto put = [&](auto value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   };
   for (std::size_t i = 0; i < scan.size(); ++i) {
     for (const float coordinate : scan.position[i]) put(coordinate);
-    put(scan.intensity.empty() ? 0 : scan.intensity[i]);
-    if (timed) put(scan.time[i]);
+    put(scan.intensity.empty() ? 0.0f : scan.intensity[i]);
+    if (has_times) put(scan.time[i]);
+    if (has_rings) put(scan.ring[i]);
   }
   return bytes;
 }

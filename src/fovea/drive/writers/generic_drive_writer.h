@@ -53,7 +53,7 @@ struct RecordedInertia {
 };
 
 enum class ScanFile {
-  kPcd,      ///< x y z intensity, and time where the scan has the points' times
+  kPcd,      ///< x y z intensity, and the time and ring of the points where the scan has them
   kKittiBin  ///< x y z intensity; std::invalid_argument for a scan with times
 };
 

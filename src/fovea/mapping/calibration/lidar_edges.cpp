@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "fovea/core/angle.h"
 #include "fovea/core/median.h"
@@ -47,7 +48,19 @@ void add_if_edge(const Beam& a, const Beam& b, float max_step, float relative_ju
   edges.between_rings.push_back(between_rings ? 1 : 0);
 }
 
-/// Beams in and near the view, in the scan's order.
+/// The points of a scan, ring after ring where it numbers the rings.
+std::vector<std::uint32_t> order_by_rings(const PointCloud& scan_lidar) {
+  std::vector<std::uint32_t> order(scan_lidar.size());
+  std::iota(order.begin(), order.end(), 0u);
+  if (!scan_lidar.ring.empty()) {
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return scan_lidar.ring[a] < scan_lidar.ring[b];
+    });
+  }
+  return order;
+}
+
+/// Beams in and near the view, ring after ring.
 std::vector<Beam> beams_in_view(const PointCloud& scan_lidar, const Camera& camera) {
   const Eigen::Matrix3f R = camera.T_cam_lidar.linear().cast<float>();
   const Eigen::Vector3f t = camera.T_cam_lidar.translation().cast<float>();
@@ -55,7 +68,7 @@ std::vector<Beam> beams_in_view(const PointCloud& scan_lidar, const Camera& came
   const float right = static_cast<float>(camera.width / camera.fx),
               down = static_cast<float>(camera.height / camera.fy);
   std::vector<Beam> beams;
-  for (std::size_t i = 0; i < scan_lidar.size(); ++i) {
+  for (const std::uint32_t i : order_by_rings(scan_lidar)) {
     const Eigen::Vector3f& p = scan_lidar.position[i];
     const Eigen::Vector3f p_cam = R * p + t;
     if (p_cam.z() < 1 || std::abs(p_cam.x()) > right * p_cam.z() ||

@@ -21,8 +21,8 @@ struct LidarEdges {
 /// Finds jumps between consecutive points of a ring, and between points above each other in
 /// neighboring rings.
 /// @param scan_lidar  without motion compensation, so that directions are those of the beams. Each
-///                    ring in the order of time, as in KITTI's files; otherwise it finds only jumps
-///                    between rings
+///                    ring in the order of time, ring after ring (as in KITTI's files) or with the
+///                    numbers of the rings; otherwise it finds only jumps between rings
 /// @param camera      limits the search to its view and the surroundings
 /// @param max_range   m, of the near object
 LidarEdges find_lidar_edges(const PointCloud& scan_lidar, const Camera& camera, double max_range);
