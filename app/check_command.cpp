@@ -45,7 +45,7 @@ void run(const CheckArguments& arguments) {
   check_files(files);
   const std::unique_ptr<FrameSource> source = arguments.drive.open();
   const DriveInfo& drive = source->info();
-  for (const std::string& line : lines_of(check_drive(*source, kSamples), drive))
+  for (const std::string& line : lines_of(check_drive(*source, kSamples), drive, /*messages=*/true))
     print_out("{}\n", line);
   if (arguments.overlay.empty()) return;
   const std::vector<int> frames = drive.frame_indices();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/sensor_text.h"
 
 namespace fovea::app {
@@ -43,7 +45,7 @@ std::string navigation_text(const DriveCheck& check) {
 
 }  // namespace
 
-std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive) {
+std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive, bool messages) {
   std::vector<std::string> lines = {fmt::format("{} ({})", drive.path.string(), drive.kind),
                                     frames_text(check), "LiDAR        " + to_text(check.lidar),
                                     scans_text(check)};
@@ -55,9 +57,21 @@ std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& driv
   if (check.cameras.empty()) lines.emplace_back("cameras      none");
   lines.push_back(navigation_text(check));
   lines.emplace_back("`fovea map` would do this:");
-  for (const std::string& step : check.plan) lines.push_back("  - " + step);
-  if (!check.oddities.empty()) lines.emplace_back("Look at this first:");
-  for (const std::string& oddity : check.oddities) lines.push_back("  - " + oddity);
+  const auto list = [&](const std::vector<std::string>& items) {
+    for (const std::string& item : items) lines.push_back("  - " + item);
+  };
+  const auto is_warning = [&](const std::string& note) {
+    return std::find(drive.warnings.begin(), drive.warnings.end(), note) != drive.warnings.end();
+  };
+  list(check.plan);
+  std::vector<std::string> notes = drive.notes, odd = check.oddities;
+  std::erase_if(notes, is_warning);
+  if (messages) {
+    list(notes);
+    odd.insert(odd.end(), drive.warnings.begin(), drive.warnings.end());
+  }
+  if (!odd.empty()) lines.emplace_back("Look at this first:");
+  list(odd);
   return lines;
 }
 

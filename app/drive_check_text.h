@@ -8,6 +8,7 @@
 
 namespace fovea::app {
 
-std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive);
+/// @param messages  the notes and warnings of the drive, too
+std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive, bool messages);
 
 }  // namespace fovea::app

@@ -104,15 +104,16 @@ CommandFiles files_of(const MapArguments& arguments) {
   return files;
 }
 
-/// Prints the contents of the drive if something about it is odd. A drive that cannot be read is
-/// left to the run, whose error says more.
+/// Prints the contents of the drive if something about it is odd, without the notes that the run
+/// prints. A drive that cannot be read is left to the run, whose error says more.
 void print_if_odd(const FrameSource& source, const MapArguments& arguments) {
   constexpr int kSamples = 5;  // frames that are read
   if (arguments.quiet || arguments.resume || arguments.rate > 0) return;
   try {
     const DriveCheck check = check_drive(source, kSamples);
     if (check.oddities.empty()) return;
-    for (const std::string& line : lines_of(check, source.info())) print_out("{}\n", line);
+    for (const std::string& line : lines_of(check, source.info(), /*messages=*/false))
+      print_out("{}\n", line);
   } catch (const InputError&) {
     return;
   }

@@ -125,12 +125,10 @@ void make_plan(const DriveInfo& drive, DriveCheck& check) {
   check.plan.push_back(motion_plan(drive, check));
   if (!drive.has_time_stamps)
     check.plan.emplace_back("the drive has no time stamps: 10 Hz is assumed");
-  for (const std::string& note : drive.notes) check.plan.push_back(note);
 }
 
 void find_oddities(const DriveInfo& drive, DriveCheck& check) {
   const auto odd = [&](std::string text) { check.oddities.push_back(std::move(text)); };
-  for (const std::string& warning : drive.warnings) odd(warning);
   for (const DriveCheck::Gap& gap : check.gaps) {
     odd(fmt::format("a pause of {:.1f} s after frame {}", gap.seconds, gap.frame));
   }

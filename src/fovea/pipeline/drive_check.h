@@ -45,8 +45,9 @@ struct DriveCheck {
   std::size_t navigation_poses = 0;
   std::optional<double> navigation_accuracy;  ///< m, median of those that are stated
 
-  std::vector<std::string> plan;      ///< what a map would be made of, and what is assumed
-  std::vector<std::string> oddities;  ///< what a user should look at before mapping
+  std::vector<std::string> plan;  ///< what a map would be made of, and what is assumed
+  /// What a user should look at before mapping, in addition to the warnings of DriveInfo.
+  std::vector<std::string> oddities;
 };
 
 /// Reads up to `samples` frames at even steps over the drive. InputError if no frame can be used.
