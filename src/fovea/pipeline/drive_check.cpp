@@ -113,6 +113,7 @@ std::string motion_plan(const DriveInfo& drive, const DriveCheck& check) {
 
 void make_plan(const DriveInfo& drive, DriveCheck& check) {
   std::vector<int> numbers;
+  numbers.reserve(drive.calibration.cameras.size());
   for (const Camera& camera : drive.calibration.cameras) numbers.push_back(camera.index);
   check.plan.push_back(
       numbers.empty() ? "the map has no colors: the drive has no cameras, or none is used"

@@ -157,6 +157,7 @@ DataSetFigures convert_kitti360(const DataSetOptions& options) {
   const SensorFiles scans(options.root / "data_3d_raw" / sequence / "velodyne_points", "data",
                           ".bin");
   std::vector<SensorFiles> images;
+  images.reserve(calibration.cameras.size());
   for (const RecordedCamera& camera : calibration.cameras) {
     images.emplace_back(options.root / "data_2d_raw" / sequence / camera.name, "data_rect", ".png");
   }

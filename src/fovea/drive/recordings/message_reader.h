@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 
@@ -25,7 +24,7 @@ class MessageReader {
   template <class T>
   T number() {
     std::array<char, sizeof(T)> bytes;
-    std::memcpy(bytes.data(), aligned(sizeof(T), sizeof(T)).data(), sizeof(T));
+    aligned(sizeof(T), sizeof(T)).copy(bytes.data(), sizeof(T));
     if (swapped_) std::reverse(bytes.begin(), bytes.end());
     return std::bit_cast<T>(bytes);
   }

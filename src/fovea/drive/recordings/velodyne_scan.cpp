@@ -125,15 +125,16 @@ class PacketDecoder {
     const double block_duration = kFiring * double(firings);
     for (std::size_t block = 0; block < kBlocks; ++block) {
       const double turn = turn_of_block(packet, block, stride);
+      const std::size_t moment = block / stride;  // two blocks may be of the same firings
       for (std::size_t place = 0; place < kReturns; ++place) {
         const int range = packet.range(block, place);
         const bool is_second = block % stride == 1;
         if (range == 0 || (is_second && range == packet.range(block - 1, place))) continue;
-        const std::size_t laser = place % lasers;
-        const double in_block =
-            kFiring * double(place / lasers) + kLaser * double(laser / model_.at_once);
+        const std::size_t firing = place / lasers, laser = place % lasers;
+        const std::size_t step = laser / model_.at_once;
+        const double in_block = kFiring * double(firing) + kLaser * double(step);
         const double azimuth = 0.01 * (packet.azimuth(block) + turn * in_block / block_duration);
-        const double time = begin + block_duration * double(block / stride) + in_block;
+        const double time = begin + block_duration * double(moment) + in_block;
         add(laser, range, azimuth, packet.intensity(block, place), time);
       }
     }
