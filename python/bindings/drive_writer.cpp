@@ -18,7 +18,7 @@ namespace {
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Rings = py::array_t<std::uint16_t, py::array::c_style | py::array::forcecast>;
+using Rings = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 /// A camera without its name.
 struct CameraModel {
@@ -65,7 +65,12 @@ PointCloud cloud_of(const Floats& points, const std::optional<Floats>& intensity
   };
   copy(intensity, cloud.intensity);
   copy(times, cloud.time);
-  copy(rings, cloud.ring);
+  std::vector<std::int64_t> numbers;
+  copy(rings, numbers);
+  for (const std::int64_t number : numbers) {
+    if (number < 0 || number > 0xffff) throw std::invalid_argument("a ring is not 0 to 65535");
+    cloud.ring.push_back(static_cast<std::uint16_t>(number));
+  }
   return cloud;
 }
 
@@ -99,6 +104,10 @@ class PythonDriveWriter {
            const std::map<std::string, py::object>& images,
            const std::map<std::string, TimeNs>& image_stamps,
            const std::optional<Doubles>& T_world_lidar) {
+    for (const auto& [name, image_stamp] : image_stamps) {
+      if (!images.contains(name))
+        throw std::invalid_argument("there is no image of '" + name + "'");
+    }
     std::vector<DriveImage> added;
     for (const auto& [name, image] : images) {
       const auto own = image_stamps.find(name);
@@ -107,9 +116,7 @@ class PythonDriveWriter {
     std::optional<RigidMotion> pose;
     if (T_world_lidar) pose = motion_from(*T_world_lidar);
     const DriveScan scan{stamp, cloud_of(points, intensity, times, rings)};
-    DriveWriter& writer = opened();
-    const py::gil_scoped_release others_run;
-    writer.add(scan, added, pose);
+    opened().add(scan, added, pose);
   }
 
   py::dict close() {

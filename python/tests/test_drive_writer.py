@@ -70,6 +70,8 @@ class DriveWriterTest(unittest.TestCase):
                     ((points()[:, :2], START + STEP), {}),
                     ((points(), START), {}),
                     ((points(), START + STEP), {"times": np.zeros(3)}),
+                    ((points(), START + STEP), {"rings": np.full(50, 70000)}),
+                    ((points(), START + STEP), {"image_stamps": {"rear": START}}),
                     ((points(), START + STEP), {"T_world_lidar": np.zeros((4, 4))}),
                     ((points(), START + STEP), {"images": {"rear": np.zeros((48, 64, 3), np.uint8)}}),
                     ((points(), START + STEP), {"images": {"front": np.zeros((4, 64, 3), np.uint8)}}),

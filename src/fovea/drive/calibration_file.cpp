@@ -110,7 +110,9 @@ class CalibrationFile {
     const auto coefficients = lens_coefficients(found->second, D);
     if (!coefficients)
       refuse(fmt::format("{} numbers are no coefficients of '{}'", D.size(), model));
-    if (K.size() != 9) refuse("the matrix of the camera has not 9 numbers");
+    const bool is_pinhole =
+        K.size() == 9 && K[1] == 0 && K[3] == 0 && K[6] == 0 && K[7] == 0 && K[8] == 1;
+    if (!is_pinhole) refuse("the matrix is not fx 0 cx, 0 fy cy, 0 0 1");
     return {width, height, K[0], K[4], K[2], K[5], Lens(found->second, *coefficients)};
   }
 

@@ -179,6 +179,10 @@ DriveCheck check_drive(const FrameSource& source, int samples) {
     ++check.skipped[to_string(skipped.reason)];
     if (first_problem.empty()) first_problem = skipped.detail;
   }
+  if (frames.empty()) {
+    throw InputError("the drive has no frames", drive.path.string(),
+                     "see docs/drives.md for what is read");
+  }
   if (check.points == 0) {
     throw InputError(
         fmt::format("none of {} frames read can be used ({})", check.sampled, first_problem),

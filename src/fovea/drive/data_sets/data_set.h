@@ -35,6 +35,12 @@ struct DataSetOptions {
 /// Its notes name what is left out, and why.
 struct DataSetFigures : Messages, DriveWriterFigures {};
 
+/// DriveWriter::add() for a scan from a file. What the writer refuses is the fault of the data set:
+/// InputError that names the file.
+void add_scan(const std::filesystem::path& file, TimeNs stamp, const LidarScan& scan,
+              const std::vector<DriveImage>& images,
+              const std::optional<RigidMotion>& T_world_lidar, DriveWriter& writer);
+
 /// nuScenes (nuscenes.org/nuscenes#data-format): LIDAR_TOP, the six cameras and the poses of a
 /// scene. The adapter reads the tables in ROOT/v1.0-* and the files that they name.
 /// InputError for tables and files that are missing or damaged, and for an unknown scene;

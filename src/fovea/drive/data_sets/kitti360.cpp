@@ -8,6 +8,7 @@
 #include "fovea/core/input_file.h"
 #include "fovea/drive/data_sets/data_set.h"
 #include "fovea/drive/drive_files.h"
+#include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/kitti/kitti_scan.h"
 #include "fovea/drive/time_stamps.h"
 #include "fovea/geometry/pose_file.h"
@@ -81,17 +82,22 @@ Kitti360Calibration read_calibration(const fs::path& folder) {
                       name = fmt::format("image_{:02d}", k);
     const std::vector<double>&P = numbers["P" + suffix], &R = numbers["R" + suffix],
           &size = numbers["S" + suffix];
-    if (P.size() != 12 || R.size() != 9 || size.size() != 2) {
-      throw_damaged(optics, fmt::format("P{0}, R{0} or S{0} is missing", suffix));
+    const bool has_size = size.size() == 2 && size[0] >= 1 && size[1] >= 1 &&
+                          std::max(size[0], size[1]) <= kMaxImageSide;
+    if (P.size() != 12 || R.size() != 9 || !has_size) {
+      throw_damaged(optics, fmt::format("P{0}, R{0} or S{0} is missing or damaged", suffix));
     }
-    RigidMotion T_rect_cam = RigidMotion::Identity();
-    T_rect_cam.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
+    const RigidMotion T_rect_cam = motion_of(
+        {R[0], R[1], R[2], 0, R[3], R[4], R[5], 0, R[6], R[7], R[8], 0}, optics, "R" + suffix);
     const RigidMotion T_body_cam = motion_of(body[name], to_body, name);
     calibration.cameras.push_back(
         {name,
          k,
          {int(size[0]), int(size[1]), P[0], P[5], P[2], P[6], Lens()},
          T_lidar_cam0 * T_body_cam0.inverse() * T_body_cam * T_rect_cam.inverse()});
+    if (!calibration.cameras.back().optics.has_pinhole()) {
+      throw_damaged(optics, fmt::format("P{} is no camera's matrix", suffix));
+    }
   }
   return calibration;
 }
@@ -102,7 +108,8 @@ std::map<int, RigidMotion> read_body_poses(const fs::path& file) {
   for (const std::string& line : lines_of(file)) {
     const auto numbers = parse_numbers(line);
     if (!numbers || numbers->empty()) continue;
-    if (numbers->size() != 13) throw_damaged(file, "a line has not 13 numbers");
+    const bool has_frame = numbers->front() >= 0 && numbers->front() < kEndOfNames;
+    if (numbers->size() != 13 || !has_frame) throw_damaged(file, "a line has not 13 numbers");
     poses[int(numbers->front())] =
         motion_of({numbers->begin() + 1, numbers->end()}, file, "a line");
   }
@@ -113,11 +120,12 @@ std::string sequence_name(const DataSetOptions& options) {
   std::vector<std::string> names, found;
   std::error_code unknown;
   for (const auto& entry : fs::directory_iterator(options.root / "data_3d_raw", unknown)) {
+    if (!entry.is_directory()) continue;  // an archive
     const std::string name = entry.path().filename().string();
     names.push_back(name);
     const auto number = parse_numbers(options.scene);
     const bool is_number =
-        number && number->size() == 1 &&
+        number && number->size() == 1 && number->front() >= 0 && number->front() < 10'000 &&
         name.find(fmt::format("_drive_{:04d}_", int(number->front()))) != std::string::npos;
     if (options.scene.empty() || name == options.scene || is_number) found.push_back(name);
   }
@@ -127,9 +135,10 @@ std::string sequence_name(const DataSetOptions& options) {
   }
   if (found.size() == 1) return found.front();
   std::sort(names.begin(), names.end());
-  throw ConfigError(fmt::format("{} sequences have this name", found.size()),
-                    "--scene " + options.scene,
-                    fmt::format("choose one of {}", fmt::join(names, ", ")));
+  throw ConfigError(
+      options.scene.empty() ? fmt::format("the data set has {} sequences", names.size())
+                            : fmt::format("{} sequences have this name", found.size()),
+      "--scene " + options.scene, fmt::format("choose one of {}", fmt::join(names, ", ")));
 }
 
 /// Files of a sensor by frame, with their stamps.
@@ -163,6 +172,7 @@ DataSetFigures convert_kitti360(const DataSetOptions& options) {
   }
   DriveWriter writer(options.output, calibration.cameras, {options.force, false, {}});
   DataSetFigures figures;
+  DroppedPoints dropped;
   std::optional<TimeNs> first;
   int done = 0, without_stamp = 0;
   for (const auto& [frame, file] : scans.files) {
@@ -183,7 +193,9 @@ DataSetFigures convert_kitti360(const DataSetOptions& options) {
     if (const auto pose = poses.find(frame); pose != poses.end()) {
       T_world_lidar = pose->second * calibration.T_body_lidar;
     }
-    writer.add({*stamp, read_kitti_scan(file).points}, of_frame, T_world_lidar);
+    const LidarScan points = read_kitti_scan(file);
+    add_scan(file, *stamp, points, of_frame, T_world_lidar, writer);
+    dropped += points.dropped;
   }
   if (!first) {
     throw InputError("no scan has a time stamp", (options.root / "data_3d_raw" / sequence).string(),
@@ -191,6 +203,7 @@ DataSetFigures convert_kitti360(const DataSetOptions& options) {
   }
   if (writer.scans() == 0) options.throw_nothing_left();
   static_cast<DriveWriterFigures&>(figures) = writer.close();
+  figures.dropped += dropped;
   if (without_stamp > 0) figures.warn(fmt::format("{} scans have no time stamp", without_stamp));
   figures.notes.emplace_back("not used: the fisheye cameras and the SICK scanners");
   return figures;

@@ -87,9 +87,13 @@ TEST_F(Kitti360, ASequenceBecomesADrive) {
 }
 
 TEST_F(Kitti360, NamesTheFaults) {
+  write("data_3d_raw/" + kSequence + "_velodyne.zip", "an archive");
   options_.scene = "9";
   EXPECT_THAT(error(), AllOf(HasSubstr("--scene 9"), HasSubstr(kSequence)));
   options_.scene = kSequence;
+  const std::string stamps = "data_3d_raw/" + kSequence + "/velodyne_points/data/0000000000.bin";
+  write(stamps, "");
+  EXPECT_THAT(error(), HasSubstr("0000000000.bin"));
   write("data_poses/" + kSequence + "/poses.txt", "0 1 2 3\n");
   EXPECT_THAT(error(), AllOf(HasSubstr("poses.txt"), HasSubstr("13 numbers")));
   write("calibration/perspective.txt", "S_rect_00: 24 16\n");

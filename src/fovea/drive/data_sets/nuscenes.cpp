@@ -70,10 +70,17 @@ const json& record_of(const Table& table, const std::string& token, const char* 
                    fmt::format("{}.json of nuScenes", name), "restore the tables from the archive");
 }
 
+Eigen::Quaterniond checked_rotation(const std::array<double, 4>& q) {
+  const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
+  if (std::abs(rotation.norm() - 1) < 0.01) return rotation.normalized();
+  throw InputError("a rotation is no quaternion of length 1", "the tables of nuScenes",
+                   "restore the tables from the archive");
+}
+
 QuaternionMotion motion_of(const json& record) {
   const auto t = record.at("translation").get<std::array<double, 3>>();
   const auto q = record.at("rotation").get<std::array<double, 4>>();  // w first
-  return {{t[0], t[1], t[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized()};
+  return {{t[0], t[1], t[2]}, checked_rotation(q)};
 }
 
 std::string lower_case(std::string text) {
@@ -106,17 +113,21 @@ class Scene {
     DriveWriter writer(options_.output, cameras, {options_.force, false, kSweep});
     std::map<std::string, std::size_t> next;  // image, by channel
     DataSetFigures figures;
+    DroppedPoints dropped;
     for (std::size_t i = 0; i < scans.size(); ++i) {
       const Data& scan = scans[i];
       if (!options_.contains(scan.stamp, scans.front().stamp)) continue;
       const QuaternionMotion T_world_lidar =
           motion_of(record_of(poses_, scan.ego_pose, "ego_pose")) * T_ego(scan);
-      writer.add({scan.stamp, read_kitti_scan(scan.file).points}, images_before(scan.stamp, next),
-                 T_world_lidar.matrix());
+      const LidarScan points = read_kitti_scan(scan.file);
+      add_scan(scan.file, scan.stamp, points, images_before(scan.stamp, next),
+               T_world_lidar.matrix(), writer);
+      dropped += points.dropped;
       options_.progress(int(i + 1), int(scans.size()));
     }
     if (writer.scans() == 0) options_.throw_nothing_left();
     static_cast<DriveWriterFigures&>(figures) = writer.close();
+    figures.dropped += dropped;
     return figures;
   }
 
@@ -130,9 +141,10 @@ class Scene {
     }
     if (found.size() != 1) {
       std::sort(names.begin(), names.end());
-      throw ConfigError(fmt::format("{} scenes have this name", found.size()),
-                        "--scene " + options_.scene,
-                        fmt::format("choose one of {}", fmt::join(names, ", ")));
+      throw ConfigError(
+          options_.scene.empty() ? fmt::format("the data set has {} scenes", names.size())
+                                 : fmt::format("{} scenes have this name", found.size()),
+          "--scene " + options_.scene, fmt::format("choose one of {}", fmt::join(names, ", ")));
     }
     samples_ = tables_.read(
         "sample", [&](const json& record) { return record.at("scene_token") == found.front(); });
@@ -186,7 +198,7 @@ class Scene {
             T_ego(data_.at(kLidar).front()).inverse() * motion_of(calibrated)};
   }
 
-  /// The images up to a stamp that no scan before has had.
+  /// Images up to a stamp that are not written yet.
   std::vector<DriveImage> images_before(TimeNs stamp,
                                         std::map<std::string, std::size_t>& next) const {
     std::vector<DriveImage> before;

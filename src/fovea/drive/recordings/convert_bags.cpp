@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::p
   return files;
 }
 
-/// Calls what knows of topics only: its errors say which recording they are in.
+/// Runs `step`, and adds the name of the recording to its errors.
 template <class Step>
 auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
   try {
@@ -53,7 +53,12 @@ void keep_part(const ConvertOptions& options, const ConversionPlan& plan, BagInd
                       "choose an earlier start, or a longer part");
   }
   for (const PlannedCamera& camera : plan.cameras) {
-    erase_outside(index.images.at(camera.topic).stamps, kMargin);
+    std::vector<TimeNs>& images = index.images.at(camera.topic).stamps;
+    erase_outside(images, kMargin);
+    if (!images.empty()) continue;
+    throw ConfigError(
+        fmt::format("no image of {} lies in this part of the recording", camera.topic),
+        "--start, --duration", "choose another part, or other cameras (--camera)");
   }
 }
 

@@ -40,7 +40,7 @@ ZstdStream zstd_stream() {
   return stream;
 }
 
-/// Hands what comes out to `take`; what a call leaves is 0 at the end of a frame.
+/// Passes the decompressed bytes to `take`. Returns 0 at the end of a frame.
 template <class Take>
 std::size_t feed_zstd(ZSTD_DStream* stream, std::string_view bytes, std::vector<char>& block,
                       const std::string& where, Take&& take) {

@@ -129,7 +129,8 @@ class Ros1BagReader {
     const std::uint64_t begin = at_;
     const std::string where = here();
     const std::optional<std::string> header = take_block();
-    if (!header || left() < kLength) return cut_at(begin);
+    // A file system may leave zeros behind the end of a file that was not closed.
+    if (!header || header->empty() || left() < kLength) return cut_at(begin);
     const RecordHeader fields(*header, where);
     const auto operation = Operation(fields.number<std::uint8_t>("op"));
     const auto size = read_number<std::uint32_t>(take(kLength));
@@ -174,7 +175,7 @@ class Ros1BagReader {
     while (!rest.empty()) {
       const auto header = next_block(rest);
       const auto data = header ? next_block(rest) : std::nullopt;
-      if (!data) {
+      if (!data || header->empty()) {
         if (is_cut_) return;
         throw InputError("a chunk is damaged (a record ends early)", where,
                          "restore the recording from a copy");

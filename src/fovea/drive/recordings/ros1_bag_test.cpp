@@ -121,6 +121,13 @@ TEST_F(Ros1Bag, AFileCutShortIsReadUpToItsEnd) {
   }
 }
 
+TEST_F(Ros1Bag, ZerosAreTheEndOfAFile) {
+  const Listener cut =
+      read(file_of(chunk(kRecords, "none", kRecords), 0) + std::string(5000, '\0'));
+  EXPECT_EQ(cut.messages.size(), 3u);
+  EXPECT_THAT(cut.losses, ElementsAre(HasSubstr("cut short")));
+}
+
 // Its recorder was killed: no index, and the last chunk has no size yet.
 TEST_F(Ros1Bag, ARecordingThatWasNotClosedIsReadWhole) {
   for (const auto& [compression, stored] :

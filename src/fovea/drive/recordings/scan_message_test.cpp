@@ -207,6 +207,9 @@ TEST(ScanMessage, RefusesOtherAndDamagedPackets) {
   constexpr std::uint8_t kHdl32 = 0x21;
   EXPECT_THAT(error_of(TestVelodyne(kHdl32, false, 0).message()),
               AllOf(HasSubstr("0x21"), HasSubstr("/packets"), HasSubstr("velodyne_pointcloud")));
+  std::string mixed = TestVelodyne(0x22, false, 0).message();
+  mixed.back() = '\x28';
+  EXPECT_THAT(error_of(mixed), HasSubstr("different LiDARs"));
   std::string damaged = TestVelodyne(0x22, false, 0).message();
   damaged[damaged.find("\xff\xee")] = 'x';
   EXPECT_THAT(error_of(damaged), AllOf(HasSubstr("damaged"), HasSubstr("/packets")));

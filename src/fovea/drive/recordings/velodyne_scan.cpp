@@ -142,10 +142,13 @@ class PacketDecoder {
 
  private:
   /// Hundredths of a degree that the LiDAR turns during a block: up to the next azimuth, or as in
-  /// the blocks before the last one.
+  /// the blocks before the last one. 0 where the azimuth jumps: a gap of the field of view, or a
+  /// step back.
   static double turn_of_block(const Packet& packet, std::size_t block, std::size_t stride) {
+    constexpr int kMostTurn = 200;  // at 20 turns a second a block of the VLP-16 takes 80
     const std::size_t from = std::min(block - block % stride, kBlocks - 2 * stride);
-    return (packet.azimuth(from + stride) - packet.azimuth(from) + kTurn) % kTurn;
+    const int turn = (packet.azimuth(from + stride) - packet.azimuth(from) + kTurn) % kTurn;
+    return turn > kMostTurn ? 0 : turn;
   }
 
   void add(std::size_t laser, int range, double azimuth, int intensity, double time) {
@@ -208,6 +211,11 @@ void read_rows(const VelodyneScan& scan, const std::string& where, CloudRows& ro
   }
   const Packet first(scan.packets.front().data);
   const Model& model = model_of(first, where);
+  for (const VelodynePacket& packet : scan.packets) {
+    if (Packet(packet.data).product() == first.product()) continue;
+    throw InputError("the packets of a scan are of different LiDARs", where,
+                     "record each LiDAR on a topic of its own");
+  }
   NamedRows named(kColumns, scan.packets.size() * kBlocks * kReturns, rows);
   PacketDecoder decoder(model, named);
   const double begin = seconds(scan.packets.front().stamp - scan.header.stamp);

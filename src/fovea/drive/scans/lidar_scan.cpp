@@ -97,7 +97,7 @@ void ScanRows::add(std::span<const double> row, std::size_t /*number*/) {
       format_.length_unit * Eigen::Vector3d(row[kScanX], row[kScanY], row[kScanZ]);
   const bool is_usable = scan_->add(position.cast<float>(),
                                     static_cast<float>(row[kScanIntensity] / format_.intensity_max),
-                                    has_times_ ? seconds_from_stamp(row[kScanTime]) : 0);
+                                    has_times_ ? seconds_from_stamp(row[kScanTime], position) : 0);
   if (is_usable && has_rings_) scan_->add_ring(row[kScanRing]);
 }
 
@@ -111,13 +111,14 @@ LidarScan ScanRows::take(const std::filesystem::path& file) {
   return scan;
 }
 
-double ScanRows::seconds_from_stamp(double time) {
+double ScanRows::seconds_from_stamp(double time, const Eigen::Vector3d& position) {
   if (format_.time_reference == TimeReference::kStamp) return time * time_unit_;
   if (format_.time_reference == TimeReference::kFirstPoint) {
-    if (!any_time_ && std::isfinite(time)) any_time_ = time;
+    const bool has_return = position.allFinite() && !position.isZero(0);
+    if (!any_time_ && has_return && std::isfinite(time)) any_time_ = time;
     return (time - any_time_.value_or(time)) * time_unit_;
   }
-  // Nanoseconds since 1970 take 61 bits: of numbers as large, doubles have but every 256th.
+  // Subtracted in the unit of the file: a double near 1.7e18 has a step of 256 ns.
   return (time - static_cast<double>(stamp_) * 1e-9 / time_unit_) * time_unit_;
 }
 

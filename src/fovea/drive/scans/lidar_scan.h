@@ -98,7 +98,7 @@ class ScanRows : public CloudRows {
 
  private:
   /// From any point, for TimeReference::kFirstPoint.
-  double seconds_from_stamp(double time);
+  double seconds_from_stamp(double time, const Eigen::Vector3d& position);
 
   ScanFormat format_;
   TimeNs stamp_;

@@ -229,7 +229,8 @@ TEST(ScanRows, TimesOfAnyClockMayCountFromTheFirstPoint) {
   format.time_unit = 1e-9;
   ScanRows rows(format, 1'700'000'000 * kNsPerSecond);
   const std::vector<std::optional<Scalar>> types(rows.columns().size(), Scalar::kDouble);
-  rows.begin(3, types);
+  rows.begin(4, types);
+  rows.add(std::vector<double>{0, 0, 0, 0, 0, 0}, 0);  // nothing came back
   // The first in the file need not be the first in time.
   for (const double time : {5e15 + 2e7, 5e15, 5e15 + 9e7}) {
     rows.add(std::vector<double>{1, 2, 3, 0.5, 0, time}, 0);

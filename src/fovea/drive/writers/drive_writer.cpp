@@ -10,6 +10,7 @@
 #include "fovea/core/input_file.h"
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/writers/camera_name.h"
+#include "fovea/drive/writers/png_encode.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {
@@ -64,11 +65,16 @@ void DriveWriter::add(const DriveScan& scan, const std::vector<DriveImage>& imag
   require(!is_closed_, "the drive is closed");
   require(!last_ || scan.stamp > *last_, "the scan at {} ns is not after the one at {} ns",
           scan.stamp, last_.value_or(0));
-  for (const DriveImage& image : images) check_image(image);
+  std::map<std::string, TimeNs> last;
+  std::vector<EncodedImage> files;
+  for (const DriveImage& image : images) {
+    check_image(image, last);
+    files.push_back(encoded(image));
+  }
   std::optional<RigidMotion> pose;
   if (T_world_lidar) pose = checked_pose(T_world_lidar->matrix().topRows<3>());
-  write_scan(scan);
-  for (const DriveImage& image : images) write_image(image);
+  write_scan(scan.stamp, usable_points(scan.points));
+  for (std::size_t i = 0; i < images.size(); ++i) write_image(images[i], files[i]);
   if (pose) drive_.poses.push_back({scan.stamp, *pose});
 }
 
@@ -78,11 +84,13 @@ DriveWriter::CameraState& DriveWriter::find_camera(const std::string& name) {
   return found->second;
 }
 
-void DriveWriter::check_image(const DriveImage& image) {
+void DriveWriter::check_image(const DriveImage& image, std::map<std::string, TimeNs>& last) {
   const CameraState& state = find_camera(image.camera);
-  require(!state.last || image.stamp > *state.last,
-          "the image of '{}' at {} ns is not after the one at {} ns", image.camera, image.stamp,
-          state.last.value_or(0));
+  if (state.last) last.try_emplace(image.camera, *state.last);
+  const auto before = last.find(image.camera);
+  require(before == last.end() || image.stamp > before->second,
+          "the image of '{}' at {} ns is not after the one before", image.camera, image.stamp);
+  last[image.camera] = image.stamp;
   if (const auto* pixels = std::get_if<Image>(&image.content)) {
     const LensCamera& optics = state.camera.optics;
     require(pixels->width == optics.width && pixels->height == optics.height,
@@ -91,29 +99,29 @@ void DriveWriter::check_image(const DriveImage& image) {
   }
 }
 
-void DriveWriter::write_scan(const DriveScan& scan) {
-  const LidarScan usable = usable_points(scan.points);
-  writer_.write_scan(int(figures_.scans++), scan.stamp, usable.points);
-  figures_.dropped += usable.dropped;
-  scale_.add(usable.points.intensity);
-  last_ = scan.stamp;
+DriveWriter::EncodedImage DriveWriter::encoded(const DriveImage& image) {
+  if (const auto* pixels = std::get_if<Image>(&image.content)) return {encode_png(*pixels), ".png"};
+  const auto& path = std::get<std::filesystem::path>(image.content);
+  std::vector<std::uint8_t> bytes = InputFile(path, kImageFile).bytes();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const FileFormat format = sniff_format(text).format;
+  if (format != FileFormat::kPng && format != FileFormat::kJpeg) {
+    throw InputError("this is no PNG or JPEG image", path.string(), "convert it to PNG");
+  }
+  return {std::move(bytes), format == FileFormat::kPng ? ".png" : ".jpg"};
 }
 
-void DriveWriter::write_image(const DriveImage& image) {
+void DriveWriter::write_scan(TimeNs stamp, const LidarScan& usable) {
+  writer_.write_scan(int(figures_.scans++), stamp, usable.points);
+  figures_.dropped += usable.dropped;
+  scale_.add(usable.points.intensity);
+  last_ = stamp;
+}
+
+void DriveWriter::write_image(const DriveImage& image, const EncodedImage& file) {
   CameraState& state = find_camera(image.camera);
-  if (const auto* pixels = std::get_if<Image>(&image.content)) {
-    writer_.write_image(image.camera, state.images, image.stamp, *pixels);
-  } else {
-    const auto& path = std::get<std::filesystem::path>(image.content);
-    const std::vector<std::uint8_t> bytes = InputFile(path, kImageFile).bytes();
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const FileFormat format = sniff_format(text).format;
-    if (format != FileFormat::kPng && format != FileFormat::kJpeg) {
-      throw InputError("this is no PNG or JPEG image", path.string(), "convert it to PNG");
-    }
-    writer_.write_encoded_image(image.camera, state.images, image.stamp, text,
-                                format == FileFormat::kPng ? ".png" : ".jpg");
-  }
+  const std::string_view bytes(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
+  writer_.write_encoded_image(image.camera, state.images, image.stamp, bytes, file.extension);
   ++state.images;
   ++figures_.images;
   state.last = image.stamp;

@@ -18,6 +18,7 @@
 #include "fovea/core/point_cloud.h"
 #include "fovea/drive/scans/dropped_points.h"
 #include "fovea/drive/scans/intensity_scale.h"
+#include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
@@ -54,7 +55,8 @@ class DriveWriter {
   DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
               DriveWriterOptions options = {});
 
-  /// Adds the next frame. Images belong to their stamps: a frame may have any number of them.
+  /// Adds the next frame, or nothing if it throws. Images belong to their stamps: a frame may have
+  /// any number of them.
   /// @param T_world_lidar  pose at the scan's stamp, in any fixed frame; absent: not known
   /// std::invalid_argument for a stamp that is not after the one before (of the scans, or of the
   /// images of a camera), for a camera that the writer does not have, an image of another size, a
@@ -76,10 +78,17 @@ class DriveWriter {
     std::optional<TimeNs> last;  // stamp
     int images = 0;
   };
+  /// An image in its file's encoding.
+  struct EncodedImage {
+    std::vector<std::uint8_t> bytes;
+    const char* extension;
+  };
   CameraState& find_camera(const std::string& name);
-  void check_image(const DriveImage& image);
-  void write_scan(const DriveScan& scan);
-  void write_image(const DriveImage& image);
+  /// @param last  stamps of the images before, by camera
+  void check_image(const DriveImage& image, std::map<std::string, TimeNs>& last);
+  static EncodedImage encoded(const DriveImage& image);
+  void write_scan(TimeNs stamp, const LidarScan& usable);
+  void write_image(const DriveImage& image, const EncodedImage& file);
 
   GenericDriveWriter writer_;
   RecordedDrive drive_;

@@ -111,6 +111,7 @@ TEST_F(DriveWriterTest, RefusesWhatIsNoFrame) {
   refuses({kStart, points(3)}, {});
   refuses(next, {{"rear", kStart + kStep, image(1)}});
   refuses(next, {{"front", kStart, image(1)}});
+  refuses(next, {{"front", kStart + 2, image(1)}, {"front", kStart + 2, image(1)}});
   refuses(next, {{"front", kStart + kStep, Image(16, 24, 3)}});
   RigidMotion stretched = RigidMotion::Identity();
   stretched.linear() *= 2;
@@ -121,6 +122,12 @@ TEST_F(DriveWriterTest, RefusesWhatIsNoFrame) {
   EXPECT_THROW(writer.add({kStart + kStep, PointCloud()}, {}), InputError);
   std::ofstream(folder_ / "text") << "text";
   EXPECT_THROW(writer.add(next, {{"front", kStart + kStep, folder_ / "text"}}), InputError);
+  // Nothing of a refused frame stays.
+  writer.add(next, {{"front", kStart + kStep, image(1)}}, pose(1));
+  const DriveWriterFigures figures = writer.close();
+  EXPECT_EQ(figures.scans, 2u);
+  EXPECT_EQ(figures.images, 2u);
+  EXPECT_EQ(figures.poses, 1u);
 }
 
 TEST_F(DriveWriterTest, RefusesCamerasThatAreNone) {
