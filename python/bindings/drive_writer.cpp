@@ -67,6 +67,7 @@ PointCloud cloud_of(const Floats& points, const std::optional<Floats>& intensity
   copy(times, cloud.time);
   std::vector<std::int64_t> numbers;
   copy(rings, numbers);
+  cloud.ring.reserve(numbers.size());
   for (const std::int64_t number : numbers) {
     if (number < 0 || number > 0xffff) throw std::invalid_argument("a ring is not 0 to 65535");
     cloud.ring.push_back(static_cast<std::uint16_t>(number));
