@@ -5,9 +5,8 @@
 #include <map>
 
 #include "fovea/core/errors.h"
-#include "fovea/core/input_file.h"
+#include "fovea/core/read_file.h"
 #include "fovea/drive/data_sets/data_set.h"
-#include "fovea/drive/drive_files.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/kitti/kitti_scan.h"
 #include "fovea/drive/time_stamps.h"
@@ -22,24 +21,11 @@ namespace fs = std::filesystem;
   throw InputError(what, file.string(), "restore the file from the archive");
 }
 
-std::vector<std::string> lines_of(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = InputFile(file, kDescriptionFile).bytes();
-  std::vector<std::string> lines(1);
-  for (const std::uint8_t byte : bytes) {
-    if (byte == '\n') {
-      lines.emplace_back();
-    } else {
-      lines.back() += char(byte);
-    }
-  }
-  return lines;
-}
-
 /// Numbers of the lines "KEY: NUMBERS".
 using Numbers = std::map<std::string, std::vector<double>>;
 Numbers read_numbers(const fs::path& file) {
   Numbers numbers;
-  for (const std::string& line : lines_of(file)) {
+  for (const std::string& line : read_lines(file)) {
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos) continue;
     if (const auto values = parse_numbers(line.substr(colon + 1))) {
@@ -70,7 +56,7 @@ struct Kitti360Calibration {
 Kitti360Calibration read_calibration(const fs::path& folder) {
   const fs::path to_lidar = folder / "calib_cam_to_velo.txt",
                  to_body = folder / "calib_cam_to_pose.txt", optics = folder / "perspective.txt";
-  const auto row = parse_numbers(fmt::format("{}", fmt::join(lines_of(to_lidar), " ")));
+  const auto row = parse_numbers(fmt::format("{}", fmt::join(read_lines(to_lidar), " ")));
   const RigidMotion T_lidar_cam0 =
       motion_of(row.value_or(std::vector<double>()), to_lidar, "the line");
   Numbers body = read_numbers(to_body), numbers = read_numbers(optics);
@@ -105,7 +91,7 @@ Kitti360Calibration read_calibration(const fs::path& folder) {
 /// Poses of the body in the world, of those frames that have one.
 std::map<int, RigidMotion> read_body_poses(const fs::path& file) {
   std::map<int, RigidMotion> poses;
-  for (const std::string& line : lines_of(file)) {
+  for (const std::string& line : read_lines(file)) {
     const auto numbers = parse_numbers(line);
     if (!numbers || numbers->empty()) continue;
     const bool has_frame = numbers->front() >= 0 && numbers->front() < kEndOfNames;

@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <lz4frame.h>
 #include <zstd.h>
 
 #include <fstream>
 #include <vector>
 
+#include "../../../../tests/lz4_frame.h"
 #include "../../../../tests/mcap_writer.h"
 #include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
@@ -25,13 +25,6 @@ std::string zstd(const std::string& bytes) {
   packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
   return packed;
 }
-std::string lz4(const std::string& bytes) {
-  std::string packed(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
-  packed.resize(
-      LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr));
-  return packed;
-}
-
 /// Notes "TOPIC:MESSAGE" of all topics but /other.
 class Listener : public BagSink {
  public:

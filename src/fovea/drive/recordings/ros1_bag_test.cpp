@@ -3,11 +3,11 @@
 #include <bzlib.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <lz4frame.h>
 
 #include <fstream>
 #include <vector>
 
+#include "../../../../tests/lz4_frame.h"
 #include "../../../../tests/ros1_bag_writer.h"
 #include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
@@ -29,13 +29,6 @@ std::string bz2(const std::string& bytes) {
   packed.resize(size);
   return packed;
 }
-std::string lz4(const std::string& bytes) {
-  std::string packed(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
-  packed.resize(
-      LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr));
-  return packed;
-}
-
 /// Notes "TOPIC:MESSAGE" of all topics but /other.
 class Listener : public BagSink {
  public:
