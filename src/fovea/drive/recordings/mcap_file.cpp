@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "fovea/core/errors.h"
-#include "fovea/core/input_file.h"
 #include "fovea/core/printable.h"
+#include "fovea/drive/recordings/bag_stream.h"
 #include "fovea/drive/recordings/decompress.h"
 
 namespace fovea {
@@ -56,15 +56,11 @@ class Fields {
 class McapReader {
  public:
   McapReader(const std::filesystem::path& file, const std::filesystem::path& shown, BagSink& sink)
-      : name_(shown.string()),
-        input_(file, kStreamedFile),
-        stream_(input_.stream()),
-        sink_(sink),
-        size_(input_.size()) {}
+      : stream_(file, shown), sink_(sink) {}
 
   void read() {
-    if (take(std::min<std::uint64_t>(kMagic.size(), size_)) != kMagic) {
-      throw InputError("this is no MCAP file", name_, "give a recording of ROS 2");
+    if (stream_.take(std::min<std::uint64_t>(kMagic.size(), stream_.size())) != kMagic) {
+      throw InputError("this is no MCAP file", stream_.name(), "give a recording of ROS 2");
     }
     while (!ended_) next();
   }
@@ -73,52 +69,34 @@ class McapReader {
   /// @param place  up to which it was read
   void end_early(std::uint64_t place) {
     ended_ = true;
-    sink_.report_loss(
-        fmt::format("{}: the recording is cut short; it was read up to byte {}", name_, place));
-  }
-
-  /// The next bytes of the file, valid until the next call.
-  std::string_view take(std::uint64_t size) {
-    if (size > kMaxBagBlock) {
-      throw InputError(fmt::format("a record has {} bytes", size),
-                       fmt::format("{}, byte {}", name_, at_),
-                       "restore the recording from a copy, or write it with smaller chunks");
-    }
-    buffer_.resize(size);
-    stream_.read(buffer_.data(), std::streamsize(size));
-    if (std::uint64_t(stream_.gcount()) != size) {
-      throw InputError("the file cannot be read", fmt::format("{}, byte {}", name_, at_),
-                       "restore the recording from a copy");
-    }
-    at_ += size;
-    return buffer_;
+    sink_.report_loss(stream_.cut_short_at(place));
   }
 
   /// Reads a record.
   void next() {
-    const std::string where = fmt::format("{}, byte {}", name_, at_);
-    const std::uint64_t begin = at_;
+    const std::string where = stream_.here();
+    const std::uint64_t begin = stream_.place();
     constexpr std::uint64_t kHead = 9;
-    if (kHead > size_ - at_) return end_early(begin);
-    Fields head(take(kHead), where);
+    if (kHead > stream_.left()) return end_early(begin);
+    Fields head(stream_.take(kHead), where);
     const auto opcode = head.number<std::uint8_t>();
     const auto size = head.number<std::uint64_t>();
-    if (size > size_ - at_) return end_early(begin);
+    if (size > stream_.left()) return end_early(begin);
     switch (opcode) {
       case kChunk:
-        return read_chunk(take(size), where);
+        return read_chunk(stream_.take(size), where);
       case kSchema:
       case kChannel:
       case kMessage:
-        return read_record(opcode, take(size), where);
+        return read_record(opcode, stream_.take(size), where);
       case kFooter:
-        take(size);
-        if (kMagic.size() > size_ - at_ || take(kMagic.size()) != kMagic) return end_early(begin);
+        stream_.take(size);
+        if (kMagic.size() > stream_.left() || stream_.take(kMagic.size()) != kMagic)
+          return end_early(begin);
         ended_ = true;
         return;
       default:  // of no interest, or of a later version
-        at_ += size;
-        stream_.seekg(std::streamoff(at_));
+        stream_.skip(size);
     }
   }
 
@@ -202,12 +180,8 @@ class McapReader {
     bool wanted;
   };
 
-  std::string name_;
-  InputFile input_;
-  std::istream& stream_;
+  BagStream stream_;
   BagSink& sink_;
-  std::uint64_t size_, at_ = 0;
-  std::string buffer_;
   bool ended_ = false;
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, Channel> channels_;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fovea/core/errors.h"
-#include "fovea/core/input_file.h"
 #include "fovea/core/printable.h"
+#include "fovea/drive/recordings/bag_stream.h"
 #include "fovea/drive/recordings/decompress.h"
 
 namespace fovea {
@@ -74,72 +74,54 @@ class Ros1BagReader {
  public:
   Ros1BagReader(const std::filesystem::path& file, const std::filesystem::path& shown,
                 BagSink& sink)
-      : name_(shown.string()),
-        input_(file, kStreamedFile),
-        stream_(input_.stream()),
-        sink_(sink),
-        size_(input_.size()) {}
+      : stream_(file, shown), sink_(sink) {}
 
   void read() {
-    const std::string magic = take(std::min<std::uint64_t>(kRos1Magic.size(), size_));
+    const std::string_view magic =
+        stream_.take(std::min<std::uint64_t>(kRos1Magic.size(), stream_.size()));
     if (magic != kRos1Magic) {
-      throw InputError(fmt::format("bags of format '{:.12}' are not read", printable(magic)), name_,
-                       "turn it into format 2.0 ('rosbag fix')");
+      throw InputError(fmt::format("bags of format '{:.12}' are not read", printable(magic)),
+                       stream_.name(), "turn it into format 2.0 ('rosbag fix')");
     }
-    while (at_ < size_ && !is_cut_) read_record();
+    while (stream_.left() > 0 && !is_cut_) read_record();
     if (is_cut_) {
-      sink_.report_loss(
-          fmt::format("{}: the recording is cut short; it was read up to byte {}", name_, cut_));
+      sink_.report_loss(stream_.cut_short_at(cut_));
     } else if (is_open_) {
-      sink_.report_loss(fmt::format(
-          "{}: the recording was not closed; all {} bytes of it were read", name_, size_));
+      sink_.report_loss(
+          fmt::format("{}: the recording was not closed; all {} bytes of it were read",
+                      stream_.name(), stream_.size()));
     }
   }
 
  private:
-  std::uint64_t left() const { return size_ - at_; }
-  std::string here() const { return fmt::format("{}, byte {}", name_, at_); }
   void cut_at(std::uint64_t place) {
     is_cut_ = true;
     cut_ = place;
   }
 
-  std::string take(std::uint64_t size) {
-    if (size > kMaxBagBlock) {
-      throw InputError(fmt::format("a record has {} bytes", size), here(),
-                       "restore the recording from a copy, or write it with smaller chunks");
-    }
-    std::string bytes(size, '\0');
-    stream_.read(bytes.data(), std::streamsize(size));
-    if (std::uint64_t(stream_.gcount()) != size) {
-      throw InputError("the file cannot be read", here(), "restore the recording from a copy");
-    }
-    at_ += size;
-    return bytes;
-  }
   /// A length and that many bytes; empty if the file ends before.
   std::optional<std::string> take_block() {
-    if (left() < kLength) return std::nullopt;
-    const auto size = read_number<std::uint32_t>(take(kLength));
-    if (size > left()) return std::nullopt;
-    return take(size);
+    if (stream_.left() < kLength) return std::nullopt;
+    const auto size = read_number<std::uint32_t>(stream_.take(kLength));
+    if (size > stream_.left()) return std::nullopt;
+    return std::string(stream_.take(size));
   }
 
   void read_record() {
-    const std::uint64_t begin = at_;
-    const std::string where = here();
+    const std::uint64_t begin = stream_.place();
+    const std::string where = stream_.here();
     const std::optional<std::string> header = take_block();
     // A file system may leave zeros behind the end of a file that was not closed.
-    if (!header || header->empty() || left() < kLength) return cut_at(begin);
+    if (!header || header->empty() || stream_.left() < kLength) return cut_at(begin);
     const RecordHeader fields(*header, where);
     const auto operation = Operation(fields.number<std::uint8_t>("op"));
-    const auto size = read_number<std::uint32_t>(take(kLength));
-    const bool is_whole = size <= left();
+    const auto size = read_number<std::uint32_t>(stream_.take(kLength));
+    const bool is_whole = size <= stream_.left();
     if (operation == Operation::kChunk) {
       // A recorder enters the size when a chunk is full: 0 in the last one of an open recording.
       const bool is_open = size == 0 && fields.number<std::uint32_t>("size") == 0;
       if (is_open && fields.text("compression") == "none") return;
-      const std::string chunk = take(is_open || !is_whole ? left() : size);
+      const std::string_view chunk = stream_.take(is_open || !is_whole ? stream_.left() : size);
       if (is_open || !is_whole) cut_at(begin);
       return read_chunk(fields, chunk, where);
     }
@@ -147,13 +129,12 @@ class Ros1BagReader {
     if (operation == Operation::kBagHeader)
       is_open_ = fields.number<std::uint64_t>("index_pos") == 0;
     if (operation == Operation::kMessage || operation == Operation::kConnection) {
-      return use_record(operation, fields, take(size), where);
+      return use_record(operation, fields, stream_.take(size), where);
     }
-    at_ += size;  // an index, or of a later version
-    stream_.seekg(std::streamoff(at_));
+    stream_.skip(size);  // an index, or of a later version
   }
 
-  void read_chunk(const RecordHeader& fields, const std::string& stored, const std::string& where) {
+  void read_chunk(const RecordHeader& fields, std::string_view stored, const std::string& where) {
     const std::string_view compression = fields.text("compression");
     const LossyEnd end = is_cut_ ? LossyEnd::kAllowed : LossyEnd::kRefused;
     std::string records;
@@ -217,11 +198,8 @@ class Ros1BagReader {
     connections_.emplace(id, std::pair(topic, sink_.is_requested(topic)));
   }
 
-  std::string name_;
-  InputFile input_;
-  std::istream& stream_;
+  BagStream stream_;
   BagSink& sink_;
-  std::uint64_t size_, at_ = 0;
   bool is_open_ = false, is_cut_ = false;
   std::uint64_t cut_ = 0;                                           // where
   std::map<std::uint32_t, std::pair<BagTopic, bool>> connections_;  // with whether requested
