@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <libdeflate.h>
 
-#include <cstring>
 #include <map>
 #include <optional>
 
@@ -33,7 +32,7 @@ class Fields {
   template <class T>
   T number() {
     T value;
-    std::memcpy(&value, block(sizeof value).data(), sizeof value);
+    block(sizeof value).copy(reinterpret_cast<char*>(&value), sizeof value);
     return value;
   }
   std::string_view text() { return block(number<std::uint32_t>()); }
