@@ -14,9 +14,9 @@
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/core/errors.h"
+#include "fovea/core/plain_name.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/recordings/convert_bags.h"
-#include "fovea/drive/writers/camera_name.h"
 
 namespace fovea::app {
 namespace {
@@ -42,7 +42,7 @@ std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    if (equals == std::string::npos || !is_camera_name(name) || !names.insert(name).second ||
+    if (equals == std::string::npos || !is_plain_name(name) || !names.insert(name).second ||
         !topics.insert(text.substr(equals + 1)).second) {
       throw ConfigError("this names no camera, or one or its topic twice", "--camera " + text,
                         "give NAME=TOPIC, the name of letters, digits, '_' and '-'");
@@ -87,8 +87,10 @@ void run(const ConvertArguments& arguments, Warnings& warnings) {
   }();
   warnings.add(figures, "", arguments.quiet);
   if (arguments.quiet) return;
-  print_out("{}: {} scans and {} images of {} camera{}\n", arguments.output, figures.scans,
-            figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
+  const std::string lidars =
+      figures.lidars > 1 ? fmt::format(" of {} LiDARs", figures.lidars) : std::string();
+  print_out("{}: {} scans{} and {} images of {} camera{}\n", arguments.output, figures.scans,
+            lidars, figures.images, figures.cameras, figures.cameras == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -109,8 +111,12 @@ void add_convert_command(CLI::App& app, Session& session) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--duration", options.duration, "Length of the part to convert, s")
       ->check(CLI::PositiveNumber);
-  command->add_option("--lidar", options.lidar, "The scans (default: the only topic of scans)")
-      ->type_name("TOPIC");
+  command
+      ->add_option("--lidar", options.lidars,
+                   "The scans (default: the only topic of scans); repeated for further LiDARs of "
+                   "the vehicle")
+      ->type_name("TOPIC")
+      ->allow_extra_args(false);
   command
       ->add_option("--camera", arguments->cameras,
                    "A camera's images, may be repeated (default: all with calibration and place)")

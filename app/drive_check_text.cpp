@@ -47,8 +47,12 @@ std::string navigation_text(const DriveCheck& check) {
 
 std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive, bool messages) {
   std::vector<std::string> lines = {fmt::format("{} ({})", drive.path.string(), drive.kind),
-                                    frames_text(check), "LiDAR        " + to_text(check.lidar),
-                                    scans_text(check)};
+                                    frames_text(check)};
+  for (const MountedLidar& lidar : check.lidars) {
+    const std::string name = check.lidars.size() > 1 ? lidar.profile.name + ": " : "";
+    lines.push_back("LiDAR        " + name + to_text(lidar.profile));
+  }
+  lines.push_back(scans_text(check));
   lines.push_back("dropped      " +
                   (check.dropped.total() == 0 ? "no points" : reasons_of(check.dropped)) +
                   fmt::format(" of {} frames read", check.sampled));

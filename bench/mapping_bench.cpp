@@ -73,8 +73,8 @@ void bench_moving(benchmark::State& state, const MappedStreet& street) {
   int frame = street.frame().index;
   const RigidMotion T_odom_local = street.last.T_odom_lidar * street.last.T_local_lidar.inverse();
   solo(state, [&] {
-    moving.replay(street.map, RangeImage(street.frame().scan.position), street.last.T_odom_lidar,
-                  T_odom_local, ++frame);
+    moving.replay(street.map, {{RangeImage(street.frame().scan.position)}},
+                  street.last.T_odom_lidar, T_odom_local, ++frame);
     return frame;
   });
 }

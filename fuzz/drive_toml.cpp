@@ -32,7 +32,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_or_refuse<ConfigError>([&] {
     const DriveDescription drive = parse_drive_description(as_text(data, size), "drive.toml");
     require(drive.cameras.size() <= 10, "there are ten cameras at most");
-    require(drive.sweep.stamp_phase.value_or(0) >= 0, "the stamp is in the sweep");
+    require(drive.lidar.sweep.stamp_phase.value_or(0) >= 0, "the stamp is in the sweep");
+    for (const LidarDescription& lidar : drive.further_lidars) {
+      require(lidar.T_lidar_sensor.matrix().allFinite(), "a LiDAR is somewhere");
+    }
     require(drive.antenna_body.allFinite(), "the antenna is somewhere");
     for (const CameraDescription& camera : drive.cameras) check(camera);
   });

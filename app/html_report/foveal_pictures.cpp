@@ -99,7 +99,8 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
 
   const PointCloud measured_cam = foveal_points(loaded->scan_lidar, region);
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
-  PointCloud dense_cam = densified(measured_cam, camera, settings, lidar_profile(drive));
+  PointCloud dense_cam =
+      densified(measured_cam, camera, settings, mounted_lidars(drive).front().profile);
   limit_incidence(dense_cam, foveal.max_incidence);
   color_points(dense_cam, {*shot, camera, placed.index});
 

@@ -32,10 +32,16 @@ class Recording {
   }
 }
 
-function addScans(recording, drive, lidars) {
-  for (const { time, path } of drive.scans) {
-    const cloud = ros.pointCloud(time, lidarFrame, readScan(path));
-    for (const topic of lidars) recording.add(topic, 'sensor_msgs/msg/PointCloud2', time, 60, cloud);
+/// The scans of each LiDAR under all of `lidars`; of a drive with several, under the name of the LiDAR.
+function addScans(recording, drive, lidars, livox) {
+  const [type, encoded] = livox ? [ros.livoxType, ros.livoxMessage]
+    : ['sensor_msgs/msg/PointCloud2', ros.pointCloud];
+  for (const { name, T_lidar_sensor: isFurther, scans } of drive.lidars) {
+    const topics = name ? [`/${name}/points`] : lidars;
+    for (const { time, path } of scans) {
+      const message = encoded(time, isFurther ? name : lidarFrame, readScan(path));
+      for (const topic of topics) recording.add(topic, type, time, 60, message);
+    }
   }
 }
 
@@ -64,6 +70,10 @@ function addStaticTransforms(recording, drive, withCameras) {
   add(ros.transform(time, 'base_link', lidarFrame, T_body_lidar ?? identity),
     ros.transform(time, 'base_link', 'imu', T_body_imu ?? identity),
     ros.transform(time, 'base_link', 'gnss', { ...identity, translation: antenna ?? [0, 0, 0] }));
+  const further = drive.lidars.slice(1);
+  if (further.length > 0) {
+    add(...further.map(({ name, T_lidar_sensor: T }) => ros.transform(time, lidarFrame, name, T)));
+  }
   if (!withCameras) return;
   add(...drive.cameras.map((camera) =>
     ros.transform(time, lidarFrame, opticalFrame(camera), camera.T_lidar_cam)));
@@ -99,11 +109,12 @@ function addNavigation(recording, drive) {
 /// Messages of a drive of readDrive(): {topic, type, time, data}, in the order of their times.
 /// @param poses  "odometry", "tf" or "gnss"
 /// @param images  "compressed", "rgb8" or "bgr8"
+/// @param livox  scans as a Livox's driver sends them
 /// @param ros1  messages of ROS 1 instead of ROS 2
 export function record(drive, { poses = 'odometry', images = 'compressed', lidars = ['/lidar/points'],
-  cameraInfos = true, cameraTransforms = true, ros1 = false } = {}) {
+  cameraInfos = true, cameraTransforms = true, livox = false, ros1 = false } = {}) {
   const recording = new Recording(ros1);
-  addScans(recording, drive, lidars);
+  addScans(recording, drive, lidars, livox);
   for (const camera of drive.cameras) addImages(recording, camera, images, cameraInfos);
   addStaticTransforms(recording, drive, cameraTransforms);
   if (poses === 'gnss') addNavigation(recording, drive);

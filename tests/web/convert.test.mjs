@@ -5,6 +5,7 @@ import { after, before, test } from 'node:test';
 
 import { record } from './bags.mjs';
 import { ConvertDrives } from './convert_drives.mjs';
+import { readScan } from './drive_folder.mjs';
 import { opcodes, recordsOf, writeMcap } from './mcap_bag.mjs';
 import { ros1SchemaOf } from './ros_messages.mjs';
 import { ros1BagRecords, writeRos1Bag } from './ros1_bag.mjs';
@@ -125,6 +126,45 @@ test('two LiDARs: one has to be named', async () => {
   await writeMcap(bag, record(drives.drive('poses'), { lidars: ['/lidar/points', '/lidar/rear/points'] }));
   drives.refuses(bag, ['/lidar/points', '/lidar/rear/points', '--lidar']);
   checkConverted(bag, 'poses', 'one_of_two', '--lidar', '/lidar/points');
+});
+
+test('three LiDARs of one vehicle', async () => {
+  const further = (number, forward, offset) => [`lidar_${number}.model=vlp16`, `lidar_${number}.forward=${forward}`,
+    `lidar_${number}.roll=20`, `lidar_${number}.stamp_offset=${offset}`];
+  drives.simulate('several', 'camera.numbers=[0]', 'lidar.model=vlp16', 'lidar.count=3', ...further(2, 1, 0.02),
+    ...further(3, -1, -0.03));
+  drives.derive('several', 'three', 'poses');
+  const bag = drives.path('three.mcap');
+  await writeMcap(bag, record(drives.drive('three')));
+  const lidars = [1, 2, 3].flatMap((number) => ['--lidar', `/lidar_${number}/points`]);
+  checkConverted(bag, 'three', 'three_converted', ...lidars);
+  const stampsOf = (name) => drives.drive(name).lidars.map(({ scans }) => scans.map(({ time }) => time));
+  assert.deepEqual(stampsOf('three_converted'), stampsOf('three'));
+  assert.equal(stampsOf('three').length, 3);
+  const { status, stderr } = drives.convert(bag, 'twice', ...lidars, '--lidar', '/lidar_1/points');
+  assert.equal(status, 1);
+  assert.match(stderr, /named twice/);
+});
+
+test('a Livox, within the resolution of its messages', async () => {
+  drives.simulate('livox', 'camera.numbers=[0]', 'lidar.model=livox-avia', 'lidar.stamp_phase=0');
+  drives.derive('livox', 'rosette', 'poses');
+  const bag = drives.path('livox.mcap');
+  await writeMcap(bag, record(drives.drive('rosette'), { livox: true }));
+  const { status, stderr } = drives.convert(bag, 'livox_converted');
+  assert.equal(status, 0, stderr);
+  const [before, now] = ['rosette', 'livox_converted'].map((name) =>
+    drives.drive(name).scans.map(({ path }) => readScan(path)));
+  assert.equal(now.length, before.length);
+  before.forEach((scan, frame) => {
+    assert.equal(now[frame].count, scan.count);
+    const values = (of, name, i) => of.data.readFloatLE(4 * (i * of.names.length + of.names.indexOf(name)));
+    for (let i = 0; i < scan.count; ++i) {
+      for (const name of ['x', 'y', 'z']) assert.equal(values(now[frame], name, i), values(scan, name, i));
+      assert.ok(Math.abs(values(now[frame], 'time', i) - values(scan, 'time', i)) < 1e-8);
+      assert.ok(Math.abs(values(now[frame], 'intensity', i) - values(scan, 'intensity', i)) < 0.502 / 255);
+    }
+  });
 });
 
 test('a camera by another name, no poses', async () => {

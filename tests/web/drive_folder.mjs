@@ -26,13 +26,24 @@ function stampedFiles(folder) {
     .map(({ index, time }) => ({ time, path: files.get(Number(index)) }));
 }
 
+/// Of several LiDARs, the one whose frame is that of the drive first.
+function lidarsOf(folder, tables) {
+  const named = Object.entries(tables).filter(([, values]) => typeof values === 'object');
+  if (named.length === 0) return [{ name: '', scans: stampedFiles(join(folder, 'lidar')) }];
+  return named.map(([name, { T_lidar_sensor: T }]) => (
+    { name, T_lidar_sensor: T, scans: stampedFiles(join(folder, 'lidar', name)) }))
+    .sort((a, b) => Boolean(a.T_lidar_sensor) - Boolean(b.T_lidar_sensor));
+}
+
 export function readDrive(folder) {
-  const { body, camera } = parse(readFileSync(join(folder, 'drive.toml'), 'utf8'));
+  const { body, camera, lidar } = parse(readFileSync(join(folder, 'drive.toml'), 'utf8'));
+  const lidars = lidarsOf(folder, lidar);
   return {
     body,
+    lidars,
     cameras: Object.entries(camera).map(([name, values]) => (
       { ...values, name, images: stampedFiles(join(folder, 'images', name)) })),
-    scans: stampedFiles(join(folder, 'lidar')),
+    scans: lidars[0].scans,
     poses: readTable(join(folder, 'poses.csv')),
     positions: readTable(join(folder, 'gnss.csv')),
     inertia: readTable(join(folder, 'imu.csv')),

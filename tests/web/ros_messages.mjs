@@ -11,8 +11,32 @@ import { PNG } from 'pngjs';
 const folder = join(dirname(createRequire(import.meta.url).resolve('@foxglove/rosmsg-msgs-common')), '../msgdefs');
 const time = `${'='.repeat(80)}\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n`;
 
+/// Of the driver livox_ros_driver2.
+export const livoxType = 'livox_ros_driver2/msg/CustomMsg';
+const livoxSchema = `std_msgs/Header header
+uint64 timebase
+uint32 point_num
+uint8 lidar_id
+uint8[3] rsvd
+CustomPoint[] points
+${'='.repeat(80)}
+MSG: livox_ros_driver2/CustomPoint
+uint32 offset_time
+float32 x
+float32 y
+float32 z
+uint8 reflectivity
+uint8 tag
+uint8 line
+${'='.repeat(80)}
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+`;
+
 /// The definition of "sensor_msgs/msg/Imu" in ROS 2: its text, and those of the types in it.
 export function schemaOf(type) {
+  if (type === livoxType) return livoxSchema + time;
   return readFileSync(join(folder, 'ros2humble', `${type}.msg`), 'utf8') + time;
 }
 
@@ -84,6 +108,18 @@ export function pointCloud(time, frame, scan) {
   }
   return { header: header(time, frame), height: 1, width: scan.count, fields, is_bigendian: false,
     point_step: step, row_step: data.length, data, is_dense: true };
+}
+
+/// The points of a scan with times, as the driver of a Livox sends them.
+export function livoxMessage(time, frame, scan) {
+  const columns = ['x', 'y', 'z', 'intensity', 'time'].map((name) => scan.names.indexOf(name));
+  const points = Array.from({ length: scan.count }, (_, i) => {
+    const [x, y, z, intensity, seconds] =
+      columns.map((column) => scan.data.readFloatLE(4 * (i * scan.names.length + column)));
+    return { offset_time: Math.round(1e9 * seconds), x, y, z, reflectivity: Math.round(255 * intensity), tag: 0x10,
+      line: i % 6 };
+  });
+  return { header: header(time, frame), timebase: time, point_num: scan.count, lidar_id: 1, rsvd: [0, 0, 0], points };
 }
 
 /// A PNG file as an Image: rgb8 or bgr8, grey files as mono8. Rows end in bytes that are no pixels.

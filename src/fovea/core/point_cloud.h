@@ -26,6 +26,7 @@ struct PointCloud {
 
   std::vector<float> intensity;            ///< LiDAR reflectance, 0-1
   std::vector<std::uint16_t> ring;         ///< of the LiDAR, as the scan's file numbers it
+  std::vector<std::uint16_t> sensor;       ///< number of the LiDAR that measured it; empty: 0
   std::vector<float> time;                 ///< s from the scan's stamp; none once compensated
   std::vector<Eigen::Vector3f> normal;     ///< unit, towards the sensor; zero where unknown
   std::vector<float> range;                ///< m, from the sensor that measured or saw the point
@@ -56,7 +57,8 @@ struct PointCloud {
   /// Drops the points that are marked, in place, and returns how many.
   std::size_t drop(const std::vector<std::uint8_t>& marks);
 
-  /// Appends `other`, which must have the same origin and columns (or this cloud is empty).
+  /// Appends `other`, which must have the same origin and columns (or this cloud is empty). Only
+  /// the column `sensor` may be missing.
   void append(const PointCloud& other);
 };
 
@@ -65,6 +67,7 @@ template <class Cloud, class F>
 void for_each_optional_column(Cloud& cloud, F&& f) {
   f("intensity", cloud.intensity);
   f("ring", cloud.ring);
+  f("sensor", cloud.sensor);
   f("time", cloud.time);
   f("normal", cloud.normal);
   f("range", cloud.range);
@@ -86,6 +89,7 @@ template <class CloudA, class CloudB, class F>
 void for_each_optional_column(CloudA& a, CloudB& b, F&& f) {
   f("intensity", a.intensity, b.intensity);
   f("ring", a.ring, b.ring);
+  f("sensor", a.sensor, b.sensor);
   f("time", a.time, b.time);
   f("normal", a.normal, b.normal);
   f("range", a.range, b.range);

@@ -13,6 +13,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/nesting.h"
+#include "fovea/core/plain_name.h"
 #include "fovea/core/text_encoding.h"
 
 namespace fovea {
@@ -248,28 +249,25 @@ SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,
   return SettingsDocument(std::make_unique<Content>(Content{std::move(table), name}));
 }
 
-std::vector<std::string> SettingsDocument::tables(std::string_view key) const {
+std::vector<std::string> SettingsDocument::tables(std::string_view key, bool among_keys) const {
   std::vector<std::string> names;
   const toml::node* node = content_->table.at_path(key).node();
   if (node == nullptr) return names;
   const auto place = [&](const toml::node& where) {
     return fmt::format("{}:{}, key '{}'", content_->name, where.source().begin.line, key);
   };
+  const std::string remedy = fmt::format("write [{}.NAME]", key);
   const toml::table* tables = node->as_table();
   if (tables == nullptr) {
-    throw ConfigError("this is no table", place(*node), fmt::format("write [{}.NAME]", key));
+    throw ConfigError("this is no table", place(*node), remedy);
   }
   for (const auto& [name, inner] : *tables) {
     if (!inner.is_table()) {
-      throw ConfigError(fmt::format("'{}' is no table", name.str()), place(inner),
-                        fmt::format("write [{}.NAME]", key));
+      if (among_keys) continue;
+      throw ConfigError(fmt::format("'{}' is no table", name.str()), place(inner), remedy);
     }
-    const auto plain = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-             c == '_' || c == '-';
-    };
     names.emplace_back(name.str());
-    if (names.back().empty() || !std::all_of(names.back().begin(), names.back().end(), plain)) {
+    if (!is_plain_name(names.back())) {
       throw ConfigError("a name has other characters than letters, digits, '_' and '-'",
                         place(inner), "rename it");
     }

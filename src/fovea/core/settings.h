@@ -115,7 +115,8 @@ class SettingsDocument {
   /// Names of the tables below `key` ("camera" of [camera.left] and [camera.right]), sorted: where
   /// a list of keys depends on them. ConfigError if something below the key is no table, or has a
   /// name of other characters than letters, digits, '_' and '-'.
-  std::vector<std::string> tables(std::string_view key) const;
+  /// @param among_keys  `key` may have keys of its own next to the tables
+  std::vector<std::string> tables(std::string_view key, bool among_keys = false) const;
 
   /// All keys with their values, in the order of the text.
   std::vector<SettingText> entries() const;

@@ -223,6 +223,12 @@ TEST(Settings, TheTablesBelowAKeyAreListed) {
   EXPECT_THAT(error("[t.'a.b']"), HasSubstr("rename it"));
 }
 
+TEST(Settings, TablesMayStandAmongKeys) {
+  const auto document = SettingsDocument::from_text("[t]\na = 1\n[t.two]\nb = 2", "x.toml");
+  EXPECT_THAT(document.tables("t", /*among_keys=*/true), ElementsAre("two"));
+  EXPECT_TRUE(document.tables("u", /*among_keys=*/true).empty());
+}
+
 TEST(Settings, WhatIsRejectedForWantOfAKeyNamesTheTable) {
   const auto document = SettingsDocument::from_text("\n[a]\non = true", "x.toml");
   Options options;

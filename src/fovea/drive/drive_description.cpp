@@ -3,45 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
 #include "fovea/drive/calibration_file.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/lidar_keys.h"
 #include "fovea/drive/motion_keys.h"
 #include "fovea/drive/plausible_lens.h"
-#include "fovea/geometry/sweep_direction_names.h"
 
 namespace fovea {
-
-enum class TimeUnit { kAuto, kSecond, kMillisecond, kMicrosecond, kNanosecond };
-enum class LengthUnit { kAuto, kMeter, kCentimeter, kMillimeter };
-enum class ReferenceKey { kAuto, kStamp, kAbsolute, kFirstPoint, kNone };
-
-constexpr auto names_of(TimeUnit) {
-  return std::array{EnumName<TimeUnit>{TimeUnit::kAuto, "auto"},
-                    EnumName<TimeUnit>{TimeUnit::kSecond, "s"},
-                    EnumName<TimeUnit>{TimeUnit::kMillisecond, "ms"},
-                    EnumName<TimeUnit>{TimeUnit::kMicrosecond, "us"},
-                    EnumName<TimeUnit>{TimeUnit::kNanosecond, "ns"}};
-}
-
-constexpr auto names_of(LengthUnit) {
-  return std::array{EnumName<LengthUnit>{LengthUnit::kAuto, "auto"},
-                    EnumName<LengthUnit>{LengthUnit::kMeter, "m"},
-                    EnumName<LengthUnit>{LengthUnit::kCentimeter, "cm"},
-                    EnumName<LengthUnit>{LengthUnit::kMillimeter, "mm"}};
-}
-
-constexpr auto names_of(ReferenceKey) {
-  return std::array{EnumName<ReferenceKey>{ReferenceKey::kAuto, "auto"},
-                    EnumName<ReferenceKey>{ReferenceKey::kStamp, "stamp"},
-                    EnumName<ReferenceKey>{ReferenceKey::kAbsolute, "absolute"},
-                    EnumName<ReferenceKey>{ReferenceKey::kFirstPoint, "first_point"},
-                    EnumName<ReferenceKey>{ReferenceKey::kNone, "none"}};
-}
 
 inline auto names_of(LensModel) {
   const auto entry = [](LensModel model) { return EnumName<LensModel>{model, to_string(model)}; };
@@ -52,13 +24,8 @@ inline auto names_of(LensModel) {
 namespace {
 
 constexpr int kVersion = 1;
+constexpr std::size_t kMaxLidars = 16;
 constexpr int kMaxCamera = 9;  // config_keys.h knows slices of as many
-
-void check(const std::string& key, double value, double low, double high) {
-  if (value >= low && value <= high) return;  // NaN is outside of everything
-  reject_key(fmt::format("{:.6g} is out of range", value), key,
-             fmt::format("give {:g} to {:g}", low, high));
-}
 
 /// One camera's keys.
 class CameraKeys {
@@ -88,7 +55,7 @@ class CameraKeys {
   /// @param drive_folder  holds that file
   CameraDescription camera(const std::filesystem::path& drive_folder) {
     camera_.index = required(index_, "index", "give a number of 0 to 9");
-    check(key("index"), camera_.index, 0, kMaxCamera);
+    check_key(key("index"), camera_.index, 0, kMaxCamera);
     camera_.folder = folder_;
     camera_.mask = mask_;
     if (calibration_.empty()) {
@@ -99,8 +66,8 @@ class CameraKeys {
     } else {
       read_calibration(drive_folder);
     }
-    check(key("width"), camera_.optics.width, 8, kMaxImageSide);
-    check(key("height"), camera_.optics.height, 8, kMaxImageSide);
+    check_key(key("width"), camera_.optics.width, 8, kMaxImageSide);
+    check_key(key("height"), camera_.optics.height, 8, kMaxImageSide);
     if (const auto problem = lens_problem(camera_.optics)) {
       reject_key(problem->what, key(problem->key), problem->remedy);
     }
@@ -109,7 +76,7 @@ class CameraKeys {
       reject_key("the field of view is out of range", key("field_of_view"),
                  "give 10 to 170 degrees");
     }
-    check(key("delay"), camera_.delay, -1, 1);
+    check_key(key("delay"), camera_.delay, -1, 1);
     const auto T = T_cam_lidar_.motion();
     if (!T) reject_key("a key is missing", T_cam_lidar_.forward.key, "say where the camera sits");
     camera_.T_cam_lidar = *T;
@@ -177,22 +144,18 @@ class CameraKeys {
 /// All keys of a drive.
 class DriveKeys {
  public:
-  DriveKeys(const std::vector<std::string>& camera_names, std::filesystem::path drive_folder)
+  /// @param lidar_names  empty: the drive has one LiDAR, [lidar]
+  DriveKeys(const std::vector<std::string>& lidar_names,
+            const std::vector<std::string>& camera_names, std::filesystem::path drive_folder)
       : drive_folder_(std::move(drive_folder)),
-        cameras_(camera_names.begin(), camera_names.end()) {}
+        lidars_(lidar_names.begin(), lidar_names.end()),
+        cameras_(camera_names.begin(), camera_names.end()) {
+    if (lidars_.empty()) lidars_.emplace_back("");
+  }
 
   void visit(SettingVisitor& visit) {
     visit("version", version_);
-    visit("lidar.folder", scans_);
-    visit("lidar.compensated", drive_.sweep_compensated);
-    visit("lidar.sweep_period_s", drive_.sweep.period);
-    visit("lidar.rotation", drive_.sweep.direction);
-    visit("lidar.sweep_start_deg", sweep_start_deg_);
-    visit("lidar.stamp_phase", drive_.sweep.stamp_phase);
-    visit("lidar.intensity_max", drive_.scan_format.intensity_max);
-    visit("lidar.length_unit", length_unit_);
-    visit("lidar.time_unit", time_unit_);
-    visit("lidar.time_reference", time_reference_);
+    for (LidarKeys& lidar : lidars_) lidar.visit(visit);
     visit("images.tolerance", drive_.image_tolerance);
     T_body_lidar_.visit(visit);
     T_body_imu_.visit(visit);
@@ -208,10 +171,8 @@ class DriveKeys {
           fmt::format("the drive has version {}, this program reads {}", *version_, kVersion),
           "version", "use a newer Fovea");
     }
-    drive_.scans = scans_;
-    finish_scan_format();
-    finish_sweep();
-    check("images.tolerance", drive_.image_tolerance, 0, 1);
+    read_lidars();
+    check_key("images.tolerance", drive_.image_tolerance, 0, 1);
     drive_.T_body_lidar = T_body_lidar_.motion().value_or(drive_.T_body_lidar);
     drive_.T_body_imu = T_body_imu_.motion().value_or(drive_.T_body_imu);
     if (antenna_.size() != 3) {
@@ -226,28 +187,30 @@ class DriveKeys {
   DriveDescription take() { return std::move(drive_); }
 
  private:
-  void finish_scan_format() {
-    StatedScanFormat& format = drive_.scan_format;
-    check("lidar.intensity_max", format.intensity_max.value_or(1), 1e-6, 1e9);
-    constexpr std::array<double, 5> kTimeUnits = {0, 1, 1e-3, 1e-6, 1e-9};
-    constexpr std::array<double, 4> kLengthUnits = {0, 1, 1e-2, 1e-3};
-    constexpr std::array<TimeReference, 5> kReferences = {
-        TimeReference::kStamp, TimeReference::kStamp, TimeReference::kAbsolute,
-        TimeReference::kFirstPoint, TimeReference::kNone};
-    const auto stated = [](const auto& values, auto choice, auto& value) {
-      if (choice != decltype(choice){}) value = values.at(static_cast<std::size_t>(choice));
-    };
-    stated(kTimeUnits, time_unit_, format.time_unit);
-    stated(kLengthUnits, length_unit_, format.length_unit);
-    stated(kReferences, time_reference_, format.time_reference);
-  }
-
-  void finish_sweep() {
-    SweepDescription& sweep = drive_.sweep;
-    check("lidar.sweep_period_s", sweep.period.value_or(0.1), 0.01, 1);
-    check("lidar.sweep_start_deg", sweep_start_deg_.value_or(0), -360, 360);
-    check("lidar.stamp_phase", sweep.stamp_phase.value_or(0), 0, 1);
-    if (sweep_start_deg_) sweep.start_azimuth = *sweep_start_deg_ * kDegree;
+  /// The LiDAR whose table has no pose comes first.
+  void read_lidars() {
+    if (lidars_.size() > kMaxLidars) {
+      reject_key(fmt::format("there are {} LiDARs", lidars_.size()), "lidar",
+                 fmt::format("describe at most {}", kMaxLidars));
+    }
+    std::optional<LidarDescription> first;
+    for (LidarKeys& keys : lidars_) {
+      LidarDescription lidar = keys.lidar();
+      if (keys.has_pose()) {
+        drive_.further_lidars.push_back(std::move(lidar));
+        continue;
+      }
+      if (first) {
+        reject_key(fmt::format("LiDARs {} and {} have no pose", first->name, lidar.name),
+                   keys.pose_key(), "only the one whose frame the other poses name has none");
+      }
+      first = std::move(lidar);
+    }
+    if (!first) {
+      reject_key("every LiDAR has a pose", "lidar",
+                 "leave out T_lidar_sensor of the one whose frame the other poses name");
+    }
+    drive_.lidar = std::move(*first);
   }
 
   void read_cameras() {
@@ -267,18 +230,15 @@ class DriveKeys {
   std::filesystem::path drive_folder_;
   DriveDescription drive_;
   std::optional<int> version_;
-  std::string scans_ = "lidar";
-  std::optional<double> sweep_start_deg_;
-  TimeUnit time_unit_ = TimeUnit::kAuto;
-  LengthUnit length_unit_ = LengthUnit::kAuto;
-  ReferenceKey time_reference_ = ReferenceKey::kAuto;
   MotionKeys T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
   std::vector<double> antenna_{0, 0, 0};
+  std::vector<LidarKeys> lidars_;
   std::vector<CameraKeys> cameras_;
 };
 
 DriveDescription read(const SettingsDocument& document, const std::filesystem::path& drive_folder) {
-  DriveKeys keys(document.tables("camera"), drive_folder);
+  DriveKeys keys(document.tables("lidar", /*among_keys=*/true), document.tables("camera"),
+                 drive_folder);
   document.apply([&](SettingVisitor& visit) { keys.visit(visit); }, [&] { keys.finish(); },
                  "see docs/drives.md for the keys");
   return keys.take();

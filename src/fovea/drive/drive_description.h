@@ -35,12 +35,22 @@ struct SweepDescription {
   std::optional<double> stamp_phase;
 };
 
-struct DriveDescription {
-  std::filesystem::path scans;  ///< folder, below the drive's
+struct LidarDescription {
+  std::string name;              ///< of its table; empty: the drive has one LiDAR
+  std::filesystem::path folder;  ///< of its scans, below the drive's
   StatedScanFormat scan_format;
   bool sweep_compensated = false;
   SweepDescription sweep;
-  double image_tolerance = 0.06;  ///< s, between an image and its sweep's middle
+  RigidMotion T_lidar_sensor = RigidMotion::Identity();
+
+  /// Its table in drive.toml: "lidar" or "lidar.NAME".
+  std::string table() const { return name.empty() ? "lidar" : "lidar." + name; }
+};
+
+struct DriveDescription {
+  LidarDescription lidar;  ///< the first one: its frame and its stamps are the drive's
+  std::vector<LidarDescription> further_lidars;  ///< by name
+  double image_tolerance = 0.06;                 ///< s, between an image and its sweep's middle
   /// Body: what poses.csv and the attitudes of gnss.csv are of.
   RigidMotion T_body_lidar = RigidMotion::Identity();
   RigidMotion T_body_imu = RigidMotion::Identity();        ///< of imu.csv's orientations

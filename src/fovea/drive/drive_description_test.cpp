@@ -32,8 +32,8 @@ std::string error(const std::string& text) {
 
 TEST(DriveDescription, TheSmallest) {
   const DriveDescription drive = parse(kSmallest);
-  EXPECT_EQ(drive.scans, "lidar");
-  EXPECT_FALSE(drive.sweep_compensated);
+  EXPECT_EQ(drive.lidar.folder, "lidar");
+  EXPECT_FALSE(drive.lidar.sweep_compensated);
   EXPECT_TRUE(drive.T_body_lidar.isApprox(RigidMotion::Identity()));
   ASSERT_EQ(drive.cameras.size(), 1u);
   const CameraDescription& camera = drive.cameras[0];
@@ -51,14 +51,38 @@ TEST(DriveDescription, TheSmallest) {
 
 TEST(DriveDescription, ADriveMayHaveNoCamera) { EXPECT_TRUE(parse("version = 1").cameras.empty()); }
 
+TEST(DriveDescription, SeveralLidarsHaveNames) {
+  const std::string top = kSmallest + "[lidar.top]\nintensity_max = 255\n";
+  const std::string left =
+      "[lidar.left]\nfolder = \"other\"\nT_lidar_sensor = {translation = [0, 1, 0]}\n";
+  const DriveDescription drive = parse(top + left);
+  EXPECT_EQ(drive.lidar.name, "top");
+  EXPECT_EQ(drive.lidar.folder, "lidar/top");
+  EXPECT_EQ(drive.lidar.scan_format.intensity_max, 255);
+  ASSERT_EQ(drive.further_lidars.size(), 1u);
+  EXPECT_EQ(drive.further_lidars[0].name, "left");
+  EXPECT_EQ(drive.further_lidars[0].folder, "other");
+  EXPECT_EQ(drive.further_lidars[0].T_lidar_sensor.translation().y(), 1);
+  const DriveDescription inverse =
+      parse(top + "[lidar.left]\nT_sensor_lidar = {translation = [0, 1, 0]}\n");
+  EXPECT_EQ(inverse.further_lidars.at(0).T_lidar_sensor.translation().y(), -1);
+
+  EXPECT_THAT(error(kSmallest + left), HasSubstr("every LiDAR has a pose"));
+  EXPECT_THAT(error(top + "[lidar.left]\n"), AllOf(HasSubstr("top"), HasSubstr("left")));
+  EXPECT_THAT(error(top + left + "[lidar]\nintensity_max = 1\n"), HasSubstr("lidar.intensity_max"));
+  EXPECT_THAT(error(top + "[lidar.left]\nstamp_phase = 2\n"), HasSubstr("lidar.left.stamp_phase"));
+  EXPECT_THAT(error(kSmallest + "[lidar]\nT_lidar_sensor = {translation = [0, 1, 0]}\n"),
+              HasSubstr("T_lidar_sensor"));
+}
+
 TEST(DriveDescription, SweepKeysAreAbsentUnlessStated) {
-  const SweepDescription absent = parse(kSmallest).sweep;
+  const SweepDescription absent = parse(kSmallest).lidar.sweep;
   EXPECT_FALSE(absent.period || absent.direction || absent.start_azimuth || absent.stamp_phase);
   const auto sweep = [](const std::string& lines) { return kSmallest + "[lidar]\n" + lines; };
   const SweepDescription stated = parse(sweep("sweep_period_s = 0.2\nrotation = "
                                               "\"counterclockwise\"\nsweep_start_deg = -90\n"
                                               "stamp_phase = 1\n"))
-                                      .sweep;
+                                      .lidar.sweep;
   EXPECT_EQ(stated.period, 0.2);
   EXPECT_EQ(stated.direction, SweepDirection::kCounterclockwise);
   EXPECT_NEAR(stated.start_azimuth.value(), -std::numbers::pi / 2, 1e-15);
@@ -72,7 +96,7 @@ TEST(DriveDescription, SweepKeysAreAbsentUnlessStated) {
 TEST(DriveDescription, UnitsAreRecognizedUnlessStated) {
   for (const char* keys :
        {"", "[lidar]\ntime_unit = \"auto\"\nlength_unit = \"auto\"\ntime_reference = \"auto\"\n"}) {
-    const StatedScanFormat format = parse(std::string(kSmallest) + keys).scan_format;
+    const StatedScanFormat format = parse(std::string(kSmallest) + keys).lidar.scan_format;
     EXPECT_FALSE(format.intensity_max || format.length_unit || format.time_unit);
     EXPECT_FALSE(format.time_reference);
   }
@@ -115,12 +139,12 @@ distortion_model = "rational_polynomial"
 D = [0.3, 0.1, 0.001, 0.002, 0.01, 0.5, 0.2, 0.008, 0, 0, 0, 0]
 T_cam_lidar = {translation = [0, 0, 0.1]}
 )");
-  EXPECT_EQ(drive.scans, "scans");
-  EXPECT_TRUE(drive.sweep_compensated);
-  EXPECT_EQ(drive.scan_format.intensity_max, 255);
-  EXPECT_EQ(drive.scan_format.length_unit, 1e-3);
-  EXPECT_EQ(drive.scan_format.time_unit, 1e-6);
-  EXPECT_EQ(drive.scan_format.time_reference, TimeReference::kAbsolute);
+  EXPECT_EQ(drive.lidar.folder, "scans");
+  EXPECT_TRUE(drive.lidar.sweep_compensated);
+  EXPECT_EQ(drive.lidar.scan_format.intensity_max, 255);
+  EXPECT_EQ(drive.lidar.scan_format.length_unit, 1e-3);
+  EXPECT_EQ(drive.lidar.scan_format.time_unit, 1e-6);
+  EXPECT_EQ(drive.lidar.scan_format.time_reference, TimeReference::kAbsolute);
   EXPECT_EQ(drive.image_tolerance, 0.02);
   EXPECT_LT((drive.T_body_lidar.translation() - Eigen::Vector3d(1, 0, -0.5)).norm(), 1e-12);
   EXPECT_EQ(drive.antenna_body, Eigen::Vector3d(0.5, 0, 1));

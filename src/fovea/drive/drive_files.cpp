@@ -172,6 +172,8 @@ void find_stamps(const std::filesystem::path& file,
   find_sweep_period(file, stamps, info);
 }
 
+bool can_be_sweep_period(double step) { return step >= kMinPeriod && step <= kMaxPeriod; }
+
 bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stamps,
                        DriveInfo& info) {
   const std::optional<double> step = median_period(stamps);
@@ -182,7 +184,7 @@ bool find_sweep_period(const std::filesystem::path& file, const TimeStamps& stam
     throw InputError(fmt::format("stamps are {:.4g} s apart, which are no sweeps", period),
                      file.string(), "check the unit of the times");
   }
-  if (period >= kMinPeriod && period <= kMaxPeriod) {
+  if (can_be_sweep_period(period)) {
     info.sweep.period = period;
     return true;
   }

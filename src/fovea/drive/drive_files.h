@@ -15,6 +15,17 @@
 
 namespace fovea {
 
+/// The scans of a LiDAR besides the first one.
+struct FurtherLidar {
+  std::string name;
+  RigidMotion T_lidar_sensor = RigidMotion::Identity();
+  NumberedFiles scans;           ///< by frame
+  std::map<int, TimeNs> stamps;  ///< by frame; absent: that of the frame
+  ScanFormat format;
+  SweepTiming sweep;  ///< of scans whose points have no times
+  bool sweep_compensated = false;
+};
+
 /// Where a drive's parts lie and which of them are usable.
 struct DriveFiles {
   NumberedFiles scans;
@@ -22,6 +33,8 @@ struct DriveFiles {
   TimeStamps stamps;                  ///< unused where !info.has_time_stamps
   bool stamps_name_scans = false;     ///< their file has numbers of scans; else a line a scan
   ScanFormat scan_format;
+  std::vector<FurtherLidar> further_lidars;
+  bool first_lidar_compensated = false;  ///< where there are further ones
   /// One a camera, empty where its images are rectified already; or none at all.
   std::vector<std::optional<ImageRectifier>> rectifiers;
 };
@@ -79,6 +92,9 @@ void require_cameras_of_masks(const DriveOptions& options, const DriveInfo& info
 void find_stamps(const std::filesystem::path& file,
                  TimeStamps (*read)(const std::filesystem::path&), DriveInfo& info,
                  DriveFiles& files);
+
+/// Whether a step between stamps can be the period of a sweep, s.
+bool can_be_sweep_period(double step);
 
 /// Takes the sweep's period from the stamps into `info`. Returns false if they have no step, or,
 /// with a note, if it cannot be a period. InputError for steps below 1 ms.

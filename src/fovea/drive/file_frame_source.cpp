@@ -9,7 +9,9 @@
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/lost_drive.h"
+#include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/scans/lidar_scan.h"
+#include "fovea/drive/scans/sensor_scans.h"
 
 namespace fovea {
 namespace {
@@ -33,12 +35,16 @@ class FileFrameSource : public FrameSource {
     try {
       LidarScan scan = read_lidar_scan(files_.scans.at(index), files_.scan_format, frame.stamp);
       frame.scan = std::move(scan.points);
-      if (info_.sweep_compensated) frame.scan.time.clear();
       frame.dropped_points = scan.dropped;
+      if (info_.sweep_compensated) frame.scan.time.clear();
+      if (!files_.further_lidars.empty()) {
+        set_times(frame.scan, files_.first_lidar_compensated, info_.sweep);
+      }
     } catch (const InputError& error) {
       require_drive(files_.scans, index, info_.path);
       return SkippedFrame{index, SkipReason::kDamagedScan, error.what()};
     }
+    add_further_scans(frame);
     read_images(frame);
     const std::size_t cameras = files_.images.size();
     if (cameras > 0 && frame.missing_images.size() == cameras) return without_images(frame);
@@ -50,6 +56,7 @@ class FileFrameSource : public FrameSource {
       if (const auto file = files.find(index); file != files.end()) expect_file(file->second);
     };
     expect_of(files_.scans);
+    for (const FurtherLidar& lidar : files_.further_lidars) expect_of(lidar.scans);
     for (const NumberedFiles& images : files_.images) expect_of(images);
   }
 
@@ -79,6 +86,39 @@ class FileFrameSource : public FrameSource {
       return fmt::format("the time stamp {} is malformed", place);
     }
     return fmt::format("no time stamp {}", place);
+  }
+
+  /// Times from the stamp of the scan.
+  static void set_times(PointCloud& scan, bool is_compensated, const SweepTiming& sweep) {
+    if (is_compensated) {
+      scan.time.assign(scan.size(), 0);
+    } else if (scan.time.empty()) {
+      add_point_times(scan, sweep);
+    }
+  }
+
+  void add_further_scans(Frame& frame) const {
+    for (std::size_t k = 0; k < files_.further_lidars.size(); ++k) {
+      const FurtherLidar& lidar = files_.further_lidars[k];
+      const auto file = lidar.scans.find(frame.index);
+      if (file == lidar.scans.end()) {
+        frame.missing_scans.push_back({lidar.name, SkipReason::kMissingScan,
+                                       fmt::format("no scan for frame {}", frame.index)});
+        continue;
+      }
+      const auto found = lidar.stamps.find(frame.index);
+      const TimeNs stamp = found == lidar.stamps.end() ? frame.stamp : found->second;
+      try {
+        LidarScan scan = read_lidar_scan(file->second, lidar.format, stamp);
+        frame.dropped_points += scan.dropped;
+        set_times(scan.points, lidar.sweep_compensated, lidar.sweep);
+        append_scan(frame.scan, std::move(scan.points), static_cast<std::uint16_t>(k + 1),
+                    lidar.T_lidar_sensor, seconds(stamp - frame.stamp));
+      } catch (const InputError& error) {
+        require_drive(lidar.scans, frame.index, info_.path);
+        frame.missing_scans.push_back({lidar.name, SkipReason::kDamagedScan, error.what()});
+      }
+    }
   }
 
   /// Decodes the images of all cameras at once; those that cannot be used stay empty.

@@ -39,16 +39,25 @@ struct MissingImage {
   std::string detail;  ///< one line: what and which file
 };
 
+/// A scan of a further LiDAR that a frame lacks.
+struct MissingScan {
+  std::string lidar;  ///< its name
+  SkipReason reason = SkipReason::kMissingScan;
+  std::string detail;  ///< one line: what and which file
+};
+
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
-  int index = 0;                 ///< the number in the file's name
-  TimeNs stamp = 0;              ///< scan time; see DriveInfo::camera_at() for the images
-  PointCloud scan;               ///< lidar frame, as measured, with intensity
+  int index = 0;     ///< the number in the file's name
+  TimeNs stamp = 0;  ///< scan time; see DriveInfo::camera_at() for the images
+  /// Lidar frame, as measured, with intensity. Of several LiDARs with the columns sensor and time.
+  PointCloud scan;
   DroppedPoints dropped_points;  ///< not in `scan`
   /// One a camera of the calibration, in its order; empty where the camera has none that can be
   /// used, which at most all but one are.
   std::vector<Image> images;
   std::vector<MissingImage> missing_images;  ///< why images are empty, in the cameras' order
+  std::vector<MissingScan> missing_scans;    ///< the frame is used without them
 };
 
 /// A frame that cannot be used, for want of a scan, a stamp or any image: counted and reported, and
@@ -85,8 +94,9 @@ struct DriveInfo : Messages {
   SweepTiming sweep;               ///< of scans whose points have no times
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
   bool has_time_stamps = true;     ///< false: counted as 10 Hz
-  /// Profiles of the LiDARs; empty until they are estimated (pipeline/drive_sensors.h).
-  std::vector<SensorProfile> lidars;
+  /// The LiDARs by number. Empty for a drive with one, until its profile is estimated
+  /// (pipeline/drive_sensors.h); of several the profiles have name and sweep alone until then.
+  std::vector<MountedLidar> lidars;
   /// Whether the stamps of images are capture times. False (KITTI): an image counts as taken at its
   /// scan's stamp, plus Camera::image_delay.
   bool image_stamps_are_capture_times = false;

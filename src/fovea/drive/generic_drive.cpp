@@ -8,12 +8,10 @@
 #include "fovea/drive/drive_description.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/drive_stamps.h"
-#include "fovea/drive/first_scans.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/lidar_scans.h"
 #include "fovea/drive/navigation/generic_navigation.h"
 #include "fovea/drive/nearest_images.h"
-#include "fovea/drive/scans/described_sweep.h"
-#include "fovea/drive/scans/recognized_format.h"
 #include "fovea/geometry/rectified_camera.h"
 
 namespace fovea {
@@ -22,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
-constexpr int kFirstScans = 5;            // whose numbers give the units
 
 class GenericDrive {
  public:
@@ -30,13 +27,14 @@ class GenericDrive {
       : options_(options), description_(read_drive_description(path / "drive.toml")) {
     info_.path = path;
     info_.kind = "generic";
-    info_.sweep_compensated = description_.sweep_compensated;
+    info_.sweep_compensated = description_.lidar.sweep_compensated;
   }
 
   std::unique_ptr<FrameSource> open() {
     find_scans();
     find_scan_stamps();
     find_scan_format();
+    find_further_lidars();
     if (options_.use_images) find_cameras();
     if (options_.use_navigation) find_navigation();
     return make_frame_source(std::move(info_), std::move(files_));
@@ -44,69 +42,66 @@ class GenericDrive {
 
  private:
   void find_scans() {
-    const fs::path folder = info_.path / description_.scans;
-    files_.scans = list_numbered_files(folder, {".bin", ".pcd", ".ply"});
+    files_.scans = list_scans(info_.path, description_.lidar);
     if (files_.scans.empty()) {
-      throw InputError("the drive has no scan", folder.string(),
+      throw InputError("the drive has no scan", (info_.path / description_.lidar.folder).string(),
                        "put scans there as NUMBER.pcd, .ply or .bin (docs/drives.md)");
-    }
-    if (files_.scans.rbegin()->first >= kMaxFileNumber) {
-      throw InputError(fmt::format("a scan's number is over {}", kMaxFileNumber - 1),
-                       files_.scans.rbegin()->second.string(), "number the scans from 0 on");
     }
     std::tie(info_.begin, info_.end) = frame_range(files_.scans, options_, info_.path);
   }
 
   void find_scan_stamps() {
-    const fs::path file = info_.path / description_.scans / "stamps.csv";
+    const fs::path file = info_.path / description_.lidar.folder / "stamps.csv";
     files_.stamps_name_scans = true;
-    if (fs::exists(file)) {
-      files_.stamps.times.resize(static_cast<std::size_t>(files_.scans.rbegin()->first) + 1);
-      for (const auto& [scan, time] : read_scan_stamps(file, info_)) {
-        if (files_.scans.contains(scan)) files_.stamps.times[static_cast<std::size_t>(scan)] = time;
-      }
-      remove_out_of_order(files_.stamps);
-    }
+    files_.stamps = read_stamps_of_scans(file, files_.scans, info_);
     info_.has_time_stamps = files_.stamps.any();
     if (!info_.has_time_stamps) {
       info_.warn(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
                              fs::exists(file) ? "has no usable line" : "is missing"));
       return;
     }
-    if (const std::size_t count = files_.stamps.out_of_order.size(); count > 0) {
-      info_.warn(
-          fmt::format("{} stamps of {} are out of order (the first of scan {}): "
-                      "these scans are skipped",
-                      count, file.string(), files_.stamps.out_of_order.front()));
-    }
-    if (!description_.sweep.period && find_sweep_period(file, files_.stamps, info_)) {
+    if (!description_.lidar.sweep.period && find_sweep_period(file, files_.stamps, info_)) {
       stamp_step_ = info_.sweep.period;
     }
   }
 
-  /// Units of the scans and timing of the sweeps, by drive.toml and the first scans.
   void find_scan_format() {
     const auto stamp = [&](int scan) { return frame_stamp(info_, files_.stamps, scan); };
-    const std::vector<ScanNumbers> numbers = read_first_numbers(files_.scans, kFirstScans, stamp);
-    StatedScanFormat stated = description_.scan_format;
-    if (info_.sweep_compensated) stated.time_reference = TimeReference::kNone;
-    files_.scan_format =
-        recognize_format_of_drive(numbers, stated, info_.path / "drive.toml", info_.notes);
-    info_.sweep = sweep_timing(description_.sweep, stamp_step_);
-    if (info_.sweep_compensated) return;
-    const auto middle = first_sweep_middle(files_.scans, files_.scan_format, stamp);
-    sweep_middle_ = middle.value_or(info_.sweep.middle_time());
-    if (!numbers.empty() && !middle) {
-      const SweepDescription& sweep = description_.sweep;
-      std::string note = assumed_sweep_note(info_.sweep, sweep, stamp_step_);
-      const bool all_stated =
-          sweep.period && sweep.direction && sweep.start_azimuth && sweep.stamp_phase;
-      if (all_stated) {
-        info_.notes.push_back(std::move(note));
-      } else {
-        info_.warn(std::move(note));
-      }
+    const ScanReading reading =
+        recognize_scans(info_.path, description_.lidar, files_.scans, stamp, stamp_step_, info_);
+    files_.scan_format = reading.format;
+    info_.sweep = reading.sweep;
+    sweep_middle_ = reading.sweep_middle;
+  }
+
+  /// Scans of several LiDARs are merged as measured: each point has its time.
+  void find_further_lidars() {
+    if (description_.further_lidars.empty()) return;
+    info_.sweep_compensated = false;
+    files_.first_lidar_compensated = description_.lidar.sweep_compensated;
+    const NumberedTimes frames = info_.has_time_stamps ? stamps_of_scans() : NumberedTimes();
+    add_lidar(description_.lidar.name, info_.sweep, RigidMotion::Identity());
+    for (const LidarDescription& lidar : description_.further_lidars) {
+      files_.further_lidars.push_back(
+          find_further_lidar(info_.path, lidar, frames, sweep_middle_, info_));
+      add_lidar(lidar.name, files_.further_lidars.back().sweep, lidar.T_lidar_sensor);
     }
+  }
+
+  void add_lidar(const std::string& name, const SweepTiming& sweep,
+                 const RigidMotion& T_lidar_sensor) {
+    MountedLidar& lidar = info_.lidars.emplace_back();
+    lidar.profile.name = name;
+    lidar.profile.sweep = sweep;
+    lidar.T_lidar_sensor = T_lidar_sensor;
+  }
+
+  NumberedTimes stamps_of_scans() const {
+    NumberedTimes scans;
+    for (const auto& [scan, path] : files_.scans) {
+      if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
+    }
+    return scans;
   }
 
   /// The images of those cameras that have any, by camera number.
@@ -204,10 +199,7 @@ class GenericDrive {
       info_.warn(file.string() + " is not used: the scans have no stamps");
       return images;
     }
-    NumberedTimes scans;
-    for (const auto& [scan, path] : files_.scans) {
-      if (const auto time = frame_stamp(info_, files_.stamps, scan)) scans.emplace(scan, *time);
-    }
+    const NumberedTimes scans = stamps_of_scans();
     NumberedTimes times = read_image_stamps(file, scans, info_);
     std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
     const ImageMatches matches =

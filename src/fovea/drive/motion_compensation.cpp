@@ -142,6 +142,15 @@ class AzimuthTime {
 
 }  // namespace
 
+void add_point_times(PointCloud& scan_sensor, const SweepTiming& sweep) {
+  const AzimuthTime azimuth_time(sweep);
+  scan_sensor.time.clear();
+  scan_sensor.time.reserve(scan_sensor.size());
+  for (const Eigen::Vector3f& p : scan_sensor.position) {
+    scan_sensor.time.push_back(float(azimuth_time(double(quick_atan2(p.y(), p.x())))));
+  }
+}
+
 void compensate_sweep(PointCloud& scan_lidar, const SweepMotion& motion, const SweepTiming& sweep) {
   if (!scan_lidar.origin.isZero()) {
     throw std::invalid_argument("a sweep's origin must be the LiDAR: azimuths are taken from it");

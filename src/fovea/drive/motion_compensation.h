@@ -7,6 +7,10 @@
 
 namespace fovea {
 
+/// Gives each point of a scan without times its time from the stamp (s), by its azimuth.
+/// @param scan_sensor  frame of the LiDAR, as measured
+void add_point_times(PointCloud& scan_sensor, const SweepTiming& sweep);
+
 /// Moves every point of a sweep to where it was in the LiDAR frame at the scan's stamp.
 ///
 /// If the points have times, the function uses them and removes their column. Otherwise the azimuth

@@ -47,6 +47,12 @@ Eigen::Matrix3d read_quaternion(const Eigen::Vector4d& q, const std::string& key
   throw ConfigError(problem, key, remedy);
 }
 
+void check_key(const std::string& key, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  reject_key(fmt::format("{:.6g} is out of range", value), key,
+             fmt::format("give {:g} to {:g}", low, high));
+}
+
 void check_lever(const std::string& key, const Eigen::Vector3d& t) {
   if (t.norm() <= kMaxLever) return;
   reject_key(fmt::format("the distance is {:.6g} m, over {:g} m", t.norm(), kMaxLever), key,

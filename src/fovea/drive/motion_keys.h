@@ -15,6 +15,9 @@ namespace fovea {
 [[noreturn]] void reject_key(std::string_view problem, const std::string& key,
                              std::string_view remedy);
 
+/// Rejects a value outside of [low, high], and NaN.
+void check_key(const std::string& key, double value, double low, double high);
+
 /// Rejects a distance that no vehicle has, and NaN.
 void check_lever(const std::string& key, const Eigen::Vector3d& t);
 

@@ -46,7 +46,7 @@ class UncoloredScorer {
       const float squared = tree_.nearest(score.positions.back()).squared_distance;
       score.errors.position.push_back(std::sqrt(squared));
     }
-    free_space_.add_scan(scan, placed.T_local_lidar, /*cameras=*/{});
+    free_space_.add_scan(scan, placed.T_local_lidar, /*cameras=*/{}, drive_.info().lidars);
     return score;
   }
 

@@ -41,6 +41,7 @@ PointCloud compensated_scan(const PointCloud& scan_lidar, const PlacedFrame& pla
                             const DriveInfo& drive) {
   PointCloud compensated;
   compensated.position = scan_lidar.position;
+  compensated.sensor = scan_lidar.sensor;
   if (placed.motion && !drive.sweep_compensated) {
     compensated.time = scan_lidar.time;
     compensate_sweep(compensated, *placed.motion, drive.sweep);

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "fovea/drive/scans/sensor_scans.h"
+
 namespace fovea {
 namespace {
 
@@ -144,22 +146,36 @@ FreeSpaceTest::FreeSpaceTest(const ColoredPoints& map)
     : map_(map), state_(map.position.size(), 0) {}
 
 void FreeSpaceTest::add_scan(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
-                             const std::vector<Camera>& cameras) {
-  const ReturnGrid returns(scan_lidar);
-  const RigidMotion T_map_lidar = Eigen::Translation3d(-map_.origin) * T_local_lidar;
-  const Eigen::Isometry3f T_lidar_map = T_map_lidar.inverse().cast<float>();
-  const Eigen::Vector3f lidar_in_map = T_map_lidar.translation().cast<float>();
+                             const std::vector<Camera>& cameras,
+                             std::span<const MountedLidar> lidars) {
+  if (lidars.size() < 2) return add_scan_of(scan_lidar, T_local_lidar, cameras);
+  const std::vector<PointCloud> scans = scans_by_sensor(scan_lidar, lidars);
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    std::vector<Camera> at_sensor = cameras;
+    for (Camera& camera : at_sensor) {
+      camera.T_cam_lidar = camera.T_cam_lidar * lidars[k].T_lidar_sensor;
+    }
+    add_scan_of(scans[k], T_local_lidar * lidars[k].T_lidar_sensor, at_sensor);
+  }
+}
+
+void FreeSpaceTest::add_scan_of(const PointCloud& scan_sensor, const RigidMotion& T_local_sensor,
+                                const std::vector<Camera>& cameras) {
+  const ReturnGrid returns(scan_sensor);
+  const RigidMotion T_map_sensor = Eigen::Translation3d(-map_.origin) * T_local_sensor;
+  const Eigen::Isometry3f T_sensor_map = T_map_sensor.inverse().cast<float>();
+  const Eigen::Vector3f sensor_in_map = T_map_sensor.translation().cast<float>();
   for (const PointRun& run : map_.runs) {
-    if (run.distance_to(lidar_in_map) >= kEvaluatedFar) continue;
+    if (run.distance_to(sensor_in_map) >= kEvaluatedFar) continue;
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      const Eigen::Vector3f p_lidar = T_lidar_map * map_.position[i];
-      const float range = p_lidar.norm();
+      const Eigen::Vector3f p_sensor = T_sensor_map * map_.position[i];
+      const float range = p_sensor.norm();
       if (!(range > kEvaluatedNear && range < kEvaluatedFar)) continue;
       // Other scans may be setting bits of the same point; bits are only ever set.
       std::atomic_ref<std::uint8_t> state(state_[i]);
       if ((state.load(std::memory_order_relaxed) & kEnclosedBit) != 0) continue;
-      if (!in_any_view(p_lidar, cameras)) continue;
-      const ReturnGrid::Verdict verdict = returns.judge(p_lidar / range, range);
+      if (!in_any_view(p_sensor, cameras)) continue;
+      const ReturnGrid::Verdict verdict = returns.judge(p_sensor / range, range);
       state.fetch_or(bits_of(verdict), std::memory_order_relaxed);
     }
   }

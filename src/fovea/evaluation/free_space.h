@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fovea/evaluation/evaluated_set.h"
+#include "fovea/geometry/sensor_profile.h"
 #include "fovea/map/colored_points.h"
 
 namespace fovea {
@@ -27,8 +29,9 @@ class FreeSpaceTest {
   /// `cameras` (without cameras: in any direction) and within the cone of at least one return.
   /// Thread-safe; the result does not depend on the order of scans.
   /// @param scan_lidar  the whole scan, motion compensated: returns at any range count
+  /// @param lidars      whose returns these are; empty: one
   void add_scan(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar,
-                const std::vector<Camera>& cameras);
+                const std::vector<Camera>& cameras, std::span<const MountedLidar> lidars = {});
 
   struct Result {
     std::size_t tested = 0;     ///< map points that any scan tested
@@ -43,6 +46,10 @@ class FreeSpaceTest {
   std::vector<std::uint8_t> tested() const;
 
  private:
+  /// The scan of one LiDAR, in its frame.
+  void add_scan_of(const PointCloud& scan_sensor, const RigidMotion& T_local_sensor,
+                   const std::vector<Camera>& cameras);
+
   const ColoredPoints& map_;
   std::vector<std::uint8_t> state_;  // bits of each map point, see the source
 };

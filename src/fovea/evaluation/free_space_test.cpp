@@ -191,4 +191,19 @@ TEST(FreeSpace, AgreesWithTheDefinitionInEveryDirection) {
   }
 }
 
+TEST(FreeSpace, RaysBeginAtTheLidarThatMeasured) {
+  // The second LiDAR is 8 m to the left. A point between the first one and the wall is not in its
+  // rays, and one on its own ray is not in those of the first one.
+  std::vector<MountedLidar> lidars(2);
+  lidars[1].T_lidar_sensor.translation().y() = 8;
+  PointCloud scan;
+  scan.position = {{10, 8, 0}};
+  scan.sensor = {1};
+  const ColoredPoints map = map_of({{5, 4, 0}, {5, 8, 0}});
+  FreeSpaceTest test(map);
+  test.add_scan(scan, RigidMotion::Identity(), /*cameras=*/{}, lidars);
+  EXPECT_EQ(test.tested(), (std::vector<std::uint8_t>{0, 1}));
+  EXPECT_EQ(test.result().violating, 1u);
+}
+
 }  // namespace fovea::free_space_test

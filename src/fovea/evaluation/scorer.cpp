@@ -16,7 +16,8 @@ void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera
   for (std::size_t i = 0; i < view.pixel.size(); ++i) {
     const Eigen::Vector3d p_lidar = scan.position[view.scan_index[i]].cast<double>();
     const double distance = (camera.T_cam_lidar * p_lidar).norm();
-    score.hidden.push_back(projection.hidden(view.pixel[i], distance) ? 1 : 0);
+    const std::uint16_t sensor = scan.sensor.empty() ? 0 : scan.sensor[view.scan_index[i]];
+    score.hidden.push_back(projection.hidden(view.pixel[i], distance, sensor) ? 1 : 0);
     score.near_edge.push_back(projection.near_edge(view.pixel[i], distance) ? 1 : 0);
   }
 }
@@ -103,7 +104,7 @@ FrameScore Scorer::score(const PlacedFrame& placed) {
     score.unscored_views.clear();
     return score;
   }
-  free_space_.add_scan(scan, placed.T_local_lidar, cameras);
+  free_space_.add_scan(scan, placed.T_local_lidar, cameras, drive_.info().lidars);
   return score;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fovea/geometry/rigid_motion.h"
+
 namespace fovea {
 
 /// Direction of rotation, seen from above.
@@ -42,6 +44,13 @@ struct SensorProfile {
   std::optional<double> height;  ///< m above the ground; absent where no ground is in view
 
   bool operator==(const SensorProfile&) const = default;
+};
+
+/// A LiDAR on a vehicle.
+struct MountedLidar {
+  SensorProfile profile;
+  /// The frame `lidar` of a drive is that of its first LiDAR.
+  RigidMotion T_lidar_sensor = RigidMotion::Identity();
 };
 
 /// Height of a LiDAR on the roof of a car (m), for profiles that do not know theirs.

@@ -11,6 +11,7 @@
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/motion_compensation.h"
+#include "fovea/drive/scans/sensor_scans.h"
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/optimizer.h"
@@ -167,7 +168,9 @@ Localizer::Scan Localizer::prepare(const Frame& frame,
   std::vector<Eigen::Vector3f> near;
   std::copy_if(scan_lidar.position.begin(), scan_lidar.position.end(), std::back_inserter(near),
                [](const Eigen::Vector3f& p) { return p.norm() < float(kLocalizationRange); });
-  return {voxel_thinned(std::move(near), MapSurfaces::kVoxel), RangeImage(scan_lidar.position)};
+  // What the first LiDAR sees through: the image is in its frame.
+  const PointCloud first = scans_by_sensor(scan_lidar, drive_.lidars).front();
+  return {voxel_thinned(std::move(near), MapSurfaces::kVoxel), RangeImage(first.position)};
 }
 
 RegistrationCloud Localizer::covered(const Scan& scan, const PriorMap::Target& target,

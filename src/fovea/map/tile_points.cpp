@@ -97,6 +97,7 @@ TilePoints TilePoints::of(const PointCloud& tile) {
   for (std::size_t i = 0; i < tile.size(); ++i) points.colors.push_back(color_of(tile, i));
   for_each_run_column(points, tile, [](auto& to, const auto& from) { to.append(from); });
   if (has_coarse(tile.sampling_level)) points.sampling_level.append(tile.sampling_level);
+  points.sensor.append(tile.sensor);
   points.widen_boxes(0);
   return points;
 }
@@ -128,6 +129,8 @@ PointCloud TilePoints::cloud() const {
   });
   tile.sampling_level.resize(size());  // empty: 0
   sampling_level.copy_to(tile.sampling_level);
+  tile.sensor.resize(sensor.size());
+  sensor.copy_to(tile.sensor);
   return tile;
 }
 
@@ -166,6 +169,12 @@ void TilePoints::append(const PointCloud& points, const TilePlaces& places,
     }
     if (is_coarse || !sampling_level.empty()) {
       for (const Range& part : ranges) sampling_level.append(levels(part));
+    }
+  }
+  if (!points.sensor.empty()) {
+    if (sensor.empty()) sensor.push_back(0, std::uint32_t(before));
+    for (const Range& part : ranges) {
+      sensor.append(std::span(points.sensor).subspan(part.begin, part.end - part.begin));
     }
   }
   for_each_default_column(*this, [&](auto& column) {

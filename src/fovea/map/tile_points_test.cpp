@@ -69,6 +69,29 @@ TEST(TilePoints, AppendedAndKeptPointsAreThoseOfTheCloud) {
   expect_same_columns(points.cloud(), TilePoints::of(expected.select({1, 4})).cloud());
 }
 
+TEST(TilePoints, KeepsTheLidarsOfPointsFromSeveral) {
+  PointCloud one = random_tile(5), two = random_tile(3);
+  two.sensor = {1, 0, 2};
+  const auto append = [](TilePoints& points, const PointCloud& cloud) {
+    TilePlaces places;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const Eigen::Vector3f& p : cloud.position) {
+        places[axis].push_back(position_steps(p[Eigen::Index(axis)]));
+      }
+    }
+    const TilePoints::Range all{0, std::uint32_t(cloud.size())};
+    points.append(cloud, places, std::span(&all, 1));
+  };
+  TilePoints points;
+  append(points, one);
+  EXPECT_TRUE(points.cloud().sensor.empty());
+  append(points, two);
+  append(points, one);
+  EXPECT_EQ(points.cloud().sensor,
+            (std::vector<std::uint16_t>{0, 0, 0, 0, 0, 1, 0, 2, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(TilePoints::of(two).cloud().sensor, two.sensor);
+}
+
 TEST(TilePoints, BoxesEndAtThePoints) {
   TilePoints points = TilePoints::of(one_point_each({{1, 2, 0.5f}, {0.25f, 3, 4}}));
   EXPECT_EQ(points.box.low, (TilePoints::Steps{250, 2000, 500}));

@@ -18,22 +18,28 @@ std::vector<AngularSlice> FovealOptions::slices_of(int camera) const {
   return own != camera_slices.end() ? own->second : slices;
 }
 
-FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera)
+FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera,
+                           const std::vector<Eigen::Vector3d>& lidar_origins)
     : options_(options),
       camera_(camera),
-      lidar_in_cam_(camera.T_cam_lidar.translation().cast<float>()),
+      reach_(options.reach()),
       near_range2_(static_cast<float>(options.near_range * options.near_range)),
       far_range2_(static_cast<float>(options.far_range * options.far_range)),
       reach2_(static_cast<float>(options.reach() * options.reach())) {
+  for (const Eigen::Vector3d& origin : lidar_origins) {
+    lidars_in_cam_.emplace_back((camera.T_cam_lidar * origin).cast<float>());
+    reach_ = std::max(reach_, options.reach() + origin.norm());
+  }
   for (const AngularSlice& s : options.slices_of(camera.index)) {
     slices_.push_back({float(std::tan(s.azimuth_min)), float(std::tan(s.azimuth_max)),
                        float(std::tan(s.elevation_min)), float(std::tan(s.elevation_max))});
   }
 }
 
-bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const {
+bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel,
+                            std::size_t sensor) const {
   if (!(p_cam.z() > float(Camera::kMinDepth))) return false;
-  const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
+  const float range2 = (p_cam - lidars_in_cam_[sensor]).squaredNorm();
   if (!(range2 > near_range2_ && range2 < reach2_)) return false;
   const float inverse_depth = 1 / p_cam.z();
   pixel = {float(camera_.fx) * p_cam.x() * inverse_depth + float(camera_.cx),
@@ -64,7 +70,8 @@ PointCloud foveal_points(const PointCloud& scan_lidar, const FovealRegion& regio
   std::vector<std::uint8_t> is_inside(scan_lidar.size());
   parallel_for(is_inside.size(), kGrain, [&](std::size_t i) {
     Eigen::Vector2f pixel;
-    is_inside[i] = region.contains(R * scan_lidar.position[i] + t, pixel);
+    const std::size_t sensor = scan_lidar.sensor.empty() ? 0 : scan_lidar.sensor[i];
+    is_inside[i] = region.contains(R * scan_lidar.position[i] + t, pixel, sensor);
   });
   std::vector<std::uint32_t> inside;
   for (std::uint32_t i = 0; i < is_inside.size(); ++i) {

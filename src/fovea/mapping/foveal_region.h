@@ -39,26 +39,34 @@ struct FovealOptions {
 /// The 3D and 2D foveal region of one camera at one moment.
 class FovealRegion {
  public:
-  FovealRegion(const FovealOptions& options, const Camera& camera);
+  /// @param lidar_origins  m in the LiDAR frame, by number of the LiDAR
+  FovealRegion(const FovealOptions& options, const Camera& camera,
+               const std::vector<Eigen::Vector3d>& lidar_origins = {Eigen::Vector3d::Zero()});
 
   const Camera& camera() const { return camera_; }
   /// End of the white zone, m from the LiDAR.
   double far_range() const { return options_.far_range; }
-  /// End of the region, m from the LiDAR.
-  double reach() const { return options_.reach(); }
+  /// End of the region, m from the first LiDAR.
+  double reach() const { return reach_; }
 
-  /// Whether a point in the camera's frame lies in the white zone or the periphery, the image and a
-  /// slice.
+  /// Whether a point in the camera's frame lies in the white zone or the periphery of a LiDAR, the
+  /// image and a slice.
+  /// @param sensor  number of the LiDAR
   /// @param pixel  the projection, if the result is true
-  bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
+  bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel, std::size_t sensor = 0) const;
 
-  /// Whether a view may color a point of the map: in the white zone, and in the periphery from no
-  /// farther than it was measured.
+  /// Whether a view may color a point of the map: in the white zone of any LiDAR, and in the
+  /// periphery from no farther than it was measured.
   /// @param p_cam  camera frame
   /// @param range  from which the point was measured, m
   bool may_color(const Eigen::Vector3f& p_cam, float range) const {
-    const float range2 = (p_cam - lidar_in_cam_).squaredNorm();
-    return (range2 > near_range2_) & (range2 < std::clamp(range * range, far_range2_, reach2_));
+    const float limit2 = std::clamp(range * range, far_range2_, reach2_);
+    bool may = false;
+    for (const Eigen::Vector3f& lidar_cam : lidars_in_cam_) {
+      const float range2 = (p_cam - lidar_cam).squaredNorm();
+      may |= (range2 > near_range2_) & (range2 < limit2);
+    }
+    return may;
   }
   /// Whether a point in front of the camera lies in one of its slices.
   bool in_slices(const Eigen::Vector3f& p_cam) const;
@@ -73,7 +81,8 @@ class FovealRegion {
   };
   FovealOptions options_;
   Camera camera_;
-  Eigen::Vector3f lidar_in_cam_;
+  std::vector<Eigen::Vector3f> lidars_in_cam_;
+  double reach_;                             // m
   float near_range2_, far_range2_, reach2_;  // m^2
   std::vector<SlopeBounds> slices_;
 };

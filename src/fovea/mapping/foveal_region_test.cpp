@@ -92,6 +92,21 @@ TEST(FovealPoints, AreTheScansInTheCamerasFrame) {
   EXPECT_EQ(foveal_cam.position[1], Eigen::Vector3f(0, 1, 12));
 }
 
+TEST(FovealPoints, ZonesAreThoseOfTheLidarThatMeasured) {
+  FovealOptions options;
+  options.near_range = 3;
+  options.far_range = 18;
+  const FovealRegion region(options, forward_camera(), {{0, 0, 0}, {10, 0, 0}});
+  PointCloud scan_lidar;
+  scan_lidar.position = {{8, 0, 0}, {8, 0, 0}, {25, 0, 0}, {25, 0, 0}};
+  scan_lidar.sensor = {0, 1, 0, 1};  // the vehicle in sight of the second LiDAR; in its reach
+  scan_lidar.intensity = {1, 2, 3, 4};
+  EXPECT_EQ(foveal_points(scan_lidar, region).intensity, (std::vector<float>{1, 4}));
+  EXPECT_EQ(region.reach(), 28);
+  EXPECT_TRUE(region.may_color({0, 0, 25}, 15));  // of the map: any LiDAR's zone
+  EXPECT_FALSE(region.may_color({0, 0, 29}, 15));
+}
+
 TEST(LimitIncidence, DropsSurfacesSeenEdgeOn) {
   PointCloud cloud;
   for (const double degrees : {0.0, 30.0, 69.0, 71.0, 89.0}) {

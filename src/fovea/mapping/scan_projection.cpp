@@ -26,7 +26,8 @@ int ScanProjection::row_of(double v) const {
 ScanProjection::ScanProjection(const PointCloud& scan_lidar, const Camera& camera)
     : columns_(static_cast<int>((camera.width + 2 * kMargin) / kCell) + 1),
       rows_(static_cast<int>((camera.height + 2 * kMargin) / kCell) + 1),
-      hiding_radius_(camera.fx * std::tan(kHidingDegrees * std::numbers::pi / 180)) {
+      hiding_radius_(camera.fx * std::tan(kHidingDegrees * std::numbers::pi / 180)),
+      focal_(camera.fx) {
   std::vector<std::vector<Point>> chunks((scan_lidar.size() + kGrain - 1) / kGrain);
   parallel_chunks(scan_lidar.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -36,9 +37,10 @@ ScanProjection::ScanProjection(const PointCloud& scan_lidar, const Camera& camer
           pixel->y() < -kMargin || pixel->y() > camera.height + kMargin) {
         continue;
       }
-      chunks[begin / kGrain].push_back({static_cast<float>(pixel->x()),
-                                        static_cast<float>(pixel->y()),
-                                        static_cast<float>(p_cam.norm())});
+      chunks[begin / kGrain].push_back(
+          {static_cast<float>(pixel->x()), static_cast<float>(pixel->y()),
+           static_cast<float>(p_cam.norm()),
+           scan_lidar.sensor.empty() ? std::uint16_t{0} : scan_lidar.sensor[i]});
     }
   });
   std::vector<Point> seen;
@@ -64,21 +66,27 @@ bool ScanProjection::any_within(const Eigen::Vector2d& pixel, double radius, Tes
       const std::size_t cell = static_cast<std::size_t>(row) * columns_ + column;
       for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
         const double du = points_[k].u - pixel.x(), dv = points_[k].v - pixel.y();
-        if (du * du + dv * dv <= radius * radius && test(points_[k].distance)) return true;
+        const double pixels2 = du * du + dv * dv;
+        if (pixels2 <= radius * radius && test(points_[k], pixels2)) return true;
       }
     }
   }
   return false;
 }
 
-bool ScanProjection::hidden(const Eigen::Vector2d& pixel, double distance) const {
-  return any_within(pixel, hiding_radius_, [&](double other) {
-    return distance - other > std::max(kHidingStep, kHidingShare * other);
+bool ScanProjection::hidden(const Eigen::Vector2d& pixel, double distance,
+                            std::uint16_t sensor) const {
+  return any_within(pixel, hiding_radius_, [&](const Point& other, double pixels2) {
+    const double nearer = other.distance;
+    if (!(distance - nearer > std::max(kHidingStep, kHidingShare * nearer))) return false;
+    const double radius = focal_ * kHidingDistance / nearer;  // pixels
+    return other.sensor == sensor || pixels2 <= radius * radius;
   });
 }
 
 bool ScanProjection::near_edge(const Eigen::Vector2d& pixel, double distance) const {
-  return any_within(pixel, kEdgePixels, [&](double other) {
+  return any_within(pixel, kEdgePixels, [&](const Point& point, double) {
+    const double other = point.distance;
     return std::abs(distance - other) > std::max(kEdgeStep, kEdgeShare * std::min(distance, other));
   });
 }
@@ -90,7 +98,8 @@ std::size_t drop_hidden(PointCloud& points_cam, const PointCloud& scan_lidar,
   std::vector<std::uint8_t> is_hidden(points_cam.size());
   parallel_for(is_hidden.size(), kPoints, [&](std::size_t i) {
     const Eigen::Vector3d p = points_cam.position[i].cast<double>();
-    is_hidden[i] = projection.hidden(camera.project(p).value(), p.norm());
+    const std::uint16_t sensor = points_cam.sensor.empty() ? 0 : points_cam.sensor[i];
+    is_hidden[i] = projection.hidden(camera.project(p).value(), p.norm(), sensor);
   });
   return points_cam.drop(is_hidden);
 }

@@ -21,6 +21,11 @@ class ScanProjection {
   /// the next ring, which is nearer and must hide nothing.
   static constexpr double kHidingDegrees = 0.25;
 
+  /// Points of another LiDAR hide only this near to the ray, if that is less. Two LiDARs have rings
+  /// between each other's, and their points on the ground must hide nothing: seen from 1.5 m above
+  /// it, a point that is kHidingShare nearer is more than 7 cm off the ray.
+  static constexpr double kHidingDistance = 0.06;  ///< m
+
   /// Two points at an edge of depth differ in their distance from the camera by more than this: the
   /// larger of the two. The ground at 15 m differs by 5 % from ring to ring.
   static constexpr double kEdgeStep = 0.5;    ///< m
@@ -32,7 +37,8 @@ class ScanProjection {
 
   /// Whether another point hides this point of the scan from the camera.
   /// @param pixel, distance  of the point (distance from the camera, m)
-  bool hidden(const Eigen::Vector2d& pixel, double distance) const;
+  /// @param sensor           number of the LiDAR that measured it
+  bool hidden(const Eigen::Vector2d& pixel, double distance, std::uint16_t sensor = 0) const;
 
   /// Whether the point is at an edge of depth, on either side of it.
   bool near_edge(const Eigen::Vector2d& pixel, double distance) const;
@@ -40,8 +46,10 @@ class ScanProjection {
  private:
   struct Point {
     float u, v, distance;
+    std::uint16_t sensor;
   };
-  /// Whether `test(distance)` holds for any point within `radius` pixels.
+  /// Whether `test(point, pixels2)` holds for any point within `radius` pixels.
+  /// pixels2: square of its distance in the image
   template <class Test>
   bool any_within(const Eigen::Vector2d& pixel, double radius, Test&& test) const;
   int column_of(double u) const;
@@ -49,6 +57,7 @@ class ScanProjection {
 
   int columns_, rows_;
   double hiding_radius_;              // pixels
+  double focal_;                      // pixels
   std::vector<std::uint32_t> first_;  // of each cell in points_
   std::vector<Point> points_;
 };

@@ -101,6 +101,46 @@ TEST(ScanProjection, TheGroundHidesNothingAndHasNoEdge) {
   }
 }
 
+TEST(ScanProjection, TheGroundOfTwoLidarsHidesNothing) {
+  PointCloud ground;
+  for (int ring = 0; ring < 120; ++ring) {  // every other one of the second LiDAR
+    const double elevation = (-2 - 0.15 * ring) * std::numbers::pi / 180;
+    for (double y = -6; y <= 6; y += 0.05) {
+      ground.position.emplace_back(float(kGround / std::tan(elevation)), float(y), float(kGround));
+      ground.sensor.push_back(std::uint16_t(ring % 2));
+    }
+  }
+  const Camera camera = camera_at({0.27, 0.06, -0.08});
+  const ScanProjection projection(ground, camera);
+  int hidden = 0, seen = 0;
+  for (std::size_t i = 0; i < ground.size(); ++i) {
+    const Eigen::Vector3d p_cam = camera.T_cam_lidar * ground.position[i].cast<double>();
+    const auto pixel = camera.project(p_cam);
+    if (!pixel || !camera.in_view(*pixel)) continue;
+    (projection.hidden(*pixel, p_cam.norm(), ground.sensor[i]) ? hidden : seen) += 1;
+  }
+  EXPECT_EQ(hidden, 0);
+  EXPECT_GT(seen, 1000);
+}
+
+TEST(ScanProjection, ABoardThatOneLidarMeasuresHidesThePointsOfAnother) {
+  PointCloud points;
+  for (double y = -kHalf; y <= kHalf; y += 0.05) {
+    for (double z = -kHalf; z <= kHalf; z += 0.05) {
+      points.position.emplace_back(float(kBox), float(y), float(z));
+      points.sensor.push_back(0);
+    }
+  }
+  const Camera camera = camera_at(Eigen::Vector3d::Zero());
+  const ScanProjection projection(points, camera);
+  const auto hidden = [&](const Eigen::Vector3d& p_lidar) {
+    const Eigen::Vector3d p_cam = camera.T_cam_lidar * p_lidar;
+    return projection.hidden(*camera.project(p_cam), p_cam.norm(), /*sensor=*/1);
+  };
+  EXPECT_TRUE(hidden({kWall, 0.3, -0.5}));
+  EXPECT_FALSE(hidden({kWall, 2 * kHalf + 0.2, 0}));
+}
+
 TEST(ScanProjection, BothSidesOfAStepAreEdges) {
   PointCloud step;
   for (int i = -50; i <= 50; ++i)

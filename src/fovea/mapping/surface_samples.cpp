@@ -145,6 +145,12 @@ float mean_intensity(const PointCloud& points, const Surface& surface, std::size
   return sum / 3;
 }
 
+/// The LiDAR that measured the first corner of a triangle.
+std::uint16_t sensor_of(const PointCloud& points, const Surface& surface, std::size_t triangle) {
+  const auto vertex = static_cast<std::size_t>(surface.triangles[triangle].front());
+  return points.sensor[surface.mesh.point_of_vertex[vertex]];
+}
+
 /// Appends the samples to `points`.
 void add_samples(const PointCloud& points_cam, const Surface& surface, const SampleGrid& grid,
                  const std::vector<const Sample*>& samples, PointCloud& points) {
@@ -155,7 +161,9 @@ void add_samples(const PointCloud& points_cam, const Surface& surface, const Sam
   points.reason.resize(all);
   points.sampling_level.resize(all);
   const bool has_intensity = !points_cam.intensity.empty();
+  const bool has_sensor = !points_cam.sensor.empty();
   if (has_intensity) points.intensity.resize(all);
+  if (has_sensor) points.sensor.resize(all);
   const RigidMotion T_cam_grid = grid.T_grid_cam.inverse();
   parallel_for(samples.size(), kPointGrain, [&](std::size_t k) {
     const Sample& sample = *samples[k];
@@ -164,6 +172,7 @@ void add_samples(const PointCloud& points_cam, const Surface& surface, const Sam
     points.normal[i] = surface.triangle_normal[sample.triangle];
     points.reason[i] = reason_of(surface.rule[sample.triangle]);
     points.sampling_level[i] = surface.level[sample.triangle];
+    if (has_sensor) points.sensor[i] = sensor_of(points_cam, surface, sample.triangle);
     if (has_intensity) points.intensity[i] = mean_intensity(points_cam, surface, sample.triangle);
   });
 }

@@ -114,6 +114,7 @@ PointCloud to_cloud(const PointCloud& points, const DenseMesh& mesh) {
   extend(cloud.range, corners);
   extend(cloud.incidence, corners);
   extend(cloud.color, corners);
+  extend(cloud.sensor, corners);
   extend(cloud.frame, corners);
   extend(cloud.camera, corners);
   const auto first = static_cast<std::ptrdiff_t>(measured);

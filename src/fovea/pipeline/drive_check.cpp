@@ -8,8 +8,8 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/median.h"
-#include "fovea/mapping/calibration/lidar_edges.h"
 #include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/self_calibration.h"
 
 namespace fovea {
 namespace {
@@ -55,6 +55,7 @@ class FrameSample {
       for (DriveCheck::CameraFigures& camera : check_.cameras)
         camera.missing += camera.number == missing.camera;
     }
+    for (const MissingScan& missing : frame.missing_scans) ++check_.missing_scans[missing.lidar];
   }
 
   void finish() {
@@ -144,6 +145,9 @@ void find_oddities(const DriveInfo& drive, DriveCheck& check) {
     odd(fmt::format("camera {} has no image for {} of {} frames read", camera.number,
                     camera.missing, check.sampled));
   }
+  for (const auto& [lidar, count] : check.missing_scans) {
+    odd(fmt::format("LiDAR {} has no scan for {} of {} frames read", lidar, count, check.sampled));
+  }
   constexpr double kMuch = 0.01;  // share
   const std::size_t faulty = check.dropped.faulty();
   if (double(faulty) > kMuch * double(check.points + faulty)) {
@@ -189,7 +193,7 @@ DriveCheck check_drive(const FrameSource& source, int samples) {
         drive.path.string(), "see docs/drives.md for what is read");
   }
   sample.finish();
-  check.lidar = lidar_profile(source);
+  check.lidars = mounted_lidars(source);
   check_navigation(drive, check);
   make_plan(drive, check);
   find_oddities(drive, check);
@@ -212,10 +216,15 @@ Image calibration_overlay(const FrameSource& source, int frame, std::size_t slot
   }
   constexpr double kNear = 3, kFar = 25;               // m, red and blue
   const int reach = std::max(1, picture.width / 600);  // of a dot, pixels
-  const LidarEdges edges = find_lidar_edges(read->scan, camera, /*max_range=*/60);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Eigen::Vector3d p_lidar =
-        0.5 * (edges.inside.position[i] + edges.outside.position[i]).cast<double>();
+  std::vector<Eigen::Vector3d> dots;                   // LiDAR frame
+  for (const LidarEdges& edges :
+       edges_by_lidar(read->scan, camera, source.info(), /*max_range=*/60)) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      dots.emplace_back(0.5 *
+                        (edges.inside.position[i] + edges.outside.position[i]).cast<double>());
+    }
+  }
+  for (const Eigen::Vector3d& p_lidar : dots) {
     const auto pixel = camera.project(camera.T_cam_lidar * p_lidar);
     if (!pixel || !camera.in_view(*pixel)) continue;
     const double share = std::clamp((p_lidar.norm() - kNear) / (kFar - kNear), 0.0, 1.0);

@@ -33,14 +33,15 @@ struct DriveCheck {
 
   // Of the sampled frames.
   std::size_t sampled = 0;
-  std::map<std::string, std::size_t> skipped;  ///< by reason
-  double points_per_scan = 0;                  ///< median
-  double near_range = 0, far_range = 0;        ///< m: quantiles 0.05 and 0.95
+  std::map<std::string, std::size_t> skipped;        ///< by reason
+  std::map<std::string, std::size_t> missing_scans;  ///< by name of the LiDAR
+  double points_per_scan = 0;                        ///< median
+  double near_range = 0, far_range = 0;              ///< m: quantiles 0.05 and 0.95
   bool has_point_times = false, has_intensity = false;
   DroppedPoints dropped;
   std::size_t points = 0;
 
-  SensorProfile lidar;
+  std::vector<MountedLidar> lidars;
   std::vector<CameraFigures> cameras;
   std::size_t navigation_poses = 0;
   std::optional<double> navigation_accuracy;  ///< m, median of those that are stated

@@ -30,7 +30,7 @@ TEST(DriveCheck, TellsWhatADriveContains) {
   EXPECT_GT(check.points_per_scan, 10'000);
   EXPECT_GT(check.near_range, 1.7);
   EXPECT_LT(check.far_range, 40);
-  EXPECT_EQ(check.lidar.ring_elevations.size(), 48u);
+  EXPECT_EQ(check.lidars.front().profile.ring_elevations.size(), 48u);
   ASSERT_EQ(check.cameras.size(), 1u);
   EXPECT_EQ(check.cameras[0].number, 2);
   EXPECT_EQ(check.cameras[0].missing, 0u);

@@ -49,9 +49,10 @@ DriveRecord drive_record(const FrameSource& source) {
 
 std::vector<SensorRecord> sensor_records(const DriveInfo& drive) {
   std::vector<SensorRecord> sensors;
-  for (const SensorProfile& profile : drive.lidars) {
+  for (const MountedLidar& lidar : drive.lidars) {
     SensorRecord& sensor = sensors.emplace_back();
-    sensor.profile = profile;
+    sensor.profile = lidar.profile;
+    sensor.T_lidar_sensor = lidar.T_lidar_sensor;
   }
   return sensors;
 }
@@ -85,11 +86,16 @@ FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> st
   return record;
 }
 
-void note_missing_images(const Frame& frame, FrameRecord& record) {
+void note_missing_parts(const Frame& frame, FrameRecord& record) {
   for (const MissingImage& image : frame.missing_images) {
     record.count_missing_image(image.camera);
     record.note += fmt::format("{}camera {} gives nothing, {}: {}", record.note.empty() ? "" : "; ",
                                image.camera, to_string(image.reason), image.detail);
+  }
+  for (const MissingScan& scan : frame.missing_scans) {
+    ++record.figures["scans_missing"];
+    record.note += fmt::format("{}LiDAR {} gives nothing, {}: {}", record.note.empty() ? "" : "; ",
+                               scan.lidar, to_string(scan.reason), scan.detail);
   }
 }
 

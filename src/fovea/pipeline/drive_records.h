@@ -24,7 +24,7 @@ void add_views(const Frame& frame, const DriveInfo& drive, const FrameResult& re
 /// The record of a frame that the drive skips.
 FrameRecord skipped_record(const SkippedFrame& skipped, std::optional<TimeNs> stamp);
 
-/// Counts and names the cameras that gave a frame no image.
-void note_missing_images(const Frame& frame, FrameRecord& record);
+/// Counts and names the cameras that gave a frame no image, and the LiDARs that gave it no scan.
+void note_missing_parts(const Frame& frame, FrameRecord& record);
 
 }  // namespace fovea

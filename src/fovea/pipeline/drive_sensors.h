@@ -1,23 +1,38 @@
 // The LiDARs of a drive, and settings derived from them.
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "fovea/drive/frame_source.h"
 #include "fovea/geometry/sensor_profile.h"
+#include "fovea/pipeline/dynamic_points.h"
 #include "fovea/pipeline/mapper_options.h"
 #include "fovea/pipeline/paper_options.h"
 
 namespace fovea {
 
-/// Profile of the drive's LiDAR. Estimates values that the drive does not state from the first two
-/// usable scans, and reads these frames.
-SensorProfile lidar_profile(const FrameSource& source);
+/// The drive's LiDARs. Estimates values that the drive does not state from the first two usable
+/// scans, and reads these frames.
+std::vector<MountedLidar> mounted_lidars(const FrameSource& source);
+
+/// Where the LiDARs of a drive are, m in the frame of the first one.
+std::vector<Eigen::Vector3d> lidar_origins(const DriveInfo& drive);
+
+/// Height of the rows of a LiDAR's range images, rad.
+double row_height_of(const SensorProfile& profile);
+
+/// What each LiDAR sees of a deskewed scan.
+std::vector<SensorView> sensor_views(const PointCloud& scan_lidar, const DriveInfo& drive);
 
 /// Description of the drive with the profiles of its LiDARs.
 DriveInfo info_with_lidars(const FrameSource& source);
 
 /// Sets options that are 0 from the LiDAR: edges of surface, heights and angles.
 MapperOptions suited_to(const SensorProfile& profile, MapperOptions options);
-/// The same for the first LiDAR of a drive; for 64 rings if the drive describes none.
+/// The same for the LiDAR of a drive whose rings are the farthest apart, with the largest noise of
+/// all: surfaces that it alone measures must close, too. For 64 rings if the drive describes no
+/// LiDAR.
 MapperOptions suited_to(const DriveInfo& drive, const MapperOptions& options);
 PaperOptions suited_to(const DriveInfo& drive, PaperOptions options);
 

@@ -29,7 +29,7 @@ SensorProfile of_file(const std::filesystem::path& file) {
 SensorProfile of_drive(const std::filesystem::path& drive) {
   DriveOptions options;
   options.use_images = false;
-  return lidar_profile(*open_drive(drive, options));
+  return mounted_lidars(*open_drive(drive, options)).front().profile;
 }
 
 /// Expects the elevations of the data sheet.
@@ -138,12 +138,12 @@ TEST(DriveSensors, SettingsFollowFromTheRings) {
   const MapperOptions dense = suited_to(rings(0.4), MapperOptions());
   EXPECT_EQ(dense.surface.max_edge, 0.4);
   EXPECT_EQ(dense.surface.planar_edge, 1.0);
-  EXPECT_EQ(dense.dynamic.row_height, RangeImage::kLeastRowHeight);
+  EXPECT_EQ(row_height_of(rings(0.4)), RangeImage::kLeastRowHeight);
   // Rings 1.5 degrees apart meet the ground at 15 m 3.5 m apart, and a wall there 0.39 m apart.
   const MapperOptions sparse = suited_to(rings(1.5), MapperOptions());
   EXPECT_NEAR(sparse.surface.planar_edge, 1.5 * kDegree * (1.73 + 15 * 15 / 1.73), 1e-9);
   EXPECT_NEAR(sparse.surface.max_edge, 1.2 * 15 * 1.5 * kDegree, 1e-9);
-  EXPECT_NEAR(sparse.dynamic.row_height, 1.1 * 1.5 * kDegree, 1e-9);
+  EXPECT_NEAR(row_height_of(rings(1.5)), 1.1 * 1.5 * kDegree, 1e-9);
   // No edge grows without limit.
   const MapperOptions sparsest = suited_to(rings(6), MapperOptions());
   EXPECT_EQ(sparsest.surface.planar_edge, 4);
@@ -158,7 +158,7 @@ TEST(DriveSensors, GivenSettingsStay) {
   EXPECT_EQ(options.surface.max_edge, 0.3);
   EXPECT_EQ(options.surface.planar_edge, 0.7);
   DriveInfo drive;
-  drive.lidars = {rings(2)};
+  drive.lidars = {{rings(2)}};
   PaperOptions paper;
   paper.ground.sensor_height = 2.5;
   EXPECT_EQ(suited_to(drive, paper).ground.sensor_height, 2.5);
@@ -170,10 +170,19 @@ TEST(DriveSensors, HeightAndNoiseComeFromTheProfile) {
   profile.range_noise = 0.05;
   EXPECT_EQ(suited_to(profile, MapperOptions()).refinement.range_noise, 0.05);
   DriveInfo drive;
-  drive.lidars = {profile};
+  drive.lidars = {{profile}};
   EXPECT_EQ(suited_to(drive, PaperOptions()).ground.sensor_height, 2.2);
   // A drive whose LiDAR is not known.
   EXPECT_EQ(suited_to(DriveInfo(), PaperOptions()).ground.sensor_height, kUsualSensorHeight);
+}
+
+TEST(DriveSensors, TheSparsestOfSeveralLidarsSetsTheEdges) {
+  DriveInfo drive;
+  drive.lidars = {{rings(0.4)}, {rings(1.5)}};
+  drive.lidars[0].profile.range_noise = 0.05;
+  const MapperOptions both = suited_to(drive, MapperOptions());
+  EXPECT_EQ(both.surface.max_edge, suited_to(rings(1.5), MapperOptions()).surface.max_edge);
+  EXPECT_EQ(both.refinement.range_noise, 0.05);
 }
 
 }  // namespace fovea::drive_sensors_test

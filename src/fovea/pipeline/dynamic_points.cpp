@@ -95,7 +95,28 @@ class CloudVoxels {
   FlatMap<std::uint32_t> voxel_of_key_;
 };
 
+/// What two LiDARs see of a position. A surface counts, even if the other one sees through it.
+Visibility combined(Visibility a, Visibility b) {
+  for (const Visibility visibility : {Visibility::kSurface, Visibility::kFree}) {
+    if (a == visibility || b == visibility) return visibility;
+  }
+  return Visibility::kUnknown;
+}
+
 }  // namespace
+
+void DynamicPointFilter::Scan::classify(std::span<const Eigen::Vector3f> p_lidar,
+                                        std::span<Visibility> visibilities) const {
+  views.front().image.classify(p_lidar, visibilities);
+  for (const SensorView& view : std::span(views).subspan(1)) {
+    const Eigen::Isometry3f T_sensor_lidar = view.T_lidar_sensor.inverse().cast<float>();
+    std::vector<Eigen::Vector3f> p_sensor;
+    for (const Eigen::Vector3f& p : p_lidar) p_sensor.push_back(T_sensor_lidar * p);
+    std::vector<Visibility> of_view(p_sensor.size());
+    view.image.classify(p_sensor, of_view);
+    std::ranges::transform(visibilities, of_view, visibilities.begin(), combined);
+  }
+}
 
 std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_local,
                                                        const RigidMotion& T_odom_local) const {
@@ -118,7 +139,7 @@ std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_
     for (const Scan& scan : scans_) {
       for (std::size_t i = 0; i < n; ++i)
         p_lidar[i] = (scan.T_lidar_odom * p_odom[i]).cast<float>();
-      scan.image.classify(p_lidar, visibilities);
+      scan.classify(p_lidar, visibilities);
       for (std::size_t i = 0; i < n; ++i) {
         free[i] += visibilities[i] == Visibility::kFree;
         filled[i] += visibilities[i] == Visibility::kSurface;
@@ -132,7 +153,7 @@ std::vector<std::uint8_t> DynamicPointFilter::classify(const PointCloud& points_
 }
 
 std::vector<DynamicPointFilter::Tile> DynamicPointFilter::add_scan(const TileMap& map,
-                                                                   RangeImage scan,
+                                                                   std::vector<SensorView> scan,
                                                                    const RigidMotion& T_odom_lidar,
                                                                    const RigidMotion& T_odom_local,
                                                                    int frame) {
@@ -192,7 +213,7 @@ void DynamicPointFilter::update_evidence(const TileMap& map, const RigidMotion& 
   p_lidar.reserve(evidence.voxels.size());
   for (const Voxel& voxel : evidence.voxels) p_lidar.push_back(R * grid.center_of(voxel.cell) + t);
   std::vector<Visibility> visibilities(p_lidar.size());
-  scan.image.classify(p_lidar, visibilities);
+  scan.classify(p_lidar, visibilities);
   for (std::size_t i = 0; i < visibilities.size(); ++i) {
     evidence.voxels[i].filled |= visibilities[i] == Visibility::kSurface ? 1 : 0;
     evidence.voxels[i].seen_free |= visibilities[i] == Visibility::kFree ? 1 : 0;
@@ -246,7 +267,7 @@ void DynamicPointFilter::select_kept(const TileMap& map, Tile& tile) const {
   evidence.known_points = tile.kept.size();
 }
 
-std::size_t DynamicPointFilter::observe(TileMap& map, RangeImage scan,
+std::size_t DynamicPointFilter::observe(TileMap& map, std::vector<SensorView> scan,
                                         const RigidMotion& T_odom_lidar,
                                         const RigidMotion& T_odom_local, int frame) {
   if (!options_.remove) return 0;
@@ -269,7 +290,7 @@ void DynamicPointFilter::follow_removal(const TileId& id, std::span<const std::u
   if (kept.empty()) evidence_.erase(found);
 }
 
-void DynamicPointFilter::replay(const TileMap& map, RangeImage scan,
+void DynamicPointFilter::replay(const TileMap& map, std::vector<SensorView> scan,
                                 const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
                                 int frame) {
   if (options_.remove) add_scan(map, std::move(scan), T_odom_lidar, T_odom_local, frame);

@@ -18,7 +18,12 @@ struct DynamicPointOptions {
   bool remove = true;   ///< false: moving objects stay in the map, as in the paper
   double range = 60.0;  ///< m from the LiDAR: scans observe map points up to this range
   int free_scans = 4;   ///< a voxel loses its points if this many scans see through it
-  double row_height = RangeImage::kLeastRowHeight;  ///< rad, from the LiDAR's rings; not a setting
+};
+
+/// What one LiDAR measured of a scan.
+struct SensorView {
+  RangeImage image;  ///< in the frame of the sensor
+  RigidMotion T_lidar_sensor = RigidMotion::Identity();
 };
 
 /// Evidence of free space in the voxels of a map. Covers the last kMemory frame numbers, so that a
@@ -37,10 +42,12 @@ class DynamicPointFilter {
   std::vector<std::uint8_t> classify(const PointCloud& points_local,
                                      const RigidMotion& T_odom_local) const;
 
-  /// Adds the evidence of a scan. If this and earlier scans see through a voxel, an object has
-  /// left: removes its points, and points of the same frames up to 40 cm below.
+  /// Adds the evidence of a scan. A voxel is free in it if one LiDAR sees through it and none sees
+  /// a surface there. If this and earlier scans see through a voxel, an object has left: removes
+  /// its points, and points of the same frames up to 40 cm below.
   /// @return number of removed points
-  std::size_t observe(TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
+  /// @param scan  of all LiDARs; that of the first one first
+  std::size_t observe(TileMap& map, std::vector<SensorView> scan, const RigidMotion& T_odom_lidar,
                       const RigidMotion& T_odom_local, int frame);
 
   /// To be told when others remove points of a tile.
@@ -48,7 +55,7 @@ class DynamicPointFilter {
   void follow_removal(const TileId& id, std::span<const std::uint32_t> kept);
 
   /// Adds the evidence of a scan that is already in the map (resume), and removes no points.
-  void replay(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
+  void replay(const TileMap& map, std::vector<SensorView> scan, const RigidMotion& T_odom_lidar,
               const RigidMotion& T_odom_local, int frame);
 
  private:
@@ -71,11 +78,14 @@ class DynamicPointFilter {
     bool shrinks = false;
   };
   struct Scan {  // poses in odom never change
-    RangeImage image;
+    std::vector<SensorView> views;
     RigidMotion T_lidar_odom;
+    void classify(std::span<const Eigen::Vector3f> p_lidar,
+                  std::span<Visibility> visibilities) const;
   };
-  std::vector<Tile> add_scan(const TileMap& map, RangeImage scan, const RigidMotion& T_odom_lidar,
-                             const RigidMotion& T_odom_local, int frame);
+  std::vector<Tile> add_scan(const TileMap& map, std::vector<SensorView> scan,
+                             const RigidMotion& T_odom_lidar, const RigidMotion& T_odom_local,
+                             int frame);
   std::vector<Tile> tiles_near(const TileMap& map, const Eigen::Vector3d& center_local);
   void update_evidence(const TileMap& map, const RigidMotion& T_odom_local, int frame,
                        Tile& tile) const;

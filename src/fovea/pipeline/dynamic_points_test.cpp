@@ -25,7 +25,7 @@ PointCloud scan_of(float face) {
   return scan;
 }
 
-RangeImage seen(float face) { return RangeImage(scan_of(face).position); }
+std::vector<SensorView> seen(float face) { return {{RangeImage(scan_of(face).position)}}; }
 
 /// Points of a face at x that a frame adds to a map.
 PointCloud face_points(float x, int frame) {
@@ -97,7 +97,7 @@ TEST(DynamicPointFilter, RemovesTheLowestPartOfAnObject) {
   map.add(face);
   std::size_t removed = 0;
   for (int frame = 2; frame < 10; ++frame) {
-    removed += filter.observe(map, RangeImage(scan.position), kHere, kHere, frame);
+    removed += filter.observe(map, {{RangeImage(scan.position)}}, kHere, kHere, frame);
   }
   EXPECT_EQ(removed, face.size());
   EXPECT_EQ(map.size(), road.size());
@@ -185,6 +185,49 @@ TEST(DynamicPointFilter, ReplayedScansGiveTheSameDecision) {
   }
   EXPECT_EQ(map.size(), 0u);
   EXPECT_EQ(again.size(), 0u);
+}
+
+/// A wall at x = 10 right in front of the first LiDAR, which sees nothing else; the second one,
+/// 12 m ahead of it, sees the box of scan_of(), with x from the first LiDAR.
+std::vector<SensorView> seen_by_second(float face) {
+  constexpr float kAhead = 12;
+  PointCloud wall;
+  for (float y = -8; y < 8; y += 0.05f) {
+    for (float z = -3; z < 3; z += 0.05f) wall.position.emplace_back(10, y, z);
+  }
+  RigidMotion T_lidar_sensor = RigidMotion::Identity();
+  T_lidar_sensor.translation().x() = kAhead;
+  const PointCloud scan = scan_of(face > 0 ? face - kAhead : 0);
+  return {{RangeImage(wall.position)}, {RangeImage(scan.position), T_lidar_sensor}};
+}
+
+TEST(DynamicPointFilter, EachLidarSeesFromItsOwnPlace) {
+  DynamicPointFilter filter({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  for (int frame = 0; frame < 3; ++frame) {
+    map.add(face_points(18, frame));
+    EXPECT_EQ(filter.observe(map, seen_by_second(18), kHere, kHere, frame), 0u);
+  }
+  std::size_t removed = 0;
+  for (int frame = 3; frame < 9; ++frame) {
+    removed += filter.observe(map, seen_by_second(0), kHere, kHere, frame);
+  }
+  EXPECT_GT(removed, 0.5 * double(face_points(18, 0).size()));
+}
+
+TEST(DynamicPointFilter, ASurfaceThatOneLidarSeesStays) {
+  DynamicPointFilter filter({});
+  TileMap map(4.0);
+  map.add_submap(kHere);
+  std::size_t removed = 0;
+  for (int frame = 0; frame < 9; ++frame) {
+    if (frame < 3) map.add(face_points(8, frame));
+    std::vector<SensorView> both = seen(8);
+    both.push_back({RangeImage(scan_of(0).position)});  // sees through the box
+    removed += filter.observe(map, std::move(both), kHere, kHere, frame);
+  }
+  EXPECT_EQ(removed, 0u);
 }
 
 }  // namespace fovea::dynamic_points_test

@@ -8,7 +8,7 @@
 
 namespace fovea {
 
-std::vector<Camera> lidar_views() {
+std::vector<Camera> lidar_views(const Eigen::Vector3d& origin) {
   constexpr int kViews = 4;
   // surface.max_per_pixel limits samples by pixels: at this focal length, to 2 cm at 15 m.
   constexpr double kFocal = 360;
@@ -27,6 +27,7 @@ std::vector<Camera> lidar_views() {
     view.cy = 0.5 * (view.height - 1);
     const Eigen::AngleAxisd turn(2 * std::numbers::pi * i / kViews, Eigen::Vector3d::UnitZ());
     view.T_cam_lidar.linear() = R_cam_lidar * turn.inverse().toRotationMatrix();
+    view.T_cam_lidar.translation() = -(view.T_cam_lidar.linear() * origin);
   }
   return views;
 }

@@ -43,4 +43,11 @@ TEST(LidarViews, AreUprightAtTheLidarWithoutNumber) {
   }
 }
 
+TEST(LidarViews, BeginAtAnyPlace) {
+  const Eigen::Vector3d origin(1, -2, 0.5);
+  for (const Camera& view : lidar_views(origin)) {
+    EXPECT_LT((view.center_lidar() - origin).norm(), 1e-12);
+  }
+}
+
 }  // namespace fovea::lidar_views_test

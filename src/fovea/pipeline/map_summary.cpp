@@ -74,6 +74,9 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
   }
   if (record.has("registration_failed")) ++summary_.registrations_failed;
   points_.add(record);
+  if (const auto missing = record.figures.find("scans_missing"); missing != record.figures.end()) {
+    summary_.scans_missing += int(missing->second);
+  }
   if (record.revisit) ++summary_.loops_closed;
   for (const Camera& camera : drive_.calibration.cameras) {
     if (!record.lacks_image(camera.index)) continue;
@@ -126,6 +129,11 @@ MapSummary DriveFigures::summary() const {
   }
   for (const auto& [reason, count] : summary.frames_skipped) {
     summary.warn(fmt::format("skipped: {} frame{} ({})", count, count == 1 ? "" : "s", reason));
+  }
+  if (summary.scans_missing > 0) {
+    summary.warn(
+        fmt::format("{} scan{} of further LiDARs are missing: their frames have the others",
+                    summary.scans_missing, summary.scans_missing == 1 ? "" : "s"));
   }
   if (summary.registrations_failed > 0) {
     summary.warn(fmt::format("registration failed on {} frames: their first guess was kept",

@@ -32,6 +32,7 @@ struct MapSummary : Messages {
   int frames_damaged = 0;                     ///< skipped frames with unusable files
   std::string first_damage;                   ///< one line: the fault and the file
   std::map<int, int> images_missing;          ///< by camera; of frames that were not skipped
+  int scans_missing = 0;                      ///< of further LiDARs; their frames were not skipped
   int registrations_failed = 0;
   int loops_closed = 0;  ///< scans registered to an earlier place
   std::size_t points = 0;

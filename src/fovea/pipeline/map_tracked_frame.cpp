@@ -21,7 +21,7 @@ FrameRecord map_tracked_frame(IncrementalMapper& mapper, const FrameSource& sour
   record.milliseconds["wait"] = milliseconds(tracked.tracking_began - tracked.arrival()) +
                                 milliseconds(mapping_began - tracked.tracking_ended);
   record.milliseconds["decode"] = tracked.read.decode_ms;
-  note_missing_images(frame, record);
+  note_missing_parts(frame, record);
   add_views(frame, drive, result, record);
   return record;
 }

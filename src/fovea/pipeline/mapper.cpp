@@ -24,9 +24,17 @@ constexpr double kMargin = 1;  // m: samples may lie beyond the foveal region
 /// Points of the map are ground from this share of the LiDAR's height below it.
 constexpr double kLow = 0.7;
 
-double reach_of(const MapperOptions& options) {
+double reach_of(const MapperOptions& options, double foveal_reach) {
   const double dynamic = options.dynamic.remove ? options.dynamic.range : 0;
-  return std::max(dynamic, options.foveal.reach()) + 2 * kMargin;  // cells, and a margin for them
+  return std::max(dynamic, foveal_reach) + 2 * kMargin;  // cells, and a margin for them
+}
+
+/// End of the foveal regions of all LiDARs, m from the first one.
+double foveal_reach_of(const MapperOptions& options,
+                       const std::vector<Eigen::Vector3d>& lidar_origins) {
+  double farthest = 0;
+  for (const Eigen::Vector3d& origin : lidar_origins) farthest = std::max(farthest, origin.norm());
+  return options.foveal.reach() + farthest;
 }
 
 std::vector<Eigen::Vector3f> marked(const std::vector<Eigen::Vector3f>& points,
@@ -45,7 +53,9 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
     : drive_(drive),
       options_(suited_to(drive, options)),
       services_(std::move(services)),
-      reach_(reach_of(options)),
+      lidar_origins_(lidar_origins(drive)),
+      foveal_reach_(foveal_reach_of(options, lidar_origins_)),
+      reach_(reach_of(options, foveal_reach_)),
       ground_below_(kLow * lidar_height(drive)),
       tracker_(drive, options_, pose_source, services_.initial_velocity),
       map_(options.tile_size),
@@ -73,27 +83,27 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   result.clock.lap("filter");
   if (options_.dynamic.remove) {
     // 6 for the map: points leave where this scan and those before it see free space.
-    RangeImage ranges(tracked.scan_lidar.position, options_.dynamic.row_height);
-    result.dynamic.emplace().removed = dynamic_points_.observe(
-        map_, std::move(ranges), result.poses.T_odom_lidar, T_odom_local, frame.index);
+    result.dynamic.emplace().removed =
+        dynamic_points_.observe(map_, sensor_views(tracked.scan_lidar, drive_),
+                                result.poses.T_odom_lidar, T_odom_local, frame.index);
     result.clock.lap("filter");
   }
   const bool has_image = !frame.images.empty();  // a LiDAR without cameras has views alone
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     if (has_image && !has_content(frame.images[k], result)) continue;
     map_view(tracked.scan_lidar, has_image ? frame.images[k] : kNoImage,
-             FovealRegion(foveal_options(with_periphery), cameras[k]), T_odom_local, result);
+             FovealRegion(foveal_options(with_periphery), cameras[k], lidar_origins_), T_odom_local,
+             result);
   }
   return result;
 }
 
 void Mapper::remove_replaced(const std::vector<Camera>& cameras, const FrameResult& result) {
   const RigidMotion& T_local_lidar = result.poses.T_local_lidar;
-  const double reach = options_.foveal.reach();
-  occupancy_.follow(map_, T_local_lidar.translation(), reach + kMargin);
+  occupancy_.follow(map_, T_local_lidar.translation(), foveal_reach_ + kMargin);
   for (const Camera& camera : cameras) {
     remove_replaced_points(map_, occupancy_, camera, T_local_lidar * camera.T_cam_lidar.inverse(),
-                           reach, result.index, dynamic_points_);
+                           foveal_reach_, result.index, dynamic_points_);
   }
 }
 
@@ -211,7 +221,7 @@ ViewLight Mapper::find_light(const ViewColors& image_colors, int camera, FrameRe
 
 PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& camera,
                                  const RigidMotion& T_local_cam) {
-  occupancy_.follow(map_, T_local_cam.translation(), options_.foveal.reach() + kMargin);
+  occupancy_.follow(map_, T_local_cam.translation(), foveal_reach_ + kMargin);
   const SampleGrid grid{
       map_.submaps().back().T_local_submap.inverse() * T_local_cam, occupancy_.cell(),
       [&](const Eigen::Vector3d& p, int level) { return occupancy_.holds_point(p, level, level); },
@@ -221,7 +231,7 @@ PointCloud Mapper::new_points_of(const PointCloud& points_cam, const Camera& cam
 
 void Mapper::apply_deferred_mapping() {
   if (occupancy_update_center_) {
-    occupancy_.follow(map_, *occupancy_update_center_, options_.foveal.reach() + kMargin);
+    occupancy_.follow(map_, *occupancy_update_center_, foveal_reach_ + kMargin);
   }
   occupancy_update_center_.reset();
 }

@@ -68,6 +68,8 @@ class Mapper : public IncrementalMapper {
   const DriveInfo& drive_;
   MapperOptions options_;
   MapperServices services_;
+  std::vector<Eigen::Vector3d> lidar_origins_;  // m, in the frame of the first LiDAR
+  double foveal_reach_;                         // m, from the first LiDAR
   double reach_;
   double ground_below_;  // m, below the LiDAR
   Tracker tracker_;

@@ -73,8 +73,8 @@ void Mapper::replay(const Frame& read, const FrameResult& frame, const ReplayedP
   if (!parts.votes) return;
   const RigidMotion T_local_lidar = tracker_.T_local_odom() * frame.poses.T_odom_lidar;
   services_.load_near(map_, T_local_lidar.translation(), reach_);
-  dynamic_points_.replay(map_, RangeImage(scan_lidar.position, options_.dynamic.row_height),
-                         frame.poses.T_odom_lidar, tracker_.T_local_odom().inverse(), frame.index);
+  dynamic_points_.replay(map_, sensor_views(scan_lidar, drive_), frame.poses.T_odom_lidar,
+                         tracker_.T_local_odom().inverse(), frame.index);
 }
 
 void Mapper::replay_response(const Frame& read, const PointCloud& scan_lidar,
@@ -82,7 +82,8 @@ void Mapper::replay_response(const Frame& read, const PointCloud& scan_lidar,
   const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, frame.poses.motion);
   for (std::size_t k = 0; k < read.images.size(); ++k) {
     if (read.images[k].empty() || is_blank(read.images[k])) continue;
-    PointCloud visible_cam = foveal_points(scan_lidar, FovealRegion(foveal, cameras[k]));
+    PointCloud visible_cam =
+        foveal_points(scan_lidar, FovealRegion(foveal, cameras[k], lidar_origins_));
     drop_hidden(visible_cam, scan_lidar, cameras[k]);
     const ImageMask* mask = drive_.mask(cameras[k].index);
     light_.learn_response(

@@ -1,6 +1,7 @@
 #include "fovea/pipeline/scan_geometry.h"
 
 #include "fovea/drive/motion_compensation.h"
+#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/lidar_views.h"
 
 namespace fovea {
@@ -16,7 +17,13 @@ PointCloud deskewed(const PointCloud& scan, const std::optional<SweepMotion>& mo
 
 std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
                                   const std::optional<SweepMotion>& motion) {
-  if (drive.calibration.cameras.empty()) return lidar_views();
+  if (drive.calibration.cameras.empty()) {
+    std::vector<Camera> views;
+    for (const Eigen::Vector3d& origin : lidar_origins(drive)) {
+      for (const Camera& view : lidar_views(origin)) views.push_back(view);
+    }
+    return views;
+  }
   std::vector<Camera> cameras;
   cameras.reserve(drive.calibration.cameras.size());
   for (std::size_t slot = 0; slot < drive.calibration.cameras.size(); ++slot) {

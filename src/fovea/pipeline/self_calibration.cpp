@@ -4,6 +4,8 @@
 
 #include "fovea/core/parallel.h"
 #include "fovea/drive/motion_compensation.h"
+#include "fovea/drive/scans/sensor_scans.h"
+#include "fovea/geometry/transform_cloud.h"
 
 namespace fovea {
 namespace {
@@ -15,13 +17,18 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
                                      const DriveInfo& drive, bool compensate,
                                      const FrameMotion& motion) {
   if (frame.images.at(slot).empty()) return {};
-  LidarEdges edges_lidar = find_lidar_edges(frame.scan, camera, kMaxRange);
-  if (compensate) {
-    compensate_sweep(edges_lidar.inside, motion.sweep, drive.sweep);
-    compensate_sweep(edges_lidar.outside, motion.sweep, drive.sweep);
+  std::vector<EdgeProfile> profiles;
+  for (LidarEdges& edges_lidar : edges_by_lidar(frame.scan, camera, drive, kMaxRange)) {
+    if (compensate) {
+      compensate_sweep(edges_lidar.inside, motion.sweep, drive.sweep);
+      compensate_sweep(edges_lidar.outside, motion.sweep, drive.sweep);
+    }
+    const std::vector<EdgeProfile> of_lidar =
+        edge_profiles(edges_lidar, frame.images.at(slot),
+                      {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});
+    profiles.insert(profiles.end(), of_lidar.begin(), of_lidar.end());
   }
-  return edge_profiles(edges_lidar, frame.images.at(slot),
-                       {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});
+  return profiles;
 }
 
 /// Up to kCalibrationFrames of the usable frames, spread evenly.
@@ -79,6 +86,22 @@ CalibrationEstimate joined(const CalibrationEstimate& first, CalibrationEstimate
 }
 
 }  // namespace
+
+std::vector<LidarEdges> edges_by_lidar(const PointCloud& scan_lidar, const Camera& camera,
+                                       const DriveInfo& drive, double max_range) {
+  if (drive.lidars.size() < 2) return {find_lidar_edges(scan_lidar, camera, max_range)};
+  std::vector<LidarEdges> edges_lidar;
+  const std::vector<PointCloud> scans = scans_by_sensor(scan_lidar, drive.lidars);
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const RigidMotion& T_lidar_sensor = drive.lidars[k].T_lidar_sensor;
+    Camera at_sensor = camera;
+    at_sensor.T_cam_lidar = camera.T_cam_lidar * T_lidar_sensor;
+    LidarEdges& edges = edges_lidar.emplace_back(find_lidar_edges(scans[k], at_sensor, max_range));
+    edges.inside = transform_cloud(std::move(edges.inside), T_lidar_sensor);
+    edges.outside = transform_cloud(std::move(edges.outside), T_lidar_sensor);
+  }
+  return edges_lidar;
+}
 
 CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate)
     : drive_(drive),

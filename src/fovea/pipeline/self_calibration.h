@@ -9,6 +9,7 @@
 
 #include "fovea/drive/frame_source.h"
 #include "fovea/mapping/calibration/calibration_estimate.h"
+#include "fovea/mapping/calibration/lidar_edges.h"
 #include "fovea/pipeline/frame_motion.h"
 
 namespace fovea {
@@ -17,6 +18,11 @@ struct CameraCalibration {
   int camera = 0;  ///< its number in the drive
   CalibrationEstimate estimate;
 };
+
+/// The edges that each LiDAR sees, in the LiDAR frame (find_lidar_edges).
+/// @param scan_lidar  without motion compensation
+std::vector<LidarEdges> edges_by_lidar(const PointCloud& scan_lidar, const Camera& camera,
+                                       const DriveInfo& drive, double max_range);
 
 /// Collects edges of a few frames while a drive is mapped, for an estimate at the end.
 class CalibrationCheck {

@@ -63,6 +63,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"frames_held_out", summary.frames_held_out},
           {"frames_skipped", summary.frames_skipped},
           {"images_missing", images_missing},
+          {"scans_missing", summary.scans_missing},
           {"registrations_failed", summary.registrations_failed},
           {"loops_closed", summary.loops_closed},
           {"points", summary.points},

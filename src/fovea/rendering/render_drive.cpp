@@ -68,7 +68,7 @@ class DriveRenderer {
 
   RenderFigures finish() {
     RecordedDrive drive;
-    drive.sweep_compensated = true;  // all beams at once
+    drive.lidar.sweep_compensated = true;  // all beams at once
     for (const RenderedCamera& rendered : job_.cameras) {
       const Camera& c = rendered.camera;
       RecordedCamera recorded;

@@ -9,6 +9,28 @@ namespace {
 
 std::string camera_name(int number) { return fmt::format("camera_{}", number); }
 
+/// Empty: the drive has one LiDAR.
+std::string lidar_name(const SimulationOptions& options, std::size_t number) {
+  return options.further_lidars.empty() ? "" : fmt::format("lidar_{}", number + 1);
+}
+
+PointCloud cloud_of(const SimulatedScan& scan, const LidarOptions& lidar) {
+  PointCloud cloud;
+  for (const auto& [x, y, z, intensity] : scan.points) {
+    cloud.position.emplace_back(x, y, z);
+    cloud.intensity.push_back(intensity);
+  }
+  if (lidar.point_times) {
+    for (const TruthPoint& point : scan.truth) cloud.time.push_back(point.time);
+  }
+  return cloud;
+}
+
+std::optional<SweepTiming> stated_sweep(const LidarOptions& lidar) {
+  if (lidar.point_times || has_kittis_sweep(lidar)) return std::nullopt;
+  return sweep_timing_of(lidar);
+}
+
 }  // namespace
 
 GenericSimulationWriter::GenericSimulationWriter(const SimulationOptions& options,
@@ -16,15 +38,16 @@ GenericSimulationWriter::GenericSimulationWriter(const SimulationOptions& option
     : options_(options), root_(root), writer_(root) {}
 
 void GenericSimulationWriter::write_scan(int frame, const SimulatedScan& scan) {
-  PointCloud cloud;
-  for (const auto& [x, y, z, intensity] : scan.points) {
-    cloud.position.emplace_back(x, y, z);
-    cloud.intensity.push_back(intensity);
-  }
-  if (options_.lidar.point_times) {
-    for (const TruthPoint& point : scan.truth) cloud.time.push_back(point.time);
-  }
-  writer_.write_scan(frame, stamp_of(frame, options_), cloud);
+  writer_.write_scan(frame, stamp_of(frame, options_), cloud_of(scan, options_.lidar),
+                     ScanFile::kPcd, lidar_name(options_, 0));
+}
+
+void GenericSimulationWriter::write_further_scan(std::size_t lidar, int frame,
+                                                 const SimulatedScan& scan) {
+  const FurtherLidarOptions& further = options_.further_lidars.at(lidar);
+  const TimeNs stamp = stamp_of(frame, options_) + from_seconds(further.stamp_offset);
+  writer_.write_scan(frame, stamp, cloud_of(scan, further.lidar), ScanFile::kPcd,
+                     lidar_name(options_, lidar + 1));
 }
 
 void GenericSimulationWriter::write_image(int camera, int number, TimeNs stamp,
@@ -42,8 +65,14 @@ void GenericSimulationWriter::write_texts(const Rig& rig,
                                           const SimulationOptions&) {
   // The IMU is the body.
   drive_.T_body_lidar = rig.T_imu_lidar;
-  const LidarOptions& lidar = options_.lidar;
-  if (!lidar.point_times && !has_kittis_sweep(lidar)) drive_.sweep = sweep_timing_of(lidar);
+  drive_.lidar.name = lidar_name(options_, 0);
+  drive_.lidar.sweep = stated_sweep(options_.lidar);
+  for (std::size_t k = 0; k < options_.further_lidars.size(); ++k) {
+    RecordedLidar& lidar = drive_.further_lidars.emplace_back();
+    lidar.name = lidar_name(options_, k + 1);
+    lidar.sweep = stated_sweep(options_.further_lidars[k].lidar);
+    lidar.T_lidar_sensor = rig.T_lidar_further[k];
+  }
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
     const int number = rig.cameras[k].index;
     drive_.cameras.push_back(

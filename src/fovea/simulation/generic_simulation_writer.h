@@ -6,14 +6,15 @@
 
 namespace fovea {
 
-/// Cameras are called camera_K. Everything is written below ROOT.partial, as GenericDriveWriter
-/// does.
+/// Cameras are called camera_K, several LiDARs lidar_1, lidar_2, .... Everything is written below
+/// ROOT.partial, as GenericDriveWriter does.
 class GenericSimulationWriter : public SimulationWriter {
  public:
   /// OutputError as GenericDriveWriter.
   GenericSimulationWriter(const SimulationOptions& options, const std::filesystem::path& root);
 
   void write_scan(int frame, const SimulatedScan& scan) override;
+  void write_further_scan(std::size_t lidar, int frame, const SimulatedScan& scan) override;
   void write_image(int camera, int number, TimeNs stamp, const Image& image) override;
   void write_exposure(int camera, int number, double exposure) override;
   void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,

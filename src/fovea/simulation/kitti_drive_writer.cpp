@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <stdexcept>
 
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/simulation/drive_texts.h"
@@ -30,6 +31,10 @@ void KittiDriveWriter::write_scan(int frame, const SimulatedScan& scan) {
   write_file(fs::path("velodyne_points/data") / numbered(frame, ".bin"),
              {reinterpret_cast<const char*>(scan.points.data()),
               scan.points.size() * sizeof(scan.points[0])});
+}
+
+void KittiDriveWriter::write_further_scan(std::size_t, int, const SimulatedScan&) {
+  throw std::logic_error("KITTI's format has a place for one LiDAR");
 }
 
 void KittiDriveWriter::write_image(int camera, int number, TimeNs /*stamp*/, const Image& image) {

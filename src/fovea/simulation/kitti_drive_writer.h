@@ -18,6 +18,7 @@ class KittiDriveWriter : public SimulationWriter {
   explicit KittiDriveWriter(const std::filesystem::path& root);
 
   void write_scan(int frame, const SimulatedScan& scan) override;
+  void write_further_scan(std::size_t lidar, int frame, const SimulatedScan& scan) override;
   void write_image(int camera, int number, TimeNs stamp, const Image& image) override;
   void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
                    const SimulationOptions& options) override;

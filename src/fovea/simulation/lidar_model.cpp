@@ -35,11 +35,11 @@ double loss_chance(const Material& material, double facing, double range, double
 
 class Sweep {
  public:
-  Sweep(const RayCaster& caster, const VehicleMotion& motion, const Rig& rig,
+  Sweep(const RayCaster& caster, const VehicleMotion& motion, const RigidMotion& T_vehicle_lidar,
         const LidarOptions& options, int seed, int frame, double stamp)
       : caster_(caster),
         motion_(motion),
-        rig_(rig),
+        T_vehicle_lidar_(T_vehicle_lidar),
         options_(options),
         sheet_(lidar_data_sheet(options.model)),
         columns_(sweep_columns(options)),
@@ -47,7 +47,7 @@ class Sweep {
                               static_cast<std::uint64_t>(frame))
                   .next()),
         stamp_(stamp),
-        T_stamp_world_((motion.T_world_vehicle(stamp) * rig.T_vehicle_lidar).inverse()) {
+        T_stamp_world_((motion.T_world_vehicle(stamp) * T_vehicle_lidar).inverse()) {
     for (const double elevation : ring_elevations(options)) {
       rings_.emplace_back(std::cos(elevation), std::sin(elevation));
     }
@@ -60,8 +60,7 @@ class Sweep {
   void fire(int column, std::span<Return> returns) const {
     const double turned = kTurn * (column + 0.5) / columns_;
     const double since = -(kTurn * options_.stamp_phase - turned) / kTurn * options_.period;
-    const RigidMotion T_world_lidar =
-        motion_.T_world_vehicle(stamp_ + since) * rig_.T_vehicle_lidar;
+    const RigidMotion T_world_lidar = motion_.T_world_vehicle(stamp_ + since) * T_vehicle_lidar_;
     const RayCaster::Moment moment = caster_.moment(stamp_ + since, motion_.way(stamp_ + since));
     Random random = Random::of_item(seed_, kFirings, static_cast<std::uint64_t>(column));
     const auto fire_beam = [&](std::size_t ring, const Vector3d& beam) {
@@ -122,7 +121,7 @@ class Sweep {
 
   const RayCaster& caster_;
   const VehicleMotion& motion_;
-  const Rig& rig_;
+  RigidMotion T_vehicle_lidar_;
   const LidarOptions& options_;
   const LidarDataSheet& sheet_;
   int columns_;
@@ -134,9 +133,10 @@ class Sweep {
 
 }  // namespace
 
-SimulatedScan simulate_scan(const RayCaster& caster, const VehicleMotion& motion, const Rig& rig,
-                            const LidarOptions& options, int seed, int frame, double stamp) {
-  const Sweep sweep(caster, motion, rig, options, seed, frame, stamp);
+SimulatedScan simulate_scan(const RayCaster& caster, const VehicleMotion& motion,
+                            const RigidMotion& T_vehicle_lidar, const LidarOptions& options,
+                            int seed, int frame, double stamp) {
+  const Sweep sweep(caster, motion, T_vehicle_lidar, options, seed, frame, stamp);
   const std::size_t columns = sweep.columns(), rings = sweep.rings();
   std::vector<Return> returns(columns * rings);
   parallel_for(columns, 16, [&](std::size_t column) {

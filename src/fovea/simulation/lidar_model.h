@@ -20,7 +20,8 @@ struct SimulatedScan {
 /// that time. A rotating LiDAR turns clockwise, seen from above its own frame, and faces forward at
 /// `stamp` (s); a rosette follows the time of the drive. Points by ring, in the order of time.
 /// @param frame  seeds the noise
-SimulatedScan simulate_scan(const RayCaster& caster, const VehicleMotion& motion, const Rig& rig,
-                            const LidarOptions& options, int seed, int frame, double stamp);
+SimulatedScan simulate_scan(const RayCaster& caster, const VehicleMotion& motion,
+                            const RigidMotion& T_vehicle_lidar, const LidarOptions& options,
+                            int seed, int frame, double stamp);
 
 }  // namespace fovea

@@ -71,8 +71,8 @@ TEST(LidarMount, SweepsTurnEitherWayFromAnyAzimuthToAnyPhase) {
     for (const double phase : {0.0, 0.25, 0.5, 1.0}) {
       lidar.direction = direction;
       lidar.stamp_phase = phase;
-      const SimulatedScan scan =
-          simulate_scan(*drive.caster, *drive.motion, drive.rig, lidar, 1, 0, stamp);
+      const SimulatedScan scan = simulate_scan(*drive.caster, *drive.motion,
+                                               drive.rig.T_vehicle_lidar, lidar, 1, 0, stamp);
       ASSERT_GT(scan.points.size(), 700u);
       const double sign = direction == SweepDirection::kClockwise ? -1 : 1;
       double first = 1, last = -1;
@@ -99,8 +99,8 @@ TEST(LidarMount, AnUpsideDownLidarSeesAWallOnItsOtherSide) {
   options.lidar.elevations = lidar_data_sheet(LidarModel::kVlp16).elevations;
   options.lidar.roll = std::numbers::pi;
   const WallDrive drive(options, 0);
-  const SimulatedScan scan =
-      simulate_scan(*drive.caster, *drive.motion, drive.rig, options.lidar, 1, 0, 0);
+  const SimulatedScan scan = simulate_scan(*drive.caster, *drive.motion, drive.rig.T_vehicle_lidar,
+                                           options.lidar, 1, 0, 0);
   const RigidMotion T_vehicle_upright = make_rig({}).T_vehicle_lidar;
   int on_wall = 0, on_road = 0;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -201,7 +201,7 @@ TEST(LidarMount, ADriveWithoutPointTimesStatesItsSweep) {
   // The product's compensation takes each point to where the truth has it.
   const WallDrive wall(options, 9);
   SimulatedScan scan =
-      simulate_scan(*wall.caster, *wall.motion, wall.rig, options.lidar, 1, 0, 0.3);
+      simulate_scan(*wall.caster, *wall.motion, wall.rig.T_vehicle_lidar, options.lidar, 1, 0, 0.3);
   PointCloud cloud;
   for (const auto& point : scan.points) cloud.position.push_back(place(point).cast<float>());
   const RigidMotion T_world_lidar = wall.motion->T_world_vehicle(0.3) * wall.rig.T_vehicle_lidar;

@@ -1,6 +1,8 @@
 // The simulated LiDAR: its beams, its sweep, its errors and how it is mounted.
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "fovea/geometry/lidar_data_sheet.h"
@@ -29,6 +31,13 @@ struct LidarOptions {
   double stamp_phase = SweepTiming().stamp_phase;      ///< 0: start of the sweep; 1: its end
 };
 
+/// A LiDAR besides the first one. It scans once a frame.
+struct FurtherLidarOptions {
+  LidarOptions lidar;
+  double forward = 0, left = 0;  ///< m, from the first LiDAR
+  double stamp_offset = 0;       ///< s, from the stamp of the first LiDAR's scan to that of its own
+};
+
 /// Makes the LiDAR one of another model: rings, period, firings, ranges. Its noise and resolution
 /// are those of the data sheet, scaled as `lidar` scales those of its own model (0 stays 0).
 void set_model(LidarOptions& lidar, LidarModel model);
@@ -45,8 +54,11 @@ bool has_kittis_sweep(const LidarOptions& lidar);
 /// Time from the stamp to the middle of the sweep (s).
 double sweep_middle(const LidarOptions& lidar);
 
+/// Table of a LiDAR's keys: "lidar", "lidar_2", ...
+std::string lidar_table(std::size_t number);
 /// ConfigError that names the key.
-void check(const LidarOptions& lidar);
+void check(const LidarOptions& lidar, const std::string& table = lidar_table(0));
+void check(const std::vector<FurtherLidarOptions>& lidars);
 /// ConfigError for a sweep that KITTI's format cannot describe: its scans have no point times.
 void check_kitti_format(const LidarOptions& lidar);
 

@@ -25,6 +25,10 @@ RigidMotion motion(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
   return T;
 }
 
+Eigen::Matrix3d mounting(const LidarOptions& lidar) {
+  return rotation(lidar.roll / kDegree, lidar.pitch / kDegree, lidar.yaw / kDegree);
+}
+
 /// KITTI's rectified cameras look the same way from places that differ mostly sideways.
 Eigen::Vector3d camera_translation(const SimulatedCamera& camera) {
   if (camera.number == 0) return {-camera.right, 0, -camera.forward};
@@ -60,9 +64,11 @@ Rig make_rig(const SimulationOptions& options) {
   Rig rig;
   // The other sensors keep their places where the LiDAR is turned.
   const LidarOptions& lidar = options.lidar;
-  const RigidMotion T_upright_lidar =
-      motion(rotation(lidar.roll / kDegree, lidar.pitch / kDegree, lidar.yaw / kDegree),
-             Eigen::Vector3d::Zero());
+  const RigidMotion T_upright_lidar = motion(mounting(lidar), Eigen::Vector3d::Zero());
+  for (const FurtherLidarOptions& further : options.further_lidars) {
+    const Eigen::Vector3d t(further.forward, further.left, further.lidar.height - lidar.height);
+    rig.T_lidar_further.push_back(T_upright_lidar.inverse() * motion(mounting(further.lidar), t));
+  }
   rig.T_vehicle_lidar = motion(rotation(0.15, 0.25, -0.2), {0, 0, lidar.height}) * T_upright_lidar;
   // The IMU sits behind, to the left of and below the LiDAR.
   const RigidMotion T_upright_imu = motion(rotation(-0.8, -0.1, 0.05), {-0.8, 0.32, -0.81});

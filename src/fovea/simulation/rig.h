@@ -15,6 +15,7 @@ namespace fovea {
 struct Rig {
   /// Vehicle: forward, left, up, on the road below the LiDAR. With the LiDAR's mount.
   RigidMotion T_vehicle_lidar = RigidMotion::Identity();
+  std::vector<RigidMotion> T_lidar_further;  ///< of the further LiDARs
   RigidMotion T_imu_lidar = RigidMotion::Identity();
   /// Camera 0 before rectification (calib_velo_to_cam.txt).
   RigidMotion T_cam0_lidar = RigidMotion::Identity();

@@ -29,19 +29,6 @@ double truth_reach(const LidarOptions& lidar) {
   return std::clamp(lidar.max_range + 20, 140.0, kSeen);
 }
 
-/// What a drive takes on disk, about: scans and their truth, images with perfect image and depth.
-std::uintmax_t expected_size(const SimulationOptions& options) {
-  constexpr double kReturn = 44, kPixel = 4, kWorld = 60e6;  // bytes
-  double images = 0;                                         // a frame
-  for (const SimulatedCamera& camera : options.camera.cameras) {
-    images += std::max(1.0, image_rate(options.camera, camera) * options.lidar.period);
-  }
-  const double beams = double(ring_elevations(options.lidar).size()) * sweep_columns(options.lidar);
-  const double frame =
-      kReturn * beams + kPixel * images * options.camera.width * options.camera.height;
-  return static_cast<std::uintmax_t>(kWorld + frame * options.frames);
-}
-
 /// One line of a KITTI pose file: 3x4, row by row.
 std::string pose_line(const RigidMotion& T) {
   std::string line;
@@ -85,9 +72,10 @@ class Simulation {
       chunks_.insert(chunk.id);
     lidar_poses_ += pose_line(T_world_local_.inverse() * T_world_lidar(time));
 
-    const SimulatedScan scan =
-        simulate_scan(caster_, motion_, rig_, options_.lidar, options_.pass_seed(), frame, time);
+    const SimulatedScan scan = simulate_scan(caster_, motion_, rig_.T_vehicle_lidar, options_.lidar,
+                                             options_.pass_seed(), frame, time);
     if (has_tracklets()) labels_.add(frame, time, scan, caster_);
+    write_further_scans(frame, time);
     std::vector<Picture> pictures;
     for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
       for (const Shot& shot : schedules_[k][static_cast<std::size_t>(frame)]) {
@@ -110,6 +98,19 @@ class Simulation {
   }
 
  private:
+  /// Each LiDAR has its own noise. The truth of points is that of the first LiDAR alone.
+  void write_further_scans(int frame, double time) {
+    constexpr unsigned kSeedStep = 7919;
+    for (std::size_t k = 0; k < options_.further_lidars.size(); ++k) {
+      const FurtherLidarOptions& further = options_.further_lidars[k];
+      const SimulatedScan scan = simulate_scan(
+          caster_, motion_, rig_.T_vehicle_lidar * rig_.T_lidar_further[k], further.lidar,
+          static_cast<int>(unsigned(options_.pass_seed()) + kSeedStep * unsigned(k + 1)), frame,
+          time + further.stamp_offset);
+      writer_->write_further_scan(k, frame, scan);
+    }
+  }
+
   /// What one camera makes of a shot: an image, the truth of a frame, or both.
   struct Picture {
     std::size_t camera;

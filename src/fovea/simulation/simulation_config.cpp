@@ -37,6 +37,7 @@ std::vector<EnumName<LidarModel>> names_of(LidarModel) {
 namespace {
 
 constexpr int kMaxCameras = 10;
+constexpr int kMaxLidars = 8;
 
 /// The list of cameras as keys: their numbers, and place and kind of each by its number.
 class CameraKeys {
@@ -116,26 +117,46 @@ void visit_degrees(SettingVisitor& visit, std::string_view key, std::vector<doub
   for (const double angle : degrees) radians.push_back(angle * kDegree);
 }
 
-void visit_lidar(SettingVisitor& visit, LidarOptions& lidar) {
+void visit_lidar(SettingVisitor& visit, const std::string& table, LidarOptions& lidar) {
+  const auto key = [&](const char* name) { return table + "." + name; };
   LidarModel model = lidar.model;
-  visit("lidar.model", model);
+  visit(key("model"), model);
   if (model != lidar.model) set_model(lidar, model);
-  visit_degrees(visit, "lidar.elevations", lidar.elevations);
-  visit("lidar.period", lidar.period);
-  visit("lidar.columns", lidar.columns);
-  visit("lidar.min_range", lidar.min_range);
-  visit("lidar.max_range", lidar.max_range);
-  visit("lidar.range_noise", lidar.range_noise);
-  visit("lidar.range_resolution", lidar.range_resolution);
-  visit("lidar.dropouts", lidar.dropouts);
-  visit("lidar.height", lidar.height);
-  visit("lidar.point_times", lidar.point_times);
-  visit("lidar.roll", Degrees{lidar.roll});
-  visit("lidar.pitch", Degrees{lidar.pitch});
-  visit("lidar.yaw", Degrees{lidar.yaw});
-  visit("lidar.direction", lidar.direction);
-  visit("lidar.start_azimuth", Degrees{lidar.start_azimuth});
-  visit("lidar.stamp_phase", lidar.stamp_phase);
+  visit_degrees(visit, key("elevations"), lidar.elevations);
+  visit(key("period"), lidar.period);
+  visit(key("columns"), lidar.columns);
+  visit(key("min_range"), lidar.min_range);
+  visit(key("max_range"), lidar.max_range);
+  visit(key("range_noise"), lidar.range_noise);
+  visit(key("range_resolution"), lidar.range_resolution);
+  visit(key("dropouts"), lidar.dropouts);
+  visit(key("height"), lidar.height);
+  visit(key("point_times"), lidar.point_times);
+  visit(key("roll"), Degrees{lidar.roll});
+  visit(key("pitch"), Degrees{lidar.pitch});
+  visit(key("yaw"), Degrees{lidar.yaw});
+  visit(key("direction"), lidar.direction);
+  visit(key("start_azimuth"), Degrees{lidar.start_azimuth});
+  visit(key("stamp_phase"), lidar.stamp_phase);
+}
+
+void visit_lidars(SettingVisitor& visit, SimulationOptions& options) {
+  visit_lidar(visit, lidar_table(0), options.lidar);
+  auto& further = options.further_lidars;
+  int count = int(further.size()) + 1;
+  visit("lidar.count", count);
+  if (count < 1 || count > kMaxLidars) {
+    throw ConfigError(fmt::format("there are {} LiDARs", count), "lidar.count",
+                      fmt::format("give 1 to {}", kMaxLidars));
+  }
+  further.resize(std::size_t(count - 1));
+  for (std::size_t k = 0; k < further.size(); ++k) {
+    const std::string table = lidar_table(k + 1);
+    visit_lidar(visit, table, further[k].lidar);
+    visit(table + ".forward", further[k].forward);
+    visit(table + ".left", further[k].left);
+    visit(table + ".stamp_offset", further[k].stamp_offset);
+  }
 }
 
 /// Calls `visit(key, reference)` for every key but those of `cameras`' list.
@@ -159,7 +180,7 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("street.bends", Degrees{o.bends});
   visit("street.curvature", o.curvature);
 
-  visit_lidar(visit, o.lidar);
+  visit_lidars(visit, o);
 
   cameras.visit(visit);
   visit("camera.width", o.camera.width);

@@ -198,11 +198,15 @@ void SimulationOptions::validate() const {
   check_degrees("street.bends", bends, 0, 60);
   check_range("street.curvature", curvature, -0.05, 0.05, "per m");
   check(lidar);
+  check(further_lidars);
   check(camera);
   if (format == DriveFormat::kKitti) {
     check_format(camera);
     check_kitti_image_times(camera);
     check_kitti_format(lidar);
+    if (!further_lidars.empty()) {
+      reject("KITTI's format has a place for one LiDAR", "lidar.count", "use --format generic");
+    }
   }
   check_lenses(camera);
   check(navigation, lidar.period);

@@ -131,6 +131,7 @@ struct SimulationOptions {
   double bends = 7 * kDegree;  ///< rad, how far the street's heading swings
   double curvature = 0;        ///< 1/m, of the whole street, besides its bends
   LidarOptions lidar;
+  std::vector<FurtherLidarOptions> further_lidars;
   CameraOptions camera;
   NavigationOptions navigation;
 

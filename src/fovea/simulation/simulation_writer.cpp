@@ -11,6 +11,7 @@
 #include "fovea/core/output_file.h"
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/simulation/generic_simulation_writer.h"
+#include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/kitti_drive_writer.h"
 
 namespace fovea {
@@ -91,6 +92,22 @@ std::unique_ptr<SimulationWriter> make_simulation_writer(const SimulationOptions
     return std::make_unique<GenericSimulationWriter>(options, root);
   }
   return std::make_unique<KittiDriveWriter>(root);
+}
+
+std::uintmax_t expected_size(const SimulationOptions& options) {
+  constexpr double kReturn = 44, kPixel = 4, kWorld = 60e6;  // bytes
+  double images = 0;                                         // a frame
+  for (const SimulatedCamera& camera : options.camera.cameras) {
+    images += std::max(1.0, image_rate(options.camera, camera) * options.lidar.period);
+  }
+  const double beams = double(ring_elevations(options.lidar).size()) * sweep_columns(options.lidar);
+  double further = 0;
+  for (const FurtherLidarOptions& lidar : options.further_lidars) {
+    further += double(ring_elevations(lidar.lidar).size()) * sweep_columns(lidar.lidar);
+  }
+  const double frame =
+      kReturn * (beams + further) + kPixel * images * options.camera.width * options.camera.height;
+  return static_cast<std::uintmax_t>(kWorld + frame * options.frames);
 }
 
 void check_free_space(const fs::path& path, std::uintmax_t bytes) {

@@ -24,6 +24,8 @@ class SimulationWriter {
   virtual ~SimulationWriter() = default;
 
   virtual void write_scan(int frame, const SimulatedScan& scan) = 0;
+  /// @param lidar  place in SimulationOptions::further_lidars. KITTI's drives have none.
+  virtual void write_further_scan(std::size_t lidar, int frame, const SimulatedScan& scan) = 0;
   /// @param stamp  of the image; KITTI's drives have that of its scan
   virtual void write_image(int camera, int number, TimeNs stamp, const Image& image) = 0;
   /// Exposure of an image that write_image() writes, relative to the usual one. KITTI's drives have
@@ -52,6 +54,10 @@ std::string numbered(int frame, std::string_view extension);
 /// never replaced.
 std::unique_ptr<SimulationWriter> make_simulation_writer(const SimulationOptions& options,
                                                          const std::filesystem::path& root);
+
+/// What a drive takes on disk, about (bytes): scans and their truth, images with perfect image and
+/// depth.
+std::uintmax_t expected_size(const SimulationOptions& options);
 
 /// OutputError if the disk on which `path` is to be made has less than `bytes` left.
 void check_free_space(const std::filesystem::path& path, std::uintmax_t bytes);

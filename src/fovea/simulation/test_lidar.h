@@ -51,7 +51,7 @@ struct LidarDrive {
   }
   SimulatedScan scan(const LidarOptions& options, int seed = 1, int frame = 0,
                      double stamp = 0) const {
-    return simulate_scan(*caster, *motion, rig, options, seed, frame, stamp);
+    return simulate_scan(*caster, *motion, rig.T_vehicle_lidar, options, seed, frame, stamp);
   }
 };
 

@@ -114,7 +114,7 @@ class LabelledCrate : public testing::Test {
     for (int frame = 0; frame < frames; ++frame) {
       const double stamp = frame * options_.lidar.period;
       const SimulatedScan scan =
-          simulate_scan(caster, motion, rig_, options_.lidar, 1, frame, stamp);
+          simulate_scan(caster, motion, rig_.T_vehicle_lidar, options_.lidar, 1, frame, stamp);
       labels.add(frame, stamp, scan, caster);
     }
     return labels.tracks();

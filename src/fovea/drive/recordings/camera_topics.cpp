@@ -10,7 +10,8 @@
 #include "fovea/core/errors.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/recordings/pixels.h"
-#include "fovea/drive/writers/camera_name.h"
+#include "fovea/drive/recordings/place_on_vehicle.h"
+#include "fovea/drive/recordings/sensor_name.h"
 
 namespace fovea {
 namespace {
@@ -46,16 +47,6 @@ ImagePath path_of(std::string topic) {
   return path;
 }
 
-/// "/sensors/front" is sensors_front.
-std::string camera_name(const std::string& parent) {
-  std::string name;
-  for (const char c : parent) {
-    const bool plain = may_name_a_camera(c);
-    if (!name.empty() || plain) name += plain ? c : '_';
-  }
-  return name.empty() ? "camera" : name;
-}
-
 LensModel lens_model(const std::string& name, const std::string& topic) {
   if (name.empty() || name == "none") return LensModel::kNone;
   if (name == "fisheye") return LensModel::kEquidistant;
@@ -86,17 +77,12 @@ Lens lens_of(const ros::CameraInfo& info, const std::string& topic) {
 /// T_lidar_cam, of the first of the frames that tf knows.
 QuaternionMotion place_of(const BagIndex& index, const std::string& lidar_frame,
                           const std::array<std::string, 2>& frames, const std::string& topic) {
-  for (const std::string& frame : frames) {
-    const auto T = index.transforms.fixed(lidar_frame, frame);
-    // No camera looks along the LiDAR's z: such a frame was never thought of.
-    if (!T || frame == lidar_frame) continue;
-    if (const auto moving = index.transforms.moving(lidar_frame, frame)) {
-      throw InputError(
-          fmt::format("frame '{}' moves between '{}' and '{}'", *moving, lidar_frame, frame), topic,
-          "a camera must sit still on the vehicle");
-    }
-    return *T;
-  }
+  // No camera looks along the LiDAR's z: such a frame was never thought of.
+  const auto is_known = [&](const std::string& frame) {
+    return frame != lidar_frame && index.transforms.fixed(lidar_frame, frame);
+  };
+  const auto known = std::find_if(frames.begin(), frames.end(), is_known);
+  if (known != frames.end()) return place_on_vehicle(index, lidar_frame, *known, topic);
   throw InputError(fmt::format("tf does not say where frame '{}' is in '{}'",
                                frames[0].empty() ? frames[1] : frames[0], lidar_frame),
                    topic, "record /tf_static, too");
@@ -152,7 +138,7 @@ std::map<std::string, std::vector<std::string>> likely_cameras(const BagIndex& i
   std::map<std::string, std::vector<std::string>> cameras;
   for (const auto& [topic, images] : index.images) {
     const ImagePath path = path_of(topic);
-    if (!path.may_be_depth()) cameras[camera_name(path.parent)].push_back(topic);
+    if (!path.may_be_depth()) cameras[sensor_name(path.parent, "camera")].push_back(topic);
   }
   const auto rank = [](const std::string& topic) {
     const ImagePath path = path_of(topic);

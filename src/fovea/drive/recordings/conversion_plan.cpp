@@ -4,9 +4,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/navigation_topics.h"
-#include "fovea/drive/recordings/only_topic.h"
 #include "fovea/drive/recordings/scan_message.h"
-#include "fovea/drive/scans/recognized_format.h"
 
 namespace fovea {
 namespace {
@@ -56,11 +54,16 @@ void check_count(const SensorTopic& sensor, const std::string& topic) {
 }
 
 void check_sensors(const BagIndex& index, const ConversionPlan& plan) {
-  check_count(index.lidars.at(plan.lidar), plan.lidar);
-  const std::vector<TimeNs>& scans = index.lidars.at(plan.lidar).stamps;
+  const std::string& first_lidar = plan.lidars.front().topic;
+  const std::vector<TimeNs>& scans = index.lidars.at(first_lidar).stamps;
   const auto check = [&](const std::string& other, TimeNs first, TimeNs last) {
-    check_clocks(plan.lidar, scans, other, first, last);
+    check_clocks(first_lidar, scans, other, first, last);
   };
+  for (const PlannedLidar& planned : plan.lidars) {
+    const SensorTopic& lidar = index.lidars.at(planned.topic);
+    check(planned.topic, lidar.stamps.front(), lidar.stamps.back());
+    check_count(lidar, planned.topic);
+  }
   for (const PlannedCamera& camera : plan.cameras) {
     const std::vector<TimeNs>& stamps = index.images.at(camera.topic).stamps;
     check(camera.topic, stamps.front(), stamps.back());
@@ -73,59 +76,17 @@ void check_sensors(const BagIndex& index, const ConversionPlan& plan) {
   }
 }
 
-/// Recognizes the units of the scans. Times that have no meaning are not used, which a note says.
-ScanFormat recognize_scans(const SensorTopic& lidar, const std::string& topic,
-                           std::vector<std::string>& notes) {
-  const auto recognize = [&](const StatedScanFormat& stated) {
-    const RecognizedFormat recognized = recognize_format(lidar.first_scans, stated);
-    const ScanFormat& format = recognized.format;
-    const bool timed = format.time_unit && format.time_reference != TimeReference::kNone;
-    notes.push_back(fmt::format("scans: {} of {}, {}", lidar.stamps.size(), topic,
-                                timed ? "points have times" : "points have no times"));
-    for (const FormatNote& note : recognized.notes) notes.push_back(note.what);
-    return format;
-  };
-  try {
-    return recognize({});
-  } catch (const ConfigError& error) {
-    if (!error.where().starts_with("lidar.time_")) {
-      throw InputError(error.problem(), topic, "record coordinates in m, in the LiDAR's frame");
-    }
-  }
-  StatedScanFormat stated;
-  try {
-    stated.time_reference = TimeReference::kFirstPoint;
-    const ScanFormat format = recognize(stated);
-    notes.emplace_back(
-        "the points' times are of another clock than the stamps: the stamp of a scan "
-        "counts as the time of its first point");
-    return format;
-  } catch (const ConfigError& error) {
-    notes.push_back("the times of points are not used: " + error.problem());
-    stated.time_reference = TimeReference::kNone;
-    return recognize(stated);
-  }
-}
-
-/// The topics that may be the LiDAR: packets only if there are no point clouds.
-std::map<std::string, SensorTopic> lidar_topics(const BagIndex& index,
-                                                const ConvertOptions& options) {
-  std::map<std::string, SensorTopic> clouds = index.lidars;
-  std::erase_if(clouds, [&](const auto& lidar) {
-    return index.topics.at(lidar.first).type == ros::kVelodyneScan;
-  });
-  return clouds.empty() || !options.lidar.empty() ? index.lidars : clouds;
-}
-
 }  // namespace
 
 ConversionPlan plan_conversion(const BagIndex& index, const ConvertOptions& options) {
   ConversionPlan plan;
   if (index.lidars.empty()) throw_no_scans(index);
-  plan.lidar = only_topic(lidar_topics(index, options), options.lidar, "scans", "--lidar");
-  const SensorTopic& lidar = index.lidars.at(plan.lidar);
-  plan.drive.sweep_compensated = options.sweep_compensated;
-  plan.scan_format = recognize_scans(lidar, plan.lidar, plan.notes);
+  plan.lidars = plan_lidars(index, options, plan.notes);
+  plan.drive.lidar = plan.lidars.front().lidar;
+  for (std::size_t k = 1; k < plan.lidars.size(); ++k) {
+    plan.drive.further_lidars.push_back(plan.lidars[k].lidar);
+  }
+  const SensorTopic& lidar = index.lidars.at(plan.lidars.front().topic);
   plan.cameras = plan_cameras(index, options, lidar.frame, plan.notes);
   for (const PlannedCamera& planned : plan.cameras) {
     plan.notes.push_back(fmt::format("camera {}: '{}', {} images of {}", planned.camera.index,

@@ -7,14 +7,13 @@
 #include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/convert_options.h"
-#include "fovea/drive/scans/scan_format.h"
+#include "fovea/drive/recordings/lidar_topics.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
 
 struct ConversionPlan {
-  std::string lidar;  ///< topic of the scans
-  ScanFormat scan_format;
+  std::vector<PlannedLidar> lidars;  ///< at least one
   std::vector<PlannedCamera> cameras;
   RecordedDrive drive;
   std::vector<std::string> navigation_topics;  ///< that are used

@@ -38,7 +38,7 @@ auto naming(const std::vector<std::filesystem::path>& bags, Step&& step) {
 
 /// Leaves the stamps of scans and images in the part of the recording that the options choose.
 void keep_part(const ConvertOptions& options, const ConversionPlan& plan, BagIndex& index) {
-  std::vector<TimeNs>& scans = index.lidars.at(plan.lidar).stamps;
+  std::vector<TimeNs>& scans = index.lidars.at(plan.lidars.front().topic).stamps;
   const TimeNs first = scans.front();
   const auto erase_outside = [&](std::vector<TimeNs>& stamps, double margin) {
     std::erase_if(stamps, [&](TimeNs stamp) {
@@ -46,19 +46,26 @@ void keep_part(const ConvertOptions& options, const ConversionPlan& plan, BagInd
       return time < options.start - margin || time >= options.start + options.duration + margin;
     });
   };
-  constexpr double kMargin = 0.1;  // s: images of the first and of the last scan
+  constexpr double kMargin = 0.1;  // s: what belongs to the first and to the last scan
   erase_outside(scans, 0);
   if (scans.empty()) {
     throw ConfigError("no scan lies in this part of the recording", "--start, --duration",
                       "choose an earlier start, or a longer part");
   }
+  const auto keep_part_of = [&](std::vector<TimeNs>& stamps, const char* kind,
+                                const std::string& topic, const char* option) {
+    erase_outside(stamps, kMargin);
+    if (!stamps.empty()) return;
+    throw ConfigError(fmt::format("no {} of {} lies in this part of the recording", kind, topic),
+                      "--start, --duration",
+                      fmt::format("choose another part, or other topics ({})", option));
+  };
+  for (std::size_t k = 1; k < plan.lidars.size(); ++k) {
+    const std::string& topic = plan.lidars[k].topic;
+    keep_part_of(index.lidars.at(topic).stamps, "scan", topic, "--lidar");
+  }
   for (const PlannedCamera& camera : plan.cameras) {
-    std::vector<TimeNs>& images = index.images.at(camera.topic).stamps;
-    erase_outside(images, kMargin);
-    if (!images.empty()) continue;
-    throw ConfigError(
-        fmt::format("no image of {} lies in this part of the recording", camera.topic),
-        "--start, --duration", "choose another part, or other cameras (--camera)");
+    keep_part_of(index.images.at(camera.topic).stamps, "image", camera.topic, "--camera");
   }
 }
 
@@ -66,7 +73,7 @@ void keep_part(const ConvertOptions& options, const ConversionPlan& plan, BagInd
 void note_unused_topics(const BagIndex& index, const ConversionPlan& plan,
                         ConvertFigures& figures) {
   std::set<std::string> used(plan.navigation_topics.begin(), plan.navigation_topics.end());
-  used.insert(plan.lidar);
+  for (const PlannedLidar& lidar : plan.lidars) used.insert(lidar.topic);
   for (const PlannedCamera& camera : plan.cameras) used.insert(camera.topic);
   for (const auto& [name, messages] : index.messages) {
     const std::string& type = index.topics.at(name).type;

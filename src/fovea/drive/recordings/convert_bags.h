@@ -15,9 +15,9 @@ namespace fovea {
 
 /// Its notes say what was chosen, what is left out and why.
 struct ConvertFigures : Messages {
-  std::size_t scans = 0;
+  std::size_t scans = 0;   ///< of all LiDARs
   std::size_t images = 0;  ///< of all cameras
-  std::size_t cameras = 0;
+  std::size_t cameras = 0, lidars = 0;
 };
 
 /// Reads the recordings, which belong together, twice: what calibration and poses they have, and

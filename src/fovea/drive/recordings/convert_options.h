@@ -22,7 +22,7 @@ struct ConvertOptions {
     std::string name, topic;
   };
 
-  std::string lidar;                 ///< topic of scans
+  std::vector<std::string> lidars;   ///< topics of scans, the LiDAR of the drive's frame first
   std::vector<CameraTopic> cameras;  ///< topics of images; empty: all that have a CameraInfo
   NavigationSource poses = NavigationSource::kAuto;
   std::string fix, imu, odometry;  ///< topics

@@ -365,7 +365,7 @@ void add_scans(BagIndex& index, const std::string& topic, std::string_view type,
 
 ConversionPlan plan_of(const BagIndex& index, const std::string& lidar = "") {
   ConvertOptions options;
-  options.lidar = lidar;
+  if (!lidar.empty()) options.lidars = {lidar};
   return plan_conversion(index, options);
 }
 
@@ -373,24 +373,46 @@ TEST(PlanConversion, PacketsCountOnlyWithoutPointClouds) {
   BagIndex index = one_camera();
   index.images.clear();
   add_scans(index, "/packets", ros::kVelodyneScan);
-  EXPECT_EQ(plan_of(index).lidar, "/packets");
+  EXPECT_EQ(plan_of(index).lidars.front().topic, "/packets");
   add_scans(index, "/points", ros::kPointCloud);
-  EXPECT_EQ(plan_of(index).lidar, "/points");
-  EXPECT_EQ(plan_of(index, "/packets").lidar, "/packets");
+  EXPECT_EQ(plan_of(index).lidars.front().topic, "/points");
+  EXPECT_EQ(plan_of(index, "/packets").lidars.front().topic, "/packets");
   add_scans(index, "/livox", ros::kLivox2);
   EXPECT_THROW(plan_of(index), InputError);
+}
+
+TEST(PlanConversion, FurtherLidarsHaveNamesAndPlaces) {
+  BagIndex index = one_camera();
+  index.images.clear();
+  add_scans(index, "/sensors/top/points", ros::kPointCloud);
+  add_scans(index, "/left/points", ros::kPointCloud);
+  add_scans(index, "/left/second", ros::kPointCloud);
+  index.lidars.at("/left/points").frame = "left";
+  ConvertOptions options;
+  options.lidars = {"/sensors/top/points", "/left/points", "/left/second"};
+  EXPECT_THROW(plan_conversion(index, options), InputError);  // tf does not have "left"
+  index.transforms.add("lidar", "left", 0, at(0.5), /*is_static=*/true);
+  const ConversionPlan plan = plan_conversion(index, options);
+  ASSERT_EQ(plan.drive.further_lidars.size(), 2u);
+  EXPECT_EQ(plan.drive.lidar.name, "sensors_top");
+  EXPECT_EQ(plan.drive.further_lidars[0].name, "left");
+  EXPECT_EQ(plan.drive.further_lidars[0].T_lidar_sensor.translation.x(), 0.5);
+  EXPECT_EQ(plan.drive.further_lidars[1].name, "left_2");  // in the frame of the first one
+  EXPECT_EQ(plan.drive.further_lidars[1].T_lidar_sensor.translation.x(), 0);
+  options.lidars = {"/left/points", "/left/points"};
+  EXPECT_THROW(plan_conversion(index, options), ConfigError);
 }
 
 TEST(PlanConversion, TimesOfAnotherClockCountFromTheFirstPoint) {
   BagIndex index = one_camera();
   index.images.clear();
   add_scans(index, "/points", ros::kPointCloud);
-  EXPECT_EQ(plan_of(index).scan_format.time_reference, TimeReference::kAbsolute);
+  EXPECT_EQ(plan_of(index).lidars.front().format.time_reference, TimeReference::kAbsolute);
   index.lidars.clear();
   add_scans(index, "/points", ros::kPointCloud, /*clock_ahead=*/-1.69e9);
   const ConversionPlan plan = plan_of(index);
-  EXPECT_EQ(plan.scan_format.time_reference, TimeReference::kFirstPoint);
-  EXPECT_EQ(plan.scan_format.time_unit, 1);
+  EXPECT_EQ(plan.lidars.front().format.time_reference, TimeReference::kFirstPoint);
+  EXPECT_EQ(plan.lidars.front().format.time_unit, 1);
   EXPECT_THAT(plan.notes, Contains(HasSubstr("another clock")));
 }
 

@@ -13,12 +13,13 @@ namespace fovea {
 RecordingWriter::RecordingWriter(const BagIndex& index, const ConversionPlan& plan,
                                  GenericDriveWriter& writer, bool allow_dropped,
                                  const std::function<void(int, int)>& progress)
-    : lidar_(plan.lidar, index.lidars.at(plan.lidar)),
-      format_(plan.scan_format),
-      allow_dropped_(allow_dropped),
-      writer_(writer),
-      progress_(progress) {
-  total_ = lidar_.stamps.size();
+    : allow_dropped_(allow_dropped), writer_(writer), progress_(progress) {
+  for (const PlannedLidar& planned : plan.lidars) {
+    Numbered messages(planned.topic, index.lidars.at(planned.topic));
+    messages.name = planned.lidar.name;
+    total_ += messages.stamps.size();
+    lidars_.emplace(planned.topic, LidarMessages{std::move(messages), planned.format});
+  }
   for (const PlannedCamera& planned : plan.cameras) {
     Numbered& camera =
         cameras_.try_emplace(planned.topic, planned.topic, index.images.at(planned.topic))
@@ -29,21 +30,20 @@ RecordingWriter::RecordingWriter(const BagIndex& index, const ConversionPlan& pl
 }
 
 bool RecordingWriter::is_requested(const BagTopic& topic) {
-  return (topic.name == lidar_.topic && is_scan_type(topic.type)) ||
+  return (lidars_.contains(topic.name) && is_scan_type(topic.type)) ||
          (cameras_.contains(topic.name) &&
           (topic.type == ros::kImage || topic.type == ros::kCompressedImage));
 }
 
 void RecordingWriter::add(const BagTopic& topic, std::string_view bytes) {
-  Numbered& sensor = topic.name == lidar_.topic ? lidar_ : cameras_.at(topic.name);
   try {
     MessageReader message(bytes, topic.encoding, topic.name);
     if (is_scan_type(topic.type)) {
-      write_scan(ScanMessage(topic.type, message));
+      write_scan(ScanMessage(topic.type, message), lidars_.at(topic.name));
     } else if (topic.type == ros::kImage) {
-      write_plain(ros::read_image(message), sensor);
+      write_plain(ros::read_image(message), cameras_.at(topic.name));
     } else {
-      write_compressed(ros::read_compressed_image(message), sensor);
+      write_compressed(ros::read_compressed_image(message), cameras_.at(topic.name));
     }
   } catch (const InputError&) {
     // The index has counted it.
@@ -53,18 +53,30 @@ void RecordingWriter::add(const BagTopic& topic, std::string_view bytes) {
 }
 
 void RecordingWriter::finish(RecordedDrive& drive, ConvertFigures& figures) const {
-  figures.scans = lidar_.written;
   figures.cameras = cameras_.size();
-  account_for(lidar_, figures);
+  figures.lidars = lidars_.size();
+  const auto set_scale = [&](RecordedLidar& of_drive) {
+    for (const auto& [topic, lidar] : lidars_) {
+      if (lidar.messages.name == of_drive.name) of_drive.intensity_max = lidar.scale.max();
+    }
+  };
+  set_scale(drive.lidar);
+  for (RecordedLidar& lidar : drive.further_lidars) set_scale(lidar);
+  for (const auto& [topic, lidar] : lidars_) {
+    figures.scans += lidar.messages.written;
+    account_for(lidar.messages, figures);
+  }
   for (const auto& [topic, camera] : cameras_) {
     figures.images += camera.written;
     account_for(camera, figures);
   }
-  if (dropped_.total() > 0) {
-    figures.notes.push_back("points left out: " + reasons_of(dropped_));
+  for (const auto& [topic, lidar] : lidars_) {
+    if (lidar.dropped.total() > 0) {
+      const std::string of = lidars_.size() > 1 ? fmt::format(" of {}", topic) : "";
+      figures.notes.push_back(fmt::format("points left out{}: {}", of, reasons_of(lidar.dropped)));
+    }
+    if (!allow_dropped_) require_few_dropped(lidar.dropped, lidar.kept, topic);
   }
-  if (!allow_dropped_) require_few_dropped(dropped_, kept_, lidar_.topic);
-  drive.intensity_max = scale_.max();
 }
 
 RecordingWriter::Numbered::Numbered(const std::string& topic_name, const SensorTopic& sensor)
@@ -93,16 +105,17 @@ void RecordingWriter::use(Numbered& sensor, const ros::Header& header, Write&& w
   }
 }
 
-void RecordingWriter::write_scan(const ScanMessage& message) {
+void RecordingWriter::write_scan(const ScanMessage& message, LidarMessages& lidar) {
   const TimeNs stamp = message.header().stamp;
-  use(lidar_, message.header(), [&](int number) {
-    ScanRows rows(format_, stamp);
-    message.read(lidar_.topic, rows);
-    const LidarScan scan = rows.take(lidar_.topic);
-    dropped_ += scan.dropped;
-    kept_ += scan.points.size();
-    scale_.add(scan.points.intensity);
-    writer_.write_scan(number, stamp, scan.points);
+  const std::string& topic = lidar.messages.topic;
+  use(lidar.messages, message.header(), [&](int number) {
+    ScanRows rows(lidar.format, stamp);
+    message.read(topic, rows);
+    const LidarScan scan = rows.take(topic);
+    lidar.dropped += scan.dropped;
+    lidar.kept += scan.points.size();
+    lidar.scale.add(scan.points.intensity);
+    writer_.write_scan(number, stamp, scan.points, ScanFile::kPcd, lidar.messages.name);
   });
 }
 

@@ -30,8 +30,8 @@ class RecordingWriter : public BagSink {
   bool is_requested(const BagTopic& topic) override;
   void add(const BagTopic& topic, std::string_view bytes) override;
 
-  /// Counts what was written and left out; sets the scale of the intensities. InputError if nothing
-  /// could be used of a sensor, or, unless allowed, if too many points were left out.
+  /// Counts what was written and left out; sets the scales of the intensities. InputError if
+  /// nothing could be used of a sensor, or, unless allowed, if too many points were left out.
   void finish(RecordedDrive& drive, ConvertFigures& figures) const;
 
  private:
@@ -49,23 +49,27 @@ class RecordingWriter : public BagSink {
     UnusableMessages unusable;
   };
 
+  struct LidarMessages {
+    Numbered messages;  ///< without a name if it is the only one
+    ScanFormat format;
+    std::size_t kept = 0;  ///< points
+    DroppedPoints dropped = {};
+    IntensityScale scale = {};
+  };
+
   template <class Write>
   static void use(Numbered& sensor, const ros::Header& header, Write&& write);
-  void write_scan(const ScanMessage& message);
+  void write_scan(const ScanMessage& message, LidarMessages& lidar);
   void write_plain(const ros::ImageMessage& image, Numbered& camera);
   void write_compressed(const ros::CompressedImage& image, Numbered& camera);
   static void account_for(const Numbered& sensor, ConvertFigures& figures);
 
-  Numbered lidar_;
-  ScanFormat format_;  // of the scans
+  std::map<std::string, LidarMessages> lidars_;  // by topic
   bool allow_dropped_;
   std::map<std::string, Numbered> cameras_;  // by topic
   GenericDriveWriter& writer_;
   const std::function<void(int, int)>& progress_;
   std::size_t done_ = 0, total_ = 0;
-  std::size_t kept_ = 0;  // points
-  DroppedPoints dropped_;
-  IntensityScale scale_;
 };
 
 }  // namespace fovea

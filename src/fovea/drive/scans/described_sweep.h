@@ -15,7 +15,7 @@ SweepTiming sweep_timing(const SweepDescription& described, std::optional<double
 
 /// One line with every value of the timing and its source.
 /// @param timing  result of sweep_timing() for the same arguments
-std::string assumed_sweep_note(const SweepTiming& timing, const SweepDescription& described,
+std::string assumed_sweep_note(const SweepTiming& timing, const LidarDescription& lidar,
                                std::optional<double> stamp_step);
 
 }  // namespace fovea

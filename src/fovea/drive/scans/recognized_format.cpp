@@ -128,17 +128,24 @@ RecognizedFormat recognize_format(std::span<const ScanNumbers> scans,
 
 ScanFormat recognize_format_of_drive(std::span<const ScanNumbers> scans,
                                      const StatedScanFormat& stated,
-                                     const std::filesystem::path& toml,
+                                     const std::filesystem::path& toml, const std::string& table,
                                      std::vector<std::string>& notes) {
+  // recognize_format() names keys of [lidar].
+  const auto key_of_table = [&](const std::string& key) {
+    constexpr std::string_view kTable = "lidar";
+    return key.starts_with(kTable) ? table + key.substr(kTable.size()) : key;
+  };
   try {
     const RecognizedFormat recognized = recognize_format(scans, stated);
     for (const auto& [what, keys] : recognized.notes) {
-      notes.push_back(keys.empty() ? what
-                                   : what + "; to change: [lidar] " + keys + " in drive.toml");
+      notes.push_back(keys.empty()
+                          ? what
+                          : fmt::format("{}; to change: [{}] {} in drive.toml", what, table, keys));
     }
     return recognized.format;
   } catch (const ConfigError& error) {
-    throw ConfigError(error.problem(), fmt::format("{}: {}", toml.string(), error.where()),
+    throw ConfigError(error.problem(),
+                      fmt::format("{}: {}", toml.string(), key_of_table(error.where())),
                       error.remedy());
   }
 }

@@ -29,9 +29,10 @@ RecognizedFormat recognize_format(std::span<const ScanNumbers> scans,
                                   const StatedScanFormat& stated);
 
 /// The same for a drive with this drive.toml, which notes and errors name.
+/// @param table  of the LiDAR: "lidar" or "lidar.NAME"
 ScanFormat recognize_format_of_drive(std::span<const ScanNumbers> scans,
                                      const StatedScanFormat& stated,
-                                     const std::filesystem::path& toml,
+                                     const std::filesystem::path& toml, const std::string& table,
                                      std::vector<std::string>& notes);
 
 }  // namespace fovea

@@ -8,8 +8,8 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
+#include "fovea/core/plain_name.h"
 #include "fovea/drive/scans/lidar_scan.h"
-#include "fovea/drive/writers/camera_name.h"
 #include "fovea/drive/writers/png_encode.h"
 #include "fovea/geometry/pose_file.h"
 
@@ -46,11 +46,11 @@ LidarScan usable_points(const PointCloud& points) {
 DriveWriter::DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
                          DriveWriterOptions options)
     : writer_(root, options.force) {
-  drive_.sweep_compensated = options.sweep_compensated;
-  drive_.sweep = options.sweep;
+  drive_.lidar.sweep_compensated = options.sweep_compensated;
+  drive_.lidar.sweep = options.sweep;
   std::set<int> numbers;
   for (const RecordedCamera& camera : cameras) {
-    require(is_camera_name(camera.name), "'{}' is no name of a camera", camera.name);
+    require(is_plain_name(camera.name), "'{}' is no name of a camera", camera.name);
     require(camera.index >= 0 && camera.index <= 9, "camera '{}' has the number {}, not 0 to 9",
             camera.name, camera.index);
     require(numbers.insert(camera.index).second, "two cameras have the number {}", camera.index);
@@ -131,7 +131,7 @@ DriveWriterFigures DriveWriter::close() {
   if (is_closed_) throw std::logic_error("the drive is closed already");
   if (figures_.scans == 0) throw std::logic_error("the drive has no scan");
   is_closed_ = true;
-  drive_.intensity_max = scale_.max();
+  drive_.lidar.intensity_max = scale_.max();
   figures_.poses = drive_.poses.size();
   writer_.finish(drive_);
   return figures_;

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "fovea/core/angle.h"
-#include "fovea/drive/writers/camera_name.h"
+#include "fovea/core/plain_name.h"
 #include "fovea/drive/writers/png_encode.h"
 
 namespace fovea {
@@ -96,15 +96,25 @@ std::string sweep_text(const SweepTiming& sweep) {
       sweep.stamp_phase);
 }
 
+/// @param has_pose  whether the LiDAR's frame is another one than `lidar`
+std::string lidar_text(const RecordedLidar& lidar, bool has_pose) {
+  const std::string table = lidar.name.empty() ? "lidar" : "lidar." + lidar.name;
+  std::string text = fmt::format("\n[{}]\ncompensated = {}\nintensity_max = {}\n", table,
+                                 lidar.sweep_compensated, lidar.intensity_max);
+  if (lidar.sweep) text += sweep_text(*lidar.sweep);
+  if (has_pose) text += fmt::format("T_lidar_sensor = {}\n", motion_text(lidar.T_lidar_sensor));
+  return text;
+}
+
 std::string drive_text(const RecordedDrive& drive) {
+  std::string text = "version = 1\n" + lidar_text(drive.lidar, /*has_pose=*/false);
+  for (const RecordedLidar& lidar : drive.further_lidars) {
+    text += lidar_text(lidar, /*has_pose=*/true);
+  }
   const Eigen::Vector3d& antenna = drive.antenna_body;
-  std::string text = fmt::format(
-      "version = 1\n\n[lidar]\ncompensated = {}\nintensity_max = {}\n{}\n[body]\nT_body_lidar = "
-      "{}\n"
-      "T_body_imu = {}\nantenna = [{}, {}, {}]\n",
-      drive.sweep_compensated, drive.intensity_max, drive.sweep ? sweep_text(*drive.sweep) : "",
-      motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(), antenna.y(),
-      antenna.z());
+  text += fmt::format("\n[body]\nT_body_lidar = {}\nT_body_imu = {}\nantenna = [{}, {}, {}]\n",
+                      motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(),
+                      antenna.y(), antenna.z());
   for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
   return text;
 }
@@ -161,12 +171,20 @@ std::string inertia_text(const std::vector<RecordedInertia>& inertia) {
   return text;
 }
 
-/// Also what keeps a camera's images below the drive's folder.
-std::filesystem::path image_folder(const std::string& camera) {
-  if (!is_camera_name(camera)) {
-    throw std::invalid_argument("a camera's name is of letters, digits, '_' and '-'");
+/// A folder below the drive's: names of other characters could lead out of it.
+std::filesystem::path sensor_folder(const char* kind, const std::string& name) {
+  if (!is_plain_name(name)) {
+    throw std::invalid_argument("a sensor's name is of letters, digits, '_' and '-'");
   }
-  return std::filesystem::path("images") / camera;
+  return std::filesystem::path(kind) / name;
+}
+
+std::filesystem::path image_folder(const std::string& camera) {
+  return sensor_folder("images", camera);
+}
+
+std::filesystem::path scan_folder(const std::string& lidar) {
+  return lidar.empty() ? "lidar" : sensor_folder("lidar", lidar);
 }
 
 }  // namespace
@@ -176,13 +194,13 @@ GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root, bool f
               {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "truth",
                "depth", "tracklet_labels.xml"}) {}
 
-void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
-                                    ScanFile format) {
+void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_sensor,
+                                    ScanFile format, const std::string& lidar) {
   const bool pcd = format == ScanFile::kPcd;
-  folder_.write(std::filesystem::path("lidar") / file_name(number, pcd ? ".pcd" : ".bin"),
-                pcd ? pcd_text(scan_lidar) : kitti_text(scan_lidar));
+  folder_.write(scan_folder(lidar) / file_name(number, pcd ? ".pcd" : ".bin"),
+                pcd ? pcd_text(scan_sensor) : kitti_text(scan_sensor));
   const std::lock_guard lock(mutex_);
-  scan_stamps_[number] = stamp;
+  scan_stamps_[lidar][number] = stamp;
 }
 
 void GenericDriveWriter::write_image(const std::string& camera, int number, TimeNs stamp,
@@ -211,7 +229,9 @@ void GenericDriveWriter::write_file(const std::filesystem::path& name,
 
 void GenericDriveWriter::finish(const RecordedDrive& drive) {
   folder_.write("drive.toml", drive_text(drive));
-  folder_.write("lidar/stamps.csv", stamps_text(scan_stamps_));
+  for (const auto& [lidar, stamps] : scan_stamps_) {
+    folder_.write(scan_folder(lidar) / "stamps.csv", stamps_text(stamps));
+  }
   for (const auto& [camera, stamps] : image_stamps_) {
     folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps, exposures_[camera]));
   }

@@ -29,6 +29,14 @@ struct RecordedCamera {
   QuaternionMotion T_lidar_cam;
 };
 
+struct RecordedLidar {
+  std::string name;  ///< letters, digits, '_' and '-'; empty: the drive has one LiDAR
+  bool sweep_compensated = false;
+  std::optional<SweepTiming> sweep;  ///< of points without times; absent: drive.toml states none
+  double intensity_max = 1;  ///< the intensity in the scans that stands for a reflectance of 1
+  QuaternionMotion T_lidar_sensor;  ///< of further LiDARs
+};
+
 /// A line of poses.csv.
 struct RecordedPose {
   TimeNs time = 0;
@@ -61,9 +69,8 @@ enum class ScanFile {
 /// each to the last digit.
 struct RecordedDrive {
   std::vector<RecordedCamera> cameras;
-  bool sweep_compensated = false;
-  std::optional<SweepTiming> sweep;  ///< of points without times; absent: drive.toml states none
-  double intensity_max = 1;  ///< the intensity in the scans that stands for a reflectance of 1
+  RecordedLidar lidar;                        ///< its frame is `lidar`
+  std::vector<RecordedLidar> further_lidars;  ///< if there are any, all have names
   QuaternionMotion T_body_lidar, T_body_imu;
   Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();
   std::vector<RecordedPose> poses;          ///< where there are any, positions are not looked at
@@ -80,9 +87,11 @@ class GenericDriveWriter {
   /// parent does not, or another program is writing it.
   explicit GenericDriveWriter(const std::filesystem::path& root, bool force = false);
 
-  /// std::invalid_argument for a scan with times that is to be KITTI's.
-  void write_scan(int number, TimeNs stamp, const PointCloud& scan_lidar,
-                  ScanFile format = ScanFile::kPcd);
+  /// std::invalid_argument for a scan with times that is to be KITTI's, and for a name that
+  /// RecordedLidar does not allow.
+  /// @param lidar  name of the LiDAR; empty: the drive has one
+  void write_scan(int number, TimeNs stamp, const PointCloud& scan_sensor,
+                  ScanFile format = ScanFile::kPcd, const std::string& lidar = "");
   /// As PNG. std::invalid_argument for a name that RecordedCamera does not allow.
   void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
   /// States the exposure time of an image, s. Of a camera all images have one, or none.
@@ -105,8 +114,8 @@ class GenericDriveWriter {
   using Stamps = std::map<int, TimeNs>;
 
   OutputFolder folder_;
-  std::mutex mutex_;  // of the stamps
-  Stamps scan_stamps_;
+  std::mutex mutex_;                                        // of the stamps
+  std::map<std::string, Stamps> scan_stamps_;               // by LiDAR
   std::map<std::string, Stamps> image_stamps_;              // by camera
   std::map<std::string, std::map<int, double>> exposures_;  // by camera, s
 };

@@ -17,13 +17,13 @@ namespace {
 
 constexpr double kMinVoxel = 0.01, kMaxVoxel = 10;  // m
 
-/// Where the LiDAR was, local frame, by the frames' numbers.
-std::unordered_map<int, Eigen::Vector3d> sensor_positions(const MapReader& map) {
-  std::unordered_map<int, Eigen::Vector3d> positions;
+/// Poses of the first LiDAR by the frames' numbers.
+std::unordered_map<int, RigidMotion> lidar_poses(const MapReader& map) {
+  std::unordered_map<int, RigidMotion> T_local_lidar;
   for (const FrameRecord& frame : map.frames()) {
-    positions.emplace(frame.index, frame.T_local_lidar.translation());
+    T_local_lidar.emplace(frame.index, frame.T_local_lidar);
   }
-  return positions;
+  return T_local_lidar;
 }
 
 /// Of a lattice whose blocks lie in one cube, a power of two of them wide, with room on all sides:
@@ -50,20 +50,25 @@ MapBlocks map_blocks(const MapReader& map, const PointStream& points, double vox
   MapBlocks blocks{PointBlocks(voxel)};
   const double edge = block_edge(voxel);
   blocks.origin = lattice_origin(make_tile_tree(map).box, edge);
-  const auto sensors = sensor_positions(map);
+  const auto T_local_lidar = lidar_poses(map);
+  const std::vector<SensorRecord> sensors = map.sensors();
   points.for_each_block([&](std::span<const ExportPoint> of_tile) {
     std::map<BlockKey, std::vector<SeenPoint>> sorted;
     for (const ExportPoint& point : of_tile) {
-      const auto sensor = sensors.find(point.frame);
-      if (sensor == sensors.end()) {
+      const auto pose = T_local_lidar.find(point.frame);
+      if (pose == T_local_lidar.end()) {
         ++figures.without_frame;
         continue;
+      }
+      Eigen::Vector3d sensor_lidar = Eigen::Vector3d::Zero();
+      if (point.sensor < sensors.size()) {
+        sensor_lidar = sensors[point.sensor].T_lidar_sensor.translation();
       }
       const Eigen::Array3i block =
           ((point.position - blocks.origin) / edge).array().floor().cast<int>();
       const BlockKey key = BlockKey::of(block);
       SeenPoint seen = seen_point((point.position - blocks.corner(key)).cast<float>(),
-                                  (sensor->second - point.position).cast<float>());
+                                  (pose->second * sensor_lidar - point.position).cast<float>());
       seen.colored = point.camera != kNoCamera;
       seen.color = point.color;
       sorted[key].push_back(seen);

@@ -43,6 +43,7 @@ struct ExportPoint {
   Rgb color = kUncolored;
   DeepRgb deep_color{};  ///< if asked for
   std::int8_t camera = kNoCamera;
+  std::uint16_t sensor = 0;  ///< number of the LiDAR
   std::uint8_t interpolated = 0, views = 0, spread = 0, reason = 0;
 };
 

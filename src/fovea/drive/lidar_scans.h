@@ -1,0 +1,46 @@
+// The scans of a LiDAR of a drive with a drive.toml: files, stamps, format.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "fovea/core/messages.h"
+#include "fovea/core/read_file.h"
+#include "fovea/drive/drive_description.h"
+#include "fovea/drive/drive_files.h"
+#include "fovea/drive/first_scans.h"
+#include "fovea/drive/nearest_images.h"
+#include "fovea/drive/time_stamps.h"
+
+namespace fovea {
+
+/// The files of the LiDAR's folder. InputError for a number that is too large.
+NumberedFiles list_scans(const std::filesystem::path& drive, const LidarDescription& lidar);
+
+/// Stamps of scans by their number; none without a table. Warns of those out of order.
+TimeStamps read_stamps_of_scans(const std::filesystem::path& table, const NumberedFiles& scans,
+                                Messages& messages);
+
+/// Units of scans and timing of their sweeps.
+struct ScanReading {
+  ScanFormat format;
+  SweepTiming sweep;
+  double sweep_middle = 0;  ///< s from the stamp, by the times of the points if they have any
+};
+
+/// By drive.toml and the first scans. Notes and warns of what is assumed.
+/// @param stamp_step  s, between the scans; absent if it cannot be the period of a sweep
+ScanReading recognize_scans(const std::filesystem::path& drive, const LidarDescription& lidar,
+                            const NumberedFiles& scans, const StampOfScan& stamp,
+                            std::optional<double> stamp_step, Messages& messages);
+
+/// Gives each frame the scan of a further LiDAR whose sweep is nearest in time, at most half a
+/// sweep away. A drive without stamps has scans and frames of the same numbers.
+/// Warns of frames without a scan. InputError if no frame has one.
+/// @param frames        stamps of the frames; empty: the drive has none
+/// @param sweep_middle  of the first LiDAR, s from its stamp
+FurtherLidar find_further_lidar(const std::filesystem::path& drive, const LidarDescription& lidar,
+                                const NumberedTimes& frames, double sweep_middle,
+                                Messages& messages);
+
+}  // namespace fovea
