@@ -50,7 +50,10 @@ std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& driv
                                     frames_text(check)};
   for (const MountedLidar& lidar : check.lidars) {
     const std::string name = check.lidars.size() > 1 ? lidar.profile.name + ": " : "";
-    lines.push_back("LiDAR        " + name + to_text(lidar.profile));
+    const double distance = lidar.T_lidar_sensor.translation().norm();
+    const std::string place =
+        distance > 0 ? fmt::format(", {:.2f} m from the first one", distance) : "";
+    lines.push_back("LiDAR        " + name + to_text(lidar.profile) + place);
   }
   lines.push_back(scans_text(check));
   lines.push_back("dropped      " +

@@ -24,7 +24,7 @@ struct MappedStreet {
   FovealRegion region;
 
   explicit MappedStreet(const BenchData& bench_data)
-      : data(bench_data), region(options.foveal, data.camera) {
+      : data(bench_data), region(options.foveal, data.camera, kOneLidar) {
     Mapper mapper(data.drive, options, PoseSource::kRefine);
     for (std::size_t k = 0; k < data.frames.size(); ++k) {
       const bool is_last = k + 1 == data.frames.size();

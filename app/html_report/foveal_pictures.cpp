@@ -65,9 +65,9 @@ std::string figure(const ColoredPoints& points, const std::vector<float>& spacin
 
 /// As the map's options say, without a map that would have some of it already.
 PointCloud densified(const PointCloud& measured_cam, const Camera& camera,
-                     const MapSettings& settings, const SensorProfile& lidar) {
+                     const MapSettings& settings, const DriveInfo& drive) {
   if (settings.is_paper()) return upsample(measured_cam, camera, settings.paper().upsample);
-  const MapperOptions options = suited_to(lidar, settings.mapper());
+  const MapperOptions options = suited_to(drive, settings.mapper());
   const SampleGrid grid{camera.T_cam_lidar.inverse(), options.surface.spacing,
                         [](const Eigen::Vector3d&, int) { return false; }};
   return sample_surfaces(measured_cam, camera, options.surface, grid);
@@ -95,12 +95,11 @@ std::string foveal_section(const ScoredMap& map, const FrameSource& drive,
   const Camera camera = drive.info().camera_at(place, placed.index).at_image(placed.motion);
   const MapSettings settings = settings_of(map);
   const FovealOptions& foveal = settings.foveal();
-  const FovealRegion region(foveal, camera);
+  const FovealRegion region(foveal, camera, lidar_origins(drive.info()));
 
   const PointCloud measured_cam = foveal_points(loaded->scan_lidar, region);
   if (measured_cam.empty()) return excuse("No point lies in the foveal region.");
-  PointCloud dense_cam =
-      densified(measured_cam, camera, settings, mounted_lidars(drive).front().profile);
+  PointCloud dense_cam = densified(measured_cam, camera, settings, info_with_lidars(drive));
   limit_incidence(dense_cam, foveal.max_incidence);
   color_points(dense_cam, {*shot, camera, placed.index});
 

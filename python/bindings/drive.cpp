@@ -123,6 +123,12 @@ void bind_frame(py::module_& module) {
           [](const DriveFrame& self) { return optional_column(scan_of(self), &PointCloud::time); },
           "N float32, s from the stamp, or None.")
       .def_property_readonly(
+          "sensor",
+          [](const DriveFrame& self) {
+            return optional_column(scan_of(self), &PointCloud::sensor);
+          },
+          "N uint16, number of the LiDAR, or None for a drive with one.")
+      .def_property_readonly(
           "dropped_points",
           [](const DriveFrame& self) { return self.frame->dropped_points.total(); },
           "Points of the scan that are not finite or out of reach, and not in `points`.")

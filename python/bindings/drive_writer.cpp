@@ -91,13 +91,24 @@ std::variant<Image, std::filesystem::path> content_of(const py::object& image) {
 class PythonDriveWriter {
  public:
   PythonDriveWriter(const std::filesystem::path& path,
-                    const std::map<std::string, CameraModel>& cameras, bool force,
-                    bool compensated) {
+                    const std::map<std::string, CameraModel>& cameras, bool force, bool compensated,
+                    const std::map<std::string, Doubles>& further_lidars,
+                    const std::string& first_lidar) {
     std::vector<RecordedCamera> recorded;
     for (const auto& [name, camera] : cameras) {
       recorded.push_back({name, int(recorded.size()), camera.optics, camera.T_lidar_cam});
     }
-    writer_.emplace(path, std::move(recorded), DriveWriterOptions{force, compensated, {}});
+    DriveWriterOptions options{force, compensated, {}, {}, first_lidar};
+    for (const auto& [name, T_lidar_sensor] : further_lidars) {
+      options.further_lidars.emplace(name, motion_from(T_lidar_sensor));
+    }
+    writer_.emplace(path, std::move(recorded), std::move(options));
+  }
+
+  void add_scan(const std::string& lidar, const Floats& points, TimeNs stamp,
+                const std::optional<Floats>& intensity, const std::optional<Floats>& times,
+                const std::optional<Rings>& rings) {
+    opened().add_scan(lidar, {stamp, cloud_of(points, intensity, times, rings)});
   }
 
   void add(const Floats& points, TimeNs stamp, const std::optional<Floats>& intensity,
@@ -157,12 +168,20 @@ void bind_drive_writer(py::module_& module) {
                                 "data set. As a context manager, it closes the drive at the end, "
                                 "and keeps nothing after an exception.")
       .def(py::init<const std::filesystem::path&, const std::map<std::string, CameraModel>&, bool,
-                    bool>(),
+                    bool, const std::map<std::string, Doubles>&, const std::string&>(),
            py::arg("path"), py::kw_only(),
            py::arg("cameras") = std::map<std::string, CameraModel>(), py::arg("force") = false,
            py::arg("compensated") = false,
+           py::arg("further_lidars") = std::map<std::string, Doubles>(),
+           py::arg("first_lidar") = "first",
            "cameras: by name; their numbers follow the names. compensated: the scans' motion was "
-           "undone already. OutputError if the folder exists (except with force).")
+           "undone already. further_lidars: T_lidar_sensor, 4x4, by name; first_lidar: the name of "
+           "the first LiDAR. OutputError if the folder exists (except with force).")
+      .def("add_scan", &PythonDriveWriter::add_scan, py::arg("lidar"), py::arg("points"),
+           py::arg("stamp"), py::kw_only(), py::arg("intensity") = py::none(),
+           py::arg("times") = py::none(), py::arg("rings") = py::none(),
+           "Adds a scan of a further LiDAR, in its own frame. It belongs to the frame nearest in "
+           "time. Columns as in add().")
       .def("add", &PythonDriveWriter::add, py::arg("points"), py::arg("stamp"), py::kw_only(),
            py::arg("intensity") = py::none(), py::arg("times") = py::none(),
            py::arg("rings") = py::none(), py::arg("images") = std::map<std::string, py::object>(),

@@ -180,6 +180,8 @@ class Frame:
     @property
     def time(self) -> Optional[_Floats]: ...
     @property
+    def sensor(self) -> Optional[npt.NDArray[np.uint16]]: ...
+    @property
     def dropped_points(self) -> int: ...
     @property
     def images(self) -> List[Optional[_Bytes]]: ...
@@ -235,6 +237,18 @@ class DriveWriter:
         cameras: Mapping[str, CameraModel] = ...,
         force: bool = False,
         compensated: bool = False,
+        further_lidars: Mapping[str, npt.ArrayLike] = ...,
+        first_lidar: str = "first",
+    ) -> None: ...
+    def add_scan(
+        self,
+        lidar: str,
+        points: npt.ArrayLike,
+        stamp: int,
+        *,
+        intensity: Optional[npt.ArrayLike] = None,
+        times: Optional[npt.ArrayLike] = None,
+        rings: Optional[npt.ArrayLike] = None,
     ) -> None: ...
     def add(
         self,

@@ -44,6 +44,19 @@ class DriveWriterTest(unittest.TestCase):
         np.testing.assert_allclose(frame.time, np.linspace(-0.05, 0.05, 50), atol=1e-7)
         np.testing.assert_array_equal(drive.cameras[0].K, K)
 
+    def test_a_further_lidar_has_scans_of_its_own(self):
+        path = sample.folder() / "two_lidars"
+        with fovea.DriveWriter(path, further_lidars={"left": pose(1)}, force=True) as writer:
+            for frame in range(2):
+                writer.add(points(), START + frame * STEP)
+                writer.add_scan("left", points(), START + frame * STEP, times=np.zeros(50))
+            with self.assertRaises(ValueError):
+                writer.add_scan("right", points(), START + 2 * STEP)
+        frame = fovea.Drive(path).load(1)
+        self.assertEqual(len(frame.points), 100)
+        np.testing.assert_array_equal(frame.sensor, np.repeat([0, 1], 50))
+        np.testing.assert_allclose(frame.points[50:], points() + pose(1)[:3, 3], atol=1e-5)
+
     def test_close_tells_what_was_written(self):
         writer = fovea.DriveWriter(sample.folder() / "closed", force=True)
         bad = points()

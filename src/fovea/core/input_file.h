@@ -23,6 +23,7 @@ inline constexpr FileKind kImageFile{"image", 256 * kMebibyte};
 /// Tables, calibration and other texts; the truth of simulated drives.
 inline constexpr FileKind kDataFile{"data file", 1024 * kMebibyte};
 inline constexpr FileKind kSettingsFile{"configuration", 4 * kMebibyte};
+inline constexpr FileKind kCalibrationFile{"calibration file", 4 * kMebibyte};
 inline constexpr FileKind kDescriptionFile{"description", 256 * kMebibyte};  ///< JSON, YAML, XML
 /// Read piece by piece, so that the size does not matter.
 inline constexpr FileKind kStreamedFile{"file", kNoLimit};

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <stdexcept>
-#include <type_traits>
 
 #include "fovea/core/kept_rows.h"
 #include "fovea/core/parallel.h"
@@ -63,21 +62,18 @@ void PointCloud::append(const PointCloud& other) {
   if (origin != other.origin) {
     throw std::logic_error("point clouds of different origins cannot be joined");
   }
-  const std::size_t before = size(), all = size() + other.size();
+  if (sensor.empty() != other.sensor.empty()) {
+    PointCloud with_sensor = other;
+    sensor.resize(size(), 0);
+    with_sensor.sensor.resize(other.size(), 0);
+    return append(with_sensor);
+  }
   for_each_optional_column(*this, other, [&](const char* name, auto& to, const auto& from) {
-    if constexpr (std::is_same_v<decltype(&to), decltype(&sensor)>) {
-      if (&to == &sensor) return;
-    }
     if (to.empty() != from.empty()) {
       throw std::logic_error(fmt::format("only one of two joined point clouds has '{}'", name));
     }
     to.insert(to.end(), from.begin(), from.end());
   });
-  if (!sensor.empty() || !other.sensor.empty()) {
-    sensor.resize(before, 0);
-    sensor.insert(sensor.end(), other.sensor.begin(), other.sensor.end());
-    sensor.resize(all, 0);
-  }
   position.insert(position.end(), other.position.begin(), other.position.end());
 }
 

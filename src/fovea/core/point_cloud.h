@@ -43,6 +43,7 @@ struct PointCloud {
   std::vector<std::uint8_t> sampling_level;
 
   std::size_t size() const { return position.size(); }
+  std::uint16_t sensor_at(std::size_t i) const { return sensor.empty() ? 0 : sensor[i]; }
   bool empty() const { return position.empty(); }
 
   /// Throws std::logic_error that names the first optional column of neither 0 nor size() entries.

@@ -18,7 +18,7 @@ namespace {
 class CalibrationFile {
  public:
   explicit CalibrationFile(const std::filesystem::path& file) : name_(file.string()) {
-    const std::vector<std::uint8_t> bytes = InputFile(file, kSettingsFile).bytes();
+    const std::vector<std::uint8_t> bytes = InputFile(file, kCalibrationFile).bytes();
     root_ = YAML::Load(std::string(bytes.begin(), bytes.end()));
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/settings.h"
@@ -24,7 +25,6 @@ inline auto names_of(LensModel) {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr std::size_t kMaxLidars = 16;
 constexpr int kMaxCamera = 9;  // config_keys.h knows slices of as many
 
 /// One camera's keys.
@@ -194,15 +194,21 @@ class DriveKeys {
                  fmt::format("describe at most {}", kMaxLidars));
     }
     std::optional<LidarDescription> first;
+    std::set<std::filesystem::path> folders;
     for (LidarKeys& keys : lidars_) {
       LidarDescription lidar = keys.lidar();
+      if (!folders.insert(lidar.folder.lexically_normal()).second) {
+        reject_key("two LiDARs have the same folder", lidar.table() + ".folder",
+                   "give each LiDAR its own scans");
+      }
       if (keys.has_pose()) {
         drive_.further_lidars.push_back(std::move(lidar));
         continue;
       }
       if (first) {
         reject_key(fmt::format("LiDARs {} and {} have no pose", first->name, lidar.name),
-                   keys.pose_key(), "only the one whose frame the other poses name has none");
+                   keys.pose_key(),
+                   "give one of them T_lidar_sensor: the frame of the other is that of the drive");
       }
       first = std::move(lidar);
     }

@@ -98,6 +98,14 @@ std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOpti
   return options.cameras;
 }
 
+std::vector<int> unused_cameras(const std::vector<int>& present, const std::vector<int>& chosen) {
+  std::vector<int> unused = present;
+  std::erase_if(unused, [&](int camera) {
+    return std::find(chosen.begin(), chosen.end(), camera) != chosen.end();
+  });
+  return unused;
+}
+
 void find_images(const KittiCalibration& calibration, const DriveOptions& options,
                  const std::string& folder_prefix, const std::string& subfolder, DriveInfo& info,
                  DriveFiles& files) {
@@ -116,7 +124,9 @@ void find_images(const KittiCalibration& calibration, const DriveOptions& option
     info.notes.push_back(kNoCameraNote);
     return;
   }
-  for (const int index : choose_cameras(present, options, info.path)) {
+  const std::vector<int> chosen = choose_cameras(present, options, info.path);
+  info.unused_cameras = unused_cameras(present, chosen);
+  for (const int index : chosen) {
     info.calibration.cameras.push_back(calibration.cameras.at(index));
     files.images.push_back(std::move(found.at(index)));
     const auto mask = options.masks.find(index);

@@ -15,14 +15,15 @@
 
 namespace fovea {
 
-/// The scans of a LiDAR besides the first one.
+/// The scans of a further LiDAR.
 struct FurtherLidar {
   std::string name;
   RigidMotion T_lidar_sensor = RigidMotion::Identity();
   NumberedFiles scans;           ///< by frame
   std::map<int, TimeNs> stamps;  ///< by frame; absent: that of the frame
   ScanFormat format;
-  SweepTiming sweep;  ///< of scans whose points have no times
+  SweepTiming sweep;       ///< of scans whose points have no times
+  bool has_times = false;  ///< whether the points in the files have times
   bool sweep_compensated = false;
 };
 
@@ -69,6 +70,9 @@ std::pair<int, int> frame_range(const NumberedFiles& scans, const DriveOptions& 
 /// @param present  cameras that have both a calibration and a folder of images
 std::vector<int> choose_cameras(const std::vector<int>& present, const DriveOptions& options,
                                 const std::filesystem::path& drive);
+
+/// The cameras of `present` that are not among `chosen`.
+std::vector<int> unused_cameras(const std::vector<int>& present, const std::vector<int>& chosen);
 
 /// Fills `files.images`, info.calibration.cameras with the chosen cameras. A drive without any
 /// folder of images has no camera, which a note says.

@@ -39,6 +39,7 @@ class FileFrameSource : public FrameSource {
       if (info_.sweep_compensated) frame.scan.time.clear();
       if (!files_.further_lidars.empty()) {
         set_times(frame.scan, files_.first_lidar_compensated, info_.sweep);
+        frame.scan.sensor.assign(frame.scan.size(), 0);
       }
     } catch (const InputError& error) {
       require_drive(files_.scans, index, info_.path);

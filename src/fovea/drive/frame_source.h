@@ -88,12 +88,16 @@ struct DriveInfo : Messages {
   std::filesystem::path path;
   std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
   Calibration calibration;
-  int begin = 0, end = 0;  ///< frame indices, half-open; some may turn out to be skipped
+  std::vector<int> unused_cameras;  ///< numbers of those that have images and were not chosen
+  int begin = 0, end = 0;           ///< frame indices, half-open; some may turn out to be skipped
   /// The indices in [begin, end) that have a scan, an image or a time stamp, ascending; empty: all.
   std::vector<int> frames;
   SweepTiming sweep;               ///< of scans whose points have no times
   bool sweep_compensated = false;  ///< scans are motion compensated already (KITTI odometry)
-  bool has_time_stamps = true;     ///< false: counted as 10 Hz
+  /// Whether the points of a LiDAR among several have the times of its sweeps, since its files have
+  /// none.
+  bool times_by_azimuth = false;
+  bool has_time_stamps = true;  ///< false: counted as 10 Hz
   /// The LiDARs by number. Empty for a drive with one, until its profile is estimated
   /// (pipeline/drive_sensors.h); of several the profiles have name and sweep alone until then.
   std::vector<MountedLidar> lidars;

@@ -72,6 +72,7 @@ class GenericDrive {
     files_.scan_format = reading.format;
     info_.sweep = reading.sweep;
     sweep_middle_ = reading.sweep_middle;
+    has_times_ = reading.has_times;
   }
 
   /// Scans of several LiDARs are merged as measured: each point has its time.
@@ -79,12 +80,19 @@ class GenericDrive {
     if (description_.further_lidars.empty()) return;
     info_.sweep_compensated = false;
     files_.first_lidar_compensated = description_.lidar.sweep_compensated;
+    const auto assumes_times = [](bool has_times, bool is_compensated) {
+      return !has_times && !is_compensated;
+    };
+    info_.times_by_azimuth = assumes_times(has_times_, files_.first_lidar_compensated);
     const NumberedTimes frames = info_.has_time_stamps ? stamps_of_scans() : NumberedTimes();
+    std::vector<int> numbers;
+    for (const auto& [number, file] : files_.scans) numbers.push_back(number);
     add_lidar(description_.lidar.name, info_.sweep, RigidMotion::Identity());
     for (const LidarDescription& lidar : description_.further_lidars) {
-      files_.further_lidars.push_back(
-          find_further_lidar(info_.path, lidar, frames, sweep_middle_, info_));
-      add_lidar(lidar.name, files_.further_lidars.back().sweep, lidar.T_lidar_sensor);
+      const FurtherLidar& further = files_.further_lidars.emplace_back(
+          find_further_lidar(info_.path, lidar, numbers, frames, sweep_middle_, info_));
+      info_.times_by_azimuth |= assumes_times(further.has_times, further.sweep_compensated);
+      add_lidar(lidar.name, further.sweep, lidar.T_lidar_sensor);
     }
   }
 
@@ -129,7 +137,9 @@ class GenericDrive {
     std::vector<int> present;
     present.reserve(images.size());
     for (const auto& [index, files] : images) present.push_back(index);
-    for (const int index : choose_cameras(present, options_, info_.path)) {
+    const std::vector<int> chosen = choose_cameras(present, options_, info_.path);
+    info_.unused_cameras = unused_cameras(present, chosen);
+    for (const int index : chosen) {
       const CameraDescription& camera =
           *std::find_if(description_.cameras.begin(), description_.cameras.end(),
                         [&](const CameraDescription& c) { return c.index == index; });
@@ -270,6 +280,7 @@ class GenericDrive {
   DriveFiles files_;
   std::optional<double> stamp_step_;  // s, where it can be a sweep's period
   double sweep_middle_ = 0;           // s after a scan's stamp
+  bool has_times_ = false;            // of points, in the files of the first LiDAR
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ class LidarKeys {
   void visit(SettingVisitor& visit);
   /// ConfigError whose place is the key.
   LidarDescription lidar();
-  /// Whether the table says where the LiDAR is.
+  /// Whether the table has a pose.
   bool has_pose() const { return T_lidar_sensor_.motion().has_value(); }
   const std::string& pose_key() const { return T_lidar_sensor_.forward.key; }
 

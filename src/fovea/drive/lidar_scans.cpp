@@ -66,6 +66,7 @@ ScanReading recognize_scans(const fs::path& drive, const LidarDescription& lidar
   reading.sweep = sweep_timing(sweep, stamp_step);
   if (lidar.sweep_compensated) return reading;
   const auto middle = first_sweep_middle(scans, reading.format, stamp);
+  reading.has_times = middle.has_value();
   reading.sweep_middle = middle.value_or(reading.sweep.middle_time());
   if (numbers.empty() || middle) return reading;
   std::string note = assumed_sweep_note(reading.sweep, lidar, stamp_step);
@@ -80,8 +81,8 @@ ScanReading recognize_scans(const fs::path& drive, const LidarDescription& lidar
 }
 
 FurtherLidar find_further_lidar(const fs::path& drive, const LidarDescription& lidar,
-                                const NumberedTimes& frames, double sweep_middle,
-                                Messages& messages) {
+                                const std::vector<int>& frame_numbers, const NumberedTimes& frames,
+                                double sweep_middle, Messages& messages) {
   FurtherLidar further;
   further.name = lidar.name;
   further.T_lidar_sensor = lidar.T_lidar_sensor;
@@ -105,25 +106,32 @@ FurtherLidar find_further_lidar(const fs::path& drive, const LidarDescription& l
   const ScanReading reading = recognize_scans(drive, lidar, scans, stamp, step, messages);
   further.format = reading.format;
   further.sweep = reading.sweep;
-  if (!has_stamps) {
-    further.scans = scans;
-    return further;
+  further.has_times = reading.has_times;
+  if (has_stamps) {
+    for (const auto& [frame, scan] : match_scans(frames, times, sweep_middle - reading.sweep_middle,
+                                                 reading.sweep.period / 2)) {
+      further.scans[frame] = scans.at(scan);
+      further.stamps[frame] = times.at(scan);
+    }
+  } else {
+    if (stamps.any()) {
+      messages.warn((folder / "stamps.csv").string() + " is not used: the frames have no stamps");
+    }
+    for (const int frame : frame_numbers) {
+      const auto scan = scans.find(frame);
+      if (scan != scans.end()) further.scans.insert(*scan);
+    }
   }
-  const ImageMatches matches =
-      match_nearest(frames, times, sweep_middle - reading.sweep_middle, reading.sweep.period / 2);
-  if (matches.image_of_scan.empty()) {
+  const char* const rule = has_stamps ? "within half a sweep" : "of the number";
+  if (further.scans.empty()) {
     throw InputError(
-        fmt::format("no scan of LiDAR {} is within half a sweep of a frame", lidar.name),
-        (folder / "stamps.csv").string(),
-        fmt::format("give stamps of one clock, or remove [{}]", lidar.table()));
+        fmt::format("no scan of LiDAR {} is {} of a frame", lidar.name, rule), folder.string(),
+        fmt::format("give stamps of one clock (stamps.csv), or remove [{}]", lidar.table()));
   }
-  for (const auto& [frame, scan] : matches.image_of_scan) {
-    further.scans[frame] = scans.at(scan);
-    further.stamps[frame] = times.at(scan);
-  }
-  if (further.scans.size() < frames.size()) {
-    messages.warn(fmt::format("LiDAR {} has no scan within half a sweep of {} of {} frames",
-                              lidar.name, frames.size() - further.scans.size(), frames.size()));
+  const std::size_t all = frame_numbers.size();
+  if (further.scans.size() < all) {
+    messages.warn(fmt::format("LiDAR {} has no scan {} of {} of {} frames", lidar.name, rule,
+                              all - further.scans.size(), all));
   }
   return further;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "fovea/core/messages.h"
 #include "fovea/core/read_file.h"
@@ -25,6 +26,7 @@ TimeStamps read_stamps_of_scans(const std::filesystem::path& table, const Number
 struct ScanReading {
   ScanFormat format;
   SweepTiming sweep;
+  bool has_times = false;   ///< whether the points have times
   double sweep_middle = 0;  ///< s from the stamp, by the times of the points if they have any
 };
 
@@ -35,12 +37,13 @@ ScanReading recognize_scans(const std::filesystem::path& drive, const LidarDescr
                             std::optional<double> stamp_step, Messages& messages);
 
 /// Gives each frame the scan of a further LiDAR whose sweep is nearest in time, at most half a
-/// sweep away. A drive without stamps has scans and frames of the same numbers.
+/// sweep away. Without stamps, scans and frames of one number belong together.
 /// Warns of frames without a scan. InputError if no frame has one.
-/// @param frames        stamps of the frames; empty: the drive has none
-/// @param sweep_middle  of the first LiDAR, s from its stamp
+/// @param frame_numbers  of all frames
+/// @param frames         stamps of those that have one; empty: the drive has none
+/// @param sweep_middle   of the first LiDAR, s from its stamp
 FurtherLidar find_further_lidar(const std::filesystem::path& drive, const LidarDescription& lidar,
-                                const NumberedTimes& frames, double sweep_middle,
-                                Messages& messages);
+                                const std::vector<int>& frame_numbers, const NumberedTimes& frames,
+                                double sweep_middle, Messages& messages);
 
 }  // namespace fovea

@@ -15,6 +15,13 @@ struct StampedImage {
   friend auto operator<=>(const StampedImage&, const StampedImage&) = default;
 };
 
+std::vector<StampedImage> in_order_of_time(const NumberedTimes& images) {
+  std::vector<StampedImage> in_time;
+  for (const auto& [number, time] : images) in_time.push_back({time, number});
+  std::sort(in_time.begin(), in_time.end());
+  return in_time;
+}
+
 const StampedImage& nearest(const std::vector<StampedImage>& images, TimeNs time) {
   const auto after = std::lower_bound(images.begin(), images.end(), time,
                                       [](const StampedImage& i, TimeNs t) { return i.time < t; });
@@ -70,9 +77,7 @@ std::pair<TimeNs, TimeNs> time_span(const NumberedTimes& times) {
 ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& images,
                            double sweep_middle, double tolerance) {
   ImageMatches matches;
-  std::vector<StampedImage> in_time;
-  for (const auto& [number, time] : images) in_time.push_back({time, number});
-  std::sort(in_time.begin(), in_time.end());
+  const std::vector<StampedImage> in_time = in_order_of_time(images);
   if (in_time.empty()) return matches;
   const std::vector<TimeNs> first =
       delays_of(match(scans, in_time, tolerance, from_seconds(sweep_middle)), scans, images);
@@ -83,6 +88,13 @@ ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& imag
   matches.min_delay = seconds(delays.front());
   matches.max_delay = seconds(delays.back());
   return matches;
+}
+
+std::map<int, int> match_scans(const NumberedTimes& scans, const NumberedTimes& others,
+                               double delay, double tolerance) {
+  const std::vector<StampedImage> in_time = in_order_of_time(others);
+  if (in_time.empty()) return {};
+  return match(scans, in_time, tolerance, from_seconds(delay));
 }
 
 std::string why_none_matches(const NumberedTimes& scans, const NumberedTimes& images,

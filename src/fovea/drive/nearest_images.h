@@ -28,6 +28,11 @@ struct ImageMatches {
 ImageMatches match_nearest(const NumberedTimes& scans, const NumberedTimes& images,
                            double sweep_middle, double tolerance);
 
+/// Gives each scan the other scan nearest to `delay` (s) after its stamp, at most `tolerance` (s)
+/// from there. Each belongs to one scan only. Numbers of the others by numbers of the scans.
+std::map<int, int> match_scans(const NumberedTimes& scans, const NumberedTimes& others,
+                               double delay, double tolerance);
+
 /// Why match_nearest() found no image: "they have different clocks, ...".
 std::string why_none_matches(const NumberedTimes& scans, const NumberedTimes& images,
                              double tolerance);

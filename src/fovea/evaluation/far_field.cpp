@@ -119,7 +119,7 @@ class BandComparison {
     std::vector<std::uint8_t> visible;
     visible.reserve(view.pixel.size());
     for (std::size_t i = 0; i < view.pixel.size(); ++i) {
-      const std::uint16_t sensor = scan_.sensor.empty() ? 0 : scan_.sensor[view.scan_index[i]];
+      const std::uint16_t sensor = scan_.sensor_at(view.scan_index[i]);
       visible.push_back(hiding_.hidden(view.pixel[i], p_cam(view, i).norm(), sensor) ? 0 : 1);
     }
     view = select(view, visible);

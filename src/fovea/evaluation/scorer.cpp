@@ -16,7 +16,7 @@ void mark_points(const EvaluatedView& view, const PointCloud& scan, const Camera
   for (std::size_t i = 0; i < view.pixel.size(); ++i) {
     const Eigen::Vector3d p_lidar = scan.position[view.scan_index[i]].cast<double>();
     const double distance = (camera.T_cam_lidar * p_lidar).norm();
-    const std::uint16_t sensor = scan.sensor.empty() ? 0 : scan.sensor[view.scan_index[i]];
+    const std::uint16_t sensor = scan.sensor_at(view.scan_index[i]);
     score.hidden.push_back(projection.hidden(view.pixel[i], distance, sensor) ? 1 : 0);
     score.near_edge.push_back(projection.near_edge(view.pixel[i], distance) ? 1 : 0);
   }

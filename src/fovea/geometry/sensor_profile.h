@@ -1,6 +1,7 @@
 // How one LiDAR scans: its rings, its sweep, its noise and its height.
 #pragma once
 
+#include <cstddef>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -45,6 +46,9 @@ struct SensorProfile {
 
   bool operator==(const SensorProfile&) const = default;
 };
+
+/// LiDARs of one vehicle.
+inline constexpr std::size_t kMaxLidars = 16;
 
 /// A LiDAR on a vehicle.
 struct MountedLidar {

@@ -17,6 +17,7 @@ namespace {
 constexpr double kLargest = 1e9, kResolution = 1e-9;
 
 constexpr const char* kImu = "imu";
+constexpr std::string_view kLidar = "lidar_";
 
 void add_rounded(double value, ValueHash& hash) {
   const double bounded = std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : kLargest;
@@ -29,9 +30,16 @@ void add_pose(const RigidMotion& T, ValueHash& hash) {
   }
 }
 
+std::string name_of_part(const std::string& part) {
+  if (part == kImu) return "the place of the IMU";
+  if (part.starts_with(kLidar)) return "the pose of LiDAR " + part.substr(kLidar.size());
+  return "camera " + part;
+}
+
 }  // namespace
 
-std::string calibration_fingerprint(const Calibration& calibration) {
+std::string calibration_fingerprint(const Calibration& calibration,
+                                    std::span<const MountedLidar> lidars) {
   std::string fingerprint;
   const auto add = [&](const std::string& name, const ValueHash& hash) {
     fingerprint += fmt::format("{}{}:{:016x}", fingerprint.empty() ? "" : " ", name, hash.hash64());
@@ -40,6 +48,11 @@ std::string calibration_fingerprint(const Calibration& calibration) {
     ValueHash hash;
     add_pose(*calibration.T_imu_lidar, hash);
     add(kImu, hash);
+  }
+  for (std::size_t k = 1; k < lidars.size(); ++k) {
+    ValueHash hash;
+    add_pose(lidars[k].T_lidar_sensor, hash);
+    add(fmt::format("{}{}", kLidar, k), hash);
   }
   for (const Camera& camera : calibration.cameras) {
     ValueHash hash;
@@ -73,7 +86,7 @@ std::optional<std::string> calibration_difference(const std::string& a, const st
     const auto in_a = parts_a.find(name), in_b = parts_b.find(name);
     const bool both = in_a != parts_a.end() && in_b != parts_b.end();
     if (both && in_a->second == in_b->second) continue;
-    different.push_back(name == kImu ? "the place of the IMU" : "camera " + name);
+    different.push_back(name_of_part(name));
   }
   if (different.empty()) return std::nullopt;
   return fmt::format("{}", fmt::join(different, ", "));

@@ -9,15 +9,19 @@
 
 #include "fovea/core/time.h"
 #include "fovea/geometry/camera.h"
+#include "fovea/geometry/sensor_profile.h"
 
 namespace fovea {
 
-/// "imu:HASH 2:HASH 3:HASH": one hash of 16 hexadecimal digits for the place of the IMU, where it
-/// is known, and for each camera, so that drives with other cameras in use can be compared. Numbers
-/// count in whole 1e-9, so that the rounding of another computer changes nothing.
-std::string calibration_fingerprint(const Calibration& calibration);
+/// "imu:HASH lidar_1:HASH 2:HASH 3:HASH": one hash of 16 hexadecimal digits for the place of the
+/// IMU, where it is known, for the pose of each further LiDAR, and for each camera, so that drives
+/// with other cameras in use can be compared. Numbers count in whole 1e-9, so that the rounding of
+/// another computer changes nothing.
+/// @param lidars  of the drive; empty: one
+std::string calibration_fingerprint(const Calibration& calibration,
+                                    std::span<const MountedLidar> lidars);
 
-/// The parts of a calibration's fingerprint: hash by "imu" or the number of a camera.
+/// The parts of a calibration's fingerprint: hash by "imu", "lidar_1" or the number of a camera.
 std::map<std::string, std::string> fingerprint_parts(const std::string& fingerprint);
 
 /// What differs between two calibrations, as in "camera 2, the place of the IMU"; nothing if

@@ -24,11 +24,11 @@ Calibration two_cameras() {
 }
 
 TEST(CalibrationFingerprint, ChangesWithEachNumber) {
-  std::set<std::string> fingerprints = {calibration_fingerprint(two_cameras())};
+  std::set<std::string> fingerprints = {calibration_fingerprint(two_cameras(), {})};
   const auto expect_new = [&](auto&& change) {
     Calibration calibration = two_cameras();
     change(calibration);
-    EXPECT_TRUE(fingerprints.insert(calibration_fingerprint(calibration)).second);
+    EXPECT_TRUE(fingerprints.insert(calibration_fingerprint(calibration, {})).second);
   };
   expect_new([](Calibration& c) { c.cameras[0].width = 1241; });
   expect_new([](Calibration& c) { c.cameras[1].fy += 1e-6; });
@@ -42,15 +42,15 @@ TEST(CalibrationFingerprint, RoundingChangesNothing) {
   Calibration calibration = two_cameras();
   calibration.cameras[0].fx = std::nextafter(calibration.cameras[0].fx, 1e9);
   calibration.cameras[0].T_cam_lidar.translation().y() = -1e-17;
-  EXPECT_EQ(calibration_fingerprint(calibration), calibration_fingerprint(two_cameras()));
+  EXPECT_EQ(calibration_fingerprint(calibration, {}), calibration_fingerprint(two_cameras(), {}));
 }
 
 // The same camera has the same hash, whatever cameras are in use next to it.
 TEST(CalibrationFingerprint, NamesEachCamera) {
   Calibration one = two_cameras();
   one.cameras.erase(one.cameras.begin());
-  const std::string both = calibration_fingerprint(two_cameras());
-  const std::string single = calibration_fingerprint(one);
+  const std::string both = calibration_fingerprint(two_cameras(), {});
+  const std::string single = calibration_fingerprint(one, {});
   ASSERT_EQ(both.size(), 20u + 1 + 18 + 1 + 18);
   EXPECT_EQ(single.substr(0, 20), both.substr(0, 20));
   EXPECT_EQ(single.substr(0, 4), "imu:");
@@ -77,6 +77,16 @@ TEST(StampsFingerprint, ChangesWithEachStampAndItsFrame) {
   };
   EXPECT_EQ(fingerprints.size(), 7u);
   EXPECT_EQ(fingerprints.begin()->size(), 32u);
+}
+
+TEST(CalibrationFingerprint, HasThePosesOfFurtherLidars) {
+  std::vector<MountedLidar> lidars(2);
+  const std::string before = calibration_fingerprint(two_cameras(), lidars);
+  lidars[1].T_lidar_sensor.translation().x() = 0.01;
+  const std::string after = calibration_fingerprint(two_cameras(), lidars);
+  EXPECT_EQ(calibration_difference(before, after), "the pose of LiDAR 1");
+  EXPECT_EQ(calibration_difference(calibration_fingerprint(two_cameras(), {}), after),
+            "the pose of LiDAR 1");
 }
 
 }  // namespace fovea::drive_fingerprint_test

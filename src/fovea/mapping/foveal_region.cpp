@@ -36,11 +36,14 @@ FovealRegion::FovealRegion(const FovealOptions& options, const Camera& camera,
   }
 }
 
-bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel,
-                            std::size_t sensor) const {
+bool FovealRegion::is_in_zone(const Eigen::Vector3f& p_cam,
+                              const Eigen::Vector3f& lidar_cam) const {
+  const float range2 = (p_cam - lidar_cam).squaredNorm();
+  return range2 > near_range2_ && range2 < reach2_;
+}
+
+bool FovealRegion::is_in_view(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const {
   if (!(p_cam.z() > float(Camera::kMinDepth))) return false;
-  const float range2 = (p_cam - lidars_in_cam_[sensor]).squaredNorm();
-  if (!(range2 > near_range2_ && range2 < reach2_)) return false;
   const float inverse_depth = 1 / p_cam.z();
   pixel = {float(camera_.fx) * p_cam.x() * inverse_depth + float(camera_.cx),
            float(camera_.fy) * p_cam.y() * inverse_depth + float(camera_.cy)};
@@ -49,6 +52,19 @@ bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel
     return false;
   }
   return in_slices(p_cam);
+}
+
+bool FovealRegion::contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const {
+  const auto is_in_zone_of = [&](const Eigen::Vector3f& lidar_cam) {
+    return is_in_zone(p_cam, lidar_cam);
+  };
+  return std::any_of(lidars_in_cam_.begin(), lidars_in_cam_.end(), is_in_zone_of) &&
+         is_in_view(p_cam, pixel);
+}
+
+bool FovealRegion::contains_measured(const Eigen::Vector3f& p_cam, std::size_t sensor,
+                                     Eigen::Vector2f& pixel) const {
+  return is_in_zone(p_cam, lidars_in_cam_[sensor]) && is_in_view(p_cam, pixel);
 }
 
 bool FovealRegion::in_slices(const Eigen::Vector3f& p_cam) const {
@@ -70,8 +86,8 @@ PointCloud foveal_points(const PointCloud& scan_lidar, const FovealRegion& regio
   std::vector<std::uint8_t> is_inside(scan_lidar.size());
   parallel_for(is_inside.size(), kGrain, [&](std::size_t i) {
     Eigen::Vector2f pixel;
-    const std::size_t sensor = scan_lidar.sensor.empty() ? 0 : scan_lidar.sensor[i];
-    is_inside[i] = region.contains(R * scan_lidar.position[i] + t, pixel, sensor);
+    is_inside[i] =
+        region.contains_measured(R * scan_lidar.position[i] + t, scan_lidar.sensor_at(i), pixel);
   });
   std::vector<std::uint32_t> inside;
   for (std::uint32_t i = 0; i < is_inside.size(); ++i) {

@@ -18,6 +18,9 @@ struct AngularSlice {
   double elevation_min = 0, elevation_max = 0;
 };
 
+/// Origin of the LiDAR of a drive with one.
+inline const std::vector<Eigen::Vector3d> kOneLidar{Eigen::Vector3d::Zero()};
+
 struct FovealOptions {
   double near_range = 3.0;  ///< m from the LiDAR: end of the near blind zone (the vehicle)
   double far_range = 18.0;  ///< m from the LiDAR: end of the white zone
@@ -41,7 +44,7 @@ class FovealRegion {
  public:
   /// @param lidar_origins  m in the LiDAR frame, by number of the LiDAR
   FovealRegion(const FovealOptions& options, const Camera& camera,
-               const std::vector<Eigen::Vector3d>& lidar_origins = {Eigen::Vector3d::Zero()});
+               const std::vector<Eigen::Vector3d>& lidar_origins);
 
   const Camera& camera() const { return camera_; }
   /// End of the white zone, m from the LiDAR.
@@ -49,11 +52,14 @@ class FovealRegion {
   /// End of the region, m from the first LiDAR.
   double reach() const { return reach_; }
 
-  /// Whether a point in the camera's frame lies in the white zone or the periphery of a LiDAR, the
-  /// image and a slice.
-  /// @param sensor  number of the LiDAR
+  /// Whether a point in the camera's frame lies in the white zone or the periphery of any LiDAR,
+  /// the image and a slice.
   /// @param pixel  the projection, if the result is true
-  bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel, std::size_t sensor = 0) const;
+  bool contains(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
+  /// The same for the zones of the LiDAR that measured the point.
+  /// @param sensor  its number
+  bool contains_measured(const Eigen::Vector3f& p_cam, std::size_t sensor,
+                         Eigen::Vector2f& pixel) const;
 
   /// Whether a view may color a point of the map: in the white zone of any LiDAR, and in the
   /// periphery from no farther than it was measured.
@@ -79,6 +85,9 @@ class FovealRegion {
     float right_min, right_max;  // tan(azimuth) = x / z
     float up_min, up_max;        // tan(elevation) = -y / hypot(x, z)
   };
+  bool is_in_zone(const Eigen::Vector3f& p_cam, const Eigen::Vector3f& lidar_cam) const;
+  bool is_in_view(const Eigen::Vector3f& p_cam, Eigen::Vector2f& pixel) const;
+
   FovealOptions options_;
   Camera camera_;
   std::vector<Eigen::Vector3f> lidars_in_cam_;

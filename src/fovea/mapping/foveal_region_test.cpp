@@ -18,7 +18,7 @@ Camera forward_camera() {
 bool contains(const FovealOptions& options, const Eigen::Vector3f& p_cam,
               const Camera& camera = forward_camera()) {
   Eigen::Vector2f pixel;
-  return FovealRegion(options, camera).contains(p_cam, pixel);
+  return FovealRegion(options, camera, kOneLidar).contains(p_cam, pixel);
 }
 
 TEST(FovealRegion, WhiteZoneLiesBetweenTheBlindZones) {
@@ -45,7 +45,7 @@ TEST(FovealRegion, NothingOutsideTheImageOrBehind) {
 
 TEST(FovealRegion, PixelIsTheProjection) {
   Eigen::Vector2f pixel;
-  ASSERT_TRUE(FovealRegion({}, forward_camera()).contains({1, -2, 5}, pixel));
+  ASSERT_TRUE(FovealRegion({}, forward_camera(), kOneLidar).contains({1, -2, 5}, pixel));
   EXPECT_NEAR(pixel.x(), 600, 1e-3);
   EXPECT_NEAR(pixel.y(), 200, 1e-3);
 }
@@ -84,7 +84,8 @@ TEST(FovealPoints, AreTheScansInTheCamerasFrame) {
   scan_lidar.origin = {10, 0, 0};
   scan_lidar.position = {{-5, 1, 0}, {-5, 9, 0}, {-20, 0, 0}, {2, 0, -1}};
   scan_lidar.intensity = {1, 2, 3, 4};
-  const PointCloud foveal_cam = foveal_points(scan_lidar, FovealRegion({}, forward_camera()));
+  const PointCloud foveal_cam =
+      foveal_points(scan_lidar, FovealRegion({}, forward_camera(), kOneLidar));
   EXPECT_EQ(foveal_cam.origin, Eigen::Vector3d::Zero());
   EXPECT_EQ(foveal_cam.intensity, (std::vector<float>{1, 4}));
   ASSERT_EQ(foveal_cam.size(), 2u);

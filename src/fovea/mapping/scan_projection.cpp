@@ -37,10 +37,9 @@ ScanProjection::ScanProjection(const PointCloud& scan_lidar, const Camera& camer
           pixel->y() < -kMargin || pixel->y() > camera.height + kMargin) {
         continue;
       }
-      chunks[begin / kGrain].push_back(
-          {static_cast<float>(pixel->x()), static_cast<float>(pixel->y()),
-           static_cast<float>(p_cam.norm()),
-           scan_lidar.sensor.empty() ? std::uint16_t{0} : scan_lidar.sensor[i]});
+      chunks[begin / kGrain].push_back({static_cast<float>(pixel->x()),
+                                        static_cast<float>(pixel->y()),
+                                        static_cast<float>(p_cam.norm()), scan_lidar.sensor_at(i)});
     }
   });
   std::vector<Point> seen;
@@ -98,8 +97,7 @@ std::size_t drop_hidden(PointCloud& points_cam, const PointCloud& scan_lidar,
   std::vector<std::uint8_t> is_hidden(points_cam.size());
   parallel_for(is_hidden.size(), kPoints, [&](std::size_t i) {
     const Eigen::Vector3d p = points_cam.position[i].cast<double>();
-    const std::uint16_t sensor = points_cam.sensor.empty() ? 0 : points_cam.sensor[i];
-    is_hidden[i] = projection.hidden(camera.project(p).value(), p.norm(), sensor);
+    is_hidden[i] = projection.hidden(camera.project(p).value(), p.norm(), points_cam.sensor_at(i));
   });
   return points_cam.drop(is_hidden);
 }

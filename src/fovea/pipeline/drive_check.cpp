@@ -38,14 +38,15 @@ void check_stamps(const FrameSource& source, const std::vector<int>& frames, Dri
 /// Scans and images of some frames.
 class FrameSample {
  public:
-  explicit FrameSample(DriveCheck& check) : check_(check) {}
+  FrameSample(const DriveInfo& drive, DriveCheck& check)
+      : times_by_azimuth_(drive.times_by_azimuth), check_(check) {}
 
   void add(const Frame& frame) {
     const PointCloud& scan = frame.scan;
     sizes_.push_back(double(scan.size()));
     constexpr std::size_t kStep = 16;  // one point in so many
     for (std::size_t i = 0; i < scan.size(); i += kStep) ranges_.push_back(scan.position[i].norm());
-    check_.has_point_times = check_.has_point_times || !scan.time.empty();
+    check_.has_point_times = check_.has_point_times || (!scan.time.empty() && !times_by_azimuth_);
     check_.has_intensity =
         check_.has_intensity || std::any_of(scan.intensity.begin(), scan.intensity.end(),
                                             [](float value) { return value > 0; });
@@ -71,6 +72,7 @@ class FrameSample {
     return double(*place);
   }
 
+  bool times_by_azimuth_;
   DriveCheck& check_;
   std::vector<double> sizes_;
   std::vector<float> ranges_;
@@ -120,6 +122,11 @@ void make_plan(const DriveInfo& drive, DriveCheck& check) {
       numbers.empty() ? "the map has no colors: the drive has no cameras, or none is used"
                       : fmt::format("camera{} {} color{} the map", numbers.size() == 1 ? "" : "s",
                                     fmt::join(numbers, ", "), numbers.size() == 1 ? "s" : ""));
+  if (const std::size_t unused = drive.unused_cameras.size(); unused > 0) {
+    check.plan.push_back(fmt::format("camera{} {} {} not used: choose by --cameras",
+                                     unused == 1 ? "" : "s", fmt::join(drive.unused_cameras, ", "),
+                                     unused == 1 ? "is" : "are"));
+  }
   check.plan.push_back(drive.navigation
                            ? "poses: registration of the scans, begun by the navigation"
                            : "poses: registration of the scans alone, from constant velocity");
@@ -168,7 +175,7 @@ DriveCheck check_drive(const FrameSource& source, int samples) {
   check.frames = frames.size();
   check_stamps(source, frames, check);
   check_cameras(drive, check);
-  FrameSample sample(check);
+  FrameSample sample(drive, check);
   const std::size_t step =
       std::max<std::size_t>(1, (frames.size() + std::size_t(samples) - 1) / std::size_t(samples));
   std::string first_problem;

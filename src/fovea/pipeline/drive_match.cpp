@@ -121,11 +121,11 @@ bool has_fingerprint(const std::string& fingerprint, const Frames& frames, const
                      std::size_t slot) {
   Calibration one;
   one.cameras = {drive.calibration.cameras[slot]};
-  if (calibration_fingerprint(one) == fingerprint) return true;
+  if (calibration_fingerprint(one, {}) == fingerprint) return true;
   const std::set<TimeNs> delays = image_delays(frames, drive, slot);
   return std::any_of(delays.begin(), delays.end(), [&](TimeNs delay) {
     one.cameras[0].image_delay = seconds(delay);
-    return calibration_fingerprint(one) == fingerprint;
+    return calibration_fingerprint(one, {}) == fingerprint;
   });
 }
 
@@ -133,7 +133,7 @@ bool has_fingerprint(const std::string& fingerprint, const Frames& frames, const
 std::optional<std::string> different_calibration(const std::string& stored, const Frames& frames,
                                                  const DriveInfo& drive) {
   const std::vector<Camera>& cameras = drive.calibration.cameras;
-  const auto in_drive = fingerprint_parts(calibration_fingerprint(drive.calibration));
+  const auto in_drive = fingerprint_parts(calibration_fingerprint(drive.calibration, drive.lidars));
   std::string mapped, now;
   for (const auto& [name, hash] : fingerprint_parts(stored)) {
     const auto found = in_drive.find(name);

@@ -32,7 +32,7 @@ DriveRecord drive_record(const FrameSource& source) {
   DriveRecord drive;
   drive.name = name_of(info.path);
   drive.kind = info.kind;
-  drive.calibration_fingerprint = calibration_fingerprint(info.calibration);
+  drive.calibration_fingerprint = calibration_fingerprint(info.calibration, info.lidars);
   drive.stamps_fingerprint = stamps_fingerprint(info.begin, stamps);
   drive.first_frame = info.begin;
   drive.end_frame = info.end;

@@ -33,17 +33,24 @@ double row_height_of(const SensorProfile& profile) {
 
 std::vector<MountedLidar> mounted_lidars(const FrameSource& source) {
   constexpr std::size_t kScans = 2;
+  constexpr int kMostFrames = 20;  // a further LiDAR may begin later
   const DriveInfo& drive = source.info();
   std::vector<MountedLidar> lidars = drive.lidars;
   if (lidars.empty()) lidars.emplace_back().profile.sweep = drive.sweep;
   std::vector<std::vector<PointCloud>> scans(lidars.size());
+  const auto is_enough = [&](const auto& of_lidar) { return of_lidar.size() >= kScans; };
+  int frames = 0;
   for (const int index : drive.frame_indices()) {
-    if (scans.front().size() == kScans) break;
+    if (frames == kMostFrames || std::all_of(scans.begin(), scans.end(), is_enough)) break;
     const LoadedFrame result = source.load(index);
     const auto* frame = std::get_if<Frame>(&result);
     if (frame == nullptr) continue;
+    ++frames;
     std::vector<PointCloud> of_sensors = scans_by_sensor(frame->scan, lidars);
-    for (std::size_t k = 0; k < lidars.size(); ++k) scans[k].push_back(std::move(of_sensors[k]));
+    for (std::size_t k = 0; k < lidars.size(); ++k) {
+      if (is_enough(scans[k]) || of_sensors[k].empty()) continue;
+      scans[k].push_back(std::move(of_sensors[k]));
+    }
   }
   for (std::size_t k = 0; k < lidars.size(); ++k) {
     lidars[k].profile = estimate_sensor_profile(scans[k], lidars[k].profile);
@@ -58,6 +65,12 @@ std::vector<Eigen::Vector3d> lidar_origins(const DriveInfo& drive) {
   }
   if (origins.empty()) origins.emplace_back(Eigen::Vector3d::Zero());
   return origins;
+}
+
+double farthest_lidar(const std::vector<Eigen::Vector3d>& lidar_origins) {
+  double farthest = 0;
+  for (const Eigen::Vector3d& origin : lidar_origins) farthest = std::max(farthest, origin.norm());
+  return farthest;
 }
 
 std::vector<SensorView> sensor_views(const PointCloud& scan_lidar, const DriveInfo& drive) {

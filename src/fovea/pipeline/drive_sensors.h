@@ -19,6 +19,9 @@ std::vector<MountedLidar> mounted_lidars(const FrameSource& source);
 /// Where the LiDARs of a drive are, m in the frame of the first one.
 std::vector<Eigen::Vector3d> lidar_origins(const DriveInfo& drive);
 
+/// Distance of the farthest of these origins from the first LiDAR, m.
+double farthest_lidar(const std::vector<Eigen::Vector3d>& lidar_origins);
+
 /// Height of the rows of a LiDAR's range images, rad.
 double row_height_of(const SensorProfile& profile);
 

@@ -79,7 +79,8 @@ TEST_F(MapDrive, TheMapStatesItsDriveSensorAndViews) {
   const MapReader map(job().output);
   const std::vector<DriveRecord> drives = map.drives();
   ASSERT_EQ(drives.size(), 1u);
-  EXPECT_EQ(drives[0].calibration_fingerprint, calibration_fingerprint(drive_.info().calibration));
+  EXPECT_EQ(drives[0].calibration_fingerprint,
+            calibration_fingerprint(drive_.info().calibration, {}));
   std::vector<std::optional<TimeNs>> stamps;
   for (int i = 0; i < 8; ++i) stamps.push_back(drive_.stamp(i));
   EXPECT_EQ(drives[0].stamps_fingerprint, stamps_fingerprint(0, stamps));

@@ -132,7 +132,7 @@ MapSummary DriveFigures::summary() const {
   }
   if (summary.scans_missing > 0) {
     summary.warn(
-        fmt::format("{} scan{} of further LiDARs are missing: their frames have the others",
+        fmt::format("{} scan{} of further LiDARs are missing: these frames use the other LiDARs",
                     summary.scans_missing, summary.scans_missing == 1 ? "" : "s"));
   }
   if (summary.registrations_failed > 0) {

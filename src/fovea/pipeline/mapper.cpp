@@ -29,14 +29,6 @@ double reach_of(const MapperOptions& options, double foveal_reach) {
   return std::max(dynamic, foveal_reach) + 2 * kMargin;  // cells, and a margin for them
 }
 
-/// End of the foveal regions of all LiDARs, m from the first one.
-double foveal_reach_of(const MapperOptions& options,
-                       const std::vector<Eigen::Vector3d>& lidar_origins) {
-  double farthest = 0;
-  for (const Eigen::Vector3d& origin : lidar_origins) farthest = std::max(farthest, origin.norm());
-  return options.foveal.reach() + farthest;
-}
-
 std::vector<Eigen::Vector3f> marked(const std::vector<Eigen::Vector3f>& points,
                                     const std::vector<std::uint8_t>& marks) {
   std::vector<Eigen::Vector3f> chosen;
@@ -54,7 +46,7 @@ Mapper::Mapper(const DriveInfo& drive, const MapperOptions& options, PoseSource 
       options_(suited_to(drive, options)),
       services_(std::move(services)),
       lidar_origins_(lidar_origins(drive)),
-      foveal_reach_(foveal_reach_of(options, lidar_origins_)),
+      foveal_reach_(options.foveal.reach() + farthest_lidar(lidar_origins_)),
       reach_(reach_of(options, foveal_reach_)),
       ground_below_(kLow * lidar_height(drive)),
       tracker_(drive, options_, pose_source, services_.initial_velocity),

@@ -27,7 +27,8 @@ PaperMapper::PaperMapper(const DriveInfo& drive, const PaperOptions& options,
       map_(options.tile_size) {}
 
 double PaperMapper::reach() const {
-  return kMargin + (options_.foveal_enabled ? options_.foveal.far_range : 0);
+  const double foveal = options_.foveal.far_range + farthest_lidar(lidar_origins(drive_));
+  return kMargin + (options_.foveal_enabled ? foveal : 0);
 }
 
 TrackedScan PaperMapper::track(const Frame& frame, const FrameTask& task) {
@@ -73,7 +74,7 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
     if (!has_content(frame.images[k], result)) continue;
     FovealStats& stats = stats_of(result.foveal);
     // 5.1 Foveal region (Sec. Foveal Processing): white zone and slices of the camera.
-    const FovealRegion region(options_.foveal, cameras[k]);
+    const FovealRegion region(options_.foveal, cameras[k], lidar_origins(drive_));
     const PointCloud foveal_cam = foveal_points(scan_lidar, region);
     stats.measured += foveal_cam.size();
     clock.lap("fovea");

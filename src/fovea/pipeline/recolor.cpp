@@ -10,6 +10,7 @@
 #include "fovea/mapping/blank_image.h"
 #include "fovea/mapping/image_pyramid.h"
 #include "fovea/pipeline/config.h"
+#include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/visible_map.h"
 
 namespace fovea {
@@ -114,7 +115,8 @@ class Recolorer {
         map_(std::move(map)),
         file_(file),
         cache_(file, memory),
-        reach_(foveal_.reach() + kMargin) {
+        lidar_origins_(lidar_origins(drive)),
+        reach_(foveal_.reach() + farthest_lidar(lidar_origins_) + kMargin) {
     // A map of the paper's method has no spacing: colors are those of patches as by default.
     const MapperOptions options = settings.is_paper() ? MapperOptions() : settings.mapper();
     footprint_ = options.footprint;
@@ -129,7 +131,7 @@ class Recolorer {
       const Image& image = frame.images[slot];
       if (image.empty()) continue;
       const Camera camera = drive_.camera_at(slot, record.index).at_image(record.motion);
-      const FovealRegion region(foveal_, camera);
+      const FovealRegion region(foveal_, camera, lidar_origins_);
       visible_map_.render(map_, region, camera.T_cam_lidar * record.T_local_lidar.inverse(),
                           spacing_);
       const ImagePyramid pyramid(image);
@@ -160,6 +162,7 @@ class Recolorer {
   Checkpointer& file_;
   TileCache cache_;
   VisibleMap visible_map_;
+  std::vector<Eigen::Vector3d> lidar_origins_;
   double reach_, footprint_, spacing_;  // m
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();
 };

@@ -150,7 +150,7 @@ TEST(VisibleMap, PointsOutsideTheRegionHideOthers) {
 // Points between the camera and a wall in the map: more than 30 cm and 5 % in front of it.
 TEST(VisibleMap, FindsPointsInFrontOfTheMap) {
   const Camera camera = test_camera();
-  const FovealRegion region(white_zone(1), camera);
+  const FovealRegion region(white_zone(1), camera, kOneLidar);
   const TileMap map = map_of(wall(8, -1, 1, -0.5, 0.5));
   VisibleMap seen;
   seen.render(map, region, RigidMotion::Identity(), kSpacing);

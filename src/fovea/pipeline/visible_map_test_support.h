@@ -43,7 +43,7 @@ struct TestView {
                     const FovealOptions& options = white_zone(1), int frame_ = 7)
       : image(picture),
         camera(test_camera()),
-        region(options, camera),
+        region(options, camera, kOneLidar),
         T_cam_local(T_cam_local_),
         view(image, camera, kSpacing),
         frame(frame_) {}

@@ -31,7 +31,7 @@ struct LidarOptions {
   double stamp_phase = SweepTiming().stamp_phase;      ///< 0: start of the sweep; 1: its end
 };
 
-/// A LiDAR besides the first one. It scans once a frame.
+/// A further LiDAR. It scans once a frame.
 struct FurtherLidarOptions {
   LidarOptions lidar;
   double forward = 0, left = 0;  ///< m, from the first LiDAR

@@ -141,6 +141,11 @@ void visit_lidar(SettingVisitor& visit, const std::string& table, LidarOptions& 
 }
 
 void visit_lidars(SettingVisitor& visit, SimulationOptions& options) {
+  // The level of noise has set the errors of the first LiDAR. Those of the others begin there.
+  FurtherLidarOptions usual;
+  usual.lidar.range_noise = options.lidar.range_noise;
+  usual.lidar.range_resolution = options.lidar.range_resolution;
+  usual.lidar.dropouts = options.lidar.dropouts;
   visit_lidar(visit, lidar_table(0), options.lidar);
   auto& further = options.further_lidars;
   int count = int(further.size()) + 1;
@@ -149,7 +154,7 @@ void visit_lidars(SettingVisitor& visit, SimulationOptions& options) {
     throw ConfigError(fmt::format("there are {} LiDARs", count), "lidar.count",
                       fmt::format("give 1 to {}", kMaxLidars));
   }
-  further.resize(std::size_t(count - 1));
+  further.resize(std::size_t(count - 1), usual);
   for (std::size_t k = 0; k < further.size(); ++k) {
     const std::string table = lidar_table(k + 1);
     visit_lidar(visit, table, further[k].lidar);

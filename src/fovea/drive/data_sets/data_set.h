@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/messages.h"
@@ -41,15 +42,23 @@ void add_scan(const std::filesystem::path& file, TimeNs stamp, const LidarScan& 
               const std::vector<DriveImage>& images,
               const std::optional<RigidMotion>& T_world_lidar, DriveWriter& writer);
 
+/// The scene that the options choose: the one that `is_named` accepts, or the only one. ConfigError
+/// that lists all otherwise.
+std::string choose_scene(std::vector<std::string> names, const DataSetOptions& options,
+                         const std::function<bool(const std::string& name)>& is_named);
+
 /// nuScenes (nuscenes.org/nuscenes#data-format): LIDAR_TOP, the six cameras and the poses of a
 /// scene. The adapter reads the tables in ROOT/v1.0-* and the files that they name.
 /// InputError for tables and files that are missing or damaged, and for an unknown scene;
 /// OutputError as DriveWriter.
 DataSetFigures convert_nuscenes(const DataSetOptions& options);
+/// Names of the scenes, sorted.
+std::vector<std::string> nuscenes_scenes(const std::filesystem::path& root);
 
 /// KITTI-360 (cvlibs.net/datasets/kitti-360/documentation.php): the Velodyne, the two perspective
 /// cameras and the poses of a sequence. Its name is that of its folder, or its number.
 /// Errors as above.
 DataSetFigures convert_kitti360(const DataSetOptions& options);
+std::vector<std::string> kitti360_scenes(const std::filesystem::path& root);
 
 }  // namespace fovea

@@ -103,28 +103,13 @@ std::map<int, RigidMotion> read_body_poses(const fs::path& file) {
 }
 
 std::string sequence_name(const DataSetOptions& options) {
-  std::vector<std::string> names, found;
-  std::error_code unknown;
-  for (const auto& entry : fs::directory_iterator(options.root / "data_3d_raw", unknown)) {
-    if (!entry.is_directory()) continue;  // an archive
-    const std::string name = entry.path().filename().string();
-    names.push_back(name);
-    const auto number = parse_numbers(options.scene);
+  const auto number = parse_numbers(options.scene);
+  return choose_scene(kitti360_scenes(options.root), options, [&](const std::string& name) {
     const bool is_number =
         number && number->size() == 1 && number->front() >= 0 && number->front() < 10'000 &&
         name.find(fmt::format("_drive_{:04d}_", int(number->front()))) != std::string::npos;
-    if (options.scene.empty() || name == options.scene || is_number) found.push_back(name);
-  }
-  if (names.empty()) {
-    throw InputError("there are no sequences in data_3d_raw", options.root.string(),
-                     "give the folder of KITTI-360");
-  }
-  if (found.size() == 1) return found.front();
-  std::sort(names.begin(), names.end());
-  throw ConfigError(
-      options.scene.empty() ? fmt::format("the data set has {} sequences", names.size())
-                            : fmt::format("{} sequences have this name", found.size()),
-      "--scene " + options.scene, fmt::format("choose one of {}", fmt::join(names, ", ")));
+    return name == options.scene || is_number;
+  });
 }
 
 /// Files of a sensor by frame, with their stamps.
@@ -143,6 +128,20 @@ struct SensorFiles {
 };
 
 }  // namespace
+
+std::vector<std::string> kitti360_scenes(const fs::path& root) {
+  std::vector<std::string> names;
+  std::error_code unknown;
+  for (const auto& entry : fs::directory_iterator(root / "data_3d_raw", unknown)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());  // no archive
+  }
+  if (names.empty()) {
+    throw InputError("there are no sequences in data_3d_raw", root.string(),
+                     "give the folder of KITTI-360");
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 DataSetFigures convert_kitti360(const DataSetOptions& options) {
   const std::string sequence = sequence_name(options);

@@ -3,9 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
@@ -19,6 +21,10 @@ using nlohmann::json;
 using Table = std::map<std::string, json>;  // by token
 
 constexpr const char* kLidar = "LIDAR_TOP";
+/// The cameras by number. Camera 2 colors a map unless the user chooses others: the one ahead.
+constexpr std::array<std::string_view, 6> kCameras = {"CAM_FRONT_LEFT", "CAM_FRONT_RIGHT",
+                                                      "CAM_FRONT",      "CAM_BACK_LEFT",
+                                                      "CAM_BACK_RIGHT", "CAM_BACK"};
 constexpr TimeNs kNsPerMicrosecond = 1000;
 /// The HDL-32E turns clockwise, 20 times a second. A sweep begins and ends on its left, which is at
 /// 180 degrees since its x axis points right. Its stamp is that of its end.
@@ -107,8 +113,12 @@ class Scene {
   DataSetFigures convert() {
     const std::vector<Data>& scans = data_.at(kLidar);
     std::vector<RecordedCamera> cameras;
+    int further = int(kCameras.size());  // number of a camera of another name
     for (const auto& [channel, images] : data_) {
-      if (channel != kLidar) cameras.push_back(camera_of(channel, int(cameras.size()), images));
+      if (channel == kLidar) continue;
+      const auto place = std::find(kCameras.begin(), kCameras.end(), channel);
+      const int number = place == kCameras.end() ? further++ : int(place - kCameras.begin());
+      cameras.push_back(camera_of(channel, number, images));
     }
     DriveWriter writer(options_.output, cameras, {options_.force, false, kSweep});
     std::map<std::string, std::size_t> next;  // image, by channel
@@ -133,21 +143,16 @@ class Scene {
 
  private:
   void find_scene() {
-    const Table scenes = tables_.read("scene", [](const json&) { return true; });
-    std::vector<std::string> names, found;
-    for (const auto& [token, record] : scenes) {
+    std::vector<std::string> names;
+    std::map<std::string, std::string> token_of_name;
+    for (const auto& [token, record] : tables_.read("scene", [](const json&) { return true; })) {
       names.push_back(record.at("name"));
-      if (options_.scene.empty() || record.at("name") == options_.scene) found.push_back(token);
+      token_of_name[names.back()] = token;
     }
-    if (found.size() != 1) {
-      std::sort(names.begin(), names.end());
-      throw ConfigError(
-          options_.scene.empty() ? fmt::format("the data set has {} scenes", names.size())
-                                 : fmt::format("{} scenes have this name", found.size()),
-          "--scene " + options_.scene, fmt::format("choose one of {}", fmt::join(names, ", ")));
-    }
-    samples_ = tables_.read(
-        "sample", [&](const json& record) { return record.at("scene_token") == found.front(); });
+    const std::string scene = token_of_name.at(choose_scene(
+        names, options_, [&](const std::string& name) { return name == options_.scene; }));
+    samples_ = tables_.read("sample",
+                            [&](const json& record) { return record.at("scene_token") == scene; });
   }
 
   void find_data() {
@@ -221,15 +226,33 @@ class Scene {
   std::map<std::string, std::vector<Data>> data_;  // by channel, in order of stamps
 };
 
+/// Runs `read`. A record of another form is a fault of the data set.
+template <class Read>
+auto reading(const std::filesystem::path& root, Read&& read) {
+  try {
+    return read();
+  } catch (const json::exception& error) {
+    throw InputError(fmt::format("a record is damaged ({})", error.what()), root.string(),
+                     "restore the tables from the archive");
+  }
+}
+
 }  // namespace
 
 DataSetFigures convert_nuscenes(const DataSetOptions& options) {
-  try {
-    return Scene(options).convert();
-  } catch (const json::exception& error) {
-    throw InputError(fmt::format("a record is damaged ({})", error.what()), options.root.string(),
-                     "restore the tables from the archive");
-  }
+  return reading(options.root, [&] { return Scene(options).convert(); });
+}
+
+std::vector<std::string> nuscenes_scenes(const std::filesystem::path& root) {
+  return reading(root, [&] {
+    std::vector<std::string> names;
+    for (const auto& [token, record] :
+         Tables(root).read("scene", [](const json&) { return true; })) {
+      names.push_back(record.at("name"));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  });
 }
 
 }  // namespace fovea

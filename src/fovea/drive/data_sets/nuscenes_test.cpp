@@ -86,7 +86,8 @@ TEST_F(NuScenes, ASceneBecomesADrive) {
   EXPECT_EQ(figures.images, 2u);
   EXPECT_EQ(figures.poses, 4u);
   DriveOptions options;
-  options.cameras = {0};
+  EXPECT_EQ(nuscenes_scenes(options_.root).size(), 2u);
+  options.cameras = {2};
   const auto drive = open_drive(options_.output, options);
   const Frame frame = std::get<Frame>(drive->load(0));
   EXPECT_EQ(frame.stamp, kStart * 1000);

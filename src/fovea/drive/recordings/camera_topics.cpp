@@ -157,7 +157,7 @@ std::vector<PlannedCamera> plan_named(const BagIndex& index, const ConvertOption
   for (const auto& [name, topic] : options.cameras) {
     if (!index.images.contains(topic)) {
       throw InputError("there are no images of this topic that can be read", topic,
-                       "see 'ros2 bag info'");
+                       "choose one that 'fovea convert --list' prints");
     }
     cameras.push_back(plan_camera(index, topic, name, lidar_frame));
   }

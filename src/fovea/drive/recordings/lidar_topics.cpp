@@ -73,6 +73,10 @@ std::vector<PlannedLidar> plan_lidars(const BagIndex& index, const ConvertOption
                                       std::vector<std::string>& notes) {
   std::vector<std::string> wanted = options.lidars;
   if (wanted.empty()) wanted.emplace_back();
+  if (wanted.size() > kMaxLidars) {
+    throw ConfigError(fmt::format("there are {} LiDARs", wanted.size()), "--lidar",
+                      fmt::format("name at most {}", kMaxLidars));
+  }
   std::vector<PlannedLidar> lidars;
   std::set<std::string> topics, names;
   std::string first_frame;

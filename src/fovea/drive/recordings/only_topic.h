@@ -19,8 +19,8 @@ std::string only_topic(const std::map<std::string, Messages>& topics, const std:
                        const char* kind, const char* option) {
   if (!wanted.empty()) {
     if (topics.contains(wanted)) return wanted;
-    throw InputError(fmt::format("there is no {} of this topic that can be read", kind), wanted,
-                     "see 'ros2 bag info'");
+    throw InputError(fmt::format("no {} of this topic can be read", kind), wanted,
+                     "choose one that 'fovea convert --list' prints");
   }
   if (topics.size() > 1) {
     std::vector<std::string> names;

@@ -12,7 +12,7 @@ void append_scan(PointCloud& scan_lidar, PointCloud scan_sensor, std::uint16_t n
   PointCloud other = transform_cloud(std::move(scan_sensor), T_lidar_sensor);
   scan_lidar.sensor.resize(scan_lidar.size(), 0);
   other.sensor.assign(other.size(), number);
-  // Rings of one LiDAR alone would pass for those of all.
+  // Keep rings only if all LiDARs have them.
   if (scan_lidar.ring.empty() || other.ring.empty()) {
     scan_lidar.ring.clear();
     other.ring.clear();
@@ -25,7 +25,7 @@ std::vector<PointCloud> scans_by_sensor(const PointCloud& scan_lidar,
   if (lidars.size() < 2) return {scan_lidar};
   std::vector<std::vector<std::uint32_t>> indices(lidars.size());
   for (std::uint32_t i = 0; i < scan_lidar.size(); ++i) {
-    indices[scan_lidar.sensor.empty() ? 0 : scan_lidar.sensor[i]].push_back(i);
+    indices.at(scan_lidar.sensor_at(i)).push_back(i);
   }
   std::vector<PointCloud> scans;
   for (std::size_t k = 0; k < lidars.size(); ++k) {

@@ -58,13 +58,23 @@ DriveWriter::DriveWriter(const std::filesystem::path& root, std::vector<Recorded
             "two cameras have the name '{}'", camera.name);
   }
   drive_.cameras = std::move(cameras);
+  if (!options.further_lidars.empty()) drive_.lidar.name = options.first_lidar;
+  lidars_[drive_.lidar.name];
+  require(options.further_lidars.size() < kMaxLidars, "there are {} further LiDARs, over {}",
+          options.further_lidars.size(), kMaxLidars - 1);
+  for (const auto& [name, T_lidar_sensor] : options.further_lidars) {
+    require(is_plain_name(name) && is_plain_name(drive_.lidar.name), "'{}' is no name of a LiDAR",
+            name);
+    require(lidars_.try_emplace(name).second, "two LiDARs have the name '{}'", name);
+    RecordedLidar& lidar = drive_.further_lidars.emplace_back(drive_.lidar);
+    lidar.name = name;
+    lidar.T_lidar_sensor = checked_pose(T_lidar_sensor.matrix().topRows<3>());
+  }
 }
 
 void DriveWriter::add(const DriveScan& scan, const std::vector<DriveImage>& images,
                       const std::optional<RigidMotion>& T_world_lidar) {
   require(!is_closed_, "the drive is closed");
-  require(!last_ || scan.stamp > *last_, "the scan at {} ns is not after the one at {} ns",
-          scan.stamp, last_.value_or(0));
   std::map<std::string, TimeNs> last;
   std::vector<EncodedImage> files;
   for (const DriveImage& image : images) {
@@ -73,9 +83,17 @@ void DriveWriter::add(const DriveScan& scan, const std::vector<DriveImage>& imag
   }
   std::optional<RigidMotion> pose;
   if (T_world_lidar) pose = checked_pose(T_world_lidar->matrix().topRows<3>());
-  write_scan(scan.stamp, usable_points(scan.points));
+  write_scan(drive_.lidar.name, lidars_.at(drive_.lidar.name), scan);
   for (std::size_t i = 0; i < images.size(); ++i) write_image(images[i], files[i]);
   if (pose) drive_.poses.push_back({scan.stamp, *pose});
+}
+
+void DriveWriter::add_scan(const std::string& lidar, const DriveScan& scan) {
+  require(!is_closed_, "the drive is closed");
+  const auto found = lidars_.find(lidar);
+  require(found != lidars_.end() && lidar != drive_.lidar.name,
+          "the drive has no further LiDAR '{}'", lidar);
+  write_scan(lidar, found->second, scan);
 }
 
 DriveWriter::CameraState& DriveWriter::find_camera(const std::string& name) {
@@ -111,11 +129,15 @@ DriveWriter::EncodedImage DriveWriter::encoded(const DriveImage& image) {
   return {std::move(bytes), format == FileFormat::kPng ? ".png" : ".jpg"};
 }
 
-void DriveWriter::write_scan(TimeNs stamp, const LidarScan& usable) {
-  writer_.write_scan(int(figures_.scans++), stamp, usable.points);
+void DriveWriter::write_scan(const std::string& name, LidarState& lidar, const DriveScan& scan) {
+  require(!lidar.last || scan.stamp > *lidar.last,
+          "the scan at {} ns is not after the one at {} ns", scan.stamp, lidar.last.value_or(0));
+  const LidarScan usable = usable_points(scan.points);
+  writer_.write_scan(lidar.scans++, scan.stamp, usable.points, ScanFile::kPcd, name);
+  ++figures_.scans;
   figures_.dropped += usable.dropped;
-  scale_.add(usable.points.intensity);
-  last_ = stamp;
+  lidar.scale.add(usable.points.intensity);
+  lidar.last = scan.stamp;
 }
 
 void DriveWriter::write_image(const DriveImage& image, const EncodedImage& file) {
@@ -129,10 +151,16 @@ void DriveWriter::write_image(const DriveImage& image, const EncodedImage& file)
 
 DriveWriterFigures DriveWriter::close() {
   if (is_closed_) throw std::logic_error("the drive is closed already");
-  if (figures_.scans == 0) throw std::logic_error("the drive has no scan");
+  if (scans() == 0) throw std::logic_error("the drive has no scan");
   is_closed_ = true;
-  drive_.lidar.intensity_max = scale_.max();
+  drive_.lidar.intensity_max = lidars_.at(drive_.lidar.name).scale.max();
+  for (RecordedLidar& lidar : drive_.further_lidars) {
+    lidar.intensity_max = lidars_.at(lidar.name).scale.max();
+  }
   figures_.poses = drive_.poses.size();
+  // As a camera without images, a LiDAR without scans is not part of the drive.
+  std::erase_if(drive_.further_lidars,
+                [&](const RecordedLidar& lidar) { return lidars_.at(lidar.name).scans == 0; });
   writer_.finish(drive_);
   return figures_;
 }

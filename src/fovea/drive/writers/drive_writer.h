@@ -40,18 +40,23 @@ struct DriveWriterOptions {
   bool force = false;                ///< replaces a drive at that place
   bool sweep_compensated = false;    ///< the motion of the LiDAR during a sweep is undone already
   std::optional<SweepTiming> sweep;  ///< of points without times
+  /// T_lidar_sensor of further LiDARs by name. Scans of all LiDARs have points with times then, or
+  /// the timing of `sweep`.
+  std::map<std::string, RigidMotion> further_lidars = {};
+  std::string first_lidar = "first";  ///< name of the first LiDAR if there are further ones
 };
 
 struct DriveWriterFigures {
-  std::size_t scans = 0, images = 0, poses = 0;
+  std::size_t scans = 0;  ///< of all LiDARs
+  std::size_t images = 0, poses = 0;
   DroppedPoints dropped;
 };
 
 /// Every function throws OutputError as GenericDriveWriter. Without close() nothing stays.
 class DriveWriter {
  public:
-  /// std::invalid_argument for cameras of one name or number, or of a name that RecordedCamera does
-  /// not allow.
+  /// std::invalid_argument for cameras of one name or number, LiDARs of one name, or a name that
+  /// RecordedCamera or RecordedLidar does not allow.
   DriveWriter(const std::filesystem::path& root, std::vector<RecordedCamera> cameras,
               DriveWriterOptions options = {});
 
@@ -65,8 +70,14 @@ class DriveWriter {
   void add(const DriveScan& scan, const std::vector<DriveImage>& images,
            const std::optional<RigidMotion>& T_world_lidar = std::nullopt);
 
-  /// Scans so far.
-  std::size_t scans() const { return figures_.scans; }
+  /// Adds a scan of a further LiDAR. It belongs to the frame that is nearest in time.
+  /// @param scan  in the frame of that LiDAR
+  /// std::invalid_argument for a LiDAR that the writer does not have, a stamp that is not after the
+  /// one before, or a column of another length. InputError for a scan without a usable point.
+  void add_scan(const std::string& lidar, const DriveScan& scan);
+
+  /// Scans of the first LiDAR so far.
+  std::size_t scans() const { return std::size_t(lidars_.at(drive_.lidar.name).scans); }
 
   /// Writes the tables, and gives the drive its name. std::logic_error without a scan, or if it is
   /// called again.
@@ -78,6 +89,11 @@ class DriveWriter {
     std::optional<TimeNs> last;  // stamp
     int images = 0;
   };
+  struct LidarState {
+    std::optional<TimeNs> last;  // stamp
+    int scans = 0;
+    IntensityScale scale;
+  };
   /// An image in its file's encoding.
   struct EncodedImage {
     std::vector<std::uint8_t> bytes;
@@ -87,14 +103,13 @@ class DriveWriter {
   /// @param last  stamps of the images before, by camera
   void check_image(const DriveImage& image, std::map<std::string, TimeNs>& last);
   static EncodedImage encoded(const DriveImage& image);
-  void write_scan(TimeNs stamp, const LidarScan& usable);
+  void write_scan(const std::string& name, LidarState& lidar, const DriveScan& scan);
   void write_image(const DriveImage& image, const EncodedImage& file);
 
   GenericDriveWriter writer_;
   RecordedDrive drive_;
   std::map<std::string, CameraState> cameras_;
-  IntensityScale scale_;
-  std::optional<TimeNs> last_;  // stamp of a scan
+  std::map<std::string, LidarState> lidars_;  // by name; of the only LiDAR it is empty
   DriveWriterFigures figures_;
   bool is_closed_ = false;
 };

@@ -92,6 +92,40 @@ TEST_F(DriveWriterTest, TheDriveHasWhatWasAdded) {
   EXPECT_EQ(drive->info().calibration.cameras[0].cx, 11.5);
 }
 
+TEST_F(DriveWriterTest, SeveralLidarsHaveScansOfTheirOwn) {
+  DriveWriterOptions options;
+  options.first_lidar = "top";
+  options.further_lidars["left"] = pose(1);
+  DriveWriter writer(folder_ / "drive", {}, options);
+  for (int frame = 0; frame < 3; ++frame) {
+    writer.add({kStart + frame * kStep, points(3)}, {});
+    if (frame > 0) writer.add_scan("left", {kStart + frame * kStep + 1'000'000, points(5)});
+  }
+  EXPECT_THROW(writer.add_scan("right", {kStart, points(3)}), std::invalid_argument);
+  EXPECT_THROW(writer.add_scan("top", {kStart + 9 * kStep, points(3)}), std::invalid_argument);
+  EXPECT_THROW(writer.add_scan("left", {kStart, points(3)}), std::invalid_argument);
+  EXPECT_EQ(writer.scans(), 3u);
+  EXPECT_EQ(writer.close().scans, 5u);
+  const auto drive = open_drive(folder_ / "drive", {});
+  ASSERT_EQ(drive->info().lidars.size(), 2u);
+  EXPECT_EQ(drive->info().lidars[1].profile.name, "left");
+  EXPECT_TRUE(drive->info().lidars[1].T_lidar_sensor.isApprox(pose(1), 1e-9));
+  const Frame frame = std::get<Frame>(drive->load(1));
+  ASSERT_EQ(frame.scan.size(), 10u);
+  EXPECT_LT((frame.scan.position[5].cast<double>() - pose(1) * points(5).position[0].cast<double>())
+                .norm(),
+            1e-5);
+  EXPECT_EQ(std::get<Frame>(drive->load(0)).missing_scans.size(), 1u);
+
+  DriveWriter without_left(folder_ / "without", {}, options);
+  without_left.add({kStart, points(3)}, {});
+  without_left.close();
+  EXPECT_EQ(std::get<Frame>(open_drive(folder_ / "without", {})->load(0)).scan.size(), 5u);
+
+  options.first_lidar = "left";
+  EXPECT_THROW(DriveWriter(folder_ / "other", {}, options), std::invalid_argument);
+}
+
 TEST_F(DriveWriterTest, WithoutCloseNothingStays) {
   {
     DriveWriter writer = this->writer();

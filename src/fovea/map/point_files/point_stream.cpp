@@ -68,7 +68,7 @@ ExportPoint PointStream::point(const PointCloud& tile, std::size_t index,
   point.range = tile.range[index];
   point.incidence = tile.incidence[index];
   if (!tile.intensity.empty()) point.intensity = tile.intensity[index];
-  if (!tile.sensor.empty()) point.sensor = tile.sensor[index];
+  point.sensor = tile.sensor_at(index);
   point.frame = tile.frame[index];
   point.camera = tile.camera[index];
   const bool is_colored = point.camera != kNoCamera;
