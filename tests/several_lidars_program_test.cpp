@@ -139,9 +139,22 @@ TEST_F(SeveralLidars, TwoAndThreeAreAsGoodAsTheBestOfThem) {
     for (std::size_t k = 1; k <= further.size(); ++k) expect_no_seam(std::uint16_t(k));
   }
   // The three of them.
-  EXPECT_EQ(MapReader(map()).sensors().size(), 3u);
+  const std::vector<SensorRecord> sensors = MapReader(map()).sensors();
+  ASSERT_EQ(sensors.size(), 3u);
+  EXPECT_NEAR(sensors[1].profile.height.value_or(0), left().lidar.height, 0.1);
   EXPECT_THAT(run_fovea("check '" + drive().string() + "'").out,
               testing::AllOf(HasSubstr("lidar_1: 16 rings"), HasSubstr("lidar_3: ")));
+  // Commands that read scans or the map's points again.
+  for (const std::string& command :
+       {fmt::format("recolor '{}' '{}'", map().string(), drive().string()),
+        fmt::format("evaluate '{}' '{}' --truth --html '{}'", map().string(), drive().string(),
+                    (scratch_ / "page.html").string()),
+        fmt::format("export '{}' '{}'", map().string(), (scratch_ / "mesh.glb").string()),
+        fmt::format("map '{}' -o '{}' --force --preset paper --frames 0:6", drive().string(),
+                    map().string())}) {
+    const ProgramRun run = run_fovea(command);
+    EXPECT_EQ(run.exit_code, 0) << command << "\n" << run.err;
+  }
 }
 
 }  // namespace fovea::several_lidars_program_test

@@ -1,6 +1,7 @@
 #include "fovea/pipeline/drive_sensors.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -53,7 +54,13 @@ std::vector<MountedLidar> mounted_lidars(const FrameSource& source) {
     }
   }
   for (std::size_t k = 0; k < lidars.size(); ++k) {
-    lidars[k].profile = estimate_sensor_profile(scans[k], lidars[k].profile);
+    SensorProfile& profile = lidars[k].profile;
+    const std::optional<double> first_height = lidars.front().profile.height;
+    // A further LiDAR may be tilted, and then the ground is not level in its frame.
+    if (k > 0 && first_height) {
+      profile.height = *first_height + lidars[k].T_lidar_sensor.translation().z();
+    }
+    profile = estimate_sensor_profile(scans[k], profile);
   }
   return lidars;
 }
