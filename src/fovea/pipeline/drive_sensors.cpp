@@ -67,6 +67,7 @@ std::vector<MountedLidar> mounted_lidars(const FrameSource& source) {
 
 std::vector<Eigen::Vector3d> lidar_origins(const DriveInfo& drive) {
   std::vector<Eigen::Vector3d> origins;
+  origins.reserve(drive.lidars.size());
   for (const MountedLidar& lidar : drive.lidars) {
     origins.push_back(lidar.T_lidar_sensor.translation());
   }
