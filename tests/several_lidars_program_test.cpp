@@ -146,7 +146,8 @@ TEST_F(SeveralLidars, TwoAndThreeAreAsGoodAsTheBestOfThem) {
               testing::AllOf(HasSubstr("lidar_1: 16 rings"), HasSubstr("lidar_3: ")));
   // Commands that read scans or the map's points again.
   for (const std::string& command :
-       {fmt::format("recolor '{}' '{}'", map().string(), drive().string()),
+       {fmt::format("recolor '{}' '{}' -o '{}'", map().string(), drive().string(),
+                    (scratch_ / "recolored.fovea").string()),
         fmt::format("evaluate '{}' '{}' --truth --html '{}'", map().string(), drive().string(),
                     (scratch_ / "page.html").string()),
         fmt::format("export '{}' '{}'", map().string(), (scratch_ / "mesh.glb").string()),
