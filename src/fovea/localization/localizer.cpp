@@ -168,9 +168,9 @@ Localizer::Scan Localizer::prepare(const Frame& frame,
   std::vector<Eigen::Vector3f> near;
   std::copy_if(scan_lidar.position.begin(), scan_lidar.position.end(), std::back_inserter(near),
                [](const Eigen::Vector3f& p) { return p.norm() < float(kLocalizationRange); });
-  // What the first LiDAR sees through: the image is in its frame.
-  const PointCloud first = scans_by_sensor(scan_lidar, drive_.lidars).front();
-  return {voxel_thinned(std::move(near), MapSurfaces::kVoxel), RangeImage(first.position)};
+  // The image shows what the first LiDAR sees. It is in its frame.
+  if (drive_.lidars.size() > 1) scan_lidar = scans_by_sensor(scan_lidar, drive_.lidars).front();
+  return {voxel_thinned(std::move(near), MapSurfaces::kVoxel), RangeImage(scan_lidar.position)};
 }
 
 RegistrationCloud Localizer::covered(const Scan& scan, const PriorMap::Target& target,

@@ -78,8 +78,9 @@ bool ScanProjection::hidden(const Eigen::Vector2d& pixel, double distance,
   return any_within(pixel, hiding_radius_, [&](const Point& other, double pixels2) {
     const double nearer = other.distance;
     if (!(distance - nearer > std::max(kHidingStep, kHidingShare * nearer))) return false;
+    if (other.sensor == sensor) return true;
     const double radius = focal_ * kHidingDistance / nearer;  // pixels
-    return other.sensor == sensor || pixels2 <= radius * radius;
+    return pixels2 <= radius * radius;
   });
 }
 
