@@ -278,7 +278,7 @@ Localizer::Attempt Localizer::compensated(const Frame& frame, const Attempt& fou
   const RigidMotion& T_local_lidar = found.registration.T_target_source;
   const SweepMotion motion{
       velocity_between(last_->T_local_body, T_local_lidar, seconds(frame.stamp - last_->time))};
-  Attempt attempt = follow(prepare(frame, motion), T_local_lidar);
+  const Attempt attempt = follow(prepare(frame, motion), T_local_lidar);
   return attempt.better_than(found) ? attempt : found;
 }
 
