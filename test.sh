@@ -59,9 +59,11 @@ if ! $sanitize; then
 fi
 
 [[ ${#sanitizers[@]} -gt 0 ]] || sanitizers=(address thread)
-# Under the address sanitizer each of these takes over half a minute. The release runs them, too.
+# Under a sanitizer each of these takes over half a minute, most on figures. The release runs them, too.
 long_tests='^(RegistrationKitti\.AitkenAcceleration|LocalMap\.SparseRingsInAnOpenPlace|RecordingPause\..*Without'
-long_tests+='|TrackingLoss\.|InitialVelocity\.|MapDriveResume\.ADriveThatBeginsAtSpeed)|^(Localize|EvaluateTruth)$'
+long_tests+='|TrackingLoss\.|InitialVelocity\.|MapDriveResume\.ADriveThatBeginsAtSpeed|Warnings\.|LidarMount\.ADriveOf'
+long_tests+='|Evaluate\.(Blocks|TheReport|AGoodMapOfTheWallHas|TellsIts)|MeshWriters\.(TheSame|Larger|PointsOf)'
+long_tests+='|PaperMapper\.Registration|RollingShutter\.EachRow|KittiEvaluate\.)|^(Localize|EvaluateTruth)$'
 export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 for sanitizer in "${sanitizers[@]}"; do
@@ -70,6 +72,6 @@ for sanitizer in "${sanitizers[@]}"; do
     run_tests asan -LE '^fuzz$' -E "$long_tests"
   else
     scripts/build.sh tsan thread_tests
-    run_tests tsan -L threads
+    run_tests tsan -L threads -E "$long_tests"
   fi
 done

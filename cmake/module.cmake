@@ -5,7 +5,7 @@ target_compile_definitions(fovea_precompiled PRIVATE ${FOVEA_EIGEN_ALIGNMENT})
 target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
 
 # Their tests run under the thread sanitizer.
-set(FOVEA_MODULES_WITH_THREADS core drive map pipeline server localization)
+set(FOVEA_MODULES_WITH_THREADS core map pipeline server)
 add_custom_target(thread_tests)
 
 # Most of a test's or a command's compilation is the same headers' templates over again. Files of most
@@ -72,7 +72,7 @@ function(fovea_part name)
   fovea_module(${name} ${ARGN})
 endfunction()
 
-# fovea_module(NAME [FOLDER folder] [WITHOUT folder] [TOGETHER] [DEPENDS modules...] [PUBLIC libs...]
+# fovea_module(NAME [FOLDER folder] [WITHOUT folder] [TOGETHER] [FUZZED] [DEPENDS modules...] [PUBLIC libs...]
 #              [PRIVATE libs...] [TEST_DEPENDS modules...])
 #
 # Makes the static library fovea_NAME (alias fovea::NAME) from src/fovea/NAME, and the test program
@@ -81,8 +81,9 @@ endfunction()
 #   WITHOUT       folder inside it that is a module of its own
 #   TOGETHER      compiles several files together: the module computes neither maps nor figures
 #   TEST_DEPENDS  modules that only the tests include, such as the reader of the module's files
+#   FUZZED        fuzzers (fuzz/) read with it: their builds note which of its branches an input took
 function(fovea_module name)
-  cmake_parse_arguments(ARG "TOGETHER" "FOLDER;WITHOUT" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "TOGETHER;FUZZED" "FOLDER;WITHOUT" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
   if(NOT ARG_FOLDER)
     set(ARG_FOLDER ${name})
   endif()
@@ -107,6 +108,10 @@ function(fovea_module name)
   target_compile_features(fovea_${name} PUBLIC cxx_std_20)
   if(ARG_TOGETHER)
     fovea_compile_together(fovea_${name})
+  endif()
+  if(ARG_FUZZED AND FOVEA_BUILD_FUZZERS)
+    target_compile_options(fovea_${name} PRIVATE
+                           -fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table)
   endif()
   target_precompile_headers(fovea_${name} REUSE_FROM fovea_precompiled)
   set_property(GLOBAL APPEND PROPERTY FOVEA_MODULES fovea_${name})
