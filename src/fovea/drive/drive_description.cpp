@@ -10,6 +10,7 @@
 #include "fovea/core/settings.h"
 #include "fovea/drive/calibration_file.h"
 #include "fovea/drive/images/image_decode.h"
+#include "fovea/drive/imu_keys.h"
 #include "fovea/drive/lidar_keys.h"
 #include "fovea/drive/motion_keys.h"
 #include "fovea/drive/plausible_lens.h"
@@ -160,6 +161,8 @@ class DriveKeys {
     T_body_lidar_.visit(visit);
     T_body_imu_.visit(visit);
     visit("body.antenna", antenna_);
+    imu_.visit(visit);
+    visit("wheels.sigma", drive_.wheels.sigma);
     for (CameraKeys& camera : cameras_) camera.visit(visit);
   }
 
@@ -181,6 +184,9 @@ class DriveKeys {
     }
     drive_.antenna_body = Eigen::Map<const Eigen::Vector3d>(antenna_.data());
     check_lever("body.antenna", drive_.antenna_body);
+    drive_.imu = imu_.imu();
+    check_key("wheels.sigma", drive_.wheels.sigma, 1e-3, 100);
+    drive_.wheels.T_lidar_body = drive_.T_body_lidar.inverse();
     read_cameras();
   }
 
@@ -238,6 +244,7 @@ class DriveKeys {
   std::optional<int> version_;
   MotionKeys T_body_lidar_{"body", "body", "lidar"}, T_body_imu_{"body", "body", "imu"};
   std::vector<double> antenna_{0, 0, 0};
+  ImuKeys imu_;
   std::vector<LidarKeys> lidars_;
   std::vector<CameraKeys> cameras_;
 };

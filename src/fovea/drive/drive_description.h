@@ -9,6 +9,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/drive/scans/scan_format.h"
+#include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/geometry/sensor_profile.h"
@@ -47,6 +48,24 @@ struct LidarDescription {
   std::string table() const { return name.empty() ? "lidar" : "lidar." + name; }
 };
 
+enum class ForceUnit { kAuto, kMetric, kGravity };
+enum class RateUnit { kRadians, kDegrees };
+
+/// What drive.toml states of the rates and accelerations of imu.csv.
+struct ImuDescription {
+  RigidMotion T_lidar_imu = RigidMotion::Identity();
+  ImuNoise noise;
+  double delay = 0;  ///< s from the stamp of a record to its measurement
+  ForceUnit force_unit = ForceUnit::kAuto;
+  RateUnit rate_unit = RateUnit::kRadians;
+};
+
+/// Of wheels.csv. The body's x axis points forward.
+struct WheelDescription {
+  RigidMotion T_lidar_body = RigidMotion::Identity();
+  double sigma = 0.1;  ///< m/s, standard deviation of a speed
+};
+
 struct DriveDescription {
   LidarDescription lidar;  ///< the first one: its frame and its stamps are the drive's
   std::vector<LidarDescription> further_lidars;  ///< by name
@@ -55,7 +74,9 @@ struct DriveDescription {
   RigidMotion T_body_lidar = RigidMotion::Identity();
   RigidMotion T_body_imu = RigidMotion::Identity();        ///< of imu.csv's orientations
   Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();  ///< of gnss.csv's positions
-  std::vector<CameraDescription> cameras;                  ///< by index; may be empty
+  std::optional<ImuDescription> imu;  ///< absent: imu.csv has orientations only
+  WheelDescription wheels;
+  std::vector<CameraDescription> cameras;  ///< by index; may be empty
 };
 
 /// Reads drive.toml. InputError if it cannot be read; ConfigError that names file and key (and

@@ -18,6 +18,7 @@
 #include "fovea/drive/scans/dropped_points.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/sensor_profile.h"
 #include "fovea/geometry/trajectory.h"
 
@@ -77,6 +78,7 @@ struct DriveOptions {
   /// Half-open range of frame indices; an open end is the drive's own.
   std::optional<int> begin, end;
   bool use_navigation = true;
+  bool use_imu = true;  ///< angular rates, accelerations and wheel speeds
   /// Masks by number of the camera, in place of those that the drive has.
   std::map<int, std::filesystem::path> masks;
   /// False: scans alone are read; the calibration has no cameras, and the drive needs none.
@@ -120,6 +122,8 @@ struct DriveInfo : Messages {
   /// where it says nothing, infinite where it sees no satellite.
   std::vector<double> navigation_accuracy;
   std::optional<GeodeticPoint> origin;  ///< of `local`; absent: the map is not georeferenced
+  std::optional<ImuData> imu;           ///< absent where the drive has no (usable) IMU
+  std::optional<WheelData> wheels;
   /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame
   /// index each from 0; empty if none. Never used by the mapper.
   std::vector<RigidMotion> reference_poses;

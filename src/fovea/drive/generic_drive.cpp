@@ -11,6 +11,7 @@
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/lidar_scans.h"
 #include "fovea/drive/navigation/generic_navigation.h"
+#include "fovea/drive/navigation/imu_table.h"
 #include "fovea/drive/nearest_images.h"
 #include "fovea/geometry/rectified_camera.h"
 
@@ -37,6 +38,7 @@ class GenericDrive {
     find_further_lidars();
     if (options_.use_images) find_cameras();
     if (options_.use_navigation) find_navigation();
+    if (options_.use_imu) find_imu();
     return make_frame_source(std::move(info_), std::move(files_));
   }
 
@@ -251,9 +253,8 @@ class GenericDrive {
   }
 
   void find_navigation() {
-    const std::optional<int> first = first_usable_frame(info_, files_);
-    const TimeNs origin_time =
-        frame_stamp(info_, files_.stamps, first.value_or(info_.begin)).value_or(0);
+    const int first = first_usable_frame(info_, files_).value_or(info_.begin);
+    const TimeNs origin_time = frame_stamp(info_, files_.stamps, first).value_or(0);
     GenericNavigation navigation =
         read_generic_navigation(info_.path, description_, origin_time, period_of(files_.stamps));
     info_.append(navigation);
@@ -262,6 +263,13 @@ class GenericDrive {
     info_.navigation = std::move(navigation.T_local_lidar);
     info_.navigation_accuracy = std::move(navigation.accuracy);
     info_.origin = navigation.origin;
+  }
+
+  void find_imu() {
+    InertialTables tables =
+        read_inertial_tables(info_.path, description_, period_of(files_.stamps));
+    info_.append(tables);
+    std::tie(info_.imu, info_.wheels) = std::pair(std::move(tables.imu), std::move(tables.wheels));
   }
 
   /// Notes the scans of the range that have no pose; false if none has one.

@@ -219,4 +219,34 @@ TEST(MotionCompensation, EmptyScanAndForeignOrigin) {
   EXPECT_THROW(compensate_sweep(scan, SweepMotion(), kKitti), std::invalid_argument);
 }
 
+// A path tells the same motion as its velocity, also for normals and at any number of threads.
+TEST(MotionCompensation, AlongAPath) {
+  const Twist velocity = twist({0.3, -0.2, 6, 8, 1, -0.5});
+  SweepMotion by_path{velocity};
+  by_path.path = SweepPath{-0.055, 0.005, {}};
+  for (int i = 0; i <= 22; ++i) {
+    const RigidMotion T = exp_se3((-0.055 + 0.005 * i) * velocity);
+    const Eigen::AngleAxisd turn(T.linear());
+    by_path.path->placements.emplace_back() << turn.angle() * turn.axis(), T.translation();
+  }
+  Random random(5);
+  PointCloud scan;
+  for (int i = 0; i < 20'000; ++i) {
+    scan.position.emplace_back(random.uniform(-40, 40), random.uniform(-40, 40),
+                               random.uniform(-3, 3));
+    scan.normal.emplace_back(0.f, 0.6f, 0.8f);
+  }
+  PointCloud expected = scan, actual = scan;
+  compensate_sweep(expected, {velocity}, kKitti);
+  compensate_sweep(actual, by_path, kKitti);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    EXPECT_LT((actual.position[i] - expected.position[i]).norm(), 2e-3f) << i;
+    EXPECT_LT((actual.normal[i] - expected.normal[i]).norm(), 1e-4f) << i;
+  }
+  const ThreadLimit limit(1);
+  PointCloud alone = scan;
+  compensate_sweep(alone, by_path, kKitti);
+  EXPECT_EQ(alone.position, actual.position);
+}
+
 }  // namespace fovea::motion_compensation_test

@@ -36,7 +36,7 @@ struct Camera {
   Camera at_image(const std::optional<SweepMotion>& motion) const {
     Camera moved = *this;
     if (motion && image_delay != 0) {
-      moved.T_cam_lidar = T_cam_lidar * exp_se3(-motion->over(image_delay));
+      moved.T_cam_lidar = T_cam_lidar * motion->T_later_moment(image_delay);
     }
     moved.image_delay = 0;
     return moved;

@@ -45,17 +45,36 @@ std::optional<RigidMotion> motion_from_text(std::string_view text) {
 
 std::string to_text(const SweepMotion& motion) {
   std::vector<double> numbers(motion.velocity.begin(), motion.velocity.end());
-  if (!motion.acceleration.isZero(0)) {
+  if (!motion.acceleration.isZero(0) || motion.path) {
     numbers.insert(numbers.end(), motion.acceleration.begin(), motion.acceleration.end());
+  }
+  if (motion.path) {
+    numbers.push_back(motion.path->begin);
+    numbers.push_back(motion.path->step);
+    for (const Twist& placement : motion.path->placements) {
+      numbers.insert(numbers.end(), placement.begin(), placement.end());
+    }
   }
   return to_text(numbers);
 }
 
 std::optional<SweepMotion> sweep_motion_from_text(std::string_view text) {
   const std::optional<std::vector<double>> numbers = numbers_from_text(text);
-  if (!numbers || (numbers->size() != 6 && numbers->size() != 12)) return std::nullopt;
+  constexpr std::size_t kTwists = 12, kPath = 14, kLeastPath = kPath + 2 * 6;
+  if (!numbers) return std::nullopt;
+  const std::size_t size = numbers->size();
+  const bool has_path = size >= kLeastPath && (size - kPath) % 6 == 0;
+  if (size != 6 && size != kTwists && !has_path) return std::nullopt;
   SweepMotion motion{Eigen::Map<const Twist>(numbers->data())};
-  if (numbers->size() == 12) motion.acceleration = Eigen::Map<const Twist>(numbers->data() + 6);
+  if (size >= kTwists) motion.acceleration = Eigen::Map<const Twist>(numbers->data() + 6);
+  if (!has_path) return motion;
+  SweepPath& path = motion.path.emplace();
+  path.begin = (*numbers)[kTwists];
+  path.step = (*numbers)[kTwists + 1];
+  if (!(path.step > 0)) return std::nullopt;
+  for (std::size_t at = kPath; at < size; at += 6) {
+    path.placements.emplace_back(Eigen::Map<const Twist>(numbers->data() + at));
+  }
   return motion;
 }
 

@@ -46,6 +46,20 @@ TEST(NumberText, SweepMotionsHaveTheirAccelerationWhereThereIsOne) {
   EXPECT_EQ(sweep_motion_from_text(to_text(motion)), motion);
 }
 
+TEST(NumberText, SweepMotionsHaveTheirPathWhereThereIsOne) {
+  SweepMotion motion;
+  motion.velocity << 1, 2, 3, 4, 5, 6;
+  motion.path = SweepPath{-0.05, 0.005, {Twist::Constant(0.25), Twist::Constant(0.5)}};
+  EXPECT_EQ(to_text(motion),
+            "1 2 3 4 5 6 0 0 0 0 0 0 -0.05 0.005 0.25 0.25 0.25 0.25 0.25 0.25 0.5 0.5 0.5 0.5 0.5 "
+            "0.5");
+  EXPECT_EQ(sweep_motion_from_text(to_text(motion)), motion);
+  motion.path->placements.pop_back();  // one place is no path
+  EXPECT_FALSE(sweep_motion_from_text(to_text(motion)));
+  motion.path = SweepPath{0, 0, {Twist::Zero(), Twist::Zero()}};  // no time passes
+  EXPECT_FALSE(sweep_motion_from_text(to_text(motion)));
+}
+
 TEST(NumberText, JsonObjectsKeepNamesAndValues) {
   const std::map<std::string, double> numbers = {
       {"", 1}, {"a b", -0.5}, {"quote \" backslash \\ tab \t", 1e-300}, {"ünicode", 3}};

@@ -29,11 +29,38 @@ constexpr double kLeastRotationSigma = 0.3 * kDegree;                      // ra
 constexpr double kMinTranslationSigma = 0.03, kMaxTranslationSigma = 0.1;  // m
 constexpr double kTranslationSigmaShare = 0.25;                            // of the stated accuracy
 
+/// Least standard deviations of the IMU's motion between frames: rad, m.
+const Twist kLeastInertialSigma =
+    (Twist() << Twist::Constant(1e-3).head<3>(), Twist::Constant(0.01).head<3>()).finished();
+
 Twist squares(double rotation, double translation) {
   Twist squares;
   squares.head<3>().setConstant(rotation * rotation);
   squares.tail<3>().setConstant(translation * translation);
   return squares;
+}
+
+/// Standard deviations of a pose from registration: rad, m.
+std::optional<Twist> pose_sigma(PoseEvidence evidence) {
+  switch (evidence) {
+    case PoseEvidence::kFirm:
+      return squares(5e-4, 5e-3).cwiseSqrt();
+    case PoseEvidence::kWeak:
+      return squares(3e-3, 0.1).cwiseSqrt();
+    case PoseEvidence::kNone:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// Whether a pose is one to which no motion leads, such as after a search.
+bool is_jump(const InertialPrediction& prediction, const RigidMotion& T_odom_lidar) {
+  constexpr double kSigmas = 5, kLeastShift = 0.5, kLeastTurn = 5 * kDegree;  // m, rad
+  const RigidMotion apart = prediction.T_odom_lidar.inverse() * T_odom_lidar;
+  const double shift = kSigmas * prediction.sigma.tail<3>().norm();
+  const double turn = kSigmas * prediction.sigma.head<3>().norm();
+  return apart.translation().norm() > std::max(kLeastShift, shift) ||
+         rotation_angle(apart.linear()) > std::max(kLeastTurn, turn);
 }
 
 Twist velocity_between(const StampedPose& a, const StampedPose& b) {
@@ -51,6 +78,11 @@ bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
 }
 
 }  // namespace
+
+MotionModel::MotionModel(const MotionSources& sources, const MotionModelOptions& options)
+    : sources_(sources), navigation_(sources.navigation), options_(options) {
+  if (sources.imu != nullptr) filter_.emplace(*sources.imu);
+}
 
 Twist VelocityError::before_any() { return squares(kFirstRotation, kFirstTranslation); }
 
@@ -125,13 +157,83 @@ bool MotionModel::follows_pause(TimeNs stamp) const {
   return step > kPause && (!usual_step_ || step > kPauseSteps * *usual_step_);
 }
 
-MotionPrediction MotionModel::predict_after_pause(TimeNs stamp) const {
+std::optional<InertialFilter> MotionModel::filter_for(TimeNs stamp) const {
+  if (!filter_ || !filter_->covers(stamp)) return std::nullopt;
+  InertialFilter filter = *filter_;
+  if (filter.has_begun()) return filter;
+  const auto navigation = navigation_at(stamp);
+  InertialStart start;
+  start.velocity = motion_velocity();
+  start.is_level = options_.navigation_is_level && navigation.has_value();
+  if (last_) {
+    start.T_odom_lidar = last_->T_local_body;
+    filter.begin(last_->time, start);
+  } else {
+    start.T_odom_lidar = navigation.value_or(RigidMotion::Identity());
+    if (const auto motion = navigation_motion(stamp)) start.velocity = motion->velocity;
+    filter.begin(stamp, start);
+  }
+  return filter;
+}
+
+std::optional<double> MotionModel::wheel_speed(TimeNs stamp) const {
+  constexpr TimeNs kFarthest = kNsPerSecond / 10;
+  if (sources_.wheels == nullptr) return std::nullopt;
+  const std::vector<WheelSpeed>& speeds = sources_.wheels->samples;
+  const auto later = [](TimeNs time, const WheelSpeed& speed) { return time < speed.time; };
+  const auto after = std::upper_bound(speeds.begin(), speeds.end(), stamp, later);
+  if (after == speeds.begin() || after == speeds.end()) return std::nullopt;
+  const WheelSpeed &a = *std::prev(after), &b = *after;
+  if (b.time - a.time > kFarthest) return std::nullopt;
+  return a.speed + (b.speed - a.speed) * seconds(stamp - a.time) / seconds(b.time - a.time);
+}
+
+InertialPrediction MotionModel::fused(const InertialFilter& filter, TimeNs stamp,
+                                      const std::optional<MotionGuess>& by_nav) const {
+  InertialPrediction prediction = filter.predict(stamp);
+  if (const auto speed = wheel_speed(stamp)) {
+    const WheelData& wheels = *sources_.wheels;
+    prediction = filter.corrected(prediction, *speed, wheels.sigma, wheels.T_lidar_body);
+  }
+  if (!last_ || !by_nav || !by_nav->sigma) return prediction;
+  const MotionGuess inertial{prediction.T_odom_lidar, {}, false, {}};
+  if (contradict(*by_nav, inertial, seconds(stamp - last_->time))) return prediction;
+  return filter.corrected(prediction, by_nav->T_odom_lidar, *by_nav->sigma);
+}
+
+std::optional<MotionGuess> MotionModel::by_imu(TimeNs stamp, const SweepSpan& sweep,
+                                               const std::optional<MotionGuess>& by_nav) const {
+  const auto filter = filter_for(stamp);
+  if (!filter) return std::nullopt;
+  const InertialPrediction prediction = fused(*filter, stamp, by_nav);
+  MotionGuess guess{prediction.T_odom_lidar, filter->motion(prediction, sweep), false, {}};
+  if (last_) guess.sigma = prediction.sigma.cwiseMax(kLeastInertialSigma);
+  return guess;
+}
+
+void MotionModel::update_filter(TimeNs stamp, const RigidMotion& T_odom_lidar,
+                                PoseEvidence evidence) {
+  if (!filter_) return;
+  auto filter = filter_for(stamp);
+  if (!filter) {
+    filter_->restart();
+    return;
+  }
+  const InertialPrediction prediction = fused(*filter, stamp, by_navigation(stamp));
+  filter->update(prediction, T_odom_lidar, pose_sigma(evidence));
+  if (is_jump(prediction, T_odom_lidar)) filter->restart();
+  filter_ = std::move(filter);
+}
+
+MotionPrediction MotionModel::predict_after_pause(TimeNs stamp, const SweepSpan& sweep) const {
   MotionPrediction prediction;
   prediction.after_pause = true;
   prediction.T_local_lidar_navigation = navigation_at(stamp);
   auto guess = by_navigation(stamp);
   if (guess) {
     guess->sigma.reset();  // unknown over the pause
+  } else if ((guess = by_imu(stamp, sweep, std::nullopt))) {
+    guess->sigma.reset();  // the speed may have changed much
   } else {
     guess = MotionGuess{last_->T_local_body, navigation_motion(stamp), false, std::nullopt};
     if (!guess->motion && initial_velocity_) guess->motion = SweepMotion{*initial_velocity_};
@@ -140,11 +242,20 @@ MotionPrediction MotionModel::predict_after_pause(TimeNs stamp) const {
   return prediction;
 }
 
-MotionPrediction MotionModel::predict(TimeNs stamp) const {
-  if (follows_pause(stamp)) return predict_after_pause(stamp);
+MotionPrediction MotionModel::predict(TimeNs stamp, const SweepSpan& sweep) const {
+  if (follows_pause(stamp)) return predict_after_pause(stamp, sweep);
   MotionPrediction prediction;
   prediction.T_local_lidar_navigation = navigation_at(stamp);
   auto by_nav = by_navigation(stamp);
+  if (const auto inertial = by_imu(stamp, sweep, by_nav)) {
+    prediction.guesses = {*inertial};
+    if (by_nav && last_ && options_.doubt &&
+        contradict(*by_nav, *inertial, seconds(stamp - last_->time))) {
+      by_nav->sigma.reset();  // registration decides
+      prediction.guesses.push_back(*by_nav);
+    }
+    return prediction;
+  }
   const auto by_motion = by_velocity(stamp);
   if (by_nav && by_motion && options_.doubt) {
     if (contradict(*by_nav, *by_motion, seconds(stamp - last_->time))) {
@@ -165,8 +276,9 @@ MotionPrediction MotionModel::predict(TimeNs stamp) const {
   return prediction;
 }
 
-void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar) {
+void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence) {
   const StampedPose now{stamp, T_odom_lidar};
+  update_filter(stamp, T_odom_lidar, evidence);
   const bool is_after_pause = follows_pause(stamp);
   if (last_ && !(is_after_pause && usual_step_)) usual_step_ = stamp - last_->time;
   if (is_after_pause) {

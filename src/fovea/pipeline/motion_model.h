@@ -7,6 +7,7 @@
 
 #include "fovea/core/time.h"
 #include "fovea/geometry/trajectory.h"
+#include "fovea/mapping/inertial_filter.h"
 
 namespace fovea {
 
@@ -39,6 +40,23 @@ struct MotionModelOptions {
   /// From a frame's stamp to the end of its sweep. Later navigation does not count for the
   /// velocity, since it is not available live.
   TimeNs sweep_rest = 0;
+  /// The z axis of navigation's poses points up.
+  bool navigation_is_level = false;
+};
+
+/// What tells the motion besides the scans: null where the drive lacks it. All must outlive the
+/// model.
+struct MotionSources {
+  const Trajectory* navigation = nullptr;  ///< T_local_lidar
+  const ImuData* imu = nullptr;
+  const WheelData* wheels = nullptr;  ///< used with an IMU
+};
+
+/// How well scans confirm a pose.
+enum class PoseEvidence {
+  kFirm,
+  kWeak,  ///< some direction of the motion is not determined
+  kNone,  ///< the pose is a guess
 };
 
 /// Error of predicted velocities.
@@ -60,17 +78,20 @@ class VelocityError {
 /// weight of each coordinate depends on the errors of their latest predictions. A jitter of
 /// positions by 1 cm is an error of 0.14 m/s in 0.1 s. The error of the last frames is the
 /// acceleration.
+///
+/// With an IMU an InertialFilter predicts. Navigation and wheels then correct its predictions.
 class MotionModel {
  public:
-  /// @param navigation  T_local_lidar, or null; must outlive the model
+  explicit MotionModel(const MotionSources& sources, const MotionModelOptions& options = {});
   explicit MotionModel(const Trajectory* navigation, const MotionModelOptions& options = {})
-      : navigation_(navigation), options_(options) {}
+      : MotionModel(MotionSources{.navigation = navigation}, options) {}
 
   /// Sets the velocity (of the LiDAR, in its own frame, per second) at the beginning or after a
   /// pause, without navigation. It counts until the second pose.
   void begin_with(const std::optional<Twist>& velocity) { initial_velocity_ = velocity; }
 
-  MotionPrediction predict(TimeNs stamp) const;
+  /// @param sweep  of the frame
+  MotionPrediction predict(TimeNs stamp, const SweepSpan& sweep = {}) const;
 
   /// Whether a frame follows a pause of the recording: over 1 s after the last frame, and over
   /// three of the drive's usual steps.
@@ -84,10 +105,11 @@ class MotionModel {
   bool needs_initial_velocity(TimeNs stamp) const { return !last_ || follows_pause(stamp); }
 
   /// Adds the final pose of a frame. The state of the model depends only on these calls.
-  void update(TimeNs stamp, const RigidMotion& T_odom_lidar);
+  void update(TimeNs stamp, const RigidMotion& T_odom_lidar,
+              PoseEvidence evidence = PoseEvidence::kFirm);
 
  private:
-  MotionPrediction predict_after_pause(TimeNs stamp) const;
+  MotionPrediction predict_after_pause(TimeNs stamp, const SweepSpan& sweep) const;
   std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
   std::optional<SweepMotion> navigation_motion(TimeNs stamp) const;
   std::optional<Twist> motion_velocity() const;
@@ -96,7 +118,18 @@ class MotionModel {
   /// Standard deviations of navigation's motion over a time (s).
   Twist navigation_sigma(double elapsed) const;
   SweepMotion weighed(const SweepMotion& by_navigation, const SweepMotion& by_motion) const;
+  /// The filter for a frame; begun at the last frame, or at the first one, if it has not begun yet.
+  /// Empty where the IMU has not measured.
+  std::optional<InertialFilter> filter_for(TimeNs stamp) const;
+  /// Of the IMU, the wheels, and of navigation unless it contradicts them.
+  InertialPrediction fused(const InertialFilter& filter, TimeNs stamp,
+                           const std::optional<MotionGuess>& by_nav) const;
+  std::optional<double> wheel_speed(TimeNs stamp) const;
+  std::optional<MotionGuess> by_imu(TimeNs stamp, const SweepSpan& sweep,
+                                    const std::optional<MotionGuess>& by_nav) const;
+  void update_filter(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence);
 
+  MotionSources sources_;
   const Trajectory* navigation_;
   MotionModelOptions options_;
   std::optional<Twist> initial_velocity_;
@@ -106,6 +139,7 @@ class MotionModel {
   std::optional<SweepMotion> last_by_navigation_;
   std::optional<Twist> last_by_motion_;
   VelocityError navigation_error_, motion_error_;
+  std::optional<InertialFilter> filter_;
 };
 
 }  // namespace fovea

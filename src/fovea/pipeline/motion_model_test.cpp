@@ -221,4 +221,65 @@ TEST(MotionModel, AThousandGuessesInARowStayRigid) {
   EXPECT_TRUE(is_rotation(T.linear(), 1e-12));
 }
 
+/// An IMU at the LiDAR, in a vehicle that speeds up along x by 3 m/s^2 from 5 m/s on.
+constexpr double kSpeedingUp = 3, kFirstSpeed = 5;
+
+double way_at(double time) { return kFirstSpeed * time + kSpeedingUp * time * time / 2; }
+
+ImuData speeding_up() {
+  ImuData imu;
+  for (int i = -20; i < 400; ++i) {
+    imu.samples.push_back(
+        {i * kNsPerSecond / 100, Eigen::Vector3d::Zero(), {kSpeedingUp, 0, 9.81}});
+  }
+  return imu;
+}
+
+/// Level: gravity is that of navigation's frame.
+MotionModel model_of(const ImuData& imu, const Trajectory* navigation = nullptr) {
+  MotionModel model(MotionSources{.navigation = navigation, .imu = &imu},
+                    {.navigation_is_level = navigation != nullptr});
+  model.begin_with((Twist() << 0, 0, 0, kFirstSpeed, 0, 0).finished());
+  for (int i = 0; i < 20; ++i) model.update(i * kTenth, at_x(way_at(0.1 * i)));
+  return model;
+}
+
+TEST(MotionModel, AnImuTellsTheMotionBetweenFrames) {
+  const ImuData imu = speeding_up();
+  const MotionPrediction next = model_of(imu).predict(20 * kTenth, {-0.1, 0});
+  ASSERT_EQ(next.guesses.size(), 1u);
+  const MotionGuess& guess = next.guesses[0];
+  EXPECT_NEAR(guess.T_odom_lidar.translation().x(), way_at(2), 0.005);
+  ASSERT_TRUE(guess.motion && guess.motion->path);
+  EXPECT_NEAR(guess.motion->path->at(-0.1).translation().x(), way_at(1.9) - way_at(2), 0.003);
+  EXPECT_NEAR(guess.motion->velocity[3], kFirstSpeed + 2 * kSpeedingUp, 0.05);
+  EXPECT_GE(guess.sigma->minCoeff(), 1e-3);
+  EXPECT_FALSE(guess.by_navigation);
+}
+
+TEST(MotionModel, WhereTheImuEndsVelocitiesPredict) {
+  const ImuData imu = speeding_up();
+  MotionModel model = model_of(imu);
+  for (int i = 20; i < 60; ++i) model.update(i * kTenth, at_x(way_at(0.1 * i)));
+  const MotionPrediction next = model.predict(60 * kTenth);
+  ASSERT_EQ(next.guesses.size(), 1u);
+  EXPECT_FALSE(next.guesses[0].motion->path);
+  EXPECT_NEAR(next.guesses[0].T_odom_lidar.translation().x(), 2 * way_at(5.9) - way_at(5.8), 1e-6);
+}
+
+TEST(MotionModel, NavigationCorrectsAnImuUnlessTheyContradict) {
+  const ImuData imu = speeding_up();
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= 20; ++i) poses.push_back({i * kTenth, at_x(way_at(0.1 * i))});
+  const Trajectory good(poses);
+  EXPECT_NEAR(model_of(imu, &good).predict(20 * kTenth).guesses[0].T_odom_lidar.translation().x(),
+              way_at(2), 0.005);
+  poses.back().T_local_body = at_x(way_at(2) + 3);
+  const Trajectory jumping(poses);
+  const MotionPrediction next = model_of(imu, &jumping).predict(20 * kTenth);
+  ASSERT_EQ(next.guesses.size(), 2u);
+  EXPECT_NEAR(next.guesses[0].T_odom_lidar.translation().x(), way_at(2), 0.005);
+  EXPECT_TRUE(next.guesses[1].by_navigation);
+}
+
 }  // namespace fovea::motion_model_test

@@ -55,7 +55,7 @@ std::string PoseRefiner::doubt_of(const AlignmentStats& alignment,
 }
 
 RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion& guess,
-                                const std::optional<Twist>& sigma) const {
+                                const std::optional<Twist>& sigma, bool doubts) const {
   RefinedPose refined;
   refined.T_odom_lidar = guess;
   refined.cloud = prepare(scan_lidar);
@@ -71,7 +71,7 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
       stats.alignment.emplace(alignment_stats(result, guess.inverse() * result.T_target_source));
   VerticalFit vertical = vertical_fit(local_map_, refined.cloud, result.T_target_source);
   refined.note = failure_of(result, alignment, options_.limits);
-  if (refined.note.empty()) refined.note = doubt_of(alignment, sigma, vertical);
+  if (refined.note.empty() && doubts) refined.note = doubt_of(alignment, sigma, vertical);
   alignment.has_failed = !refined.note.empty();
   if (alignment.has_failed) {
     vertical = vertical_fit(local_map_, refined.cloud, guess);

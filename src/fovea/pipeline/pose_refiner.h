@@ -39,8 +39,9 @@ class PoseRefiner {
   /// ends too far from the guess, keeps the guess. So does the first scan: there is no target yet.
   /// @param scan_lidar  motion compensated
   /// @param sigma       of the guess where it counts as a measurement: rad, m
+  /// @param doubts      whether the guess is kept if no wall confirms a pose that contradicts it
   RefinedPose refine(const PointCloud& scan_lidar, const RigidMotion& guess_T_odom_lidar,
-                     const std::optional<Twist>& sigma = std::nullopt) const;
+                     const std::optional<Twist>& sigma = std::nullopt, bool doubts = true) const;
 
   /// Searches for a lost scan around its first guess, see search_place().
   /// @param reach  m

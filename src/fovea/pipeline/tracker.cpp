@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -44,6 +45,27 @@ bool becomes_target(Keyframes& keyframes, const FrameResult& frame, int lost_bef
   return keyframes.add_if_due(frame.poses.T_odom_lidar, frame.tracking.overlap());
 }
 
+MotionSources motion_sources(const DriveInfo& drive) {
+  return {.navigation = drive.navigation ? &*drive.navigation : nullptr,
+          .imu = drive.imu ? &*drive.imu : nullptr,
+          .wheels = drive.wheels ? &*drive.wheels : nullptr};
+}
+
+/// From the first point of a scan to the last one.
+SweepSpan sweep_span(const PointCloud& scan, const DriveInfo& drive) {
+  if (scan.time.empty()) return {drive.sweep.start_time(), drive.sweep.end_time()};
+  const auto [first, last] = std::ranges::minmax(scan.time);
+  return {double(first), double(last)};
+}
+
+PoseEvidence evidence_of(const TrackingStats& tracking) {
+  if (tracking.is_lost) return PoseEvidence::kNone;
+  if (!tracking.registration || !tracking.registration->alignment) return PoseEvidence::kFirm;
+  const AlignmentStats& alignment = *tracking.registration->alignment;
+  if (alignment.has_failed) return PoseEvidence::kNone;
+  return alignment.degenerate_directions > 0 ? PoseEvidence::kWeak : PoseEvidence::kFirm;
+}
+
 }  // namespace
 
 Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
@@ -52,10 +74,10 @@ Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSourc
       compensate_motion_(options.compensate_motion),
       pose_source_(pose_source),
       initial_velocity_(std::move(initial_velocity)),
-      motion_model_(drive.navigation ? &*drive.navigation : nullptr,
-                    {.doubt = fusion_options(options, pose_source).enabled,
-                     .stated_accuracy = stated_accuracy(drive),
-                     .sweep_rest = from_seconds(drive.sweep.end_time())}),
+      motion_model_(motion_sources(drive), {.doubt = fusion_options(options, pose_source).enabled,
+                                            .stated_accuracy = stated_accuracy(drive),
+                                            .sweep_rest = from_seconds(drive.sweep.end_time()),
+                                            .navigation_is_level = drive.origin.has_value()}),
       refiner_(options.refinement),
       fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
       keyframes_(refiner_.keyframes()) {}
@@ -82,7 +104,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   if (has_sweep_motion || drive_.has_image_delays()) result.poses.motion = placed.motion;
   result.note = refined.note;
   result.poses.T_odom_lidar = refined.T_odom_lidar;
-  motion_model_.update(frame.stamp, refined.T_odom_lidar);
+  motion_model_.update(frame.stamp, refined.T_odom_lidar, evidence_of(result.tracking));
   // The submap gives the pose in local. A loop closure may then correct it.
   fusion_.track(result);
   if (!task.held_out) {
@@ -103,7 +125,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
 
 MotionPrediction Tracker::predict(const Frame& frame) {
   motion_model_.begin_if_needed(frame.stamp, frame.index, initial_velocity_);
-  return motion_model_.predict(frame.stamp);
+  return motion_model_.predict(frame.stamp, sweep_span(frame.scan, drive_));
 }
 
 Tracker::PlacedScan Tracker::place(const Frame& frame, const MotionPrediction& motion,
@@ -127,7 +149,7 @@ RefinedPose Tracker::locate(const PointCloud& scan_lidar, const MotionPrediction
     if (registers()) refined.cloud = refiner_.prepare(scan_lidar);
     refined.T_odom_lidar = *task.given_pose;
   } else {
-    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, guess.sigma);
+    refined = refiner_.refine(scan_lidar, guess.T_odom_lidar, guess.sigma, guess.by_navigation);
   }
   return refined;
 }
@@ -138,8 +160,9 @@ void Tracker::search_lost(RefinedPose& refined, const MotionGuess& guess,
   constexpr int kEvery = 10;
   if (lost_frames_ < kLostFrames || lost_frames_ % kEvery == 0) {
     const double elapsed = last_stamp_ ? seconds(*result.stamp - *last_stamp_) : 0;
-    const double reach =
-        guess.sigma ? kSigmas * guess.sigma->tail<3>().maxCoeff() : kFastest * elapsed;
+    const double reach = guess.sigma && guess.by_navigation
+                             ? kSigmas * guess.sigma->tail<3>().maxCoeff()
+                             : kFastest * elapsed;
     refined = refiner_.search(std::move(refined), guess.T_odom_lidar, reach);
   }
   if (!refined.lost) return;
@@ -191,7 +214,7 @@ bool Tracker::registers() const {
 
 void Tracker::follow(const FrameResult& frame) {
   motion_model_.begin_if_needed(*frame.stamp, frame.index, initial_velocity_);
-  motion_model_.update(*frame.stamp, frame.poses.T_odom_lidar);
+  motion_model_.update(*frame.stamp, frame.poses.T_odom_lidar, evidence_of(frame.tracking));
   if (frame.tracking.has_restarted) restart();
   FrameResult tracked = frame;
   fusion_.track(tracked);

@@ -65,6 +65,7 @@ void GenericSimulationWriter::write_texts(const Rig& rig,
                                           const SimulationOptions&) {
   // The IMU is the body.
   drive_.T_body_lidar = rig.T_imu_lidar;
+  if (options_.imu.rate > 0) drive_.T_lidar_imu = rig.T_lidar_imu_calibrated;
   drive_.lidar.name = lidar_name(options_, 0);
   drive_.lidar.sweep = stated_sweep(options_.lidar);
   for (std::size_t k = 0; k < options_.further_lidars.size(); ++k) {
@@ -83,6 +84,16 @@ void GenericSimulationWriter::write_texts(const Rig& rig,
                                 Eigen::Vector3d(record.roll, record.pitch, record.yaw),
                                 record.velocity});
   }
+}
+
+void GenericSimulationWriter::write_imu(const std::vector<ImuRecord>& records) {
+  for (const ImuRecord& record : records) {
+    drive_.inertia.push_back({record.time, std::nullopt, record.rate, record.force});
+  }
+}
+
+void GenericSimulationWriter::write_wheels(const std::vector<WheelRecord>& records) {
+  for (const WheelRecord& record : records) drive_.wheels.push_back({record.time, record.speed});
 }
 
 void GenericSimulationWriter::write_file(const std::filesystem::path& name,

@@ -19,6 +19,8 @@ class GenericSimulationWriter : public SimulationWriter {
   void write_exposure(int camera, int number, double exposure) override;
   void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
                    const SimulationOptions& options) override;
+  void write_imu(const std::vector<ImuRecord>& records) override;
+  void write_wheels(const std::vector<WheelRecord>& records) override;
   std::filesystem::path truth_folder() const override { return writer_.truth_folder(); }
   void write_file(const std::filesystem::path& name, std::string_view bytes) override;
   std::filesystem::path finish() override;

@@ -75,6 +75,13 @@ Rig make_rig(const SimulationOptions& options) {
   rig.T_imu_lidar = T_upright_imu.inverse() * T_upright_lidar;
   Eigen::Matrix3d R_axes;  // forward, left, up -> right, down, forward
   R_axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  const ImuOptions& imu = options.imu;
+  rig.T_lidar_imu_calibrated =
+      T_upright_lidar.inverse() *
+      motion(rotation(imu.roll / kDegree, imu.pitch / kDegree, imu.yaw / kDegree),
+             {imu.forward, imu.left, imu.up});
+  rig.T_lidar_imu =
+      rig.T_lidar_imu_calibrated * exp_se3((Twist() << imu.rotation_error, 0, 0, 0).finished());
   rig.T_cam0_lidar =
       motion(rotation(0.6, 0.4, -0.5) * R_axes, {-0.005, -0.075, -0.27}) * T_upright_lidar;
   rig.R_rect = rotation(-0.25, -0.3, 0.35);
@@ -94,12 +101,12 @@ Rig make_rig(const SimulationOptions& options) {
     camera.index = simulated.number;
     // The camera's y axis points down.
     const Eigen::AngleAxisd R_turned_straight(simulated.yaw, Eigen::Vector3d::UnitY());
-    const auto T_cam_lidar = [&](const Eigen::Matrix3d& R) -> RigidMotion {
-      return R_turned_straight * Eigen::Translation3d(t) * motion(R, Eigen::Vector3d::Zero()) *
-             rig.T_cam0_lidar;
+    const auto T_cam_lidar = [&](const Eigen::Matrix3d& R, const Eigen::Vector3d& moved) {
+      return RigidMotion(R_turned_straight * Eigen::Translation3d(t) * motion(R, moved) *
+                         rig.T_cam0_lidar);
     };
-    camera.T_cam_lidar = T_cam_lidar(R_error * rig.R_rect);
-    rig.T_cam_lidar_calibrated.push_back(T_cam_lidar(rig.R_rect));
+    camera.T_cam_lidar = T_cam_lidar(R_error * rig.R_rect, options.camera.translation_error);
+    rig.T_cam_lidar_calibrated.push_back(T_cam_lidar(rig.R_rect, Eigen::Vector3d::Zero()));
     rig.cameras.push_back(camera);
     rig.optics.push_back(optics);
     rig.t.push_back(t);

@@ -15,8 +15,10 @@ namespace fovea {
 struct Rig {
   /// Vehicle: forward, left, up, on the road below the LiDAR. With the LiDAR's mount.
   RigidMotion T_vehicle_lidar = RigidMotion::Identity();
-  std::vector<RigidMotion> T_lidar_further;  ///< of the further LiDARs
-  RigidMotion T_imu_lidar = RigidMotion::Identity();
+  std::vector<RigidMotion> T_lidar_further;           ///< of the further LiDARs
+  RigidMotion T_imu_lidar = RigidMotion::Identity();  ///< of the GPS/INS
+  /// Of the IMU of imu.csv; and as a calibration has it, without the planted error.
+  RigidMotion T_lidar_imu = RigidMotion::Identity(), T_lidar_imu_calibrated = T_lidar_imu;
   /// Camera 0 before rectification (calib_velo_to_cam.txt).
   RigidMotion T_cam0_lidar = RigidMotion::Identity();
   Eigen::Matrix3d R_rect = Eigen::Matrix3d::Identity();  ///< of camera 0 (R_rect_00)

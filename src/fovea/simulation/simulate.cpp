@@ -88,6 +88,8 @@ class Simulation {
   std::filesystem::path finish() {
     writer_->write_texts(rig_, simulate_navigation(motion_, rig_, T_world_local_, options_),
                          options_);
+    if (options_.imu.rate > 0) writer_->write_imu(simulate_imu(motion_, rig_, options_));
+    if (options_.wheels.rate > 0) writer_->write_wheels(simulate_wheels(motion_, rig_, options_));
     if (has_tracklets()) {
       writer_->write_file("tracklet_labels.xml", tracklets_text(labels_.tracks()));
     }

@@ -27,6 +27,12 @@ constexpr auto names_of(SimulatedLens) {
                     EnumName<SimulatedLens>{SimulatedLens::kFisheye, "equidistant"}};
 }
 
+constexpr auto names_of(Carrier) {
+  return std::array{EnumName<Carrier>{Carrier::kWheels, "wheels"},
+                    EnumName<Carrier>{Carrier::kWalker, "walker"},
+                    EnumName<Carrier>{Carrier::kDrone, "drone"}};
+}
+
 std::vector<EnumName<LidarModel>> names_of(LidarModel) {
   std::vector<EnumName<LidarModel>> names;
   for (const LidarDataSheet& sheet : lidar_data_sheets())
@@ -173,6 +179,7 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("light.sky", o.light.sky);
   visit("light.reflections", o.light.reflections);
 
+  visit("vehicle.carrier", o.vehicle.carrier);
   visit("vehicle.speed", o.vehicle.speed);
   visit("vehicle.speed_variation", o.vehicle.speed_variation);
   visit("vehicle.weave", o.vehicle.weave);
@@ -181,6 +188,9 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("vehicle.stop_at", o.vehicle.stop_at);
   visit("vehicle.stop_braking", o.vehicle.stop_braking);
   visit("vehicle.stop_duration", o.vehicle.stop_duration);
+  visit("vehicle.turn_rate", Degrees{o.vehicle.turn_rate});
+  visit("vehicle.turn_angle", Degrees{o.vehicle.turn_angle});
+  visit("vehicle.stairs", o.vehicle.stairs);
 
   visit("street.bends", Degrees{o.bends});
   visit("street.curvature", o.curvature);
@@ -203,6 +213,9 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("camera.rotation_error_x", Degrees{o.camera.rotation_error.x()});
   visit("camera.rotation_error_y", Degrees{o.camera.rotation_error.y()});
   visit("camera.rotation_error_z", Degrees{o.camera.rotation_error.z()});
+  visit("camera.translation_error_x", o.camera.translation_error.x());
+  visit("camera.translation_error_y", o.camera.translation_error.y());
+  visit("camera.translation_error_z", o.camera.translation_error.z());
   visit("camera.trigger_delay", o.camera.trigger_delay);
   visit("camera.rate", o.camera.rate);
   visit("camera.phase", o.camera.phase);
@@ -224,6 +237,8 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
   visit("navigation.jump_rate", n.jump_rate);
   visit("navigation.jump_size", n.jump_size);
   visit("navigation.outages", n.outages);
+  visit_imu(visit, o.imu);
+  visit_wheels(visit, o.wheels);
 }
 
 void apply(const SettingsDocument& document, SimulationOptions& options) {

@@ -92,7 +92,7 @@ TEST(SimulationOptions, RejectsByKey) {
   EXPECT_THAT(error([](auto& o) { o.camera.width = 1 << 20; }), HasSubstr("camera.width"));
   EXPECT_THAT(error([](auto& o) { o.camera.rotation_error.y() = 0.1; }),
               HasSubstr("camera.rotation_error_y"));
-  EXPECT_THAT(error([](auto& o) { o.camera.trigger_delay = 0.06; }),
+  EXPECT_THAT(error([](auto& o) { o.camera.trigger_delay = 0.25; }),
               HasSubstr("camera.trigger_delay"));
   EXPECT_THAT(error([](auto& o) { o.navigation.max_delay = 0.005; }),
               HasSubstr("navigation.max_delay"));

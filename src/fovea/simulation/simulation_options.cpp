@@ -41,6 +41,9 @@ void check(const VehicleOptions& vehicle) {
   check_range("vehicle.stop_at", vehicle.stop_at, -1, 1e5, "s");
   check_range("vehicle.stop_braking", vehicle.stop_braking, 0.5, 60, "s");
   check_range("vehicle.stop_duration", vehicle.stop_duration, 0, 3600, "s");
+  check_degrees("vehicle.turn_rate", vehicle.turn_rate, 0, 360);
+  check_degrees("vehicle.turn_angle", vehicle.turn_angle, 5, 170);
+  check_range("vehicle.stairs", vehicle.stairs, 0, 20, "m");
 }
 
 void check(const CameraOptions& camera) {
@@ -70,7 +73,10 @@ void check(const CameraOptions& camera) {
   check_degrees("camera.rotation_error_x", camera.rotation_error.x(), -5, 5);
   check_degrees("camera.rotation_error_y", camera.rotation_error.y(), -5, 5);
   check_degrees("camera.rotation_error_z", camera.rotation_error.z(), -5, 5);
-  check_range("camera.trigger_delay", camera.trigger_delay, -0.05, 0.05, "s");
+  check_range("camera.translation_error_x", camera.translation_error.x(), -0.5, 0.5, "m");
+  check_range("camera.translation_error_y", camera.translation_error.y(), -0.5, 0.5, "m");
+  check_range("camera.translation_error_z", camera.translation_error.z(), -0.5, 0.5, "m");
+  check_range("camera.trigger_delay", camera.trigger_delay, -0.2, 0.2, "s");
   check_image_times(camera);
   check_range("camera.rolling_shutter", camera.rolling_shutter, 0, 0.1, "s");
 }
@@ -165,6 +171,7 @@ void take_errors_off(SimulationOptions& options) {
   n.velocity_noise = n.rate_noise = 0;
   n.jump_rate = n.jump_size = 0;
   n.outages = false;
+  scale_errors(options.imu, options.wheels, 0);
 }
 
 void make_harsh(SimulationOptions& options) {
@@ -185,6 +192,7 @@ void make_harsh(SimulationOptions& options) {
   n.jump_rate = 0.06;
   n.jump_size = 1;
   n.outages = true;
+  scale_errors(options.imu, options.wheels, 2.5);
 }
 
 }  // namespace
@@ -201,15 +209,19 @@ void SimulationOptions::validate() const {
   check(further_lidars);
   check(camera);
   if (format == DriveFormat::kKitti) {
+    constexpr const char* kGeneric = "use --format generic";
     check_format(camera);
     check_kitti_image_times(camera);
     check_kitti_format(lidar);
     if (!further_lidars.empty()) {
-      reject("KITTI's format has a place for one LiDAR", "lidar.count", "use --format generic");
+      reject("KITTI's format has a place for one LiDAR", "lidar.count", kGeneric);
     }
+    if (imu.rate > 0) reject("KITTI's format has no IMU", "imu.rate", kGeneric);
+    if (wheels.rate > 0) reject("KITTI's format has no wheels", "wheels.rate", kGeneric);
   }
   check_lenses(camera);
   check(navigation, lidar.period);
+  check(imu, wheels);
 }
 
 std::vector<SimulatedCamera> rig_cameras(CameraRig rig) {

@@ -8,6 +8,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/simulation/imu_options.h"
 #include "fovea/simulation/lidar_options.h"
 
 namespace fovea {
@@ -31,8 +32,16 @@ struct LightOptions {
   bool reflections = true;  ///< glossy surfaces mirror what is around
 };
 
+/// What moves the sensors along the path.
+enum class Carrier {
+  kWheels,  ///< a vehicle
+  kWalker,  ///< a person who holds them
+  kDrone,
+};
+
 /// How the vehicle drives along its path. T_world_vehicle is a smooth function of time.
 struct VehicleOptions {
+  Carrier carrier = Carrier::kWheels;
   double speed = 9;               ///< m/s, mean
   double speed_variation = 0.25;  ///< share of the speed
   double weave = 0.25;            ///< m, sideways in the lane
@@ -41,6 +50,9 @@ struct VehicleOptions {
   double stop_at = -1;        ///< s from frame 0's stamp when it begins to brake; negative: never
   double stop_braking = 2.5;  ///< s until it stands, and as long to speed up again
   double stop_duration = 5;   ///< s that it stands
+  double turn_rate = 0;       ///< rad/s, the fastest turn to both sides; 0: it looks ahead
+  double turn_angle = 60 * kDegree;  ///< rad, of these turns to each side
+  double stairs = 0;                 ///< m, height of stairs on the way; 0: none
 };
 
 /// Lenses that can be simulated; coefficients in rig.cpp.
@@ -90,6 +102,8 @@ struct CameraOptions {
   /// What the calibration files leave out: the cameras are turned, all as one round camera 0, by
   /// this rotation vector in camera 0's rectified axes (rad).
   Eigen::Vector3d rotation_error = Eigen::Vector3d::Zero();
+  /// The same of the cameras' place: they are moved by this (m).
+  Eigen::Vector3d translation_error = Eigen::Vector3d::Zero();
   double trigger_delay = 0;    ///< s, images are taken this long after the stamps say
   double rate = 0;             ///< images a second; 0: one in the middle of each sweep
   double phase = 0;            ///< s, of the images after the middle of (the first) sweep
@@ -134,6 +148,8 @@ struct SimulationOptions {
   std::vector<FurtherLidarOptions> further_lidars;
   CameraOptions camera;
   NavigationOptions navigation;
+  ImuOptions imu;
+  WheelOptions wheels;
 
   /// ConfigError that names the field.
   void validate() const;

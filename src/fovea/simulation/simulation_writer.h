@@ -11,6 +11,7 @@
 
 #include "fovea/core/image.h"
 #include "fovea/core/time.h"
+#include "fovea/simulation/imu_model.h"
 #include "fovea/simulation/lidar_model.h"
 #include "fovea/simulation/navigation_model.h"
 #include "fovea/simulation/simulation_options.h"
@@ -34,6 +35,9 @@ class SimulationWriter {
   /// The calibration, all time stamps and the records of GPS/INS.
   virtual void write_texts(const Rig& rig, const std::vector<NavigationRecord>& records,
                            const SimulationOptions& options) = 0;
+  /// KITTI's drives have neither.
+  virtual void write_imu(const std::vector<ImuRecord>& /*records*/) {}
+  virtual void write_wheels(const std::vector<WheelRecord>& /*records*/) {}
   /// Folder of the truth, for what writes its files itself (write_world).
   virtual std::filesystem::path truth_folder() const = 0;
   /// A file of the drive's own, by its name below the drive's folder ("truth/poses.txt").

@@ -74,7 +74,7 @@ enum Phase { kOfSpeed = 0, kOfWeave = 2, kOfRoll = 4, kOfPitch = 6, kOfHeave = 8
 
 VehicleMotion::VehicleMotion(const Path& path, double lane_offset, const VehicleOptions& options,
                              int seed)
-    : path_(&path), lane_offset_(lane_offset), options_(options) {
+    : path_(&path), lane_offset_(lane_offset), options_(options), carried_(options, seed) {
   constexpr std::uint64_t kKind = 0x6d6f74696f6e;
   Random random = Random::of_item(static_cast<std::uint64_t>(seed), kKind, 0);
   for (double& phase : phases_) phase = random.uniform(0, kTurn);
@@ -104,7 +104,7 @@ RigidMotion VehicleMotion::T_world_vehicle(double time) const {
                 Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
                 Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
                    .toRotationMatrix();
-  return T;
+  return T * carried_.T_vehicle_carried(time, s);
 }
 
 double longest_way(const VehicleOptions& options, double seconds) {

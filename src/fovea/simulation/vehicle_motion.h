@@ -4,15 +4,16 @@
 #include <array>
 
 #include "fovea/geometry/rigid_motion.h"
+#include "fovea/simulation/carried_motion.h"
 #include "fovea/simulation/path.h"
 #include "fovea/simulation/simulation_options.h"
 
 namespace fovea {
 
 /// Motion of the vehicle along a path: speed that changes, weaving in the lane, roll, pitch and
-/// heave; all smooth (sums of sines whose phases come from the seed). It always points where it
-/// goes. With speed_variation, weave, sway and heave at 0 on a path of constant curvature its twist
-/// is constant.
+/// heave; all smooth (sums of sines whose phases come from the seed). On wheels it always points
+/// where it goes; other carriers add CarriedMotion. With speed_variation, weave, sway and heave at
+/// 0 on a path of constant curvature its twist is constant.
 class VehicleMotion {
  public:
   /// Keeps a reference to the path, which must reach as far as longest_way() says.
@@ -29,6 +30,7 @@ class VehicleMotion {
   const Path* path_;
   double lane_offset_;
   VehicleOptions options_;
+  CarriedMotion carried_;
   std::array<double, 10> phases_;  // rad: speed, weave, roll, pitch, heave, two each
 };
 

@@ -115,7 +115,16 @@ std::string drive_text(const RecordedDrive& drive) {
   text += fmt::format("\n[body]\nT_body_lidar = {}\nT_body_imu = {}\nantenna = [{}, {}, {}]\n",
                       motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(),
                       antenna.y(), antenna.z());
+  if (drive.T_lidar_imu) {
+    text += fmt::format("\n[imu]\nT_lidar_imu = {}\n", motion_text(*drive.T_lidar_imu));
+  }
   for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
+  return text;
+}
+
+std::string wheels_text(const std::vector<WheelSpeed>& wheels) {
+  std::string text = "time_ns,speed\n";
+  for (const WheelSpeed& wheel : wheels) text += fmt::format("{},{}\n", wheel.time, wheel.speed);
   return text;
 }
 
@@ -191,8 +200,8 @@ std::filesystem::path scan_folder(const std::string& lidar) {
 
 GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root, bool force)
     : folder_(root, force,
-              {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "truth",
-               "depth", "tracklet_labels.xml"}) {}
+              {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "wheels.csv",
+               "truth", "depth", "tracklet_labels.xml"}) {}
 
 void GenericDriveWriter::write_scan(int number, TimeNs stamp, const PointCloud& scan_sensor,
                                     ScanFile format, const std::string& lidar) {
@@ -238,6 +247,7 @@ void GenericDriveWriter::finish(const RecordedDrive& drive) {
   if (!drive.poses.empty()) folder_.write("poses.csv", poses_text(drive.poses));
   if (!drive.positions.empty()) folder_.write("gnss.csv", positions_text(drive.positions));
   if (!drive.inertia.empty()) folder_.write("imu.csv", inertia_text(drive.inertia));
+  if (!drive.wheels.empty()) folder_.write("wheels.csv", wheels_text(drive.wheels));
   folder_.commit();
 }
 

@@ -15,6 +15,7 @@
 #include "fovea/core/point_cloud.h"
 #include "fovea/core/time.h"
 #include "fovea/geometry/geodesy.h"
+#include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/quaternion_motion.h"
 #include "fovea/geometry/rigid_motion.h"
@@ -76,6 +77,9 @@ struct RecordedDrive {
   std::vector<RecordedPose> poses;          ///< where there are any, positions are not looked at
   std::vector<RecordedPosition> positions;  ///< all with an attitude, or none
   std::vector<RecordedInertia> inertia;     ///< all with an orientation, or none
+  /// Of the rates and accelerations of `inertia`; absent: their place is not known.
+  std::optional<QuaternionMotion> T_lidar_imu;
+  std::vector<WheelSpeed> wheels;
 };
 
 /// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was

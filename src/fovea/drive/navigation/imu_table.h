@@ -1,0 +1,41 @@
+// imu.csv and wheels.csv (docs/drives.md).
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "fovea/core/messages.h"
+#include "fovea/drive/drive_description.h"
+#include "fovea/drive/stamp_units.h"
+
+namespace fovea {
+
+struct ImuTable : Messages {
+  std::optional<ImuData> imu;  ///< absent: the file has nothing of use
+};
+
+/// Reads the angular rates and accelerations of a file. Lines without them are left out and noted.
+/// So is what shows a fault: gaps, values at the end of the IMU's range, units that nothing states.
+/// InputError if the file cannot be read.
+ImuTable read_imu(const std::filesystem::path& file, const ImuDescription& description,
+                  const std::optional<ScanPeriod>& scans);
+
+struct WheelTable : Messages {
+  std::optional<WheelData> wheels;
+};
+
+/// Reads the speeds of wheels. As read_imu().
+WheelTable read_wheels(const std::filesystem::path& file, const WheelDescription& description,
+                       const std::optional<ScanPeriod>& scans);
+
+/// What imu.csv and wheels.csv of a drive's folder give, where they are there. The IMU needs a
+/// place that the drive states.
+struct InertialTables : Messages {
+  std::optional<ImuData> imu;
+  std::optional<WheelData> wheels;
+};
+InertialTables read_inertial_tables(const std::filesystem::path& folder,
+                                    const DriveDescription& drive,
+                                    const std::optional<ScanPeriod>& scans);
+
+}  // namespace fovea

@@ -1,0 +1,26 @@
+#include "fovea/geometry/sweep_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fovea {
+
+RigidMotion SweepPath::at(double dt) const {
+  const double place = (dt - begin) / step;
+  const double last = static_cast<double>(placements.size() - 2);
+  const double whole = std::clamp(std::floor(place), 0.0, last);
+  const Twist& from = placements[static_cast<std::size_t>(whole)];
+  const Twist& to = placements[static_cast<std::size_t>(whole) + 1];
+  const Twist placement = from + (place - whole) * (to - from);
+  RigidMotion T = RigidMotion::Identity();
+  const double angle = placement.head<3>().norm();
+  if (angle > 0) T.linear() = Eigen::AngleAxisd(angle, placement.head<3>() / angle).matrix();
+  T.translation() = placement.tail<3>();
+  return T;
+}
+
+RigidMotion SweepMotion::T_later_moment(double dt) const {
+  return path ? path->at(dt).inverse() : exp_se3(-over(dt));
+}
+
+}  // namespace fovea

@@ -1,0 +1,128 @@
+#include "fovea/mapping/imu_integration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fovea/core/median.h"
+
+namespace fovea {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+using Covariance = InertialState::Covariance;
+using State = InertialState;
+
+// Deviations of velocities in a gap of the IMU, per root second: rad/s and m/s.
+constexpr double kGapRate = 0.5, kGapForce = 2;
+
+}  // namespace
+
+Matrix3 rotation_of(const Vector3& v) {
+  const double angle = v.norm();
+  if (angle == 0) return Matrix3::Identity();
+  return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
+}
+
+Eigen::Matrix<double, 3, 2> across_gravity(const InertialState& state) {
+  const Vector3& direction = state.gravity;
+  const Vector3 first = direction.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> axes;
+  axes << first, direction.normalized().cross(first);
+  return axes;
+}
+
+ImuIntegration::ImuIntegration(const ImuData& imu) : imu_(&imu) {
+  std::vector<TimeNs> steps;
+  for (std::size_t i = 1; i < imu.samples.size(); ++i) {
+    steps.push_back(imu.samples[i].time - imu.samples[i - 1].time);
+  }
+  constexpr TimeNs kShortestGap = kNsPerSecond / 40;
+  gap_limit_ = std::max(kShortestGap, 5 * median_of(std::move(steps)));
+}
+
+bool ImuIntegration::covers(TimeNs stamp) const {
+  constexpr TimeNs kLongest = kNsPerSecond / 2;
+  const auto later = [](TimeNs time, const ImuSample& sample) { return time < sample.time; };
+  const auto after = std::upper_bound(imu_->samples.begin(), imu_->samples.end(), stamp, later);
+  return after != imu_->samples.begin() && stamp - std::prev(after)->time <= kLongest;
+}
+
+ImuIntegration::Measured ImuIntegration::measured(TimeNs from, TimeNs to,
+                                                  const InertialState& state) const {
+  const TimeNs middle = from + (to - from) / 2;
+  const auto later = [](TimeNs time, const ImuSample& sample) { return time < sample.time; };
+  const auto after = std::upper_bound(imu_->samples.begin(), imu_->samples.end(), middle, later);
+  const auto hold = [&] {  // velocities stay as they are
+    return Measured{state.rate_bias,
+                    state.force_bias - state.T_odom_imu.linear().transpose() * state.gravity, true};
+  };
+  if (after == imu_->samples.begin() || after == imu_->samples.end()) return hold();
+  const ImuSample &a = *std::prev(after), &b = *after;
+  if (b.time - a.time > gap_limit_) return hold();
+  const double share = seconds(middle - a.time) / seconds(b.time - a.time);
+  return {a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), false};
+}
+
+void ImuIntegration::step(InertialState& state, TimeNs time, bool with_covariance) const {
+  const double dt = seconds(time - state.time);
+  const Measured measured = this->measured(state.time, time, state);
+  const Vector3 rate = measured.rate - state.rate_bias, force = measured.force - state.force_bias;
+  const Matrix3 R = state.T_odom_imu.linear();
+  const Matrix3 R_middle = R * rotation_of(rate * dt / 2);
+  const Vector3 acceleration = R_middle * force + state.gravity;
+
+  if (with_covariance) {
+    // Derivatives of the errors (Sola 2017, 5.4), to first order in dt.
+    Covariance F = Covariance::Identity();
+    F.block<3, 3>(State::kRotation, State::kRotation) = rotation_of(-rate * dt);
+    F.block<3, 3>(State::kRotation, State::kRateBias) = -dt * Matrix3::Identity();
+    F.block<3, 3>(State::kVelocity, State::kRotation) = -dt * R_middle * hat(force);
+    F.block<3, 3>(State::kVelocity, State::kForceBias) = -dt * R_middle;
+    F.block<3, 2>(State::kVelocity, State::kGravityAngles) =
+        -dt * hat(state.gravity) * across_gravity(state);
+    F.block<3, 3>(State::kPosition, State::kVelocity) = dt * Matrix3::Identity();
+    F.block<3, 3>(State::kPosition, State::kRotation) =
+        dt / 2 * F.block<3, 3>(State::kVelocity, State::kRotation);
+    F.block<3, 3>(State::kPosition, State::kForceBias) =
+        dt / 2 * F.block<3, 3>(State::kVelocity, State::kForceBias);
+    F.block<3, 2>(State::kPosition, State::kGravityAngles) =
+        dt / 2 * F.block<3, 2>(State::kVelocity, State::kGravityAngles);
+    state.covariance = F * state.covariance * F.transpose();
+    const ImuNoise& noise = imu_->noise;
+    const auto add_noise = [&](int place, double density) {
+      state.covariance.diagonal().segment<3>(place).array() += density * density * dt;
+    };
+    add_noise(State::kRotation, measured.is_gap ? kGapRate : noise.gyroscope_noise_density);
+    add_noise(State::kVelocity, measured.is_gap ? kGapForce : noise.accelerometer_noise_density);
+    add_noise(State::kRateBias, noise.gyroscope_random_walk);
+    add_noise(State::kForceBias, noise.accelerometer_random_walk);
+  }
+
+  state.T_odom_imu.linear() = R * rotation_of(rate * dt);
+  state.T_odom_imu.translation() += dt * state.velocity + dt * dt / 2 * acceleration;
+  state.velocity += dt * acceleration;
+  state.time = time;
+}
+
+void ImuIntegration::move(InertialState& state, TimeNs time, bool with_covariance) const {
+  const auto earlier = [](const ImuSample& sample, TimeNs at) { return sample.time < at; };
+  const auto later = [](TimeNs at, const ImuSample& sample) { return at < sample.time; };
+  while (state.time < time) {
+    const auto next =
+        std::upper_bound(imu_->samples.begin(), imu_->samples.end(), state.time, later);
+    const TimeNs until = next == imu_->samples.end() ? time : std::min(time, next->time);
+    step(state, until, with_covariance);
+  }
+  while (state.time > time) {
+    const auto next =
+        std::lower_bound(imu_->samples.begin(), imu_->samples.end(), state.time, earlier);
+    const TimeNs until =
+        next == imu_->samples.begin() ? time : std::max(time, std::prev(next)->time);
+    step(state, until, with_covariance);
+  }
+  state.T_odom_imu.linear() = nearest_rotation(state.T_odom_imu.linear());
+}
+
+}  // namespace fovea
