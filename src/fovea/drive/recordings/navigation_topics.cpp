@@ -25,6 +25,12 @@ class NavigationPlanner {
   const std::vector<std::string>& used() const { return used_; }
 
   void plan() {
+    take_poses();
+    take_imu();
+  }
+
+ private:
+  void take_poses() {
     for (const std::string& frame : index_.transforms.ambiguous()) {
       notes_.push_back(
           fmt::format("tf has frame '{}' in several parents: the most frequent counts", frame));
@@ -44,7 +50,6 @@ class NavigationPlanner {
     }
   }
 
- private:
   /// What the options name says where poses come from.
   NavigationSource source() const {
     NavigationSource source = options_.poses;
@@ -57,7 +62,6 @@ class NavigationPlanner {
       source = implied;
     };
     imply(options_.fix, NavigationSource::kGnss, "--fix");
-    if (options_.imu != kNoImu) imply(options_.imu, NavigationSource::kGnss, "--imu");
     imply(options_.odometry, NavigationSource::kOdometry, "--odometry");
     imply(options_.world, NavigationSource::kTf, "--world");
     return source;
@@ -124,7 +128,6 @@ class NavigationPlanner {
     used_.push_back(topic);
     notes_.push_back(fmt::format("positions: {} of {}, {} without a fix left out",
                                  drive_.positions.size(), topic, without));
-    take_inertia();
     const std::string body = usual_body();
     drive_.T_body_lidar = T_body_lidar(body);
     const std::string& antenna = index_.fixes.at(topic).front().header.frame;
@@ -143,31 +146,74 @@ class NavigationPlanner {
     return fix.covariance_known && variance >= 0 ? std::sqrt(variance) : 0;
   }
 
-  void take_inertia() {
+  /// Empty: there is none, or nothing says which.
+  std::string imu_topic() {
+    const bool may_choose = !options_.imu.empty() || !drive_.positions.empty();
+    if (may_choose || index_.imus.size() <= 1) {
+      return only_topic(index_.imus, options_.imu, "Imu", "--imu");
+    }
+    notes_.push_back(fmt::format("there are {} IMUs: none is used, choose one by --imu TOPIC",
+                                 index_.imus.size()));
+    return "";
+  }
+
+  /// Orientations for positions, and rates and accelerations for the motion.
+  void take_imu() {
     if (options_.imu == kNoImu) return;
-    const std::string topic = only_topic(index_.imus, options_.imu, "Imu", "--imu");
+    const std::string topic = imu_topic();
     if (topic.empty()) return;
     const std::vector<ros::Imu>& imus = index_.imus.at(topic);
     const std::string& frame = imus.front().header.frame;
+    const bool has_orientations = take_orientations(topic, imus, frame);
+    const bool has_rates = take_rates(topic, imus, frame);
+    for (const ros::Imu& imu : imus) {
+      if (!has_rates && !(has_orientations && imu.orientation)) continue;
+      drive_.inertia.push_back({imu.header.stamp, has_orientations ? imu.orientation : std::nullopt,
+                                imu.angular_velocity, imu.acceleration});
+    }
+    if (!drive_.inertia.empty()) used_.push_back(topic);
+  }
+
+  bool take_orientations(const std::string& topic, const std::vector<ros::Imu>& imus,
+                         const std::string& frame) {
+    if (drive_.positions.empty()) return false;
     const auto T = still(usual_body(), frame);
     if (!T) {
-      notes_.push_back(fmt::format("{} is not used: tf does not say where '{}' is on '{}'", topic,
-                                   frame, usual_body()));
-      return;
+      notes_.push_back(
+          fmt::format("orientations of {} are not used: tf does not say where '{}' is on '{}'",
+                      topic, frame, usual_body()));
+      return false;
     }
     drive_.T_body_imu = *T;
     // What an IMU that knows none leaves in its messages, though it should say so in another way.
     bool ever_turned = false;
+    std::size_t count = 0;
     for (const ros::Imu& imu : imus) {
       if (!imu.orientation) continue;
       ever_turned |= !imu.orientation->vec().isZero(0);
-      drive_.inertia.push_back(
-          {imu.header.stamp, imu.orientation, imu.angular_velocity, imu.acceleration});
+      ++count;
     }
-    if (!ever_turned) drive_.inertia.clear();
-    if (ever_turned) used_.push_back(topic);
     notes_.push_back(fmt::format("orientations: {} of {} messages of {} have one",
-                                 drive_.inertia.size(), imus.size(), topic));
+                                 ever_turned ? count : 0, imus.size(), topic));
+    return ever_turned;
+  }
+
+  bool take_rates(const std::string& topic, const std::vector<ros::Imu>& imus,
+                  const std::string& frame) {
+    const bool measures = std::any_of(imus.begin(), imus.end(), [](const ros::Imu& imu) {
+      return !imu.acceleration.isZero(0) && imu.acceleration.allFinite();
+    });
+    if (!measures) return false;
+    if (const auto T = still(lidar_frame_, frame)) {
+      drive_.T_lidar_imu = *T;
+      notes_.push_back(fmt::format("IMU: {} rates and accelerations of {}", imus.size(), topic));
+    } else {
+      notes_.push_back(fmt::format(
+          "{} does not tell the motion: tf does not say where '{}' is on the LiDAR; state "
+          "imu.T_lidar_imu in drive.toml",
+          topic, frame));
+    }
+    return true;
   }
 
   bool take_odometry() {

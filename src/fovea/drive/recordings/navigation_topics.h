@@ -10,7 +10,7 @@
 
 namespace fovea {
 
-/// Fills in what the drive knows of its motion: poses, or positions and inertia; and where LiDAR,
+/// Fills in what the drive knows of its motion: poses or positions, and an IMU; and where LiDAR,
 /// IMU and antenna sit on the body, whose frame is that of the poses, `base_link`, or the LiDAR's.
 /// InputError for what the options name and the recording does not have, and for several topics
 /// that might be meant.

@@ -260,6 +260,26 @@ TEST_F(PlanNavigation, AnImuThatNeverTurnsKnowsNoOrientation) {
   EXPECT_EQ(plan().positions.size(), 2u);
 }
 
+TEST_F(PlanNavigation, RatesAndAccelerationsOfAnImuNeedNoPositions) {
+  add_imu("imu");
+  for (ros::Imu& imu : index_.imus["/imu"]) imu.acceleration << 0.1, 0, 9.8;
+  const RecordedDrive drive = plan();
+  ASSERT_EQ(drive.inertia.size(), 2u);
+  EXPECT_FALSE(drive.inertia[1].R_enu_imu);  // nothing has a use for it
+  EXPECT_EQ(drive.inertia[0].acceleration.z(), 9.8);
+  ASSERT_TRUE(drive.T_lidar_imu);
+  EXPECT_EQ(drive.T_lidar_imu->translation.x(), -0.5);
+  index_.imus["/imu"].front().header.frame = "elsewhere";
+  EXPECT_FALSE(plan().T_lidar_imu);
+  EXPECT_EQ(plan().inertia.size(), 2u);
+  EXPECT_THAT(notes_, Contains(HasSubstr("imu.T_lidar_imu")));
+  index_.imus["/other"] = index_.imus["/imu"];
+  EXPECT_THAT(plan().inertia, IsEmpty());
+  EXPECT_THAT(notes_, Contains(HasSubstr("--imu TOPIC")));
+  options_.imu = "/other";
+  EXPECT_EQ(plan().inertia.size(), 2u);
+}
+
 TEST_F(PlanNavigation, AnAntennaThatMovesIsNone) {
   add_fixes("/fix");
   add_course();

@@ -90,8 +90,8 @@ NavSatFix read_nav_sat_fix(MessageReader& message);
 struct Imu {
   Header header;
   std::optional<Eigen::Quaterniond> orientation;  ///< to east-north-up (REP 103); empty: not known
-  Eigen::Vector3d angular_velocity;               ///< rad/s
-  Eigen::Vector3d acceleration;                   ///< m/s^2
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< m/s^2
 };
 Imu read_imu(MessageReader& message);
 
