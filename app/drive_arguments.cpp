@@ -61,6 +61,8 @@ DriveOptions DriveArguments::options() const {
       throw CLI::ValidationError("--mask", "one mask for each camera");
     }
   }
+  options.use_navigation = !no_navigation;
+  options.use_imu = !no_imu;
   options.use_images = cameras != kNoCameras;
   if (options.use_images && !cameras.empty()) options.cameras = parse_cameras(cameras);
   if (!frames.empty()) {
@@ -77,7 +79,8 @@ DriveOptions DriveArguments::options() const {
 
 std::unique_ptr<FrameSource> DriveArguments::open(bool use_navigation) const {
   DriveOptions wanted = options();
-  wanted.use_navigation = use_navigation;
+  wanted.use_navigation = wanted.use_navigation && use_navigation;
+  wanted.use_imu = wanted.use_imu && use_navigation;
   return open_drive(drive, wanted);
 }
 

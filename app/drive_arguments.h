@@ -19,6 +19,7 @@ inline constexpr const char* kNoCameras = "none";
 struct DriveArguments {
   std::string drive, frames, cameras;
   std::vector<std::string> masks;  ///< "K=FILE"
+  bool no_navigation = false, no_imu = false;
 
   /// Opens the drive. CLI::ValidationError (wrong usage) for a malformed range or camera list.
   std::unique_ptr<FrameSource> open(bool use_navigation = true) const;

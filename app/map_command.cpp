@@ -227,6 +227,9 @@ void add_map_command(CLI::App& app, Session& session) {
                    "file alone")
       ->type_name("SIZE")
       ->transform(memory_size());
+  command->add_flag("--no-navigation", arguments->drive.no_navigation,
+                    "Leave out GPS/INS or poses; of GPS/INS the rates and accelerations count");
+  command->add_flag("--no-imu", arguments->drive.no_imu, "Leave out the IMU and wheel speeds");
   command->add_flag("--calibrate", arguments->calibrate,
                     "First estimate rotation and delay of the cameras from the drive's edges, and "
                     "map under them");

@@ -19,6 +19,7 @@ inline constexpr const char* kFramesBegin = "frames.begin";
 inline constexpr const char* kFramesEnd = "frames.end";
 inline constexpr const char* kHoldOut = "hold_out";
 inline constexpr const char* kPoses = "poses";
+inline constexpr const char* kImu = "imu";  // absent: none was used
 inline constexpr const char* kVariant = "variant";
 inline constexpr const char* kConfig = "config";
 inline constexpr const char* kNotes = "notes";
@@ -45,12 +46,33 @@ inline constexpr const char* kRepair = "repair";
 inline constexpr const char* kTimingPrefix = "timing.";
 
 /// All keys and prefixes, for the test of docs/map-format.md.
-inline constexpr std::array<std::string_view, 25> kAll = {
-    kFormatVersion,   kFoveaVersion, kDriveName, kDriveKind,     kCameras,
-    kFramesBegin,     kFramesEnd,    kHoldOut,   kPoses,         kVariant,
-    kConfig,          kNotes,        kComplete,  kCalibration,   kCalibrationPrefix,
-    kRotationEnding,  kDelayEnding,  kTileSize,  kGeoreferenced, kOriginLatitude,
-    kOriginLongitude, kOriginHeight, kCrop,      kRepair,        kTimingPrefix,
+inline constexpr std::array<std::string_view, 26> kAll = {
+    kFormatVersion,
+    kFoveaVersion,
+    kDriveName,
+    kDriveKind,
+    kCameras,
+    kFramesBegin,
+    kFramesEnd,
+    kHoldOut,
+    kPoses,
+    kVariant,
+    kConfig,
+    kNotes,
+    kComplete,
+    kCalibration,
+    kCalibrationPrefix,
+    kRotationEnding,
+    kDelayEnding,
+    kTileSize,
+    kGeoreferenced,
+    kOriginLatitude,
+    kOriginLongitude,
+    kOriginHeight,
+    kCrop,
+    kRepair,
+    kTimingPrefix,
+    kImu,
 };
 
 }  // namespace fovea::meta_key

@@ -46,6 +46,10 @@ void require_resumable(const MapReader& map, const MapMeta& meta, const std::str
 }
 
 void require_same_values(const MapMeta& before, const MapMeta& now, const std::string& path) {
+  if (before.contains(meta_key::kImu) && !now.contains(meta_key::kImu)) {
+    throw InputError("the map was made with an IMU", path,
+                     "resume with the drive and options of the first run, or start a new map");
+  }
   for (const auto& [key, value] : now) {
     if (std::count(kNames.begin(), kNames.end(), key) > 0) continue;
     const auto found = before.find(key);

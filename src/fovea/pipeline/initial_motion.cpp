@@ -7,6 +7,7 @@
 #include "fovea/mapping/ground.h"
 #include "fovea/pipeline/frame_motion.h"
 #include "fovea/pipeline/pose_refiner.h"
+#include "fovea/pipeline/scan_geometry.h"
 
 namespace fovea {
 namespace {
@@ -60,6 +61,8 @@ class ScanPair {
       : drive_(drive),
         first_(first.scan),
         second_(second.scan),
+        first_stamp_(first.stamp),
+        second_stamp_(second.stamp),
         elapsed_(seconds(second.stamp - first.stamp)),
         height_(sensor_height(first.scan.position).value_or(kUsualSensorHeight)),
         compensate_(compensate && !drive.sweep_compensated) {
@@ -90,6 +93,36 @@ class ScanPair {
     return best;
   }
 
+  /// The velocity at the first scan under which registration finds the second one where the IMU
+  /// has it, begun at a guess; empty if registration fails or does not converge.
+  std::optional<Twist> velocity_by_imu(Twist velocity) const {
+    for (int i = 0; i < kMostRegistrations; ++i) {
+      InertialFilter filter(*drive_.imu);
+      filter.begin(first_stamp_, {RigidMotion::Identity(), velocity, /*is_level=*/false});
+      const InertialPrediction first = filter.predict(first_stamp_),
+                               second = filter.predict(second_stamp_);
+      const SweepMotion motion = filter.motion(first, sweep_span(first_, drive_));
+      PoseRefiner refiner(options_);
+      refiner.keep(refiner.prepare(compensated(first_, motion)), RigidMotion::Identity());
+      const RefinedPose refined =
+          refiner.refine(compensated(second_, filter.motion(second, sweep_span(second_, drive_))),
+                         second.T_odom_lidar);
+      if (!refined.note.empty()) return std::nullopt;
+      velocity.head<3>() = motion.velocity.head<3>();
+      const Eigen::Vector3d off =
+          refined.T_odom_lidar.translation() - second.T_odom_lidar.translation();
+      if (off.norm() < kConvergedTranslation) return velocity;
+      velocity.tail<3>() += off / elapsed_;
+    }
+    return std::nullopt;
+  }
+
+  bool has_imu() const {
+    if (!drive_.imu || !compensate_) return false;
+    const InertialFilter filter(*drive_.imu);
+    return filter.covers(first_stamp_) && filter.covers(second_stamp_);
+  }
+
   /// T_first_second by registration from a guess, after motion compensation by the guess; empty if
   /// that fails.
   std::optional<RigidMotion> refine(const RigidMotion& guess) const {
@@ -107,7 +140,10 @@ class ScanPair {
 
  private:
   PointCloud compensated(PointCloud scan, const Twist& velocity) const {
-    if (compensate_) compensate_sweep(scan, {velocity}, drive_.sweep);
+    return compensated(std::move(scan), SweepMotion{velocity});
+  }
+  PointCloud compensated(PointCloud scan, const SweepMotion& motion) const {
+    if (compensate_) compensate_sweep(scan, motion, drive_.sweep);
     return scan;
   }
 
@@ -124,6 +160,7 @@ class ScanPair {
 
   const DriveInfo& drive_;
   const PointCloud &first_, &second_;
+  TimeNs first_stamp_, second_stamp_;
   double elapsed_;  // s
   double height_;   // m, of the LiDAR above the ground
   bool compensate_;
@@ -132,6 +169,9 @@ class ScanPair {
 };
 
 std::optional<Twist> velocity_by_registration(const ScanPair& scans) {
+  if (scans.has_imu()) {
+    if (const auto velocity = scans.velocity_by_imu(Twist::Zero())) return velocity;
+  }
   std::optional<RigidMotion> T_first_second = scans.find_coarse();
   for (int i = 0; T_first_second && i < kMostRegistrations; ++i) {
     const auto next = scans.refine(*T_first_second);
@@ -143,7 +183,8 @@ std::optional<Twist> velocity_by_registration(const ScanPair& scans) {
     }
   }
   if (!T_first_second) return std::nullopt;
-  return scans.velocity_of(*T_first_second);
+  const Twist velocity = scans.velocity_of(*T_first_second);
+  return scans.has_imu() ? scans.velocity_by_imu(velocity).value_or(velocity) : velocity;
 }
 
 }  // namespace

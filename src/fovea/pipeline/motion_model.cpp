@@ -7,11 +7,6 @@
 namespace fovea {
 namespace {
 
-/// Largest difference between the motions of two frames. A vehicle's acceleration and yaw
-/// acceleration are lower, and the constant parts exceed the errors of registration and GPS.
-constexpr double kAcceleration = 10, kShift = 0.2;                          // m/s^2, m
-constexpr double kRotationRate = 100 * kDegree, kRotation = 1.5 * kDegree;  // rad/s^2, rad
-
 /// A pause of the recording is a step between frames longer than kPause and kPauseSteps usual
 /// steps.
 constexpr TimeNs kPause = kNsPerSecond;
@@ -29,10 +24,6 @@ constexpr double kLeastRotationSigma = 0.3 * kDegree;                      // ra
 constexpr double kMinTranslationSigma = 0.03, kMaxTranslationSigma = 0.1;  // m
 constexpr double kTranslationSigmaShare = 0.25;                            // of the stated accuracy
 
-/// Least standard deviations of the IMU's motion between frames: rad, m.
-const Twist kLeastInertialSigma =
-    (Twist() << Twist::Constant(1e-3).head<3>(), Twist::Constant(0.01).head<3>()).finished();
-
 Twist squares(double rotation, double translation) {
   Twist squares;
   squares.head<3>().setConstant(rotation * rotation);
@@ -40,48 +31,15 @@ Twist squares(double rotation, double translation) {
   return squares;
 }
 
-/// Standard deviations of a pose from registration: rad, m.
-std::optional<Twist> pose_sigma(PoseEvidence evidence) {
-  switch (evidence) {
-    case PoseEvidence::kFirm:
-      return squares(5e-4, 5e-3).cwiseSqrt();
-    case PoseEvidence::kWeak:
-      return squares(3e-3, 0.1).cwiseSqrt();
-    case PoseEvidence::kNone:
-      break;
-  }
-  return std::nullopt;
-}
-
-/// Whether a pose is one to which no motion leads, such as after a search.
-bool is_jump(const InertialPrediction& prediction, const RigidMotion& T_odom_lidar) {
-  constexpr double kSigmas = 5, kLeastShift = 0.5, kLeastTurn = 5 * kDegree;  // m, rad
-  const RigidMotion apart = prediction.T_odom_lidar.inverse() * T_odom_lidar;
-  const double shift = kSigmas * prediction.sigma.tail<3>().norm();
-  const double turn = kSigmas * prediction.sigma.head<3>().norm();
-  return apart.translation().norm() > std::max(kLeastShift, shift) ||
-         rotation_angle(apart.linear()) > std::max(kLeastTurn, turn);
-}
-
 Twist velocity_between(const StampedPose& a, const StampedPose& b) {
   return fovea::velocity_between(a.T_local_body, b.T_local_body, seconds(b.time - a.time));
-}
-
-bool contradict(const MotionGuess& a, const MotionGuess& b, double elapsed) {
-  const double shift = kShift + kAcceleration * elapsed * elapsed;
-  const double turn = kRotation + kRotationRate * elapsed * elapsed;
-  const RigidMotion apart = a.T_odom_lidar.inverse() * b.T_odom_lidar;
-  if (apart.translation().norm() > shift || rotation_angle(apart.linear()) > turn) return true;
-  if (!a.motion || !b.motion) return false;
-  const Twist change = (a.motion->velocity - b.motion->velocity) * elapsed;
-  return change.tail<3>().norm() > shift || change.head<3>().norm() > turn;
 }
 
 }  // namespace
 
 MotionModel::MotionModel(const MotionSources& sources, const MotionModelOptions& options)
-    : sources_(sources), navigation_(sources.navigation), options_(options) {
-  if (sources.imu != nullptr) filter_.emplace(*sources.imu);
+    : navigation_(sources.navigation), options_(options) {
+  if (sources.imu != nullptr) inertial_.emplace(*sources.imu, sources.wheels);
 }
 
 Twist VelocityError::before_any() { return squares(kFirstRotation, kFirstTranslation); }
@@ -157,72 +115,27 @@ bool MotionModel::follows_pause(TimeNs stamp) const {
   return step > kPause && (!usual_step_ || step > kPauseSteps * *usual_step_);
 }
 
-std::optional<InertialFilter> MotionModel::filter_for(TimeNs stamp) const {
-  if (!filter_ || !filter_->covers(stamp)) return std::nullopt;
-  InertialFilter filter = *filter_;
-  if (filter.has_begun()) return filter;
+InertialMotion::Beginning MotionModel::beginning(TimeNs stamp) const {
+  InertialMotion::Beginning beginning;
   const auto navigation = navigation_at(stamp);
-  InertialStart start;
+  InertialStart& start = beginning.start;
   start.velocity = motion_velocity();
   start.is_level = options_.navigation_is_level && navigation.has_value();
   if (last_) {
+    beginning.time = last_->time;
     start.T_odom_lidar = last_->T_local_body;
-    filter.begin(last_->time, start);
-  } else {
-    start.T_odom_lidar = navigation.value_or(RigidMotion::Identity());
-    if (const auto motion = navigation_motion(stamp)) start.velocity = motion->velocity;
-    filter.begin(stamp, start);
+    return beginning;
   }
-  return filter;
-}
-
-std::optional<double> MotionModel::wheel_speed(TimeNs stamp) const {
-  constexpr TimeNs kFarthest = kNsPerSecond / 10;
-  if (sources_.wheels == nullptr) return std::nullopt;
-  const std::vector<WheelSpeed>& speeds = sources_.wheels->samples;
-  const auto later = [](TimeNs time, const WheelSpeed& speed) { return time < speed.time; };
-  const auto after = std::upper_bound(speeds.begin(), speeds.end(), stamp, later);
-  if (after == speeds.begin() || after == speeds.end()) return std::nullopt;
-  const WheelSpeed &a = *std::prev(after), &b = *after;
-  if (b.time - a.time > kFarthest) return std::nullopt;
-  return a.speed + (b.speed - a.speed) * seconds(stamp - a.time) / seconds(b.time - a.time);
-}
-
-InertialPrediction MotionModel::fused(const InertialFilter& filter, TimeNs stamp,
-                                      const std::optional<MotionGuess>& by_nav) const {
-  InertialPrediction prediction = filter.predict(stamp);
-  if (const auto speed = wheel_speed(stamp)) {
-    const WheelData& wheels = *sources_.wheels;
-    prediction = filter.corrected(prediction, *speed, wheels.sigma, wheels.T_lidar_body);
-  }
-  if (!last_ || !by_nav || !by_nav->sigma) return prediction;
-  const MotionGuess inertial{prediction.T_odom_lidar, {}, false, {}};
-  if (contradict(*by_nav, inertial, seconds(stamp - last_->time))) return prediction;
-  return filter.corrected(prediction, by_nav->T_odom_lidar, *by_nav->sigma);
+  beginning.time = stamp;
+  start.T_odom_lidar = navigation.value_or(RigidMotion::Identity());
+  if (const auto motion = navigation_motion(stamp)) start.velocity = motion->velocity;
+  return beginning;
 }
 
 std::optional<MotionGuess> MotionModel::by_imu(TimeNs stamp, const SweepSpan& sweep,
                                                const std::optional<MotionGuess>& by_nav) const {
-  const auto filter = filter_for(stamp);
-  if (!filter) return std::nullopt;
-  const InertialPrediction prediction = fused(*filter, stamp, by_nav);
-  MotionGuess guess{prediction.T_odom_lidar, filter->motion(prediction, sweep), false, {}};
-  if (last_) guess.sigma = prediction.sigma.cwiseMax(kLeastInertialSigma);
-  return guess;
-}
-
-void MotionModel::update_filter(TimeNs stamp, const RigidMotion& T_odom_lidar,
-                                PoseEvidence evidence) {
-  if (!filter_) return;
-  auto filter = filter_for(stamp);
-  if (!filter) {
-    filter_->restart();
-    return;
-  }
-  const InertialPrediction prediction = fused(*filter, stamp, by_navigation(stamp));
-  filter->update(prediction, T_odom_lidar, pose_sigma(evidence));
-  if (is_jump(prediction, T_odom_lidar)) filter->restart();
-  filter_ = std::move(filter);
+  if (!inertial_) return std::nullopt;
+  return inertial_->predict(stamp, sweep, beginning(stamp), by_nav);
 }
 
 MotionPrediction MotionModel::predict_after_pause(TimeNs stamp, const SweepSpan& sweep) const {
@@ -278,7 +191,9 @@ MotionPrediction MotionModel::predict(TimeNs stamp, const SweepSpan& sweep) cons
 
 void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence) {
   const StampedPose now{stamp, T_odom_lidar};
-  update_filter(stamp, T_odom_lidar, evidence);
+  if (inertial_) {
+    inertial_->update(stamp, T_odom_lidar, evidence, beginning(stamp), by_navigation(stamp));
+  }
   const bool is_after_pause = follows_pause(stamp);
   if (last_ && !(is_after_pause && usual_step_)) usual_step_ = stamp - last_->time;
   if (is_after_pause) {

@@ -7,18 +7,9 @@
 
 #include "fovea/core/time.h"
 #include "fovea/geometry/trajectory.h"
-#include "fovea/mapping/inertial_filter.h"
+#include "fovea/pipeline/inertial_motion.h"
 
 namespace fovea {
-
-struct MotionGuess {
-  RigidMotion T_odom_lidar = RigidMotion::Identity();
-  /// Of the LiDAR during the sweep, if known.
-  std::optional<SweepMotion> motion;
-  bool by_navigation = false;
-  /// Standard deviations of the pose relative to the last one (rad, m), if known.
-  std::optional<Twist> sigma;
-};
 
 struct MotionPrediction {
   /// One guess, or two if navigation contradicts the motion so far; registration then decides. The
@@ -52,13 +43,6 @@ struct MotionSources {
   const WheelData* wheels = nullptr;  ///< used with an IMU
 };
 
-/// How well scans confirm a pose.
-enum class PoseEvidence {
-  kFirm,
-  kWeak,  ///< some direction of the motion is not determined
-  kNone,  ///< the pose is a guess
-};
-
 /// Error of predicted velocities.
 class VelocityError {
  public:
@@ -79,7 +63,7 @@ class VelocityError {
 /// positions by 1 cm is an error of 0.14 m/s in 0.1 s. The error of the last frames is the
 /// acceleration.
 ///
-/// With an IMU an InertialFilter predicts. Navigation and wheels then correct its predictions.
+/// With an IMU its InertialMotion predicts. Navigation and wheels correct its predictions.
 class MotionModel {
  public:
   explicit MotionModel(const MotionSources& sources, const MotionModelOptions& options = {});
@@ -109,6 +93,10 @@ class MotionModel {
               PoseEvidence evidence = PoseEvidence::kFirm);
 
  private:
+  /// Where the filter of the IMU begins: at the last frame, or else at this one.
+  InertialMotion::Beginning beginning(TimeNs stamp) const;
+  std::optional<MotionGuess> by_imu(TimeNs stamp, const SweepSpan& sweep,
+                                    const std::optional<MotionGuess>& by_nav) const;
   MotionPrediction predict_after_pause(TimeNs stamp, const SweepSpan& sweep) const;
   std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
   std::optional<SweepMotion> navigation_motion(TimeNs stamp) const;
@@ -118,18 +106,6 @@ class MotionModel {
   /// Standard deviations of navigation's motion over a time (s).
   Twist navigation_sigma(double elapsed) const;
   SweepMotion weighed(const SweepMotion& by_navigation, const SweepMotion& by_motion) const;
-  /// The filter for a frame; begun at the last frame, or at the first one, if it has not begun yet.
-  /// Empty where the IMU has not measured.
-  std::optional<InertialFilter> filter_for(TimeNs stamp) const;
-  /// Of the IMU, the wheels, and of navigation unless it contradicts them.
-  InertialPrediction fused(const InertialFilter& filter, TimeNs stamp,
-                           const std::optional<MotionGuess>& by_nav) const;
-  std::optional<double> wheel_speed(TimeNs stamp) const;
-  std::optional<MotionGuess> by_imu(TimeNs stamp, const SweepSpan& sweep,
-                                    const std::optional<MotionGuess>& by_nav) const;
-  void update_filter(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence);
-
-  MotionSources sources_;
   const Trajectory* navigation_;
   MotionModelOptions options_;
   std::optional<Twist> initial_velocity_;
@@ -139,7 +115,7 @@ class MotionModel {
   std::optional<SweepMotion> last_by_navigation_;
   std::optional<Twist> last_by_motion_;
   VelocityError navigation_error_, motion_error_;
-  std::optional<InertialFilter> filter_;
+  std::optional<InertialMotion> inertial_;
 };
 
 }  // namespace fovea

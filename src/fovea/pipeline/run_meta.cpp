@@ -45,6 +45,7 @@ MapMeta meta_of_run(const DriveInfo& drive, const MapJob& job) {
   meta[meta_key::kFramesEnd] = fmt::format("{}", drive.end);
   meta[meta_key::kHoldOut] = job.hold_out.spec();
   meta[meta_key::kPoses] = to_string(job.pose_source);
+  if (drive.imu) meta[meta_key::kImu] = drive.wheels ? "with wheels" : "used";
   meta[meta_key::kVariant] = job.variant;
   meta[meta_key::kCalibration] = job.calibrate ? "corrected" : "as given";
   meta[meta_key::kConfig] = to_toml(job.settings);

@@ -1,5 +1,7 @@
 #include "fovea/pipeline/scan_geometry.h"
 
+#include <algorithm>
+
 #include "fovea/drive/motion_compensation.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/lidar_views.h"
@@ -13,6 +15,12 @@ PointCloud deskewed(const PointCloud& scan, const std::optional<SweepMotion>& mo
   scan_lidar.time.clear();
   scan_lidar.ring.clear();
   return scan_lidar;
+}
+
+SweepSpan sweep_span(const PointCloud& scan, const DriveInfo& drive) {
+  if (scan.time.empty()) return {drive.sweep.start_time(), drive.sweep.end_time()};
+  const auto [first, last] = std::ranges::minmax(scan.time);
+  return {double(first), double(last)};
 }
 
 std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
+#include "fovea/mapping/inertial_filter.h"
 
 namespace fovea {
 
@@ -12,6 +13,9 @@ namespace fovea {
 /// given. Without the columns of times and rings.
 PointCloud deskewed(const PointCloud& scan, const std::optional<SweepMotion>& motion,
                     const DriveInfo& drive);
+
+/// From the first point of a scan to the last one, about its stamp.
+SweepSpan sweep_span(const PointCloud& scan, const DriveInfo& drive);
 
 /// The drive's cameras, each where it took its image of a frame. lidar_views() of a drive without
 /// cameras.

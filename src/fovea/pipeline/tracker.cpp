@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -49,13 +48,6 @@ MotionSources motion_sources(const DriveInfo& drive) {
   return {.navigation = drive.navigation ? &*drive.navigation : nullptr,
           .imu = drive.imu ? &*drive.imu : nullptr,
           .wheels = drive.wheels ? &*drive.wheels : nullptr};
-}
-
-/// From the first point of a scan to the last one.
-SweepSpan sweep_span(const PointCloud& scan, const DriveInfo& drive) {
-  if (scan.time.empty()) return {drive.sweep.start_time(), drive.sweep.end_time()};
-  const auto [first, last] = std::ranges::minmax(scan.time);
-  return {double(first), double(last)};
 }
 
 PoseEvidence evidence_of(const TrackingStats& tracking) {

@@ -29,15 +29,16 @@ Sway walking(double time, double phase) {
   return sway;
 }
 
-/// A drone leans to change its velocity, rises and sinks, and vibrates.
+/// A drone leans to change its velocity, rises and sinks, and vibrates by a fraction of a
+/// millimeter.
 Sway flying(double time, double phase) {
   const auto sine = [&](double period, double shift) {
     return std::sin(kTurn * time / period + phase + shift);
   };
   Sway sway;
   sway.shift << 0.1 * sine(3.1, 0), 0.15 * sine(2.3, 1), 0.5 * sine(7.3, 2);
-  sway.angles << 8 * sine(2.3, 1.2) + 0.1 * sine(0.033, 0),
-      6 * sine(3.1, 0.3) + 0.1 * sine(0.037, 1), 4 * sine(5.7, 2);
+  sway.angles << 8 * sine(2.3, 1.2) + 0.003 * sine(0.033, 0),
+      6 * sine(3.1, 0.3) + 0.003 * sine(0.037, 1), 4 * sine(5.7, 2);
   sway.angles *= kDegree;
   return sway;
 }

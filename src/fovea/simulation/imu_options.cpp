@@ -33,6 +33,13 @@ void check(const ImuOptions& imu, const WheelOptions& wheels) {
   check_range("wheels.scale", wheels.scale, 0.5, 2);
 }
 
+void check_kitti_format(const ImuOptions& imu, const WheelOptions& wheels) {
+  if (imu.rate > 0) reject("KITTI's format has no IMU", "imu.rate", "use --format generic");
+  if (wheels.rate > 0) {
+    reject("KITTI's format has no wheels", "wheels.rate", "use --format generic");
+  }
+}
+
 void scale_errors(ImuOptions& imu, WheelOptions& wheels, double factor) {
   for (double* error :
        {&imu.gyroscope_noise, &imu.gyroscope_walk, &imu.gyroscope_bias, &imu.accelerometer_noise,

@@ -43,6 +43,9 @@ struct WheelOptions {
 /// ConfigError that names the key.
 void check(const ImuOptions& imu, const WheelOptions& wheels);
 
+/// ConfigError for what KITTI's format has no place for.
+void check_kitti_format(const ImuOptions& imu, const WheelOptions& wheels);
+
 /// Multiplies all errors but the planted faults.
 void scale_errors(ImuOptions& imu, WheelOptions& wheels, double factor);
 

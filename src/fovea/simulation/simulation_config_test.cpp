@@ -92,6 +92,9 @@ TEST(SimulationOptions, RejectsByKey) {
   EXPECT_THAT(error([](auto& o) { o.camera.width = 1 << 20; }), HasSubstr("camera.width"));
   EXPECT_THAT(error([](auto& o) { o.camera.rotation_error.y() = 0.1; }),
               HasSubstr("camera.rotation_error_y"));
+  EXPECT_THAT(error([](auto& o) { o.imu.rate = 100; }), HasSubstr("imu.rate"));
+  EXPECT_THAT(error([](auto& o) { o.wheels.rate = 10; }), HasSubstr("wheels.rate"));
+  EXPECT_THAT(error([](auto& o) { o.imu.flipped_axis = 4; }), HasSubstr("imu.flipped_axis"));
   EXPECT_THAT(error([](auto& o) { o.camera.trigger_delay = 0.25; }),
               HasSubstr("camera.trigger_delay"));
   EXPECT_THAT(error([](auto& o) { o.navigation.max_delay = 0.005; }),

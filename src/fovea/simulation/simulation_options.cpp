@@ -167,8 +167,7 @@ void take_errors_off(SimulationOptions& options) {
   options.camera.exposure_variation = options.camera.vignetting = options.camera.noise = 0;
   NavigationOptions& n = options.navigation;
   n.position_noise = n.position_walk = n.position_bias = 0;
-  n.angle_noise = n.angle_walk = 0;
-  n.velocity_noise = n.rate_noise = 0;
+  n.angle_noise = n.angle_walk = n.velocity_noise = n.rate_noise = 0;
   n.jump_rate = n.jump_size = 0;
   n.outages = false;
   scale_errors(options.imu, options.wheels, 0);
@@ -209,15 +208,13 @@ void SimulationOptions::validate() const {
   check(further_lidars);
   check(camera);
   if (format == DriveFormat::kKitti) {
-    constexpr const char* kGeneric = "use --format generic";
     check_format(camera);
     check_kitti_image_times(camera);
     check_kitti_format(lidar);
     if (!further_lidars.empty()) {
-      reject("KITTI's format has a place for one LiDAR", "lidar.count", kGeneric);
+      reject("KITTI's format has a place for one LiDAR", "lidar.count", "use --format generic");
     }
-    if (imu.rate > 0) reject("KITTI's format has no IMU", "imu.rate", kGeneric);
-    if (wheels.rate > 0) reject("KITTI's format has no wheels", "wheels.rate", kGeneric);
+    check_kitti_format(imu, wheels);
   }
   check_lenses(camera);
   check(navigation, lidar.period);

@@ -4,6 +4,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/kitti/kitti_drives.h"
+#include "fovea/drive/navigation/imu_table.h"
 #include "fovea/drive/navigation/navigation.h"
 
 namespace fovea {
@@ -112,6 +113,23 @@ void find_navigation(const KittiCalibration& calibration, DriveInfo& info, Drive
   info.origin = navigation.origin;
 }
 
+/// The rates and accelerations of GPS/INS whose positions are not wanted.
+void find_imu(const KittiCalibration& calibration, DriveInfo& info) {
+  const std::filesystem::path folder = info.path / "oxts", stamps = folder / "timestamps.txt";
+  if (!info.has_time_stamps || !calibration.T_imu_lidar || !std::filesystem::exists(stamps)) return;
+  const NumberedFiles oxts = list_numbered_files(folder / "data", {".txt"});
+  const OxtsFolder records = read_oxts_folder(oxts, read_date_times(stamps), info);
+  ImuData imu;
+  imu.T_lidar_imu = calibration.T_imu_lidar->inverse();
+  for (const StampedOxts& record : records.records) {
+    if (!imu.samples.empty() && record.time <= imu.samples.back().time) continue;
+    imu.samples.push_back({record.time, record.record.rate, record.record.force});
+  }
+  if (imu.samples.size() < 2) return;
+  report_faults(imu.samples, folder / "data", info);
+  info.imu = std::move(imu);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
@@ -130,7 +148,11 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
   const KittiCalibration calibration = read_kitti_raw_calibration(date_folder(path));
   if (options.use_images) find_images(calibration, options, "image_0", "data", info, files);
   find_stamps(scans / "timestamps.txt", read_date_times, info, files);
-  if (options.use_navigation) find_navigation(calibration, info, files);
+  if (options.use_navigation) {
+    find_navigation(calibration, info, files);
+  } else if (options.use_imu) {
+    find_imu(calibration, info);
+  }
   return make_frame_source(std::move(info), std::move(files));
 }
 

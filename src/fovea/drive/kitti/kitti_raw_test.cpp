@@ -302,11 +302,25 @@ TEST_F(KittiRaw, RecordsWithoutATimeAreNotUsed) {
 }
 TEST_F(KittiRaw, BadRecordsDoNotMatterWithoutNavigation) {
   write_text(oxts(5), "");
-  options_.use_navigation = false;
+  options_.use_navigation = options_.use_imu = false;
   const auto drive = open();
+  EXPECT_FALSE(drive->info().imu);
   EXPECT_FALSE(drive->info().navigation || drive->info().origin);
   EXPECT_THAT(drive->info().notes, testing::IsEmpty());
   EXPECT_TRUE(std::holds_alternative<Frame>(drive->load(5)));
+}
+TEST_F(KittiRaw, WithoutNavigationItsRatesAndAccelerationsAreAnImu) {
+  EXPECT_FALSE(open()->info().imu);
+  write_text(oxts(5),
+             "49 8.4 100 0 0 1.5 10 0 10 0 0 1 2 9.5 0 0 0 0.1 0.2 0.3 0 0 0 0 0 0 0 0 0 0\n");
+  options_.use_navigation = false;
+  const auto drive = open();
+  ASSERT_TRUE(drive->info().imu);
+  const ImuData& imu = *drive->info().imu;
+  EXPECT_EQ(imu.samples.size(), 13u);
+  EXPECT_EQ(imu.samples[5].rate, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(imu.samples[5].force, Eigen::Vector3d(1, 2, 9.5));
+  EXPECT_THAT(drive->info().warnings, ElementsAre(HasSubstr("10 records a second")));
 }
 TEST_F(KittiRaw, ScansAloneNeedNoImages) {
   for (int k = 0; k < 4; ++k) test::fs::remove_all(image(k, 5).parent_path());

@@ -12,7 +12,8 @@ namespace fovea {
 namespace {
 
 constexpr std::size_t kFields = 30;
-constexpr std::size_t kVelocityLevel = 8, kRateImu = 17, kPositionAccuracy = 23, kSatellites = 26;
+constexpr std::size_t kVelocityLevel = 8, kForceImu = 11, kRateImu = 17, kPositionAccuracy = 23,
+                      kSatellites = 26;
 
 Eigen::Vector3d vector_at(const std::vector<double>& numbers, std::size_t first) {
   return {numbers[first], numbers[first + 1], numbers[first + 2]};
@@ -60,11 +61,13 @@ std::variant<OxtsRecord, std::string> parse_oxts(std::string_view text) {
   if (!std::all_of(n.begin() + kPositionAccuracy, n.end(), is_zero)) {
     record.satellites = static_cast<int>(std::clamp(n[kSatellites], 0.0, 1000.0));
   }
+  record.rate = vector_at(n, kRateImu);
+  record.force = vector_at(n, kForceImu);
   // The level frame is turned as east-north-up is, but heads where the imu does.
   const Eigen::AngleAxisd R_level_enu(-record.yaw, Eigen::Vector3d::UnitZ());
   const Eigen::Matrix3d R_level_imu = R_level_enu * record.R_enu_imu();
-  record.velocity = measured_velocity(vector_at(n, kRateImu),
-                                      R_level_imu.transpose() * vector_at(n, kVelocityLevel));
+  record.velocity =
+      measured_velocity(record.rate, R_level_imu.transpose() * vector_at(n, kVelocityLevel));
   return record;
 }
 

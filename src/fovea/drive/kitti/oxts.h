@@ -21,6 +21,8 @@ struct OxtsRecord {
   std::optional<int> satellites = {};  ///< in use; absent: the record states no quality at all
   /// Of the imu in its own frame (forward, left, up), a second; see measured_velocity().
   std::optional<Twist> velocity = {};
+  /// Of the imu as ImuSample has them.
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero();
 
   /// R = Rz(yaw) * Ry(pitch) * Rx(roll), from the imu (forward, left, up) to east-north-up there.
   Eigen::Matrix3d R_enu_imu() const;

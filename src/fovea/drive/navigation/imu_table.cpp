@@ -156,10 +156,15 @@ ImuTable read_imu(const fs::path& file, const ImuDescription& description,
   }
   const double scale = force_scale(imu.samples, description.force_unit, file, table);
   for (ImuSample& sample : imu.samples) sample.force *= scale;
-  report_times(imu.samples, file, table);
-  report_saturation(imu.samples, file, table);
+  report_faults(imu.samples, file, table);
   table.imu = std::move(imu);
   return table;
+}
+
+void report_faults(const std::vector<ImuSample>& samples, const fs::path& file,
+                   Messages& messages) {
+  report_times(samples, file, messages);
+  report_saturation(samples, file, messages);
 }
 
 WheelTable read_wheels(const fs::path& file, const WheelDescription& description,

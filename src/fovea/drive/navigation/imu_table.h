@@ -20,6 +20,11 @@ struct ImuTable : Messages {
 ImuTable read_imu(const std::filesystem::path& file, const ImuDescription& description,
                   const std::optional<ScanPeriod>& scans);
 
+/// Warns of gaps, of too few samples, and of values at the end of the IMU's range.
+/// @param file  of the samples, for warnings
+void report_faults(const std::vector<ImuSample>& samples, const std::filesystem::path& file,
+                   Messages& messages);
+
 struct WheelTable : Messages {
   std::optional<WheelData> wheels;
 };
