@@ -46,10 +46,6 @@ void require_resumable(const MapReader& map, const MapMeta& meta, const std::str
 }
 
 void require_same_values(const MapMeta& before, const MapMeta& now, const std::string& path) {
-  if (before.contains(meta_key::kImu) && !now.contains(meta_key::kImu)) {
-    throw InputError("the map was made with an IMU", path,
-                     "resume with the drive and options of the first run, or start a new map");
-  }
   for (const auto& [key, value] : now) {
     if (std::count(kNames.begin(), kNames.end(), key) > 0) continue;
     const auto found = before.find(key);
@@ -92,6 +88,10 @@ void require_same_run(const MapReader& map, const MapMeta& meta, const DriveReco
   }
   MapMeta settings = meta;
   for (const auto& [key, value] : origin) settings.erase(key);
+  if (before.contains(meta_key::kImu) && !meta.contains(meta_key::kImu)) {
+    throw InputError("the map was made with an IMU", path.string(),
+                     "resume with the drive and options of the first run, or start a new map");
+  }
   require_same_values(before, settings, path.string());
   const std::vector<DriveRecord> drives = map.drives();
   if (drives.size() != 1 || !drives[0].calibration_fingerprint || !drives[0].stamps_fingerprint) {
