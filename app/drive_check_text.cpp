@@ -43,6 +43,15 @@ std::string navigation_text(const DriveCheck& check) {
   return text;
 }
 
+std::string imu_text(const ImuData& imu) {
+  const std::vector<ImuSample>& samples = imu.samples;
+  const double duration = seconds(samples.back().time - samples.front().time);
+  const Eigen::Vector3d place = imu.T_lidar_imu.translation();
+  return fmt::format("IMU          {} records at {:.0f} Hz, at {:.2f} {:.2f} {:.2f} m on the LiDAR",
+                     samples.size(), double(samples.size() - 1) / duration, place.x(), place.y(),
+                     place.z());
+}
+
 }  // namespace
 
 std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& drive, bool messages) {
@@ -63,6 +72,10 @@ std::vector<std::string> lines_of(const DriveCheck& check, const DriveInfo& driv
     lines.push_back(camera_text(camera, check));
   if (check.cameras.empty()) lines.emplace_back("cameras      none");
   lines.push_back(navigation_text(check));
+  if (drive.imu) lines.push_back(imu_text(*drive.imu));
+  if (drive.wheels) {
+    lines.push_back(fmt::format("wheels       {} speeds", drive.wheels->samples.size()));
+  }
   lines.emplace_back("`fovea map` would do this:");
   const auto list = [&](const std::vector<std::string>& items) {
     for (const std::string& item : items) lines.push_back("  - " + item);

@@ -86,6 +86,20 @@ TEST_F(HandHeld, FaultsOfTheImuAreTold) {
   EXPECT_THAT(run.err, HasSubstr("the IMU is saturated"));
 }
 
+TEST_F(HandHeld, AnImuWithAFlippedAxisIsNotUsed) {
+  options_.frames = 60;
+  options_.vehicle.turn_rate = 30 * kDegree;
+  options_.vehicle.turn_angle = 20 * kDegree;
+  options_.imu.flipped_axis = 3;
+  simulate_walk();
+  const ProgramRun run = run_fovea(fmt::format("map '{}' -o '{}'", drive(), map()));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the turns of the IMU are not those of the scans"));
+  const double flipped = scores("--quiet")["pose_aligned_m"]["mean"].get<double>();
+  const double without = scores("--quiet --no-imu")["pose_aligned_m"]["mean"].get<double>();
+  EXPECT_LT(flipped, 2 * without + 0.02);
+}
+
 TEST_F(HandHeld, ARunGoesOnWithItsImuOnly) {
   options_.frames = 6;
   simulate_walk();

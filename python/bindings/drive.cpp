@@ -19,7 +19,7 @@ Drive open(const std::filesystem::path& path, const std::vector<int>& cameras,
   DriveOptions options;
   options.cameras = cameras;
   std::tie(options.begin, options.end) = frames;
-  options.use_navigation = use_navigation;
+  options.use_navigation = options.use_imu = use_navigation;
   options.use_images = use_images;
   return {open_drive(path, options)};
 }

@@ -71,7 +71,11 @@ std::optional<SweepMotion> sweep_motion_from_text(std::string_view text) {
   SweepPath& path = motion.path.emplace();
   path.begin = (*numbers)[kTwists];
   path.step = (*numbers)[kTwists + 1];
-  if (!(path.step > 0)) return std::nullopt;
+  constexpr double kLongest = 10;  // s: a sweep takes one at most
+  const double length = path.step * double((size - kPath) / 6);
+  if (!(path.step > 0 && length < kLongest && std::abs(path.begin) < kLongest)) {
+    return std::nullopt;
+  }
   for (std::size_t at = kPath; at < size; at += 6) {
     path.placements.emplace_back(Eigen::Map<const Twist>(numbers->data() + at));
   }

@@ -56,8 +56,10 @@ TEST(NumberText, SweepMotionsHaveTheirPathWhereThereIsOne) {
   EXPECT_EQ(sweep_motion_from_text(to_text(motion)), motion);
   motion.path->placements.pop_back();  // one place is no path
   EXPECT_FALSE(sweep_motion_from_text(to_text(motion)));
-  motion.path = SweepPath{0, 0, {Twist::Zero(), Twist::Zero()}};  // no time passes
-  EXPECT_FALSE(sweep_motion_from_text(to_text(motion)));
+  for (const double step : {0.0, -0.1, 1e9}) {
+    motion.path = SweepPath{0, step, {Twist::Zero(), Twist::Zero()}};
+    EXPECT_FALSE(sweep_motion_from_text(to_text(motion))) << step;
+  }
 }
 
 TEST(NumberText, JsonObjectsKeepNamesAndValues) {

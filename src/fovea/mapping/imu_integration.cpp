@@ -17,6 +17,9 @@ using State = InertialState;
 // Deviations of velocities in a gap of the IMU, per root second: rad/s and m/s.
 constexpr double kGapRate = 0.5, kGapForce = 2;
 
+/// Walk of the direction of gravity in odom, whose poses tilt with the way: rad per root second.
+constexpr double kLevelWalk = 1e-4;
+
 }  // namespace
 
 Matrix3 rotation_of(const Vector3& v) {
@@ -49,46 +52,45 @@ bool ImuIntegration::covers(TimeNs stamp) const {
   return after != imu_->samples.begin() && stamp - std::prev(after)->time <= kLongest;
 }
 
-ImuIntegration::Measured ImuIntegration::measured(TimeNs from, TimeNs to,
-                                                  const InertialState& state) const {
+ImuIntegration::Measured ImuIntegration::measured(TimeNs from, TimeNs to) const {
   const TimeNs middle = from + (to - from) / 2;
   const auto later = [](TimeNs time, const ImuSample& sample) { return time < sample.time; };
   const auto after = std::upper_bound(imu_->samples.begin(), imu_->samples.end(), middle, later);
-  const auto hold = [&] {  // velocities stay as they are
-    return Measured{state.rate_bias,
-                    state.force_bias - state.T_odom_imu.linear().transpose() * state.gravity, true};
-  };
-  if (after == imu_->samples.begin() || after == imu_->samples.end()) return hold();
-  const ImuSample &a = *std::prev(after), &b = *after;
-  if (b.time - a.time > gap_limit_) return hold();
+  const bool is_outside = after == imu_->samples.begin() || after == imu_->samples.end();
+  const ImuSample& a = after == imu_->samples.begin() ? *after : *std::prev(after);
+  if (is_outside || after->time - a.time > gap_limit_) return {a.rate, a.force, true};
+  const ImuSample& b = *after;
   const double share = seconds(middle - a.time) / seconds(b.time - a.time);
   return {a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), false};
 }
 
 void ImuIntegration::step(InertialState& state, TimeNs time, bool with_covariance) const {
   const double dt = seconds(time - state.time);
-  const Measured measured = this->measured(state.time, time, state);
+  const Measured measured = this->measured(state.time, time);
   const Vector3 rate = measured.rate - state.rate_bias, force = measured.force - state.force_bias;
   const Matrix3 R = state.T_odom_imu.linear();
   const Matrix3 R_middle = R * rotation_of(rate * dt / 2);
-  const Vector3 acceleration = R_middle * force + state.gravity;
+  // In a gap both velocities stay as they are.
+  const Vector3 acceleration =
+      measured.is_gap ? Vector3::Zero() : Vector3(R_middle * force + state.gravity);
 
   if (with_covariance) {
     // Derivatives of the errors (Sola 2017, 5.4), to first order in dt.
     Covariance F = Covariance::Identity();
     F.block<3, 3>(State::kRotation, State::kRotation) = rotation_of(-rate * dt);
     F.block<3, 3>(State::kRotation, State::kRateBias) = -dt * Matrix3::Identity();
-    F.block<3, 3>(State::kVelocity, State::kRotation) = -dt * R_middle * hat(force);
-    F.block<3, 3>(State::kVelocity, State::kForceBias) = -dt * R_middle;
-    F.block<3, 2>(State::kVelocity, State::kGravityAngles) =
-        -dt * hat(state.gravity) * across_gravity(state);
     F.block<3, 3>(State::kPosition, State::kVelocity) = dt * Matrix3::Identity();
-    F.block<3, 3>(State::kPosition, State::kRotation) =
-        dt / 2 * F.block<3, 3>(State::kVelocity, State::kRotation);
-    F.block<3, 3>(State::kPosition, State::kForceBias) =
-        dt / 2 * F.block<3, 3>(State::kVelocity, State::kForceBias);
-    F.block<3, 2>(State::kPosition, State::kGravityAngles) =
-        dt / 2 * F.block<3, 2>(State::kVelocity, State::kGravityAngles);
+    if (!measured.is_gap) {
+      auto velocity = F.middleRows<3>(State::kVelocity);
+      velocity.middleCols<3>(State::kRotation) = -dt * R_middle * hat(force);
+      velocity.middleCols<3>(State::kForceBias) = -dt * R_middle;
+      velocity.middleCols<2>(State::kGravityAngles) =
+          -dt * hat(state.gravity) * across_gravity(state);
+      for (const auto& [place, size] :
+           {std::pair(State::kRotation, 3), {State::kForceBias, 3}, {State::kGravityAngles, 2}}) {
+        F.block(State::kPosition, place, 3, size) = dt / 2 * velocity.middleCols(place, size);
+      }
+    }
     state.covariance = F * state.covariance * F.transpose();
     const ImuNoise& noise = imu_->noise;
     const auto add_noise = [&](int place, double density) {
@@ -98,6 +100,7 @@ void ImuIntegration::step(InertialState& state, TimeNs time, bool with_covarianc
     add_noise(State::kVelocity, measured.is_gap ? kGapForce : noise.accelerometer_noise_density);
     add_noise(State::kRateBias, noise.gyroscope_random_walk);
     add_noise(State::kForceBias, noise.accelerometer_random_walk);
+    state.covariance.diagonal().tail<2>().array() += kLevelWalk * kLevelWalk * dt;
   }
 
   state.T_odom_imu.linear() = R * rotation_of(rate * dt);

@@ -51,7 +51,7 @@ class ImuIntegration {
 
   /// Angular velocity at a state, rad/s.
   Eigen::Vector3d rate(const InertialState& state) const {
-    return measured(state.time, state.time, state).rate - state.rate_bias;
+    return measured(state.time, state.time).rate - state.rate_bias;
   }
 
  private:
@@ -60,8 +60,8 @@ class ImuIntegration {
     bool is_gap = false;
   };
 
-  /// Mean of the measurements between two times that no sample separates.
-  Measured measured(TimeNs from, TimeNs to, const InertialState& state) const;
+  /// Mean of the measurements between two times that no sample separates; in a gap those before.
+  Measured measured(TimeNs from, TimeNs to) const;
   void step(InertialState& state, TimeNs time, bool with_covariance) const;
 
   const ImuData* imu_;

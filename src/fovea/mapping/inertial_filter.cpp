@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -28,6 +29,9 @@ constexpr double kStillRate = 0.015, kStillForce = 0.15;
 /// ... and if the mean rate can be a bias, rad/s.
 constexpr double kLargestRateBias = 0.05;
 
+/// m/s, of a LiDAR at rest as registration has it.
+constexpr double kStillSpeed = 0.05;
+
 // The start looks at the measurements of this time (s).
 constexpr double kStartBefore = 1, kStartAfter = 0.5;
 
@@ -36,6 +40,14 @@ constexpr double kPathStep = 0.005;  // s
 Vector3 rotation_vector(const Matrix3& R) {
   const Eigen::AngleAxisd turn(R);
   return turn.angle() * turn.axis();
+}
+
+/// Of the two rotation vectors of a rotation, the one nearer to another vector.
+Vector3 nearest_vector(const Vector3& turn, const Vector3& other) {
+  const double angle = turn.norm();
+  if (angle == 0) return turn;
+  const Vector3 around = turn * (1 - 2 * std::numbers::pi / angle);
+  return (around - other).norm() < (turn - other).norm() ? around : turn;
 }
 
 void add(const Error& error, InertialState& state) {
@@ -65,6 +77,10 @@ void correct(const Eigen::Matrix<double, N, 1>& difference,
   add(gain * difference, state);
 }
 
+void set_sigma(int place, int size, double sigma, InertialState& state) {
+  state.covariance.diagonal().segment(place, size).setConstant(sigma * sigma);
+}
+
 struct Scatter {
   Vector3 mean = Vector3::Zero();
   double deviation = 0;  // the largest of the three axes
@@ -92,43 +108,45 @@ void InertialFilter::begin(TimeNs stamp, const InertialStart& start) {
   state.T_odom_imu = start.T_odom_lidar * T_imu_lidar_.inverse();
 
   std::vector<Vector3> rates, forces;
-  Vector3 up = Vector3::Zero();           // in the axes of the IMU at the stamp
-  const auto turned = [&](TimeNs time) {  // from the IMU at a time to the IMU at the stamp
-    InertialState turning = state;
-    integration_.move(turning, time, /*with_covariance=*/false);
-    return Matrix3(state.T_odom_imu.linear().transpose() * turning.T_odom_imu.linear());
-  };
-  for (const ImuSample& sample : imu_->samples) {
-    const double dt = seconds(sample.time - stamp);
-    if (dt < -kStartBefore || dt > kStartAfter) continue;
+  Vector3 up_odom = Vector3::Zero();
+  const auto take = [&](const ImuSample& sample, InertialState& turning) {
+    integration_.move(turning, sample.time, /*with_covariance=*/false);
     rates.push_back(sample.rate);
     forces.push_back(sample.force);
-    up += turned(sample.time) * sample.force;
+    up_odom += turning.T_odom_imu.linear() * sample.force;
+  };
+  const auto earlier = [](const ImuSample& sample, TimeNs time) { return sample.time < time; };
+  const auto middle = std::lower_bound(imu_->samples.begin(), imu_->samples.end(), stamp, earlier);
+  InertialState after = state, before = state;  // whose rotations follow the gyroscope
+  for (auto next = middle;
+       next != imu_->samples.end() && next->time <= stamp + from_seconds(kStartAfter); ++next) {
+    take(*next, after);
+  }
+  for (auto next = middle;
+       next != imu_->samples.begin() && std::prev(next)->time >= stamp - from_seconds(kStartBefore);
+       --next) {
+    take(*std::prev(next), before);
   }
   const Scatter rate = scatter_of(rates), force = scatter_of(forces);
   const bool is_still = !rates.empty() && rate.deviation < kStillRate &&
                         force.deviation < kStillForce && rate.mean.norm() < kLargestRateBias &&
-                        (!start.velocity || start.velocity->tail<3>().norm() < kKnownVelocity);
+                        start.velocity && start.velocity->tail<3>().norm() < kStillSpeed;
   if (is_still) state.rate_bias = rate.mean;
-  if (start.velocity && !is_still) {
+  if (start.velocity) {
     const Twist of_imu = twist_of_part(*start.velocity, T_imu_lidar_.inverse());
     state.velocity = state.T_odom_imu.linear() * of_imu.tail<3>();
   }
-  Vector3 up_odom = state.T_odom_imu.linear() * up;
   if (start.is_level || up_odom.isZero(0)) up_odom = Vector3::UnitZ();
   state.gravity = -kGravity * up_odom.normalized();
 
-  const auto set_sigma = [&](int place, int size, double sigma) {
-    state.covariance.diagonal().segment(place, size).setConstant(sigma * sigma);
-  };
-  set_sigma(State::kRotation, 3, kStartRotation);
-  set_sigma(State::kPosition, 3, kStartPosition);
+  set_sigma(State::kRotation, 3, kStartRotation, state);
+  set_sigma(State::kPosition, 3, kStartPosition, state);
   const double moving = start.velocity ? kKnownVelocity : kUnknownVelocity;
-  set_sigma(State::kVelocity, 3, is_still ? kStillVelocity : moving);
-  set_sigma(State::kRateBias, 3, is_still ? kStillRateBias : kRateBiasSigma);
-  set_sigma(State::kForceBias, 3, kForceBiasSigma);
+  set_sigma(State::kVelocity, 3, is_still ? kStillVelocity : moving, state);
+  set_sigma(State::kRateBias, 3, is_still ? kStillRateBias : kRateBiasSigma, state);
+  set_sigma(State::kForceBias, 3, kForceBiasSigma, state);
   const double tilted = is_still ? kStillGravity : kMovingGravity;
-  set_sigma(State::kGravityAngles, 2, start.is_level ? kLevelGravity : tilted);
+  set_sigma(State::kGravityAngles, 2, start.is_level ? kLevelGravity : tilted, state);
   state_ = state;
 }
 
@@ -168,7 +186,9 @@ SweepMotion InertialFilter::motion(const InertialPrediction& prediction,
     integration_.move(moving, at_stamp.time + from_seconds(begin + i * kPathStep),
                       /*with_covariance=*/false);
     const RigidMotion T = T_lidar_odom * T_odom_lidar(moving);
-    path.placements.emplace_back() << rotation_vector(T.linear()), T.translation();
+    const Vector3 turn = rotation_vector(T.linear());
+    const Vector3 last = path.placements.empty() ? turn : Vector3(path.placements.back().head<3>());
+    path.placements.emplace_back() << nearest_vector(turn, last), T.translation();
   }
   return {velocity_of(at_stamp), Twist::Zero(), std::move(path)};
 }
@@ -207,6 +227,9 @@ InertialPrediction InertialFilter::corrected(const InertialPrediction& predictio
   jacobian.segment<3>(State::kVelocity) =
       forward.transpose() * state.T_odom_imu.linear().transpose();
   jacobian.segment<3>(State::kRateBias) = forward.transpose() * hat(T_imu_body.translation());
+  constexpr double kSigmas = 5;  // beyond: the wheels slip, or the speed has another sign or unit
+  const double variance = (jacobian * state.covariance * jacobian.transpose())(0) + sigma * sigma;
+  if (std::abs(speed - expected) > kSigmas * std::sqrt(variance)) return prediction;
   correct<1>(Eigen::Matrix<double, 1, 1>(speed - expected), jacobian,
              Eigen::Matrix<double, 1, 1>(sigma), result.state);
   result.T_odom_lidar = T_odom_lidar(result.state);
@@ -217,6 +240,21 @@ InertialPrediction InertialFilter::corrected(const InertialPrediction& predictio
 void InertialFilter::update(const InertialPrediction& prediction, const RigidMotion& T_odom_lidar,
                             const std::optional<Twist>& sigma) {
   state_ = sigma ? corrected(prediction, T_odom_lidar, *sigma).state : prediction.state;
+}
+
+void InertialFilter::place(const InertialPrediction& prediction, const RigidMotion& T_odom_lidar) {
+  InertialState state = prediction.state;
+  if (!state.covariance.allFinite() || !state.velocity.allFinite()) return restart();
+  // The velocity turns with the IMU.
+  const RigidMotion T_odom_imu = T_odom_lidar * T_imu_lidar_.inverse();
+  state.velocity = T_odom_imu.linear() * (state.T_odom_imu.linear().transpose() * state.velocity);
+  state.T_odom_imu = T_odom_imu;
+  constexpr int kPose = State::kVelocity;  // the size of rotation and position
+  state.covariance.topRows<kPose>().setZero();
+  state.covariance.leftCols<kPose>().setZero();
+  set_sigma(State::kRotation, 3, kStartRotation, state);
+  set_sigma(State::kPosition, 3, kStartPosition, state);
+  state_ = state;
 }
 
 }  // namespace fovea

@@ -61,6 +61,10 @@ class InertialFilter {
   void update(const InertialPrediction& prediction, const RigidMotion& T_odom_lidar,
               const std::optional<Twist>& sigma);
 
+  /// Ends a frame at a pose that no motion leads to, such as after a search: it keeps velocity,
+  /// biases and gravity of the prediction. Restarts if these are no numbers.
+  void place(const InertialPrediction& prediction, const RigidMotion& T_odom_lidar);
+
   const InertialState& state() const { return *state_; }
 
  private:

@@ -136,7 +136,7 @@ TEST(InertialFilter, AtRestTheMeanRateIsTheBias) {
   const Motion motion(/*starts_at_rest=*/true);
   const ImuData imu = measure(motion, 2);
   InertialFilter filter(imu);
-  filter.begin(kStart, {});
+  filter.begin(kStart, {RigidMotion::Identity(), Twist::Zero(), /*is_level=*/false});
   EXPECT_LT((filter.state().rate_bias - kRateBias).norm(), 1e-6);
   EXPECT_LT(angle_between(filter.state().gravity, motion.gravity()), 0.012);  // of the force's bias
 }
@@ -171,6 +171,8 @@ TEST(InertialFilter, InAGapVelocitiesStay) {
   const RigidMotion truth = motion.T_odom_lidar(10.1);
   // The acceleration on the circle and of the bobbing is about 6 m/s^2.
   EXPECT_LT(position_error(next.T_odom_lidar, truth), 6 * 0.08 * 0.08 / 2 + 0.02);
+  // It turns by 0.9 rad/s; about the other axes the rates change.
+  EXPECT_LT(rotation_angle(truth.linear().transpose() * next.T_odom_lidar.linear()), 0.02);
   EXPECT_GT(next.sigma.head<3>().minCoeff(), 0.02);
   EXPECT_TRUE(filter.covers(at(10.1)));
   EXPECT_FALSE(filter.covers(at(20)));
@@ -181,9 +183,7 @@ TEST(InertialFilter, PosesAndSpeedsOfOthersCorrectPredictions) {
   const Motion motion;
   const ImuData imu = measure(motion, 3);
   InertialFilter filter(imu);
-  InertialStart wrong;  // begins as if it stood
-  wrong.velocity = Twist::Zero();
-  filter.begin(kStart, wrong);
+  filter.begin(kStart, {});  // the velocity is not known
   const InertialPrediction raw = filter.predict(at(0.1));
   const RigidMotion truth = motion.T_odom_lidar(0.1);
   const InertialPrediction by_pose = filter.corrected(raw, truth, pose_sigma());
@@ -198,6 +198,27 @@ TEST(InertialFilter, PosesAndSpeedsOfOthersCorrectPredictions) {
       filter.corrected(raw, velocity.tail<3>().norm(), 0.01, T_lidar_body);
   EXPECT_LT(position_error(by_speed.T_odom_lidar, truth),
             0.7 * position_error(raw.T_odom_lidar, truth));
+}
+
+TEST(InertialFilter, AfterASearchItGoesOnFromThePoseThatWasFound) {
+  const Motion motion;
+  const ImuData imu = measure(motion, 12);
+  InertialFilter filter = followed(imu, motion, 99);
+  RigidMotion T_jump = RigidMotion::Identity();
+  T_jump.translation() << 4, -2, 0;
+  filter.place(filter.predict(at(10)), T_jump * motion.T_odom_lidar(10));
+  const RigidMotion truth = T_jump * motion.T_odom_lidar(10.1);
+  EXPECT_LT(position_error(filter.predict(at(10.1)).T_odom_lidar, truth), 0.005);
+  EXPECT_LT((filter.state().rate_bias - kRateBias).norm(), 3e-4);
+}
+
+TEST(InertialFilter, WheelsThatContradictItAreLeftOut) {
+  const Motion motion;
+  const ImuData imu = measure(motion, 12);
+  const InertialFilter filter = followed(imu, motion, 100);
+  const InertialPrediction next = filter.predict(at(10.1));
+  const InertialPrediction slipping = filter.corrected(next, -4, 0.1, RigidMotion::Identity());
+  EXPECT_EQ(slipping.state.velocity, next.state.velocity);
 }
 
 TEST(InertialFilter, NeedsABeginning) {

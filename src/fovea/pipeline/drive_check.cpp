@@ -114,6 +114,15 @@ std::string motion_plan(const DriveInfo& drive, const DriveCheck& check) {
       sweep.start_azimuth * 180 / std::numbers::pi, sweep.stamp_phase);
 }
 
+std::string poses_plan(const DriveInfo& drive) {
+  std::vector<std::string> sources;
+  if (drive.imu) sources.emplace_back("the IMU");
+  if (drive.imu && drive.wheels) sources.emplace_back("the wheels");
+  if (drive.navigation) sources.emplace_back("the navigation");
+  if (sources.empty()) return "poses: registration of the scans alone, from constant velocity";
+  return fmt::format("poses: registration of the scans, begun by {}", fmt::join(sources, " and "));
+}
+
 void make_plan(const DriveInfo& drive, DriveCheck& check) {
   std::vector<int> numbers;
   numbers.reserve(drive.calibration.cameras.size());
@@ -127,9 +136,7 @@ void make_plan(const DriveInfo& drive, DriveCheck& check) {
                                      unused == 1 ? "" : "s", fmt::join(drive.unused_cameras, ", "),
                                      unused == 1 ? "is" : "are"));
   }
-  check.plan.push_back(drive.navigation
-                           ? "poses: registration of the scans, begun by the navigation"
-                           : "poses: registration of the scans alone, from constant velocity");
+  check.plan.push_back(poses_plan(drive));
   check.plan.push_back(drive.origin ? "the map is georeferenced" : "the map is not georeferenced");
   check.plan.push_back(motion_plan(drive, check));
   if (!drive.has_time_stamps)

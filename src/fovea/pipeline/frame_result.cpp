@@ -29,6 +29,7 @@ void report(const TrackingStats& stats, Figures& figures) {
   if (stats.has_restarted) figures["track_restarted"] = 1;
   if (stats.is_pose_unknown) figures["pose_unknown"] = 1;
   if (stats.has_navigation_jumped) figures["navigation_jumped"] = 1;
+  if (stats.has_imu_dropped) figures["imu_dropped"] = 1;
 }
 
 void report(const FovealStats& stats, Figures& figures) {

@@ -56,6 +56,7 @@ struct TrackingStats {
   bool has_restarted = false;  ///< the motion during the pause is unknown
   bool is_pose_unknown = false;
   bool has_navigation_jumped = false;
+  bool has_imu_dropped = false;  ///< from the next frame on the IMU is not used
 
   /// Share of the registered points that have a counterpart; 1 where nothing was registered.
   double overlap() const;

@@ -37,16 +37,19 @@ bool is_jump(const InertialPrediction& prediction, const RigidMotion& T_odom_lid
   const RigidMotion apart = prediction.T_odom_lidar.inverse() * T_odom_lidar;
   const double shift = kSigmas * prediction.sigma.tail<3>().norm();
   const double turn = kSigmas * prediction.sigma.head<3>().norm();
-  return apart.translation().norm() > std::max(kLeastShift, shift) ||
-         rotation_angle(apart.linear()) > std::max(kLeastTurn, turn);
+  const bool is_near = apart.translation().norm() <= std::max(kLeastShift, shift) &&
+                       rotation_angle(apart.linear()) <= std::max(kLeastTurn, turn);
+  return !is_near;  // also where a number is none
 }
 
 }  // namespace
 
 std::optional<InertialFilter> InertialMotion::begun(TimeNs stamp,
                                                     const Beginning& beginning) const {
-  if (!filter_.covers(stamp)) return std::nullopt;
+  if (agreement_.is_contradicted() || !filter_.covers(stamp)) return std::nullopt;
+  constexpr TimeNs kLongestStep = kNsPerSecond;
   InertialFilter filter = filter_;
+  if (filter.has_begun() && stamp - filter.state().time > kLongestStep) filter.restart();
   if (!filter.has_begun()) filter.begin(beginning.time, beginning.start);
   return filter;
 }
@@ -83,9 +86,16 @@ std::optional<MotionGuess> InertialMotion::predict(TimeNs stamp, const SweepSpan
   if (!filter) return std::nullopt;
   const InertialPrediction prediction = fused(*filter, stamp, by_nav);
   MotionGuess guess{prediction.T_odom_lidar, filter->motion(prediction, sweep), false, {}};
-  const bool is_first = filter->state().time == stamp;
-  if (!is_first) guess.sigma = prediction.sigma.cwiseMax(kLeastSigma);
+  if (agreement_.is_proven()) guess.sigma = prediction.sigma.cwiseMax(kLeastSigma);
   return guess;
+}
+
+void InertialMotion::compare(TimeNs stamp, const RigidMotion& T_odom_last,
+                             const RigidMotion& T_odom_lidar, const RigidMotion& by_velocity) {
+  if (!filter_.has_begun() || !filter_.covers(stamp)) return;
+  const RigidMotion T_last_odom = T_odom_last.inverse();
+  agreement_.add(T_last_odom * T_odom_lidar, T_last_odom * filter_.predict(stamp).T_odom_lidar,
+                 T_last_odom * by_velocity);
 }
 
 void InertialMotion::update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence,
@@ -94,7 +104,7 @@ void InertialMotion::update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseE
   if (!filter) return filter_.restart();
   const InertialPrediction prediction = fused(*filter, stamp, by_nav);
   filter->update(prediction, T_odom_lidar, pose_sigma(evidence));
-  if (is_jump(prediction, T_odom_lidar)) filter->restart();
+  if (is_jump(prediction, T_odom_lidar)) filter->place(prediction, T_odom_lidar);
   filter_ = *filter;
 }
 

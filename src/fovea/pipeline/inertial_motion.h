@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fovea/mapping/inertial_filter.h"
+#include "fovea/pipeline/imu_agreement.h"
 #include "fovea/pipeline/motion_guess.h"
 
 namespace fovea {
@@ -26,8 +27,8 @@ class InertialMotion {
   /// @param wheels  or null; both must outlive this
   InertialMotion(const ImuData& imu, const WheelData* wheels) : filter_(imu), wheels_(wheels) {}
 
-  /// Pose, motion and deviations at a frame. Empty where the IMU has not measured. At the beginning
-  /// without deviations, since nothing was registered yet.
+  /// Pose, motion and deviations at a frame. Empty where the IMU has not measured, or is
+  /// contradicted. Without deviations until it is proven.
   /// @param by_nav  corrects the prediction, unless it contradicts it or has no deviations
   std::optional<MotionGuess> predict(TimeNs stamp, const SweepSpan& sweep,
                                      const Beginning& beginning,
@@ -36,6 +37,14 @@ class InertialMotion {
   /// Enters the final pose of a frame.
   void update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence,
               const Beginning& beginning, const std::optional<MotionGuess>& by_nav);
+
+  /// Compares the motions of a frame that is not yet entered, relative to the last one.
+  /// @param by_velocity  T_odom_lidar at constant velocity
+  void compare(TimeNs stamp, const RigidMotion& T_odom_last, const RigidMotion& T_odom_lidar,
+               const RigidMotion& by_velocity);
+  /// Forgets the motion; the agreement stays.
+  void restart() { filter_.restart(); }
+  const ImuAgreement& agreement() const { return agreement_; }
 
  private:
   /// Empty where the IMU has not measured.
@@ -46,6 +55,7 @@ class InertialMotion {
 
   InertialFilter filter_;
   const WheelData* wheels_;
+  ImuAgreement agreement_;
 };
 
 }  // namespace fovea

@@ -47,6 +47,8 @@ void DriveFigures::note_flaws(const FrameRecord& record) {
   }
   if (drive_.navigation && !record.T_local_lidar_navigation) absent_.add(record.index);
   if (record.has("navigation_jumped")) jumped_.add(record.index);
+  if (record.has("imu_dropped"))
+    imu_fault_ = fmt::format("frame {}: {}", record.index, record.note);
   if (record.has("registration_degenerate")) degenerate_.add(record.index);
   if (record.has("registration_lost")) lost_.add(record.index);
   if (record.has("pose_unknown")) {
@@ -110,6 +112,7 @@ MapSummary DriveFigures::summary() const {
   };
   warn(absent_, "no GPS/INS: the motion is from the scans alone");
   warn(jumped_, "GPS/INS moves otherwise than the scans, it counts for less from there on");
+  if (!imu_fault_.empty()) summary.warn(imu_fault_);
   if (const auto cause = navigation_.likely_cause()) summary.warn(*cause);
   warn(lost_,
        "tracking is lost: the scan does not lie on the surfaces mapped before; poses from there on "

@@ -93,6 +93,7 @@ class DriveFigures {
   std::map<std::string, std::vector<float>> by_stage_;  // ms
   Flaw absent_, jumped_, degenerate_, lost_, restarted_, unknown_, blank_;
   std::map<int, Flaw> missing_;  // by camera
+  std::string imu_fault_;
   PointCounts points_;
 };
 

@@ -12,7 +12,7 @@ struct MotionGuess {
   /// Of the LiDAR during the sweep, if known.
   std::optional<SweepMotion> motion;
   bool by_navigation = false;
-  /// Standard deviations of the pose relative to the last one (rad, m), if known.
+  /// Standard deviations of the pose (rad, m), if known.
   std::optional<Twist> sigma;
 };
 

@@ -12,6 +12,9 @@ namespace {
 constexpr TimeNs kPause = kNsPerSecond;
 constexpr int kPauseSteps = 3;
 
+/// A guess in place of that of the IMU must fit better by this factor: the IMU is rarely wrong.
+constexpr double kLeastGain = 1.1;
+
 /// Initial error of a velocity, and the largest value of a single error. The limit keeps a short
 /// loss of satellites from reducing the weight of navigation for long.
 constexpr double kFirstTranslation = 0.1, kFirstRotation = 0.5 * kDegree;  // m/s, rad/s
@@ -120,7 +123,6 @@ InertialMotion::Beginning MotionModel::beginning(TimeNs stamp) const {
   const auto navigation = navigation_at(stamp);
   InertialStart& start = beginning.start;
   start.velocity = motion_velocity();
-  start.is_level = options_.navigation_is_level && navigation.has_value();
   if (last_) {
     beginning.time = last_->time;
     start.T_odom_lidar = last_->T_local_body;
@@ -128,6 +130,7 @@ InertialMotion::Beginning MotionModel::beginning(TimeNs stamp) const {
   }
   beginning.time = stamp;
   start.T_odom_lidar = navigation.value_or(RigidMotion::Identity());
+  start.is_level = options_.navigation_is_level && navigation.has_value();
   if (const auto motion = navigation_motion(stamp)) start.velocity = motion->velocity;
   return beginning;
 }
@@ -138,15 +141,18 @@ std::optional<MotionGuess> MotionModel::by_imu(TimeNs stamp, const SweepSpan& sw
   return inertial_->predict(stamp, sweep, beginning(stamp), by_nav);
 }
 
-MotionPrediction MotionModel::predict_after_pause(TimeNs stamp, const SweepSpan& sweep) const {
+std::string MotionModel::fault_of_imu() const {
+  if (!inertial_ || !inertial_->agreement().is_contradicted()) return "";
+  return inertial_->agreement().likely_fault();
+}
+
+MotionPrediction MotionModel::predict_after_pause(TimeNs stamp) const {
   MotionPrediction prediction;
   prediction.after_pause = true;
   prediction.T_local_lidar_navigation = navigation_at(stamp);
   auto guess = by_navigation(stamp);
   if (guess) {
     guess->sigma.reset();  // unknown over the pause
-  } else if ((guess = by_imu(stamp, sweep, std::nullopt))) {
-    guess->sigma.reset();  // the speed may have changed much
   } else {
     guess = MotionGuess{last_->T_local_body, navigation_motion(stamp), false, std::nullopt};
     if (!guess->motion && initial_velocity_) guess->motion = SweepMotion{*initial_velocity_};
@@ -156,20 +162,23 @@ MotionPrediction MotionModel::predict_after_pause(TimeNs stamp, const SweepSpan&
 }
 
 MotionPrediction MotionModel::predict(TimeNs stamp, const SweepSpan& sweep) const {
-  if (follows_pause(stamp)) return predict_after_pause(stamp, sweep);
+  if (follows_pause(stamp)) return predict_after_pause(stamp);
   MotionPrediction prediction;
   prediction.T_local_lidar_navigation = navigation_at(stamp);
   auto by_nav = by_navigation(stamp);
+  const auto by_motion = by_velocity(stamp);
   if (const auto inertial = by_imu(stamp, sweep, by_nav)) {
     prediction.guesses = {*inertial};
-    if (by_nav && last_ && options_.doubt &&
-        contradict(*by_nav, *inertial, seconds(stamp - last_->time))) {
-      by_nav->sigma.reset();  // registration decides
-      prediction.guesses.push_back(*by_nav);
-    }
+    const auto add_if_other = [&](std::optional<MotionGuess> guess) {
+      if (!guess || !last_ || !contradict(*guess, *inertial, seconds(stamp - last_->time))) return;
+      guess->sigma.reset();  // registration decides
+      prediction.guesses.push_back(*guess);
+    };
+    if (options_.doubt) add_if_other(by_nav);
+    if (!inertial_->agreement().is_proven()) add_if_other(by_motion);
+    prediction.least_gain = kLeastGain;
     return prediction;
   }
-  const auto by_motion = by_velocity(stamp);
   if (by_nav && by_motion && options_.doubt) {
     if (contradict(*by_nav, *by_motion, seconds(stamp - last_->time))) {
       by_nav->sigma.reset();  // registration decides
@@ -191,7 +200,13 @@ MotionPrediction MotionModel::predict(TimeNs stamp, const SweepSpan& sweep) cons
 
 void MotionModel::update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseEvidence evidence) {
   const StampedPose now{stamp, T_odom_lidar};
-  if (inertial_) {
+  if (inertial_ && follows_pause(stamp)) {
+    inertial_->restart();  // it begins again at this frame
+  } else if (inertial_) {
+    const auto by_motion = by_velocity(stamp);
+    if (last_ && by_motion && evidence == PoseEvidence::kFirm) {
+      inertial_->compare(stamp, last_->T_local_body, T_odom_lidar, by_motion->T_odom_lidar);
+    }
     inertial_->update(stamp, T_odom_lidar, evidence, beginning(stamp), by_navigation(stamp));
   }
   const bool is_after_pause = follows_pause(stamp);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fovea/core/time.h"
@@ -15,6 +16,8 @@ struct MotionPrediction {
   /// One guess, or two if navigation contradicts the motion so far; registration then decides. The
   /// more reliable one first.
   std::vector<MotionGuess> guesses;
+  /// How many times better than the first one a further guess must fit.
+  double least_gain = 1;
   /// Pose from navigation only.
   std::optional<RigidMotion> T_local_lidar_navigation;
   /// The frame follows a pause, so earlier velocities do not count. The guess is from navigation,
@@ -92,12 +95,15 @@ class MotionModel {
   void update(TimeNs stamp, const RigidMotion& T_odom_lidar,
               PoseEvidence evidence = PoseEvidence::kFirm);
 
+  /// Why the IMU is no longer used; empty if it is, or there is none.
+  std::string fault_of_imu() const;
+
  private:
   /// Where the filter of the IMU begins: at the last frame, or else at this one.
   InertialMotion::Beginning beginning(TimeNs stamp) const;
   std::optional<MotionGuess> by_imu(TimeNs stamp, const SweepSpan& sweep,
                                     const std::optional<MotionGuess>& by_nav) const;
-  MotionPrediction predict_after_pause(TimeNs stamp, const SweepSpan& sweep) const;
+  MotionPrediction predict_after_pause(TimeNs stamp) const;
   std::optional<RigidMotion> navigation_at(TimeNs stamp) const;
   std::optional<SweepMotion> navigation_motion(TimeNs stamp) const;
   std::optional<Twist> motion_velocity() const;

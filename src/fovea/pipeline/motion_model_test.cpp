@@ -253,7 +253,7 @@ TEST(MotionModel, AnImuTellsTheMotionBetweenFrames) {
   ASSERT_TRUE(guess.motion && guess.motion->path);
   EXPECT_NEAR(guess.motion->path->at(-0.1).translation().x(), way_at(1.9) - way_at(2), 0.003);
   EXPECT_NEAR(guess.motion->velocity[3], kFirstSpeed + 2 * kSpeedingUp, 0.05);
-  EXPECT_GE(guess.sigma->minCoeff(), 1e-3);
+  EXPECT_FALSE(guess.sigma);  // on a straight way nothing has proven the IMU
   EXPECT_FALSE(guess.by_navigation);
 }
 

@@ -51,8 +51,9 @@ MotionSources motion_sources(const DriveInfo& drive) {
 }
 
 PoseEvidence evidence_of(const TrackingStats& tracking) {
-  if (tracking.is_lost) return PoseEvidence::kNone;
-  if (!tracking.registration || !tracking.registration->alignment) return PoseEvidence::kFirm;
+  if (tracking.is_lost || tracking.has_restarted) return PoseEvidence::kNone;
+  if (!tracking.registration) return PoseEvidence::kFirm;  // the pose is given
+  if (!tracking.registration->alignment) return PoseEvidence::kNone;
   const AlignmentStats& alignment = *tracking.registration->alignment;
   if (alignment.has_failed) return PoseEvidence::kNone;
   return alignment.degenerate_directions > 0 ? PoseEvidence::kWeak : PoseEvidence::kFirm;
@@ -96,7 +97,12 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   if (has_sweep_motion || drive_.has_image_delays()) result.poses.motion = placed.motion;
   result.note = refined.note;
   result.poses.T_odom_lidar = refined.T_odom_lidar;
+  const bool had_fault = !motion_model_.fault_of_imu().empty();
   motion_model_.update(frame.stamp, refined.T_odom_lidar, evidence_of(result.tracking));
+  if (const std::string fault = motion_model_.fault_of_imu(); !fault.empty() && !had_fault) {
+    result.note = "the turns of the IMU are not those of the scans, it is not used: " + fault;
+    result.tracking.has_imu_dropped = true;
+  }
   // The submap gives the pose in local. A loop closure may then correct it.
   fusion_.track(result);
   if (!task.held_out) {
@@ -126,7 +132,9 @@ Tracker::PlacedScan Tracker::place(const Frame& frame, const MotionPrediction& m
   for (const MotionGuess& guess : motion.guesses) {
     PlacedScan placed{compensated(frame.scan, guess.motion), guess.motion, {}};
     placed.refined = locate(placed.scan_lidar, motion, guess, task);
-    if (!best || placed.refined.fit > best->refined.fit) best = std::move(placed);
+    const bool was_lost = !best || best->refined.lost;
+    const double gain = was_lost || placed.refined.lost ? 1 : motion.least_gain;
+    if (!best || placed.refined.fit > gain * best->refined.fit) best = std::move(placed);
   }
   return std::move(*best);
 }

@@ -13,8 +13,8 @@ class CarriedMotion {
   /// @param seed  of the phases of all sines
   CarriedMotion(const VehicleOptions& options, int seed);
 
-  /// From the rig to where a vehicle on wheels would be: forward, left, up. The identity for such a
-  /// vehicle itself.
+  /// Where the rig is in the frame of a vehicle on wheels on the same way: forward, left, up. The
+  /// identity for such a vehicle itself.
   /// @param time  s
   /// @param way   m
   RigidMotion T_vehicle_carried(double time, double way) const;

@@ -15,6 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kStandardGravity = 9.80665;  // m/s^2
+/// No IMU measures more: rad/s, or degrees a second that are to be radians; m/s^2.
+constexpr double kLargestRate = 500, kLargestForce = 5000;
 
 enum ImuColumn : std::size_t { kRateX, kForceX = 3, kImuColumns = 6 };
 constexpr std::array<CsvColumn, kImuColumns> kImuNames = {
@@ -89,9 +91,10 @@ void report_times(const std::vector<ImuSample>& samples, const fs::path& file, M
 }
 
 /// A sensor at the end of its range repeats its largest value.
-/// @param kind  "angular rates"
+/// @param kind   "angular rates"
+/// @param least  that any IMU measures
 void report_saturation(const std::vector<double>& values, std::string_view kind,
-                       std::string_view unit, double scale, const fs::path& file,
+                       std::string_view unit, double scale, double least, const fs::path& file,
                        Messages& messages) {
   constexpr std::size_t kInARow = 3;
   double largest = 0;
@@ -104,7 +107,7 @@ void report_saturation(const std::vector<double>& values, std::string_view kind,
     longest = std::max(longest, in_a_row);
     count += at_end ? 1 : 0;
   }
-  if (longest < kInARow || longest == values.size()) return;
+  if (longest < kInARow || largest < least) return;
   messages.warn(
       fmt::format("{}: {} {} are at the end of the range, {:.4g} {}: the IMU is saturated",
                   file.string(), count, kind, largest * scale, unit));
@@ -112,6 +115,7 @@ void report_saturation(const std::vector<double>& values, std::string_view kind,
 
 void report_saturation(const std::vector<ImuSample>& samples, const fs::path& file,
                        Messages& messages) {
+  constexpr double kLeastRate = 0.5, kLeastForce = 14;  // rad/s, m/s^2
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> rates, forces;
     for (const ImuSample& sample : samples) {
@@ -120,9 +124,9 @@ void report_saturation(const std::vector<ImuSample>& samples, const fs::path& fi
     }
     const char name = "xyz"[axis];
     report_saturation(rates, fmt::format("angular rates about {}", name), "degrees/s", 1 / kDegree,
+                      kLeastRate, file, messages);
+    report_saturation(forces, fmt::format("accelerations along {}", name), "m/s^2", 1, kLeastForce,
                       file, messages);
-    report_saturation(forces, fmt::format("accelerations along {}", name), "m/s^2", 1, file,
-                      messages);
   }
 }
 
@@ -142,6 +146,10 @@ ImuTable read_imu(const fs::path& file, const ImuDescription& description,
                            vector_at(rows, row, kForceX)};
     if (!sample.rate.allFinite() || !sample.force.allFinite()) {
       left_out.add(rows.lines[row], "without rates and accelerations");
+      continue;
+    }
+    if (sample.rate.norm() > kLargestRate || sample.force.norm() > kLargestForce) {
+      left_out.add(rows.lines[row], "with rates or accelerations out of range");
       continue;
     }
     imu.samples.push_back(sample);

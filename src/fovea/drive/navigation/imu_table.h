@@ -14,8 +14,8 @@ struct ImuTable : Messages {
   std::optional<ImuData> imu;  ///< absent: the file has nothing of use
 };
 
-/// Reads the angular rates and accelerations of a file. Lines without them are left out and noted.
-/// So is what shows a fault: gaps, values at the end of the IMU's range, units that nothing states.
+/// Reads the angular rates and accelerations of a file. Warnings count the lines that are left out,
+/// and name faults: gaps, values at the end of the IMU's range, accelerations that are no gravity.
 /// InputError if the file cannot be read.
 ImuTable read_imu(const std::filesystem::path& file, const ImuDescription& description,
                   const std::optional<ScanPeriod>& scans);

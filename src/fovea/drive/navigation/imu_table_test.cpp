@@ -103,6 +103,9 @@ TEST_F(ImuTableTest, LinesWithoutValuesAreLeftOut) {
   const ImuTable table = read(100, [](int i) { return i == 5 ? "1,2,,4,5,6" : usual(i); });
   EXPECT_EQ(table.imu->samples.size(), 99u);
   EXPECT_THAT(table.warnings, Contains(HasSubstr("without rates and accelerations")));
+  const ImuTable wild = read(100, [](int i) { return i == 5 ? "1,2,0,4,5,98123" : usual(i); });
+  EXPECT_EQ(wild.imu->samples.size(), 99u);
+  EXPECT_THAT(wild.warnings, Contains(HasSubstr("out of range")));
   const ImuTable none = read(100, [](int) { return ",,,,,"; });
   EXPECT_FALSE(none.imu);
   EXPECT_THAT(none.warnings, Contains(HasSubstr("the IMU is not used")));

@@ -167,7 +167,7 @@ class NavigationPlanner {
     const bool has_orientations = take_orientations(topic, imus, frame);
     const bool has_rates = take_rates(topic, imus, frame);
     for (const ros::Imu& imu : imus) {
-      if (!has_rates && !(has_orientations && imu.orientation)) continue;
+      if (has_orientations ? !imu.orientation : !has_rates) continue;
       drive_.inertia.push_back({imu.header.stamp, has_orientations ? imu.orientation : std::nullopt,
                                 imu.angular_velocity, imu.acceleration});
     }
@@ -201,7 +201,7 @@ class NavigationPlanner {
   bool take_rates(const std::string& topic, const std::vector<ros::Imu>& imus,
                   const std::string& frame) {
     const bool measures = std::any_of(imus.begin(), imus.end(), [](const ros::Imu& imu) {
-      return !imu.acceleration.isZero(0) && imu.acceleration.allFinite();
+      return !imu.acceleration.isZero(0) && !imu.angular_velocity.isZero(0);
     });
     if (!measures) return false;
     if (const auto T = still(lidar_frame_, frame)) {

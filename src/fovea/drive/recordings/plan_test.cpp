@@ -262,7 +262,10 @@ TEST_F(PlanNavigation, AnImuThatNeverTurnsKnowsNoOrientation) {
 
 TEST_F(PlanNavigation, RatesAndAccelerationsOfAnImuNeedNoPositions) {
   add_imu("imu");
-  for (ros::Imu& imu : index_.imus["/imu"]) imu.acceleration << 0.1, 0, 9.8;
+  for (ros::Imu& imu : index_.imus["/imu"]) {
+    imu.acceleration << 0.1, 0, 9.8;
+    imu.angular_velocity << 0.01, 0, 0;
+  }
   const RecordedDrive drive = plan();
   ASSERT_EQ(drive.inertia.size(), 2u);
   EXPECT_FALSE(drive.inertia[1].R_enu_imu);  // nothing has a use for it
