@@ -84,6 +84,10 @@ test('a bag folder, GNSS and IMU', () => {
   const bag = drives.path('bag');
   writeRosbag2(bag, record(drives.drive('gnss'), { poses: 'gnss' }));
   checkConverted(bag, 'gnss', 'folder');
+  // Rates and accelerations, and where tf says that they were measured.
+  const [first] = readFileSync(drives.path('folder/drive/imu.csv'), 'utf8').split('\n').slice(1);
+  assert.deepEqual(first.split(',').slice(5).map(Number), [0.01, -0.02, 0.03, 0.4, -0.1, 9.8]);
+  assert.match(readFileSync(drives.path('folder/drive/drive.toml'), 'utf8'), /^\[imu\]\nT_lidar_imu = /m);
 });
 
 test('its database alone', () => {

@@ -91,11 +91,11 @@ export class ConvertDrives {
     return readDrive(this.path(name, 'drive'));
   }
 
-  /// The digest of the map of a drive.
+  /// The digest of the map of a drive. The rates of its IMU are made up, so they are not used.
   digest(name) {
     const map = this.path(name, 'map.fovea'), cameras = this.drive(name).cameras.map(({ index }) => index);
     execFileSync(this.#program,
-      ['map', this.path(name, 'drive'), '-o', map, '--quiet', '--cameras', cameras.join()]);
+      ['map', this.path(name, 'drive'), '-o', map, '--quiet', '--no-imu', '--cameras', cameras.join()]);
     return execFileSync(this.#program, ['info', '--digest', map], { encoding: 'utf8' });
   }
 
