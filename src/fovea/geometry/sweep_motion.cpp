@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/geometry/rotation_vector.h"
+
 namespace fovea {
 
 RigidMotion SweepPath::at(double dt) const {
@@ -13,8 +15,7 @@ RigidMotion SweepPath::at(double dt) const {
   const Twist& to = placements[static_cast<std::size_t>(whole) + 1];
   const Twist placement = from + (place - whole) * (to - from);
   RigidMotion T = RigidMotion::Identity();
-  const double angle = placement.head<3>().norm();
-  if (angle > 0) T.linear() = Eigen::AngleAxisd(angle, placement.head<3>() / angle).matrix();
+  T.linear() = rotation_of(placement.head<3>());
   T.translation() = placement.tail<3>();
   return T;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include "fovea/core/median.h"
+#include "fovea/geometry/imu_gap.h"
+#include "fovea/geometry/rotation_vector.h"
 
 namespace fovea {
 namespace {
@@ -22,12 +22,6 @@ constexpr double kLevelWalk = 1e-4;
 
 }  // namespace
 
-Matrix3 rotation_of(const Vector3& v) {
-  const double angle = v.norm();
-  if (angle == 0) return Matrix3::Identity();
-  return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
-}
-
 Eigen::Matrix<double, 3, 2> across_gravity(const InertialState& state) {
   const Vector3& direction = state.gravity;
   const Vector3 first = direction.unitOrthogonal();
@@ -36,14 +30,8 @@ Eigen::Matrix<double, 3, 2> across_gravity(const InertialState& state) {
   return axes;
 }
 
-ImuIntegration::ImuIntegration(const ImuData& imu) : imu_(&imu) {
-  std::vector<TimeNs> steps;
-  for (std::size_t i = 1; i < imu.samples.size(); ++i) {
-    steps.push_back(imu.samples[i].time - imu.samples[i - 1].time);
-  }
-  constexpr TimeNs kShortestGap = kNsPerSecond / 40;
-  gap_limit_ = std::max(kShortestGap, 5 * median_of(std::move(steps)));
-}
+ImuIntegration::ImuIntegration(const ImuData& imu)
+    : imu_(&imu), gap_limit_(imu_gap_limit(imu.samples)) {}
 
 bool ImuIntegration::covers(TimeNs stamp) const {
   constexpr TimeNs kLongest = kNsPerSecond / 2;

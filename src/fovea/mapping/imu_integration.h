@@ -32,9 +32,6 @@ struct InertialState {
 /// Unit vectors of the two axes of gravity's error.
 Eigen::Matrix<double, 3, 2> across_gravity(const InertialState& state);
 
-/// The rotation by a rotation vector.
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& v);
-
 /// Strapdown integration by the midpoint rule.
 class ImuIntegration {
  public:

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "fovea/geometry/rotation_vector.h"
+
 namespace fovea {
 namespace {
 
@@ -36,11 +38,6 @@ constexpr double kStillSpeed = 0.05;
 constexpr double kStartBefore = 1, kStartAfter = 0.5;
 
 constexpr double kPathStep = 0.005;  // s
-
-Vector3 rotation_vector(const Matrix3& R) {
-  const Eigen::AngleAxisd turn(R);
-  return turn.angle() * turn.axis();
-}
 
 /// Of the two rotation vectors of a rotation, the one nearer to another vector.
 Vector3 nearest_vector(const Vector3& turn, const Vector3& other) {

@@ -6,6 +6,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/core/median.h"
+#include "fovea/geometry/rotation_vector.h"
 
 namespace fovea {
 namespace {
@@ -18,16 +19,11 @@ constexpr std::size_t kKept = 50;             // turns
 /// Mean errors of a turn, rad: an IMU that is proven, and one that is contradicted.
 constexpr double kSmallError = 0.3 * kDegree, kLargeError = 0.6 * kDegree;
 
-Eigen::Vector3d turn_of(const RigidMotion& T) {
-  const Eigen::AngleAxisd turn(T.linear());
-  return turn.angle() * turn.axis();
-}
-
 }  // namespace
 
 void ImuAgreement::add(const RigidMotion& registered, const RigidMotion& by_imu,
                        const RigidMotion& by_velocity) {
-  const Turns turns{turn_of(registered), turn_of(by_imu)};
+  const Turns turns{rotation_vector(registered.linear()), rotation_vector(by_imu.linear())};
   if (std::max(turns.scans.norm(), turns.imu.norm()) < kLeastTurn) return;
   const auto error = [&](const RigidMotion& guess) {
     return rotation_angle(guess.linear().transpose() * registered.linear());

@@ -13,8 +13,8 @@
 namespace fovea {
 
 struct MotionPrediction {
-  /// One guess, or two if navigation contradicts the motion so far; registration then decides. The
-  /// more reliable one first.
+  /// One guess, or more if navigation, the IMU and the motion so far contradict each other;
+  /// registration then decides. The more reliable one first.
   std::vector<MotionGuess> guesses;
   /// How many times better than the first one a further guess must fit.
   double least_gain = 1;
@@ -112,6 +112,7 @@ class MotionModel {
   /// Standard deviations of navigation's motion over a time (s).
   Twist navigation_sigma(double elapsed) const;
   SweepMotion weighed(const SweepMotion& by_navigation, const SweepMotion& by_motion) const;
+
   const Trajectory* navigation_;
   MotionModelOptions options_;
   std::optional<Twist> initial_velocity_;

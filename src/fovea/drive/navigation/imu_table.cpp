@@ -8,6 +8,7 @@
 
 #include "fovea/core/median.h"
 #include "fovea/drive/navigation/navigation_table.h"
+#include "fovea/geometry/imu_gap.h"
 
 namespace fovea {
 namespace {
@@ -53,12 +54,6 @@ double force_scale(const std::vector<ImuSample>& samples, ForceUnit stated, cons
   return 1;
 }
 
-/// The time without samples from which on a step is a gap, ns.
-TimeNs gap_limit(TimeNs usual_step) {
-  constexpr TimeNs kShortest = kNsPerSecond / 40;
-  return std::max(kShortest, 5 * usual_step);
-}
-
 void report_times(const std::vector<ImuSample>& samples, const fs::path& file, Messages& messages) {
   std::vector<TimeNs> steps;
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -74,7 +69,7 @@ void report_times(const std::vector<ImuSample>& samples, const fs::path& file, M
                     "is lost",
                     file.string(), rate, kSlowest));
   }
-  const TimeNs limit = gap_limit(usual);
+  const TimeNs limit = imu_gap_limit(samples);
   std::size_t gaps = 0;
   TimeNs longest = 0;
   for (const TimeNs step : steps) {

@@ -1,0 +1,13 @@
+// Gaps in the samples of an IMU.
+#pragma once
+
+#include <vector>
+
+#include "fovea/geometry/imu_data.h"
+
+namespace fovea {
+
+/// A longer time from sample to sample is a gap: 25 ms, or five usual steps.
+TimeNs imu_gap_limit(const std::vector<ImuSample>& samples);
+
+}  // namespace fovea

@@ -1,0 +1,22 @@
+// Rotations as vectors: along the axis, as long as the angle (rad).
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "fovea/core/eigen_alignment.h"
+
+namespace fovea {
+
+inline Eigen::Matrix3d rotation_of(const Eigen::Vector3d& v) {
+  const double angle = v.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
+}
+
+/// At most pi long.
+inline Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+}  // namespace fovea
