@@ -62,7 +62,7 @@ std::string ImuAgreement::likely_fault() const {
   const Eigen::Vector3d agreement = svd.singularValues() / double(turns_.size());
   constexpr double kSeen = 0.05;  // share of turns about a third axis
   if (mirrored.determinant() < 0 && agreement[2] > kSeen) return "an axis is likely flipped";
-  Eigen::Vector3d signs(1, 1, mirrored.determinant());
+  const Eigen::Vector3d signs(1, 1, mirrored.determinant());
   const Eigen::Matrix3d R = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
   return fmt::format(
       "its mount (imu.T_lidar_imu) is likely off by {:.0f} degrees, an axis flipped, or its clock "
