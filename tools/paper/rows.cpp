@@ -9,6 +9,7 @@
 #include "fovea/core/path_name.h"
 #include "fovea/core/unfinished_output.h"
 #include "fovea/core/version.h"
+#include "fovea/drive/calibrated_drive.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
 #include "fovea/evaluation/scan_matching.h"
@@ -113,7 +114,7 @@ class RowRun {
     Json held = map(plan, HoldOut::parse(kHoldOut));
     const ScoredMap scored = load_scored_map(map_file_, {});
     held["held_out"] = score_held_out(scored);
-    if (std::filesystem::exists(drive_.info().path / "truth" / "truth.json")) {
+    if (std::filesystem::exists(recorded_folder(drive_.info().path) / "truth/truth.json")) {
       held["truth"] = without_frames(to_json(evaluate_truth(scored, drive_, {})));
     }
     return held;

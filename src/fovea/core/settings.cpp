@@ -249,6 +249,10 @@ SettingsDocument SettingsDocument::from_assignment(std::string_view assignment,
   return SettingsDocument(std::make_unique<Content>(Content{std::move(table), name}));
 }
 
+bool SettingsDocument::has(std::string_view key) const {
+  return content_->table.at_path(key).node() != nullptr;
+}
+
 std::vector<std::string> SettingsDocument::tables(std::string_view key, bool among_keys) const {
   std::vector<std::string> names;
   const toml::node* node = content_->table.at_path(key).node();
@@ -258,9 +262,7 @@ std::vector<std::string> SettingsDocument::tables(std::string_view key, bool amo
   };
   const std::string remedy = fmt::format("write [{}.NAME]", key);
   const toml::table* tables = node->as_table();
-  if (tables == nullptr) {
-    throw ConfigError("this is no table", place(*node), remedy);
-  }
+  if (tables == nullptr) throw ConfigError("this is no table", place(*node), remedy);
   for (const auto& [name, inner] : *tables) {
     if (!inner.is_table()) {
       if (among_keys) continue;

@@ -112,6 +112,9 @@ class SettingsDocument {
   ~SettingsDocument();
   SettingsDocument(SettingsDocument&&) noexcept;
 
+  /// Whether the document has a key or table of this name.
+  bool has(std::string_view key) const;
+
   /// Names of the tables below `key` ("camera" of [camera.left] and [camera.right]), sorted: where
   /// a list of keys depends on them. ConfigError if something below the key is no table, or has a
   /// name of other characters than letters, digits, '_' and '-'.

@@ -13,6 +13,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
+#include "fovea/drive/calibrated_drive.h"
 #include "fovea/drive/kitti/kitti_drives.h"
 
 namespace fovea {
@@ -181,6 +182,20 @@ void check_existing(const OutputPath& output) {
   check_output_path(output.path, output.force);
 }
 
+/// Calibrated drives have their files in the folders of other drives.
+std::vector<std::string> with_corrected_drives(const std::vector<std::string>& inputs) {
+  std::vector<std::string> all = inputs;
+  for (const std::string& input : inputs) {
+    if (input.empty()) continue;
+    try {
+      for (const fs::path& folder : corrected_folders(input)) all.push_back(folder.string());
+    } catch (const Error&) {
+      continue;  // Opening the drive reports it.
+    }
+  }
+  return all;
+}
+
 void check_folder(const OutputFolderPath& folder, const std::vector<std::string>& inputs) {
   if (folder.path.empty()) return;
   std::error_code ignored;
@@ -201,16 +216,17 @@ void check_folder(const OutputFolderPath& folder, const std::vector<std::string>
 }  // namespace
 
 void check_files(const CommandFiles& files) {
+  const std::vector<std::string> inputs = with_corrected_drives(files.inputs);
   std::vector<OutputPath> outputs;
   std::copy_if(files.outputs.begin(), files.outputs.end(), std::back_inserter(outputs),
                [](const OutputPath& output) { return !output.path.empty(); });
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    for (const std::string& input : files.inputs) {
+    for (const std::string& input : inputs) {
       if (!input.empty()) require_other_file(outputs[i], input);
     }
     for (std::size_t j = 0; j < i; ++j) require_other_output(outputs[j], outputs[i]);
   }
-  check_folder(files.folder, files.inputs);
+  check_folder(files.folder, inputs);
   for (const OutputPath& output : outputs) {
     check_existing(output);
     check_partial(output);

@@ -26,7 +26,6 @@ inline auto names_of(LensModel) {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr int kMaxCamera = 9;  // config_keys.h knows slices of as many
 
 /// One camera's keys.
 class CameraKeys {
@@ -56,7 +55,7 @@ class CameraKeys {
   /// @param drive_folder  holds that file
   CameraDescription camera(const std::filesystem::path& drive_folder) {
     camera_.index = required(index_, "index", "give a number of 0 to 9");
-    check_key(key("index"), camera_.index, 0, kMaxCamera);
+    check_key(key("index"), camera_.index, 0, kMaxCameraIndex);
     camera_.folder = folder_;
     camera_.mask = mask_;
     if (calibration_.empty()) {
@@ -168,12 +167,7 @@ class DriveKeys {
 
   /// ConfigError whose place is the key.
   void finish() {
-    if (!version_) reject_key("a key is missing", "version", "write version = 1 above all tables");
-    if (*version_ != kVersion) {
-      reject_key(
-          fmt::format("the drive has version {}, this program reads {}", *version_, kVersion),
-          "version", "use a newer Fovea");
-    }
+    check_drive_version(version_);
     read_lidars();
     check_key("images.tolerance", drive_.image_tolerance, 0, 1);
     drive_.T_body_lidar = T_body_lidar_.motion().value_or(drive_.T_body_lidar);
@@ -258,6 +252,13 @@ DriveDescription read(const SettingsDocument& document, const std::filesystem::p
 }
 
 }  // namespace
+
+void check_drive_version(const std::optional<int>& version) {
+  if (!version) reject_key("a key is missing", "version", "write version = 1 above all tables");
+  if (*version == kVersion) return;
+  reject_key(fmt::format("the drive has version {}, this program reads {}", *version, kVersion),
+             "version", "use a newer Fovea");
+}
 
 DriveDescription read_drive_description(const std::filesystem::path& file) {
   return read(SettingsDocument::from_file(file), file.parent_path());

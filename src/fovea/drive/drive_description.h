@@ -66,6 +66,9 @@ struct WheelDescription {
   double sigma = 0.1;  ///< m/s, standard deviation of a speed
 };
 
+/// Of cameras: Camera::index.
+inline constexpr int kMaxCameraIndex = 9;
+
 struct DriveDescription {
   LidarDescription lidar;  ///< the first one: its frame and its stamps are the drive's
   std::vector<LidarDescription> further_lidars;  ///< by name
@@ -78,6 +81,10 @@ struct DriveDescription {
   WheelDescription wheels;
   std::vector<CameraDescription> cameras;  ///< by index; may be empty
 };
+
+/// Rejects a missing `version`, and one that this program does not read.
+/// @throws ConfigError  whose place is the key
+void check_drive_version(const std::optional<int>& version);
 
 /// Reads drive.toml. InputError if it cannot be read; ConfigError that names file and key (and
 /// line, where the key is there) for a syntax error, an unknown or missing key, a wrong type, or

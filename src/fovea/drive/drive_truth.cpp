@@ -11,6 +11,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/nesting.h"
 #include "fovea/core/read_file.h"
+#include "fovea/drive/calibrated_drive.h"
 #include "fovea/geometry/pose_file.h"
 
 namespace fovea {
@@ -74,7 +75,7 @@ std::vector<double> read_exposures(const fs::path& file) {
 
 }  // namespace
 
-DriveTruth::DriveTruth(const fs::path& drive) : folder_(drive / "truth") {
+DriveTruth::DriveTruth(const fs::path& drive) : folder_(recorded_folder(drive) / "truth") {
   std::error_code unreadable;
   if (!fs::is_directory(folder_, unreadable)) {
     throw InputError("the drive has no truth", folder_.string(),

@@ -31,8 +31,9 @@ struct TrueCamera {
   std::vector<double> exposure;          ///< factor on linear light
 };
 
-/// The files of DRIVE/truth. Frame numbers are those of the drive's files, from 0 on. Every reading
-/// method is thread-safe and throws InputError that names the file where it is missing or damaged.
+/// The files of DRIVE/truth; a calibrated drive has those of the drive that it corrects. Frame
+/// numbers are those of the drive's files, from 0 on. Every reading method is thread-safe and
+/// throws InputError that names the file where it is missing or damaged.
 class DriveTruth {
  public:
   /// Reads what is small: truth.json, poses, exposures. InputError if the drive has no truth.

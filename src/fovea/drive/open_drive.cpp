@@ -6,6 +6,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/path_remedy.h"
+#include "fovea/drive/calibrated_drive.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/generic_drive.h"
@@ -16,24 +17,6 @@ namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The synced raw drives two folders below: ROOT/DATE/DATE_drive_NNNN_sync; sorted.
-std::vector<fs::path> drives_below(const fs::path& root) {
-  std::vector<fs::path> drives;
-  for (const auto& date : fs::directory_iterator(root)) {
-    if (!date.is_directory()) continue;
-    std::error_code closed;  // a folder that is none of ours and may not be looked into
-    for (const auto& drive : fs::directory_iterator(date.path(), closed)) {
-      const std::string name = drive.path().filename().string();
-      if (name.starts_with(date.path().filename().string() + "_drive_") &&
-          name.ends_with("_sync") && fs::is_directory(drive.path() / "velodyne_points")) {
-        drives.push_back(drive.path());
-      }
-    }
-  }
-  std::sort(drives.begin(), drives.end());
-  return drives;
-}
 
 /// "a, b, c, ..." of the first few names, relative to the root.
 std::string list_drives(const std::vector<fs::path>& drives, const fs::path& root) {
@@ -66,6 +49,7 @@ std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOp
       "(.../DATE/DATE_drive_NNNN_sync) or an odometry sequence (.../sequences/NN)";
   if (!fs::exists(path)) throw InputError("the drive does not exist", path.string(), kRemedy);
   if (!fs::is_directory(path)) throw InputError("the drive is no folder", path.string(), kRemedy);
+  if (is_calibrated_drive_file(path / "drive.toml")) return open_calibrated_drive(path, options);
   if (fs::exists(path / "drive.toml")) return open_generic_drive(path, options);
   if (const std::string_view data_set = data_set_without_drives(path); !data_set.empty()) {
     throw InputError("the folder is of " + std::string(data_set), path.string(), kRemedy);
@@ -73,7 +57,7 @@ std::unique_ptr<FrameSource> open_recognised(const fs::path& path, const DriveOp
   if (fs::is_directory(path / "velodyne_points")) return open_kitti_raw(path, options);
   if (fs::is_directory(path / "velodyne")) return open_kitti_odometry(path, options);
   if (fs::is_empty(path)) throw InputError("the drive's folder is empty", path.string(), kRemedy);
-  const std::vector<fs::path> drives = drives_below(path);
+  const std::vector<fs::path> drives = raw_drives_below(path);
   if (drives.size() == 1) return open_kitti_raw(drives.front(), options);
   if (drives.size() > 1) {
     throw InputError("the folder holds " + std::to_string(drives.size()) +

@@ -16,4 +16,7 @@ std::unique_ptr<FrameSource> open_kitti_odometry(const std::filesystem::path& pa
 /// ../../poses/NN.txt of a sequence sequences/NN, where KITTI ships its poses.
 std::filesystem::path shipped_poses(const std::filesystem::path& sequence);
 
+/// The synced raw drives two folders below: ROOT/DATE/DATE_drive_NNNN_sync; sorted.
+std::vector<std::filesystem::path> raw_drives_below(const std::filesystem::path& root);
+
 }  // namespace fovea

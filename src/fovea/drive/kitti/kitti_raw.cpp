@@ -1,6 +1,8 @@
 // KITTI raw drives: DATE/DATE_drive_NNNN_sync.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "fovea/core/errors.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/kitti/kitti_drives.h"
@@ -154,6 +156,24 @@ std::unique_ptr<FrameSource> open_kitti_raw(const std::filesystem::path& path,
     find_imu(calibration, info);
   }
   return make_frame_source(std::move(info), std::move(files));
+}
+
+std::vector<std::filesystem::path> raw_drives_below(const std::filesystem::path& root) {
+  std::vector<std::filesystem::path> drives;
+  for (const auto& date : std::filesystem::directory_iterator(root)) {
+    if (!date.is_directory()) continue;
+    std::error_code closed;  // a folder that is none of ours and may not be looked into
+    for (const auto& drive : std::filesystem::directory_iterator(date.path(), closed)) {
+      const std::string name = drive.path().filename().string();
+      if (name.starts_with(date.path().filename().string() + "_drive_") &&
+          name.ends_with("_sync") &&
+          std::filesystem::is_directory(drive.path() / "velodyne_points")) {
+        drives.push_back(drive.path());
+      }
+    }
+  }
+  std::sort(drives.begin(), drives.end());
+  return drives;
 }
 
 }  // namespace fovea

@@ -7,6 +7,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/read_file.h"
+#include "fovea/drive/calibrated_drive.h"
 
 namespace fovea {
 namespace {
@@ -74,10 +75,11 @@ bool Tracklet::contains(int frame, const Eigen::Vector3d& p_lidar, double margin
 
 std::optional<std::filesystem::path> find_tracklets(const std::filesystem::path& drive) {
   if (drive.empty()) return std::nullopt;
-  const std::filesystem::path inside = drive / kFileName;
+  const std::filesystem::path recorded = recorded_folder(drive);
+  const std::filesystem::path inside = recorded / kFileName;
   std::error_code ignored;
   if (std::filesystem::exists(inside, ignored)) return inside;
-  std::filesystem::path folder = std::filesystem::absolute(drive, ignored).lexically_normal();
+  std::filesystem::path folder = std::filesystem::absolute(recorded, ignored).lexically_normal();
   if (folder.filename().empty()) folder = folder.parent_path();
   std::string name = folder.filename().string();
   constexpr std::string_view kSync = "_sync";

@@ -28,7 +28,8 @@ struct Tracklet {
 };
 
 /// The drive's tracklet file: `tracklet_labels.xml` in its folder or, as the benchmark's archive is
-/// named, in DATE_drive_NNNN_tracklets beside it. Nothing if it has none.
+/// named, in DATE_drive_NNNN_tracklets beside it. Nothing if it has none. A calibrated drive has
+/// the file of the drive that it corrects.
 std::optional<std::filesystem::path> find_tracklets(const std::filesystem::path& drive);
 
 /// InputError, which names the file and the place, if it is no tracklet file or damaged.
