@@ -17,6 +17,7 @@ std::span<const AddCommand> commands();
 
 void add_map_command(CLI::App& app, Session& session);
 void add_check_command(CLI::App& app, Session& session);
+void add_calibrate_command(CLI::App& app, Session& session);
 void add_info_command(CLI::App& app, Session& session);
 void add_evaluate_command(CLI::App& app, Session& session);
 void add_convert_command(CLI::App& app, Session& session);

@@ -160,7 +160,7 @@ void run(const MapArguments& arguments, Session& session) {
       throw with_log_remedy(error, arguments.output);
     }
   }();
-  const Messages calibration = calibration_messages(summary);
+  const Messages calibration = calibration_messages(summary.calibration, summary.calibrated);
   if (report) {
     MapSummary reported = summary;
     reported.append(calibration);
@@ -231,8 +231,8 @@ void add_map_command(CLI::App& app, Session& session) {
                     "Leave out GPS/INS or poses; of GPS/INS the rates and accelerations count");
   command->add_flag("--no-imu", arguments->drive.no_imu, "Leave out the IMU and wheel speeds");
   command->add_flag("--calibrate", arguments->calibrate,
-                    "First estimate rotation and delay of the cameras from the drive's edges, and "
-                    "map under them");
+                    "First estimate how cameras and IMU sit and their time offsets, and map with "
+                    "the result");
   command->add_flag("--allow-dropped", arguments->allow_dropped,
                     "Map even if over 10 % of the scans' points cannot be used");
   command->add_flag("--resume", arguments->resume, "Go on with an unfinished map");

@@ -2,72 +2,124 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/calibration_text.h"
 #include "fovea/core/angle.h"
 
 namespace fovea::app {
 namespace {
 
+/// "0.301 - -0.012": three values, a dash for each that is not observable.
+std::string three(const Eigen::Vector3d& values, double unit, const CalibrationEstimate& e,
+                  int first, int decimals) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    if (k > 0) text += ' ';
+    text += e.observable[std::size_t(first + k)]
+                ? fmt::format("{:.{}f}", values[k] / unit, decimals)
+                : "-";
+  }
+  return text;
+}
+
 /// "rotation 0.30 0.00 -0.01 degrees (+-0.01 0.00 0.02), images 19.6 ms late (+-0.2)".
 std::string figures_of(const CalibrationEstimate& e) {
-  const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;
-  const std::string rotation =
-      fmt::format("rotation {:.3f} {:.3f} {:.3f} degrees (+-{:.3f} {:.3f} {:.3f})", r.x(), r.y(),
-                  r.z(), s.x(), s.y(), s.z());
-  if (!e.delay_observable) return rotation + ", time offset not observable";
-  return fmt::format("{}, images {:.1f} ms late (+-{:.1f})", rotation, 1e3 * e.delay,
-                     1e3 * e.delay_sigma);
-}
-
-constexpr const char* kCheckCalibration =
-    "check its T_cam_lidar, its K and the stamps of its images";
-
-/// What the user can do about edges that lie over a pixel off.
-std::string remedy_of(const CalibrationEstimate& e, bool can_calibrate) {
-  if (!e.correctable) {
-    return fmt::format("this is beyond what --calibrate corrects: {}", kCheckCalibration);
+  std::string text = fmt::format("rotation {} degrees (+-{})",
+                                 three(e.correction.rotation, kDegree, e, kCamRotation, 3),
+                                 three(e.sigma.rotation, kDegree, e, kCamRotation, 3));
+  const bool has_translation =
+      std::any_of(e.observable.begin() + kCamTranslation, e.observable.begin() + kCamDelay,
+                  [](bool is_observable) { return is_observable; });
+  if (has_translation) {
+    text += fmt::format(", translation {} cm (+-{})",
+                        three(e.correction.translation, 0.01, e, kCamTranslation, 1),
+                        three(e.sigma.translation, 0.01, e, kCamTranslation, 1));
   }
-  return can_calibrate ? "--calibrate corrects this"
-                       : "--calibrate with --poses FILE corrects this";
+  if (!e.delay_observable()) return text + ", time offset not observable";
+  return text + fmt::format(", images {:.1f} ms late (+-{:.1f})", 1e3 * e.correction.delay,
+                            1e3 * e.sigma.delay);
 }
 
-std::string calibration_line(int camera, const CalibrationEstimate& e, const MapSummary& summary) {
+constexpr const char* kCalibrateReach = "5 degrees, 20 cm and 100 ms";
+
+std::string camera_line(int camera, const CalibrationEstimate& e, bool applied) {
   if (e.disagrees) {
-    return fmt::format("camera {}: camera and LiDAR do not agree ({} edges in {} frames): {}",
-                       camera, e.edges, e.frames, kCheckCalibration);
+    const std::string line =
+        fmt::format("camera {}: camera and LiDAR do not agree ({} edges in {} frames): ", camera,
+                    e.edges, e.frames);
+    const char* remedy = "check its T_cam_lidar, its K and the stamps of its images";
+    if (applied) return line + remedy;
+    return line +
+           fmt::format("--calibrate corrects errors of up to {}; else {}", kCalibrateReach, remedy);
   }
-  if (!e.rotation_observable) {
+  if (!e.is_any_observable()) {
     return fmt::format(
         "camera {}: calibration not observable ({} edges in {} frames), it stays as given", camera,
         e.edges, e.frames);
   }
-  const bool applied = summary.calibrated;
   const std::string edges =
       fmt::format("edges {} {:.1f} pixels off the LiDAR's", applied ? "lay" : "lie", e.pixels);
   if (applied) return fmt::format("camera {}: corrected, {}: {}", camera, edges, figures_of(e));
   if (!e.off_by_a_pixel()) return fmt::format("camera {}: {}: {}", camera, edges, figures_of(e));
-  return fmt::format("camera {}: {}: {}; camera and LiDAR do not agree, {}", camera, edges,
-                     figures_of(e), remedy_of(e, summary.can_calibrate));
+  return fmt::format("camera {}: {}: {}; camera and LiDAR do not agree, --calibrate corrects this",
+                     camera, edges, figures_of(e));
 }
 
 /// Whether the drive's calibration is wrong and stays so.
 bool is_warning(const CalibrationEstimate& e, bool applied) {
-  return e.disagrees || (e.rotation_observable && !applied && e.off_by_a_pixel());
+  return e.disagrees || (!applied && e.rotation_observable() && e.off_by_a_pixel());
+}
+
+/// The values of a corrected camera that stay as given, each with its remedy.
+void add_missing_evidence(const CameraCalibration& camera, Messages& messages) {
+  if (!camera.estimate.is_any_observable()) return;
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    const std::string remedy = missing_evidence(camera.estimate, k);
+    if (remedy.empty()) continue;
+    messages.notes.push_back(fmt::format("camera {}: {} is not observable and stays as given: {}",
+                                         camera.camera, calibration_parameter_name(k), remedy));
+  }
+}
+
+void add_imu(const ImuHandEye& imu, Messages& messages) {
+  if (!imu.agrees) {
+    messages.warn("IMU: its turns are not those of the LiDAR, it stays as given. " +
+                  imu_disagreement(imu));
+    return;
+  }
+  const Eigen::Vector3d r = imu.rotation / kDegree, s = imu.rotation_sigma() / kDegree;
+  std::string line = "IMU: ";
+  line += imu.observable_directions == 0
+              ? "rotation not observable"
+              : fmt::format("rotation {:.2f} {:.2f} {:.2f} degrees (+-{:.2f} {:.2f} {:.2f})", r.x(),
+                            r.y(), r.z(), s.x(), s.y(), s.z());
+  line += imu.delay_observable ? fmt::format(", samples {:.1f} ms late (+-{:.1f})", 1e3 * imu.delay,
+                                             1e3 * imu.delay_sigma)
+                               : ", time offset not observable";
+  const std::string motion = missing_motion(imu);
+  if (!motion.empty()) line += "; the rest stays as given: " + motion;
+  messages.notes.push_back(std::move(line));
 }
 
 }  // namespace
 
-Messages calibration_messages(const MapSummary& summary) {
+Messages calibration_messages(const DriveCalibration& calibration, bool applied) {
   Messages messages;
-  for (const auto& [camera, estimate] : summary.calibration) {
-    std::string line = calibration_line(camera, estimate, summary);
-    if (is_warning(estimate, summary.calibrated)) {
+  for (const CameraCalibration& camera : calibration.cameras) {
+    std::string line = camera_line(camera.camera, camera.estimate, applied);
+    if (is_warning(camera.estimate, applied)) {
       messages.warn(std::move(line));
     } else {
       messages.notes.push_back(std::move(line));
     }
+    if (applied) add_missing_evidence(camera, messages);
+    if (camera.lens.has_odd_focal() || camera.lens.has_odd_distortion()) {
+      messages.warn(fmt::format("camera {}: {}", camera.camera, lens_text(camera.lens)));
+    }
   }
+  if (calibration.imu) add_imu(*calibration.imu, messages);
   return messages;
 }
 

@@ -5,12 +5,14 @@
 
 #include "fovea/core/messages.h"
 #include "fovea/core/output_file.h"
-#include "fovea/pipeline/map_summary.h"
+#include "fovea/pipeline/drive_calibration.h"
 
 namespace fovea::app {
 
-/// One message for each camera's calibration; a warning where edges lie over a pixel off.
-Messages calibration_messages(const MapSummary& summary);
+/// Messages about the calibration of each camera and of the IMU: warnings about what is wrong and
+/// stays so.
+/// @param applied  whether the corrections are in use; false: by the check of a drive
+Messages calibration_messages(const DriveCalibration& calibration, bool applied);
 
 /// Writes indented JSON and commits the file.
 void write_json(OutputFile& file, const nlohmann::ordered_json& json);

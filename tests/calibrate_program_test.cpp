@@ -71,9 +71,9 @@ TemporaryFolder* Calibrate::scratch_ = nullptr;
 
 void expect_planted(const nlohmann::json& camera) {
   EXPECT_EQ(camera.at("camera"), 2);
-  EXPECT_NEAR(camera.at("rotation_deg").at(0), kRotationX, 0.05);
-  EXPECT_NEAR(camera.at("rotation_deg").at(1), kRotationY, 0.05);
   // Half of KITTI's pixels over a few frames: roll is the least certain.
+  EXPECT_NEAR(camera.at("rotation_deg").at(0), kRotationX, 0.1);
+  EXPECT_NEAR(camera.at("rotation_deg").at(1), kRotationY, 0.1);
   EXPECT_NEAR(camera.at("rotation_deg").at(2), 0, 0.1);
   for (int k = 0; k < 3; ++k) {
     const double planted[] = {kRotationX, kRotationY, 0};

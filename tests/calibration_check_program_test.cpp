@@ -104,7 +104,7 @@ TEST_P(TurnedCamera, DoesNotAgreeWithTheLidar) {
   EXPECT_THAT(out, HasSubstr("warning: camera 2: "));
   EXPECT_THAT(out, HasSubstr("camera and LiDAR do not agree"));
   EXPECT_THAT(out, Not(HasSubstr("not observable")));
-  EXPECT_THAT(out, Not(HasSubstr("--calibrate corrects this")));
+  EXPECT_THAT(out, HasSubstr("--calibrate corrects"));
   if (std::abs(GetParam()) < 3) return;  // may be within reach of the estimate
   EXPECT_THAT(out, HasSubstr("check its T_cam_lidar"));
   EXPECT_EQ(report_.at("disagrees"), true);
@@ -113,13 +113,16 @@ TEST_P(TurnedCamera, DoesNotAgreeWithTheLidar) {
 }
 INSTANTIATE_TEST_SUITE_P(Degrees, TurnedCamera, testing::Values(2.0, 5.0, -10.0));
 
-// A correction needs the motion, which navigation states here.
+// With GPS/INS and without.
 TEST_F(CalibrationCheck, TheRemedyIsOneThatWorks) {
-  const fs::path drive = street_with(turned(toml(), 0.7, Eigen::Vector3d::UnitY()));
-  EXPECT_THAT(map(drive), HasSubstr("do not agree, --calibrate corrects this"));
-  EXPECT_EQ(report_.at("correctable"), true);
-  fs::remove(drive / "gnss.csv");
-  EXPECT_THAT(map(drive), HasSubstr("--calibrate with --poses FILE corrects this"));
+  const fs::path drive = street_with(turned(toml(), 2, Eigen::Vector3d::UnitY()));
+  for (const bool with_gnss : {true, false}) {
+    if (!with_gnss) fs::remove(drive / "gnss.csv");
+    EXPECT_THAT(map(drive), HasSubstr("--calibrate corrects"));
+    EXPECT_THAT(map(drive, "--calibrate"), Not(HasSubstr("do not agree")));
+    EXPECT_EQ(report_.at("applied"), true);
+    EXPECT_NEAR(std::abs(report_.at("rotation_deg").at(1).get<double>()), 2, 0.15);
+  }
 }
 
 TEST_F(CalibrationCheck, AnInverseExtrinsicDoesNotAgree) {

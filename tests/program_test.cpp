@@ -255,13 +255,6 @@ TEST_F(Program, LateFramesAreCountedAndNeverDropped) {
   }
 }
 
-// Without navigation and poses nothing says how the vehicle moves.
-TEST_F(Program, CalibratingNeedsToKnowTheMotion) {
-  const auto damaged = damaged_drive();
-  std::filesystem::remove_all(damaged / "oxts");
-  expect_failure(map(damaged, "--calibrate"), "--poses FILE");
-}
-
 TEST_F(Program, ResumeRefusesOtherSettings) {
   ASSERT_EQ(map(drive_).exit_code, 0);
   const ProgramRun run = map(drive_, "--resume --set texture.footprint_m=0.03");

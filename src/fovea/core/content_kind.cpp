@@ -62,7 +62,8 @@ ContentKind kind_of_json_object(std::string_view text) {
   if (body.starts_with('}')) return ContentKind::kReport;  // of no figures
   if (!body.starts_with('"')) return ContentKind::kOther;
   const std::string_view key = body.substr(1, body.find('"', 1) - 1);
-  constexpr std::array kReportKeys{"map", "protocol", "localize", "fovea", "warnings"};
+  constexpr std::array kReportKeys{"map",   "protocol", "localize",
+                                   "fovea", "warnings", "calibration"};
   const bool is_report =
       std::find(kReportKeys.begin(), kReportKeys.end(), key) != kReportKeys.end();
   return is_report ? ContentKind::kReport : ContentKind::kJson;

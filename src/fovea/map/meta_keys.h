@@ -29,7 +29,10 @@ inline constexpr const char* kComplete = "complete";
 inline constexpr const char* kCalibration = "calibration";
 inline constexpr const char* kCalibrationPrefix = "calibration.camera_";
 inline constexpr const char* kRotationEnding = ".rotation_rad";
+inline constexpr const char* kTranslationEnding = ".translation_m";
 inline constexpr const char* kDelayEnding = ".delay_s";
+inline constexpr const char* kImuRotation = "calibration.imu.rotation_rad";
+inline constexpr const char* kImuDelay = "calibration.imu.delay_s";
 
 // Geometry.
 inline constexpr const char* kTileSize = "map.tile_size_m";
@@ -46,7 +49,7 @@ inline constexpr const char* kRepair = "repair";
 inline constexpr const char* kTimingPrefix = "timing.";
 
 /// All keys and prefixes, for the test of docs/map-format.md.
-inline constexpr std::array<std::string_view, 26> kAll = {
+inline constexpr std::array<std::string_view, 29> kAll = {
     kFormatVersion,
     kFoveaVersion,
     kDriveName,
@@ -63,7 +66,10 @@ inline constexpr std::array<std::string_view, 26> kAll = {
     kCalibration,
     kCalibrationPrefix,
     kRotationEnding,
+    kTranslationEnding,
     kDelayEnding,
+    kImuRotation,
+    kImuDelay,
     kTileSize,
     kGeoreferenced,
     kOriginLatitude,

@@ -113,7 +113,8 @@ std::vector<std::string> known_keys(const Table& table) {
   for (const std::string_view key : meta_key::kAll) keys.emplace_back(key);
   constexpr int kMostCameras = 100;
   for (int camera = 0; camera < kMostCameras; ++camera) {
-    for (const char* ending : {meta_key::kRotationEnding, meta_key::kDelayEnding}) {
+    for (const char* ending :
+         {meta_key::kRotationEnding, meta_key::kTranslationEnding, meta_key::kDelayEnding}) {
       keys.push_back(fmt::format("{}{}{}", meta_key::kCalibrationPrefix, camera, ending));
     }
   }

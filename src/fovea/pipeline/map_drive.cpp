@@ -259,8 +259,7 @@ MapSummary MapRun::summary() const {
   summary.points = mapper_->map().size();
   summary.frames_new = log_.size() - frames_before_;
   summary.interrupted = !complete();
-  summary.calibration = calibration_;
-  summary.can_calibrate = has_known_motion(drive_, job_);
+  summary.calibration = {.cameras = calibration_, .imu = {}, .frames = 0};
   return summary;
 }
 
@@ -278,7 +277,7 @@ MapSummary map_drive(const FrameSource& source, const MapJob& job,
       return *std::move(complete);
     }
   }
-  const std::vector<CameraCalibration> correction = correct_calibration(source, job, drive, meta);
+  const DriveCalibration correction = correct_calibration(source, job, drive, meta);
   require_no_stop(job);
   MapRun run(source, drive, job, std::move(meta));
   run.map_frames(progress);

@@ -42,7 +42,7 @@ struct MapJob {
   /// Reading, tracking, mapping and writing run in parallel if there is more than one thread. The
   /// map is the same.
   bool overlap = true;
-  bool calibrate = false;      ///< correct the calibration first (pipeline/self_calibration.h)
+  bool calibrate = false;      ///< correct the calibration first (pipeline/drive_calibration.h)
   bool force = false;          ///< overwrite `output`
   bool allow_dropped = false;  ///< no limit for the share of dropped points
   bool resume = false;         ///< continue `output`, which an earlier run did not finish

@@ -12,7 +12,7 @@ namespace fovea {
 /// Options of a run over a drive, for both mappers.
 struct RunOptions {
   double max_damaged_share = 0.5;  ///< of a drive's frames, 0 to 1
-  bool check_calibration = true;   ///< by edges of a few frames (pipeline/self_calibration.h)
+  bool check_calibration = true;   ///< by edges of a few frames (pipeline/calibration_check.h)
 };
 
 struct MapSettings {

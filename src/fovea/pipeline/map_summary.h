@@ -10,8 +10,8 @@
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/navigation/navigation_faults.h"
 #include "fovea/map/frame_record.h"
+#include "fovea/pipeline/calibration_check.h"
 #include "fovea/pipeline/point_counts.h"
-#include "fovea/pipeline/self_calibration.h"
 
 namespace fovea {
 
@@ -47,10 +47,8 @@ struct MapSummary : Messages {
   double peak_rss_mb = 0;
   std::map<std::string, StageLatency> latency_ms;
   bool interrupted = false;
-  /// Estimated correction of each camera; applied if `calibrated`.
-  std::vector<CameraCalibration> calibration;
+  DriveCalibration calibration;  ///< estimated corrections; applied if `calibrated`
   bool calibrated = false;
-  bool can_calibrate = false;  ///< the motion is known, as a correction requires
   int skipped() const;
 };
 

@@ -4,24 +4,21 @@
 #include <vector>
 
 #include "fovea/map/map_records.h"
+#include "fovea/pipeline/drive_calibration.h"
 #include "fovea/pipeline/map_drive.h"
-#include "fovea/pipeline/self_calibration.h"
 
 namespace fovea {
 
 /// InputError if the drive lacks a motion or a camera that the job needs.
 void require_sources(const DriveInfo& drive, const MapJob& job);
 
-/// Whether anything states the motion that a calibration needs.
-bool has_known_motion(const DriveInfo& drive, const MapJob& job);
-
 /// Whether scans are raw sweeps whose motion the run undoes.
 bool has_sweep_motion(const DriveInfo& drive, const MapJob& job);
 
 /// If the job asks for it, corrects the calibration of the drive and stores the correction in the
 /// meta data.
-/// @return the correction of each camera; empty if the job does not ask for it
-std::vector<CameraCalibration> correct_calibration(const FrameSource& source, const MapJob& job,
-                                                   DriveInfo& drive, MapMeta& meta);
+/// @return the corrections; empty if the job does not ask for them
+DriveCalibration correct_calibration(const FrameSource& source, const MapJob& job, DriveInfo& drive,
+                                     MapMeta& meta);
 
 }  // namespace fovea

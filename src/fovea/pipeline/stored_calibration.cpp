@@ -7,28 +7,12 @@
 #include <vector>
 
 #include "fovea/core/errors.h"
+#include "fovea/drive/recalibrated_source.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/number_text.h"
 
 namespace fovea {
 namespace {
-
-/// A drive with another calibration.
-class RecalibratedSource : public FrameSource {
- public:
-  RecalibratedSource(std::unique_ptr<FrameSource> drive, Calibration calibration)
-      : drive_(std::move(drive)), info_(drive_->info()) {
-    info_.calibration = std::move(calibration);
-  }
-  const DriveInfo& info() const override { return info_; }
-  LoadedFrame load(int index) const override { return drive_->load(index); }
-  void expect(int index) const override { drive_->expect(index); }
-  std::optional<TimeNs> stamp(int index) const override { return drive_->stamp(index); }
-
- private:
-  std::unique_ptr<FrameSource> drive_;
-  DriveInfo info_;
-};
 
 std::string key_of(int camera, const char* ending) {
   return fmt::format("{}{}{}", meta_key::kCalibrationPrefix, camera, ending);
@@ -53,23 +37,35 @@ CameraCalibration read_correction(const MapMeta& meta, int camera,
   CameraCalibration correction;
   correction.camera = camera;
   if (const auto rotation = numbers_of(meta, key_of(camera, meta_key::kRotationEnding), 3, map)) {
-    correction.estimate.rotation = {(*rotation)[0], (*rotation)[1], (*rotation)[2]};
+    correction.estimate.correction.rotation = {(*rotation)[0], (*rotation)[1], (*rotation)[2]};
+  }
+  const auto translation = numbers_of(meta, key_of(camera, meta_key::kTranslationEnding), 3, map);
+  if (translation) {
+    correction.estimate.correction.translation = {(*translation)[0], (*translation)[1],
+                                                  (*translation)[2]};
   }
   if (const auto delay = numbers_of(meta, key_of(camera, meta_key::kDelayEnding), 1, map)) {
-    correction.estimate.delay = delay->front();
+    correction.estimate.correction.delay = delay->front();
   }
   return correction;
 }
 
 }  // namespace
 
-void store_calibration(const std::vector<CameraCalibration>& found, MapMeta& meta) {
-  for (const CameraCalibration& camera : found) {
-    const CalibrationEstimate& e = camera.estimate;
-    const std::array<double, 3> rotation{e.rotation.x(), e.rotation.y(), e.rotation.z()};
-    meta[key_of(camera.camera, meta_key::kRotationEnding)] = to_text(rotation);
-    meta[key_of(camera.camera, meta_key::kDelayEnding)] = to_text(std::array<double, 1>{e.delay});
+void store_calibration(const DriveCalibration& found, MapMeta& meta) {
+  const auto three = [](const Eigen::Vector3d& v) {
+    return to_text(std::array<double, 3>{v.x(), v.y(), v.z()});
+  };
+  const auto one = [](double value) { return to_text(std::array<double, 1>{value}); };
+  for (const CameraCalibration& camera : found.cameras) {
+    const CameraCorrection& e = camera.estimate.correction;
+    meta[key_of(camera.camera, meta_key::kRotationEnding)] = three(e.rotation);
+    meta[key_of(camera.camera, meta_key::kTranslationEnding)] = three(e.translation);
+    meta[key_of(camera.camera, meta_key::kDelayEnding)] = one(e.delay);
   }
+  if (!found.imu) return;
+  meta[meta_key::kImuRotation] = three(found.imu->rotation);
+  meta[meta_key::kImuDelay] = one(found.imu->delay);
 }
 
 bool has_stored_calibration(const MapMeta& meta) {
@@ -84,12 +80,13 @@ std::unique_ptr<FrameSource> with_stored_calibration(std::unique_ptr<FrameSource
     throw InputError("the map has no corrected calibration", map.string(),
                      "give a map that was made with --calibrate");
   }
-  std::vector<CameraCalibration> corrections;
+  DriveCalibration corrections;  // of the cameras: the map has the poses that the IMU improved
   for (const Camera& camera : drive->info().calibration.cameras) {
-    corrections.push_back(read_correction(meta, camera.index, map));
+    corrections.cameras.push_back(read_correction(meta, camera.index, map));
   }
-  Calibration calibration = corrected(drive->info().calibration, corrections);
-  return std::make_unique<RecalibratedSource>(std::move(drive), std::move(calibration));
+  DriveInfo info = drive->info();
+  info = corrected(std::move(info), corrections);
+  return std::make_unique<RecalibratedSource>(std::move(drive), std::move(info));
 }
 
 }  // namespace fovea

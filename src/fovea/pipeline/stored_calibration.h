@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "fovea/map/map_store.h"
-#include "fovea/pipeline/self_calibration.h"
+#include "fovea/pipeline/drive_calibration.h"
 
 namespace fovea {
 
-/// Stores the corrections as `calibration.camera_K`, four numbers: rotation vector in the camera's
-/// axes (rad), delay (s). Does not store deviations.
-void store_calibration(const std::vector<CameraCalibration>& found, MapMeta& meta);
+/// Stores the corrections of the cameras and the IMU (docs/map-format.md), without deviations.
+void store_calibration(const DriveCalibration& found, MapMeta& meta);
 
 /// Whether a map was made with a corrected calibration.
 bool has_stored_calibration(const MapMeta& meta);

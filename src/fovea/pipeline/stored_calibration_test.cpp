@@ -32,11 +32,12 @@ std::unique_ptr<FrameSource> two_cameras() {
 TEST(StoredCalibration, ComesBackExactly) {
   CameraCalibration found;
   found.camera = 3;
-  found.estimate.rotation = {0.0051234567890123, -0.002, 1e-9};
-  found.estimate.delay = 0.0199999;
+  found.estimate.correction.rotation = {0.0051234567890123, -0.002, 1e-9};
+  found.estimate.correction.translation = {0.012, -0.1999999999, 0.25};
+  found.estimate.correction.delay = 0.0199999;
   MapMeta meta;
   EXPECT_FALSE(has_stored_calibration(meta));
-  store_calibration({found}, meta);
+  store_calibration({.cameras = {found}, .imu = {}}, meta);
   EXPECT_TRUE(has_stored_calibration(meta));
 
   const auto drive = with_stored_calibration(two_cameras(), meta, "some.fovea");
@@ -46,9 +47,9 @@ TEST(StoredCalibration, ComesBackExactly) {
   // Camera 2 has no correction.
   EXPECT_TRUE(cameras.at(0).T_cam_lidar.isApprox(as_given.at(0).T_cam_lidar, 0));
   EXPECT_EQ(cameras.at(0).image_delay, 0);
-  const Camera expected = corrected(as_given.at(1), found.estimate);
+  const Camera expected = corrected(as_given.at(1), found.estimate.correction);
   EXPECT_EQ(cameras.at(1).T_cam_lidar.matrix(), expected.T_cam_lidar.matrix());
-  EXPECT_EQ(cameras.at(1).image_delay, found.estimate.delay);
+  EXPECT_EQ(cameras.at(1).image_delay, found.estimate.correction.delay);
   EXPECT_EQ(*drive->stamp(7), 7);
   EXPECT_TRUE(std::holds_alternative<SkippedFrame>(drive->load(7)));
 }

@@ -2,44 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fovea/core/angle.h"
+#include "fovea/pipeline/calibration_json.h"
 
 namespace fovea {
-namespace {
-
-nlohmann::ordered_json to_json(const std::vector<CameraCalibration>& cameras, bool applied) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const auto& [number, e] : cameras) {
-    nlohmann::ordered_json camera{{"camera", number},
-                                  {"applied", applied && e.rotation_observable},
-                                  {"frames", e.frames},
-                                  {"edges", e.edges},
-                                  {"rotation_deg", nullptr},
-                                  {"rotation_sigma_deg", nullptr},
-                                  {"time_offset_ms", nullptr},
-                                  {"time_offset_sigma_ms", nullptr},
-                                  {"pixels", nullptr},
-                                  {"pixels_sigma", nullptr},
-                                  {"off_by_a_pixel", e.off_by_a_pixel()},
-                                  {"correctable", e.correctable},
-                                  {"disagrees", e.disagrees}};
-    if (e.rotation_observable) {
-      const Eigen::Vector3d r = e.rotation / kDegree, s = e.rotation_sigma / kDegree;
-      camera["rotation_deg"] = {r.x(), r.y(), r.z()};
-      camera["rotation_sigma_deg"] = {s.x(), s.y(), s.z()};
-      camera["pixels"] = e.pixels;
-      camera["pixels_sigma"] = e.pixels_sigma;
-    }
-    if (e.delay_observable) {
-      camera["time_offset_ms"] = 1e3 * e.delay;
-      camera["time_offset_sigma_ms"] = 1e3 * e.delay_sigma;
-    }
-    list.push_back(camera);
-  }
-  return list;
-}
-
-}  // namespace
 
 nlohmann::ordered_json to_json(const StageLatency& latency) {
   return {{"p50", latency.p50}, {"p95", latency.p95}, {"max", latency.max}};
@@ -79,7 +44,8 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"peak_rss_mb", summary.peak_rss_mb},
           {"interrupted", summary.interrupted},
           {"latency_ms", latency},
-          {"calibration", to_json(summary.calibration, summary.calibrated)},
+          {"calibration", to_json(summary.calibration.cameras, summary.calibrated)},
+          {"imu_calibration", to_json(summary.calibration.imu)},
           {"notes", summary.notes},
           {"warnings", summary.warnings}};
 }

@@ -34,21 +34,6 @@ Eigen::Vector3f color_at(const Image& image, const Vector2d& p, const Vector2d& 
   return sum / 3;
 }
 
-/// Derivative of a point's pixel by the camera's rotation and delay.
-Eigen::Matrix<double, 2, 4> jacobian(const Camera& camera, const Vector3d& p_lidar,
-                                     const Twist& velocity) {
-  const Vector3d p_cam = camera.T_cam_lidar * p_lidar;
-  Eigen::Matrix<double, 2, 3> projection;
-  const double z = p_cam.z();
-  projection << camera.fx / z, 0, -camera.fx * p_cam.x() / (z * z), 0, camera.fy / z,
-      -camera.fy * p_cam.y() / (z * z);
-  Eigen::Matrix<double, 3, 4> motion;
-  motion.leftCols<3>() = -hat(p_cam);
-  motion.col(3) =
-      -(camera.T_cam_lidar.linear() * (velocity.head<3>().cross(p_lidar) + velocity.tail<3>()));
-  return projection * motion;
-}
-
 /// The expected position of an edge in the image.
 struct ImageEdge {
   Vector2d middle = Vector2d::Zero(), gap = Vector2d::Zero();  // pixels; from inside to outside
@@ -159,7 +144,9 @@ std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Imag
     profile.place = place_of(view.T_local_lidar * edge.p_lidar);
     profile.half_gap = static_cast<float>(edge.gap.dot(*along) / 2);
     profile.strength = strengths(image, edge.middle, *along);
-    profile.J = jacobian(camera, edge.p_lidar, view.velocity).cast<float>();
+    profile.pixel = edge.middle.cast<float>();
+    profile.normal = along->cast<float>();
+    profile.J = pixel_jacobian(camera, edge.p_lidar, view.velocity).cast<float>();
     profile.J_along << (along->cast<float>().transpose() * profile.J).transpose(),
         edge.between_rings ? 0.0f : 1.0f,
         edge.between_rings ? static_cast<float>(along->y()) : 0.0f;

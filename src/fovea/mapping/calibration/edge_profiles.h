@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "fovea/core/image.h"
-#include "fovea/geometry/camera.h"
+#include "fovea/mapping/calibration/camera_correction.h"
 #include "fovea/mapping/calibration/lidar_edges.h"
 
 namespace fovea {
-
-/// Parameters of an edge's position: rotation vector of the camera in its own axes (rad), delay of
-/// the image (s), two shifts (pixels). The shifts are no calibration. Edges along a ring shift
-/// outwards, since the width of a beam enlarges objects. Edges between rings shift downwards, since
-/// a roof ends beyond the last beam that hit it, and the camera is not at the LiDAR.
-using CalibrationVector = Eigen::Matrix<double, 6, 1>;
 
 /// One expected edge in an image.
 struct EdgeProfile {
@@ -27,12 +21,13 @@ struct EdgeProfile {
   float half_gap = 0;  ///< pixels: the object ends within this distance of the expected position
   float ring_spacing = 0;  ///< rad: of the LiDAR's rings in view
   int frame = 0;
-  std::array<int, 3> place{};  ///< cell of 2 m in the local frame: the object
-  /// Derivative of the expected position (u, v in pixels) by rotation and delay:
-  /// exp(r) * T_cam_lidar, and Camera::image_delay.
-  Eigen::Matrix<float, 2, 4> J;
+  std::array<int, 3> place{};                        ///< cell of 2 m in the local frame: the object
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();   ///< the expected position
+  Eigen::Vector2f normal = Eigen::Vector2f::Zero();  ///< direction of the profile, of length 1
+  /// Derivative of the expected position (u, v in pixels) by the calibration (CameraCorrection).
+  Eigen::Matrix<float, 2, kCalibrationSize> J;
   /// Derivative of the position along the profile by all parameters.
-  Eigen::Matrix<float, 6, 1> J_along;
+  Eigen::Matrix<float, 9, 1> J_along;
 };
 
 /// The pose of an image.

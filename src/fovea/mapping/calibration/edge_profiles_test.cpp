@@ -105,25 +105,19 @@ TEST(EdgeProfiles, KnowHowTheyMoveWithTheCalibration) {
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     const Eigen::Vector3d p =
         0.5 * (edges.inside.position[i] + edges.outside.position[i]).cast<double>();
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < kCalibrationSize; ++k) {
       constexpr double kSmall = 1e-5;
-      Camera moved = camera;
-      if (k < 3) {
-        Twist turn = Twist::Zero();
-        turn[k] = kSmall;
-        // The rotation is in the camera's axes, at any pose of the vehicle.
-        moved.T_cam_lidar = exp_se3(turn) * camera.T_cam_lidar;
-      } else {
-        moved.image_delay += kSmall;
-      }
+      const CalibrationVector step = kSmall * CalibrationVector::Unit(k);
+      // The correction is in the camera's axes, at any pose of the vehicle.
+      const Camera moved = corrected(camera, correction_of(step.cwiseQuotient(calibration_unit())));
       const Eigen::Vector2d expected = (place(moved, p) - place(camera, p)) / kSmall;
       const Eigen::Vector2d found = profiles[i].J.col(k).cast<double>();
       EXPECT_LT((found - expected).norm(), 0.01 * (expected.norm() + 1)) << k;
     }
     // Outwards is to the right.
     EXPECT_NEAR(profiles[i].J_along[0], profiles[i].J(0, 0), 0.05 * std::abs(profiles[i].J(1, 0)));
-    EXPECT_EQ(profiles[i].J_along[4], 1);
-    EXPECT_EQ(profiles[i].J_along[5], 0);
+    EXPECT_EQ(profiles[i].J_along[kShiftAlongRing], 1);
+    EXPECT_EQ(profiles[i].J_along[kShiftBetweenRings], 0);
   }
 }
 
@@ -146,8 +140,8 @@ TEST(EdgeProfiles, AStandingVehicleShowsNoDelay) {
       edge_profiles(upright_edges(camera, 180, 3, 0), half_bright(180, 0), {.camera = camera});
   ASSERT_FALSE(profiles.empty());
   for (const EdgeProfile& profile : profiles) {
-    EXPECT_EQ(profile.J.col(3).norm(), 0);
-    EXPECT_EQ(profile.J_along[3], 0);
+    EXPECT_EQ(profile.J.col(kCamDelay).norm(), 0);
+    EXPECT_EQ(profile.J_along[kCamDelay], 0);
   }
 }
 

@@ -11,23 +11,9 @@ namespace {
 // Strength of an edge that the image does not show: two objects may have the same color.
 constexpr double kFloor = 0.003;
 
-/// Contribution of one edge to a score, before the products of its derivative.
-struct EdgeTerms {
-  CalibrationVector J;  ///< of its position along the profile
-  double value, slope, curvature, bound;
+}  // namespace
 
-  void add_to(EdgeScore& score) const {
-    const CalibrationMatrix JJ = J * J.transpose();
-    score.value += value;
-    score.gradient += J * slope;
-    score.curvature += JJ * curvature;
-    score.bound += JJ * bound;
-  }
-};
-
-EdgeTerms terms_of(const EdgeProfile& profile, const CalibrationVector& correction, double width) {
-  const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
-  const double position = J.dot(correction);
+EdgeSlope edge_slope(const EdgeProfile& profile, double position, double width) {
   // Plus the variance of a uniform distribution: the object ends anywhere in the gap.
   const double variance = width * width + profile.half_gap * profile.half_gap / 3.0;
   const double reach = 3 * std::sqrt(variance);
@@ -54,17 +40,9 @@ EdgeTerms terms_of(const EdgeProfile& profile, const CalibrationVector& correcti
     square += seen * away * away;
   }
   const double likelihood = mass + kFloor, slope = moment / variance / likelihood;
-  return {J, std::log(likelihood), slope,
+  return {std::log(likelihood), slope,
           (mass / variance - square / (variance * variance)) / likelihood + slope * slope,
           mass / variance / likelihood};
-}
-
-}  // namespace
-
-const CalibrationVector& calibration_unit() {
-  static const CalibrationVector unit =
-      (CalibrationVector() << 0.0014, 0.0014, 0.01, 0.01, 1, 1).finished();
-  return unit;
 }
 
 EdgeScore& EdgeScore::operator+=(const EdgeScore& other) {
@@ -77,13 +55,15 @@ EdgeScore& EdgeScore::operator+=(const EdgeScore& other) {
 
 EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correction,
                      double width) {
-  EdgeScore score;
-  terms_of(profile, correction, width).add_to(score);
-  return score;
+  const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
+  const EdgeSlope edge = edge_slope(profile, J.dot(correction), width);
+  const CalibrationMatrix JJ = J * J.transpose();
+  return {edge.value, J * edge.slope, JJ * edge.curvature, JJ * edge.bound};
 }
 
 double edge_value(const EdgeProfile& profile, const CalibrationVector& correction, double width) {
-  return terms_of(profile, correction, width).value;
+  const CalibrationVector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
+  return edge_slope(profile, J.dot(correction), width).value;
 }
 
 EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
@@ -91,7 +71,7 @@ EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const Calibration
   return parallel_sum<EdgeScore>(profiles.size(), 512, {}, [&](std::size_t begin, std::size_t end) {
     EdgeScore score;
     for (std::size_t i = begin; i < end; ++i) {
-      terms_of(profiles[i], correction, width).add_to(score);
+      score += edge_score(profiles[i], correction, width);
     }
     return score;
   });

@@ -7,12 +7,6 @@
 
 namespace fovea {
 
-using CalibrationMatrix = Eigen::Matrix<double, 6, 6>;
-
-/// Units of the entries of a correction, each worth about a pixel: rad, rad, rad of roll, s,
-/// pixels, pixels.
-const CalibrationVector& calibration_unit();
-
 /// Sum over edges of the logarithm of the image's edge strength under a Gaussian at the expected
 /// position. The logarithm lets weak edges count. With derivatives by the correction in its units.
 struct EdgeScore {
@@ -31,6 +25,14 @@ struct EdgeScore {
 EdgeScore edge_score(const EdgeProfile& profile, const CalibrationVector& correction, double width);
 EdgeScore edge_score(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                      double width);
+
+/// The score of one edge and its derivatives by the position along its profile.
+struct EdgeSlope {
+  double value = 0, slope = 0;
+  double curvature = 0, bound = 0;  ///< as in EdgeScore
+};
+/// @param position  pixels along the profile, from the expected position
+EdgeSlope edge_slope(const EdgeProfile& profile, double position, double width);
 
 /// Only the value.
 double edge_value(const EdgeProfile& profile, const CalibrationVector& correction, double width);

@@ -14,12 +14,12 @@ EdgeProfile profile_at(double place, float half_gap) {
     profile.strength[std::size_t(k)] = static_cast<float>(0.3 * std::exp(-away * away / 2));
   }
   profile.half_gap = half_gap;
-  profile.J_along << 700, -300, 50, 120, 1, 0.5f;
+  profile.J_along << 700, -300, 50, 30, 40, -10, 120, 1, 0.5f;
   return profile;
 }
 
 CalibrationVector small_correction() {
-  return (CalibrationVector() << 1.2, -0.7, 0.3, 0.5, 0.8, -0.4).finished();
+  return (CalibrationVector() << 1.2, -0.7, 0.3, 0.4, -0.2, 0.1, 0.5, 0.8, -0.4).finished();
 }
 
 TEST(EdgeScore, GradientAndCurvatureAreTheDerivatives) {
@@ -28,7 +28,7 @@ TEST(EdgeScore, GradientAndCurvatureAreTheDerivatives) {
   for (const double width : {4.0, 1.0}) {
     const CalibrationVector x = small_correction();
     const EdgeScore score = edge_score(profile, x, width);
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < 9; ++k) {
       const CalibrationVector step = kSmall * CalibrationVector::Unit(k);
       const EdgeScore up = edge_score(profile, x + step, width);
       const EdgeScore down = edge_score(profile, x - step, width);

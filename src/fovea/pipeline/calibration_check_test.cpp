@@ -1,10 +1,10 @@
-#include "fovea/pipeline/self_calibration.h"
+#include "fovea/pipeline/calibration_check.h"
 
 #include <gtest/gtest.h>
 
 #include "fovea/core/angle.h"
 
-namespace fovea::self_calibration_test {
+namespace fovea::calibration_check_test {
 
 DriveInfo drive_of(int frames) {
   DriveInfo drive;
@@ -37,20 +37,21 @@ TEST(CalibrationCheck, UsesFewFramesSpreadOverTheDrive) {
     const auto found = check.estimates();
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[1].camera, 3);
-    EXPECT_FALSE(found[1].estimate.rotation_observable || found[1].estimate.delay_observable);
+    EXPECT_FALSE(found[1].estimate.rotation_observable() || found[1].estimate.delay_observable());
   }
 }
 
-TEST(SelfCalibration, CorrectsEachCameraByItsOwnEstimate) {
+TEST(DriveCalibration, CorrectsEachCameraByItsOwnEstimate) {
   const DriveInfo drive = drive_of(10);
-  std::vector<CameraCalibration> found(2);
-  found[1].estimate.rotation.z() = 1 * kDegree;
-  found[1].estimate.delay = 0.02;
-  const Calibration right = corrected(drive.calibration, found);
+  DriveCalibration found;
+  found.cameras.resize(2);
+  found.cameras[1].estimate.correction.rotation.z() = 1 * kDegree;
+  found.cameras[1].estimate.correction.delay = 0.02;
+  const Calibration right = corrected(drive, found).calibration;
   EXPECT_TRUE(right.cameras[0].T_cam_lidar.isApprox(RigidMotion::Identity(), 0));
   EXPECT_EQ(right.cameras[0].image_delay, 0);
   EXPECT_NEAR(log_se3(right.cameras[1].T_cam_lidar)[2], 1 * kDegree, 1e-12);
   EXPECT_EQ(right.cameras[1].image_delay, 0.02);
 }
 
-}  // namespace fovea::self_calibration_test
+}  // namespace fovea::calibration_check_test

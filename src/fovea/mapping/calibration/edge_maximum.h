@@ -1,0 +1,53 @@
+// The correction of a calibration that maximizes the edge score, and its covariance.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fovea/mapping/calibration/edge_score.h"
+
+namespace fovea {
+
+/// The parameters to estimate. The others are fixed.
+using FreeParameters = std::array<bool, 9>;
+
+/// Standard deviations of the Gaussians that smooth image edges, pixels.
+constexpr double kCoarsestEdgeWidth = 8, kFinestEdgeWidth = 0.5;
+
+/// Removes the rows and columns of fixed parameters from a system of equations.
+CalibrationMatrix only(const FreeParameters& free, CalibrationMatrix m);
+CalibrationVector only(const FreeParameters& free, CalibrationVector v);
+/// As only(), but the diagonal of fixed parameters is 0.
+CalibrationMatrix only_part(const FreeParameters& free, CalibrationMatrix m);
+
+bool is_positive_definite(const CalibrationMatrix& m);
+
+/// A further criterion next to the edges: gradient' x - x' curvature x / 2.
+struct QuadraticTerm {
+  CalibrationVector gradient = CalibrationVector::Zero();
+  CalibrationMatrix curvature = CalibrationMatrix::Zero();
+  CalibrationMatrix scatter = CalibrationMatrix::Zero();  ///< of the gradient
+
+  QuadraticTerm& operator+=(const QuadraticTerm& other);
+  QuadraticTerm scaled(double weight) const;
+};
+
+/// The maximum of the edge score plus a further term, in calibration_unit()s, coarse to fine. It
+/// starts without a correction.
+/// @param coarsest  first of the standard deviations of the Gaussians, pixels
+CalibrationVector maximize_edge_score(const std::vector<EdgeProfile>& profiles,
+                                      const FreeParameters& free, const QuadraticTerm& further = {},
+                                      double coarsest = kCoarsestEdgeWidth);
+
+/// Scatter of the gradients at a correction. Edges of one frame have common errors, and so do edges
+/// of one object in all frames: the scatter is the sum of both.
+CalibrationMatrix edge_scatter(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
+                               const CalibrationVector& x);
+
+/// Covariance of the maximum, H^-1 S H^-1 (H: curvature, S: scatter of the gradients).
+/// If the delay is fixed, an unknown delay of a likely size adds to the covariance.
+CalibrationMatrix edge_covariance(const std::vector<EdgeProfile>& profiles,
+                                  const FreeParameters& free, const CalibrationVector& x,
+                                  const CalibrationMatrix& curvature);
+
+}  // namespace fovea

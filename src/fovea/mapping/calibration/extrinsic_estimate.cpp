@@ -1,0 +1,243 @@
+#include "fovea/mapping/calibration/extrinsic_estimate.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "fovea/core/angle.h"
+#include "fovea/mapping/calibration/coarse_alignment.h"
+#include "fovea/mapping/calibration/color_consistency.h"
+#include "fovea/mapping/calibration/edge_agreement.h"
+#include "fovea/mapping/calibration/edge_displacement.h"
+#include "fovea/mapping/calibration/edge_maximum.h"
+
+namespace fovea {
+namespace {
+
+using Vector = CalibrationVector;
+using Matrix = CalibrationMatrix;
+
+constexpr std::size_t kMinEdges = 200;
+constexpr std::size_t kMinViews = 5;
+// Blur of the compared images in each pass, pixels.
+constexpr std::array<double, 4> kBlurs{4, 3, 2, 1.5};
+constexpr int kStartPasses = 2, kLaterPasses = 3;
+constexpr double kLaterWidth = 2;  // pixels: edges are near after the first pass
+// Largest standard deviation of an observable value: rad, m, s.
+constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxTranslationSigma = 0.02,
+                 kMaxDelaySigma = 0.004;
+// Errors that all edges of a drive may share, such as those of beams or of the lens: pixels, rms.
+constexpr double kSystematicError = 0.1;
+// Standard deviation of the given calibration: rad, m, s. It keeps values near those given that the
+// drive hardly shows.
+constexpr double kGivenRotation = 5 * kDegree, kGivenTranslation = 0.2, kGivenDelay = 0.1;
+constexpr double kGivenShift = 1;  // pixels
+
+/// In calibration_unit()s.
+Vector per_parameter(double rotation, double translation, double delay) {
+  Vector v = Vector::Constant(kGivenShift);
+  v.segment<3>(kCamRotation).setConstant(rotation);
+  v.segment<3>(kCamTranslation).setConstant(translation);
+  v[kCamDelay] = delay;
+  return v.cwiseQuotient(calibration_unit());
+}
+
+Vector vector_of(const CameraCorrection& correction) {
+  Vector v = Vector::Zero();
+  v << correction.rotation, correction.translation, correction.delay, 0, 0;
+  return v.cwiseQuotient(calibration_unit());
+}
+
+/// Likelihood of a correction before any image is seen.
+QuadraticTerm prior_about(const CameraCorrection& correction) {
+  const Vector sigma = per_parameter(kGivenRotation, kGivenTranslation, kGivenDelay);
+  QuadraticTerm prior;
+  prior.curvature.diagonal() = sigma.cwiseAbs2().cwiseInverse();
+  prior.gradient = -prior.curvature * vector_of(correction);
+  prior.scatter = prior.curvature;
+  return prior;
+}
+
+/// Weight of a criterion under which its curvature states its scatter: neighboring edges and points
+/// have common errors, which the sum does not account for.
+double information_weight(const FreeParameters& free, const Matrix& curvature,
+                          const Matrix& scatter) {
+  const double sum = only_part(free, scatter).trace();
+  return sum > 0 ? only_part(free, curvature).trace() / sum : 0;
+}
+
+/// Colors and prior, weighted against the edges.
+QuadraticTerm next_to_edges(const FreeParameters& free, const std::vector<EdgeProfile>& profiles,
+                            const QuadraticTerm& colors, const QuadraticTerm& prior) {
+  FreeParameters shifts{};
+  shifts[kShiftAlongRing] = shifts[kShiftBetweenRings] = true;
+  const Vector x = maximize_edge_score(profiles, shifts, prior, kLaterWidth);
+  const EdgeScore edges = edge_score(profiles, x, kFinestEdgeWidth);
+  const double weight_edges =
+      information_weight(free, edges.curvature, edge_scatter(profiles, free, x));
+  if (!(weight_edges > 0)) return prior;
+  const double weight_colors = information_weight(free, colors.curvature, colors.scatter);
+  QuadraticTerm sum = prior.scaled(1 / weight_edges);
+  sum += colors.scaled(weight_colors / weight_edges);
+  return sum;
+}
+
+/// Covariance by a pattern of errors that all edges share, at its worst for each parameter. It does
+/// not shrink with the number of edges.
+Matrix systematic_covariance(const FreeParameters& free, const std::vector<EdgeProfile>& profiles) {
+  Matrix mean = Matrix::Zero();
+  for (const EdgeProfile& profile : profiles) {
+    const Vector J = profile.J_along.cast<double>().cwiseProduct(calibration_unit());
+    mean += J * J.transpose() / double(profiles.size());
+  }
+  const Vector given = per_parameter(kGivenRotation, kGivenTranslation, kGivenDelay);
+  mean.diagonal() += kSystematicError * kSystematicError * given.cwiseAbs2().cwiseInverse();
+  return kSystematicError * kSystematicError * only_part(free, only(free, mean).inverse());
+}
+
+/// Estimates one camera. Parameters that turn out not to be observable are fixed one by one.
+class Estimator {
+ public:
+  Estimator(const std::vector<CalibrationView>& views, const Camera& camera,
+            const PoseSpline& T_local_lidar)
+      : views_(views), camera_(camera), T_local_lidar_(T_local_lidar) {
+    free_.fill(true);
+  }
+  CalibrationEstimate run();
+
+ private:
+  std::vector<EdgeProfile> profiles(const CameraCorrection& correction) const {
+    return profiles_of_views(views_, corrected(camera_, correction), T_local_lidar_);
+  }
+  QuadraticTerm colors(const CameraCorrection& correction, double blur) const {
+    return color_consistency(views_, corrected(camera_, correction), T_local_lidar_, blur).term;
+  }
+  std::optional<CameraCorrection> best_start() const;
+  CameraCorrection by_edges(CameraCorrection correction) const;
+  void refine(int passes);
+  Matrix covariance(const std::vector<EdgeProfile>& at_hand) const;
+  bool fix_least_observable(const Vector& sigma);
+
+  const std::vector<CalibrationView>& views_;
+  const Camera& camera_;
+  const PoseSpline& T_local_lidar_;
+  FreeParameters free_;
+  CameraCorrection correction_;
+};
+
+/// The best of several starts, by the contrast of its edges with those of rotated cameras. Empty if
+/// there are too few edges.
+std::optional<CameraCorrection> Estimator::best_start() const {
+  std::vector<CameraCorrection> starts = coarse_corrections(views_, camera_, T_local_lidar_);
+  starts.emplace_back();
+  std::optional<CameraCorrection> best;
+  double best_contrast = 0;
+  for (const CameraCorrection& start : starts) {
+    const CameraCorrection correction = by_edges(start);
+    const std::vector<EdgeProfile> at_hand = profiles(correction);
+    if (at_hand.size() < kMinEdges) continue;
+    const double contrast = edge_contrast(at_hand, 0).mean + edge_contrast(at_hand, 1).mean;
+    if (best && contrast <= best_contrast) continue;
+    best = correction;
+    best_contrast = contrast;
+  }
+  return best;
+}
+
+CameraCorrection Estimator::by_edges(CameraCorrection correction) const {
+  for (int pass = 0; pass < kStartPasses; ++pass) {
+    const std::vector<EdgeProfile> at_hand = profiles(correction);
+    if (at_hand.size() < kMinEdges) break;
+    const QuadraticTerm further = next_to_edges(free_, at_hand, {}, prior_about(correction));
+    const Vector x = maximize_edge_score(at_hand, free_, further);
+    correction = joined(correction, correction_of(x));
+  }
+  return correction;
+}
+
+/// Passes over edges and colors, each from the result of the last. The last passes have the finest
+/// images.
+void Estimator::refine(int passes) {
+  for (std::size_t pass = kBlurs.size() - std::size_t(passes); pass < kBlurs.size(); ++pass) {
+    correction_ = correction_of(only(free_, vector_of(correction_)));
+    const std::vector<EdgeProfile> at_hand = profiles(correction_);
+    const QuadraticTerm further =
+        next_to_edges(free_, at_hand, colors(correction_, kBlurs[pass]), prior_about(correction_));
+    const Vector x = maximize_edge_score(at_hand, free_, further, kLaterWidth);
+    correction_ = joined(correction_, correction_of(x));
+  }
+  correction_ = correction_of(only(free_, vector_of(correction_)));
+}
+
+/// Covariance of the estimate, in calibration_unit()s.
+Matrix Estimator::covariance(const std::vector<EdgeProfile>& at_hand) const {
+  const QuadraticTerm further =
+      next_to_edges(free_, at_hand, colors(correction_, kBlurs.back()), prior_about(correction_));
+  const Vector x = maximize_edge_score(at_hand, free_, further, kLaterWidth);
+  Matrix curvature;
+  for (double width = kFinestEdgeWidth; width <= kLaterWidth; width *= 2) {
+    curvature = only(free_, Matrix(edge_score(at_hand, x, width).curvature + further.curvature));
+    if (is_positive_definite(curvature)) break;  // few edges have a ragged score
+  }
+  const Matrix inverse = curvature.inverse();
+  const Matrix scatter = edge_scatter(at_hand, free_, x) + only_part(free_, further.scatter);
+  return inverse * scatter * inverse + systematic_covariance(free_, at_hand);
+}
+
+/// Fixes the parameter that is the farthest from observable. False if all are observable. A
+/// translation comes before a rotation: where the two look alike, its error matters less.
+bool Estimator::fix_least_observable(const Vector& sigma) {
+  const Vector ratio =
+      sigma.cwiseQuotient(per_parameter(kMaxRotationSigma, kMaxTranslationSigma, kMaxDelaySigma));
+  const auto worst_of = [&](int begin, int end) {
+    int worst = -1;
+    for (int k = begin; k < end; ++k) {
+      if (!free_[std::size_t(k)] || ratio[k] <= 1) continue;
+      if (worst < 0 || ratio[k] > ratio[worst]) worst = k;
+    }
+    return worst;
+  };
+  int worst = worst_of(kCamTranslation, kCalibrationSize);
+  if (worst < 0) worst = worst_of(kCamRotation, kCamTranslation);
+  if (worst < 0) return false;
+  free_[std::size_t(worst)] = false;
+  return true;
+}
+
+CalibrationEstimate Estimator::run() {
+  CalibrationEstimate estimate;
+  estimate.frames = int(views_.size());
+  if (views_.size() < kMinViews) return estimate;
+  const std::optional<CameraCorrection> start = best_start();
+  if (!start) return estimate;
+  correction_ = *start;
+  refine(int(kBlurs.size()));
+  std::vector<EdgeProfile> at_hand = profiles(correction_);
+  Matrix cov = covariance(at_hand);
+  while (fix_least_observable(cov.diagonal().cwiseMax(0).cwiseSqrt())) {
+    refine(kLaterPasses);
+    at_hand = profiles(correction_);
+    cov = covariance(at_hand);
+  }
+  estimate.edges = at_hand.size();
+  estimate.disagrees = at_hand.size() < kMinEdges || edges_disagree(at_hand);
+  if (estimate.disagrees) return estimate;
+  estimate.correction = correction_;
+  estimate.sigma = correction_of(cov.diagonal().cwiseMax(0).cwiseSqrt());
+  std::copy_n(free_.begin(), int(kCalibrationSize), estimate.observable.begin());
+  const EdgeDisplacement displacement = edge_displacement(at_hand, vector_of(correction_), cov);
+  estimate.pixels = displacement.pixels;
+  estimate.pixels_sigma = displacement.sigma;
+  return estimate;
+}
+
+}  // namespace
+
+CalibrationEstimate estimate_extrinsics(const std::vector<CalibrationView>& views,
+                                        const Camera& camera, const PoseSpline& T_local_lidar) {
+  return Estimator(views, camera, T_local_lidar).run();
+}
+
+}  // namespace fovea

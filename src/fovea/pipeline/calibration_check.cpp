@@ -1,0 +1,51 @@
+#include "fovea/pipeline/calibration_check.h"
+
+#include <algorithm>
+
+#include "fovea/pipeline/scan_edges.h"
+
+namespace fovea {
+namespace {
+
+std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const Camera& camera,
+                                     const DriveInfo& drive, bool compensate,
+                                     const FrameMotion& motion) {
+  if (frame.images.at(slot).empty()) return {};
+  const auto sweep = compensate ? std::optional(motion.sweep) : std::nullopt;
+  std::vector<EdgeProfile> profiles;
+  for (const LidarEdges& edges_lidar : scan_edges(frame.scan, camera, drive, sweep)) {
+    const std::vector<EdgeProfile> of_lidar =
+        edge_profiles(edges_lidar, frame.images.at(slot),
+                      {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});
+    profiles.insert(profiles.end(), of_lidar.begin(), of_lidar.end());
+  }
+  return profiles;
+}
+
+}  // namespace
+
+CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate)
+    : drive_(drive),
+      compensate_(compensate),
+      stride_(std::max(kMinStride, (int(drive.frame_count()) + kFrames - 1) / kFrames)),
+      next_(drive.begin + stride_ / 2),
+      profiles_(drive.calibration.cameras.size()) {}
+
+void CalibrationCheck::add(const Frame& frame, const FrameMotion& motion) {
+  next_ = frame.index + stride_;
+  for (std::size_t k = 0; k < profiles_.size(); ++k) {
+    const auto profiles =
+        profiles_of(frame, k, drive_.camera_at(k, frame.index), drive_, compensate_, motion);
+    profiles_[k].insert(profiles_[k].end(), profiles.begin(), profiles.end());
+  }
+}
+
+std::vector<CameraCalibration> CalibrationCheck::estimates() const {
+  std::vector<CameraCalibration> found;
+  for (std::size_t k = 0; k < profiles_.size(); ++k) {
+    found.push_back({drive_.calibration.cameras[k].index, estimate_calibration(profiles_[k])});
+  }
+  return found;
+}
+
+}  // namespace fovea

@@ -1,0 +1,44 @@
+#include "fovea/pipeline/scan_track.h"
+
+#include "fovea/core/parallel.h"
+#include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/frame_pipeline.h"
+#include "fovea/pipeline/frame_reader.h"
+#include "fovea/pipeline/initial_motion.h"
+#include "fovea/pipeline/make_mapper.h"
+
+namespace fovea {
+
+std::vector<TrackedPose> track_scans(const FrameSource& source, const ScanTrackJob& job) {
+  const DriveInfo drive = info_with_lidars(source);
+  MapperServices services;
+  services.initial_velocity = [&](int frame) {
+    return initial_velocity(source, job.given_poses, frame, job.settings.compensates_motion());
+  };
+  const auto mapper = make_mapper(drive, job.settings, job.pose_source, std::move(services));
+  FrameReader reader(source, drive.frame_indices(), /*rate=*/0);
+  const auto track = [&](const Frame& frame) {
+    FrameTask task;
+    const auto place = std::size_t(frame.index - drive.begin);
+    if (place < job.given_poses.size()) task.given_pose = job.given_poses[place];
+    return mapper->track(frame, task);
+  };
+  FramePipeline frames({.read = [&](const std::stop_token& stop) { return reader.next(stop); },
+                        .track = track,
+                        .apply_deferred = [&] { mapper->apply_deferred_tracking(); }},
+                       available_threads() > 1, job.stop);
+  std::vector<TrackedPose> poses;
+  int done = 0;
+  while (const std::optional<TrackedFrame> tracked = frames.next()) {
+    job.progress(++done, int(drive.frame_count()));
+    if (!tracked->tracked) continue;
+    const FrameResult& result = tracked->tracked->result;
+    if (result.tracking.is_pose_unknown || result.tracking.is_lost) continue;
+    const Frame& frame = std::get<Frame>(tracked->read.result);
+    poses.push_back({frame.index, frame.stamp, result.poses.T_odom_lidar,
+                     result.poses.motion.value_or(SweepMotion{})});
+  }
+  return poses;
+}
+
+}  // namespace fovea

@@ -1,0 +1,32 @@
+// The motion of the LiDAR over a drive, by its scans alone.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "fovea/drive/frame_source.h"
+#include "fovea/pipeline/incremental_mapper.h"
+#include "fovea/pipeline/map_settings.h"
+
+namespace fovea {
+
+struct TrackedPose {
+  int frame = 0;
+  TimeNs stamp = 0;
+  RigidMotion T_odom_lidar = RigidMotion::Identity();  ///< without corrections by loops
+  SweepMotion motion;                                  ///< about the stamp
+};
+
+struct ScanTrackJob {
+  MapSettings settings;
+  PoseSource pose_source = PoseSource::kRefine;
+  std::vector<RigidMotion> given_poses;  ///< as MapJob::given_poses
+  std::stop_token stop;                  ///< ends with the frames at hand
+  std::function<void(int done, int total)> progress = [](int, int) {};
+};
+
+/// Tracks the frames of a drive. Frames without a pose are left out.
+std::vector<TrackedPose> track_scans(const FrameSource& source, const ScanTrackJob& job);
+
+}  // namespace fovea
