@@ -35,10 +35,13 @@ std::string distortion_text(const LensCheck& lens) {
 }  // namespace
 
 std::string calibration_parameter_name(int parameter) {
-  constexpr std::array<const char*, kCalibrationSize> kNames{
-      "rotation about x (right)", "rotation about y (down)", "rotation about z (forward)",
-      "translation to the right", "translation down",        "translation forward",
-      "delay of the images"};
+  constexpr std::array<const char*, kCalibrationSize> kNames{"rotation about x (right)",
+                                                             "rotation about y (down)",
+                                                             "rotation about z (forward)",
+                                                             "points to the right",
+                                                             "points down",
+                                                             "points forward",
+                                                             "delay of the images"};
   return kNames.at(static_cast<std::size_t>(parameter));
 }
 
@@ -51,7 +54,10 @@ std::string missing_evidence(const CalibrationEstimate& estimate, int parameter)
   if (parameter < kCamTranslation || !has_rotation) {
     return "record more edges of objects: poles, corners, vehicles";
   }
-  if (parameter == kCamDelay) return "move or turn while recording";
+  if (parameter == kCamDelay) {
+    return observable.at(kCamForward) ? "move faster and at different speeds, or turn"
+                                      : "move or turn while recording";
+  }
   if (parameter == kCamForward && estimate.delay_observable()) {
     return "drive at different speeds: at a steady one, a shift forward looks like a delay";
   }

@@ -9,7 +9,7 @@
 
 namespace fovea::app {
 
-/// "rotation about x (right)", "translation forward", "delay of the images".
+/// "rotation about x (right)", "points forward", "delay of the images".
 /// @param parameter  0 to kCalibrationSize - 1, by CalibrationParameter
 std::string calibration_parameter_name(int parameter);
 

@@ -231,7 +231,7 @@ void add_map_command(CLI::App& app, Session& session) {
                     "Leave out GPS/INS or poses; of GPS/INS the rates and accelerations count");
   command->add_flag("--no-imu", arguments->drive.no_imu, "Leave out the IMU and wheel speeds");
   command->add_flag("--calibrate", arguments->calibrate,
-                    "First estimate how cameras and IMU sit and their time offsets, and map with "
+                    "First estimate extrinsics and time offsets of cameras and IMU, and map with "
                     "the result");
   command->add_flag("--allow-dropped", arguments->allow_dropped,
                     "Map even if over 10 % of the scans' points cannot be used");

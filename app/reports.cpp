@@ -24,15 +24,20 @@ std::string three(const Eigen::Vector3d& values, double unit, const CalibrationE
   return text;
 }
 
+bool is_any_observable(const CalibrationEstimate& e, int first) {
+  return std::any_of(e.observable.begin() + first, e.observable.begin() + first + 3,
+                     [](bool is_observable) { return is_observable; });
+}
+
 /// "rotation 0.30 0.00 -0.01 degrees (+-0.01 0.00 0.02), images 19.6 ms late (+-0.2)".
 std::string figures_of(const CalibrationEstimate& e) {
-  std::string text = fmt::format("rotation {} degrees (+-{})",
-                                 three(e.correction.rotation, kDegree, e, kCamRotation, 3),
-                                 three(e.sigma.rotation, kDegree, e, kCamRotation, 3));
-  const bool has_translation =
-      std::any_of(e.observable.begin() + kCamTranslation, e.observable.begin() + kCamDelay,
-                  [](bool is_observable) { return is_observable; });
-  if (has_translation) {
+  std::string text = "rotation not observable";
+  if (is_any_observable(e, kCamRotation)) {
+    text = fmt::format("rotation {} degrees (+-{})",
+                       three(e.correction.rotation, kDegree, e, kCamRotation, 3),
+                       three(e.sigma.rotation, kDegree, e, kCamRotation, 3));
+  }
+  if (is_any_observable(e, kCamTranslation)) {
     text += fmt::format(", translation {} cm (+-{})",
                         three(e.correction.translation, 0.01, e, kCamTranslation, 1),
                         three(e.sigma.translation, 0.01, e, kCamTranslation, 1));
@@ -42,6 +47,7 @@ std::string figures_of(const CalibrationEstimate& e) {
                             1e3 * e.sigma.delay);
 }
 
+constexpr int kFewFrames = 30;
 constexpr const char* kCalibrateReach = "5 degrees, 20 cm and 100 ms";
 
 std::string camera_line(int camera, const CalibrationEstimate& e, bool applied) {
@@ -93,9 +99,9 @@ void add_imu(const ImuHandEye& imu, Messages& messages) {
   std::string line = "IMU: ";
   line += imu.observable_directions == 0
               ? "rotation not observable"
-              : fmt::format("rotation {:.2f} {:.2f} {:.2f} degrees (+-{:.2f} {:.2f} {:.2f})", r.x(),
+              : fmt::format("rotation {:.2f} {:.2f} {:.2f} degrees (+-{:.3f} {:.3f} {:.3f})", r.x(),
                             r.y(), r.z(), s.x(), s.y(), s.z());
-  line += imu.delay_observable ? fmt::format(", samples {:.1f} ms late (+-{:.1f})", 1e3 * imu.delay,
+  line += imu.delay_observable ? fmt::format(", samples {:.2f} ms late (+-{:.2f})", 1e3 * imu.delay,
                                              1e3 * imu.delay_sigma)
                                : ", time offset not observable";
   const std::string motion = missing_motion(imu);
@@ -115,6 +121,12 @@ Messages calibration_messages(const DriveCalibration& calibration, bool applied)
       messages.notes.push_back(std::move(line));
     }
     if (applied) add_missing_evidence(camera, messages);
+    if (applied && camera.estimate.is_any_observable() && camera.estimate.frames < kFewFrames) {
+      messages.warn(
+          fmt::format("camera {}: calibrated by {} frames: values may be worse than "
+                      "their deviations say, give {} frames or more",
+                      camera.camera, camera.estimate.frames, kFewFrames));
+    }
     if (camera.lens.has_odd_focal() || camera.lens.has_odd_distortion()) {
       messages.warn(fmt::format("camera {}: {}", camera.camera, lens_text(camera.lens)));
     }

@@ -38,7 +38,7 @@ TEST(MissingEvidence, NoneHelpsACameraThatDisagrees) {
 
 TEST(CalibrationParameterName, DiffersByParameter) {
   EXPECT_EQ(calibration_parameter_name(kCamRotation), "rotation about x (right)");
-  EXPECT_EQ(calibration_parameter_name(kCamTranslation + 2), "translation forward");
+  EXPECT_EQ(calibration_parameter_name(kCamTranslation + 2), "points forward");
   EXPECT_EQ(calibration_parameter_name(kCamDelay), "delay of the images");
 }
 

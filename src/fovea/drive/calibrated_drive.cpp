@@ -211,6 +211,11 @@ void check_calibrated_drive(const fs::path& folder, const fs::path& drive, bool 
   }
   require_free_folder(folder, force);
   require_other_drive(without_links(drive), without_links(folder));
+  if (fs::exists(folder, error)) {
+    check_output_path(folder / kFileName, /*force=*/true);
+  } else {
+    check_output_path(folder, /*force=*/true);  // its parent must be writable
+  }
 }
 
 void write_calibrated_drive(const fs::path& folder, const fs::path& drive,

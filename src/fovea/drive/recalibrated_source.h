@@ -13,7 +13,7 @@ namespace fovea {
 class RecalibratedSource : public FrameSource {
  public:
   /// @param info  that of `drive`, with another calibration
-  RecalibratedSource(std::unique_ptr<FrameSource> drive, DriveInfo info)
+  RecalibratedSource(std::shared_ptr<const FrameSource> drive, DriveInfo info)
       : drive_(std::move(drive)), info_(std::move(info)) {}
 
   const DriveInfo& info() const override { return info_; }
@@ -22,7 +22,7 @@ class RecalibratedSource : public FrameSource {
   std::optional<TimeNs> stamp(int index) const override { return drive_->stamp(index); }
 
  private:
-  std::unique_ptr<FrameSource> drive_;
+  std::shared_ptr<const FrameSource> drive_;
   DriveInfo info_;
 };
 

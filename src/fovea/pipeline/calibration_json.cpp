@@ -9,12 +9,12 @@ namespace {
 
 /// Null for a value that is not observable.
 nlohmann::ordered_json values_json(const Eigen::Vector3d& values, double unit,
-                                   const CalibrationEstimate& e, int first) {
+                                   const CalibrationEstimate& e, std::size_t first) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   bool is_any_observable = false;
-  for (int k = 0; k < 3; ++k) {
-    const bool observable = e.observable[std::size_t(first + k)];
-    list.push_back(observable ? nlohmann::ordered_json(values[k] / unit) : nullptr);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool observable = e.observable[first + k];
+    list.push_back(observable ? nlohmann::ordered_json(values[Eigen::Index(k)] / unit) : nullptr);
     is_any_observable = is_any_observable || observable;
   }
   return is_any_observable ? list : nullptr;
@@ -26,7 +26,7 @@ nlohmann::ordered_json to_json(const CameraCalibration& camera, bool applied) {
     return e.delay_observable() ? nlohmann::ordered_json(1e3 * value) : nullptr;
   };
   const auto pixels = [&](double value) {
-    return e.rotation_observable() ? nlohmann::ordered_json(value) : nullptr;
+    return e.is_any_observable() ? nlohmann::ordered_json(value) : nullptr;
   };
   const auto lens = [&](double value) {
     return camera.lens.is_checked ? nlohmann::ordered_json(value) : nullptr;
@@ -64,14 +64,17 @@ nlohmann::ordered_json to_json(const std::optional<ImuHandEye>& imu) {
   const auto three = [](const Eigen::Vector3d& v) {
     return nlohmann::ordered_json{v.x(), v.y(), v.z()};
   };
+  const auto rotation = [&](const Eigen::Vector3d& v) {
+    return imu->observable_directions > 0 ? three(v / kDegree) : nullptr;
+  };
   const auto delay = [&](double value) {
     return imu->delay_observable ? nlohmann::ordered_json(1e3 * value) : nullptr;
   };
   return {{"agrees", imu->agrees},
           {"turns", imu->moving_turns},
           {"observable_directions", imu->observable_directions},
-          {"rotation_deg", three(imu->rotation / kDegree)},
-          {"rotation_sigma_deg", three(imu->rotation_sigma() / kDegree)},
+          {"rotation_deg", rotation(imu->rotation)},
+          {"rotation_sigma_deg", rotation(imu->rotation_sigma())},
           {"time_offset_ms", delay(imu->delay)},
           {"time_offset_sigma_ms", delay(imu->delay_sigma)},
           {"gyroscope_bias_deg_s", three(imu->gyroscope_bias / kDegree)}};

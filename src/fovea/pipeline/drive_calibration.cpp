@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/recalibrated_source.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr int kMaxTracked = 1200;                  // frames, from the first one: two minutes
 constexpr std::size_t kFrames = 60;                // with images
 constexpr std::size_t kGroup = 3, kGroupStep = 3;  // frames of one place, and from one to the next
+constexpr double kMostPixels = 6e7, kFewestFrames = 18;  // of all images of a camera
 constexpr std::size_t kSurfacePoints = 6000;
 constexpr float kMinSurfaceRange = 2;
 constexpr int kImuPasses = 6;
@@ -59,6 +61,21 @@ std::vector<TrackedPose> chosen(const std::vector<TrackedPose>& poses,
   return result;
 }
 
+/// Fewer frames of large images, in groups of neighbors: their smoothed copies are in memory, too.
+std::vector<TrackedPose> frames_within_memory(const std::vector<TrackedPose>& frames,
+                                              const DriveInfo& drive) {
+  const Camera& camera = drive.calibration.cameras.front();
+  const double pixels = double(camera.width) * double(camera.height);
+  const auto most = std::size_t(std::clamp(kMostPixels / pixels, kFewestFrames, double(kFrames)));
+  if (frames.size() <= most) return frames;
+  const std::size_t step = (frames.size() + most - 1) / most;
+  std::vector<TrackedPose> fewer;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i / kGroup % step == 0) fewer.push_back(frames[i]);
+  }
+  return fewer;
+}
+
 /// Points in the view and its surroundings.
 std::vector<Eigen::Vector3f> surface_points(const PointCloud& scan_lidar, const Camera& camera) {
   const Eigen::Isometry3f T_cam_lidar = camera.T_cam_lidar.cast<float>();
@@ -80,7 +97,7 @@ std::vector<Eigen::Vector3f> surface_points(const PointCloud& scan_lidar, const 
 /// Frames with images of one camera, ready for an estimate.
 std::vector<CalibrationView> calibration_views(const FrameSource& source, std::size_t slot,
                                                const std::vector<TrackedPose>& poses,
-                                               bool compensate) {
+                                               const ImageMask* mask, bool compensate) {
   const DriveInfo& drive = source.info();
   const Camera& camera = drive.calibration.cameras.at(slot);
   std::vector<CalibrationView> views(poses.size());
@@ -95,6 +112,7 @@ std::vector<CalibrationView> calibration_views(const FrameSource& source, std::s
             .stamp = frame.stamp,
             .image_offset = drive.image_offset(slot, frame.index),
             .image = std::move(frame.images[slot]),
+            .mask = mask,
             .edges_lidar = scan_edges(frame.scan, camera, drive, motion),
             .surface_lidar = {}};
     if (motion) compensate_sweep(frame.scan, *motion, drive.sweep);
@@ -150,11 +168,12 @@ CameraCalibration calibrated_camera(const DriveInfo& drive, int number,
                                     const DriveCalibrationJob& job) {
   const auto source = reopened(drive, {number});
   const bool compensate = job.track.settings.compensates_motion() && !drive.sweep_compensated;
-  const std::vector<CalibrationView> views = calibration_views(*source, 0, frames, compensate);
+  const std::vector<CalibrationView> views = calibration_views(
+      *source, 0, frames_within_memory(frames, source->info()), drive.mask(number), compensate);
   const Camera& given = source->info().calibration.cameras.front();
   CameraCalibration result{number, estimate_extrinsics(views, given, T_local_lidar)};
   const Camera right = corrected(given, result.estimate.correction);
-  if (!result.estimate.disagrees) {
+  if (result.estimate.is_any_observable()) {
     result.lens = check_lens(profiles_of_views(views, right, T_local_lidar), right);
   }
   result.overlays = overlays_of(views, given, right, T_local_lidar, job.overlays);
@@ -163,9 +182,10 @@ CameraCalibration calibrated_camera(const DriveInfo& drive, int number,
 
 std::vector<ScanTurn> turns_of(const std::vector<TrackedPose>& poses) {
   std::vector<ScanTurn> turns;
+  turns.reserve(poses.size());
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const TrackedPose &before = poses[i - 1], &after = poses[i];
-    if (after.stamp - before.stamp > kLongestTurn) continue;
+    if (!after.is_firm || after.stamp - before.stamp > kLongestTurn) continue;
     const RigidMotion turn = before.T_odom_lidar.inverse() * after.T_odom_lidar;
     turns.push_back({before.stamp, after.stamp, rotation_vector(turn.linear())});
   }
@@ -186,11 +206,11 @@ ImuData corrected(const ImuData& imu, const ImuHandEye& found) {
 ImuHandEye calibrated_imu(const DriveInfo& drive, const ScanTrackJob& job,
                           std::vector<TrackedPose>& poses) {
   const ImuData& given = *drive.imu;
+  const std::vector<TrackedPose> without_imu = poses;
   ImuHandEye found =
       estimate_imu_hand_eye(turns_of(poses), given.samples, given.T_lidar_imu.linear());
   for (int pass = 0; pass < kImuPasses; ++pass) {
-    const bool is_found = found.observable_directions > 0 || found.delay_observable;
-    if (!found.agrees || !is_found || job.stop.stop_requested()) break;
+    if (!found.agrees || job.stop.stop_requested()) break;
     std::unique_ptr<FrameSource> scans = reopened(drive, {});
     DriveInfo with_imu = scans->info();
     with_imu.imu = corrected(given, found);
@@ -203,15 +223,19 @@ ImuHandEye calibrated_imu(const DriveInfo& drive, const ScanTrackJob& job,
       break;
     }
   }
+  if (!found.agrees) poses = without_imu;
   return found;
 }
 
 }  // namespace
 
-DriveCalibration calibrate_drive(const FrameSource& source, const DriveCalibrationJob& job) {
-  const DriveInfo& drive = source.info();
+DriveCalibration calibrate_drive(const DriveInfo& drive, const DriveCalibrationJob& job) {
   DriveCalibration result;
   std::vector<TrackedPose> poses = track_scans(*reopened(drive, {}), job.track);
+  if (poses.empty() && !job.track.stop.stop_requested()) {
+    throw InputError("no frame could be tracked", drive.path.string(),
+                     "check that the drive has scans for the frames asked for");
+  }
   if (drive.imu) result.imu = calibrated_imu(drive, job.track, poses);
   result.frames = poses.size();
   const PoseSpline T_local_lidar = spline_through(poses);

@@ -50,10 +50,11 @@ struct DriveCalibration {
 };
 
 /// Tracks the scans of a drive, at most 1,200 from the first on, and estimates the calibration of
-/// its IMU and its cameras. Reads the drive again from its folder. Takes the poses of the scans
-/// from the job, from registration with navigation, or from registration alone; the IMU has no part
-/// in them until it is calibrated.
-DriveCalibration calibrate_drive(const FrameSource& source, const DriveCalibrationJob& job);
+/// its IMU and its cameras. Reads the drive again from its folder. Poses come from the job, or from
+/// registration with navigation if there is any. The IMU has no part in them until it is
+/// calibrated.
+/// @throws InputError  if no frame can be tracked
+DriveCalibration calibrate_drive(const DriveInfo& drive, const DriveCalibrationJob& job);
 
 /// The drive under the corrected calibration.
 DriveInfo corrected(DriveInfo drive, const DriveCalibration& found);

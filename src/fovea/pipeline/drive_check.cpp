@@ -231,7 +231,8 @@ Image calibration_overlay(const FrameSource& source, int frame, std::size_t slot
   constexpr double kNear = 3, kFar = 25;               // m, red and blue
   const int reach = std::max(1, picture.width / 600);  // of a dot, pixels
   std::vector<Eigen::Vector3d> dots;                   // LiDAR frame
-  for (const LidarEdges& edges : scan_edges(read->scan, camera, source.info(), std::nullopt)) {
+  for (const LidarEdges& edges :
+       scan_edges(read->scan, camera, source.info(), std::nullopt, /*max_range=*/60)) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       dots.emplace_back(0.5 *
                         (edges.inside.position[i] + edges.outside.position[i]).cast<double>());

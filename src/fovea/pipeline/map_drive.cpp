@@ -5,6 +5,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/lost_drive.h"
+#include "fovea/drive/recalibrated_source.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/tile_cache.h"
 #include "fovea/pipeline/config.h"
@@ -127,7 +128,9 @@ CheckpointerOptions MapRun::checkpointer_options() {
 std::unique_ptr<IncrementalMapper> MapRun::mapper_of_drive() {
   MapperServices services;
   services.initial_velocity = [this](int frame) {
-    return initial_velocity(source_, job_.given_poses, frame, job_.settings.compensates_motion());
+    // By the corrected IMU.
+    const RecalibratedSource corrected({std::shared_ptr<const FrameSource>{}, &source_}, drive_);
+    return initial_velocity(corrected, job_.given_poses, frame, job_.settings.compensates_motion());
   };
   services.load_near = [this](TileMap& map, const Eigen::Vector3d& center_local, double radius) {
     cache_.load_within(map, center_local, radius);

@@ -1,6 +1,7 @@
 #include "fovea/pipeline/run_preparation.h"
 
 #include "fovea/core/errors.h"
+#include "fovea/pipeline/config.h"
 #include "fovea/pipeline/stored_calibration.h"
 
 namespace fovea {
@@ -13,12 +14,13 @@ DriveCalibration correct_calibration(const FrameSource& source, const MapJob& jo
                                      MapMeta& meta) {
   if (!job.calibrate) return {};
   DriveCalibrationJob calibration;
-  calibration.track.settings = job.settings;
+  // The paper's mapper finds poses only while it maps.
+  calibration.track.settings = job.settings.is_paper() ? load_preset("default") : job.settings;
   calibration.track.pose_source = job.pose_source;
   calibration.track.given_poses = job.given_poses;
   calibration.track.stop = job.stop;
   calibration.usable = [&](int index) { return !job.hold_out.contains(index); };
-  DriveCalibration found = calibrate_drive(source, calibration);
+  DriveCalibration found = calibrate_drive(source.info(), calibration);
   drive = corrected(std::move(drive), found);
   store_calibration(found, meta);
   return found;

@@ -8,6 +8,15 @@
 #include "fovea/pipeline/make_mapper.h"
 
 namespace fovea {
+namespace {
+
+bool is_firm(const TrackingStats& tracking) {
+  if (!tracking.registration) return true;
+  const std::optional<AlignmentStats>& alignment = tracking.registration->alignment;
+  return alignment && !alignment->has_failed && alignment->degenerate_directions == 0;
+}
+
+}  // namespace
 
 std::vector<TrackedPose> track_scans(const FrameSource& source, const ScanTrackJob& job) {
   const DriveInfo drive = info_with_lidars(source);
@@ -36,7 +45,7 @@ std::vector<TrackedPose> track_scans(const FrameSource& source, const ScanTrackJ
     if (result.tracking.is_pose_unknown || result.tracking.is_lost) continue;
     const Frame& frame = std::get<Frame>(tracked->read.result);
     poses.push_back({frame.index, frame.stamp, result.poses.T_odom_lidar,
-                     result.poses.motion.value_or(SweepMotion{})});
+                     result.poses.motion.value_or(SweepMotion{}), is_firm(result.tracking)});
   }
   return poses;
 }

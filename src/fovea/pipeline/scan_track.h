@@ -1,4 +1,4 @@
-// The motion of the LiDAR over a drive, by its scans alone.
+// The motion of the LiDAR over a drive, without a map.
 #pragma once
 
 #include <functional>
@@ -16,6 +16,7 @@ struct TrackedPose {
   TimeNs stamp = 0;
   RigidMotion T_odom_lidar = RigidMotion::Identity();  ///< without corrections by loops
   SweepMotion motion;                                  ///< about the stamp
+  bool is_firm = true;  ///< registration has determined all six directions, or the pose is given
 };
 
 struct ScanTrackJob {

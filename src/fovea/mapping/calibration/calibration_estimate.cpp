@@ -34,11 +34,6 @@ constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // larger is a wr
 // deviation of this share of the excess: KITTI with half of the rings is off by 0.15 degrees in one
 // of two cameras.
 constexpr double kDenseRings = 0.5 * kDegree, kGapShare = 1.0 / 6;
-// Minimum gain in the mean logarithm of edge strength over rotated cameras. Drives have 0.7 to 1.3,
-// the maximum of clutter up to 0.13, and edges beyond the ends of the profiles up to 0.46
-// (docs/calibration.md).
-constexpr double kMinContrast = 0.5;
-constexpr double kElsewhere = 8;  // pixels
 constexpr double kConfirmed =
     2;  // standard deviations of the gain of one half by the correction of the other
 
@@ -59,16 +54,6 @@ Matrix gap_covariance(const std::vector<EdgeProfile>& profiles) {
   return result;
 }
 
-/// Whether the edge strength exceeds that of rotated cameras by more than chance.
-bool stands_out(const std::vector<EdgeProfile>& profiles, const Vector& x, double value) {
-  double elsewhere = 0;
-  for (const auto& [axis, sign] : {std::pair{0, -1}, {0, 1}, {1, -1}, {1, 1}}) {
-    const Vector other = x + sign * kElsewhere * Vector::Unit(axis);
-    elsewhere += edge_score(profiles, other, kFinestEdgeWidth).value / 4;
-  }
-  return value - elsewhere > kMinContrast * static_cast<double>(profiles.size());
-}
-
 enum class Outcome { kFound, kDelayUnobservable, kNothing };
 
 /// If it finds an estimate, sets all but the counts.
@@ -86,7 +71,7 @@ Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
     return failure;
   }
   if (sigma.head<3>().maxCoeff() > kMaxRotationSigma || found.head<3>().norm() > kMaxRotation ||
-      !stands_out(profiles, x, score.value)) {
+      !edges_stand_out(profiles, x)) {
     return Outcome::kNothing;
   }
   const Matrix whole = cov + gap_covariance(profiles);

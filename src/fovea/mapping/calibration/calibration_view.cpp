@@ -25,7 +25,10 @@ std::vector<EdgeProfile> profiles_of_views(const std::vector<CalibrationView>& v
     for (LidarEdges edges_lidar : views[i].edges_lidar) {
       edges_lidar.inside = transform_cloud(std::move(edges_lidar.inside), moment->T_image_stamp);
       edges_lidar.outside = transform_cloud(std::move(edges_lidar.outside), moment->T_image_stamp);
-      const auto of_lidar = edge_profiles(edges_lidar, views[i].image, view);
+      auto of_lidar = edge_profiles(edges_lidar, views[i].image, view);
+      std::erase_if(of_lidar, [&](const EdgeProfile& profile) {
+        return views[i].is_masked(profile.pixel.cast<double>());
+      });
       of_view[i].insert(of_view[i].end(), of_lidar.begin(), of_lidar.end());
     }
   });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fovea/core/image.h"
+#include "fovea/core/image_mask.h"
 #include "fovea/geometry/pose_spline.h"
 #include "fovea/mapping/calibration/camera_correction.h"
 #include "fovea/mapping/calibration/edge_profiles.h"
@@ -17,8 +18,14 @@ struct CalibrationView {
   TimeNs stamp = 0;         ///< of the scan
   double image_offset = 0;  ///< s, see DriveInfo::image_offset
   Image image;
+  const ImageMask* mask = nullptr;             ///< of the image, if it has one; outlives the view
   std::vector<LidarEdges> edges_lidar;         ///< of each LiDAR, at the stamp (motion compensated)
   std::vector<Eigen::Vector3f> surface_lidar;  ///< points of surfaces, at the stamp
+
+  bool is_masked(const Eigen::Vector2d& pixel) const {
+    return mask != nullptr && mask->covers(float(pixel.x()), float(pixel.y()), kMaskMargin);
+  }
+  static constexpr float kMaskMargin = 8;  ///< pixels
 };
 
 /// Where the LiDAR was when a camera took the image of a view.

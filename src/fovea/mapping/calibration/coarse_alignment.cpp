@@ -16,6 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kMaxEdges = 6000;
+constexpr double kRotationReach = 6 * kDegree, kDelayReach = 0.12;  // rad, s
 constexpr double kRotationStep = 1 * kDegree, kRollStep = 3 * kDegree, kRollReach = 6 * kDegree;
 constexpr double kTranslationStep = 0.1;                      // m
 constexpr double kPixelStep = 0.0175;                         // rad, median of a step of the delay
@@ -166,10 +167,10 @@ std::vector<double> grid(double reach, double step) {
 
 std::vector<Candidate> search_grid(const CoarseScore& score, double delay_step) {
   std::vector<Candidate> candidates;
-  for (const double delay : grid(kCoarseDelay, delay_step)) {
+  for (const double delay : grid(kDelayReach, delay_step)) {
     for (const double roll : grid(kRollReach, kRollStep)) {
-      for (const double pitch : grid(kCoarseRotation, kRotationStep)) {
-        for (const double yaw : grid(kCoarseRotation, kRotationStep)) {
+      for (const double pitch : grid(kRotationReach, kRotationStep)) {
+        for (const double yaw : grid(kRotationReach, kRotationStep)) {
           candidates.push_back({{.rotation = {pitch, yaw, roll}, .delay = delay}, 0});
         }
       }
@@ -233,6 +234,7 @@ std::vector<CameraCorrection> coarse_corrections(const std::vector<CalibrationVi
     keep_best(candidates, kKept[std::size_t(level)], steps);
   }
   std::vector<CameraCorrection> corrections;
+  corrections.reserve(candidates.size());
   for (const Candidate& candidate : candidates) corrections.push_back(candidate.correction);
   return corrections;
 }

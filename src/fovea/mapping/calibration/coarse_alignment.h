@@ -7,12 +7,9 @@
 
 namespace fovea {
 
-/// Largest errors that the search covers: 6 degrees about each axis and 120 ms. Translations follow
-/// from the best of these.
-inline constexpr double kCoarseRotation = 0.105, kCoarseDelay = 0.12;
-
-/// Searches for corrections under which the LiDAR's edges lie near the images' edges: a grid of
-/// rotations and delays on smoothed images, then steps downhill on ever finer images.
+/// Covers errors of 6 degrees about each axis and 120 ms; translations follow from the best of
+/// these. Searches for corrections under which the LiDAR's edges lie near the images' edges: a grid
+/// of rotations and delays on smoothed images, then steps downhill on ever finer images.
 /// @return  corrections near maxima, the best first; empty if there are no edges
 std::vector<CameraCorrection> coarse_corrections(const std::vector<CalibrationView>& views,
                                                  const Camera& camera,

@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kNeighbors = 3;                   // later views that a view is compared with
 constexpr double kMinBaseline = 0.3, kMaxBaseline = 6;  // m
+constexpr TimeNs kLongestStep = 5 * kNsPerSecond;       // a pause may be between the views
 constexpr std::size_t kMaxPoints = 1500;                // of a pair
 constexpr double kMinDepth = 2, kMaxDepth = 40;         // m
 constexpr int kBorder = 8;                              // pixels
@@ -90,7 +91,8 @@ std::vector<Pair> pairs_of(const std::vector<std::optional<ReadyView>>& views) {
                                views[j]->moment.T_local_lidar.translation())
                                   .norm();
       if (baseline < kMinBaseline) continue;
-      if (baseline > kMaxBaseline) break;
+      const TimeNs elapsed = views[j]->view->stamp - views[i]->view->stamp;
+      if (baseline > kMaxBaseline || elapsed > kLongestStep) break;
       pairs.emplace_back(i, j);
       ++count;
     }
@@ -102,7 +104,7 @@ bool is_visible(const ReadyView& view, const Camera& camera, const Vector3d& p_l
   const Vector3d p_cam = camera.T_cam_lidar * (view.moment.T_local_lidar.inverse() * p_local);
   if (p_cam.z() < kMinDepth || p_cam.z() > kMaxDepth) return false;
   const auto pixel = camera.project(p_cam);
-  return pixel && view.image->is_inside(*pixel);
+  return pixel && view.image->is_inside(*pixel) && !view.view->is_masked(*pixel);
 }
 
 std::vector<Comparison> comparisons_of(const std::vector<std::optional<ReadyView>>& views,
@@ -194,7 +196,8 @@ CalibrationMatrix scatter_by(const std::vector<Comparison>& comparisons,
   return scatter;
 }
 
-/// Drops the directions in which the colors show no maximum within reach.
+/// Drops the directions in which the colors show no maximum within reach: there the second
+/// differences are noise, and a Newton step would lead anywhere.
 void keep_maxima(QuadraticTerm& term, double reach) {
   const Eigen::SelfAdjointEigenSolver<CalibrationMatrix> eigen(term.curvature);
   CalibrationMatrix kept = CalibrationMatrix::Zero();  // projection
@@ -212,8 +215,8 @@ void keep_maxima(QuadraticTerm& term, double reach) {
   term.scatter = CalibrationMatrix(kept * term.scatter * kept);
 }
 
-/// Gradients of each comparison and curvature of the sum, by differences. The derivatives of images
-/// would not do: those of the two images of a point differ by their resolution.
+/// Gradients of each comparison and curvature of the sum, by differences. Image derivatives are not
+/// used, since the two images show a point at different resolutions.
 QuadraticTerm term_of(const ColorDifferences& colors, double sigma, double step) {
   const std::size_t count = colors.comparisons().size();
   const auto likelihoods = [&](const CalibrationVector& x) {

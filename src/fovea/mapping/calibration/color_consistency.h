@@ -14,8 +14,8 @@ struct ColorConsistency {
   QuadraticTerm term;     ///< log likelihood, in calibration_unit()s about the camera at hand
 };
 
-/// Compares the images of neighboring views at the surface points of the first of them, in one
-/// exposure: each pair of images has a factor of its own. Robust (Cauchy).
+/// Compares the images of neighboring views at the surface points of the first of them. Brightness
+/// is relative to its neighborhood, so that exposure drops out. Robust (Cauchy).
 /// @param blur  pixels, standard deviation of the Gaussian that smooths the images
 ColorConsistency color_consistency(const std::vector<CalibrationView>& views, const Camera& camera,
                                    const PoseSpline& T_local_lidar, double blur);

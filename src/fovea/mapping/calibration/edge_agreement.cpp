@@ -21,6 +21,11 @@ constexpr std::size_t kManyEdges = 60;
 // error (docs/calibration.md).
 constexpr double kLeastContrast = 0.8;
 constexpr double kSignificant = 2;  // standard deviations
+// Minimum gain in the mean logarithm of edge strength over rotated cameras. Drives have 0.7 to 1.3,
+// the maximum of clutter up to 0.13, and edges beyond the ends of the profiles up to 0.46
+// (docs/calibration.md).
+constexpr double kMinGain = 0.5, kFinestWidth = 0.5;
+constexpr double kElsewhere = 8;  // pixels
 
 /// Sum of the squares of the sums over groups of edges, corrected for the number of groups.
 template <class Key>
@@ -97,6 +102,17 @@ bool edges_disagree(const std::vector<EdgeProfile>& profiles, const CalibrationV
     }
   }
   return false;
+}
+
+bool edges_stand_out(const std::vector<EdgeProfile>& profiles,
+                     const CalibrationVector& correction) {
+  double elsewhere = 0;
+  for (const auto& [axis, sign] : {std::pair{0, -1}, {0, 1}, {1, -1}, {1, 1}}) {
+    const CalibrationVector other = correction + sign * kElsewhere * CalibrationVector::Unit(axis);
+    elsewhere += edge_score(profiles, other, kFinestWidth).value / 4;
+  }
+  const double value = edge_score(profiles, correction, kFinestWidth).value;
+  return value - elsewhere > kMinGain * static_cast<double>(profiles.size());
 }
 
 EdgeMean edge_gain(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,

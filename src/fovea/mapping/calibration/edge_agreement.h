@@ -29,6 +29,11 @@ EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis,
 bool edges_disagree(const std::vector<EdgeProfile>& profiles,
                     const CalibrationVector& correction = CalibrationVector::Zero());
 
+/// Whether the mean logarithm of edge strength at a correction exceeds that of cameras rotated by 8
+/// pixels, by more than clutter does.
+bool edges_stand_out(const std::vector<EdgeProfile>& profiles,
+                     const CalibrationVector& correction = CalibrationVector::Zero());
+
 /// Gain in the logarithm of edge strength of one correction over another.
 EdgeMean edge_gain(const std::vector<EdgeProfile>& profiles, const CalibrationVector& correction,
                    const CalibrationVector& other);

@@ -23,11 +23,11 @@ constexpr double kLikelyDelay = 0.02;
 /// number of groups.
 template <class Key>
 Matrix scatter_by(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
-                  const Vector& x, Key&& key) {
+                  const Vector& x, double width, Key&& key) {
   std::map<std::decay_t<decltype(key(profiles.front()))>, Vector> sums;
   for (const EdgeProfile& profile : profiles) {
     sums.try_emplace(key(profile), Vector::Zero()).first->second +=
-        only(free, edge_score(profile, x, kWidths.back()).gradient);
+        only(free, edge_score(profile, x, width).gradient);
   }
   Matrix scatter = Matrix::Zero();
   for (const auto& [group, sum] : sums) scatter += sum * sum.transpose();
@@ -125,9 +125,9 @@ Vector maximize_edge_score(const std::vector<EdgeProfile>& profiles, const FreeP
 }
 
 Matrix edge_scatter(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
-                    const Vector& x) {
-  return scatter_by(profiles, free, x, [](const EdgeProfile& p) { return p.frame; }) +
-         scatter_by(profiles, free, x, [](const EdgeProfile& p) { return p.place; });
+                    const Vector& x, double width) {
+  return scatter_by(profiles, free, x, width, [](const EdgeProfile& p) { return p.frame; }) +
+         scatter_by(profiles, free, x, width, [](const EdgeProfile& p) { return p.place; });
 }
 
 Matrix edge_covariance(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,

@@ -41,8 +41,9 @@ CalibrationVector maximize_edge_score(const std::vector<EdgeProfile>& profiles,
 
 /// Scatter of the gradients at a correction. Edges of one frame have common errors, and so do edges
 /// of one object in all frames: the scatter is the sum of both.
+/// @param width  of the score, pixels
 CalibrationMatrix edge_scatter(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
-                               const CalibrationVector& x);
+                               const CalibrationVector& x, double width = kFinestEdgeWidth);
 
 /// Covariance of the maximum, H^-1 S H^-1 (H: curvature, S: scatter of the gradients).
 /// If the delay is fixed, an unknown delay of a likely size adds to the covariance.

@@ -122,7 +122,7 @@ TEST(EdgeMaximum, FixedParametersStayZero) {
   EXPECT_LT((x - truth).cwiseAbs().maxCoeff(), 0.02);
 }
 
-// A narrow Gaussian sees no edge that is far away.
+// A narrow Gaussian does not reach an edge that is far away.
 TEST(EdgeMaximum, TheCoarsestGaussianIsTheReach) {
   const CalibrationVector truth = 12 * CalibrationVector::Unit(1);  // about 14 pixels
   auto profiles = profiles_of(truth, 0);

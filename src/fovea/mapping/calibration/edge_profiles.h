@@ -32,16 +32,16 @@ struct EdgeProfile {
 
 /// The pose of an image.
 struct EdgeView {
-  Camera camera;  ///< image_delay included
+  Camera camera;  ///< its image_delay counts from the time of the edges
   /// Twist per second of the LiDAR in its own frame.
   Twist velocity = Twist::Zero();
-  RigidMotion T_local_lidar = RigidMotion::Identity();  ///< at the scan's stamp
+  RigidMotion T_local_lidar = RigidMotion::Identity();  ///< at the time of the edges
   int frame = 0;
 };
 
 /// Profiles of the edges in the image, each along the normal of the line through the edge and its
 /// neighbors. An edge without such a line has no profile.
-/// @param edges_lidar  at the scan's stamp (motion compensated)
+/// @param edges_lidar  at one time, such as the scan's stamp (motion compensated)
 std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Image& image,
                                        const EdgeView& view);
 

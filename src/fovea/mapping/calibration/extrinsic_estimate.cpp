@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "fovea/core/angle.h"
@@ -20,6 +21,7 @@ using Vector = CalibrationVector;
 using Matrix = CalibrationMatrix;
 
 constexpr std::size_t kMinEdges = 200;
+constexpr std::size_t kMinClearEdges = 60;  // with a clear step of the image, about one axis
 constexpr std::size_t kMinViews = 5;
 // Blur of the compared images in each pass, pixels.
 constexpr std::array<double, 4> kBlurs{4, 3, 2, 1.5};
@@ -28,10 +30,11 @@ constexpr double kLaterWidth = 2;  // pixels: edges are near after the first pas
 // Largest standard deviation of an observable value: rad, m, s.
 constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxTranslationSigma = 0.02,
                  kMaxDelaySigma = 0.004;
+constexpr double kUncertain = 3, kClear = 4;  // of these limits; standard deviations
 // Errors that all edges of a drive may share, such as those of beams or of the lens: pixels, rms.
 constexpr double kSystematicError = 0.1;
-// Standard deviation of the given calibration: rad, m, s. It keeps values near those given that the
-// drive hardly shows.
+// Standard deviation of the given calibration: rad, m, s. Where the drive shows little, values stay
+// near the given ones.
 constexpr double kGivenRotation = 5 * kDegree, kGivenTranslation = 0.2, kGivenDelay = 0.1;
 constexpr double kGivenShift = 1;  // pixels
 
@@ -60,8 +63,9 @@ QuadraticTerm prior_about(const CameraCorrection& correction) {
   return prior;
 }
 
-/// Weight of a criterion under which its curvature states its scatter: neighboring edges and points
-/// have common errors, which the sum does not account for.
+/// Weight of a criterion under which its curvature equals its scatter, as that of a likelihood does
+/// (composite likelihood; Varin, Reid, Firth 2011). Neighboring edges and points have common
+/// errors, so the plain sum claims too much.
 double information_weight(const FreeParameters& free, const Matrix& curvature,
                           const Matrix& scatter) {
   const double sum = only_part(free, scatter).trace();
@@ -97,6 +101,14 @@ Matrix systematic_covariance(const FreeParameters& free, const std::vector<EdgeP
   return kSystematicError * kSystematicError * only_part(free, only(free, mean).inverse());
 }
 
+/// Whether both halves of the frames show edges at the expected places. A maximum from clutter in
+/// one half is none in the other.
+bool halves_stand_out(const std::vector<EdgeProfile>& profiles) {
+  auto middle = profiles.begin() + static_cast<std::ptrdiff_t>(profiles.size() / 2);
+  while (middle != profiles.end() && middle->frame == (middle - 1)->frame) ++middle;
+  return edges_stand_out({profiles.begin(), middle}) && edges_stand_out({middle, profiles.end()});
+}
+
 /// Estimates one camera. Parameters that turn out not to be observable are fixed one by one.
 class Estimator {
  public:
@@ -128,7 +140,7 @@ class Estimator {
 };
 
 /// The best of several starts, by the contrast of its edges with those of rotated cameras. Empty if
-/// there are too few edges.
+/// there are too few edges, or if the images do not show them clearly.
 std::optional<CameraCorrection> Estimator::best_start() const {
   std::vector<CameraCorrection> starts = coarse_corrections(views_, camera_, T_local_lidar_);
   starts.emplace_back();
@@ -138,7 +150,9 @@ std::optional<CameraCorrection> Estimator::best_start() const {
     const CameraCorrection correction = by_edges(start);
     const std::vector<EdgeProfile> at_hand = profiles(correction);
     if (at_hand.size() < kMinEdges) continue;
-    const double contrast = edge_contrast(at_hand, 0).mean + edge_contrast(at_hand, 1).mean;
+    const EdgeMean pitch = edge_contrast(at_hand, 0), yaw = edge_contrast(at_hand, 1);
+    if (std::max(pitch.edges, yaw.edges) < kMinClearEdges) continue;
+    const double contrast = pitch.mean + yaw.mean;
     if (best && contrast <= best_contrast) continue;
     best = correction;
     best_contrast = contrast;
@@ -176,21 +190,28 @@ Matrix Estimator::covariance(const std::vector<EdgeProfile>& at_hand) const {
   const QuadraticTerm further =
       next_to_edges(free_, at_hand, colors(correction_, kBlurs.back()), prior_about(correction_));
   const Vector x = maximize_edge_score(at_hand, free_, further, kLaterWidth);
-  Matrix curvature;
   for (double width = kFinestEdgeWidth; width <= kLaterWidth; width *= 2) {
-    curvature = only(free_, Matrix(edge_score(at_hand, x, width).curvature + further.curvature));
-    if (is_positive_definite(curvature)) break;  // few edges have a ragged score
+    const Matrix curvature =
+        only(free_, Matrix(edge_score(at_hand, x, width).curvature + further.curvature));
+    if (!is_positive_definite(curvature)) continue;  // the score of few edges is ragged
+    const Matrix inverse = curvature.inverse();
+    const Matrix scatter =
+        edge_scatter(at_hand, free_, x, width) + only_part(free_, further.scatter);
+    return inverse * scatter * inverse + systematic_covariance(free_, at_hand);
   }
-  const Matrix inverse = curvature.inverse();
-  const Matrix scatter = edge_scatter(at_hand, free_, x) + only_part(free_, further.scatter);
-  return inverse * scatter * inverse + systematic_covariance(free_, at_hand);
+  return Matrix::Constant(std::numeric_limits<double>::infinity());  // no maximum
 }
 
 /// Fixes the parameter that is the farthest from observable. False if all are observable. A
 /// translation comes before a rotation: where the two look alike, its error matters less.
 bool Estimator::fix_least_observable(const Vector& sigma) {
-  const Vector ratio =
+  const Vector value = vector_of(correction_).cwiseAbs();
+  Vector ratio =
       sigma.cwiseQuotient(per_parameter(kMaxRotationSigma, kMaxTranslationSigma, kMaxDelaySigma));
+  // A large correction is worth more than the given value, also if it is less certain.
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    if (ratio[k] <= kUncertain && value[k] > kClear * sigma[k]) ratio[k] = 0;
+  }
   const auto worst_of = [&](int begin, int end) {
     int worst = -1;
     for (int k = begin; k < end; ++k) {
@@ -200,6 +221,9 @@ bool Estimator::fix_least_observable(const Vector& sigma) {
     return worst;
   };
   int worst = worst_of(kCamTranslation, kCalibrationSize);
+  // At a steady speed a shift forward looks like a delay, whose error matters more.
+  constexpr int kForward = kCamTranslation + 2;
+  if (worst == kCamDelay && free_[kForward] && ratio[kForward] > 1) worst = kForward;
   if (worst < 0) worst = worst_of(kCamRotation, kCamTranslation);
   if (worst < 0) return false;
   free_[std::size_t(worst)] = false;
@@ -209,6 +233,7 @@ bool Estimator::fix_least_observable(const Vector& sigma) {
 CalibrationEstimate Estimator::run() {
   CalibrationEstimate estimate;
   estimate.frames = int(views_.size());
+  estimate.edges = profiles({}).size();
   if (views_.size() < kMinViews) return estimate;
   const std::optional<CameraCorrection> start = best_start();
   if (!start) return estimate;
@@ -222,8 +247,10 @@ CalibrationEstimate Estimator::run() {
     cov = covariance(at_hand);
   }
   estimate.edges = at_hand.size();
-  estimate.disagrees = at_hand.size() < kMinEdges || edges_disagree(at_hand);
-  if (estimate.disagrees) return estimate;
+  estimate.disagrees = at_hand.size() >= kMinEdges && edges_disagree(at_hand);
+  if (estimate.disagrees || at_hand.size() < kMinEdges || !halves_stand_out(at_hand)) {
+    return estimate;
+  }
   estimate.correction = correction_;
   estimate.sigma = correction_of(cov.diagonal().cwiseMax(0).cwiseSqrt());
   std::copy_n(free_.begin(), int(kCalibrationSize), estimate.observable.begin());

@@ -22,8 +22,9 @@ class ImageEdgeMap {
   /// 0 outside the image.
   /// @param upright  share of upright edges in the result, the others are level; 0 to 1
   float at(int level, float u, float v, float upright) const {
-    const auto x = static_cast<int>(u * scale_ + 0.5f), y = static_cast<int>(v * scale_ + 0.5f);
-    if (u < 0 || v < 0 || x >= width_ || y >= height_) return 0;
+    if (!(u >= 0 && v >= 0 && u < 1e6f && v < 1e6f)) return 0;
+    const auto x = static_cast<int>((u + 0.5f) * scale_), y = static_cast<int>((v + 0.5f) * scale_);
+    if (x >= width_ || y >= height_) return 0;
     const std::size_t pixel = std::size_t(y) * std::size_t(width_) + std::size_t(x);
     const auto& of_level = levels_[std::size_t(level)];
     return upright * of_level[0][pixel] + (1 - upright) * of_level[1][pixel];

@@ -46,7 +46,7 @@ TEST(ImageEdgeMap, IsWiderAtCoarseLevels) {
   }
 }
 
-TEST(ImageEdgeMap, TellsUprightFromLevelEdges) {
+TEST(ImageEdgeMap, SeparatesUprightFromLevelEdges) {
   const ImageEdgeMap upright(step_image(300, 120, 150, true), kFocal);
   EXPECT_GT(upright.at(kFinest, 150, 60, 1), 1);
   EXPECT_NEAR(upright.at(kFinest, 150, 60, 0), 0, 1e-4);  // no level edge anywhere

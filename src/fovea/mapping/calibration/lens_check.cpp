@@ -80,6 +80,7 @@ LensCheck check_lens(const std::vector<EdgeProfile>& profiles, const Camera& cam
   LensCheck check;
   if (profiles.size() < kMinEdges) return check;
   std::vector<Vector> J;
+  J.reserve(profiles.size());
   for (const EdgeProfile& profile : profiles) J.push_back(slope_of(profile, camera));
   Vector x = Vector::Zero();
   for (const double width : kWidths) {

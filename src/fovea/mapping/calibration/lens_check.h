@@ -7,7 +7,7 @@
 
 namespace fovea {
 
-/// What would make edges fit better than any correction of the extrinsics does.
+/// Errors of focal length and distortion that no correction of the extrinsics explains.
 struct LensCheck {
   bool is_checked = false;  ///< there are enough edges
   /// Share by which the true focal length is longer.
@@ -22,9 +22,8 @@ struct LensCheck {
   static bool is_odd(double value, double sigma);
 };
 
-/// Fits focal length, radial distortion and the calibration to the edges. Of a camera whose
-/// extrinsics are estimated already.
-/// @param camera  of the profiles
+/// Fits focal length, radial distortion and the calibration to the edges.
+/// @param camera  of the profiles, with its extrinsics estimated already
 LensCheck check_lens(const std::vector<EdgeProfile>& profiles, const Camera& camera);
 
 }  // namespace fovea
