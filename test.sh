@@ -63,7 +63,8 @@ fi
 long_tests='^(RegistrationKitti\.AitkenAcceleration|LocalMap\.SparseRingsInAnOpenPlace|RecordingPause\..*Without'
 long_tests+='|TrackingLoss\.|InitialVelocity\.|MapDriveResume\.ADriveThatBeginsAtSpeed|Warnings\.|LidarMount\.ADriveOf'
 long_tests+='|Evaluate\.(Blocks|TheReport|AGoodMapOfTheWallHas|TellsIts)|MeshWriters\.(TheSame|Larger|PointsOf)'
-long_tests+='|PaperMapper\.Registration|RollingShutter\.EachRow|KittiEvaluate\.)|^(Localize|EvaluateTruth)$'
+long_tests+='|PaperMapper\.Registration|RollingShutter\.EachRow|KittiEvaluate\.|ExtrinsicEstimate\.|Calibrate(Command)?\.'
+long_tests+='|CalibrationCheck\.TheRemedy)|^(Localize|EvaluateTruth)$'
 export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 for sanitizer in "${sanitizers[@]}"; do

@@ -13,12 +13,12 @@ namespace {
 
 /// "0.301 - -0.012": three values, a dash for each that is not observable.
 std::string three(const Eigen::Vector3d& values, double unit, const CalibrationEstimate& e,
-                  int first, int decimals) {
+                  std::size_t first, int decimals) {
   std::string text;
-  for (int k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3; ++k) {
     if (k > 0) text += ' ';
-    text += e.observable[std::size_t(first + k)]
-                ? fmt::format("{:.{}f}", values[k] / unit, decimals)
+    text += e.observable[first + k]
+                ? fmt::format("{:.{}f}", values[Eigen::Index(k)] / unit, decimals)
                 : "-";
   }
   return text;

@@ -124,6 +124,7 @@ std::vector<CalibrationView> calibration_views(const FrameSource& source, std::s
 
 PoseSpline spline_through(const std::vector<TrackedPose>& poses) {
   std::vector<StampedPose> stamped;
+  stamped.reserve(poses.size());
   for (const TrackedPose& pose : poses) stamped.push_back({pose.stamp, pose.T_odom_lidar});
   return PoseSpline(std::move(stamped));
 }
