@@ -227,7 +227,7 @@ inline BoardDrive board_drive(const BoardDriveOptions& options = {}) {
   constexpr double kStep = 0.1;     // s
   constexpr int kFurtherPoses = 4;  // before and after the views
   constexpr double kMaxRange = 40;
-  constexpr std::size_t kSurfaceStep = 11;  // every so many points
+  constexpr std::size_t kSurfaceStep = 11;  // every N-th point
   const BoardWorld world(options.boards);
   const Camera camera = true_camera();
   BoardDrive drive;
