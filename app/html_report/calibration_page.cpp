@@ -53,7 +53,7 @@ std::string camera_card(const CameraCalibration& camera) {
   const CalibrationEstimate& e = camera.estimate;
   const std::string name = fmt::format("Camera {}", camera.camera);
   if (e.disagrees) return card(name, "as given", "camera and LiDAR do not agree");
-  if (!has_observable(e)) return card(name, "as given", "no value is observable");
+  if (!e.is_any_observable()) return card(name, "as given", "no value is observable");
   return card(name, fmt::format("{:.1f} pixels", e.pixels),
               fmt::format("edges lay off, \xC2\xB1{:.1f}, before the correction", e.pixels_sigma));
 }

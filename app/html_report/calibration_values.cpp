@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "app/calibration_text.h"
@@ -15,9 +14,9 @@ namespace fovea::app {
 namespace {
 
 constexpr double kCentimeter = 0.01, kMillisecond = 0.001;
-// Standard deviations up to which a value of the IMU counts as observable: rad as in
-// imu_hand_eye.cpp, and rad/s, half of what an IMU may have without any turn.
-constexpr double kObservableRotation = 0.3 * kDegree, kObservableBias = 0.5 * kDegree;
+// Standard deviation up to which the bias of a gyroscope counts as observable, rad/s: half of what
+// an IMU may have without any turn.
+constexpr double kObservableBias = 0.5 * kDegree;
 
 /// How a kind of value is shown.
 struct ValueUnit {
@@ -115,7 +114,7 @@ std::vector<ValueRow> rows_of(const CalibrationEstimate& estimate) {
 
 /// Whether a rotation about an axis of the LiDAR is observable.
 std::string rotation_observable(const ImuHandEye& imu, Eigen::Index axis) {
-  if (imu.rotation_observable() || imu.rotation_sigma()[axis] <= kObservableRotation) return "yes";
+  if (imu.rotation_observable() || imu.rotation_sigma()[axis] <= kMaxMountSigma) return "yes";
   return imu.rotation[axis] == 0 ? "" : "in part";
 }
 
@@ -141,10 +140,6 @@ std::vector<ValueRow> rows_of(const ImuHandEye& imu) {
 
 }  // namespace
 
-bool has_observable(const CalibrationEstimate& estimate) {
-  return std::ranges::any_of(estimate.observable, std::identity());
-}
-
 std::string camera_values(const CameraCalibration& found, const Camera& given,
                           const DriveCorrection& corrected) {
   const CalibrationEstimate& e = found.estimate;
@@ -158,7 +153,7 @@ std::string camera_values(const CameraCalibration& found, const Camera& given,
                              evidence)) +
            "</div>\n";
   }
-  if (has_observable(e)) {
+  if (e.is_any_observable()) {
     html += fmt::format(
         "<p>Edges in the images lay {:.1f} pixels (\xC2\xB1{:.1f}) off the edges of the LiDAR. "
         "The estimate is from {}.</p>\n",

@@ -7,9 +7,6 @@
 
 namespace fovea::app {
 
-/// Whether the estimate corrects anything.
-bool has_observable(const CalibrationEstimate& estimate);
-
 /// A camera's corrections, what its images lack, its lens, and the corrected calibration to copy.
 /// @param given      the camera of the drive
 /// @param corrected  what the output states for it

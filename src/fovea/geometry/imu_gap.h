@@ -7,7 +7,7 @@
 
 namespace fovea {
 
-/// A longer time from sample to sample is a gap: 25 ms, or five usual steps.
-TimeNs imu_gap_limit(const std::vector<ImuSample>& samples);
+/// A longer time from sample to sample is a gap: 25 ms, or some usual steps.
+TimeNs imu_gap_limit(const std::vector<ImuSample>& samples, int usual_steps = 5);
 
 }  // namespace fovea

@@ -12,14 +12,8 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
                                      const FrameMotion& motion) {
   if (frame.images.at(slot).empty()) return {};
   const auto sweep = compensate ? std::optional(motion.sweep) : std::nullopt;
-  std::vector<EdgeProfile> profiles;
-  for (const LidarEdges& edges_lidar : scan_edges(frame.scan, camera, drive, sweep)) {
-    const std::vector<EdgeProfile> of_lidar =
-        edge_profiles(edges_lidar, frame.images.at(slot),
-                      {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});
-    profiles.insert(profiles.end(), of_lidar.begin(), of_lidar.end());
-  }
-  return profiles;
+  return profiles_of_lidars(scan_edges(frame.scan, camera, drive, sweep), frame.images.at(slot),
+                            {camera, motion.sweep.velocity, motion.T_local_lidar, frame.index});
 }
 
 }  // namespace
@@ -42,6 +36,7 @@ void CalibrationCheck::add(const Frame& frame, const FrameMotion& motion) {
 
 std::vector<CameraCalibration> CalibrationCheck::estimates() const {
   std::vector<CameraCalibration> found;
+  found.reserve(profiles_.size());
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
     found.push_back({drive_.calibration.cameras[k].index, estimate_calibration(profiles_[k])});
   }

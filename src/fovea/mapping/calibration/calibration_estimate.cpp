@@ -1,14 +1,12 @@
 #include "fovea/mapping/calibration/calibration_estimate.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <optional>
 
 #include "fovea/core/angle.h"
+#include "fovea/mapping/calibration/calibration_limits.h"
 #include "fovea/mapping/calibration/edge_agreement.h"
 #include "fovea/mapping/calibration/edge_displacement.h"
 #include "fovea/mapping/calibration/edge_maximum.h"
@@ -25,8 +23,6 @@ using Free = FreeParameters;
 constexpr double kLeastCurvature = 1e-4;
 
 constexpr int kMinFrames = 5, kMinFramesJudged = 3;
-constexpr std::size_t kMinEdges = 200;
-constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxDelaySigma = 0.004;
 // RMS speed of edges, pixels per second, that a delay needs to be observable.
 constexpr double kMinFlow = 40;
 constexpr double kMaxRotation = 2 * kDegree, kMaxDelay = 0.1;  // larger is a wrong maximum
@@ -87,11 +83,7 @@ Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
 /// Whether the correction from each half of the frames improves the agreement of the other half by
 /// more than chance. A maximum from clutter in one half is none in the other.
 bool halves_confirm(const std::vector<EdgeProfile>& profiles, const Free& free) {
-  auto middle = profiles.begin() + static_cast<std::ptrdiff_t>(profiles.size() / 2);
-  while (middle != profiles.end() && middle->frame == (middle - 1)->frame) ++middle;
-  const std::array<std::vector<EdgeProfile>, 2> halves{
-      std::vector<EdgeProfile>(profiles.begin(), middle),
-      std::vector<EdgeProfile>(middle, profiles.end())};
+  const std::array<std::vector<EdgeProfile>, 2> halves = halves_of(profiles);
   double gain = 0, variance = 0;
   for (const std::size_t half : {0u, 1u}) {
     const Vector correction = maximize_edge_score(halves[half], free);

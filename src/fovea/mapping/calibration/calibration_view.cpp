@@ -22,15 +22,15 @@ std::vector<EdgeProfile> profiles_of_views(const std::vector<CalibrationView>& v
     if (!moment) return;
     EdgeView view{camera, moment->velocity, moment->T_local_lidar, views[i].frame};
     view.camera.image_delay = 0;  // the edges are where they are at the image
-    for (LidarEdges edges_lidar : views[i].edges_lidar) {
-      edges_lidar.inside = transform_cloud(std::move(edges_lidar.inside), moment->T_image_stamp);
-      edges_lidar.outside = transform_cloud(std::move(edges_lidar.outside), moment->T_image_stamp);
-      auto of_lidar = edge_profiles(edges_lidar, views[i].image, view);
-      std::erase_if(of_lidar, [&](const EdgeProfile& profile) {
-        return views[i].is_masked(profile.pixel.cast<double>());
-      });
-      of_view[i].insert(of_view[i].end(), of_lidar.begin(), of_lidar.end());
+    std::vector<LidarEdges> edges_lidar = views[i].edges_lidar;
+    for (LidarEdges& edges : edges_lidar) {
+      edges.inside = transform_cloud(std::move(edges.inside), moment->T_image_stamp);
+      edges.outside = transform_cloud(std::move(edges.outside), moment->T_image_stamp);
     }
+    of_view[i] = profiles_of_lidars(edges_lidar, views[i].image, view);
+    std::erase_if(of_view[i], [&](const EdgeProfile& profile) {
+      return views[i].is_masked(profile.pixel.cast<double>());
+    });
   });
   std::vector<EdgeProfile> all;
   for (const auto& profiles : of_view) all.insert(all.end(), profiles.begin(), profiles.end());

@@ -27,7 +27,6 @@ constexpr double kNeighborhood = 5;  // standard deviation of the neighborhood, 
 constexpr double kStep = 0.5;        // of the differences, in the blur
 constexpr double kReach = 2;         // of a maximum, in these steps
 constexpr double kMadToSigma = 1.4826;
-constexpr double kObjectCell = 2;  // m
 
 /// Logarithm of an image's brightness, smoothed, less that of the neighborhood: exposure,
 /// vignetting and reflections change slowly over an image and drop out.
@@ -118,9 +117,8 @@ std::vector<Comparison> comparisons_of(const std::vector<std::optional<ReadyView
   for (std::size_t k = std::size_t(pair) % stride; k < points.size(); k += stride) {
     const Vector3d p_local = T_local_stamp * points[k].cast<double>();
     if (!is_visible(first, camera, p_local) || !is_visible(*views[j], camera, p_local)) continue;
-    const Eigen::Vector3i cell = (p_local / kObjectCell).array().floor().cast<int>();
     comparisons.push_back(
-        {std::uint32_t(i), std::uint32_t(j), p_local, {cell.x(), cell.y(), cell.z()}, pair});
+        {std::uint32_t(i), std::uint32_t(j), p_local, object_cell(p_local), pair});
   }
   return comparisons;
 }

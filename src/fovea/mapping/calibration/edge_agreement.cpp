@@ -104,6 +104,13 @@ bool edges_disagree(const std::vector<EdgeProfile>& profiles, const CalibrationV
   return false;
 }
 
+std::array<std::vector<EdgeProfile>, 2> halves_of(const std::vector<EdgeProfile>& profiles) {
+  auto middle = profiles.begin() + static_cast<std::ptrdiff_t>(profiles.size() / 2);
+  while (middle != profiles.end() && middle->frame == (middle - 1)->frame) ++middle;
+  return {std::vector<EdgeProfile>(profiles.begin(), middle),
+          std::vector<EdgeProfile>(middle, profiles.end())};
+}
+
 bool edges_stand_out(const std::vector<EdgeProfile>& profiles,
                      const CalibrationVector& correction) {
   double elsewhere = 0;

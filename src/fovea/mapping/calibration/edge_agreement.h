@@ -1,6 +1,7 @@
 // Significance tests of the agreement between an image's edges and a LiDAR's edges.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "fovea/mapping/calibration/edge_profiles.h"
@@ -28,6 +29,9 @@ EdgeMean edge_contrast(const std::vector<EdgeProfile>& profiles, int axis,
 /// with a contrast significantly below that of a right calibration.
 bool edges_disagree(const std::vector<EdgeProfile>& profiles,
                     const CalibrationVector& correction = CalibrationVector::Zero());
+
+/// The profiles of the first and of the second half of the frames.
+std::array<std::vector<EdgeProfile>, 2> halves_of(const std::vector<EdgeProfile>& profiles);
 
 /// Whether the mean logarithm of edge strength at a correction exceeds that of cameras rotated by 8
 /// pixels, by more than clutter does.

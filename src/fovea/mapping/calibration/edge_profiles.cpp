@@ -100,11 +100,6 @@ std::optional<Vector2d> line_normal(const std::vector<ImageEdge>& edges, std::si
   return normal;
 }
 
-std::array<int, 3> place_of(const Vector3d& p_local) {
-  const Eigen::Vector3i cell = (p_local / kObjectCell).array().floor().cast<int>();
-  return {cell.x(), cell.y(), cell.z()};
-}
-
 std::array<float, EdgeProfile::kSize> strengths(const Image& image, const Vector2d& middle,
                                                 const Vector2d& along) {
   std::array<float, EdgeProfile::kSize> strength{};
@@ -124,6 +119,21 @@ std::array<float, EdgeProfile::kSize> strengths(const Image& image, const Vector
 
 }  // namespace
 
+std::array<int, 3> object_cell(const Vector3d& p_local) {
+  const Eigen::Vector3i cell = (p_local / kObjectCell).array().floor().cast<int>();
+  return {cell.x(), cell.y(), cell.z()};
+}
+
+std::vector<EdgeProfile> profiles_of_lidars(const std::vector<LidarEdges>& edges_lidar,
+                                            const Image& image, const EdgeView& view) {
+  std::vector<EdgeProfile> profiles;
+  for (const LidarEdges& edges : edges_lidar) {
+    const std::vector<EdgeProfile> of_lidar = edge_profiles(edges, image, view);
+    profiles.insert(profiles.end(), of_lidar.begin(), of_lidar.end());
+  }
+  return profiles;
+}
+
 std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Image& image,
                                        const EdgeView& view) {
   const Camera camera = view.camera.at_image(SweepMotion{view.velocity});
@@ -141,7 +151,7 @@ std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Imag
     EdgeProfile profile;
     profile.frame = view.frame;
     profile.ring_spacing = static_cast<float>(edges_lidar.ring_spacing);
-    profile.place = place_of(view.T_local_lidar * edge.p_lidar);
+    profile.place = object_cell(view.T_local_lidar * edge.p_lidar);
     profile.half_gap = static_cast<float>(edge.gap.dot(*along) / 2);
     profile.strength = strengths(image, edge.middle, *along);
     profile.pixel = edge.middle.cast<float>();

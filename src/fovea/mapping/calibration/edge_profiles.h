@@ -30,6 +30,10 @@ struct EdgeProfile {
   Eigen::Matrix<float, 9, 1> J_along;
 };
 
+/// Number of the cell of 2 m that a point is in. Points of one cell belong to one object and have
+/// common errors.
+std::array<int, 3> object_cell(const Eigen::Vector3d& p_local);
+
 /// The pose of an image.
 struct EdgeView {
   Camera camera;  ///< its image_delay counts from the time of the edges
@@ -44,5 +48,8 @@ struct EdgeView {
 /// @param edges_lidar  at one time, such as the scan's stamp (motion compensated)
 std::vector<EdgeProfile> edge_profiles(const LidarEdges& edges_lidar, const Image& image,
                                        const EdgeView& view);
+/// The profiles of the edges of several LiDARs.
+std::vector<EdgeProfile> profiles_of_lidars(const std::vector<LidarEdges>& edges_lidar,
+                                            const Image& image, const EdgeView& view);
 
 }  // namespace fovea

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "fovea/core/angle.h"
+#include "fovea/mapping/calibration/calibration_limits.h"
 #include "fovea/mapping/calibration/coarse_alignment.h"
 #include "fovea/mapping/calibration/color_consistency.h"
 #include "fovea/mapping/calibration/edge_agreement.h"
@@ -20,19 +21,15 @@ namespace {
 using Vector = CalibrationVector;
 using Matrix = CalibrationMatrix;
 
-constexpr std::size_t kMinEdges = 200;
 constexpr std::size_t kMinClearEdges = 60;  // with a clear step of the image, about one axis
 constexpr std::size_t kMinViews = 5;
 // Blur of the compared images in each pass, pixels.
 constexpr std::array<double, 4> kBlurs{4, 3, 2, 1.5};
 constexpr int kStartPasses = 2, kLaterPasses = 3;
 constexpr double kLaterWidth = 2;  // pixels: edges are near after the first pass
-// Largest standard deviation of an observable value: rad, m, s.
-constexpr double kMaxRotationSigma = 0.15 * kDegree, kMaxTranslationSigma = 0.02,
-                 kMaxDelaySigma = 0.004;
-constexpr double kUncertain = 3, kClear = 4;  // of these limits; standard deviations
-// Errors that all edges of a drive may share, such as those of beams or of the lens: pixels, rms.
-constexpr double kSystematicError = 0.1;
+// A value above its limit is observable, too, up to this multiple of the limit, if it exceeds this
+// number of standard deviations.
+constexpr double kUncertain = 3, kClear = 4;
 // Standard deviation of the given calibration: rad, m, s. Where the drive shows little, values stay
 // near the given ones.
 constexpr double kGivenRotation = 5 * kDegree, kGivenTranslation = 0.2, kGivenDelay = 0.1;
@@ -104,9 +101,8 @@ Matrix systematic_covariance(const FreeParameters& free, const std::vector<EdgeP
 /// Whether both halves of the frames show edges at the expected places. A maximum from clutter in
 /// one half is none in the other.
 bool halves_stand_out(const std::vector<EdgeProfile>& profiles) {
-  auto middle = profiles.begin() + static_cast<std::ptrdiff_t>(profiles.size() / 2);
-  while (middle != profiles.end() && middle->frame == (middle - 1)->frame) ++middle;
-  return edges_stand_out({profiles.begin(), middle}) && edges_stand_out({middle, profiles.end()});
+  const auto [first, second] = halves_of(profiles);
+  return edges_stand_out(first) && edges_stand_out(second);
 }
 
 /// Estimates one camera. Parameters that turn out not to be observable are fixed one by one.
@@ -233,10 +229,11 @@ bool Estimator::fix_least_observable(const Vector& sigma) {
 CalibrationEstimate Estimator::run() {
   CalibrationEstimate estimate;
   estimate.frames = int(views_.size());
-  estimate.edges = profiles({}).size();
-  if (views_.size() < kMinViews) return estimate;
-  const std::optional<CameraCorrection> start = best_start();
-  if (!start) return estimate;
+  const auto start = views_.size() < kMinViews ? std::nullopt : best_start();
+  if (!start) {
+    estimate.edges = profiles({}).size();
+    return estimate;
+  }
   correction_ = *start;
   refine(int(kBlurs.size()));
   std::vector<EdgeProfile> at_hand = profiles(correction_);

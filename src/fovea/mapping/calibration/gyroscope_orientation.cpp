@@ -2,36 +2,16 @@
 
 #include <algorithm>
 
-#include "fovea/core/median.h"
+#include "fovea/geometry/imu_gap.h"
+#include "fovea/geometry/rotation_vector.h"
 
 namespace fovea {
-namespace {
 
-TimeNs longest_step(const std::vector<ImuSample>& samples) {
-  constexpr TimeNs kShortestGap = kNsPerSecond / 40;
-  std::vector<TimeNs> steps;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    steps.push_back(samples[i].time - samples[i - 1].time);
-  }
-  return std::max(kShortestGap, 3 * median_of(std::move(steps)));
-}
-
-}  // namespace
-
-Eigen::Quaterniond quaternion_of(const Eigen::Vector3d& rotation) {
-  const double angle = rotation.norm();
-  if (angle == 0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation / angle));
-}
-
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
-  const Eigen::AngleAxisd turn(q);
-  return turn.angle() * turn.axis();
-}
+constexpr int kGapSteps = 3;  // a gap distorts a turn more than a path
 
 GyroscopeOrientation::GyroscopeOrientation(const std::vector<ImuSample>& samples, double scale)
     : samples_(&samples), scale_(scale) {
-  const TimeNs longest = longest_step(samples);
+  const TimeNs longest = imu_gap_limit(samples, kGapSteps);
   orientations_.reserve(samples.size());
   gaps_before_.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {

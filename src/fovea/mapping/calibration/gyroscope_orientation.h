@@ -38,8 +38,4 @@ class GyroscopeOrientation {
   std::vector<int> gaps_before_;                  ///< number of gaps before each sample
 };
 
-/// The unit quaternion of a rotation vector (rad), and its inverse.
-Eigen::Quaterniond quaternion_of(const Eigen::Vector3d& rotation);
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
-
 }  // namespace fovea

@@ -16,7 +16,7 @@ namespace {
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 
-constexpr double kObservableSigma = 0.3 * kDegree, kObservableDelay = 0.004;  // rad, s
+constexpr double kObservableDelay = 0.004;  // s
 
 /// Turns that can contradict, by registration or by the IMU, rad.
 constexpr double kClearTurn = 1 * kDegree;
@@ -105,7 +105,7 @@ void set_observability(ImuHandEye& estimate, const HandEyeInformation& informati
         information.covariance(directions.leftCols(count)).topLeftCorner(count, count);
     Eigen::Index worst = 0;
     const double variance = covariance.diagonal().head(count).maxCoeff(&worst);
-    if (is_moving && count >= 2 && variance <= kObservableSigma * kObservableSigma) {
+    if (is_moving && count >= 2 && variance <= kMaxMountSigma * kMaxMountSigma) {
       estimate.observable_directions = count;
       break;
     }

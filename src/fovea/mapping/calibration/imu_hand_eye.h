@@ -8,6 +8,9 @@
 
 namespace fovea {
 
+/// Largest standard deviation of an observable direction of the mount, rad.
+inline constexpr double kMaxMountSigma = 0.3 * kDegree;
+
 /// Correction of an IMU's mount and clock: exp(rotation) * R_lidar_imu and stamp + delay are right.
 struct ImuHandEye {
   /// rad, in the axes of the LiDAR; zero along unobservable directions.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "fovea/mapping/calibration/calibration_limits.h"
 #include "fovea/mapping/calibration/edge_score.h"
 
 namespace fovea {
@@ -17,10 +18,9 @@ using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
 constexpr std::array<double, 4> kWidths{8, 4, 2, 1};  // pixels
 constexpr int kIterations = 20;
-constexpr std::size_t kMinEdges = 500;
+constexpr std::size_t kMinLensEdges = 500;
 // An odd lens: share of the focal length or of the distance of a corner, and standard deviations.
 constexpr double kOdd = 0.008, kSignificant = 5;
-constexpr double kSystematicError = 0.1;  // pixels, see extrinsic_estimate.cpp
 
 /// Derivative of an edge's position along its profile, in units of about a pixel.
 Vector slope_of(const EdgeProfile& profile, const Camera& camera) {
@@ -78,7 +78,7 @@ bool LensCheck::is_odd(double value, double sigma) {
 
 LensCheck check_lens(const std::vector<EdgeProfile>& profiles, const Camera& camera) {
   LensCheck check;
-  if (profiles.size() < kMinEdges) return check;
+  if (profiles.size() < kMinLensEdges) return check;
   std::vector<Vector> J;
   J.reserve(profiles.size());
   for (const EdgeProfile& profile : profiles) J.push_back(slope_of(profile, camera));
