@@ -89,10 +89,11 @@ void add_missing_evidence(const CameraCalibration& camera, Messages& messages) {
   }
 }
 
-void add_imu(const ImuHandEye& imu, Messages& messages) {
+void add_imu(const ImuHandEye& imu, bool applied, Messages& messages) {
   if (!imu.agrees) {
-    messages.warn("IMU: its turns are not those of the LiDAR, it stays as given. " +
-                  imu_disagreement(imu));
+    const char* state = applied ? ", it stays as given" : "";
+    messages.warn(fmt::format("IMU: its turns are not those of the LiDAR{}. {}", state,
+                              imu_disagreement(imu)));
     return;
   }
   const Eigen::Vector3d r = imu.rotation / kDegree, s = imu.rotation_sigma() / kDegree;
@@ -104,6 +105,10 @@ void add_imu(const ImuHandEye& imu, Messages& messages) {
   line += imu.delay_observable ? fmt::format(", samples {:.2f} ms late (+-{:.2f})", 1e3 * imu.delay,
                                              1e3 * imu.delay_sigma)
                                : ", time offset not observable";
+  if (!applied) {
+    if (!imu.is_off()) return messages.notes.push_back(std::move(line));
+    return messages.warn(line + "; mount and clock do not fit, --calibrate corrects this");
+  }
   const std::string motion = missing_motion(imu);
   if (!motion.empty()) line += "; the rest stays as given: " + motion;
   messages.notes.push_back(std::move(line));
@@ -131,7 +136,7 @@ Messages calibration_messages(const DriveCalibration& calibration, bool applied)
       messages.warn(fmt::format("camera {}: {}", camera.camera, lens_text(camera.lens)));
     }
   }
-  if (calibration.imu) add_imu(*calibration.imu, messages);
+  if (calibration.imu) add_imu(*calibration.imu, applied, messages);
   return messages;
 }
 

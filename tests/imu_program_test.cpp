@@ -10,7 +10,9 @@
 
 namespace fovea::imu_program_test {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// 21 m by 1.4 m/s, with turns of 100 degrees a second, under a VLP-16; without GPS/INS.
 class HandHeld : public testing::Test {
@@ -42,6 +44,7 @@ class HandHeld : public testing::Test {
   std::string map() const { return (scratch_ / "map.fovea").string(); }
 
   void simulate_walk() const {
+    std::filesystem::remove_all(drive());
     simulate(options_, drive());
     std::filesystem::remove(scratch_ / "drive" / "gnss.csv");
   }
@@ -98,6 +101,31 @@ TEST_F(HandHeld, AnImuWithAFlippedAxisIsNotUsed) {
   const double flipped = scores("--quiet")["pose_aligned_m"]["mean"].get<double>();
   const double without = scores("--quiet --no-imu")["pose_aligned_m"]["mean"].get<double>();
   EXPECT_LT(flipped, 2 * without + 0.02);
+}
+
+TEST_F(HandHeld, AnImuThatSitsOrTicksOtherwiseIsTold) {
+  options_.frames = 60;
+  options_.vehicle.turn_rate = 60 * kDegree;
+  const auto messages = [&] {
+    simulate_walk();
+    const ProgramRun run = run_fovea(fmt::format("map '{}' -o '{}' --force --report '{}'", drive(),
+                                                 map(), (scratch_ / "report.json").string()));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.out + run.err;
+  };
+  const auto found = [&] {
+    const std::string report = read_text(scratch_ / "report.json");
+    return nlohmann::json::parse(report)["map"]["imu_calibration"];
+  };
+  const char* const told = "mount and clock do not fit, --calibrate corrects this";
+  EXPECT_THAT(messages(), AllOf(HasSubstr("IMU: rotation "), Not(HasSubstr(told))));
+  EXPECT_EQ(found()["is_off"], false);
+
+  options_.imu.rotation_error = {3 * kDegree, 0, 0};
+  options_.imu.time_offset = -0.03;
+  EXPECT_THAT(messages(), HasSubstr(told));
+  EXPECT_EQ(found()["is_off"], true);
+  EXPECT_NEAR(found()["time_offset_ms"].get<double>(), 30, 10);  // the scans follow the IMU
 }
 
 TEST_F(HandHeld, ARunGoesOnWithItsImuOnly) {

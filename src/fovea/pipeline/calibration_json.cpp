@@ -71,6 +71,7 @@ nlohmann::ordered_json to_json(const std::optional<ImuHandEye>& imu) {
     return imu->delay_observable ? nlohmann::ordered_json(1e3 * value) : nullptr;
   };
   return {{"agrees", imu->agrees},
+          {"is_off", imu->is_off()},
           {"turns", imu->moving_turns},
           {"observable_directions", imu->observable_directions},
           {"rotation_deg", rotation(imu->rotation)},

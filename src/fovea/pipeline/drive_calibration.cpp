@@ -23,7 +23,6 @@ constexpr std::size_t kSurfacePoints = 6000;
 constexpr float kMinSurfaceRange = 2;
 constexpr int kImuPasses = 6;
 constexpr double kSettledRotation = 0.02 * kDegree, kSettledDelay = 0.0002;  // rad, s
-constexpr TimeNs kLongestTurn = kNsPerSecond / 2;  // between scans, for the IMU
 
 /// The drive with one camera, or with none.
 std::unique_ptr<FrameSource> reopened(const DriveInfo& drive, std::vector<int> cameras) {
@@ -179,18 +178,6 @@ CameraCalibration calibrated_camera(const DriveInfo& drive, int number,
   }
   result.overlays = overlays_of(views, given, right, T_local_lidar, job.overlays);
   return result;
-}
-
-std::vector<ScanTurn> turns_of(const std::vector<TrackedPose>& poses) {
-  std::vector<ScanTurn> turns;
-  turns.reserve(poses.size());
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    const TrackedPose &before = poses[i - 1], &after = poses[i];
-    if (!after.is_firm || after.stamp - before.stamp > kLongestTurn) continue;
-    const RigidMotion turn = before.T_odom_lidar.inverse() * after.T_odom_lidar;
-    turns.push_back({before.stamp, after.stamp, rotation_vector(turn.linear())});
-  }
-  return turns;
 }
 
 /// The IMU under a correction.

@@ -14,6 +14,7 @@
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/frame_pipeline.h"
+#include "fovea/pipeline/imu_check.h"
 #include "fovea/pipeline/initial_motion.h"
 #include "fovea/pipeline/make_mapper.h"
 #include "fovea/pipeline/map_tracked_frame.h"
@@ -53,7 +54,10 @@ class MapRun {
         mapper_(mapper_of_drive()),
         figures_(drive, job.rate),
         views_(drive) {
-    if (is_calibration_checked()) check_.emplace(drive, has_sweep_motion(drive, job));
+    if (job.settings.run.check_calibration && !job.calibrate) {
+      if (!drive.calibration.cameras.empty()) check_.emplace(drive, has_sweep_motion(drive, job));
+      if (drive.imu) imu_check_.emplace();
+    }
     if (job.resume) resume_from_file();
     frames_before_ = log_.size();
   }
@@ -73,7 +77,9 @@ class MapRun {
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
   TrackedScan track(const Frame& frame);  // runs in the tracker's thread
   void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
-  void note_position(const FrameRecord& record) {
+  void account_for(const FrameRecord& record, bool is_new) {
+    figures_.add(record, is_new);
+    if (imu_check_) imu_check_->add(record);
     if (record.status != FrameStatus::kSkipped) {
       position_local_ = record.T_local_lidar.translation();
     }
@@ -87,10 +93,6 @@ class MapRun {
                         drive_.path.string());
   }
   MapRows fresh_rows(bool last);  // of a checkpoint
-  bool is_calibration_checked() const {
-    return job_.settings.run.check_calibration && !job_.calibrate &&
-           !drive_.calibration.cameras.empty();
-  }
   bool complete() const { return log_.size() == drive_.frame_count(); }
 
   const FrameSource& source_;
@@ -108,7 +110,8 @@ class MapRun {
   DriveFigures figures_;
   ViewCheck views_;
   std::optional<CalibrationCheck> check_;
-  std::vector<CameraCalibration> calibration_;  // found by check_
+  std::optional<ImuCheck> imu_check_;
+  DriveCalibration calibration_;  // found by the checks
   std::optional<FrameRecord> latest_;
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();  // of the last frame with a pose
   std::size_t frames_before_ = 0;                             // of an earlier run
@@ -145,11 +148,10 @@ void MapRun::resume_from_file() {
   const std::vector<FrameRecord> records = reader.stored_frames();
   for (const FrameRecord& record : records) {
     log_.add_stored(record);
-    figures_.add(record, /*is_new=*/false);
+    account_for(record, /*is_new=*/false);
   }
   mapper_->resume(stored_map(reader, job_.settings.tile_size()), records, source_);
   if (!records.empty()) latest_ = records.back();
-  for (const FrameRecord& record : records) note_position(record);
   if (log_.has_mapped()) views_.skip();
 }
 
@@ -202,14 +204,13 @@ void MapRun::map_next(TrackedFrame& tracked,
   if (frame != nullptr) views_.add(frame->scan);
   FrameRecord record = map_tracked_frame(*mapper_, source_, drive_, tracked);
   check_calibration(tracked, record);
-  figures_.add(record, /*is_new=*/true);
+  account_for(record, /*is_new=*/true);
   log_.add(record);
   if (log_.size() % kPointsCheckedEvery == 0) check_points();
   if (job_.observer != nullptr) job_.observer->frame_mapped(record, frame, mapper_->map());
   if (progress) {
     progress({int(log_.size()), int(drive_.frame_count()), mapper_->map().size(), &record});
   }
-  note_position(record);
   latest_ = std::move(record);
   mapper_->apply_deferred_mapping();
 }
@@ -235,7 +236,8 @@ void MapRun::finish() {
   views_.require_view();
   check_points();
   // While the writer thread writes the checkpoint before.
-  if (check_) calibration_ = check_->estimates();
+  if (check_) calibration_.cameras = check_->estimates();
+  if (imu_check_) calibration_.imu = imu_check_->estimate(*drive_.imu);
   file_.finish(mapper_->map(), fresh_rows(/*last=*/true));
 }
 
@@ -262,7 +264,7 @@ MapSummary MapRun::summary() const {
   summary.points = mapper_->map().size();
   summary.frames_new = log_.size() - frames_before_;
   summary.interrupted = !complete();
-  summary.calibration = {.cameras = calibration_, .imu = {}, .frames = 0};
+  summary.calibration = calibration_;
   return summary;
 }
 

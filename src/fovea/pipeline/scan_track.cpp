@@ -1,6 +1,7 @@
 #include "fovea/pipeline/scan_track.h"
 
 #include "fovea/core/parallel.h"
+#include "fovea/geometry/rotation_vector.h"
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/frame_reader.h"
@@ -48,6 +49,19 @@ std::vector<TrackedPose> track_scans(const FrameSource& source, const ScanTrackJ
                      result.poses.motion.value_or(SweepMotion{}), is_firm(result.tracking)});
   }
   return poses;
+}
+
+std::vector<ScanTurn> turns_of(const std::vector<TrackedPose>& poses) {
+  constexpr TimeNs kLongestTurn = kNsPerSecond / 2;
+  std::vector<ScanTurn> turns;
+  turns.reserve(poses.size());
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const TrackedPose &before = poses[i - 1], &after = poses[i];
+    if (!after.is_firm || after.stamp - before.stamp > kLongestTurn) continue;
+    const RigidMotion turn = before.T_odom_lidar.inverse() * after.T_odom_lidar;
+    turns.push_back({before.stamp, after.stamp, rotation_vector(turn.linear())});
+  }
+  return turns;
 }
 
 }  // namespace fovea

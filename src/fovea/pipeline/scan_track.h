@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
+#include "fovea/mapping/calibration/hand_eye_search.h"
 #include "fovea/pipeline/incremental_mapper.h"
 #include "fovea/pipeline/map_settings.h"
 
@@ -29,5 +30,9 @@ struct ScanTrackJob {
 
 /// Tracks the frames of a drive. Frames without a pose are left out.
 std::vector<TrackedPose> track_scans(const FrameSource& source, const ScanTrackJob& job);
+
+/// Rotations from each pose to the next. Leaves out those to a pose that is not firm, and those of
+/// over half a second.
+std::vector<ScanTurn> turns_of(const std::vector<TrackedPose>& poses);
 
 }  // namespace fovea

@@ -132,6 +132,13 @@ Vector3 observable_part(const Vector3& rotation, const ImuHandEye& estimate) {
 
 }  // namespace
 
+bool ImuHandEye::is_off() const {
+  constexpr double kRotation = 0.75 * kDegree, kDelay = 0.007, kSigmas = 5;  // rad, s
+  const double sigma = direction_sigma.head(observable_directions).norm();
+  return rotation.norm() > std::max(kRotation, kSigmas * sigma) ||
+         std::abs(delay) > std::max(kDelay, kSigmas * delay_sigma);
+}
+
 ImuHandEye estimate_imu_hand_eye(std::vector<ScanTurn> turns, const std::vector<ImuSample>& samples,
                                  const Eigen::Matrix3d& R_lidar_imu) {
   std::erase_if(turns, [](const ScanTurn& turn) {

@@ -46,6 +46,9 @@ struct ImuHandEye {
   std::size_t moving_turns = 0;  ///< of these, over 0.2 degrees by the IMU
 
   bool rotation_observable() const { return observable_directions == 3; }
+  /// Whether the present mount or clock is clearly wrong, so that it distorts maps: by over 0.75
+  /// degrees or 7 ms, and over five deviations.
+  bool is_off() const;
   /// Standard deviations about the axes of the LiDAR, rad.
   Eigen::Vector3d rotation_sigma() const { return rotation_covariance.diagonal().cwiseSqrt(); }
 };
