@@ -59,7 +59,7 @@ Outcome try_estimate(const std::vector<EdgeProfile>& profiles, const Free& free,
   const EdgeScore score = edge_score(profiles, x, kFinestEdgeWidth);
   const bool with_delay = free[kCamDelay];
   const Outcome failure = with_delay ? Outcome::kDelayUnobservable : Outcome::kNothing;
-  if (!is_positive_definite(only(free, score.curvature))) return failure;
+  if (!is_positive_definite(decoupled(free, score.curvature))) return failure;
   const Matrix cov = edge_covariance(profiles, free, x, score.curvature);
   const Vector sigma = cov.diagonal().cwiseMax(0).cwiseSqrt().cwiseProduct(calibration_unit());
   const Vector found = x.cwiseProduct(calibration_unit());

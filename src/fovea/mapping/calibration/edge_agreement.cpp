@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "fovea/mapping/calibration/edge_score.h"
+#include "fovea/mapping/calibration/grouped_scatter.h"
 
 namespace fovea {
 namespace {
@@ -26,18 +26,6 @@ constexpr double kSignificant = 2;  // standard deviations
 // (docs/calibration.md).
 constexpr double kMinGain = 0.5, kFinestWidth = 0.5;
 constexpr double kElsewhere = 8;  // pixels
-
-/// Sum of the squares of the sums over groups of edges, corrected for the number of groups.
-template <class Key>
-double scatter_by(const std::vector<const EdgeProfile*>& profiles,
-                  const std::vector<double>& deviations, Key&& key) {
-  std::map<std::decay_t<decltype(key(*profiles.front()))>, double> sums;
-  for (std::size_t i = 0; i < profiles.size(); ++i) sums[key(*profiles[i])] += deviations[i];
-  double scatter = 0;
-  for (const auto& [group, sum] : sums) scatter += sum * sum;
-  const double n = static_cast<double>(sums.size());
-  return n / std::max(n - 1, 1.0) * scatter;
-}
 
 /// Whether a rotation about an axis moves the edge across itself, not along itself.
 bool moves_across(const EdgeProfile& profile, int axis) {
@@ -63,12 +51,19 @@ EdgeMean mean_over_edges(const std::vector<const EdgeProfile*>& profiles,
   if (profiles.empty()) return result;
   const double n = static_cast<double>(profiles.size());
   for (const double value : values) result.mean += value / n;
-  std::vector<double> deviations;
+  struct Deviation {
+    const EdgeProfile* profile;
+    double value;
+  };
+  std::vector<Deviation> deviations;
   deviations.reserve(values.size());
-  for (const double value : values) deviations.push_back(value - result.mean);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    deviations.push_back({profiles[i], values[i] - result.mean});
+  }
+  const auto value = [](const Deviation& d) { return Eigen::Matrix<double, 1, 1>(d.value); };
   const double scatter =
-      scatter_by(profiles, deviations, [](const EdgeProfile& p) { return p.frame; }) +
-      scatter_by(profiles, deviations, [](const EdgeProfile& p) { return p.place; });
+      grouped_scatter(deviations, value, [](const Deviation& d) { return d.profile->frame; })(0) +
+      grouped_scatter(deviations, value, [](const Deviation& d) { return d.profile->place; })(0);
   result.sigma = std::sqrt(scatter) / n;
   return result;
 }

@@ -3,8 +3,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <map>
 #include <optional>
+
+#include "fovea/mapping/calibration/grouped_scatter.h"
 
 namespace fovea {
 namespace {
@@ -19,30 +20,14 @@ constexpr double kNearEnough = 0.02;  // of a coarse Gaussian's width
 // Standard deviation of an unknown delay (s), which biases a rotation that is estimated without it.
 constexpr double kLikelyDelay = 0.02;
 
-/// Scatter of the sums of gradients over groups of edges with common errors, corrected for the
-/// number of groups.
-template <class Key>
-Matrix scatter_by(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
-                  const Vector& x, double width, Key&& key) {
-  std::map<std::decay_t<decltype(key(profiles.front()))>, Vector> sums;
-  for (const EdgeProfile& profile : profiles) {
-    sums.try_emplace(key(profile), Vector::Zero()).first->second +=
-        only(free, edge_score(profile, x, width).gradient);
-  }
-  Matrix scatter = Matrix::Zero();
-  for (const auto& [group, sum] : sums) scatter += sum * sum.transpose();
-  const double n = static_cast<double>(sums.size());
-  return n / std::max(n - 1, 1.0) * scatter;
-}
-
-EdgeScore score_at(const std::vector<EdgeProfile>& profiles, const QuadraticTerm& further,
+EdgeScore score_at(const std::vector<EdgeProfile>& profiles, const QuadraticTerm& evidence,
                    const Vector& x, double width) {
   EdgeScore score = edge_score(profiles, x, width);
-  const Vector pull = further.curvature * x;
-  score.value += further.gradient.dot(x) - x.dot(pull) / 2;
-  score.gradient += further.gradient - pull;
-  score.curvature += further.curvature;
-  score.bound += further.curvature;
+  const Vector pull = evidence.curvature * x;
+  score.value += evidence.gradient.dot(x) - x.dot(pull) / 2;
+  score.gradient += evidence.gradient - pull;
+  score.curvature += evidence.curvature;
+  score.bound += evidence.curvature;
   return score;
 }
 
@@ -59,7 +44,7 @@ QuadraticTerm QuadraticTerm::scaled(double weight) const {
   return {weight * gradient, weight * curvature, weight * weight * scatter};
 }
 
-Matrix only(const FreeParameters& free, Matrix m) {
+Matrix decoupled(const FreeParameters& free, Matrix m) {
   const double largest = m.diagonal().maxCoeff();
   for (int k = 0; k < 9; ++k) {
     if (free[static_cast<std::size_t>(k)]) continue;
@@ -70,7 +55,7 @@ Matrix only(const FreeParameters& free, Matrix m) {
   return m;
 }
 
-Matrix only_part(const FreeParameters& free, Matrix m) {
+Matrix free_part(const FreeParameters& free, Matrix m) {
   for (int k = 0; k < 9; ++k) {
     if (free[static_cast<std::size_t>(k)]) continue;
     m.row(k).setZero();
@@ -79,7 +64,7 @@ Matrix only_part(const FreeParameters& free, Matrix m) {
   return m;
 }
 
-Vector only(const FreeParameters& free, Vector v) {
+Vector free_part(const FreeParameters& free, Vector v) {
   for (int k = 0; k < 9; ++k) {
     if (!free[static_cast<std::size_t>(k)]) v[k] = 0;
   }
@@ -94,21 +79,22 @@ bool is_positive_definite(const Matrix& m) {
 /// Newton steps. If a step leads down or the score is not concave, the paraboloid below the score
 /// gives the step instead. Its maximum never leads down.
 Vector maximize_edge_score(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
-                           const QuadraticTerm& further, double coarsest) {
+                           const QuadraticTerm& evidence, double coarsest) {
   Vector x = Vector::Zero();
   for (const double width : kWidths) {
     if (width > coarsest) continue;
     const double converged = width == kWidths.back() ? kConverged : kNearEnough * width;
-    EdgeScore score = score_at(profiles, further, x, width);
+    EdgeScore score = score_at(profiles, evidence, x, width);
     for (int i = 0; i < kMaxIterations; ++i) {
-      const Vector gradient = only(free, score.gradient);
-      const Matrix curvature = only(free, score.curvature), bound = only(free, score.bound);
+      const Vector gradient = free_part(free, score.gradient);
+      const Matrix curvature = decoupled(free, score.curvature),
+                   bound = decoupled(free, score.bound);
       if (!(bound.diagonal().maxCoeff() > 0)) return x;  // nothing in sight
       std::optional<EdgeScore> next;
       Vector step = Vector::Zero();
       if (is_positive_definite(curvature)) {
         step = curvature.ldlt().solve(gradient);
-        next = score_at(profiles, further, x + step, width);
+        next = score_at(profiles, evidence, x + step, width);
         if (!(next->value >= score.value)) next.reset();
       }
       if (!next) {
@@ -118,7 +104,7 @@ Vector maximize_edge_score(const std::vector<EdgeProfile>& profiles, const FreeP
       }
       x += step;
       if (step.norm() < converged) break;
-      score = next ? *next : score_at(profiles, further, x, width);
+      score = next ? *next : score_at(profiles, evidence, x, width);
     }
   }
   return x;
@@ -126,16 +112,19 @@ Vector maximize_edge_score(const std::vector<EdgeProfile>& profiles, const FreeP
 
 Matrix edge_scatter(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
                     const Vector& x, double width) {
-  return scatter_by(profiles, free, x, width, [](const EdgeProfile& p) { return p.frame; }) +
-         scatter_by(profiles, free, x, width, [](const EdgeProfile& p) { return p.place; });
+  const auto gradient = [&](const EdgeProfile& profile) {
+    return free_part(free, edge_score(profile, x, width).gradient);
+  };
+  return grouped_scatter(profiles, gradient, [](const EdgeProfile& p) { return p.frame; }) +
+         grouped_scatter(profiles, gradient, [](const EdgeProfile& p) { return p.place; });
 }
 
 Matrix edge_covariance(const std::vector<EdgeProfile>& profiles, const FreeParameters& free,
                        const Vector& x, const Matrix& curvature) {
-  const Matrix inverse = only(free, curvature).inverse();
+  const Matrix inverse = decoupled(free, curvature).inverse();
   Matrix result = inverse * edge_scatter(profiles, free, x) * inverse;
   if (!free[kCamDelay]) {
-    const Vector turned = inverse * only(free, Vector(curvature.col(kCamDelay))) *
+    const Vector turned = inverse * free_part(free, Vector(curvature.col(kCamDelay))) *
                           (kLikelyDelay / calibration_unit()[kCamDelay]);
     result += turned * turned.transpose();
   }

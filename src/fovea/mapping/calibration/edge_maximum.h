@@ -14,15 +14,16 @@ using FreeParameters = std::array<bool, 9>;
 /// Standard deviations of the Gaussians that smooth image edges, pixels.
 constexpr double kCoarsestEdgeWidth = 8, kFinestEdgeWidth = 0.5;
 
-/// Removes the rows and columns of fixed parameters from a system of equations.
-CalibrationMatrix only(const FreeParameters& free, CalibrationMatrix m);
-CalibrationVector only(const FreeParameters& free, CalibrationVector v);
-/// As only(), but the diagonal of fixed parameters is 0.
-CalibrationMatrix only_part(const FreeParameters& free, CalibrationMatrix m);
+/// A system of equations for the free parameters alone: rows and columns of fixed ones are zero,
+/// their diagonal is positive.
+CalibrationMatrix decoupled(const FreeParameters& free, CalibrationMatrix m);
+/// With zeros for the fixed parameters.
+CalibrationMatrix free_part(const FreeParameters& free, CalibrationMatrix m);
+CalibrationVector free_part(const FreeParameters& free, CalibrationVector v);
 
 bool is_positive_definite(const CalibrationMatrix& m);
 
-/// A further criterion next to the edges: gradient' x - x' curvature x / 2.
+/// A log likelihood besides the edges: gradient' x - x' curvature x / 2.
 struct QuadraticTerm {
   CalibrationVector gradient = CalibrationVector::Zero();
   CalibrationMatrix curvature = CalibrationMatrix::Zero();
@@ -32,11 +33,12 @@ struct QuadraticTerm {
   QuadraticTerm scaled(double weight) const;
 };
 
-/// The maximum of the edge score plus a further term, in calibration_unit()s, coarse to fine. It
+/// The maximum of the edge score plus other evidence, in calibration_unit()s, coarse to fine. It
 /// starts without a correction.
 /// @param coarsest  first of the standard deviations of the Gaussians, pixels
 CalibrationVector maximize_edge_score(const std::vector<EdgeProfile>& profiles,
-                                      const FreeParameters& free, const QuadraticTerm& further = {},
+                                      const FreeParameters& free,
+                                      const QuadraticTerm& evidence = {},
                                       double coarsest = kCoarsestEdgeWidth);
 
 /// Scatter of the gradients at a correction. Edges of one frame have common errors, and so do edges

@@ -74,7 +74,7 @@ CalibrationMatrix curvature_at(const std::vector<EdgeProfile>& profiles,
 TEST(EdgeMaximum, OnlyKeepsFreeParameters) {
   const FreeParameters free = without(4);
   const CalibrationMatrix m = positive_matrix();
-  const CalibrationMatrix kept = only(free, m), part = only_part(free, m);
+  const CalibrationMatrix kept = decoupled(free, m), part = free_part(free, m);
   for (int i = 0; i < 9; ++i) {
     for (int j = 0; j < 9; ++j) {
       const bool is_fixed = i == 4 || j == 4;
@@ -82,9 +82,9 @@ TEST(EdgeMaximum, OnlyKeepsFreeParameters) {
       EXPECT_EQ(kept(i, j), i == 4 && j == 4 ? m.diagonal().maxCoeff() : is_fixed ? 0 : m(i, j));
     }
   }
-  const CalibrationVector v = only(free, CalibrationVector(CalibrationVector::Ones()));
+  const CalibrationVector v = free_part(free, CalibrationVector(CalibrationVector::Ones()));
   EXPECT_EQ(v, CalibrationVector(CalibrationVector::Ones() - CalibrationVector::Unit(4)));
-  EXPECT_EQ(only(kAll, m), m);
+  EXPECT_EQ(decoupled(kAll, m), m);
 }
 
 TEST(EdgeMaximum, PositiveDefinite) {
@@ -116,7 +116,7 @@ TEST(EdgeMaximum, FindsThePlantedCorrection) {
 
 TEST(EdgeMaximum, FixedParametersStayZero) {
   const FreeParameters free = without(kCamDelay);
-  const CalibrationVector truth = only(free, planted());
+  const CalibrationVector truth = free_part(free, planted());
   const CalibrationVector x = maximize_edge_score(profiles_of(truth, 0), free);
   EXPECT_EQ(x[kCamDelay], 0);
   EXPECT_LT((x - truth).cwiseAbs().maxCoeff(), 0.02);
@@ -134,24 +134,24 @@ TEST(EdgeMaximum, TheCoarsestGaussianIsTheReach) {
   EXPECT_NEAR(maximize_edge_score(near, yaw, {}, kFinestEdgeWidth)[1], 0.5, 0.02);
 }
 
-TEST(EdgeMaximum, WithoutEdgesAFurtherTermDecides) {
+TEST(EdgeMaximum, WithoutEdgesOtherEvidenceDecides) {
   EXPECT_EQ(maximize_edge_score({}, kAll), CalibrationVector(CalibrationVector::Zero()));
-  QuadraticTerm further;
-  further.curvature = positive_matrix();
-  further.gradient = further.curvature * planted();
-  EXPECT_LT((maximize_edge_score({}, kAll, further) - planted()).norm(), 1e-6);
+  QuadraticTerm evidence;
+  evidence.curvature = positive_matrix();
+  evidence.gradient = evidence.curvature * planted();
+  EXPECT_LT((maximize_edge_score({}, kAll, evidence) - planted()).norm(), 1e-6);
 }
 
 // At the maximum the gradients of both cancel.
-TEST(EdgeMaximum, WeighsEdgesAgainstAFurtherTerm) {
+TEST(EdgeMaximum, WeighsEdgesAgainstOtherEvidence) {
   const auto profiles = profiles_of(planted(), 0);
-  QuadraticTerm further;
-  further.curvature = 200 * CalibrationMatrix::Identity();  // its maximum: no correction
-  const CalibrationVector x = maximize_edge_score(profiles, kAll, further);
+  QuadraticTerm evidence;
+  evidence.curvature = 200 * CalibrationMatrix::Identity();  // its maximum: no correction
+  const CalibrationVector x = maximize_edge_score(profiles, kAll, evidence);
   EXPECT_LT(x.norm(), 0.99 * planted().norm());
   EXPECT_GT(x.norm(), 0.2 * planted().norm());
   const CalibrationVector gradient = edge_score(profiles, x, kFinestEdgeWidth).gradient;
-  EXPECT_LT((gradient - further.curvature * x).norm(), 1e-3 * gradient.norm());
+  EXPECT_LT((gradient - evidence.curvature * x).norm(), 1e-3 * gradient.norm());
 }
 
 // Edges of one frame or of one place have common errors: their gradients add before the square.
@@ -171,7 +171,7 @@ TEST(EdgeMaximum, ScatterIsThatOfFramesPlusThatOfPlaces) {
       2 * (squared(g[0] + g[1]) + squared(g[2]) + squared(g[0]) + squared(g[1] + g[2]));
   EXPECT_LT((edge_scatter(profiles, kAll, x) - expected).norm(), 1e-9 * expected.norm());
   const FreeParameters free = without(1);
-  EXPECT_LT((edge_scatter(profiles, free, x) - only_part(free, expected)).norm(),
+  EXPECT_LT((edge_scatter(profiles, free, x) - free_part(free, expected)).norm(),
             1e-9 * expected.norm());
 }
 
@@ -200,7 +200,7 @@ TEST(EdgeMaximum, AFixedDelayAddsToTheCovariance) {
   const CalibrationVector x = CalibrationVector::Zero();
   const auto profiles = profiles_of(x, 0.5);
   const CalibrationMatrix curvature = curvature_at(profiles, x);
-  const CalibrationMatrix inverse = only(free, curvature).inverse();
+  const CalibrationMatrix inverse = decoupled(free, curvature).inverse();
   const CalibrationMatrix added = edge_covariance(profiles, free, x, curvature) -
                                   inverse * edge_scatter(profiles, free, x) * inverse;
   // The maximum that moves if the images are 20 ms late.

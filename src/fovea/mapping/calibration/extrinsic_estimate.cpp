@@ -65,13 +65,14 @@ QuadraticTerm prior_about(const CameraCorrection& correction) {
 /// errors, so the plain sum claims too much.
 double information_weight(const FreeParameters& free, const Matrix& curvature,
                           const Matrix& scatter) {
-  const double sum = only_part(free, scatter).trace();
-  return sum > 0 ? only_part(free, curvature).trace() / sum : 0;
+  const double sum = free_part(free, scatter).trace();
+  return sum > 0 ? free_part(free, curvature).trace() / sum : 0;
 }
 
 /// Colors and prior, weighted against the edges.
-QuadraticTerm next_to_edges(const FreeParameters& free, const std::vector<EdgeProfile>& profiles,
-                            const QuadraticTerm& colors, const QuadraticTerm& prior) {
+QuadraticTerm evidence_besides_edges(const FreeParameters& free,
+                                     const std::vector<EdgeProfile>& profiles,
+                                     const QuadraticTerm& colors, const QuadraticTerm& prior) {
   FreeParameters shifts{};
   shifts[kShiftAlongRing] = shifts[kShiftBetweenRings] = true;
   const Vector x = maximize_edge_score(profiles, shifts, prior, kLaterWidth);
@@ -95,7 +96,8 @@ Matrix systematic_covariance(const FreeParameters& free, const std::vector<EdgeP
   }
   const Vector given = per_parameter(kGivenRotation, kGivenTranslation, kGivenDelay);
   mean.diagonal() += kSystematicError * kSystematicError * given.cwiseAbs2().cwiseInverse();
-  return kSystematicError * kSystematicError * only_part(free, only(free, mean).inverse());
+  return kSystematicError * kSystematicError *
+         free_part(free, Matrix(decoupled(free, mean).inverse()));
 }
 
 /// Whether both halves of the frames show edges at the expected places. A maximum from clutter in
@@ -125,7 +127,7 @@ class Estimator {
   std::optional<CameraCorrection> best_start() const;
   CameraCorrection by_edges(CameraCorrection correction) const;
   void refine(int passes);
-  Matrix covariance(const std::vector<EdgeProfile>& at_hand) const;
+  Matrix covariance(const std::vector<EdgeProfile>& edges) const;
   bool fix_least_observable(const Vector& sigma);
 
   const std::vector<CalibrationView>& views_;
@@ -144,9 +146,9 @@ std::optional<CameraCorrection> Estimator::best_start() const {
   double best_contrast = 0;
   for (const CameraCorrection& start : starts) {
     const CameraCorrection correction = by_edges(start);
-    const std::vector<EdgeProfile> at_hand = profiles(correction);
-    if (at_hand.size() < kMinEdges) continue;
-    const EdgeMean pitch = edge_contrast(at_hand, 0), yaw = edge_contrast(at_hand, 1);
+    const std::vector<EdgeProfile> edges = profiles(correction);
+    if (edges.size() < kMinEdges) continue;
+    const EdgeMean pitch = edge_contrast(edges, 0), yaw = edge_contrast(edges, 1);
     if (std::max(pitch.edges, yaw.edges) < kMinClearEdges) continue;
     const double contrast = pitch.mean + yaw.mean;
     if (best && contrast <= best_contrast) continue;
@@ -158,10 +160,11 @@ std::optional<CameraCorrection> Estimator::best_start() const {
 
 CameraCorrection Estimator::by_edges(CameraCorrection correction) const {
   for (int pass = 0; pass < kStartPasses; ++pass) {
-    const std::vector<EdgeProfile> at_hand = profiles(correction);
-    if (at_hand.size() < kMinEdges) break;
-    const QuadraticTerm further = next_to_edges(free_, at_hand, {}, prior_about(correction));
-    const Vector x = maximize_edge_score(at_hand, free_, further);
+    const std::vector<EdgeProfile> edges = profiles(correction);
+    if (edges.size() < kMinEdges) break;
+    const QuadraticTerm evidence =
+        evidence_besides_edges(free_, edges, {}, prior_about(correction));
+    const Vector x = maximize_edge_score(edges, free_, evidence);
     correction = joined(correction, correction_of(x));
   }
   return correction;
@@ -171,29 +174,29 @@ CameraCorrection Estimator::by_edges(CameraCorrection correction) const {
 /// images.
 void Estimator::refine(int passes) {
   for (std::size_t pass = kBlurs.size() - std::size_t(passes); pass < kBlurs.size(); ++pass) {
-    correction_ = correction_of(only(free_, vector_of(correction_)));
-    const std::vector<EdgeProfile> at_hand = profiles(correction_);
-    const QuadraticTerm further =
-        next_to_edges(free_, at_hand, colors(correction_, kBlurs[pass]), prior_about(correction_));
-    const Vector x = maximize_edge_score(at_hand, free_, further, kLaterWidth);
+    correction_ = correction_of(free_part(free_, vector_of(correction_)));
+    const std::vector<EdgeProfile> edges = profiles(correction_);
+    const QuadraticTerm evidence = evidence_besides_edges(
+        free_, edges, colors(correction_, kBlurs[pass]), prior_about(correction_));
+    const Vector x = maximize_edge_score(edges, free_, evidence, kLaterWidth);
     correction_ = joined(correction_, correction_of(x));
   }
-  correction_ = correction_of(only(free_, vector_of(correction_)));
+  correction_ = correction_of(free_part(free_, vector_of(correction_)));
 }
 
 /// Covariance of the estimate, in calibration_unit()s.
-Matrix Estimator::covariance(const std::vector<EdgeProfile>& at_hand) const {
-  const QuadraticTerm further =
-      next_to_edges(free_, at_hand, colors(correction_, kBlurs.back()), prior_about(correction_));
-  const Vector x = maximize_edge_score(at_hand, free_, further, kLaterWidth);
+Matrix Estimator::covariance(const std::vector<EdgeProfile>& edges) const {
+  const QuadraticTerm evidence = evidence_besides_edges(
+      free_, edges, colors(correction_, kBlurs.back()), prior_about(correction_));
+  const Vector x = maximize_edge_score(edges, free_, evidence, kLaterWidth);
   for (double width = kFinestEdgeWidth; width <= kLaterWidth; width *= 2) {
     const Matrix curvature =
-        only(free_, Matrix(edge_score(at_hand, x, width).curvature + further.curvature));
+        decoupled(free_, Matrix(edge_score(edges, x, width).curvature + evidence.curvature));
     if (!is_positive_definite(curvature)) continue;  // the score of few edges is ragged
     const Matrix inverse = curvature.inverse();
     const Matrix scatter =
-        edge_scatter(at_hand, free_, x, width) + only_part(free_, further.scatter);
-    return inverse * scatter * inverse + systematic_covariance(free_, at_hand);
+        edge_scatter(edges, free_, x, width) + free_part(free_, evidence.scatter);
+    return inverse * scatter * inverse + systematic_covariance(free_, edges);
   }
   return Matrix::Constant(std::numeric_limits<double>::infinity());  // no maximum
 }
@@ -236,22 +239,22 @@ CalibrationEstimate Estimator::run() {
   }
   correction_ = *start;
   refine(int(kBlurs.size()));
-  std::vector<EdgeProfile> at_hand = profiles(correction_);
-  Matrix cov = covariance(at_hand);
+  std::vector<EdgeProfile> edges = profiles(correction_);
+  Matrix cov = covariance(edges);
   while (fix_least_observable(cov.diagonal().cwiseMax(0).cwiseSqrt())) {
     refine(kLaterPasses);
-    at_hand = profiles(correction_);
-    cov = covariance(at_hand);
+    edges = profiles(correction_);
+    cov = covariance(edges);
   }
-  estimate.edges = at_hand.size();
-  estimate.disagrees = at_hand.size() >= kMinEdges && edges_disagree(at_hand);
-  if (estimate.disagrees || at_hand.size() < kMinEdges || !halves_stand_out(at_hand)) {
+  estimate.edges = edges.size();
+  estimate.disagrees = edges.size() >= kMinEdges && edges_disagree(edges);
+  if (estimate.disagrees || edges.size() < kMinEdges || !halves_stand_out(edges)) {
     return estimate;
   }
   estimate.correction = correction_;
   estimate.sigma = correction_of(cov.diagonal().cwiseMax(0).cwiseSqrt());
   std::copy_n(free_.begin(), int(kCalibrationSize), estimate.observable.begin());
-  const EdgeDisplacement displacement = edge_displacement(at_hand, vector_of(correction_), cov);
+  const EdgeDisplacement displacement = edge_displacement(edges, vector_of(correction_), cov);
   estimate.pixels = displacement.pixels;
   estimate.pixels_sigma = displacement.sigma;
   return estimate;
