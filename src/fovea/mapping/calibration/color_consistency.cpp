@@ -3,12 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "fovea/core/median.h"
 #include "fovea/core/parallel.h"
 #include "fovea/mapping/calibration/gray_plane.h"
+#include "fovea/mapping/calibration/grouped_scatter.h"
 
 namespace fovea {
 namespace {
@@ -76,6 +76,12 @@ struct Comparison {
   Vector3d p_local;
   std::array<int, 3> place;
   int pair;
+};
+
+/// Derivatives of the log likelihood of a comparison.
+struct ColorGradient {
+  const Comparison* comparison;
+  CalibrationVector value = CalibrationVector::Zero();
 };
 
 using Pair = std::pair<std::size_t, std::size_t>;
@@ -182,18 +188,6 @@ double likelihood(double difference, double sigma) {
   return -std::log1p(difference * difference / (sigma * sigma));
 }
 
-template <class Key>
-CalibrationMatrix scatter_by(const std::vector<Comparison>& comparisons,
-                             const std::vector<CalibrationVector>& gradients, Key&& key) {
-  std::map<std::decay_t<decltype(key(comparisons.front()))>, CalibrationVector> sums;
-  for (std::size_t i = 0; i < comparisons.size(); ++i) {
-    sums.try_emplace(key(comparisons[i]), CalibrationVector::Zero()).first->second += gradients[i];
-  }
-  CalibrationMatrix scatter = CalibrationMatrix::Zero();
-  for (const auto& [group, sum] : sums) scatter += sum * sum.transpose();
-  return scatter;
-}
-
 /// Drops the directions in which the colors show no maximum within reach: there the second
 /// differences are noise, and a Newton step would lead anywhere.
 void keep_maxima(QuadraticTerm& term, double reach) {
@@ -228,19 +222,21 @@ QuadraticTerm term_of(const ColorDifferences& colors, double sigma, double step)
     return sum;
   };
   const double middle = total(CalibrationVector::Zero());
-  std::vector<CalibrationVector> gradients(count, CalibrationVector::Zero());
+  std::vector<ColorGradient> gradients;
+  gradients.reserve(count);
+  for (const Comparison& comparison : colors.comparisons()) gradients.push_back({&comparison});
   Eigen::Matrix<double, kCalibrationSize, 1> bend;
   for (int k = 0; k < kCalibrationSize; ++k) {
     const auto up = likelihoods(CalibrationVector::Unit(k));
     const auto down = likelihoods(-CalibrationVector::Unit(k));
     bend[k] = -2 * middle;
     for (std::size_t i = 0; i < count; ++i) {
-      gradients[i][k] = (up[i] - down[i]) / (2 * step);
+      gradients[i].value[k] = (up[i] - down[i]) / (2 * step);
       bend[k] += up[i] + down[i];
     }
   }
   QuadraticTerm term;
-  for (const CalibrationVector& gradient : gradients) term.gradient += gradient;
+  for (const ColorGradient& gradient : gradients) term.gradient += gradient.value;
   for (int k = 0; k < kCalibrationSize; ++k) {
     term.curvature(k, k) = -bend[k] / (step * step);
     for (int l = 0; l < k; ++l) {
@@ -250,9 +246,10 @@ QuadraticTerm term_of(const ColorDifferences& colors, double sigma, double step)
           -(bend_both - bend[k] - bend[l]) / (2 * step * step);
     }
   }
+  const auto value = [](const ColorGradient& g) { return g.value; };
   term.scatter =
-      scatter_by(colors.comparisons(), gradients, [](const Comparison& c) { return c.pair; }) +
-      scatter_by(colors.comparisons(), gradients, [](const Comparison& c) { return c.place; });
+      grouped_scatter(gradients, value, [](const ColorGradient& g) { return g.comparison->pair; }) +
+      grouped_scatter(gradients, value, [](const ColorGradient& g) { return g.comparison->place; });
   keep_maxima(term, kReach * step);
   return term;
 }

@@ -3,10 +3,10 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "fovea/mapping/calibration/calibration_limits.h"
 #include "fovea/mapping/calibration/edge_score.h"
+#include "fovea/mapping/calibration/grouped_scatter.h"
 
 namespace fovea {
 namespace {
@@ -55,15 +55,21 @@ System system_at(const std::vector<EdgeProfile>& profiles, const std::vector<Vec
 Matrix covariance(const std::vector<EdgeProfile>& profiles, const std::vector<Vector>& J,
                   const Vector& x) {
   Matrix curvature = Matrix::Zero(), mean = Matrix::Zero();
-  std::map<std::array<int, 3>, Vector> by_place;
+  struct Gradient {
+    const EdgeProfile* profile;
+    Vector value;
+  };
+  std::vector<Gradient> gradients;
+  gradients.reserve(profiles.size());
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     const EdgeSlope edge = edge_slope(profiles[i], J[i].dot(x), kWidths.back());
     curvature += edge.curvature * J[i] * J[i].transpose();
     mean += J[i] * J[i].transpose() / double(profiles.size());
-    by_place.try_emplace(profiles[i].place, Vector::Zero()).first->second += edge.slope * J[i];
+    gradients.push_back({&profiles[i], edge.slope * J[i]});
   }
-  Matrix scatter = Matrix::Zero();
-  for (const auto& [place, sum] : by_place) scatter += sum * sum.transpose();
+  const Matrix scatter = grouped_scatter(
+      gradients, [](const Gradient& g) { return g.value; },
+      [](const Gradient& g) { return g.profile->place; });
   curvature.diagonal().array() += 1e-6 * curvature.diagonal().maxCoeff();
   mean.diagonal().array() += 1e-6;
   const Matrix inverse = curvature.inverse();
