@@ -23,10 +23,12 @@ constexpr double kLevelWalk = 1e-4;
 }  // namespace
 
 Eigen::Matrix<double, 3, 2> across_gravity(const InertialState& state) {
-  const Vector3& direction = state.gravity;
-  const Vector3 first = direction.unitOrthogonal();
+  const Vector3 down = state.gravity.normalized();
+  constexpr double kSteep = 0.9;  // component of gravity: the axis gives no direction across it
+  const Vector3 axis = std::abs(down.x()) > kSteep ? Vector3::UnitY() : Vector3::UnitX();
+  const Vector3 first = axis.cross(down).normalized();
   Eigen::Matrix<double, 3, 2> axes;
-  axes << first, direction.normalized().cross(first);
+  axes << first, down.cross(first);
   return axes;
 }
 

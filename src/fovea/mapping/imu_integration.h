@@ -29,7 +29,8 @@ struct InertialState {
   Covariance covariance = Covariance::Zero();
 };
 
-/// Unit vectors of the two axes of gravity's error.
+/// Unit vectors of the two axes of gravity's error. They change with gravity as little as it does:
+/// the covariance refers to them.
 Eigen::Matrix<double, 3, 2> across_gravity(const InertialState& state);
 
 /// Strapdown integration by the midpoint rule.

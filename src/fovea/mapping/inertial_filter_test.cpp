@@ -102,6 +102,21 @@ double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+// The covariance of gravity's angles stays with the axes, so these must not swing.
+TEST(InertialFilter, TheAxesAcrossGravityTurnWithIt) {
+  InertialState state;
+  state.gravity = kGravity * -Vector3::UnitZ();
+  const auto down = across_gravity(state);
+  for (const double angle : {0.0, 1.5, 3.0, 4.5, 6.0}) {
+    state.gravity = kGravity * Vector3(1e-3 * std::cos(angle), 1e-3 * std::sin(angle), -1);
+    EXPECT_LT((across_gravity(state) - down).norm(), 3e-3) << angle;
+  }
+  state.gravity = kGravity * Vector3::UnitX();
+  const auto axes = across_gravity(state);
+  EXPECT_LT((axes.transpose() * axes - Eigen::Matrix2d::Identity()).norm(), 1e-12);
+  EXPECT_LT((axes.transpose() * state.gravity).norm(), 1e-12);
+}
+
 TEST(InertialFilter, FindsGravityAndBiasesInMotion) {
   const Motion motion;
   const ImuData imu = measure(motion, 12);
