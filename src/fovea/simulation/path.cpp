@@ -8,7 +8,7 @@
 namespace fovea {
 
 Path::Path(std::function<double(double)> heading, std::function<double(double)> curvature,
-           double begin, double end)
+           double begin, double end, const Eigen::Vector2d& start)
     : heading_(std::move(heading)), curvature_(std::move(curvature)), begin_(begin), end_(end) {
   if (!(begin <= 0 && end >= 0 && std::isfinite(end - begin))) {
     throw std::invalid_argument("a path must hold s = 0");
@@ -20,8 +20,8 @@ Path::Path(std::function<double(double)> heading, std::function<double(double)> 
     const double s = begin_ + static_cast<double>(i) * kStep;
     knots_.push_back(knots_.back() + way_between(s, s + kStep));
   }
-  const Eigen::Vector2d origin = at(0).position;
-  for (Eigen::Vector2d& knot : knots_) knot -= origin;
+  const Eigen::Vector2d shift = start - at(0).position;
+  for (Eigen::Vector2d& knot : knots_) knot += shift;
 }
 
 Path::Point Path::at(double s) const {

@@ -22,10 +22,11 @@ class Path {
 
   /// @param heading    rad at s
   /// @param curvature  its derivative, 1/m
-  /// @param begin,end  range of s in which at() is exact; s = 0, at the world's origin, lies in it
-  ///                   (std::invalid_argument otherwise)
+  /// @param begin,end  range of s in which at() is exact; s = 0 lies in it (std::invalid_argument
+  ///                   otherwise)
+  /// @param start      position at s = 0 (world, m)
   Path(std::function<double(double)> heading, std::function<double(double)> curvature, double begin,
-       double end);
+       double end, const Eigen::Vector2d& start = Eigen::Vector2d::Zero());
 
   /// std::out_of_range for an `s` beyond the range: nothing is known there.
   Point at(double s) const;

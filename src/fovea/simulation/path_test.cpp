@@ -33,6 +33,14 @@ TEST(Path, StraightLineAndOffsets) {
   EXPECT_LT((path.offset(70.7, -2) - (70.7 * along - 2 * left)).norm(), 1e-12);
 }
 
+TEST(Path, BeginsAnywhere) {
+  const Eigen::Vector2d start(30, -4);
+  const auto heading = [](double s) { return 0.01 * s; };
+  const Path path(heading, [](double) { return 0.01; }, -20.3, 501.7, start);
+  EXPECT_LT((path.at(0).position - start).norm(), 1e-12);
+  EXPECT_LT((path.at(77).position - start - arc(0.01).at(77).position).norm(), 1e-10);
+}
+
 TEST(Path, BendsAgreeWithAFineSum) {
   const double bend = 0.4, length = 25;
   const auto heading = [=](double s) { return bend * std::sin(s / length); };

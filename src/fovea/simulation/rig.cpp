@@ -1,5 +1,7 @@
 #include "fovea/simulation/rig.h"
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "fovea/core/angle.h"
@@ -58,6 +60,40 @@ constexpr int kMaxSide = 8192;
 LensCamera lens_camera(const SimulatedCamera& camera, const CameraOptions& options) {
   return {options.width, options.height, options.focal,         options.focal,
           options.cx,    options.cy,     make_lens(camera.lens)};
+}
+
+std::vector<SimulatedCamera> rig_cameras(CameraRig rig) {
+  if (rig == CameraRig::kKitti) return {kitti_camera(2), kitti_camera(3)};
+  constexpr int kCount = 5;
+  constexpr double kRadius = 0.35;       // m, round the LiDAR
+  constexpr double kLidarBehind = 0.27;  // m, behind camera 0
+  std::vector<SimulatedCamera> cameras;
+  for (int k = 0; k < kCount; ++k) {
+    SimulatedCamera camera;
+    camera.number = k;
+    camera.yaw = std::remainder(2 * std::numbers::pi * k / kCount, 2 * std::numbers::pi);
+    camera.right = -kRadius * std::sin(camera.yaw);
+    camera.forward = kRadius * std::cos(camera.yaw) - kLidarBehind;
+    cameras.push_back(camera);
+  }
+  cameras[1].lens = SimulatedLens::kFisheye;
+  cameras[4].lens = SimulatedLens::kPlumbBob;
+  return cameras;
+}
+
+SimulatedCamera kitti_camera(int number) {
+  switch (number) {
+    case 0:
+      return {0, 0, true};
+    case 1:
+      return {1, 0.54, true};
+    case 2:
+      return {2, -0.06, false};
+    case 3:
+      return {3, 0.473, false};
+    default:
+      return {number, 0, false};
+  }
 }
 
 Rig make_rig(const SimulationOptions& options) {

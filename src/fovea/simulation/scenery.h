@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,9 @@ class Scenery {
   const Path& path() const { return *path_; }
   /// Of the vehicle's lane, m to the left of the path.
   virtual double lane_offset() const = 0;
+  /// World position of the truth's local frame where the scene fixes it; without it the local frame
+  /// is at the LiDAR at frame 0 of pass 0.
+  virtual std::optional<Eigen::Vector3d> local_origin() const { return std::nullopt; }
 
   /// All chunks within `radius` of a place.
   virtual std::vector<ChunkPlace> chunks_near(const Eigen::Vector2d& place,

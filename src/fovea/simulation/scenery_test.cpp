@@ -188,7 +188,9 @@ TEST_P(EveryScene, PathIsLongEnoughForTheDrive) {
     const double end = longest_way(options.vehicle, options.lidar.period * (frames + 1));
     EXPECT_GE(scenery->path().end(), end);
     EXPECT_LE(scenery->path().begin(), -2);
-    EXPECT_NEAR(scenery->path().at(0).position.norm(), 0, 1e-9);
+    if (options.scene != Scene::kTown) {  // there the route has its own begin
+      EXPECT_NEAR(scenery->path().at(0).position.norm(), 0, 1e-9);
+    }
     // What the vehicle sees at its last place is there.
     const Vector2d last = scenery->path().at(end).position;
     double nearest = 1e9;

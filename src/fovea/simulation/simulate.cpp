@@ -54,7 +54,8 @@ class Simulation {
     // All passes share one frame `local`: that of the first.
     const VehicleMotion first(scenery_->path(), scenery_->lane_offset(), options.vehicle,
                               options.seed);
-    T_world_local_.translation() = (first.T_world_vehicle(0) * rig_.T_vehicle_lidar).translation();
+    T_world_local_.translation() = scenery_->local_origin().value_or(
+        (first.T_world_vehicle(0) * rig_.T_vehicle_lidar).translation());
     truth_.resize(rig_.cameras.size());
     for (const SimulatedCamera& camera : options.camera.cameras) {
       schedules_.push_back(image_schedule(options, camera));

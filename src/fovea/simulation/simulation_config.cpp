@@ -170,6 +170,22 @@ void visit_lidars(SettingVisitor& visit, SimulationOptions& options) {
   }
 }
 
+/// Only the town has these keys. ConfigError for one of them in another scene.
+void visit_town(SettingVisitor& visit, SimulationOptions& options) {
+  const auto visit_one = [&](std::string_view key, auto& value) {
+    if (options.scene == Scene::kTown) return visit(key, value);
+    if (visit.is_given(key)) {
+      throw ConfigError(fmt::format("scene {} has no such key", to_string(options.scene)), key,
+                        "give --scene town, or remove the key");
+    }
+  };
+  visit_one("town.blocks_x", options.town.blocks_x);
+  visit_one("town.blocks_y", options.town.blocks_y);
+  visit_one("town.route", options.town.route);
+  visit_one("town.begin", options.town.begin);
+  visit_one("town.traffic", options.town.traffic);
+}
+
 /// Calls `visit(key, reference)` for every key but those of `cameras`' list.
 void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& cameras) {
   visit("drive.pass", o.pass);
@@ -194,6 +210,7 @@ void visit_config(SettingVisitor& visit, SimulationOptions& o, CameraKeys& camer
 
   visit("street.bends", Degrees{o.bends});
   visit("street.curvature", o.curvature);
+  visit_town(visit, o);
 
   visit_lidars(visit, o);
 

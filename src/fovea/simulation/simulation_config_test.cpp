@@ -13,6 +13,7 @@ namespace fovea::simulation_config_test {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 template <class F>
 std::string config_error(F&& f) {
@@ -26,7 +27,7 @@ std::string config_error(F&& f) {
 
 TEST(SimulationOptions, ScenesHaveNamesAndValidOptions) {
   EXPECT_THAT(scene_names(),
-              ElementsAre("street", "traffic", "crossing", "canyon", "plaza", "stress"));
+              ElementsAre("street", "traffic", "crossing", "canyon", "plaza", "stress", "town"));
   for (const std::string& name : scene_names()) {
     EXPECT_EQ(to_string(parse_scene(name)), name);
     for (const std::string& noise : noise_names()) {
@@ -298,6 +299,25 @@ TEST(SimulationConfig, TheDocumentationListsEveryKeyWithItsDefault) {
   std::ostringstream document;
   document << std::ifstream(FOVEA_SOURCE_DIR "/docs/simulator.md").rdbuf();
   EXPECT_THAT(document.str(), HasSubstr("```toml\n" + to_toml(SimulationOptions{}) + "```"));
+  std::string town = to_toml(simulation_options(Scene::kTown, "default"));
+  town.erase(0, town.find("[town]"));
+  town.erase(town.find("\n[lidar]"));
+  EXPECT_THAT(document.str(), HasSubstr("```toml\n" + town + "```"));
+}
+
+TEST(SimulationConfig, OnlyTheTownHasKeysOfTheTown) {
+  SimulationOptions options = simulation_options(Scene::kTown, "default");
+  apply_setting("town.route=0,2 4,2", options);
+  EXPECT_EQ(options.town.route, "0,2 4,2");
+  SimulationOptions back = simulation_options(Scene::kTown, "default");
+  apply_config_text(to_toml(options), "text", back);
+  EXPECT_EQ(to_toml(back), to_toml(options));
+  EXPECT_THAT(config_error([&] { apply_setting("town.blocks_x=3", options); }),
+              AllOf(HasSubstr("outside the town"), HasSubstr("town.route")));
+  SimulationOptions street;
+  EXPECT_THAT(to_toml(street), Not(HasSubstr("town")));
+  EXPECT_THAT(config_error([&] { apply_setting("town.begin=3", street); }),
+              AllOf(HasSubstr("scene street"), HasSubstr("town.begin"), HasSubstr("--scene town")));
 }
 
 }  // namespace fovea::simulation_config_test

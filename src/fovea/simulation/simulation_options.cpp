@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -14,16 +13,18 @@
 #include "fovea/simulation/image_schedule.h"
 #include "fovea/simulation/option_checks.h"
 #include "fovea/simulation/rig.h"
+#include "fovea/simulation/town_route.h"
 
 namespace fovea {
 namespace {
 
-constexpr std::array<std::pair<Scene, std::string_view>, 6> kScenes{{{Scene::kStreet, "street"},
+constexpr std::array<std::pair<Scene, std::string_view>, 7> kScenes{{{Scene::kStreet, "street"},
                                                                      {Scene::kTraffic, "traffic"},
                                                                      {Scene::kCrossing, "crossing"},
                                                                      {Scene::kCanyon, "canyon"},
                                                                      {Scene::kPlaza, "plaza"},
-                                                                     {Scene::kStress, "stress"}}};
+                                                                     {Scene::kStress, "stress"},
+                                                                     {Scene::kTown, "town"}}};
 
 void check(const LightOptions& light) {
   check_degrees("light.sun_azimuth", light.sun_azimuth, -360, 360);
@@ -158,6 +159,9 @@ SimulationOptions scene_options(Scene scene) {
     case Scene::kStress:
       options.vehicle.speed = 6;
       break;
+    case Scene::kTown:
+      options.bends = 0;
+      break;
   }
   return options;
 }
@@ -206,6 +210,7 @@ void SimulationOptions::validate() const {
   check_range("street.curvature", curvature, -0.05, 0.05, "per m");
   check(lidar);
   check(further_lidars);
+  if (scene == Scene::kTown) check(town);
   check(camera);
   if (format == DriveFormat::kKitti) {
     check_format(camera);
@@ -219,40 +224,6 @@ void SimulationOptions::validate() const {
   check_lenses(camera);
   check(navigation, lidar.period);
   check(imu, wheels);
-}
-
-std::vector<SimulatedCamera> rig_cameras(CameraRig rig) {
-  if (rig == CameraRig::kKitti) return {kitti_camera(2), kitti_camera(3)};
-  constexpr int kCount = 5;
-  constexpr double kRadius = 0.35;       // m, round the LiDAR
-  constexpr double kLidarBehind = 0.27;  // m, behind camera 0
-  std::vector<SimulatedCamera> cameras;
-  for (int k = 0; k < kCount; ++k) {
-    SimulatedCamera camera;
-    camera.number = k;
-    camera.yaw = std::remainder(2 * std::numbers::pi * k / kCount, 2 * std::numbers::pi);
-    camera.right = -kRadius * std::sin(camera.yaw);
-    camera.forward = kRadius * std::cos(camera.yaw) - kLidarBehind;
-    cameras.push_back(camera);
-  }
-  cameras[1].lens = SimulatedLens::kFisheye;
-  cameras[4].lens = SimulatedLens::kPlumbBob;
-  return cameras;
-}
-
-SimulatedCamera kitti_camera(int number) {
-  switch (number) {
-    case 0:
-      return {0, 0, true};
-    case 1:
-      return {1, 0.54, true};
-    case 2:
-      return {2, -0.06, false};
-    case 3:
-      return {3, 0.473, false};
-    default:
-      return {number, 0, false};
-  }
 }
 
 std::vector<std::string> scene_names() {

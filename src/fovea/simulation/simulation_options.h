@@ -20,6 +20,15 @@ enum class Scene {
   kCanyon,    ///< a narrow street between high walls, where GPS is lost
   kPlaza,     ///< an open square, little structure
   kStress,    ///< as many occluders as fit: poles, fences, bushes, people
+  kTown,      ///< streets on a grid; drives follow routes through one town
+};
+
+/// The grid of streets of scene town, and the drive through it.
+struct TownOptions {
+  int blocks_x = 4, blocks_y = 4;  ///< crossings are numbered from 0,0 to blocks_x,blocks_y
+  std::string route;     ///< crossings "x,y x,y ..."; empty: round the block in the middle
+  double begin = 0;      ///< m along the route, where the drive begins
+  bool traffic = false;  ///< cars, cyclists and pedestrians move along the route
 };
 
 /// Sun and sky.
@@ -111,7 +120,7 @@ struct CameraOptions {
 };
 
 struct NavigationOptions {
-  GeodeticPoint origin{49.01, 8.43, 114.5};     ///< of the LiDAR at frame 0
+  GeodeticPoint origin{49.01, 8.43, 114.5};     ///< of the LiDAR at frame 0; town: of crossing 0,0
   double min_delay = 0.011, max_delay = 0.038;  ///< s, of a record after its scan
   double position_noise = 0.01;                 ///< m, white, each axis
   double position_walk = 0.03;                  ///< m per square root of a second, random walk
@@ -136,7 +145,8 @@ struct SimulationOptions {
   Scene scene = Scene::kStreet;
   int seed = 1;
   /// The same street on another day: another pass has the surfaces of pass 0 and its own noise,
-  /// exposure, navigation errors, traffic, and small motions of the vehicle.
+  /// exposure, navigation errors, traffic, and small motions of the vehicle. In a town the parked
+  /// cars differ, too.
   int pass = 0;
   int frames = 100;
   DriveFormat format = DriveFormat::kKitti;
@@ -144,6 +154,7 @@ struct SimulationOptions {
   VehicleOptions vehicle;
   double bends = 7 * kDegree;  ///< rad, how far the street's heading swings
   double curvature = 0;        ///< 1/m, of the whole street, besides its bends
+  TownOptions town;            ///< for scene town alone
   LidarOptions lidar;
   std::vector<FurtherLidarOptions> further_lidars;
   CameraOptions camera;

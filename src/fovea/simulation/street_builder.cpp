@@ -11,7 +11,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kPavement = 0.12;  // height above the road
 constexpr double kKerbWidth = 0.15;
 constexpr double kHalfTurn = std::numbers::pi;
 
@@ -28,14 +27,18 @@ class StreetMaker {
         random_(random),
         next_surface_(first_surface) {}
 
-  Chunk build() {
+  Chunk build(const std::optional<Random>& parked_cars) {
     add_ground();
     for (const double side : {1.0, -1.0}) {
       add_houses(side);
-      if (style_.raised) add_parked_cars(side);
+      if (style_.raised && !parked_cars) add_parked_cars(side);
       add_street_trees(side);
       add_furniture(side);
       add_clutter(side);
+    }
+    if (style_.raised && parked_cars) {
+      random_ = *parked_cars;
+      for (const double side : {1.0, -1.0}) add_parked_cars(side);
     }
     chunk_.mesh_world = make_.take();
     return std::move(chunk_);
@@ -256,8 +259,8 @@ class StreetMaker {
 
 Chunk build_street(const StreetAxis& axis, double begin, const StreetStyle& style,
                    const Palette& palette, const ModelSet& models, Random random,
-                   std::uint32_t first_surface) {
-  return StreetMaker(axis, begin, style, palette, models, random, first_surface).build();
+                   std::uint32_t first_surface, std::optional<Random> parked_cars) {
+  return StreetMaker(axis, begin, style, palette, models, random, first_surface).build(parked_cars);
 }
 
 }  // namespace fovea

@@ -11,6 +11,7 @@ StreetStyle style_of(Scene scene) {
     case Scene::kTraffic:
       break;
     case Scene::kCrossing:  // the next street is not far
+    case Scene::kTown:
       style.far = 20;
       style.backdrop = false;
       break;

@@ -16,6 +16,12 @@ namespace {
 /// Who crosses the street begins and is done when the vehicle is so far away (m).
 constexpr double kCrossesFrom = 80, kCrossesTo = 8;
 
+/// Share of the room in turns that a mover needs at a place of this curvature (1/m).
+double turn_share(double curvature) {
+  constexpr double kTight = 0.04;
+  return std::min(1.0, std::abs(curvature) / kTight);
+}
+
 /// How much farther than at its mean speed the vehicle can get (m).
 double lead(const VehicleOptions& vehicle) {
   constexpr double kLong = 1000;  // s
@@ -25,7 +31,7 @@ double lead(const VehicleOptions& vehicle) {
 }  // namespace
 
 Traffic::Traffic(const ModelSet& models, const Palette& palette, const VehicleOptions& vehicle,
-                 int seed) {
+                 int seed, double room_in_turns) {
   Random random(static_cast<std::uint64_t>(seed) * 7919 + 3);
   const auto pick = [&](const auto& choices) { return choices[random.below(choices.size())]; };
   // A car ahead, at the vehicle's own mean speed; cars that come the other way.
@@ -37,8 +43,8 @@ Traffic::Traffic(const ModelSet& models, const Palette& palette, const VehicleOp
   }
   for (int k = 0; k < 3; ++k) {
     movers_.push_back({pick(models.cyclists), pick(palette.clothes),
-                       21.0 + 70 * k + random.uniform(0, 30), random.uniform(4.2, 5.2), -3.32,
-                       210});
+                       21.0 + 70 * k + random.uniform(0, 30), random.uniform(4.2, 5.2), -3.32, 210,
+                       0, room_in_turns});
   }
   for (int k = 0; k < 24; ++k) {
     const bool left = random.uniform() < 0.5;
@@ -61,8 +67,10 @@ void Traffic::add_one(const Path& path, const Mover& mover, std::uint32_t number
   if (std::abs(s - way) > kReach || s < path.begin() + 5 || s > path.end() - 5) return;
   const double crossed =
       std::clamp((kCrossesFrom - (s - way)) / (kCrossesFrom - kCrossesTo), 0.0, 1.0);
-  const double d = mover.side + mover.across * (1 - 2 * crossed);
-  double heading = path.at(s).heading;
+  const Path::Point point = path.at(s);
+  const double d = mover.side + mover.across * (1 - 2 * crossed) -
+                   mover.room_in_turns * turn_share(point.curvature);
+  double heading = point.heading;
   if (mover.speed < 0) heading += std::numbers::pi;
   if (mover.across != 0) heading -= std::copysign(0.5 * std::numbers::pi, mover.across);
   Placement placement;
