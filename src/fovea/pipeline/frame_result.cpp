@@ -62,6 +62,9 @@ Figures figures_of(const FrameResult& result) {
   Figures figures;
   count_points(result.scan, figures);
   report(result.tracking, figures);
+  if (const auto accuracy = result.poses.navigation_accuracy) {
+    figures["navigation_accuracy"] = *accuracy;
+  }
   if (result.blank_images > 0) figures["images_blank"] = result.blank_images;
   if (result.foveal) report(*result.foveal, figures);
   if (result.hidden) figures["filter_hidden"] = as_figure(*result.hidden);

@@ -22,6 +22,8 @@ struct FramePoses {
   int submap = -1;
   std::optional<Revisit> revisit;
   std::optional<SweepMotion> motion;
+  /// m, standard deviation that navigation states of its position; infinite without a fix.
+  std::optional<double> navigation_accuracy = {};
 };
 
 /// Points of the scan.

@@ -2,25 +2,16 @@
 
 #include <utility>
 
-#include "fovea/core/angle.h"
+#include "fovea/mapping/fusion/submap_errors.h"
 
 namespace fovea {
 namespace {
 
 /// Least length, so that a standing vehicle stays in its submap.
 constexpr double kSubmapLength = 5;  // m
-/// Standard deviations of the odometry between the origins of consecutive submaps. They have a
-/// constant part, a part per meter, and a part per frame with degenerate or failed registration.
-constexpr double kTranslation = 0.01, kTranslationPerMeter = 0.001, kTranslationPerWeak = 0.1;  // m
-constexpr double kRotation = 0.02 * kDegree, kRotationPerMeter = 0.003 * kDegree,
-                 kRotationPerWeak = 0.1 * kDegree;
-/// Standard deviations of a loop closure.
-constexpr double kClosureTranslation = 0.03;  // m
-constexpr double kClosureRotation = 0.05 * kDegree;
-/// Standard deviations of the unknown motion over a pause after which the track restarts. The path
-/// counts as long enough for loop closures between both sides.
-constexpr double kRestartTranslation = 100, kRestartRotation = 90 * kDegree;  // m, rad
-constexpr double kRestartPath = 2500;                                         // m
+/// Path over a pause after which the track restarts: long enough for loop closures between both
+/// sides.
+constexpr double kRestartPath = 2500;  // m
 /// Without navigation the first submap is fixed. If navigation begins later, the first submap is
 /// almost free until then.
 constexpr double kAnchor = 1e-4;
@@ -49,13 +40,6 @@ bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
   return seconds(stamp - submap.start) >= options_.submap_duration && moved >= kSubmapLength;
 }
 
-Twist Fusion::odometry_deviations(double length, bool restarts) const {
-  if (restarts) return deviations(kRestartRotation, kRestartTranslation);
-  return deviations(
-      kRotation + kRotationPerMeter * length + kRotationPerWeak * weak_frames_,
-      kTranslation + kTranslationPerMeter * length + kTranslationPerWeak * weak_frames_);
-}
-
 void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts) {
   const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
   const auto measured = navigation_.measurement(node, stamp);
@@ -65,7 +49,9 @@ void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool res
   if (node > 0) {
     const Submap& before = submaps_.back();
     graph_.add(RelativePose{node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
-                            odometry_deviations(path_ - before.start_path, restarts)});
+                            restarts
+                                ? restart_deviations()
+                                : odometry_deviations(path_ - before.start_path, weak_frames_)});
   } else if (!measured) {
     graph_.add(AbsolutePose{node, graph_.poses().back(),
                             navigation_.has_fix() ? deviations(kFreeRotation, kFreeTranslation)
@@ -97,6 +83,7 @@ void Fusion::track(FrameResult& frame) {
   }
   last_T_odom_lidar_ = T_odom_lidar;
   const std::string problem = navigation_.observe(frame.stamp.value(), T_odom_lidar);
+  frame.poses.navigation_accuracy = navigation_.stated_accuracy(*frame.stamp);
   if (!problem.empty()) {
     frame.tracking.has_navigation_jumped = true;
     frame.note += (frame.note.empty() ? "" : "; ") + problem;
@@ -148,7 +135,7 @@ void Fusion::close_loop(const FrameResult& frame) {
   const auto submap = static_cast<std::size_t>(frame.poses.submap);
   graph_.add(RelativePose{static_cast<std::size_t>(frame.poses.revisit->submap), submap,
                           frame.poses.revisit->T_submap_lidar * T_submap_lidar(frame).inverse(),
-                          deviations(kClosureRotation, kClosureTranslation), /*robust=*/true});
+                          loop_deviations(), /*robust=*/true});
   is_solved_ = false;
   apply_deferred();
 }

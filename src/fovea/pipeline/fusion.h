@@ -60,9 +60,6 @@ class Fusion {
   };
   bool is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const;
   void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts);
-  /// Standard deviations of the odometry from the last submap to a new one.
-  /// @param length  m driven between their origins
-  Twist odometry_deviations(double length, bool restarts) const;
   RigidMotion T_submap_lidar(const FrameResult& frame) const;
   void close_loop(const FrameResult& frame);
   std::vector<LoopCandidate> candidates(const RigidMotion& T_local_lidar) const;

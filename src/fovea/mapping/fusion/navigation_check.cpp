@@ -68,6 +68,11 @@ double NavigationCheck::accuracy_at(TimeNs stamp) const {
   return index < accuracy_.size() ? accuracy_[index] : 0;
 }
 
+std::optional<double> NavigationCheck::stated_accuracy(TimeNs stamp) const {
+  const double stated = navigation_ != nullptr ? accuracy_at(stamp) : 0;
+  return stated > 0 ? std::optional(stated) : std::nullopt;
+}
+
 std::optional<AbsolutePose> NavigationCheck::measurement(std::size_t node, TimeNs stamp) const {
   if (navigation_ == nullptr) return std::nullopt;
   const auto pose = navigation_->at(stamp);

@@ -32,6 +32,10 @@ class NavigationCheck {
     path_ = 0;
   }
 
+  /// Standard deviation of the position at a time as it is stated, m; infinite without a fix. Empty
+  /// if nothing is stated.
+  std::optional<double> stated_accuracy(TimeNs stamp) const;
+
   /// Whether any position has a fix.
   bool has_fix() const;
 

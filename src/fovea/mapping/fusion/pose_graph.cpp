@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace fovea {
@@ -27,7 +28,9 @@ constexpr std::size_t kRecentNodes = 64;
 /// A residual in standard deviations and its derivatives by the twists of its nodes: the pose of a
 /// node is T * exp(twist).
 struct Term {
-  Twist error;
+  std::optional<std::size_t> from;
+  std::size_t to = 0;
+  Twist error = Twist::Zero();
   Matrix6 by_from = Matrix6::Zero(), by_to = Matrix6::Zero();
 };
 
@@ -49,7 +52,7 @@ Term term_of(const RelativePose& m, const std::vector<RigidMotion>& poses) {
   const Eigen::Matrix3d R_measured_to = m.T_from_to.linear().transpose() * T_from_to.linear();
   const Eigen::Vector3d turn = rotation_vector(R_measured_to);
   const Eigen::Matrix3d R_to_from = m.T_from_to.linear().transpose();
-  Term term;
+  Term term{.from = m.from, .to = m.to};
   term.error.head<3>() = turn;
   term.error.tail<3>() = R_to_from * (T_from_to.translation() - m.T_from_to.translation());
   const Eigen::Matrix3d J = inverse_right_jacobian(turn);
@@ -69,7 +72,7 @@ Term term_of(const RelativePose& m, const std::vector<RigidMotion>& poses) {
 Term term_of(const AbsolutePose& m, const std::vector<RigidMotion>& poses) {
   const RigidMotion& T = poses[m.node];
   const Eigen::Vector3d turn = rotation_vector(m.T_local_node.linear().transpose() * T.linear());
-  Term term;
+  Term term{.from = {}, .to = m.node};
   term.error.head<3>() = turn;
   term.error.tail<3>() = T.translation() - m.T_local_node.translation();
   term.by_to.topLeftCorner<3, 3>() = inverse_right_jacobian(turn);
@@ -77,6 +80,15 @@ Term term_of(const AbsolutePose& m, const std::vector<RigidMotion>& poses) {
   const Twist weight = m.sigma.cwiseInverse();
   term.error.array() *= weight.array();
   term.by_to = weight.asDiagonal() * term.by_to;
+  return term;
+}
+
+Term term_of(const PointPosition& m, const std::vector<RigidMotion>& poses) {
+  const RigidMotion& T = poses[m.node];
+  Term term{.from = {}, .to = m.node};
+  term.error.tail<3>() = (T * m.p_node - m.p_local) / m.sigma;
+  term.by_to.bottomLeftCorner<3, 3>() = -T.linear() * hat(m.p_node) / m.sigma;
+  term.by_to.bottomRightCorner<3, 3>() = T.linear() / m.sigma;
   return term;
 }
 
@@ -147,41 +159,47 @@ double PoseGraph::squared_error(const RelativePose& measurement) const {
   return term_of(measurement, poses_).error.squaredNorm();
 }
 
+void PoseGraph::add(const PointPosition& measurement) {
+  if (measurement.node >= poses_.size()) throw std::invalid_argument("a position needs a node");
+  positions_.push_back(measurement);
+}
+
+template <class F>
+void PoseGraph::for_each_term(const std::vector<RigidMotion>& poses, std::size_t first,
+                              F&& f) const {
+  for (const RelativePose& m : relative_) {
+    if (m.to >= first) f(term_of(m, poses), m.robust);
+  }
+  for (const AbsolutePose& m : absolute_) {
+    if (m.node >= first) f(term_of(m, poses), m.robust);
+  }
+  for (const PointPosition& m : positions_) {
+    if (m.node >= first) f(term_of(m, poses), false);
+  }
+}
+
 double PoseGraph::cost(const std::vector<RigidMotion>& poses, double width,
                        std::size_t first) const {
   double total = 0;
-  for (const RelativePose& m : relative_) {
-    if (m.to < first) continue;
-    const double squared = term_of(m, poses).error.squaredNorm();
-    total += m.robust ? robust_cost(squared, width) : squared;
-  }
-  for (const AbsolutePose& m : absolute_) {
-    if (m.node < first) continue;
-    const double squared = term_of(m, poses).error.squaredNorm();
-    total += m.robust ? robust_cost(squared, width) : squared;
-  }
+  for_each_term(poses, first, [&](const Term& term, bool robust) {
+    const double squared = term.error.squaredNorm();
+    total += robust ? robust_cost(squared, width) : squared;
+  });
   return total;
 }
 
 PoseGraph::Equations PoseGraph::linearize(double width, std::size_t first) const {
   Equations equations(first, poses_.size());
-  for (const RelativePose& m : relative_) {
-    if (m.to < first) continue;
-    const Term term = term_of(m, poses_);
-    const double weight = m.robust ? robust_weight(term.error.squaredNorm(), width) : 1;
-    equations.add_block(m.from, m.from, weight * term.by_from.transpose() * term.by_from);
-    equations.add_block(m.to, m.from, weight * term.by_to.transpose() * term.by_from);
-    equations.add_block(m.to, m.to, weight * term.by_to.transpose() * term.by_to);
-    equations.add_gradient(m.from, weight * term.by_from.transpose() * term.error);
-    equations.add_gradient(m.to, weight * term.by_to.transpose() * term.error);
-  }
-  for (const AbsolutePose& m : absolute_) {
-    if (m.node < first) continue;
-    const Term term = term_of(m, poses_);
-    const double weight = m.robust ? robust_weight(term.error.squaredNorm(), width) : 1;
-    equations.add_block(m.node, m.node, weight * term.by_to.transpose() * term.by_to);
-    equations.add_gradient(m.node, weight * term.by_to.transpose() * term.error);
-  }
+  for_each_term(poses_, first, [&](const Term& term, bool robust) {
+    const double weight = robust ? robust_weight(term.error.squaredNorm(), width) : 1;
+    if (term.from) {
+      equations.add_block(*term.from, *term.from, weight * term.by_from.transpose() * term.by_from);
+      equations.add_block(term.to, *term.from, weight * term.by_to.transpose() * term.by_from);
+      equations.add_gradient(*term.from, weight * term.by_from.transpose() * term.error);
+    }
+    equations.add_block(term.to, term.to, weight * term.by_to.transpose() * term.by_to);
+    equations.add_gradient(term.to, weight * term.by_to.transpose() * term.error);
+  });
   return equations;
 }
 

@@ -25,6 +25,13 @@ struct AbsolutePose {
   bool robust = false;
 };
 
+/// A measured position of a point that is fixed to a node.
+struct PointPosition {
+  std::size_t node = 0;
+  Eigen::Vector3d p_node = Eigen::Vector3d::Zero(), p_local = Eigen::Vector3d::Zero();  ///< m
+  double sigma = 1;  ///< standard deviation of each coordinate, m
+};
+
 /// Finds the poses T_local_node that fit all measurements best: Levenberg-Marquardt on SE(3) with a
 /// sparse Cholesky factorization. The result depends only on the order of calls.
 class PoseGraph {
@@ -33,6 +40,7 @@ class PoseGraph {
   std::size_t add_node(const RigidMotion& T_local_node);
   void add(const RelativePose& measurement);
   void add(const AbsolutePose& measurement);
+  void add(const PointPosition& measurement);
 
   /// Moves all poses by one motion.
   void move(const RigidMotion& T_new_old);
@@ -47,6 +55,9 @@ class PoseGraph {
 
  private:
   struct Equations;
+  /// Calls f(term, robust) for the measurements of any node from `first` on.
+  template <class F>
+  void for_each_term(const std::vector<RigidMotion>& poses, std::size_t first, F&& f) const;
   /// @param width  squared, of the robust kernel
   /// @param first  nodes before it are fixed; measurements between fixed nodes do not count
   Equations linearize(double width, std::size_t first) const;
@@ -60,6 +71,7 @@ class PoseGraph {
   std::vector<RigidMotion> poses_;
   std::vector<RelativePose> relative_;
   std::vector<AbsolutePose> absolute_;
+  std::vector<PointPosition> positions_;
   std::size_t used_relative_ = 0, used_absolute_ = 0;  // at the last optimize()
 };
 
