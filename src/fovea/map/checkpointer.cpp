@@ -105,6 +105,7 @@ void Checkpointer::write(const ChangedRows& changed) {
     writer_->put_sensor(id, rows.sensors[id]);
   }
   for (const FrameRecord& frame : rows.frames) writer_->put_frame(frame);
+  for (const KeyframeRecord& keyframe : rows.keyframes) writer_->put_keyframe(keyframe);
   for (const auto& [frame, T_local_lidar] : rows.poses) writer_->put_pose(frame, T_local_lidar);
   for (const auto& [id, submap] : rows.submaps) writer_->put_submap(id, submap);
   for (const TileId& id : changed.removed) writer_->remove_tile(id);

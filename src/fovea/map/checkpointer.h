@@ -24,6 +24,7 @@ struct MapRows {
   std::vector<DriveRecord> drives;    ///< by number; empty: no change
   std::vector<SensorRecord> sensors;  ///< by number; empty: no change
   std::vector<FrameRecord> frames;
+  std::vector<KeyframeRecord> keyframes;
   std::vector<std::pair<int, RigidMotion>> poses;  ///< T_local_lidar of frames written before
   std::vector<std::pair<std::size_t, SubmapRecord>> submaps;
 };

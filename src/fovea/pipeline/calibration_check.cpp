@@ -25,7 +25,7 @@ CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate)
       next_(drive.begin + stride_ / 2),
       profiles_(drive.calibration.cameras.size()) {}
 
-void CalibrationCheck::add(const Frame& frame, const FrameMotion& motion) {
+void CalibrationCheck::add_edges(const Frame& frame, const FrameMotion& motion) {
   next_ = frame.index + stride_;
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
     const auto profiles =
@@ -34,12 +34,13 @@ void CalibrationCheck::add(const Frame& frame, const FrameMotion& motion) {
   }
 }
 
-std::vector<CameraCalibration> CalibrationCheck::estimates() const {
-  std::vector<CameraCalibration> found;
-  found.reserve(profiles_.size());
+DriveCalibration CalibrationCheck::estimate() const {
+  DriveCalibration found;
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
-    found.push_back({drive_.calibration.cameras[k].index, estimate_calibration(profiles_[k])});
+    found.cameras.push_back(
+        {drive_.calibration.cameras[k].index, estimate_calibration(profiles_[k])});
   }
+  if (drive_.imu) found.imu = imu_.estimate(*drive_.imu);
   return found;
 }
 

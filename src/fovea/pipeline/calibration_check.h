@@ -6,10 +6,12 @@
 #include "fovea/drive/frame_source.h"
 #include "fovea/pipeline/drive_calibration.h"
 #include "fovea/pipeline/frame_motion.h"
+#include "fovea/pipeline/imu_check.h"
 
 namespace fovea {
 
-/// Collects edges of a few frames while a drive is mapped, for an estimate at the end.
+/// Collects edges of a few frames and the poses of many while a drive is mapped, for an estimate
+/// at the end.
 class CalibrationCheck {
  public:
   /// Largest number of used frames, and least number of frames between two of them. Both keep the
@@ -20,17 +22,20 @@ class CalibrationCheck {
   /// @param compensate  whether scans need motion compensation
   CalibrationCheck(const DriveInfo& drive, bool compensate);
 
-  /// Whether enough frames have passed since the last added one.
-  bool is_due(int index) const { return index >= next_; }
-  void add(const Frame& frame, const FrameMotion& motion);
-  /// Rotation and delay of each camera, in the calibration's order.
-  std::vector<CameraCalibration> estimates() const;
+  /// Whether enough frames have passed since the last one whose edges were added.
+  bool is_due(int index) const { return !profiles_.empty() && index >= next_; }
+  void add_edges(const Frame& frame, const FrameMotion& motion);
+  void add_pose(const FrameRecord& record) { imu_.add(record); }
+  /// Rotation and delay of each camera, in the calibration's order, and of the IMU, if there is
+  /// one.
+  DriveCalibration estimate() const;
 
  private:
   const DriveInfo& drive_;
   bool compensate_;
   int stride_, next_;
   std::vector<std::vector<EdgeProfile>> profiles_;  ///< by camera
+  ImuCheck imu_;
 };
 
 }  // namespace fovea

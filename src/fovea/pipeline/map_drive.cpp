@@ -14,8 +14,8 @@
 #include "fovea/pipeline/drive_sensors.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/frame_pipeline.h"
-#include "fovea/pipeline/imu_check.h"
 #include "fovea/pipeline/initial_motion.h"
+#include "fovea/pipeline/keyframe_recorder.h"
 #include "fovea/pipeline/make_mapper.h"
 #include "fovea/pipeline/map_tracked_frame.h"
 #include "fovea/pipeline/run_meta.h"
@@ -52,11 +52,11 @@ class MapRun {
               checkpointer_options()),
         cache_(file_, job.memory),
         mapper_(mapper_of_drive()),
+        keyframes_(job.settings.run.range_image_spacing, drive),
         figures_(drive, job.rate),
         views_(drive) {
     if (job.settings.run.check_calibration && !job.calibrate) {
-      if (!drive.calibration.cameras.empty()) check_.emplace(drive, has_sweep_motion(drive, job));
-      if (drive.imu) imu_check_.emplace();
+      check_.emplace(drive, has_sweep_motion(drive, job));
     }
     if (job.resume) resume_from_file();
     frames_before_ = log_.size();
@@ -79,7 +79,7 @@ class MapRun {
   void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
   void account_for(const FrameRecord& record, bool is_new) {
     figures_.add(record, is_new);
-    if (imu_check_) imu_check_->add(record);
+    if (check_) check_->add_pose(record);
     if (record.status != FrameStatus::kSkipped) {
       position_local_ = record.T_local_lidar.translation();
     }
@@ -107,11 +107,11 @@ class MapRun {
   TileCache cache_;
   std::unique_ptr<IncrementalMapper> mapper_;
   DriveLog log_;
+  KeyframeRecorder keyframes_;
   DriveFigures figures_;
   ViewCheck views_;
   std::optional<CalibrationCheck> check_;
-  std::optional<ImuCheck> imu_check_;
-  DriveCalibration calibration_;  // found by the checks
+  DriveCalibration calibration_;  // found by check_
   std::optional<FrameRecord> latest_;
   Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();  // of the last frame with a pose
   std::size_t frames_before_ = 0;                             // of an earlier run
@@ -148,6 +148,7 @@ void MapRun::resume_from_file() {
   const std::vector<FrameRecord> records = reader.stored_frames();
   for (const FrameRecord& record : records) {
     log_.add_stored(record);
+    keyframes_.add_stored(record);
     account_for(record, /*is_new=*/false);
   }
   mapper_->resume(stored_map(reader, job_.settings.tile_size()), records, source_);
@@ -160,12 +161,13 @@ void MapRun::check_calibration(const TrackedFrame& tracked, FrameRecord& record)
   const Frame& frame = std::get<Frame>(tracked.read.result);
   if (!check_->is_due(frame.index)) return;
   const WallClock::time_point start = WallClock::now();
-  if (const auto motion = mapped_motion(record, latest_)) check_->add(frame, *motion);
+  if (const auto motion = mapped_motion(record, latest_)) check_->add_edges(frame, *motion);
   record.milliseconds["calibration"] = milliseconds_since(start);
 }
 
 MapRows MapRun::fresh_rows(bool last) {
   MapRows rows = log_.rows(mapper_->map(), /*exact=*/last);
+  rows.keyframes = keyframes_.take();
   rows.meta = std::exchange(meta_, {});
   rows.drives = std::exchange(drive_records_, {});
   rows.sensors = std::exchange(sensor_records_, {});
@@ -202,6 +204,7 @@ void MapRun::map_next(TrackedFrame& tracked,
                       const std::function<void(const MapProgress&)>& progress) {
   const auto* frame = std::get_if<Frame>(&tracked.read.result);
   if (frame != nullptr) views_.add(frame->scan);
+  keyframes_.add(tracked);
   FrameRecord record = map_tracked_frame(*mapper_, source_, drive_, tracked);
   check_calibration(tracked, record);
   account_for(record, /*is_new=*/true);
@@ -236,8 +239,7 @@ void MapRun::finish() {
   views_.require_view();
   check_points();
   // While the writer thread writes the checkpoint before.
-  if (check_) calibration_.cameras = check_->estimates();
-  if (imu_check_) calibration_.imu = imu_check_->estimate(*drive_.imu);
+  if (check_) calibration_ = check_->estimate();
   file_.finish(mapper_->map(), fresh_rows(/*last=*/true));
 }
 

@@ -13,6 +13,7 @@ namespace fovea {
 struct RunOptions {
   double max_damaged_share = 0.5;  ///< of a drive's frames, 0 to 1
   bool check_calibration = true;   ///< by edges of a few frames (pipeline/calibration_check.h)
+  double range_image_spacing = 5;     ///< m (pipeline/keyframe_recorder.h); 0: no keyframes
 };
 
 struct MapSettings {
@@ -22,9 +23,10 @@ struct MapSettings {
   MapSettings() = default;
   /// Default method.
   MapSettings(const MapperOptions& options) : method(options) {}  // NOLINT: converts on purpose
-  /// Paper method; the calibration is not checked.
+  /// Paper method; the calibration is not checked, and there are no keyframes.
   MapSettings(const PaperOptions& options) : method(options) {  // NOLINT: converts on purpose
     run.check_calibration = false;
+    run.range_image_spacing = 0;
   }
 
   bool is_paper() const { return std::holds_alternative<PaperOptions>(method); }
