@@ -24,6 +24,8 @@ void add_convert_command(CLI::App& app, Session& session);
 void add_crop_command(CLI::App& app, Session& session);
 void add_export_command(CLI::App& app, Session& session);
 void add_localize_command(CLI::App& app, Session& session);
+void add_adjust_command(CLI::App& app, Session& session);
+void add_align_command(CLI::App& app, Session& session);
 void add_merge_command(CLI::App& app, Session& session);
 void add_render_command(CLI::App& app, Session& session);
 void add_recolor_command(CLI::App& app, Session& session);

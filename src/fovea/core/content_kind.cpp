@@ -62,6 +62,8 @@ ContentKind kind_of_json_object(std::string_view text) {
   if (body.starts_with('}')) return ContentKind::kReport;  // of no figures
   if (!body.starts_with('"')) return ContentKind::kOther;
   const std::string_view key = body.substr(1, body.find('"', 1) - 1);
+  if (key == "fovea_pair") return ContentKind::kMapPair;
+  if (key == "fovea_poses") return ContentKind::kCityPoses;
   constexpr std::array kReportKeys{"map",   "protocol", "localize",
                                    "fovea", "warnings", "calibration"};
   const bool is_report =
@@ -113,6 +115,10 @@ const char* describe(ContentKind kind) {
       return "an empty file";
     case ContentKind::kMap:
       return "a Fovea map";
+    case ContentKind::kMapPair:
+      return "a pair of maps";
+    case ContentKind::kCityPoses:
+      return "poses of a city";
     case ContentKind::kReport:
       return "a report of Fovea";
     case ContentKind::kHtml:

@@ -8,7 +8,9 @@ namespace fovea {
 enum class ContentKind {
   kEmpty,
   kMap,
-  kReport,  ///< JSON of `map --report`, `evaluate --json`, `localize --report`, `reproduce`
+  kMapPair,    ///< JSON of `align`
+  kCityPoses,  ///< JSON of `adjust`
+  kReport,     ///< JSON of `map --report`, `evaluate --json`, `localize --report`, `reproduce`
   kHtml,
   kPly,
   kPcd,

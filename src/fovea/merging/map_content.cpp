@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fovea/core/errors.h"
+#include "fovea/geometry/geodesy.h"
 #include "fovea/map/meta_keys.h"
 
 namespace fovea {
@@ -83,6 +84,18 @@ std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b) 
     added.push_back({drive, merged, record, k, a.drives.size() + added.size()});
   }
   return added;
+}
+
+std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b) {
+  for (const MergedDrive& drive : b.drives) {
+    const MergedDrive* same = find_drive(a, drive.digest);
+    if (same == nullptr || drive.first_submap == drive.end_submap) continue;
+    return a.T_local_submap.at(std::size_t(same->first_submap)) *
+           b.T_local_submap.at(std::size_t(drive.first_submap)).inverse();
+  }
+  const auto origin_a = map_origin(a.meta), origin_b = map_origin(b.meta);
+  if (!origin_a || !origin_b) return std::nullopt;
+  return LocalTangentPlane(*origin_a).T_local_enu(*origin_b);
 }
 
 }  // namespace fovea

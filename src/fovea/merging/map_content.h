@@ -1,6 +1,7 @@
 // What merging needs of two maps besides their points. Private to merging/.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@ namespace fovea {
 
 /// A map without its points.
 struct MapContent {
+  MapContent() = default;  // without frames
   explicit MapContent(const MapReader& map);
 
   /// Of a key of the meta data; empty without it.
@@ -24,6 +26,10 @@ struct MapContent {
   std::vector<SensorRecord> sensors;
   double tile_size = 0;  ///< m
 };
+
+/// How the local frames lie to each other by a drive that both maps have, or else by their
+/// georeferences; nothing if neither tells.
+std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b);
 
 /// The drive that came from a map of this digest, or nullptr.
 const MergedDrive* find_drive(const MapContent& map, const std::string& digest);

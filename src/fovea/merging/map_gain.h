@@ -6,6 +6,7 @@
 
 #include "fovea/map/map_store.h"
 #include "fovea/mapping/radiometry.h"
+#include "fovea/merging/submap_match.h"
 
 namespace fovea {
 
@@ -13,5 +14,9 @@ namespace fovea {
 /// maps have; 0 if they have too few.
 LogGain gain_of_maps(const MapReader& a, const MapReader& b,
                      const std::vector<RigidMotion>& T_a_submap_b, double tile_size);
+
+/// Sets the gains of matches, one for each submap of B: of its partner with the best overlap. The
+/// others have none.
+void set_gains(const MapReader& a, const MapReader& b, std::vector<SubmapMatch>& matches);
 
 }  // namespace fovea

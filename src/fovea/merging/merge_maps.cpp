@@ -11,7 +11,6 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
-#include "fovea/geometry/geodesy.h"
 #include "fovea/map/map_meta.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/tile_cache.h"
@@ -20,19 +19,6 @@
 
 namespace fovea {
 namespace {
-
-/// How the local frames of the maps lie to each other, as far as they tell; nothing if they do not.
-std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b) {
-  for (const MergedDrive& drive : b.drives) {
-    const MergedDrive* same = find_drive(a, drive.digest);
-    if (same == nullptr || drive.first_submap == drive.end_submap) continue;
-    return a.T_local_submap.at(std::size_t(same->first_submap)) *
-           b.T_local_submap.at(std::size_t(drive.first_submap)).inverse();
-  }
-  const auto origin_a = map_origin(a.meta), origin_b = map_origin(b.meta);
-  if (!origin_a || !origin_b) return std::nullopt;
-  return LocalTangentPlane(*origin_a).T_local_enu(*origin_b);
-}
 
 void require_fit(const MapContent& a, const MapContent& b, const std::string& where) {
   if (a.tile_size != b.tile_size) {

@@ -1,0 +1,272 @@
+#include "fovea/merging/adjustment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "fovea/core/errors.h"
+#include "fovea/core/median.h"
+#include "fovea/geometry/geodesy.h"
+#include "fovea/map/map_meta.h"
+#include "fovea/mapping/fusion/pose_graph.h"
+#include "fovea/merging/city_gains.h"
+#include "fovea/merging/map_measurements.h"
+
+namespace fovea {
+namespace {
+
+/// Standard deviations of poses that stay as they are.
+constexpr double kFixed = 1e-6;  // rad, m
+/// A match is wrong if it places a submap so far from the solution: m, rad, standard deviations.
+constexpr double kWrongDistance = 0.15, kWrongRotation = 0.01, kWrongSigmas = 6;
+
+/// A match between two nodes of the graph.
+struct Tie {
+  const MapPair* pair;
+  const SubmapMatch* match;
+  RelativePose measured;
+};
+
+class Adjustment {
+ public:
+  explicit Adjustment(const AdjustmentJob& job);
+  CityPoses run();
+
+ private:
+  std::size_t node(std::size_t map, std::size_t submap) const { return first_[map] + submap; }
+  std::size_t map_of(const std::string& digest, const char* of_what) const;
+  RigidMotion T_city_local(const AdjustedMap& map) const;
+  const PlacedMap* fixed(std::size_t map) const;
+
+  void add_nodes();
+  void add_ties();
+  void add_points(PoseGraph& graph) const;
+  std::vector<RigidMotion> solved(std::vector<RigidMotion> poses) const;
+  void reject_wrong_ties(const std::vector<RigidMotion>& poses, CityPoses& city);
+  CityPoses result(const std::vector<RigidMotion>& poses) const;
+  /// The submap that shows a surveyed point, as a node, and the point in it.
+  PointPosition position_of(const SurveyedPoint& point) const;
+
+  const AdjustmentJob& job_;
+  RigidMotion T_ecef_city_;         // axes of the first map's local frame
+  std::vector<std::size_t> first_;  // node of the first submap of each map
+  std::vector<RigidMotion> start_;  // T_city_submap as the maps have them
+  std::vector<Tie> ties_;
+};
+
+GeodeticPoint origin_of(const AdjustedMap& map) {
+  const auto origin = map_origin(map.content.meta);
+  if (origin) return *origin;
+  throw InputError("a map without georeference cannot be adjusted", map.name.drive,
+                   "map the drive with GPS/INS, or give it its origin (docs/drives.md)");
+}
+
+/// Datum, epoch and heights of two maps must be the same: their coordinates differ otherwise.
+void require_same_coordinates(const AdjustedMap& a, const AdjustedMap& b) {
+  const DriveRecord &first = a.content.records.front(), &other = b.content.records.front();
+  const auto refuse = [&](const char* what) {
+    throw InputError(fmt::format("{} and {} have another {}", a.name.drive, b.name.drive, what),
+                     b.name.drive, "convert the coordinates of one of the drives");
+  };
+  if (first.datum.value_or(kWgs84) != other.datum.value_or(kWgs84)) refuse("datum");
+  if (first.epoch_year != other.epoch_year) refuse("epoch of the datum");
+  const auto height = [](const DriveRecord& record) {
+    return record.height_type.value_or(HeightType::kEllipsoidal);
+  };
+  if (height(first) != height(other)) refuse("type of heights");
+}
+
+Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
+  if (job.maps.empty()) throw InputError("no maps to adjust", "the command", "give two or more");
+  T_ecef_city_ = T_ecef_enu(origin_of(job.maps.front()));
+  std::set<std::string> digests;
+  for (const AdjustedMap& map : job.maps) {
+    if (!digests.insert(map.name.digest).second) {
+      throw InputError("a map is given twice", map.name.drive, "give each map once");
+    }
+    require_same_coordinates(job.maps.front(), map);
+  }
+  for (const PlacedMap& placed : job.fixed) {
+    if (placed.submaps.size() !=
+        job.maps[map_of(placed.name.digest, "the fixed poses")].name.submaps) {
+      throw InputError("fixed poses have other submaps than the map", placed.name.drive,
+                       "give the poses of this map");
+    }
+  }
+  add_nodes();
+  add_ties();
+}
+
+std::size_t Adjustment::map_of(const std::string& digest, const char* of_what) const {
+  for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    if (job_.maps[k].name.digest == digest) return k;
+  }
+  throw InputError(fmt::format("{} are of a map that is not given", of_what), digest,
+                   "give this map, too, or make the file again for the maps given");
+}
+
+RigidMotion Adjustment::T_city_local(const AdjustedMap& map) const {
+  return T_ecef_city_.inverse() * T_ecef_enu(origin_of(map));
+}
+
+const PlacedMap* Adjustment::fixed(std::size_t map) const {
+  for (const PlacedMap& placed : job_.fixed) {
+    if (placed.name.digest == job_.maps[map].name.digest) return &placed;
+  }
+  return nullptr;
+}
+
+void Adjustment::add_nodes() {
+  for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    first_.push_back(start_.size());
+    const RigidMotion T_city_local = this->T_city_local(job_.maps[k]);
+    const PlacedMap* placed = fixed(k);
+    for (std::size_t id = 0; id < job_.maps[k].content.T_local_submap.size(); ++id) {
+      start_.push_back(placed != nullptr
+                           ? T_ecef_city_.inverse() * placed->submaps[id].T_ecef_submap
+                           : T_city_local * job_.maps[k].content.T_local_submap[id]);
+    }
+  }
+}
+
+void Adjustment::add_ties() {
+  for (const MapPair& pair : job_.pairs) {
+    const std::size_t a = map_of(pair.a.digest, "a pair"), b = map_of(pair.b.digest, "a pair");
+    if (a == b) throw InputError("a pair has one map twice", pair.a.drive, "align two maps");
+    for (const SubmapMatch& match : pair.matches) {
+      const std::size_t from = node(a, match.submap_a), to = node(b, match.submap_b);
+      Twist sigma = match.covariance.diagonal().cwiseSqrt();
+      if (from < to) {
+        ties_.push_back({&pair, &match, {from, to, match.T_a_b, sigma, /*robust=*/true}});
+      } else {
+        ties_.push_back({&pair, &match, {to, from, match.T_a_b.inverse(), sigma, true}});
+      }
+    }
+  }
+}
+
+PointPosition Adjustment::position_of(const SurveyedPoint& point) const {
+  for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    const AdjustedMap& map = job_.maps[k];
+    if (map.name.drive != point.map && !map.name.digest.starts_with(point.map)) continue;
+    const auto middles = submap_middles(map.content.frames, map.content.T_local_submap.size());
+    std::size_t best = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t id = 0; id < middles.size(); ++id) {
+      if (!middles[id] || (*middles[id] - point.p_local).norm() >= nearest) continue;
+      nearest = (*middles[id] - point.p_local).norm();
+      best = id;
+    }
+    const Eigen::Vector3d p_ecef = T_ecef_enu(point.position).translation();
+    return {node(k, best), map.content.T_local_submap.at(best).inverse() * point.p_local,
+            T_ecef_city_.inverse() * p_ecef, point.sigma};
+  }
+  throw InputError(fmt::format("the point {} is of a map that is not given", point.name), point.map,
+                   "name a drive of the maps, or the first digits of a map's digest");
+}
+
+void Adjustment::add_points(PoseGraph& graph) const {
+  for (const SurveyedPoint& point : job_.points) {
+    if (!point.is_check) graph.add(position_of(point));
+  }
+}
+
+std::vector<RigidMotion> Adjustment::solved(std::vector<RigidMotion> poses) const {
+  PoseGraph graph;
+  for (const RigidMotion& pose : poses) graph.add_node(pose);
+  for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    if (fixed(k) != nullptr) {
+      for (std::size_t id = 0; id < job_.maps[k].name.submaps; ++id) {
+        graph.add(AbsolutePose{node(k, id), start_[node(k, id)], Twist::Constant(kFixed)});
+      }
+      continue;
+    }
+    const AdjustedMap& map = job_.maps[k];
+    add_map_measurements(map.content, first_[k], T_city_local(map), graph);
+  }
+  for (const Tie& tie : ties_) graph.add(tie.measured);
+  add_points(graph);
+  graph.optimize();
+  return graph.poses();
+}
+
+void Adjustment::reject_wrong_ties(const std::vector<RigidMotion>& poses, CityPoses& city) {
+  std::vector<Tie> kept;
+  for (const Tie& tie : ties_) {
+    const RelativePose& m = tie.measured;
+    const RigidMotion error = m.T_from_to.inverse() * (poses[m.from].inverse() * poses[m.to]);
+    const double distance = error.translation().norm(), turn = rotation_angle(error.linear());
+    const bool is_wrong =
+        distance > std::max(kWrongDistance, kWrongSigmas * m.sigma.tail<3>().norm()) ||
+        turn > std::max(kWrongRotation, kWrongSigmas * m.sigma.head<3>().norm());
+    if (!is_wrong) {
+      kept.push_back(tie);
+      continue;
+    }
+    city.rejected.push_back({tie.pair->a.digest, tie.pair->b.digest, tie.match->submap_a,
+                             tie.match->submap_b, distance});
+  }
+  ties_ = std::move(kept);
+}
+
+CityPoses Adjustment::run() {
+  CityPoses rejected;
+  std::vector<RigidMotion> poses = solved(start_);
+  reject_wrong_ties(poses, rejected);
+  if (!rejected.rejected.empty()) poses = solved(std::move(poses));
+  CityPoses city = result(poses);
+  city.rejected = std::move(rejected.rejected);
+  return city;
+}
+
+CityPoses Adjustment::result(const std::vector<RigidMotion>& poses) const {
+  CityPoses city;
+  std::vector<GainTie> gain_ties;
+  for (const Tie& tie : ties_) {
+    if (!tie.match->log2_gain) continue;
+    gain_ties.push_back({node(map_of(tie.pair->a.digest, "a pair"), tie.match->submap_a),
+                         node(map_of(tie.pair->b.digest, "a pair"), tie.match->submap_b),
+                         tie.match->log2_gain->cast<double>().matrix()});
+  }
+  std::vector<GainNode> gain_nodes(start_.size());
+  for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    const PlacedMap* placed = fixed(k);
+    for (std::size_t id = 0; id < job_.maps[k].name.submaps; ++id) {
+      gain_nodes[node(k, id)].continues = id > 0;
+      if (placed != nullptr) gain_nodes[node(k, id)].fixed = placed->submaps[id].log2_gain;
+    }
+  }
+  const std::vector<Eigen::Vector3d> gains = city_gains(gain_nodes, gain_ties);
+  for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    PlacedMap& map = city.maps.emplace_back();
+    map.name = job_.maps[k].name;
+    map.is_fixed = fixed(k) != nullptr;
+    std::vector<double> moves;
+    for (std::size_t id = 0; id < map.name.submaps; ++id) {
+      const std::size_t n = node(k, id);
+      map.submaps.push_back({T_ecef_city_ * poses[n], gains[n]});
+      moves.push_back((poses[n].translation() - start_[n].translation()).norm());
+    }
+    map.moved = median_of(std::move(moves));
+    for (const Tie& tie : ties_) {
+      map.matches += tie.pair->a.digest == map.name.digest || tie.pair->b.digest == map.name.digest;
+    }
+  }
+  for (const SurveyedPoint& point : job_.points) {
+    const PointPosition position = position_of(point);
+    const Eigen::Vector3d shown = poses[position.node] * position.p_node;
+    const RigidMotion T_enu_city = T_ecef_enu(point.position).inverse() * T_ecef_city_;
+    city.points.push_back(
+        {point.name, point.is_check, T_enu_city.linear() * (shown - position.p_local)});
+  }
+  return city;
+}
+
+}  // namespace
+
+CityPoses adjust_city(const AdjustmentJob& job) { return Adjustment(job).run(); }
+
+}  // namespace fovea

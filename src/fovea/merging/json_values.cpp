@@ -1,0 +1,52 @@
+#include "fovea/merging/json_values.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "fovea/core/errors.h"
+#include "fovea/core/input_file.h"
+#include "fovea/core/nesting.h"
+#include "fovea/core/output_file.h"
+
+namespace fovea {
+
+Json json_of(const RigidMotion& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return {{"translation", json_of<3>(T.translation())}, {"rotation", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+RigidMotion motion_of(const Json& json) {
+  constexpr double kUnit = 1e-6;
+  const Eigen::Quaterniond q(vector_of<4>(json.at("rotation")));  // x, y, z, w
+  if (std::abs(q.norm() - 1) > kUnit)
+    throw std::invalid_argument("a rotation is no unit quaternion");
+  RigidMotion T = RigidMotion::Identity();
+  T.linear() = q.normalized().toRotationMatrix();
+  T.translation() = vector_of<3>(json.at("translation"));
+  return T;
+}
+
+void read_json(const std::filesystem::path& path, const char* noun, const char* remedy,
+               const std::function<void(const Json&)>& read) {
+  const std::vector<std::uint8_t> bytes = InputFile(path, kDescriptionFile).bytes();
+  if (nesting_depth({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) > kMaxNesting) {
+    throw InputError(fmt::format("the {} is nested too deep", noun), path.string(), remedy);
+  }
+  try {
+    read(Json::parse(bytes));
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("the {} is damaged ({})", noun, error.what()), path.string(),
+                     remedy);
+  }
+}
+
+void write_json(const Json& json, const std::filesystem::path& path, bool force) {
+  OutputFile output(path, force);
+  output.stream() << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+  output.commit();
+}
+
+}  // namespace fovea

@@ -1,0 +1,46 @@
+// Values of the JSON files of fovea align and fovea adjust. Private to merging/.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "fovea/geometry/rigid_motion.h"
+
+namespace fovea {
+
+using Json = nlohmann::ordered_json;
+
+/// {"translation": [x, y, z] (m), "rotation": [x, y, z, w] (unit quaternion)}; reads back to the
+/// last bits.
+Json json_of(const RigidMotion& T);
+/// std::invalid_argument if it is no rigid motion.
+RigidMotion motion_of(const Json& json);
+
+template <int N>
+Json json_of(const Eigen::Matrix<double, N, 1>& vector) {
+  return std::vector<double>(vector.data(), vector.data() + N);
+}
+/// std::invalid_argument unless it is N finite numbers.
+template <int N>
+Eigen::Matrix<double, N, 1> vector_of(const Json& json) {
+  const auto numbers = json.get<std::vector<double>>();
+  const Eigen::Matrix<double, N, 1> vector =
+      Eigen::Map<const Eigen::VectorXd>(numbers.data(), Eigen::Index(numbers.size()))
+          .template head<N>();
+  if (numbers.size() != N || !vector.allFinite()) {
+    throw std::invalid_argument(std::to_string(N) + " numbers expected");
+  }
+  return vector;
+}
+
+/// Parses a file and hands it to `read`.
+/// @param noun    what it is: "pair of maps"
+/// @param remedy  what to do if it is damaged
+/// @throws InputError  if the file cannot be read, or `read` throws
+void read_json(const std::filesystem::path& path, const char* noun, const char* remedy,
+               const std::function<void(const Json&)>& read);
+/// @throws OutputError  as OutputFile
+void write_json(const Json& json, const std::filesystem::path& path, bool force);
+
+}  // namespace fovea

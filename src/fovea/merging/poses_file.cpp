@@ -1,0 +1,87 @@
+#include "fovea/merging/poses_file.h"
+
+#include "fovea/merging/json_values.h"
+
+namespace fovea {
+namespace {
+
+constexpr int kVersion = 1;
+constexpr const char* kRemedy = "make it again with 'fovea adjust'";
+
+Json json_of_map(const PlacedMap& map) {
+  Json json{{"digest", map.name.digest}, {"drive", map.name.drive}, {"fixed", map.is_fixed},
+            {"matches", map.matches},    {"moved_m", map.moved},    {"submaps", Json::array()}};
+  for (const SubmapPlacement& submap : map.submaps) {
+    json["submaps"].push_back({{"T_ecef_submap", json_of(submap.T_ecef_submap)},
+                               {"log2_gain", json_of<3>(submap.log2_gain)}});
+  }
+  return json;
+}
+
+PlacedMap map_from(const Json& json) {
+  PlacedMap map;
+  map.name.digest = json.at("digest").get<std::string>();
+  map.name.drive = json.at("drive").get<std::string>();
+  map.is_fixed = json.at("fixed").get<bool>();
+  map.matches = json.at("matches").get<std::size_t>();
+  map.moved = json.at("moved_m").get<double>();
+  for (const Json& submap : json.at("submaps")) {
+    map.submaps.push_back(
+        {motion_of(submap.at("T_ecef_submap")), vector_of<3>(submap.at("log2_gain"))});
+  }
+  map.name.submaps = map.submaps.size();
+  return map;
+}
+
+Json json_of_rejected(const RejectedMatch& match) {
+  return {{"digest_a", match.digest_a},
+          {"digest_b", match.digest_b},
+          {"submap_a", match.submap_a},
+          {"submap_b", match.submap_b},
+          {"distance_m", match.distance}};
+}
+
+RejectedMatch rejected_from(const Json& json) {
+  return {json.at("digest_a").get<std::string>(), json.at("digest_b").get<std::string>(),
+          json.at("submap_a").get<std::size_t>(), json.at("submap_b").get<std::size_t>(),
+          json.at("distance_m").get<double>()};
+}
+
+Json json_of_point(const PointResidual& point) {
+  return {{"name", point.name},
+          {"role", point.is_check ? "check" : "control"},
+          {"east_north_up_m", json_of<3>(point.east_north_up)}};
+}
+
+PointResidual point_from(const Json& json) {
+  return {json.at("name").get<std::string>(), json.at("role").get<std::string>() == "check",
+          vector_of<3>(json.at("east_north_up_m"))};
+}
+
+}  // namespace
+
+void write_city_poses(const CityPoses& city, const std::filesystem::path& path, bool force) {
+  Json json{{"fovea_poses", kVersion},
+            {"maps", Json::array()},
+            {"rejected", Json::array()},
+            {"points", Json::array()}};
+  for (const PlacedMap& map : city.maps) json["maps"].push_back(json_of_map(map));
+  for (const RejectedMatch& match : city.rejected) {
+    json["rejected"].push_back(json_of_rejected(match));
+  }
+  for (const PointResidual& point : city.points) json["points"].push_back(json_of_point(point));
+  write_json(json, path, force);
+}
+
+CityPoses read_city_poses(const std::filesystem::path& path) {
+  CityPoses city;
+  read_json(path, "poses of a city", kRemedy, [&](const Json& json) {
+    if (json.at("fovea_poses").get<int>() != kVersion) throw std::invalid_argument("its version");
+    for (const Json& map : json.at("maps")) city.maps.push_back(map_from(map));
+    for (const Json& match : json.at("rejected")) city.rejected.push_back(rejected_from(match));
+    for (const Json& point : json.at("points")) city.points.push_back(point_from(point));
+  });
+  return city;
+}
+
+}  // namespace fovea

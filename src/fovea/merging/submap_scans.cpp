@@ -1,0 +1,90 @@
+#include "fovea/merging/submap_scans.h"
+
+#include <cmath>
+#include <map>
+
+#include "fovea/geometry/voxel_grid.h"
+
+namespace fovea {
+namespace {
+
+/// m: beyond this, rings are too far apart for normals.
+constexpr double kMaxRange = 60;
+
+/// Adds the returns of a range image.
+void add_returns(const KeyframeRecord& image, const RigidMotion& T_submap_sensor,
+                 std::vector<Eigen::Vector3f>& points) {
+  const Eigen::Isometry3f T = T_submap_sensor.cast<float>();
+  std::vector<Eigen::Vector2f> azimuths;  // cosine and sine
+  for (std::size_t column = 0; column < image.columns; ++column) {
+    const double azimuth = image.first_azimuth + double(column) * image.azimuth_step;
+    azimuths.emplace_back(std::cos(azimuth), std::sin(azimuth));
+  }
+  for (std::size_t row = 0; row < image.elevations.size(); ++row) {
+    const auto up = float(std::sin(image.elevations[row])),
+               along = float(std::cos(image.elevations[row]));
+    for (std::size_t column = 0; column < image.columns; ++column) {
+      const float range = 0.01f * float(image.ranges[row * image.columns + column]);
+      if (range == 0 || range > float(kMaxRange)) continue;
+      const Eigen::Vector2f& azimuth = azimuths[column];
+      const Eigen::Vector3f ray(along * azimuth.x(), along * azimuth.y(), up);
+      points.push_back(T * (range * ray));
+    }
+  }
+}
+
+}  // namespace
+
+SubmapScans::SubmapScans(const MapReader& map, const MapContent& content)
+    : content_(content), points_(content.T_local_submap.size()) {
+  std::map<int, const FrameRecord*> frames;
+  for (const FrameRecord& frame : content.frames) frames[frame.index] = &frame;
+  std::vector<Eigen::Vector3f> points;
+  std::optional<std::size_t> submap;  // whose points these are
+  map.for_each_keyframe([&](const KeyframeRecord& image) {
+    const auto found = frames.find(image.frame);
+    if (found == frames.end() || found->second->submap < 0) return;
+    const FrameRecord& frame = *found->second;
+    const auto of_frame = std::size_t(frame.submap);
+    if (of_frame >= points_.size()) return;
+    if (submap && *submap != of_frame) keep(*submap, std::exchange(points, {}));
+    submap = of_frame;
+    const RigidMotion T_lidar_sensor =
+        std::size_t(image.sensor) < content.sensors.size()
+            ? content.sensors[std::size_t(image.sensor)].T_lidar_sensor
+            : RigidMotion::Identity();
+    add_returns(image,
+                content.T_local_submap[of_frame].inverse() * frame.T_local_lidar * T_lidar_sensor,
+                points);
+  });
+  if (submap) {
+    keep(*submap, std::move(points));
+  } else {
+    surfaces_.emplace(map);
+  }
+}
+
+void SubmapScans::keep(std::size_t submap, std::vector<Eigen::Vector3f> points) {
+  points_[submap] = file_.append(voxel_thinned(std::move(points), MapSurfaces::kVoxel));
+}
+
+std::vector<Eigen::Vector3f> SubmapScans::points_near(const Eigen::Vector3d& center_local,
+                                                      double radius,
+                                                      std::optional<std::size_t> submap) {
+  if (surfaces_) return surfaces_->points_near(center_local, radius, submap);
+  std::vector<Eigen::Vector3f> near;
+  for (std::size_t id = submap.value_or(0); id < (submap ? *submap + 1 : points_.size()); ++id) {
+    const RigidMotion& T_local_submap = content_.T_local_submap[id];
+    if (!points_[id]) continue;
+    if ((T_local_submap.translation() - center_local).norm() > radius + 2 * kMaxRange) continue;
+    const Eigen::Matrix3f R = T_local_submap.linear().cast<float>();
+    const Eigen::Vector3f t = (T_local_submap.translation() - center_local).cast<float>();
+    for (const Eigen::Vector3f& p : file_.read<Eigen::Vector3f>(*points_[id])) {
+      const Eigen::Vector3f p_center = R * p + t;
+      if (p_center.norm() <= float(radius)) near.push_back(p_center);
+    }
+  }
+  return voxel_thinned(std::move(near), MapSurfaces::kVoxel);
+}
+
+}  // namespace fovea
