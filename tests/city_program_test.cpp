@@ -1,0 +1,149 @@
+// fovea align and fovea adjust as a user meets them: drives that cross in a simulated town.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "fovea/drive/drive_truth.h"
+#include "fovea/map/map_store.h"
+#include "fovea/simulation/simulate.h"
+#include "tests/program.h"
+
+namespace fovea::city_program_test {
+
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+/// Three short drives: east over crossing 1,0; north over it, with navigation some 15 m off; and one
+/// in another part of the town.
+class CityProgram : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new TemporaryFolder;
+    make("east", "0,0 2,0", 35, 1, 0.4);
+    make("north", "1,0 1,3", 0, 2, 15);
+    make("far", "3,3 3,1", 0, 3, 0.4);
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+
+  static void make(const std::string& name, const std::string& route, double begin, int day,
+                   double navigation_bias) {
+    SimulationOptions options = simulation_options(Scene::kTown, "default");
+    options.seed = 7;
+    options.pass = day;
+    options.frames = 45;
+    options.format = DriveFormat::kGeneric;
+    options.town.route = route;
+    options.town.begin = begin;
+    options.navigation.position_bias = navigation_bias;
+    options.camera.cameras = {kitti_camera(2)};
+    options.camera.width = 128;
+    options.camera.height = 40;
+    options.camera.focal = 74;
+    options.camera.cx = 63;
+    options.camera.cy = 18;
+    simulate(options, *scratch_ / name);
+    const ProgramRun run =
+        run_fovea(fmt::format("map '{}' -o '{}' --quiet", file(name), file(name + ".fovea")));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+  static std::string file(const std::string& name) { return (*scratch_ / name).string(); }
+  std::string own(const std::string& name) const { return (own_ / name).string(); }
+
+  ProgramRun align(const std::string& a, const std::string& b, const std::string& options) const {
+    return run_fovea(
+        fmt::format("align '{}' '{}' {}", file(a + ".fovea"), file(b + ".fovea"), options));
+  }
+
+  static TemporaryFolder* scratch_;
+  TemporaryFolder own_;
+};
+TemporaryFolder* CityProgram::scratch_ = nullptr;
+
+RigidMotion motion_of(const nlohmann::json& json) {
+  const auto t = json.at("translation").get<std::vector<double>>();
+  const auto q = json.at("rotation").get<std::vector<double>>();
+  RigidMotion T = RigidMotion::Identity();
+  T.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+  T.translation() << t[0], t[1], t[2];
+  return T;
+}
+
+/// Poses of the frames of a map, as adjusted, in earth-centered coordinates.
+std::vector<RigidMotion> adjusted(const nlohmann::json& poses, const std::string& map_file) {
+  const MapReader map(map_file);
+  const std::vector<RigidMotion> T_local_submap = map.submaps();
+  std::vector<RigidMotion> T_ecef_lidar;
+  for (const auto& placed : poses.at("maps")) {
+    if (placed.at("digest") != map.digest()) continue;
+    for (const FrameRecord& frame : map.frames()) {
+      const auto id = static_cast<std::size_t>(frame.submap);
+      T_ecef_lidar.push_back(motion_of(placed.at("submaps").at(id).at("T_ecef_submap")) *
+                             T_local_submap.at(id).inverse() * frame.T_local_lidar);
+    }
+  }
+  return T_ecef_lidar;
+}
+
+TEST_F(CityProgram, DrivesThatCrossLieRightToEachOther) {
+  const ProgramRun aligned = align("east", "north", "-o '" + own("pair.json") + "' --threads 1");
+  ASSERT_EQ(aligned.exit_code, 0) << aligned.err;
+  EXPECT_THAT(aligned.out, HasSubstr("pairs of submaps match"));
+  EXPECT_THAT(align("east", "north", "-o '" + own("pair.json") + "'").err, HasSubstr("--force"));
+  EXPECT_EQ(align("east", "north", "-o '" + own("again.json") + "' --threads 2").exit_code, 0);
+  EXPECT_EQ(read_text(own("pair.json")), read_text(own("again.json")));
+
+  const std::string adjust = fmt::format("adjust '{}' '{}' '{}' -o '{}'", file("east.fovea"),
+                                         file("north.fovea"), own("pair.json"), own("poses.json"));
+  const ProgramRun run = run_fovea(adjust);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("2 maps"));
+  EXPECT_THAT(run.err, Not(HasSubstr("warning")));
+  const auto poses = nlohmann::json::parse(read_text(own("poses.json")));
+  const auto east = adjusted(poses, file("east.fovea")), north = adjusted(poses, file("north.fovea"));
+  const auto true_east = DriveTruth(file("east")).T_local_lidar(),
+             true_north = DriveTruth(file("north")).T_local_lidar();
+  ASSERT_EQ(east.size(), true_east.size());
+  for (const std::size_t i : {10u, 20u, 30u}) {
+    const RigidMotion error = (true_east[20].inverse() * true_north[i]).inverse() *
+                              (east[20].inverse() * north[i]);
+    EXPECT_LT(error.translation().norm(), 0.08) << i;
+  }
+
+  // The poses stay where they are fixed.
+  const ProgramRun fixed = run_fovea(
+      fmt::format("adjust '{}' '{}' '{}' -o '{}' --fixed '{}'", file("east.fovea"),
+                  file("north.fovea"), own("pair.json"), own("fixed.json"), own("poses.json")));
+  ASSERT_EQ(fixed.exit_code, 0) << fixed.err;
+  EXPECT_THAT(fixed.out, HasSubstr("fixed"));
+}
+
+TEST_F(CityProgram, MapsOfOtherPlacesHaveNoMatches) {
+  const ProgramRun aligned = align("east", "far", "-o '" + own("pair.json") + "'");
+  EXPECT_EQ(aligned.exit_code, 0);
+  EXPECT_THAT(aligned.err, HasSubstr("do not overlap"));
+  EXPECT_EQ(nlohmann::json::parse(read_text(own("pair.json"))).at("verdict"), "no overlap");
+  const ProgramRun run =
+      run_fovea(fmt::format("adjust '{}' '{}' '{}' -o '{}'", file("east.fovea"),
+                            file("far.fovea"), own("pair.json"), own("poses.json")));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("has no match with another map"));
+}
+
+TEST_F(CityProgram, RefusesFilesThatDoNotBelongTogether) {
+  ASSERT_EQ(align("east", "north", "--quiet -o '" + own("pair.json") + "'").exit_code, 0);
+  const ProgramRun other = run_fovea(fmt::format("adjust '{}' '{}' -o '{}'", file("far.fovea"),
+                                                 own("pair.json"), own("poses.json")));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("of a map that is not given"));
+  EXPECT_FALSE(fs::exists(own("poses.json")));
+  const ProgramRun wrong =
+      run_fovea(fmt::format("adjust '{}' -o '{}' --control '{}'", file("far.fovea"),
+                            own("poses.json"), own("pair.json")));
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("there is no column"));
+}
+
+}  // namespace fovea::city_program_test
