@@ -41,7 +41,11 @@ AdjustmentJob job_of(const AdjustArguments& arguments) {
     job.maps.push_back({name_of(map, content), content});
   }
   if (!arguments.control.empty()) job.points = read_surveyed_points(arguments.control);
-  if (!arguments.fixed.empty()) job.fixed = read_city_poses(arguments.fixed).maps;
+  if (!arguments.fixed.empty()) {
+    CityPoses fixed = read_city_poses(arguments.fixed);
+    job.fixed = std::move(fixed.maps);
+    job.origin = fixed.origin;
+  }
   return job;
 }
 

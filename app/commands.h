@@ -25,6 +25,7 @@ void add_crop_command(CLI::App& app, Session& session);
 void add_export_command(CLI::App& app, Session& session);
 void add_localize_command(CLI::App& app, Session& session);
 void add_adjust_command(CLI::App& app, Session& session);
+void add_fuse_command(CLI::App& app, Session& session);
 void add_align_command(CLI::App& app, Session& session);
 void add_merge_command(CLI::App& app, Session& session);
 void add_render_command(CLI::App& app, Session& session);

@@ -16,8 +16,8 @@ using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
 
-/// Three short drives: east over crossing 1,0; north over it, with navigation some 15 m off; and one
-/// in another part of the town.
+/// Three short drives: east over crossing 1,0; north over it, with navigation some 15 m off; and
+/// one in another part of the town.
 class CityProgram : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -102,13 +102,14 @@ TEST_F(CityProgram, DrivesThatCrossLieRightToEachOther) {
   EXPECT_THAT(run.out, HasSubstr("2 maps"));
   EXPECT_THAT(run.err, Not(HasSubstr("warning")));
   const auto poses = nlohmann::json::parse(read_text(own("poses.json")));
-  const auto east = adjusted(poses, file("east.fovea")), north = adjusted(poses, file("north.fovea"));
+  const auto east = adjusted(poses, file("east.fovea")),
+             north = adjusted(poses, file("north.fovea"));
   const auto true_east = DriveTruth(file("east")).T_local_lidar(),
              true_north = DriveTruth(file("north")).T_local_lidar();
   ASSERT_EQ(east.size(), true_east.size());
   for (const std::size_t i : {10u, 20u, 30u}) {
-    const RigidMotion error = (true_east[20].inverse() * true_north[i]).inverse() *
-                              (east[20].inverse() * north[i]);
+    const RigidMotion error =
+        (true_east[20].inverse() * true_north[i]).inverse() * (east[20].inverse() * north[i]);
     EXPECT_LT(error.translation().norm(), 0.08) << i;
   }
 
@@ -126,10 +127,72 @@ TEST_F(CityProgram, MapsOfOtherPlacesHaveNoMatches) {
   EXPECT_THAT(aligned.err, HasSubstr("do not overlap"));
   EXPECT_EQ(nlohmann::json::parse(read_text(own("pair.json"))).at("verdict"), "no overlap");
   const ProgramRun run =
-      run_fovea(fmt::format("adjust '{}' '{}' '{}' -o '{}'", file("east.fovea"),
-                            file("far.fovea"), own("pair.json"), own("poses.json")));
+      run_fovea(fmt::format("adjust '{}' '{}' '{}' -o '{}'", file("east.fovea"), file("far.fovea"),
+                            own("pair.json"), own("poses.json")));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("has no match with another map"));
+}
+
+class CityTiles : public CityProgram {
+ protected:
+  CityTiles() {
+    EXPECT_EQ(align("east", "north", "--quiet -o '" + own("pair.json") + "'").exit_code, 0);
+    const ProgramRun run =
+        run_fovea(fmt::format("adjust '{}' '{}' '{}' -o '{}' --quiet", file("east.fovea"),
+                              file("north.fovea"), own("pair.json"), own("poses.json")));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+  ProgramRun fuse(const std::string& maps, const std::string& tile, const std::string& out,
+                  const std::string& options = "") const {
+    std::string command = "fuse";
+    for (const char* map : {"east", "north", "far"}) {
+      if (maps.find(map) != std::string::npos)
+        command += fmt::format(" '{}'", file(map) + ".fovea");
+    }
+    return run_fovea(fmt::format("{} --poses '{}' --tile={} -o '{}' {}", command, own("poses.json"),
+                                 tile, own(out), options));
+  }
+};
+
+TEST_F(CityTiles, EachPointOfAMapIsInOneTile) {
+  std::size_t points = 0;
+  for (int x = -1; x <= 2; ++x) {
+    for (int y = -2; y <= 1; ++y) {
+      const std::string tile = fmt::format("{},{}", x, y);
+      const ProgramRun run = fuse("east", tile, "tile.fovea", "--force --quiet");
+      if (run.exit_code != 0) {
+        EXPECT_THAT(run.err, HasSubstr("no map has a point in tile")) << tile;
+        continue;
+      }
+      points += MapReader(own("tile.fovea")).size();
+    }
+  }
+  EXPECT_EQ(points, MapReader(file("east.fovea")).size());
+}
+
+TEST_F(CityTiles, ATileHasEachSurfaceOnceAndItsColorsOfOneDrive) {
+  const ProgramRun run = fuse("east north", "0,0", "tile.fovea", "--threads 1");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("points of 2 maps"));
+  ASSERT_EQ(fuse("north east", "0,0", "again.fovea", "--threads 2").exit_code, 0);
+  const MapReader tile(own("tile.fovea"));
+  EXPECT_EQ(tile.digest(), MapReader(own("again.fovea")).digest());
+  ASSERT_EQ(fuse("east", "0,0", "east.fovea").exit_code, 0);
+  ASSERT_EQ(fuse("north", "0,0", "north.fovea").exit_code, 0);
+  const std::size_t east = MapReader(own("east.fovea")).size(),
+                    north = MapReader(own("north.fovea")).size();
+  EXPECT_GT(tile.size(), std::max(east, north));
+  EXPECT_LT(tile.size(), 0.95 * double(east + north));
+  EXPECT_EQ(tile.drives().size(), 2u);
+}
+
+TEST_F(CityTiles, RefusesWhatIsNoTileOfTheseMaps) {
+  EXPECT_THAT(fuse("east", "9000,0", "tile.fovea").err, HasSubstr("no map has a point"));
+  EXPECT_THAT(fuse("east", "1.5,0", "tile.fovea").err, HasSubstr("X,Y"));
+  EXPECT_THAT(fuse("east far", "0,0", "tile.fovea").err, HasSubstr("the poses are of other maps"));
+  EXPECT_THAT(fuse("east", "0,0", "tile.fovea", "--session 1999-01-01").err,
+              HasSubstr("has the session"));
+  EXPECT_FALSE(fs::exists(own("tile.fovea")));
 }
 
 TEST_F(CityProgram, RefusesFilesThatDoNotBelongTogether) {

@@ -218,6 +218,7 @@ CityPoses Adjustment::run() {
   reject_wrong_ties(poses, rejected);
   if (!rejected.rejected.empty()) poses = solved(std::move(poses));
   CityPoses city = result(poses);
+  city.origin = job_.origin.value_or(origin_of(job_.maps.front()));
   city.rejected = std::move(rejected.rejected);
   return city;
 }

@@ -1,6 +1,7 @@
 // Adjusts the poses and gains of the submaps of many maps to each other.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fovea/merging/city_poses.h"
@@ -18,8 +19,9 @@ struct AdjustmentJob {
   std::vector<AdjustedMap> maps;
   std::vector<MapPair> pairs;  ///< of these maps
   std::vector<SurveyedPoint> points;
-  /// Poses of some of the maps that stay as they are.
+  /// Poses of some of the maps that stay as they are, and the origin that came with them.
   std::vector<PlacedMap> fixed;
+  std::optional<GeodeticPoint> origin = {};  ///< absent: that of the first map
 };
 
 /// Solves one robust pose graph over all submaps: odometry and loops within the maps, matches

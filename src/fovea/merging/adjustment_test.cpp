@@ -102,8 +102,7 @@ class Adjustment : public testing::Test {
 
   /// Largest error of a relative position of two submaps anywhere, m.
   double worst_relative_error(const CityPoses& city) const {
-    const RigidMotion T_town_city =
-        truth_[0][0] * city.maps[0].submaps[0].T_ecef_submap.inverse();
+    const RigidMotion T_town_city = truth_[0][0] * city.maps[0].submaps[0].T_ecef_submap.inverse();
     double worst = 0;
     for (std::size_t k = 0; k < city.maps.size(); ++k) {
       for (std::size_t id = 0; id < kSubmaps; ++id) {
@@ -134,8 +133,8 @@ TEST_F(Adjustment, MatchesOutweighNavigation) {
   EXPECT_TRUE(city.rejected.empty());
   for (const PlacedMap& map : city.maps) EXPECT_GT(map.matches, 0u);
   // Where two drives meet, they meet exactly.
-  const RigidMotion T_a_b = city.maps[0].submaps[6].T_ecef_submap.inverse() *
-                            city.maps[1].submaps[6].T_ecef_submap;
+  const RigidMotion T_a_b =
+      city.maps[0].submaps[6].T_ecef_submap.inverse() * city.maps[1].submaps[6].T_ecef_submap;
   const RigidMotion right = truth_[0][6].inverse() * truth_[1][6];
   EXPECT_LT((T_a_b.translation() - right.translation()).norm(), 0.01);
 }
@@ -181,8 +180,8 @@ SurveyedPoint survey(const AdjustedMap& map, std::size_t submap, const RigidMoti
 }
 
 TEST_F(Adjustment, ControlPointsGiveThePlace) {
-  for (const auto& [map, submap] : {std::pair<std::size_t, std::size_t>{0, 0}, {0, 11}, {2, 0},
-                                    {2, 11}}) {
+  for (const auto& [map, submap] :
+       {std::pair<std::size_t, std::size_t>{0, 0}, {0, 11}, {2, 0}, {2, 11}}) {
     job_.points.push_back(survey(job_.maps[map], submap, truth_[map][submap], false));
   }
   job_.points.push_back(survey(job_.maps[1], 6, truth_[1][6], true));

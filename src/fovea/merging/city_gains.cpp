@@ -1,6 +1,7 @@
 #include "fovea/merging/city_gains.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace fovea {
@@ -53,7 +54,7 @@ std::vector<Eigen::Vector3d> city_gains(const std::vector<GainNode>& nodes,
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto& fixed = nodes[i].fixed;
         equations.add(i, fixed ? (*fixed)[channel] : 0, fixed ? kFixed : kGain);
-        if (nodes[i].continues) equations.add(i - 1, i, 0, kChange);
+        if (nodes[i].continues && i > 0) equations.add(i - 1, i, 0, kChange);
       }
       for (const GainTie& tie : ties) {
         // What b has too much, its gain takes out. Cauchy's kernel, from the second round on.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fovea/geometry/geodesy.h"
 #include "fovea/merging/map_pair.h"
 
 namespace fovea {
@@ -42,6 +43,8 @@ struct PointResidual {
 };
 
 struct CityPoses {
+  /// Of the city's grid (CityGrid); it stays when drives are added.
+  GeodeticPoint origin;
   std::vector<PlacedMap> maps;
   std::vector<RejectedMatch> rejected;
   std::vector<PointResidual> points;

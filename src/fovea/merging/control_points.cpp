@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -61,7 +62,7 @@ class PointLine {
     point.is_check = role == "check";
     point.position = {number(kLatitude), number(kLongitude), number(kHeight)};
     if (std::abs(point.position.latitude) > 90 || std::abs(point.position.longitude) > 180) {
-      throw std::invalid_argument("latitude and longitude are no degrees");
+      throw std::invalid_argument("latitude or longitude is out of range");
     }
     point.sigma = number(kSigma);
     if (!(point.sigma > 0)) throw std::invalid_argument("sigma is not positive");

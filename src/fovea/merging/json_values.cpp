@@ -27,6 +27,16 @@ RigidMotion motion_of(const Json& json) {
   return T;
 }
 
+std::size_t count_of(const Json& json) {
+  if (!json.is_number_unsigned()) throw std::invalid_argument(json.dump() + " is no count");
+  return json.get<std::size_t>();
+}
+
+const Json& list_of(const Json& json) {
+  if (!json.is_array()) throw std::invalid_argument("a list is expected");
+  return json;
+}
+
 void read_json(const std::filesystem::path& path, const char* noun, const char* remedy,
                const std::function<void(const Json&)>& read) {
   const std::vector<std::uint8_t> bytes = InputFile(path, kDescriptionFile).bytes();

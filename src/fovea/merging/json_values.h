@@ -25,14 +25,17 @@ Json json_of(const Eigen::Matrix<double, N, 1>& vector) {
 template <int N>
 Eigen::Matrix<double, N, 1> vector_of(const Json& json) {
   const auto numbers = json.get<std::vector<double>>();
-  const Eigen::Matrix<double, N, 1> vector =
-      Eigen::Map<const Eigen::VectorXd>(numbers.data(), Eigen::Index(numbers.size()))
-          .template head<N>();
-  if (numbers.size() != N || !vector.allFinite()) {
-    throw std::invalid_argument(std::to_string(N) + " numbers expected");
+  if (numbers.size() == N) {
+    const Eigen::Matrix<double, N, 1> vector(numbers.data());
+    if (vector.allFinite()) return vector;
   }
-  return vector;
+  throw std::invalid_argument(std::to_string(N) + " numbers expected");
 }
+
+/// std::invalid_argument unless it is a whole number, zero or more.
+std::size_t count_of(const Json& json);
+/// std::invalid_argument unless it is a list.
+const Json& list_of(const Json& json);
 
 /// Parses a file and hands it to `read`.
 /// @param noun    what it is: "pair of maps"

@@ -1,6 +1,11 @@
 #include "fovea/merging/map_content.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <set>
+#include <sstream>
 
 #include "fovea/core/errors.h"
 #include "fovea/geometry/geodesy.h"
@@ -96,6 +101,17 @@ std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b
   const auto origin_a = map_origin(a.meta), origin_b = map_origin(b.meta);
   if (!origin_a || !origin_b) return std::nullopt;
   return LocalTangentPlane(*origin_a).T_local_enu(*origin_b);
+}
+
+std::string cameras_of(const std::vector<const MapContent*>& maps) {
+  std::set<int> cameras;
+  for (const MapContent* map : maps) {
+    std::string text = map->text(meta_key::kCameras);
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream numbers(text);
+    for (int camera = 0; numbers >> camera;) cameras.insert(camera);
+  }
+  return fmt::format("{}", fmt::join(cameras, ","));
 }
 
 }  // namespace fovea

@@ -31,6 +31,9 @@ struct MapContent {
 /// georeferences; nothing if neither tells.
 std::optional<RigidMotion> stated_T_a_b(const MapContent& a, const MapContent& b);
 
+/// The cameras of all maps, as a map's meta data name them: "2,3".
+std::string cameras_of(const std::vector<const MapContent*>& maps);
+
 /// The drive that came from a map of this digest, or nullptr.
 const MergedDrive* find_drive(const MapContent& map, const std::string& digest);
 

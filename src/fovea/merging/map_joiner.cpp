@@ -91,7 +91,7 @@ void Renumbering::apply(TilePoints& tile) const {
 void MapJoiner::copy_a(const MapContent& content) {
   copy_all_but_tiles(a_, output_);
   for (const RigidMotion& T : content.T_local_submap) map_.add_submap(T);
-  a_.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) { put_tile(id, tile); });
+  a_.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) { tiles_.put(id, tile); });
 }
 
 void MapJoiner::add_b(const MapContent& content, const std::vector<AddedDrive>& drives,
@@ -115,7 +115,7 @@ void MapJoiner::add_b(const MapContent& content, const std::vector<AddedDrive>& 
     renumber(moved.frame, [&](std::int32_t frame) { return drive->number_of(frame); });
     renumbering.apply(moved);
     const int shift = drive->merged.first_submap - drive->in_b.first_submap;
-    put_tile({id.submap + std::size_t(shift), id.key}, std::move(moved));
+    tiles_.put({id.submap + std::size_t(shift), id.key}, std::move(moved));
   });
 }
 
@@ -150,17 +150,6 @@ void MapJoiner::add_keyframes(const std::vector<AddedDrive>& drives,
       return;
     }
   });
-}
-
-void MapJoiner::put_tile(const TileId& id, TilePoints tile) {
-  // A map has intensities in all tiles or in none.
-  if (!has_intensity_) has_intensity_ = !tile.intensity.empty();
-  if (!*has_intensity_) tile.intensity = {};
-  if (*has_intensity_ && tile.intensity.empty() && !tile.empty()) {
-    tile.intensity.push_back(0.0f, static_cast<std::uint32_t>(tile.size()));
-  }
-  output_.put_tile(id, tile);
-  map_.declare_stored(id, tile.size());
 }
 
 void put_drives(const MapContent& a, const std::vector<AddedDrive>& added,

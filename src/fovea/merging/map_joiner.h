@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "fovea/mapping/radiometry.h"
 #include "fovea/merging/alignment.h"
 #include "fovea/merging/map_content.h"
+#include "fovea/merging/tile_output.h"
 
 namespace fovea {
 
@@ -35,7 +35,7 @@ class Renumbering {
 class MapJoiner {
  public:
   MapJoiner(const MapReader& a, const MapReader& b, MapWriter& output, TileMap& map)
-      : a_(a), b_(b), output_(output), map_(map) {}
+      : a_(a), b_(b), output_(output), map_(map), tiles_(output, map) {}
 
   void copy_a(const MapContent& content);
   /// @param gain  of B, see gain_of_maps()
@@ -48,13 +48,12 @@ class MapJoiner {
   void add_frames(const MapContent& content, const AddedDrive& drive, const MapAlignment& alignment,
                   const RigidMotion& stated_T_a_b, const LogGain& gain);
   void add_keyframes(const std::vector<AddedDrive>& drives, const Renumbering& renumbering);
-  void put_tile(const TileId& id, TilePoints tile);
 
   const MapReader& a_;
   const MapReader& b_;
   MapWriter& output_;
   TileMap& map_;
-  std::optional<bool> has_intensity_;
+  TileOutput tiles_;
 };
 
 /// Puts the drives and sensors of both maps.

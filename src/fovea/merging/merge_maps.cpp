@@ -1,12 +1,9 @@
 #include "fovea/merging/merge_maps.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
-#include <set>
-#include <sstream>
 #include <string>
 
 #include "fovea/core/errors.h"
@@ -38,22 +35,11 @@ void require_overlap(const MapAlignment& alignment, const std::string& where) {
                    "check that both are georeferenced well, or merge them by that alone (--force)");
 }
 
-std::string cameras_of_both(const MapContent& a, const MapContent& b) {
-  std::set<int> cameras;
-  for (const MapContent* map : {&a, &b}) {
-    std::string text = map->text(meta_key::kCameras);
-    std::replace(text.begin(), text.end(), ',', ' ');
-    std::istringstream numbers(text);
-    for (int camera = 0; numbers >> camera;) cameras.insert(camera);
-  }
-  return fmt::format("{}", fmt::join(cameras, ","));
-}
-
 MapMeta merged_meta(const MapContent& a, const MapContent& b,
                     const std::vector<AddedDrive>& added) {
   MapMeta meta = a.meta;
   meta[meta_key::kFramesEnd] = fmt::to_string(added.back().merged.end_frame);
-  meta[meta_key::kCameras] = cameras_of_both(a, b);
+  meta[meta_key::kCameras] = cameras_of({&a, &b});
   if (b.text(meta_key::kComplete) != "1") meta[meta_key::kComplete] = fmt::to_string(0);
   for (const char* key : {meta_key::kCrop, meta_key::kRepair}) {
     const std::string text = b.text(key);
@@ -113,7 +99,8 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
     Checkpointer file(std::move(writer),
                       {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     TileCache cache(file, job.memory);
-    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, file, cache);
+    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing,
+                                  KnownColors::kFuse, file, cache);
     file.finish(map, {});
   }
   figures.points = map.size();

@@ -66,6 +66,7 @@ class Merge : public testing::Test {
     job.output = folder_ / name;
     job.pose_source = PoseSource::kNavigation;
     job.settings.mapper().surface.spacing = kSpacing;
+    job.settings.run.range_image_spacing = 0;
     job.settings.mapper().fusion.submap_duration = 0.25;
     map_drive(drive, job, {});
     return job.output;

@@ -5,7 +5,7 @@
 namespace fovea {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr std::size_t kVersion = 1;
 constexpr const char* kRemedy = "make it again with 'fovea align'";
 using Covariance = Eigen::Matrix<double, 6, 6>;
 
@@ -15,7 +15,7 @@ Json json_of_name(const MapName& name) {
 
 MapName name_from(const Json& json) {
   return {json.at("digest").get<std::string>(), json.at("drive").get<std::string>(),
-          json.at("submaps").get<std::size_t>()};
+          count_of(json.at("submaps"))};
 }
 
 /// The lower half, row by row.
@@ -53,8 +53,8 @@ Json json_of_match(const SubmapMatch& match) {
 }
 
 SubmapMatch match_from(const Json& json, const MapPair& pair) {
-  SubmapMatch match{.submap_a = json.at("submap_a").get<std::size_t>(),
-                    .submap_b = json.at("submap_b").get<std::size_t>()};
+  SubmapMatch match{.submap_a = count_of(json.at("submap_a")),
+                    .submap_b = count_of(json.at("submap_b"))};
   if (match.submap_a >= pair.a.submaps || match.submap_b >= pair.b.submaps) {
     throw std::invalid_argument("a map has no such submap");
   }
@@ -89,13 +89,16 @@ void write_pair(const MapPair& pair, const std::filesystem::path& path, bool for
 MapPair read_pair(const std::filesystem::path& path) {
   MapPair pair;
   read_json(path, "pair of maps", kRemedy, [&](const Json& json) {
-    if (json.at("fovea_pair").get<int>() != kVersion) throw std::invalid_argument("its version");
+    if (count_of(json.at("fovea_pair")) != kVersion) {
+      throw std::invalid_argument("it is of another version of Fovea");
+    }
     pair.a = name_from(json.at("a"));
     pair.b = name_from(json.at("b"));
     pair.verdict = verdict_from(json.at("verdict").get<std::string>());
-    pair.tried = json.at("tried").get<std::size_t>();
+    pair.tried = count_of(json.at("tried"));
     pair.moved = json.at("moved_m").get<double>();
-    for (const Json& match : json.at("matches")) pair.matches.push_back(match_from(match, pair));
+    for (const Json& match : list_of(json.at("matches")))
+      pair.matches.push_back(match_from(match, pair));
   });
   return pair;
 }

@@ -43,11 +43,12 @@ class CubeMerger {
         a_(center_local_),
         b_(center_local_) {}
 
-  void merge(PointMergeFigures& figures) {
+  void merge(KnownColors colors, PointMergeFigures& figures) {
     gather();
-    const PointIndex index_a(a_.position(), kIndexSpacing), index_b(b_.position(), kIndexSpacing);
-    const std::vector<bool> known = known_points(index_a);
-    fuse_colors(index_b, figures);
+    const std::vector<bool> known = known_points(PointIndex(a_.position(), kIndexSpacing));
+    if (colors == KnownColors::kFuse) {
+      fuse_colors(PointIndex(b_.position(), kIndexSpacing), figures);
+    }
     keep_new_points(known, figures);
   }
 
@@ -186,11 +187,11 @@ std::vector<Cube> cubes_of(const TileMap& map, std::size_t first_b) {
 }  // namespace
 
 PointMergeFigures merge_points(TileMap& map, std::size_t first_b, double spacing,
-                               Checkpointer& file, TileCache& cache) {
+                               KnownColors colors, Checkpointer& file, TileCache& cache) {
   PointMergeFigures figures;
   for (const Cube& cube : cubes_of(map, first_b)) {
     cache.load_within(map, middle_of(cube), kCubeReach);
-    CubeMerger(map, first_b, spacing, cube).merge(figures);
+    CubeMerger(map, first_b, spacing, cube).merge(colors, figures);
     if (!cache.is_full(map)) continue;
     cache.evict_beyond(map, middle_of(cube), kCubeReach);
     file.checkpoint(map, {});

@@ -5,7 +5,7 @@
 namespace fovea {
 namespace {
 
-constexpr int kVersion = 1;
+constexpr std::size_t kVersion = 1;
 constexpr const char* kRemedy = "make it again with 'fovea adjust'";
 
 Json json_of_map(const PlacedMap& map) {
@@ -23,9 +23,9 @@ PlacedMap map_from(const Json& json) {
   map.name.digest = json.at("digest").get<std::string>();
   map.name.drive = json.at("drive").get<std::string>();
   map.is_fixed = json.at("fixed").get<bool>();
-  map.matches = json.at("matches").get<std::size_t>();
+  map.matches = count_of(json.at("matches"));
   map.moved = json.at("moved_m").get<double>();
-  for (const Json& submap : json.at("submaps")) {
+  for (const Json& submap : list_of(json.at("submaps"))) {
     map.submaps.push_back(
         {motion_of(submap.at("T_ecef_submap")), vector_of<3>(submap.at("log2_gain"))});
   }
@@ -43,7 +43,7 @@ Json json_of_rejected(const RejectedMatch& match) {
 
 RejectedMatch rejected_from(const Json& json) {
   return {json.at("digest_a").get<std::string>(), json.at("digest_b").get<std::string>(),
-          json.at("submap_a").get<std::size_t>(), json.at("submap_b").get<std::size_t>(),
+          count_of(json.at("submap_a")), count_of(json.at("submap_b")),
           json.at("distance_m").get<double>()};
 }
 
@@ -54,7 +54,9 @@ Json json_of_point(const PointResidual& point) {
 }
 
 PointResidual point_from(const Json& json) {
-  return {json.at("name").get<std::string>(), json.at("role").get<std::string>() == "check",
+  const auto role = json.at("role").get<std::string>();
+  if (role != "control" && role != "check") throw std::invalid_argument("no role is " + role);
+  return {json.at("name").get<std::string>(), role == "check",
           vector_of<3>(json.at("east_north_up_m"))};
 }
 
@@ -62,6 +64,10 @@ PointResidual point_from(const Json& json) {
 
 void write_city_poses(const CityPoses& city, const std::filesystem::path& path, bool force) {
   Json json{{"fovea_poses", kVersion},
+            {"origin",
+             {{"latitude_deg", city.origin.latitude},
+              {"longitude_deg", city.origin.longitude},
+              {"height_m", city.origin.altitude}}},
             {"maps", Json::array()},
             {"rejected", Json::array()},
             {"points", Json::array()}};
@@ -76,10 +82,16 @@ void write_city_poses(const CityPoses& city, const std::filesystem::path& path, 
 CityPoses read_city_poses(const std::filesystem::path& path) {
   CityPoses city;
   read_json(path, "poses of a city", kRemedy, [&](const Json& json) {
-    if (json.at("fovea_poses").get<int>() != kVersion) throw std::invalid_argument("its version");
-    for (const Json& map : json.at("maps")) city.maps.push_back(map_from(map));
-    for (const Json& match : json.at("rejected")) city.rejected.push_back(rejected_from(match));
-    for (const Json& point : json.at("points")) city.points.push_back(point_from(point));
+    if (count_of(json.at("fovea_poses")) != kVersion) {
+      throw std::invalid_argument("it is of another version of Fovea");
+    }
+    const Json& origin = json.at("origin");
+    city.origin = {origin.at("latitude_deg").get<double>(),
+                   origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
+    for (const Json& map : list_of(json.at("maps"))) city.maps.push_back(map_from(map));
+    for (const Json& match : list_of(json.at("rejected")))
+      city.rejected.push_back(rejected_from(match));
+    for (const Json& point : list_of(json.at("points"))) city.points.push_back(point_from(point));
   });
   return city;
 }

@@ -15,8 +15,8 @@ using Eigen::Vector2i;
 constexpr double kCell = 0.5;     // m
 constexpr float kWallHeight = 1;  // m, of the points in a column
 constexpr int kReach = int(kShiftReach / kCell);
-constexpr double kLeastApart = 2 / kCell;  // cells
-constexpr std::size_t kFewestWalls = 30;   // cells
+constexpr double kLeastApart = 2;         // m
+constexpr std::size_t kFewestWalls = 30;  // cells
 
 /// Columns whose points extend over a wall's height.
 std::vector<Vector2i> walls_of(std::span<const Eigen::Vector3f> points) {
@@ -89,7 +89,7 @@ std::vector<Eigen::Vector2d> likely_shifts(std::span<const Eigen::Vector3f> poin
     if (likely.size() == most) break;
     const Eigen::Vector2d place = kCell * shift.cells.cast<double>();
     const bool is_new = std::all_of(likely.begin(), likely.end(), [&](const auto& other) {
-      return (other - place).norm() >= kLeastApart * kCell;
+      return (other - place).norm() >= kLeastApart;
     });
     if (is_new) likely.push_back(place);
   }

@@ -7,7 +7,7 @@
 
 namespace fovea {
 
-/// Largest shift that is searched, m.
+/// Largest shift that is searched along each axis, m.
 inline constexpr double kShiftReach = 25;
 
 /// The horizontal shifts of B (m) that lay most of its walls on walls of A, best first, at least

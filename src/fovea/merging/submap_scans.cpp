@@ -1,37 +1,15 @@
 #include "fovea/merging/submap_scans.h"
 
-#include <cmath>
 #include <map>
 
 #include "fovea/geometry/voxel_grid.h"
+#include "fovea/merging/keyframe_returns.h"
 
 namespace fovea {
 namespace {
 
 /// m: beyond this, rings are too far apart for normals.
 constexpr double kMaxRange = 60;
-
-/// Adds the returns of a range image.
-void add_returns(const KeyframeRecord& image, const RigidMotion& T_submap_sensor,
-                 std::vector<Eigen::Vector3f>& points) {
-  const Eigen::Isometry3f T = T_submap_sensor.cast<float>();
-  std::vector<Eigen::Vector2f> azimuths;  // cosine and sine
-  for (std::size_t column = 0; column < image.columns; ++column) {
-    const double azimuth = image.first_azimuth + double(column) * image.azimuth_step;
-    azimuths.emplace_back(std::cos(azimuth), std::sin(azimuth));
-  }
-  for (std::size_t row = 0; row < image.elevations.size(); ++row) {
-    const auto up = float(std::sin(image.elevations[row])),
-               along = float(std::cos(image.elevations[row]));
-    for (std::size_t column = 0; column < image.columns; ++column) {
-      const float range = 0.01f * float(image.ranges[row * image.columns + column]);
-      if (range == 0 || range > float(kMaxRange)) continue;
-      const Eigen::Vector2f& azimuth = azimuths[column];
-      const Eigen::Vector3f ray(along * azimuth.x(), along * azimuth.y(), up);
-      points.push_back(T * (range * ray));
-    }
-  }
-}
 
 }  // namespace
 
@@ -53,9 +31,12 @@ SubmapScans::SubmapScans(const MapReader& map, const MapContent& content)
         std::size_t(image.sensor) < content.sensors.size()
             ? content.sensors[std::size_t(image.sensor)].T_lidar_sensor
             : RigidMotion::Identity();
-    add_returns(image,
-                content.T_local_submap[of_frame].inverse() * frame.T_local_lidar * T_lidar_sensor,
-                points);
+    const Eigen::Isometry3f T_submap_sensor =
+        (content.T_local_submap[of_frame].inverse() * frame.T_local_lidar * T_lidar_sensor)
+            .cast<float>();
+    for (const Eigen::Vector3f& p : returns_of(image, kMaxRange)) {
+      points.push_back(T_submap_sensor * p);
+    }
   });
   if (submap) {
     keep(*submap, std::move(points));

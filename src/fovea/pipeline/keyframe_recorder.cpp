@@ -15,14 +15,13 @@ constexpr std::size_t kColumns = 1440;
 constexpr double kColumnStep = 2 * std::numbers::pi / kColumns;
 constexpr double kMaxRange = 655.34;  // m, in 16 bits
 /// Rows of a LiDAR without rings: rad.
-constexpr double kHighest = 60 * kDegree, kLowest = -60 * kDegree, kRowStep = 0.5 * kDegree;
+constexpr double kHighest = 60 * kDegree, kRowStep = 0.5 * kDegree;
+constexpr int kRows = 241;
 
 std::vector<double> rows_of(const SensorProfile& profile) {
   if (!profile.ring_elevations.empty()) return profile.ring_elevations;
   std::vector<double> rows;
-  for (double elevation = kHighest; elevation >= kLowest; elevation -= kRowStep) {
-    rows.push_back(elevation);
-  }
+  for (int row = 0; row < kRows; ++row) rows.push_back(kHighest - row * kRowStep);
   return rows;
 }
 
@@ -43,7 +42,7 @@ KeyframeRecord range_image(std::span<const Eigen::Vector3f> points, const Sensor
   image.azimuth_step = kColumnStep;
   image.ranges.resize(image.elevations.size() * kColumns);
   // Beyond the outermost rows by more than half a step, a return belongs to none.
-  const double margin = std::max(profile.ring_spacing, kRowStep);
+  const double margin = std::max(profile.ring_spacing, kRowStep) / 2;
   const double top = image.elevations.front() + margin, bottom = image.elevations.back() - margin;
   std::vector<float> off_center(image.ranges.size());  // rad, of the return in each cell
   for (const Eigen::Vector3f& p : points) {

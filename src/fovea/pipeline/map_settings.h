@@ -13,7 +13,7 @@ namespace fovea {
 struct RunOptions {
   double max_damaged_share = 0.5;  ///< of a drive's frames, 0 to 1
   bool check_calibration = true;   ///< by edges of a few frames (pipeline/calibration_check.h)
-  double range_image_spacing = 5;     ///< m (pipeline/keyframe_recorder.h); 0: no keyframes
+  double range_image_spacing = 5;  ///< m (pipeline/keyframe_recorder.h); 0: no keyframes
 };
 
 struct MapSettings {

@@ -98,8 +98,8 @@ SettingsTable run_rows(RunOptions& o, MapperKind mapper) {
        "Estimates rotation and delay of the cameras from edges of up to 20 frames, and warns "
        "beyond "
        "one pixel."},
-      {"map.range_image_spacing_m", o.range_image_spacing, mapper == MapperKind::kDefault ? 5.0 : 0.0,
-       between(0, 1000),
+      {"map.range_image_spacing_m", o.range_image_spacing,
+       mapper == MapperKind::kDefault ? 5.0 : 0.0, between(0, 1000),
        "Distance between scans whose range images the map keeps, to align other maps with it and "
        "to "
        "show free space; 0 keeps none."},

@@ -46,8 +46,9 @@ std::string camera_text(const Camera& camera, const Eigen::Vector3d& t,
 TimeNs stamp_of(int frame, const SimulationOptions& options) {
   using namespace std::chrono;
   constexpr sys_days kDay = year(2026) / January / 1;
-  constexpr auto kStart = duration_cast<nanoseconds>((kDay + hours(12)).time_since_epoch());
-  return kStart.count() + from_seconds(frame * options.lidar.period);
+  const sys_days day = kDay + days(options.scene == Scene::kTown ? options.pass : 0);
+  const auto start = duration_cast<nanoseconds>((day + hours(12)).time_since_epoch());
+  return start.count() + from_seconds(frame * options.lidar.period);
 }
 
 std::string date_time_text(TimeNs time) {

@@ -228,13 +228,16 @@ void PoseGraph::optimize() {
   const bool closes_loop =
       std::any_of(relative_.begin() + std::ptrdiff_t(used_relative_), relative_.end(),
                   [](const RelativePose& m) { return m.to > m.from + 1; });
-  const bool is_local = width <= kRobustWidth && !closes_loop && poses_.size() > kRecentNodes;
+  const bool is_first = used_relative_ == 0 && used_absolute_ == 0;
+  const bool is_local = width <= kRobustWidth && !closes_loop && !is_first &&
+                        positions_.size() == used_positions_ && poses_.size() > kRecentNodes;
   for (; std::isfinite(width) && width > kRobustWidth; width /= kNarrowing) {
     descend(width, kConvergedCoarsely, 0);
   }
   descend(kRobustWidth, kConverged, is_local ? poses_.size() - kRecentNodes : 0);
   used_relative_ = relative_.size();
   used_absolute_ = absolute_.size();
+  used_positions_ = positions_.size();
 }
 
 void PoseGraph::descend(double width, double converged, std::size_t first) {

@@ -72,7 +72,8 @@ class PoseGraph {
   std::vector<RelativePose> relative_;
   std::vector<AbsolutePose> absolute_;
   std::vector<PointPosition> positions_;
-  std::size_t used_relative_ = 0, used_absolute_ = 0;  // at the last optimize()
+  // At the last optimize().
+  std::size_t used_relative_ = 0, used_absolute_ = 0, used_positions_ = 0;
 };
 
 }  // namespace fovea

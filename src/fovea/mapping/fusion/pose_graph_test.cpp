@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "fovea/core/random.h"
@@ -185,6 +186,66 @@ TEST(PoseGraph, ALongRoadIsSolvedAsItComes) {
   EXPECT_GT(distance(graph.poses()[100], before[100]), 0.001);
 }
 
+/// Points of three nodes of a chain, as surveyed.
+std::vector<PointPosition> surveyed(const std::vector<RigidMotion>& truth) {
+  std::vector<PointPosition> points;
+  for (const std::size_t node : {std::size_t{0}, truth.size() / 2, truth.size() - 1}) {
+    const Eigen::Vector3d p_node(3, -2, 1.5);
+    points.push_back({node, p_node, truth[node] * p_node, 0.02});
+  }
+  return points;
+}
+
+/// How far a chain without any other absolute measurement lies from its true poses, if it starts at
+/// a wrong place.
+double error_of_surveyed_chain(const std::vector<RigidMotion>& truth) {
+  RigidMotion wrong(Eigen::Translation3d(4, -3, 2));
+  wrong.rotate(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 3).normalized()));
+  PoseGraph graph;
+  for (const RigidMotion& T : truth) graph.add_node(wrong * T);
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    graph.add(RelativePose{i - 1, i, truth[i - 1].inverse() * truth[i], sigmas(1e-3, 0.01)});
+  }
+  for (const PointPosition& point : surveyed(truth)) graph.add(point);
+  graph.optimize();
+  double worst = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    worst = std::max(worst, (graph.poses()[i].matrix() - truth[i].matrix()).cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+TEST(PoseGraph, ThreeSurveyedPointsPlaceAChain) {
+  EXPECT_LT(error_of_surveyed_chain(laps(20, 30)), 1e-6);
+}
+
+// More nodes than those that a measurement without a loop moves: the points of the first nodes
+// count, too.
+TEST(PoseGraph, ThreeSurveyedPointsPlaceALongChain) {
+  EXPECT_LT(error_of_surveyed_chain(laps(100, 150)), 1e-6);
+}
+
+TEST(PoseGraph, SurveyedPointsAreWeighted) {
+  PoseGraph graph;
+  graph.add_node(pose(0, 0, 0.4));
+  graph.add(PointPosition{0, Eigen::Vector3d::Zero(), {1, 5, -1}, 0.1});
+  graph.add(PointPosition{0, Eigen::Vector3d::Zero(), {2, 5, 1}, 0.2});
+  graph.optimize();
+  // Weights 100 and 25.
+  EXPECT_LT((graph.poses()[0].translation() - Eigen::Vector3d(1.2, 5, -0.6)).norm(), 1e-6);
+  EXPECT_NEAR(rotation_angle(graph.poses()[0].linear()), 0.4, 1e-9);  // without a measurement
+}
+
+// A surveyed point at the end of a lever and a measured pose share the error by their variances.
+TEST(PoseGraph, ASurveyedPointAndAPoseAreWeighted) {
+  PoseGraph graph;
+  graph.add_node(pose(0, 0, 0));
+  graph.add(AbsolutePose{0, pose(0, 0, 0), sigmas(1e-6, 0.3)});
+  graph.add(PointPosition{0, {10, 0, 0}, {10, 1, 0}, 0.1});
+  graph.optimize();
+  EXPECT_NEAR(graph.poses()[0].translation().y(), 0.9, 1e-6);  // 0.09 / (0.09 + 0.01)
+}
+
 TEST(PoseGraph, PosesWithoutMeasurementsStay) {
   PoseGraph graph;
   graph.add_node(pose(1, 2, 0.1));
@@ -221,6 +282,7 @@ TEST(PoseGraph, RejectsNodesThatAreNotThere) {
   EXPECT_THROW(graph.add(RelativePose{0, 1, {}, {}}), std::invalid_argument);
   EXPECT_THROW(graph.add(RelativePose{0, 0, {}, {}}), std::invalid_argument);
   EXPECT_THROW(graph.add(AbsolutePose{3, {}, {}}), std::invalid_argument);
+  EXPECT_THROW(graph.add(PointPosition{1, {}, {}, 1}), std::invalid_argument);
 }
 
 }  // namespace fovea::pose_graph_test
