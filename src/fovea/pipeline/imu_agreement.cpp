@@ -16,6 +16,8 @@ constexpr double kMemory = 0.98;              // weight of a frame relative to t
 constexpr double kEnough = 12;                // frames
 constexpr std::size_t kKept = 50;             // turns
 
+constexpr int kGrossFrames = 3;  // with a gross bias, in a row: one may be registered wrongly
+
 /// Mean errors of a turn, rad: an IMU that is proven, and one that is contradicted.
 constexpr double kSmallError = 0.3 * kDegree, kLargeError = 0.6 * kDegree;
 
@@ -35,15 +37,23 @@ void ImuAgreement::add(const RigidMotion& registered, const RigidMotion& by_imu,
   turns_.push_back(turns);
 }
 
+void ImuAgreement::add_bias(const Eigen::Vector3d& rate_bias) {
+  constexpr double kMostBias = 20 * kDegree;  // rad/s: twice that of cheap gyroscopes
+  if (gross_biases_ >= kGrossFrames) return;
+  gross_biases_ = rate_bias.norm() < kMostBias ? 0 : gross_biases_ + 1;
+}
+
 bool ImuAgreement::is_proven() const {
   return frames_ > kEnough && error_imu_ < std::max(kSmallError * frames_, error_velocity_ / 2);
 }
 
 bool ImuAgreement::is_contradicted() const {
-  return frames_ > kEnough && error_imu_ > std::max(kLargeError * frames_, 1.5 * error_velocity_);
+  return gross_biases_ >= kGrossFrames ||
+         (frames_ > kEnough && error_imu_ > std::max(kLargeError * frames_, 1.5 * error_velocity_));
 }
 
 std::string ImuAgreement::likely_fault() const {
+  if (turns_.empty()) return "its rates have a bias that no gyroscope has";
   std::vector<double> ratios;
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   for (const Turns& turns : turns_) {

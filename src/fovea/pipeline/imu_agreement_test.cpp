@@ -71,4 +71,20 @@ TEST(ImuAgreement, AVehicleThatGoesStraightTellsNothing) {
   EXPECT_FALSE(agreement.is_contradicted());
 }
 
+TEST(ImuAgreement, ABiasThatNoGyroscopeHasContradicts) {
+  ImuAgreement agreement;
+  agreement.add_bias(Eigen::Vector3d(0.1, -0.1, 0.05));
+  EXPECT_FALSE(agreement.is_contradicted());
+  const Eigen::Vector3d gross(0, 0, 1);  // a flipped axis in a turn of 29 degrees a second
+  for (int frame = 0; frame < 2; ++frame) agreement.add_bias(gross);
+  agreement.add_bias(Eigen::Vector3d::Zero());
+  for (int frame = 0; frame < 2; ++frame) agreement.add_bias(gross);
+  EXPECT_FALSE(agreement.is_contradicted());
+  agreement.add_bias(gross);
+  EXPECT_TRUE(agreement.is_contradicted());
+  EXPECT_FALSE(agreement.likely_fault().empty());
+  agreement.add_bias(Eigen::Vector3d::Zero());
+  EXPECT_TRUE(agreement.is_contradicted());
+}
+
 }  // namespace fovea::imu_agreement_test

@@ -106,6 +106,7 @@ void InertialMotion::update(TimeNs stamp, const RigidMotion& T_odom_lidar, PoseE
   filter->update(prediction, T_odom_lidar, pose_sigma(evidence));
   if (is_jump(prediction, T_odom_lidar)) filter->place(prediction, T_odom_lidar);
   filter_ = *filter;
+  agreement_.add_bias(filter_.state().rate_bias);
 }
 
 }  // namespace fovea
