@@ -73,10 +73,10 @@ std::vector<std::string> warnings_of(const CityPoses& city) {
         match.distance));
   }
   for (const PlacedMap& map : city.maps) {
-    if (map.matches > 0 || city.maps.size() == 1) continue;
+    if (map.matches > 0 || map.is_fixed || city.maps.size() == 1) continue;
     warnings.push_back(
-        fmt::format("{} {} has no match with another map: it lies where its "
-                    "navigation has it",
+        fmt::format("{} {} has no match with another map: navigation alone "
+                    "places it",
                     map.name.drive, map.name.digest.substr(0, 8)));
   }
   return warnings;

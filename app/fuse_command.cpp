@@ -1,5 +1,6 @@
 // fovea fuse: one tile of a city from many maps.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -34,6 +35,16 @@ CityTile tile_of(const std::string& text) {
   throw ConfigError("\"" + text + "\" is no tile", "--tile", "give two whole numbers: X,Y");
 }
 
+/// Of the points of the maps, m.
+double finest_spacing(const std::vector<std::string>& maps) {
+  double finest = TileFusionJob().spacing;
+  for (const std::string& file : maps) {
+    const double spacing = stored_settings(open_map(file).meta(), file).spacing();
+    if (spacing > 0) finest = std::min(finest, spacing);
+  }
+  return finest;
+}
+
 void run(const FuseArguments& arguments) {
   TileFusionJob job;
   job.tile = tile_of(arguments.tile);
@@ -46,8 +57,7 @@ void run(const FuseArguments& arguments) {
   job.tile_size = arguments.tile_size;
   job.session = arguments.session;
   job.memory = arguments.memory;
-  const MapReader first = open_map(arguments.maps.front());
-  job.spacing = stored_settings(first.meta(), arguments.maps.front()).spacing();
+  job.spacing = finest_spacing(arguments.maps);
   const TileFusionFigures figures = fuse_tile({arguments.maps.begin(), arguments.maps.end()},
                                               read_city_poses(arguments.poses), job);
   if (arguments.quiet) return;

@@ -10,17 +10,19 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/map/map_meta.h"
 #include "fovea/mapping/fusion/pose_graph.h"
 #include "fovea/merging/city_gains.h"
+#include "fovea/merging/georeference.h"
 #include "fovea/merging/map_measurements.h"
+#include "fovea/merging/twist_adjoint.h"
 
 namespace fovea {
 namespace {
 
 /// Standard deviations of poses that stay as they are.
 constexpr double kFixed = 1e-6;  // rad, m
-/// A match is wrong if it places a submap so far from the solution: m, rad, standard deviations.
+/// A match is wrong if it places a submap farther from the solution than all of these: m, rad, and
+/// standard deviations.
 constexpr double kWrongDistance = 0.15, kWrongRotation = 0.01, kWrongSigmas = 6;
 
 /// A match between two nodes of the graph.
@@ -44,50 +46,31 @@ class Adjustment {
   void add_nodes();
   void add_ties();
   void add_points(PoseGraph& graph) const;
-  std::vector<RigidMotion> solved(std::vector<RigidMotion> poses) const;
+  std::vector<RigidMotion> solved(const std::vector<RigidMotion>& poses) const;
   void reject_wrong_ties(const std::vector<RigidMotion>& poses, CityPoses& city);
   CityPoses result(const std::vector<RigidMotion>& poses) const;
+  std::size_t map_named(const SurveyedPoint& point) const;
   /// The submap that shows a surveyed point, as a node, and the point in it.
   PointPosition position_of(const SurveyedPoint& point) const;
 
   const AdjustmentJob& job_;
   RigidMotion T_ecef_city_;         // axes of the first map's local frame
   std::vector<std::size_t> first_;  // node of the first submap of each map
-  std::vector<RigidMotion> start_;  // T_city_submap as the maps have them
+  std::vector<RigidMotion> start_;  // T_city_submap by the maps, or by the fixed poses
   std::vector<Tie> ties_;
 };
 
-GeodeticPoint origin_of(const AdjustedMap& map) {
-  const auto origin = map_origin(map.content.meta);
-  if (origin) return *origin;
-  throw InputError("a map without georeference cannot be adjusted", map.name.drive,
-                   "map the drive with GPS/INS, or give it its origin (docs/drives.md)");
-}
-
-/// Datum, epoch and heights of two maps must be the same: their coordinates differ otherwise.
-void require_same_coordinates(const AdjustedMap& a, const AdjustedMap& b) {
-  const DriveRecord &first = a.content.records.front(), &other = b.content.records.front();
-  const auto refuse = [&](const char* what) {
-    throw InputError(fmt::format("{} and {} have another {}", a.name.drive, b.name.drive, what),
-                     b.name.drive, "convert the coordinates of one of the drives");
-  };
-  if (first.datum.value_or(kWgs84) != other.datum.value_or(kWgs84)) refuse("datum");
-  if (first.epoch_year != other.epoch_year) refuse("epoch of the datum");
-  const auto height = [](const DriveRecord& record) {
-    return record.height_type.value_or(HeightType::kEllipsoidal);
-  };
-  if (height(first) != height(other)) refuse("type of heights");
-}
-
 Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
   if (job.maps.empty()) throw InputError("no maps to adjust", "the command", "give two or more");
-  T_ecef_city_ = T_ecef_enu(origin_of(job.maps.front()));
+  T_ecef_city_ = T_ecef_enu(origin_of(job.maps.front().content));
   std::set<std::string> digests;
   for (const AdjustedMap& map : job.maps) {
     if (!digests.insert(map.name.digest).second) {
       throw InputError("a map is given twice", map.name.drive, "give each map once");
     }
-    require_same_coordinates(job.maps.front(), map);
+    require_one_drive(map.content, map.name.drive);
+    require_same_coordinates(job.maps.front().content, map.content);
+    if (!job.points.empty()) require_ellipsoidal_wgs84(map.content);
   }
   for (const PlacedMap& placed : job.fixed) {
     if (placed.submaps.size() !=
@@ -109,7 +92,7 @@ std::size_t Adjustment::map_of(const std::string& digest, const char* of_what) c
 }
 
 RigidMotion Adjustment::T_city_local(const AdjustedMap& map) const {
-  return T_ecef_city_.inverse() * T_ecef_enu(origin_of(map));
+  return T_ecef_city_.inverse() * T_ecef_enu(origin_of(map.content));
 }
 
 const PlacedMap* Adjustment::fixed(std::size_t map) const {
@@ -133,39 +116,64 @@ void Adjustment::add_nodes() {
 }
 
 void Adjustment::add_ties() {
+  std::set<std::pair<std::size_t, std::size_t>> aligned;
   for (const MapPair& pair : job_.pairs) {
     const std::size_t a = map_of(pair.a.digest, "a pair"), b = map_of(pair.b.digest, "a pair");
     if (a == b) throw InputError("a pair has one map twice", pair.a.drive, "align two maps");
+    if (pair.a.submaps != job_.maps[a].name.submaps ||
+        pair.b.submaps != job_.maps[b].name.submaps) {
+      throw InputError("a pair has other submaps than its maps", pair.a.drive,
+                       "align the two maps again");
+    }
+    if (!aligned.insert(std::minmax(a, b)).second) {
+      throw InputError("a pair of maps is given twice", pair.a.drive + ", " + pair.b.drive,
+                       "give each pair once");
+    }
     for (const SubmapMatch& match : pair.matches) {
       const std::size_t from = node(a, match.submap_a), to = node(b, match.submap_b);
-      Twist sigma = match.covariance.diagonal().cwiseSqrt();
-      if (from < to) {
-        ties_.push_back({&pair, &match, {from, to, match.T_a_b, sigma, /*robust=*/true}});
-      } else {
-        ties_.push_back({&pair, &match, {to, from, match.T_a_b.inverse(), sigma, true}});
+      RelativePose measured{from, to, match.T_a_b, Twist::Ones(), /*robust=*/true};
+      Eigen::Matrix<double, 6, 6> covariance = match.covariance;  // in the frame of b
+      if (from > to) {
+        measured = {to, from, match.T_a_b.inverse(), Twist::Ones(), /*robust=*/true};
+        const auto to_a = adjoint(match.T_a_b);
+        covariance = to_a * covariance * to_a.transpose();
       }
+      measured.sigma = covariance.diagonal().cwiseSqrt();
+      ties_.push_back({&pair, &match, measured});
     }
   }
 }
 
-PointPosition Adjustment::position_of(const SurveyedPoint& point) const {
+std::size_t Adjustment::map_named(const SurveyedPoint& point) const {
+  std::vector<std::size_t> by_drive, by_digest;
   for (std::size_t k = 0; k < job_.maps.size(); ++k) {
-    const AdjustedMap& map = job_.maps[k];
-    if (map.name.drive != point.map && !map.name.digest.starts_with(point.map)) continue;
-    const auto middles = submap_middles(map.content.frames, map.content.T_local_submap.size());
-    std::size_t best = 0;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t id = 0; id < middles.size(); ++id) {
-      if (!middles[id] || (*middles[id] - point.p_local).norm() >= nearest) continue;
-      nearest = (*middles[id] - point.p_local).norm();
-      best = id;
-    }
-    const Eigen::Vector3d p_ecef = T_ecef_enu(point.position).translation();
-    return {node(k, best), map.content.T_local_submap.at(best).inverse() * point.p_local,
-            T_ecef_city_.inverse() * p_ecef, point.sigma};
+    if (job_.maps[k].name.drive == point.map) by_drive.push_back(k);
+    if (job_.maps[k].name.digest.starts_with(point.map)) by_digest.push_back(k);
   }
-  throw InputError(fmt::format("the point {} is of a map that is not given", point.name), point.map,
-                   "name a drive of the maps, or the first digits of a map's digest");
+  const std::vector<std::size_t>& named = by_drive.empty() ? by_digest : by_drive;
+  if (named.size() == 1) return named.front();
+  throw InputError(
+      fmt::format("the point {} is of {}", point.name,
+                  named.empty() ? "a map that is not given" : "a name that several maps have"),
+      point.map, "name a drive of the maps, or the first digits of a map's digest");
+}
+
+PointPosition Adjustment::position_of(const SurveyedPoint& point) const {
+  const std::size_t k = map_named(point);
+  const MapContent& map = job_.maps[k].content;
+  const auto middles = submap_middles(map.frames, map.T_local_submap.size());
+  std::optional<std::size_t> nearest;
+  const auto distance = [&](std::size_t id) { return (*middles[id] - point.p_local).norm(); };
+  for (std::size_t id = 0; id < middles.size(); ++id) {
+    if (middles[id] && (!nearest || distance(id) < distance(*nearest))) nearest = id;
+  }
+  if (!nearest) {
+    throw InputError("a map without frames shows no surveyed point", point.map,
+                     "name another map of the point");
+  }
+  const Eigen::Vector3d p_ecef = T_ecef_enu(point.position).translation();
+  return {node(k, *nearest), map.T_local_submap[*nearest].inverse() * point.p_local,
+          T_ecef_city_.inverse() * p_ecef, point.sigma};
 }
 
 void Adjustment::add_points(PoseGraph& graph) const {
@@ -174,7 +182,7 @@ void Adjustment::add_points(PoseGraph& graph) const {
   }
 }
 
-std::vector<RigidMotion> Adjustment::solved(std::vector<RigidMotion> poses) const {
+std::vector<RigidMotion> Adjustment::solved(const std::vector<RigidMotion>& poses) const {
   PoseGraph graph;
   for (const RigidMotion& pose : poses) graph.add_node(pose);
   for (std::size_t k = 0; k < job_.maps.size(); ++k) {
@@ -216,9 +224,9 @@ CityPoses Adjustment::run() {
   CityPoses rejected;
   std::vector<RigidMotion> poses = solved(start_);
   reject_wrong_ties(poses, rejected);
-  if (!rejected.rejected.empty()) poses = solved(std::move(poses));
+  if (!rejected.rejected.empty()) poses = solved(poses);
   CityPoses city = result(poses);
-  city.origin = job_.origin.value_or(origin_of(job_.maps.front()));
+  city.origin = job_.origin.value_or(origin_of(job_.maps.front().content));
   city.rejected = std::move(rejected.rejected);
   return city;
 }
@@ -248,7 +256,8 @@ CityPoses Adjustment::result(const std::vector<RigidMotion>& poses) const {
     std::vector<double> moves;
     for (std::size_t id = 0; id < map.name.submaps; ++id) {
       const std::size_t n = node(k, id);
-      map.submaps.push_back({T_ecef_city_ * poses[n], gains[n]});
+      map.submaps.push_back(map.is_fixed ? fixed(k)->submaps[id]
+                                         : SubmapPlacement{T_ecef_city_ * poses[n], gains[n]});
       moves.push_back((poses[n].translation() - start_[n].translation()).norm());
     }
     map.moved = median_of(std::move(moves));

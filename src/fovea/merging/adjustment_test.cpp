@@ -8,6 +8,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/random.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/merging/twist_adjoint.h"
 
 namespace fovea::adjustment_test {
 
@@ -155,11 +156,13 @@ TEST_F(Adjustment, FixedMapsStay) {
   job_.fixed = {before.maps[0], before.maps[1]};
   job_.pairs[1].matches[0].T_a_b.translation().y() += 0.05;
   const CityPoses after = adjust_city(job_);
-  for (std::size_t id = 0; id < kSubmaps; ++id) {
-    EXPECT_LT((after.maps[1].submaps[id].T_ecef_submap.translation() -
-               before.maps[1].submaps[id].T_ecef_submap.translation())
-                  .norm(),
-              1e-4);
+  for (const std::size_t map : {0u, 1u}) {
+    for (std::size_t id = 0; id < kSubmaps; ++id) {
+      const SubmapPlacement &now = after.maps[map].submaps[id],
+                            &then = before.maps[map].submaps[id];
+      EXPECT_EQ(now.T_ecef_submap.matrix(), then.T_ecef_submap.matrix());
+      EXPECT_EQ(now.log2_gain, then.log2_gain);
+    }
   }
   EXPECT_TRUE(after.maps[0].is_fixed);
   EXPECT_FALSE(after.maps[2].is_fixed);
@@ -192,6 +195,25 @@ TEST_F(Adjustment, ControlPointsGiveThePlace) {
   for (const PointResidual& point : city.points) EXPECT_LT(point.east_north_up.norm(), 0.05);
 }
 
+TEST_F(Adjustment, TheOrderOfTheMapsOfAPairMattersLittle) {
+  const CityPoses city = adjust_city(job_);
+  for (MapPair& pair : job_.pairs) {
+    std::swap(pair.a, pair.b);
+    for (SubmapMatch& match : pair.matches) {
+      const auto to_a = adjoint(match.T_a_b);
+      match.covariance = Eigen::Matrix<double, 6, 6>(to_a * match.covariance * to_a.transpose());
+      std::swap(match.submap_a, match.submap_b);
+      match.T_a_b = match.T_a_b.inverse();
+    }
+  }
+  const CityPoses swapped = adjust_city(job_);
+  for (std::size_t id = 0; id < kSubmaps; ++id) {
+    const Eigen::Vector3d apart = swapped.maps[2].submaps[id].T_ecef_submap.translation() -
+                                  city.maps[2].submaps[id].T_ecef_submap.translation();
+    EXPECT_LT(apart.norm(), 2e-3) << id;
+  }
+}
+
 TEST_F(Adjustment, ADriveFarOffIsBroughtBack) {
   job_.maps[1] = map_of("b", truth_[1], {15, -9, 2}, 5);
   EXPECT_LT(worst_relative_error(adjust_city(job_)), 0.15);
@@ -213,6 +235,15 @@ TEST_F(Adjustment, RefusesWhatDoesNotBelongTogether) {
   job_ = good;
   job_.maps.pop_back();
   EXPECT_THAT(error(), testing::HasSubstr("a pair are of a map that is not given"));
+  job_ = good;
+  job_.maps[0].content.is_merged = true;
+  EXPECT_THAT(error(), testing::HasSubstr("a merged map"));
+  job_ = good;
+  job_.pairs[0].b.submaps = 99;
+  EXPECT_THAT(error(), testing::HasSubstr("other submaps than its maps"));
+  job_ = good;
+  job_.pairs.push_back(job_.pairs.front());
+  EXPECT_THAT(error(), testing::HasSubstr("given twice"));
   job_ = good;
   job_.points.push_back(survey(job_.maps[0], 0, truth_[0][0], false));
   job_.points.back().map = "elsewhere";

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// A submap.

@@ -23,8 +23,7 @@ struct PlacedMap {
   std::vector<SubmapPlacement> submaps;  ///< by number
   bool is_fixed = false;                 ///< taken from earlier poses
   std::size_t matches = 0;               ///< of its submaps with other maps, that are used
-  /// m, median distance of its submaps from where the map has them, after the motion that all maps
-  /// have in common.
+  /// m, median distance of its submaps from where its georeference has them; zero if fixed.
   double moved = 0;
 };
 

@@ -37,8 +37,8 @@ FreeSpace::FreeSpace(const MapReader& map, const MapContent& content,
                                       content.T_local_submap[submap].inverse() *
                                       frame.T_local_lidar * sensor.T_lidar_sensor;
     if (T_cell_sensor.translation().head<2>().cwiseAbs().maxCoeff() > size / 2 + kReach) return;
-    views_.push_back({RangeImage(returns_of(keyframe, kReach), row_height(sensor.profile)),
-                      T_cell_sensor.inverse()});
+    views_.push_back(
+        {RangeImage(returns_of(keyframe), row_height(sensor.profile)), T_cell_sensor.inverse()});
   });
 }
 
@@ -67,6 +67,7 @@ std::vector<bool> FreeSpace::contains(const TilePoints& points,
     }
     view.image.classify(places_sensor, seen);
     for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (places_sensor[k].norm() > float(kReach)) continue;
       free[k] += seen[k] == Visibility::kFree;
       surface[k] += seen[k] == Visibility::kSurface;
     }

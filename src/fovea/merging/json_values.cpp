@@ -32,9 +32,10 @@ std::size_t count_of(const Json& json) {
   return json.get<std::size_t>();
 }
 
-const Json& list_of(const Json& json) {
-  if (!json.is_array()) throw std::invalid_argument("a list is expected");
-  return json;
+const Json& list_at(const Json& json, const char* key) {
+  const Json& list = json.at(key);
+  if (!list.is_array()) throw std::invalid_argument(std::string(key) + " is no list");
+  return list;
 }
 
 void read_json(const std::filesystem::path& path, const char* noun, const char* remedy,

@@ -11,8 +11,8 @@ namespace fovea {
 
 using Json = nlohmann::ordered_json;
 
-/// {"translation": [x, y, z] (m), "rotation": [x, y, z, w] (unit quaternion)}; reads back to the
-/// last bits.
+/// {"translation": [x, y, z] (m), "rotation": [x, y, z, w] (unit quaternion)}; reads back to
+/// rounding.
 Json json_of(const RigidMotion& T);
 /// std::invalid_argument if it is no rigid motion.
 RigidMotion motion_of(const Json& json);
@@ -34,8 +34,8 @@ Eigen::Matrix<double, N, 1> vector_of(const Json& json) {
 
 /// std::invalid_argument unless it is a whole number, zero or more.
 std::size_t count_of(const Json& json);
-/// std::invalid_argument unless it is a list.
-const Json& list_of(const Json& json);
+/// The list under a key. std::invalid_argument if it is something else.
+const Json& list_at(const Json& json, const char* key);
 
 /// Parses a file and hands it to `read`.
 /// @param noun    what it is: "pair of maps"

@@ -9,6 +9,6 @@
 namespace fovea {
 
 /// The returns up to a range (m), in the frame of the sensor.
-std::vector<Eigen::Vector3f> returns_of(const KeyframeRecord& keyframe, double max_range);
+std::vector<Eigen::Vector3f> returns_of(const KeyframeRecord& keyframe, double max_range = 1000);
 
 }  // namespace fovea

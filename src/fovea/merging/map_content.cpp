@@ -46,11 +46,22 @@ MapContent::MapContent(const MapReader& map)
       records(map.drives()),
       sensors(map.sensors()),
       tile_size(map_tile_size(meta)) {
-  if (drives.empty()) {
+  is_merged = !drives.empty();
+  if (!is_merged) {
     drives.push_back(only_drive(map, *this));
     records.resize(1);
   }
   for (std::size_t k = 0; k < drives.size(); ++k) describe(drives[k], records[k]);
+  for (const FrameRecord& frame : frames) {
+    if (frame.submap < int(T_local_submap.size())) continue;
+    throw InputError(fmt::format("frame {} is of a submap that is not there", frame.index),
+                     "the map's table 'frames'", kRestoreMap);
+  }
+}
+
+void require_one_drive(const MapContent& map, const std::string& where) {
+  if (!map.is_merged) return;
+  throw InputError("a merged map is no part of a city", where, "give the maps that it was made of");
 }
 
 std::string MapContent::text(const std::string& key) const {

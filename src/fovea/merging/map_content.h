@@ -24,8 +24,13 @@ struct MapContent {
   std::vector<MergedDrive> drives;   ///< one at least
   std::vector<DriveRecord> records;  ///< of these drives, as they are in a merged map
   std::vector<SensorRecord> sensors;
-  double tile_size = 0;  ///< m
+  double tile_size = 0;    ///< m
+  bool is_merged = false;  ///< made by fovea merge or fovea fuse
 };
+
+/// InputError for a map that fovea merge or fovea fuse has made: its drives have odometry of their
+/// own.
+void require_one_drive(const MapContent& map, const std::string& where);
 
 /// How the local frames lie to each other by a drive that both maps have, or else by their
 /// georeferences; nothing if neither tells.

@@ -16,7 +16,9 @@ namespace {
 
 /// How many of B's tiles are asked at most, and every how many of their points.
 constexpr std::size_t kTiles = 256, kStep = 8;
-constexpr std::size_t kTilesOfSubmap = 8;
+constexpr std::size_t kTilesOfSubmap = 16;
+/// Channels of a gain that differ by more (stops) are peaks of different surfaces.
+constexpr float kMostTint = 0.5f;
 
 /// Adds the differences of colors, B minus A, of points on common surfaces.
 /// @param points_a, points_b  of the tiles, in one frame
@@ -95,7 +97,9 @@ class SubmapGains {
       points_b.add(0, tile_b, match.T_a_b, reach_of_tile(size_b_));
       add_differences(tiles_a, points_a, tile_b, points_b, b_minus_a);
     }
-    return gain_of(b_minus_a);
+    std::optional<LogGain> gain = gain_of(b_minus_a);
+    if (!gain || gain->maxCoeff() - gain->minCoeff() > kMostTint) return std::nullopt;
+    return gain;
   }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "fovea/merging/renumbered_column.h"
+
 namespace fovea {
 namespace {
 
@@ -30,21 +32,6 @@ void match_exposure(const LogGain& gain, TilePoints& tile) {
   for (FusedColor& color : tile.colors) {
     color.color = with_offset(color.color, -gain * kColorCodesPerStop);
   }
-}
-
-/// Puts `number_of(value)` in the place of each value of a column.
-template <class Value, class F>
-void renumber(RunColumn<Value>& column, F&& number_of) {
-  RunColumn<Value> renumbered;
-  column.for_each_run([&](std::uint32_t begin, std::uint32_t end, Value value) {
-    renumbered.push_back(static_cast<Value>(number_of(value)), end - begin);
-  });
-  column = std::move(renumbered);
-}
-
-/// Makes a column of zeros of one that is missing.
-void fill(std::size_t points, RunColumn<std::uint16_t>& column) {
-  if (column.empty() && points > 0) column.push_back(0, static_cast<std::uint32_t>(points));
 }
 
 int number_at(const std::vector<int>& numbers, int place) {
@@ -82,9 +69,9 @@ int Renumbering::drive_of(int in_b) const { return number_at(drives_, in_b); }
 int Renumbering::sensor_of(int in_b) const { return number_at(sensor_numbers_, in_b); }
 
 void Renumbering::apply(TilePoints& tile) const {
-  fill(tile.size(), tile.session);
+  fill_with_zeros(tile.size(), tile.session);
   renumber(tile.session, [&](std::uint16_t drive) { return drive_of(drive); });
-  fill(tile.size(), tile.sensor);
+  fill_with_zeros(tile.size(), tile.sensor);
   renumber(tile.sensor, [&](std::uint16_t sensor) { return sensor_of(sensor); });
 }
 

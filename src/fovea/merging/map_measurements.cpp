@@ -52,6 +52,21 @@ void add_motion(const MapContent& map, std::size_t first, PoseGraph& graph) {
   }
 }
 
+/// Ties a submap without frames to its neighbor, as the map has them.
+void add_empty_submaps(const MapContent& map, std::size_t first, PoseGraph& graph) {
+  std::vector<bool> has_frame(map.T_local_submap.size());
+  for (const FrameRecord& frame : map.frames) {
+    if (frame.submap >= 0) has_frame[std::size_t(frame.submap)] = true;
+  }
+  for (std::size_t id = 1; id < has_frame.size(); ++id) {
+    const bool is_beside_empty_first = id == 1 && !has_frame[0];
+    if (has_frame[id] && !is_beside_empty_first) continue;
+    const RigidMotion T = map.T_local_submap[id - 1].inverse() * map.T_local_submap[id];
+    graph.add(RelativePose{first + id - 1, first + id, T,
+                           odometry_deviations(T.translation().norm(), 0)});
+  }
+}
+
 /// Places to which the drive came back.
 void add_loops(const MapContent& map, std::size_t first, PoseGraph& graph) {
   for (const FrameRecord& frame : map.frames) {
@@ -100,6 +115,7 @@ void add_navigation(const MapContent& map, std::size_t first, const RigidMotion&
 void add_map_measurements(const MapContent& map, std::size_t first, const RigidMotion& T_city_local,
                           PoseGraph& graph) {
   add_motion(map, first, graph);
+  add_empty_submaps(map, first, graph);
   add_loops(map, first, graph);
   add_navigation(map, first, T_city_local, graph);
 }

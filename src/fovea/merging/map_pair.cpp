@@ -11,8 +11,9 @@
 namespace fovea {
 namespace {
 
-/// Matches that place B so far from their median (m) are wrong.
+/// A match that places B this far (m) from the median of the matches of near submaps is wrong.
 constexpr double kConsistent = 2;
+constexpr std::size_t kNear = 5;  // submaps of B
 /// Least share of consistent matches in the tried pairs.
 constexpr double kLeastShare = 0.1;
 constexpr std::size_t kShifts = 4, kSearchedPlaces = 3;
@@ -36,20 +37,25 @@ Eigen::Vector3d median_of_each(const std::vector<Eigen::Vector3d>& moves) {
   Eigen::Vector3d median;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
+    values.reserve(moves.size());
     for (const Eigen::Vector3d& move : moves) values.push_back(move[axis]);
     median[axis] = median_of(std::move(values));
   }
   return median;
 }
 
-/// Leaves out the matches that contradict most of the others.
+/// Leaves out the matches that contradict most of the others near them.
 void keep_consistent(const MapContent& a, const MapContent& b, const RigidMotion& stated_T_a_b,
                      std::vector<SubmapMatch>& matches) {
   const std::vector<Eigen::Vector3d> moves = moves_of(matches, a, b, stated_T_a_b);
-  const Eigen::Vector3d median = median_of_each(moves);
   std::vector<SubmapMatch> kept;
   for (std::size_t k = 0; k < matches.size(); ++k) {
-    if ((moves[k] - median).norm() < kConsistent) kept.push_back(matches[k]);
+    std::vector<Eigen::Vector3d> near;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      const auto [low, high] = std::minmax(matches[i].submap_b, matches[k].submap_b);
+      if (high - low <= kNear) near.push_back(moves[i]);
+    }
+    if ((moves[k] - median_of_each(near)).norm() < kConsistent) kept.push_back(matches[k]);
   }
   matches = std::move(kept);
 }
@@ -125,7 +131,8 @@ class Aligner {
 }  // namespace
 
 MapName name_of(const MapReader& map, const MapContent& content) {
-  return {map.digest(), content.drives.front().name, content.T_local_submap.size()};
+  return {content.is_merged ? map.digest() : content.drives.front().digest,
+          content.drives.front().name, content.T_local_submap.size()};
 }
 
 const char* to_string(PairVerdict verdict) {
@@ -143,6 +150,8 @@ const char* to_string(PairVerdict verdict) {
 MapPair align_pair(const MapReader& a, const MapReader& b) {
   const auto held_a = a.hold_state(), held_b = b.hold_state();
   const MapContent content_a(a), content_b(b);
+  require_one_drive(content_a, content_a.drives.front().name);
+  require_one_drive(content_b, content_b.drives.front().name);
   MapPair pair;
   pair.a = name_of(a, content_a);
   pair.b = name_of(b, content_b);

@@ -97,7 +97,7 @@ MapPair read_pair(const std::filesystem::path& path) {
     pair.verdict = verdict_from(json.at("verdict").get<std::string>());
     pair.tried = count_of(json.at("tried"));
     pair.moved = json.at("moved_m").get<double>();
-    for (const Json& match : list_of(json.at("matches")))
+    for (const Json& match : list_at(json, "matches"))
       pair.matches.push_back(match_from(match, pair));
   });
   return pair;

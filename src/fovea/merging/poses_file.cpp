@@ -1,5 +1,7 @@
 #include "fovea/merging/poses_file.h"
 
+#include <cmath>
+
 #include "fovea/merging/json_values.h"
 
 namespace fovea {
@@ -25,7 +27,7 @@ PlacedMap map_from(const Json& json) {
   map.is_fixed = json.at("fixed").get<bool>();
   map.matches = count_of(json.at("matches"));
   map.moved = json.at("moved_m").get<double>();
-  for (const Json& submap : list_of(json.at("submaps"))) {
+  for (const Json& submap : list_at(json, "submaps")) {
     map.submaps.push_back(
         {motion_of(submap.at("T_ecef_submap")), vector_of<3>(submap.at("log2_gain"))});
   }
@@ -88,10 +90,14 @@ CityPoses read_city_poses(const std::filesystem::path& path) {
     const Json& origin = json.at("origin");
     city.origin = {origin.at("latitude_deg").get<double>(),
                    origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
-    for (const Json& map : list_of(json.at("maps"))) city.maps.push_back(map_from(map));
-    for (const Json& match : list_of(json.at("rejected")))
+    if (!(std::abs(city.origin.latitude) < 90 && std::abs(city.origin.longitude) <= 180 &&
+          std::abs(city.origin.altitude) < 1e5)) {
+      throw std::invalid_argument("the origin is no place on the earth");
+    }
+    for (const Json& map : list_at(json, "maps")) city.maps.push_back(map_from(map));
+    for (const Json& match : list_at(json, "rejected"))
       city.rejected.push_back(rejected_from(match));
-    for (const Json& point : list_of(json.at("points"))) city.points.push_back(point_from(point));
+    for (const Json& point : list_at(json, "points")) city.points.push_back(point_from(point));
   });
   return city;
 }

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Largest shift that is searched along each axis, m.

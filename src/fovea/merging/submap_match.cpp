@@ -8,6 +8,7 @@
 
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/fusion/plan_view.h"
+#include "fovea/merging/twist_adjoint.h"
 
 namespace fovea {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::size_t kKeptTargets = 24;
 /// Standard deviations that the noise of pairs does not explain, as measured in a simulated town
 /// (docs/city.md). Heading is better known than tilt, and place than height: rad, m.
 const Twist kLeastSigma = (Twist() << 1e-3, 1e-3, 3e-4, 0.005, 0.005, 0.01).finished();
-/// Neighboring pairs have common errors, so so many of them count as one.
+/// Neighboring pairs have common errors: this many count as one.
 constexpr double kCorrelatedPairs = 20;
 
 RegistrationOptions registration_options() {
@@ -144,14 +145,6 @@ class Matcher {
     match.overlap = quality.overlap;
     match.on_plane = quality.on_plane;
     result.matches.push_back(match);
-  }
-
-  /// Of twists: from frame b to frame a.
-  static Matrix6 adjoint(const RigidMotion& T_a_b) {
-    Matrix6 adjoint = Matrix6::Zero();
-    adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T_a_b.linear();
-    adjoint.bottomLeftCorner<3, 3>() = hat(T_a_b.translation()) * T_a_b.linear();
-    return adjoint;
   }
 
   SubmapScans &a_, &b_;

@@ -21,6 +21,7 @@ constexpr int kRows = 241;
 std::vector<double> rows_of(const SensorProfile& profile) {
   if (!profile.ring_elevations.empty()) return profile.ring_elevations;
   std::vector<double> rows;
+  rows.reserve(kRows);
   for (int row = 0; row < kRows; ++row) rows.push_back(kHighest - row * kRowStep);
   return rows;
 }

@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "fovea/core/eigen_alignment.h"
+
 namespace fovea {
 
 /// Covariance of the sum of the items' vectors, of mean zero. Items of one group have common
