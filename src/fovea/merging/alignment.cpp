@@ -7,40 +7,16 @@
 #include <utility>
 
 #include "fovea/mapping/fusion/place_match.h"
-#include "fovea/mapping/fusion/plan_view.h"
 #include "fovea/mapping/fusion/pose_graph.h"
+#include "fovea/merging/common_space.h"
+#include "fovea/merging/map_content.h"
 
 namespace fovea {
 namespace {
 
-constexpr double kRadius = 50;  // m around a submap's middle, that are registered
-/// Fewer points of one map where the other one has some are no meeting.
-constexpr std::size_t kMinPoints = 500;
 /// Standard deviations of a registration, and of the motion from one submap to the next: rad, m.
 const Twist kRegistrationSigma{0.001, 0.001, 0.001, 0.02, 0.02, 0.02};
 const Twist kNextSigma{0.0005, 0.0005, 0.0005, 0.02, 0.02, 0.02};
-
-RegistrationOptions registration_options() {
-  RegistrationOptions options;
-  options.max_distance = 0.5;
-  options.robust_width = 0.1;
-  return options;
-}
-
-/// Position of the middle frame of each submap; nothing for one without frames.
-std::vector<std::optional<Eigen::Vector3d>> middles(const std::vector<FrameRecord>& frames,
-                                                    std::size_t submaps) {
-  std::vector<std::vector<Eigen::Vector3d>> positions(submaps);
-  for (const FrameRecord& frame : frames) {
-    if (frame.submap < 0 || std::size_t(frame.submap) >= submaps) continue;
-    positions[std::size_t(frame.submap)].push_back(frame.T_local_lidar.translation());
-  }
-  std::vector<std::optional<Eigen::Vector3d>> middles(submaps);
-  for (std::size_t id = 0; id < submaps; ++id) {
-    if (!positions[id].empty()) middles[id] = positions[id][positions[id].size() / 2];
-  }
-  return middles;
-}
 
 /// Registers what B has of one of its submaps around a place to what A has there.
 /// @return T_a_b of the local frames by this submap alone
@@ -49,28 +25,18 @@ std::optional<RigidMotion> match_submap(MapSurfaces& a, MapSurfaces& b, std::siz
                                         const RigidMotion& guess_T_a_b, MapAlignment& account) {
   // Both relative to the same place, in the axes of their local frames.
   const RigidMotion T_b_place(Eigen::Translation3d{center_b});
-  const RigidMotion T_a_place(Eigen::Translation3d{guess_T_a_b * center_b});
-  const std::vector<Eigen::Vector3f> points_a =
-      a.points_near(T_a_place.translation(), kRadius + kPlaceReach);
-  const std::vector<Eigen::Vector3f> points_b = b.points_near(center_b, kRadius, submap);
-  const PlanView plan(points_a);
+  const Eigen::Vector3d center_a = guess_T_a_b * center_b;
+  const RigidMotion T_a_place(Eigen::Translation3d{center_a});
+  std::vector<Eigen::Vector3f> points_a = a.points_near(center_a, kSubmapRadius + kPlaceReach);
+  const std::vector<Eigen::Vector3f> points_b = b.points_near(center_b, kSubmapRadius, submap);
   const RigidMotion guess = T_a_place.inverse() * guess_T_a_b * T_b_place;
-  if (plan.covered(points_b, guess, kPlaceReach).size() < kMinPoints) return std::nullopt;
+  if (!has_common_space(PlanView(points_a), points_b, guess)) return std::nullopt;
   ++account.met;
-  const RegistrationOptions options = registration_options();
-  const RegistrationCloud target = prepare_cloud(points_a, options, MapSurfaces::kVoxel);
-  const PointIndex index(target.points, MapSurfaces::kVoxel);
-  RigidMotion T_target_source = guess;
-  for (int pass = 0; pass < 2; ++pass) {  // what both have shows once they lie right
-    const RegistrationCloud source = prepare_cloud(
-        plan.covered(points_b, T_target_source, kPlaceReach), options, MapSurfaces::kVoxel);
-    const auto match = match_place(target, index, source, T_target_source, options);
-    if (!match) return std::nullopt;
-    T_target_source = match->T_target_source;
-  }
-  if ((guess.inverse() * T_target_source).translation().norm() > kPlaceReach) return std::nullopt;
+  const PlaceTarget target(std::move(points_a), center_a);
+  const auto fit = fit_common_space(target, points_b, guess);
+  if (!fit) return std::nullopt;
   ++account.registered;
-  return T_a_place * T_target_source * T_b_place.inverse();
+  return T_a_place * fit->registration.T_target_source * T_b_place.inverse();
 }
 
 /// Pairs of submaps that the drive itself ties together: neighbours, and places it came back to.
@@ -93,7 +59,7 @@ std::vector<std::pair<std::size_t, std::size_t>> ties(const std::vector<FrameRec
 MapAlignment align_maps(MapSurfaces& a, MapSurfaces& b, const std::vector<FrameRecord>& frames_b,
                         const RigidMotion& guess_T_a_b) {
   const std::vector<RigidMotion>& T_b_submap = b.T_local_submap();
-  const auto middle_b = middles(frames_b, T_b_submap.size());
+  const auto middle_b = submap_middles(frames_b, T_b_submap.size());
   MapAlignment alignment;
   std::vector<std::optional<RigidMotion>> T_a_b(T_b_submap.size());
   std::vector<double> moved;

@@ -125,4 +125,18 @@ std::string cameras_of(const std::vector<const MapContent*>& maps) {
   return fmt::format("{}", fmt::join(cameras, ","));
 }
 
+std::vector<std::optional<Eigen::Vector3d>> submap_middles(const std::vector<FrameRecord>& frames,
+                                                           std::size_t submaps) {
+  std::vector<std::vector<Eigen::Vector3d>> positions(submaps);
+  for (const FrameRecord& frame : frames) {
+    if (frame.submap < 0 || std::size_t(frame.submap) >= submaps) continue;
+    positions[std::size_t(frame.submap)].push_back(frame.T_local_lidar.translation());
+  }
+  std::vector<std::optional<Eigen::Vector3d>> middles(submaps);
+  for (std::size_t id = 0; id < submaps; ++id) {
+    if (!positions[id].empty()) middles[id] = positions[id][positions[id].size() / 2];
+  }
+  return middles;
+}
+
 }  // namespace fovea

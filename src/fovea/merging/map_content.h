@@ -60,4 +60,8 @@ struct AddedDrive {
 /// InputError if the frames of both maps are too many.
 std::vector<AddedDrive> drives_to_add(const MapContent& a, const MapContent& b);
 
+/// Position of the middle frame of each submap in local; nothing for a submap without frames.
+std::vector<std::optional<Eigen::Vector3d>> submap_middles(const std::vector<FrameRecord>& frames,
+                                                           std::size_t submaps);
+
 }  // namespace fovea

@@ -36,8 +36,4 @@ struct SubmapMatches {
 SubmapMatches match_submaps(SubmapScans& a, const MapContent& content_a, SubmapScans& b,
                             const MapContent& content_b, const RigidMotion& guess_T_a_b);
 
-/// Position of the middle frame of each submap in local; nothing for a submap without frames.
-std::vector<std::optional<Eigen::Vector3d>> submap_middles(const std::vector<FrameRecord>& frames,
-                                                           std::size_t submaps);
-
 }  // namespace fovea
