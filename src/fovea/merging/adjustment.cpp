@@ -29,7 +29,8 @@ constexpr double kWrongDistance = 0.15, kWrongRotation = 0.01, kWrongSigmas = 6;
 struct Tie {
   const MapPair* pair;
   const SubmapMatch* match;
-  RelativePose measured;
+  std::size_t node_a, node_b;
+  RelativePose measured;  ///< from the earlier node
 };
 
 class Adjustment {
@@ -45,9 +46,9 @@ class Adjustment {
 
   void add_nodes();
   void add_ties();
-  void add_points(PoseGraph& graph) const;
   std::vector<RigidMotion> solved(const std::vector<RigidMotion>& poses) const;
   void reject_wrong_ties(const std::vector<RigidMotion>& poses, CityPoses& city);
+  std::vector<Eigen::Vector3d> gains() const;  // of the nodes
   CityPoses result(const std::vector<RigidMotion>& poses) const;
   std::size_t map_named(const SurveyedPoint& point) const;
   /// The submap that shows a surveyed point, as a node, and the point in it.
@@ -58,6 +59,7 @@ class Adjustment {
   std::vector<std::size_t> first_;  // node of the first submap of each map
   std::vector<RigidMotion> start_;  // T_city_submap by the maps, or by the fixed poses
   std::vector<Tie> ties_;
+  std::vector<PointPosition> positions_;  // of the surveyed points
 };
 
 Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
@@ -81,6 +83,7 @@ Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
   }
   add_nodes();
   add_ties();
+  for (const SurveyedPoint& point : job.points) positions_.push_back(position_of(point));
 }
 
 std::size_t Adjustment::map_of(const std::string& digest, const char* of_what) const {
@@ -130,16 +133,16 @@ void Adjustment::add_ties() {
                        "give each pair once");
     }
     for (const SubmapMatch& match : pair.matches) {
-      const std::size_t from = node(a, match.submap_a), to = node(b, match.submap_b);
-      RelativePose measured{from, to, match.T_a_b, Twist::Ones(), /*robust=*/true};
+      const std::size_t node_a = node(a, match.submap_a), node_b = node(b, match.submap_b);
+      RelativePose measured{node_a, node_b, match.T_a_b, Twist::Ones(), /*robust=*/true};
       Eigen::Matrix<double, 6, 6> covariance = match.covariance;  // in the frame of b
-      if (from > to) {
-        measured = {to, from, match.T_a_b.inverse(), Twist::Ones(), /*robust=*/true};
+      if (node_a > node_b) {
+        measured = {node_b, node_a, match.T_a_b.inverse(), Twist::Ones(), /*robust=*/true};
         const auto to_a = adjoint(match.T_a_b);
         covariance = to_a * covariance * to_a.transpose();
       }
       measured.sigma = covariance.diagonal().cwiseSqrt();
-      ties_.push_back({&pair, &match, measured});
+      ties_.push_back({&pair, &match, node_a, node_b, measured});
     }
   }
 }
@@ -176,12 +179,6 @@ PointPosition Adjustment::position_of(const SurveyedPoint& point) const {
           T_ecef_city_.inverse() * p_ecef, point.sigma};
 }
 
-void Adjustment::add_points(PoseGraph& graph) const {
-  for (const SurveyedPoint& point : job_.points) {
-    if (!point.is_check) graph.add(position_of(point));
-  }
-}
-
 std::vector<RigidMotion> Adjustment::solved(const std::vector<RigidMotion>& poses) const {
   PoseGraph graph;
   for (const RigidMotion& pose : poses) graph.add_node(pose);
@@ -196,7 +193,9 @@ std::vector<RigidMotion> Adjustment::solved(const std::vector<RigidMotion>& pose
     add_map_measurements(map.content, first_[k], T_city_local(map), graph);
   }
   for (const Tie& tie : ties_) graph.add(tie.measured);
-  add_points(graph);
+  for (std::size_t i = 0; i < job_.points.size(); ++i) {
+    if (!job_.points[i].is_check) graph.add(positions_[i]);
+  }
   graph.optimize();
   return graph.poses();
 }
@@ -231,33 +230,36 @@ CityPoses Adjustment::run() {
   return city;
 }
 
-CityPoses Adjustment::result(const std::vector<RigidMotion>& poses) const {
-  CityPoses city;
-  std::vector<GainTie> gain_ties;
+std::vector<Eigen::Vector3d> Adjustment::gains() const {
+  std::vector<GainTie> ties;
   for (const Tie& tie : ties_) {
     if (!tie.match->log2_gain) continue;
-    gain_ties.push_back({node(map_of(tie.pair->a.digest, "a pair"), tie.match->submap_a),
-                         node(map_of(tie.pair->b.digest, "a pair"), tie.match->submap_b),
-                         tie.match->log2_gain->cast<double>().matrix()});
+    ties.push_back({tie.node_a, tie.node_b, tie.match->log2_gain->cast<double>().matrix()});
   }
-  std::vector<GainNode> gain_nodes(start_.size());
+  std::vector<GainNode> nodes(start_.size());
   for (std::size_t k = 0; k < job_.maps.size(); ++k) {
     const PlacedMap* placed = fixed(k);
     for (std::size_t id = 0; id < job_.maps[k].name.submaps; ++id) {
-      gain_nodes[node(k, id)].continues = id > 0;
-      if (placed != nullptr) gain_nodes[node(k, id)].fixed = placed->submaps[id].log2_gain;
+      nodes[node(k, id)].continues = id > 0;
+      if (placed != nullptr) nodes[node(k, id)].fixed = placed->submaps[id].log2_gain;
     }
   }
-  const std::vector<Eigen::Vector3d> gains = city_gains(gain_nodes, gain_ties);
+  return city_gains(nodes, ties);
+}
+
+CityPoses Adjustment::result(const std::vector<RigidMotion>& poses) const {
+  CityPoses city;
+  const std::vector<Eigen::Vector3d> gains = this->gains();
   for (std::size_t k = 0; k < job_.maps.size(); ++k) {
+    const PlacedMap* placed = fixed(k);
     PlacedMap& map = city.maps.emplace_back();
     map.name = job_.maps[k].name;
-    map.is_fixed = fixed(k) != nullptr;
+    map.is_fixed = placed != nullptr;
     std::vector<double> moves;
     for (std::size_t id = 0; id < map.name.submaps; ++id) {
       const std::size_t n = node(k, id);
-      map.submaps.push_back(map.is_fixed ? fixed(k)->submaps[id]
-                                         : SubmapPlacement{T_ecef_city_ * poses[n], gains[n]});
+      map.submaps.push_back(placed != nullptr ? placed->submaps[id]
+                                              : SubmapPlacement{T_ecef_city_ * poses[n], gains[n]});
       moves.push_back((poses[n].translation() - start_[n].translation()).norm());
     }
     map.moved = median_of(std::move(moves));
@@ -265,12 +267,12 @@ CityPoses Adjustment::result(const std::vector<RigidMotion>& poses) const {
       map.matches += tie.pair->a.digest == map.name.digest || tie.pair->b.digest == map.name.digest;
     }
   }
-  for (const SurveyedPoint& point : job_.points) {
-    const PointPosition position = position_of(point);
-    const Eigen::Vector3d shown = poses[position.node] * position.p_node;
+  for (std::size_t i = 0; i < job_.points.size(); ++i) {
+    const SurveyedPoint& point = job_.points[i];
+    const Eigen::Vector3d shown = poses[positions_[i].node] * positions_[i].p_node;
     const RigidMotion T_enu_city = T_ecef_enu(point.position).inverse() * T_ecef_city_;
     city.points.push_back(
-        {point.name, point.is_check, T_enu_city.linear() * (shown - position.p_local)});
+        {point.name, point.is_check, T_enu_city.linear() * (shown - positions_[i].p_local)});
   }
   return city;
 }

@@ -22,23 +22,11 @@ double row_height(const SensorProfile& profile) {
 
 FreeSpace::FreeSpace(const MapReader& map, const MapContent& content,
                      const std::vector<RigidMotion>& T_cell_submap, double size) {
-  std::map<int, const FrameRecord*> frames;
-  for (const FrameRecord& frame : content.frames) frames[frame.index] = &frame;
-  map.for_each_keyframe([&](const KeyframeRecord& keyframe) {
-    const auto found = frames.find(keyframe.frame);
-    if (found == frames.end() || found->second->submap < 0) return;
-    const FrameRecord& frame = *found->second;
-    const auto submap = static_cast<std::size_t>(frame.submap);
-    if (submap >= T_cell_submap.size()) return;
-    const SensorRecord sensor = std::size_t(keyframe.sensor) < content.sensors.size()
-                                    ? content.sensors[std::size_t(keyframe.sensor)]
-                                    : SensorRecord{};
-    const RigidMotion T_cell_sensor = T_cell_submap[submap] *
-                                      content.T_local_submap[submap].inverse() *
-                                      frame.T_local_lidar * sensor.T_lidar_sensor;
+  for_each_placed_keyframe(map, content, [&](const PlacedKeyframe& keyframe) {
+    const RigidMotion T_cell_sensor = T_cell_submap.at(keyframe.submap) * keyframe.T_submap_sensor;
     if (T_cell_sensor.translation().head<2>().cwiseAbs().maxCoeff() > size / 2 + kReach) return;
-    views_.push_back(
-        {RangeImage(returns_of(keyframe), row_height(sensor.profile)), T_cell_sensor.inverse()});
+    views_.push_back({RangeImage(returns_of(keyframe.image), row_height(keyframe.profile)),
+                      T_cell_sensor.inverse()});
   });
 }
 

@@ -1,6 +1,6 @@
 #include "fovea/merging/submap_scans.h"
 
-#include <map>
+#include <utility>
 
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/merging/keyframe_returns.h"
@@ -15,26 +15,13 @@ constexpr double kMaxRange = 60;
 
 SubmapScans::SubmapScans(const MapReader& map, const MapContent& content)
     : content_(content), points_(content.T_local_submap.size()) {
-  std::map<int, const FrameRecord*> frames;
-  for (const FrameRecord& frame : content.frames) frames[frame.index] = &frame;
   std::vector<Eigen::Vector3f> points;
   std::optional<std::size_t> submap;  // whose points these are
-  map.for_each_keyframe([&](const KeyframeRecord& image) {
-    const auto found = frames.find(image.frame);
-    if (found == frames.end() || found->second->submap < 0) return;
-    const FrameRecord& frame = *found->second;
-    const auto of_frame = std::size_t(frame.submap);
-    if (of_frame >= points_.size()) return;
-    if (submap && *submap != of_frame) keep(*submap, std::exchange(points, {}));
-    submap = of_frame;
-    const RigidMotion T_lidar_sensor =
-        std::size_t(image.sensor) < content.sensors.size()
-            ? content.sensors[std::size_t(image.sensor)].T_lidar_sensor
-            : RigidMotion::Identity();
-    const Eigen::Isometry3f T_submap_sensor =
-        (content.T_local_submap[of_frame].inverse() * frame.T_local_lidar * T_lidar_sensor)
-            .cast<float>();
-    for (const Eigen::Vector3f& p : returns_of(image, kMaxRange)) {
+  for_each_placed_keyframe(map, content, [&](const PlacedKeyframe& keyframe) {
+    if (submap && *submap != keyframe.submap) keep(*submap, std::exchange(points, {}));
+    submap = keyframe.submap;
+    const Eigen::Isometry3f T_submap_sensor = keyframe.T_submap_sensor.cast<float>();
+    for (const Eigen::Vector3f& p : returns_of(keyframe.image, kMaxRange)) {
       points.push_back(T_submap_sensor * p);
     }
   });

@@ -25,7 +25,9 @@ class CalibrationCheck {
   /// Whether enough frames have passed since the last one whose edges were added.
   bool is_due(int index) const { return !profiles_.empty() && index >= next_; }
   void add_edges(const Frame& frame, const FrameMotion& motion);
-  void add_pose(const FrameRecord& record) { imu_.add(record); }
+  void add_pose(const FrameRecord& record) {
+    if (drive_.imu) imu_.add(record);
+  }
   /// Rotation and delay of each camera, in the calibration's order, and of the IMU, if there is
   /// one.
   DriveCalibration estimate() const;
