@@ -44,18 +44,23 @@ class ControlPoints : public testing::Test {
   std::filesystem::path path_ = folder_ / "points.csv";
 };
 
+/// The point of kGoodLine.
+void expect_good_point(const SurveyedPoint& point) {
+  EXPECT_EQ(point.name, "P1");
+  EXPECT_EQ(point.position.latitude, 49.01);
+  EXPECT_EQ(point.position.longitude, 8.4);
+  EXPECT_EQ(point.position.altitude, 115.25);
+  EXPECT_EQ(point.sigma, 0.02);
+  EXPECT_EQ(point.map, "drive_a");
+  EXPECT_EQ(point.p_local, Eigen::Vector3d(1.5, -2.25, 0.125));
+}
+
 TEST_F(ControlPoints, ReadsEachColumn) {
   const auto points = read(std::string(kHeader) + kGoodLine +
                            "P2,check,-33.5,-70.625,-12,1e-3,0a1b2c,1e3,0,-0.5\n");
   ASSERT_EQ(points.size(), 2u);
-  EXPECT_EQ(points[0].name, "P1");
+  expect_good_point(points[0]);
   EXPECT_FALSE(points[0].is_check);
-  EXPECT_EQ(points[0].position.latitude, 49.01);
-  EXPECT_EQ(points[0].position.longitude, 8.4);
-  EXPECT_EQ(points[0].position.altitude, 115.25);
-  EXPECT_EQ(points[0].sigma, 0.02);
-  EXPECT_EQ(points[0].map, "drive_a");
-  EXPECT_EQ(points[0].p_local, Eigen::Vector3d(1.5, -2.25, 0.125));
   EXPECT_EQ(points[1].name, "P2");
   EXPECT_TRUE(points[1].is_check);
   EXPECT_EQ(points[1].position.latitude, -33.5);
@@ -88,13 +93,7 @@ TEST_F(ControlPoints, ColumnsMayHaveAnotherOrderAndOthersBetweenThem) {
       "z,y,x,remark,map,sigma,height,longitude,latitude,role,name,date\n"
       "0.125,-2.25,1.5,,drive_a,0.02,115.25,8.4,49.01,control,P1,2024-05-01\n");
   ASSERT_EQ(points.size(), 1u);
-  EXPECT_EQ(points[0].name, "P1");
-  EXPECT_EQ(points[0].position.latitude, 49.01);
-  EXPECT_EQ(points[0].position.longitude, 8.4);
-  EXPECT_EQ(points[0].position.altitude, 115.25);
-  EXPECT_EQ(points[0].sigma, 0.02);
-  EXPECT_EQ(points[0].map, "drive_a");
-  EXPECT_EQ(points[0].p_local, Eigen::Vector3d(1.5, -2.25, 0.125));
+  expect_good_point(points[0]);
 }
 
 TEST_F(ControlPoints, AFileWithoutPointsHasNone) {

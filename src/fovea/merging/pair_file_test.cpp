@@ -8,9 +8,8 @@
 #include <limits>
 #include <sstream>
 
-#include "../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
-#include "fovea/merging/json_values.h"
+#include "fovea/merging/json_file_test_support.h"
 
 namespace fovea::pair_file_test {
 
@@ -45,42 +44,13 @@ MapPair made_up_pair() {
   return pair;
 }
 
-class PairFile : public testing::Test {
+class PairFile : public JsonFileTest {
  protected:
-  PairFile() {
-    write_pair(made_up_pair(), path_, /*force=*/false);
-    json_ = Json::parse(std::ifstream(path_));
-  }
-
-  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
-  std::string text() const {
-    std::ostringstream text;
-    text << std::ifstream(path_).rdbuf();
-    return text.str();
-  }
-
-  void expect_damaged(const std::string& text) const {
-    write(text);
-    try {
-      read_pair(path_);
-      ADD_FAILURE() << "no error for:\n" << text.substr(0, 2000);
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.where(), path_.string());
-      EXPECT_THAT(error.problem(), HasSubstr("pair of maps"));
-      EXPECT_THAT(error.remedy(), HasSubstr("fovea align"));
-    }
-  }
-  /// Expects an error with another value at a place such as "/matches/0/overlap".
-  void expect_damaged_with(const std::string& place, const Json& value) const {
-    SCOPED_TRACE(place + " = " + value.dump());
-    Json json = json_;
-    json[Json::json_pointer(place)] = value;
-    expect_damaged(json.dump());
-  }
-
-  TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_ / "pair.json";
-  Json json_;  // of the undamaged file
+  PairFile()
+      : JsonFileTest(
+            "pair.json", "pair of maps", "fovea align",
+            [](const Path& path) { write_pair(made_up_pair(), path, /*force=*/false); },
+            [](const Path& path) { read_pair(path); }) {}
 };
 
 void expect_same(const MapName& read, const MapName& written) {

@@ -8,10 +8,9 @@
 #include <limits>
 #include <sstream>
 
-#include "../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/merging/json_values.h"
+#include "fovea/merging/json_file_test_support.h"
 
 namespace fovea::poses_file_test {
 
@@ -39,42 +38,13 @@ CityPoses made_up_city() {
   return city;
 }
 
-class PosesFile : public testing::Test {
+class PosesFile : public JsonFileTest {
  protected:
-  PosesFile() {
-    write_city_poses(made_up_city(), path_, /*force=*/false);
-    json_ = Json::parse(std::ifstream(path_));
-  }
-
-  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
-  std::string text() const {
-    std::ostringstream text;
-    text << std::ifstream(path_).rdbuf();
-    return text.str();
-  }
-
-  void expect_damaged(const std::string& text) const {
-    write(text);
-    try {
-      read_city_poses(path_);
-      ADD_FAILURE() << "no error for:\n" << text.substr(0, 2000);
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.where(), path_.string());
-      EXPECT_THAT(error.problem(), HasSubstr("poses of a city"));
-      EXPECT_THAT(error.remedy(), HasSubstr("fovea adjust"));
-    }
-  }
-  /// Expects an error with another value at a place such as "/maps/0/matches".
-  void expect_damaged_with(const std::string& place, const Json& value) const {
-    SCOPED_TRACE(place + " = " + value.dump());
-    Json json = json_;
-    json[Json::json_pointer(place)] = value;
-    expect_damaged(json.dump());
-  }
-
-  TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_ / "poses.json";
-  Json json_;  // of the undamaged file
+  PosesFile()
+      : JsonFileTest(
+            "poses.json", "poses of a city", "fovea adjust",
+            [](const Path& path) { write_city_poses(made_up_city(), path, /*force=*/false); },
+            [](const Path& path) { read_city_poses(path); }) {}
 };
 
 TEST_F(PosesFile, OriginAndMapsReadBack) {
