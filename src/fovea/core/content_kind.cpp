@@ -64,6 +64,8 @@ ContentKind kind_of_json_object(std::string_view text) {
   const std::string_view key = body.substr(1, body.find('"', 1) - 1);
   if (key == "fovea_pair") return ContentKind::kMapPair;
   if (key == "fovea_poses") return ContentKind::kCityPoses;
+  if (key == "fovea_catalog") return ContentKind::kCatalog;
+  if (key == "fovea_city") return ContentKind::kCityManifest;
   constexpr std::array kReportKeys{"map",   "protocol", "localize",
                                    "fovea", "warnings", "calibration"};
   const bool is_report =
@@ -119,6 +121,10 @@ const char* describe(ContentKind kind) {
       return "a pair of maps";
     case ContentKind::kCityPoses:
       return "poses of a city";
+    case ContentKind::kCatalog:
+      return "the catalog of a drive";
+    case ContentKind::kCityManifest:
+      return "the manifest of a city";
     case ContentKind::kReport:
       return "a report of Fovea";
     case ContentKind::kHtml:

@@ -8,9 +8,11 @@ namespace fovea {
 enum class ContentKind {
   kEmpty,
   kMap,
-  kMapPair,    ///< JSON of `align`
-  kCityPoses,  ///< JSON of `adjust`
-  kReport,     ///< JSON of `map --report`, `evaluate --json`, `localize --report`, `reproduce`
+  kMapPair,       ///< JSON of `align`
+  kCityPoses,     ///< JSON of `adjust`
+  kCatalog,       ///< JSON of `catalog`
+  kCityManifest,  ///< JSON of `python3 -m fovea.city`
+  kReport,        ///< JSON of `map --report`, `evaluate --json`, `localize --report`, `reproduce`
   kHtml,
   kPly,
   kPcd,

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "../../../tests/temporary_folder.h"
+#include "fovea/city/json_values.h"
 #include "fovea/core/errors.h"
-#include "fovea/merging/json_values.h"
 
 namespace fovea {
 

@@ -1,6 +1,6 @@
 #include "fovea/merging/pair_file.h"
 
-#include "fovea/merging/json_values.h"
+#include "fovea/city/json_values.h"
 
 namespace fovea {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fovea/merging/json_values.h"
+#include "fovea/city/json_values.h"
 
 namespace fovea {
 namespace {

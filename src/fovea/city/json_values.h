@@ -1,4 +1,4 @@
-// Values of the JSON files of fovea align and fovea adjust. Private to merging/.
+// Values of the JSON files of a city: of fovea align, of fovea adjust, and the manifest.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "fovea/merging/json_values.h"
+#include "fovea/city/json_values.h"
 
 #include <fmt/format.h>
 
