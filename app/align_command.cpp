@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/job_arguments.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
@@ -20,7 +21,7 @@ namespace {
 struct AlignArguments {
   std::string a, b, output;
   int threads = 0;
-  bool force = false, quiet = false;
+  bool if_missing = false, force = false, quiet = false;
 };
 
 void print(const MapPair& pair, const std::string& output) {
@@ -39,6 +40,7 @@ std::string warning_of(const MapPair& pair) {
 }
 
 void run(const AlignArguments& arguments, Warnings& warnings) {
+  if (is_done(arguments.output, arguments.if_missing, arguments.quiet)) return;
   check_files(
       {{arguments.a, arguments.b}, {{arguments.output, ContentKind::kMapPair, arguments.force}}});
   const ThreadLimit threads(arguments.threads);
@@ -62,6 +64,7 @@ void add_align_command(CLI::App& app, Session& session) {
       ->type_name("PAIR.json");
   command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
       ->check(whole_number(0, kMaxThreads));
+  add_if_missing_option(*command, arguments->if_missing);
   command->add_flag("--force", arguments->force, "Overwrite PAIR.json");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments, &session] { run(*arguments, session.warnings); });

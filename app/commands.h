@@ -16,6 +16,7 @@ using AddCommand = void (*)(CLI::App& app, Session& session);
 std::span<const AddCommand> commands();
 
 void add_map_command(CLI::App& app, Session& session);
+void add_catalog_command(CLI::App& app, Session& session);
 void add_check_command(CLI::App& app, Session& session);
 void add_calibrate_command(CLI::App& app, Session& session);
 void add_info_command(CLI::App& app, Session& session);

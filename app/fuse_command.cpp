@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/job_arguments.h"
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
@@ -21,12 +22,12 @@ namespace {
 
 struct FuseArguments {
   std::vector<std::string> maps;
-  std::string poses, tile, output;
+  std::string poses, tile, output, scratch;
   std::string session = TileFusionJob().session;
   double tile_size = TileFusionJob().tile_size;
   std::size_t memory = TileFusionJob().memory;
   int threads = 0;
-  bool force = false, quiet = false;
+  bool if_missing = false, force = false, quiet = false, allow_empty = false;
 };
 
 CityTile tile_of(const std::string& text) {
@@ -46,6 +47,7 @@ double finest_spacing(const std::vector<std::string>& maps) {
 }
 
 void run(const FuseArguments& arguments) {
+  if (is_done(arguments.output, arguments.if_missing, arguments.quiet)) return;
   TileFusionJob job;
   job.tile = tile_of(arguments.tile);
   std::vector<std::string> inputs = arguments.maps;
@@ -54,6 +56,8 @@ void run(const FuseArguments& arguments) {
   const ThreadLimit threads(arguments.threads);
   job.output = arguments.output;
   job.force = arguments.force;
+  job.scratch = arguments.scratch;
+  job.allow_empty = arguments.allow_empty;
   job.tile_size = arguments.tile_size;
   job.session = arguments.session;
   job.memory = arguments.memory;
@@ -96,6 +100,10 @@ void add_fuse_command(CLI::App& app, Session& /*session*/) {
       ->type_name("SIZE");
   command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
       ->check(whole_number(0, kMaxThreads));
+  command->add_flag("--allow-empty", arguments->allow_empty,
+                    "A tile without points is a map without points, not an error");
+  add_scratch_option(*command, arguments->scratch);
+  add_if_missing_option(*command, arguments->if_missing);
   command->add_flag("--force", arguments->force, "Overwrite TILE.fovea");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback([arguments] { run(*arguments); });

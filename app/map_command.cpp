@@ -13,6 +13,7 @@
 #include "app/commands.h"
 #include "app/drive_arguments.h"
 #include "app/drive_check_text.h"
+#include "app/job_arguments.h"
 #include "app/live_view.h"
 #include "app/number_checks.h"
 #include "app/print.h"
@@ -40,12 +41,14 @@ constexpr const char* kNavigationPoses = "navigation";
 
 struct MapArguments {
   DriveArguments drive;
-  std::string output, preset = "default", config, hold_out, poses = kRefinedPoses, variant, report;
+  std::string output, preset = "default", config, hold_out, poses = kRefinedPoses, variant, report,
+                      scratch;
   std::vector<std::string> settings;
   int threads = 0;
   double rate = 0;
   std::size_t memory = std::size_t{1} << 30;
   bool calibrate = false, resume = false, force = false, quiet = false, allow_dropped = false;
+  bool if_missing = false;
   std::string live;  // see live_view.h
 };
 
@@ -120,6 +123,7 @@ void print_if_odd(const FrameSource& source, const MapArguments& arguments) {
 }
 
 void run(const MapArguments& arguments, Session& session) {
+  if (is_done(arguments.output, arguments.if_missing, arguments.quiet)) return;
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   MapJob job;
@@ -132,6 +136,7 @@ void run(const MapArguments& arguments, Session& session) {
   job.calibrate = arguments.calibrate;
   job.allow_dropped = arguments.allow_dropped;
   job.force = arguments.force;
+  job.scratch = arguments.scratch;
   job.resume = arguments.resume;
 
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
@@ -150,7 +155,8 @@ void run(const MapArguments& arguments, Session& session) {
   print_if_odd(*source, arguments);
   // Played live, the first frames are as much in a hurry as any.
   if (job.rate > 0) warm_memory(std::min(kWarmMemory, job.memory / kWarmShare));
-  job.stop = session.interrupt.stop_gently();
+  // In a scratch folder nothing is kept of a run that does not end.
+  if (job.scratch.empty()) job.stop = session.interrupt.stop_gently();
   LiveView view(arguments.live, job, source, arguments.quiet);
   const MapSummary summary = [&] {
     ProgressBar bar(arguments.quiet);
@@ -236,6 +242,8 @@ void add_map_command(CLI::App& app, Session& session) {
   command->add_flag("--allow-dropped", arguments->allow_dropped,
                     "Map even if over 10 % of the scans' points cannot be used");
   command->add_flag("--resume", arguments->resume, "Go on with an unfinished map");
+  add_if_missing_option(*command, arguments->if_missing)->excludes("--resume");
+  add_scratch_option(*command, arguments->scratch)->excludes("--resume");
   command->add_flag("--force", arguments->force, "Overwrite the map");
   command->add_option("--report", arguments->report, "Write figures as JSON")
       ->type_name("FILE.json");

@@ -77,7 +77,7 @@ std::vector<RigidMotion> adjusted(const nlohmann::json& poses, const std::string
   const std::vector<RigidMotion> T_local_submap = map.submaps();
   std::vector<RigidMotion> T_ecef_lidar;
   for (const auto& placed : poses.at("maps")) {
-    if (placed.at("digest") != map.digest()) continue;
+    if (placed.at("identity") != map.identity()) continue;
     for (const FrameRecord& frame : map.frames()) {
       const auto id = static_cast<std::size_t>(frame.submap);
       T_ecef_lidar.push_back(motion_of(placed.at("submaps").at(id).at("T_ecef_submap")) *

@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <limits.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <stdexcept>
 #include <streambuf>
@@ -99,6 +102,33 @@ void publish_file(const fs::path& partial, const fs::path& path, UnfinishedOutpu
     output.finish();
   }
   sync_folder_of(path);
+}
+
+fs::path scratch_name(const fs::path& path) {
+  std::array<char, HOST_NAME_MAX + 1> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  static std::atomic<int> number = 0;
+  return fmt::format("{}.{}-{}-{}.partial", path.filename().string(), host.data(), ::getpid(),
+                     ++number);
+}
+
+void publish_copy(const fs::path& partial, const fs::path& copy, const fs::path& path,
+                  UnfinishedOutput& output) {
+  constexpr auto kReadOnly = fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read;
+  std::error_code error, ignored;
+  const auto drop_copy = [&] { fs::remove(copy, ignored); };
+  if (!fs::copy_file(partial, copy, fs::copy_options::overwrite_existing, error)) {
+    drop_copy();
+    throw_output_error(path, error.value());
+  }
+  fs::permissions(copy, kReadOnly, ignored);  // where the file system has permissions
+  try {
+    publish_file(copy, path, output);
+  } catch (...) {
+    drop_copy();
+    throw;
+  }
+  fs::remove(partial, ignored);
 }
 
 void sync_folder_of(const fs::path& path) { sync_to_disk(folder_of(path), O_RDONLY | O_DIRECTORY); }

@@ -23,6 +23,16 @@ std::filesystem::path partial_path(const std::filesystem::path& path);
 void publish_file(const std::filesystem::path& partial, const std::filesystem::path& path,
                   UnfinishedOutput& output);
 
+/// A name that no other program uses, for a file in a folder that machines share:
+/// "NAME.HOST-PROCESS-NUMBER.partial".
+std::filesystem::path scratch_name(const std::filesystem::path& path);
+
+/// Copies `partial`, which it removes, to `copy` in the folder of `path`; makes the copy durable
+/// and read-only, and renames it to `path`. OutputError names the file that cannot be written.
+/// @param output  of `partial` and `copy`; finished by this
+void publish_copy(const std::filesystem::path& partial, const std::filesystem::path& copy,
+                  const std::filesystem::path& path, UnfinishedOutput& output);
+
 /// Makes a file's name durable: flushes the folder that it is in.
 void sync_folder_of(const std::filesystem::path& path);
 

@@ -23,6 +23,11 @@ inline auto names_of(LensModel) {
                     entry(LensModel::kRationalPolynomial), entry(LensModel::kEquidistant)};
 }
 
+constexpr auto names_of(HeightType) {
+  return std::array{EnumName<HeightType>{HeightType::kEllipsoidal, "ellipsoidal"},
+                    EnumName<HeightType>{HeightType::kOrthometric, "orthometric"}};
+}
+
 namespace {
 
 constexpr int kVersion = 1;
@@ -160,6 +165,9 @@ class DriveKeys {
     T_body_lidar_.visit(visit);
     T_body_imu_.visit(visit);
     visit("body.antenna", antenna_);
+    visit("georeference.datum", drive_.coordinates.datum);
+    visit("georeference.epoch_year", drive_.coordinates.epoch_year);
+    visit("georeference.heights", drive_.coordinates.heights);
     imu_.visit(visit);
     visit("wheels.sigma", drive_.wheels.sigma);
     for (CameraKeys& camera : cameras_) camera.visit(visit);
@@ -178,6 +186,7 @@ class DriveKeys {
     }
     drive_.antenna_body = Eigen::Map<const Eigen::Vector3d>(antenna_.data());
     check_lever("body.antenna", drive_.antenna_body);
+    read_coordinates();
     drive_.imu = imu_.imu();
     check_key("wheels.sigma", drive_.wheels.sigma, 1e-3, 100);
     drive_.wheels.T_lidar_body = drive_.T_body_lidar.inverse();
@@ -217,6 +226,14 @@ class DriveKeys {
                  "leave out T_lidar_sensor of the one whose frame the other poses name");
     }
     drive_.lidar = std::move(*first);
+  }
+
+  void read_coordinates() const {
+    const CoordinateReference& stated = drive_.coordinates;
+    if (stated.datum && stated.datum->empty()) {
+      reject_key("the datum has no name", "georeference.datum", "give one, such as ITRF2014");
+    }
+    if (stated.epoch_year) check_key("georeference.epoch_year", *stated.epoch_year, 1900, 2200);
   }
 
   void read_cameras() {

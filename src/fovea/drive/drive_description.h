@@ -9,6 +9,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/drive/scans/scan_format.h"
+#include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/imu_data.h"
 #include "fovea/geometry/lens.h"
 #include "fovea/geometry/rigid_motion.h"
@@ -77,6 +78,7 @@ struct DriveDescription {
   RigidMotion T_body_lidar = RigidMotion::Identity();
   RigidMotion T_body_imu = RigidMotion::Identity();        ///< of imu.csv's orientations
   Eigen::Vector3d antenna_body = Eigen::Vector3d::Zero();  ///< of gnss.csv's positions
+  CoordinateReference coordinates;                         ///< of gnss.csv's positions
   std::optional<ImuDescription> imu;  ///< absent: imu.csv has orientations only
   WheelDescription wheels;
   std::vector<CameraDescription> cameras;  ///< by index; may be empty

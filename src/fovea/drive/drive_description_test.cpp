@@ -103,6 +103,23 @@ TEST(DriveDescription, UnitsAreRecognizedUnlessStated) {
   EXPECT_THAT(error(std::string(kSmallest) + "[lidar]\nlength_unit = \"ft\"\n"), HasSubstr("'mm'"));
 }
 
+TEST(DriveDescription, CoordinatesAreAbsentUnlessStated) {
+  const CoordinateReference absent = parse(kSmallest).coordinates;
+  EXPECT_FALSE(absent.datum || absent.epoch_year || absent.heights);
+  const auto georeference = [](const std::string& lines) {
+    return kSmallest + "[georeference]\n" + lines;
+  };
+  const CoordinateReference stated =
+      parse(georeference("datum = \"ITRF2014\"\nepoch_year = 2020.5\nheights = \"orthometric\"\n"))
+          .coordinates;
+  EXPECT_EQ(stated.datum, "ITRF2014");
+  EXPECT_EQ(stated.epoch_year, 2020.5);
+  EXPECT_EQ(stated.heights, HeightType::kOrthometric);
+  EXPECT_THAT(error(georeference("datum = \"\"\n")), HasSubstr("georeference.datum"));
+  EXPECT_THAT(error(georeference("epoch_year = 20\n")), HasSubstr("georeference.epoch_year"));
+  EXPECT_THAT(error(georeference("heights = \"sea\"\n")), HasSubstr("'ellipsoidal'"));
+}
+
 TEST(DriveDescription, EveryKey) {
   const DriveDescription drive = parse(R"(
 version = 1

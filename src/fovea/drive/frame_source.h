@@ -122,6 +122,7 @@ struct DriveInfo : Messages {
   /// where it says nothing, infinite where it sees no satellite.
   std::vector<double> navigation_accuracy;
   std::optional<GeodeticPoint> origin;  ///< of `local`; absent: the map is not georeferenced
+  CoordinateReference coordinates;      ///< of `origin`
   std::optional<ImuData> imu;           ///< absent where the drive has no (usable) IMU
   std::optional<WheelData> wheels;
   /// Poses T_local_lidar that came with the drive as reference (KITTI odometry poses), a frame

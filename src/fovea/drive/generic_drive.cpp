@@ -263,6 +263,7 @@ class GenericDrive {
     info_.navigation = std::move(navigation.T_local_lidar);
     info_.navigation_accuracy = std::move(navigation.accuracy);
     info_.origin = navigation.origin;
+    info_.coordinates = description_.coordinates;
   }
 
   void find_imu() {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "fovea/geometry/rigid_motion.h"
 
@@ -10,6 +12,18 @@ namespace fovea {
 struct GeodeticPoint {
   double latitude = 0, longitude = 0;  ///< degrees, WGS84
   double altitude = 0;                 ///< m above the ellipsoid
+};
+
+enum class HeightType {
+  kEllipsoidal,  ///< above the ellipsoid
+  kOrthometric,  ///< above the geoid, which is up to 100 m from the ellipsoid
+};
+
+/// What coordinates refer to, as far as it is stated.
+struct CoordinateReference {
+  std::optional<std::string> datum;  ///< "ITRF2014", "ETRS89"
+  std::optional<double> epoch_year;  ///< of the datum, as a decimal year
+  std::optional<HeightType> heights;
 };
 
 /// The east-north-up frame at `point` in earth-centred, earth-fixed coordinates (WGS 84).

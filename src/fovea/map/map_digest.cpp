@@ -76,19 +76,44 @@ void add_tiles(const MapReader& map, ValueHash& digest) {
   });
 }
 
+/// The checksums of the tiles, which need not be decompressed for that.
+void add_tile_checksums(MapFile& file, ValueHash& hash) {
+  hash.section(kTilesTable.name);
+  sqlite::Statement rows = file.query(kTilesTable, [&] {
+    return sqlite::Statement(
+        file.sqlite(), "SELECT submap, x, y, z, checksum FROM tiles ORDER BY submap, x, y, z");
+  });
+  while (file.query(kTilesTable, [&] { return rows.step(); })) {
+    hash.row();
+    for (int column = 0; column < 5; ++column) hash.value(rows.integer(column));
+  }
+}
+
+void add_small_tables(const MapReader& map, ValueHash& digest) {
+  add_meta(map, digest);
+  add_numbered(kDrivesTable, map.drives(), drive_row, digest);
+  add_numbered(kSensorsTable, map.sensors(), sensor_row, digest);
+  add_frames(map.frames(), digest);
+  add_numbered(kSubmapsTable, map.submap_records(), submap_row, digest);
+}
+
 }  // namespace
 
 std::string MapReader::digest() const {
   const Snapshot snapshot(file_->sqlite());
   ValueHash digest;
-  add_meta(*this, digest);
-  add_numbered(kDrivesTable, drives(), drive_row, digest);
-  add_numbered(kSensorsTable, sensors(), sensor_row, digest);
-  add_frames(frames(), digest);
-  add_numbered(kSubmapsTable, submap_records(), submap_row, digest);
+  add_small_tables(*this, digest);
   add_keyframes(*this, digest);
   add_tiles(*this, digest);
   return digest.hex128();
+}
+
+std::string MapReader::identity() const {
+  const Snapshot snapshot(file_->sqlite());
+  ValueHash hash;
+  add_small_tables(*this, hash);
+  add_tile_checksums(*file_, hash);
+  return hash.hex128();
 }
 
 }  // namespace fovea

@@ -51,9 +51,22 @@ bool has_log(const fs::path& path) {
   return false;
 }
 
+/// No user may write the file, so it does not change. SQLite needs no locks, which shared folders
+/// often lack.
+bool is_read_only(const fs::path& path) {
+  constexpr auto kMayWrite =
+      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return !error && (status.permissions() & kMayWrite) == fs::perms::none;
+}
+
 /// @param shown_path  the map, of which `path` may be a copy
 std::unique_ptr<sqlite::Database> open_for_reading(const fs::path& path,
                                                    const fs::path& shown_path) {
+  if (is_read_only(path) && !has_log(path)) {
+    return std::make_unique<sqlite::Database>(path, Access::kReadImmutable, shown_path);
+  }
   auto database = std::make_unique<sqlite::Database>(path, Access::kRead, shown_path);
   // SQLite reads nothing before the first statement.
   constexpr const char* kFirstStatement = "SELECT count(*) FROM sqlite_master";

@@ -17,7 +17,6 @@ namespace fovea {
 
 inline constexpr const char* kWgs84 = "WGS 84";
 
-enum class HeightType { kEllipsoidal, kOrthometric };
 /// "ellipsoidal" or "orthometric".
 const char* to_string(HeightType type);
 

@@ -42,6 +42,12 @@ class MapWriter {
   /// Starts a new map. OutputError if `path` exists and `force` is false, its folder does not exist
   /// or nothing can be written there. The file appears under its name at the first commit.
   static std::unique_ptr<MapWriter> create(const std::filesystem::path& path, bool force);
+  /// A new map for a shared folder. It grows in `scratch`, a folder of this machine, without a
+  /// write-ahead log. Commits before the end do nothing. The end copies it next to `path`, makes
+  /// the copy durable and read-only, and renames it. Errors as create(), and if `scratch` is no
+  /// folder.
+  static std::unique_ptr<MapWriter> create_in_scratch(const std::filesystem::path& path, bool force,
+                                                      const std::filesystem::path& scratch);
   /// Opens an existing map to extend it. InputError as MapReader, and for a map of an older format;
   /// OutputError if it cannot be written or another program is writing it.
   static std::unique_ptr<MapWriter> open(const std::filesystem::path& path);
@@ -138,6 +144,9 @@ class MapReader {
   PointCloud all_points_local(const PointFilter& where = {}) const;
   /// Hash of everything but timings, rows in key order: 32 hexadecimal digits (XXH3, 128 bits).
   std::string digest() const;
+  /// Names the map for files about it. Unlike digest(), it depends on how tiles are compressed, and
+  /// it takes no time that counts: 32 hexadecimal digits.
+  std::string identity() const;
   /// Has SQLite check pages, indexes and free pages.
   void check_structure() const;
   /// Reads every row but those of tiles.

@@ -35,8 +35,17 @@ class SqliteMapWriter : public MapWriter {
   SqliteMapWriter(const fs::path& path, bool force)
       : path_(path), target_(check_output_path(path, force)), force_(force) {
     merge_old_map(target_);  // an error before a long run, not after it
-    unfinished_.emplace(path_, std::vector{partial_path(target_)},
-                        [this] { start_partial_file(); });
+    partial_ = partial_path(target_);
+    unfinished_.emplace(path_, std::vector{partial_}, [this] { start_partial_file(); });
+  }
+
+  /// A new map, which grows in a folder of its own until its end.
+  SqliteMapWriter(const fs::path& path, bool force, const fs::path& scratch)
+      : path_(path), target_(check_output_path(path, force)), force_(force) {
+    if (!log_of_map(target_).empty()) merge_old_map(target_);
+    partial_ = scratch / scratch_name(target_);
+    copy_ = target_.parent_path() / scratch_name(target_);
+    unfinished_.emplace(path_, std::vector{partial_, copy_}, [this] { start_partial_file(); });
   }
 
   /// An existing map.
@@ -87,6 +96,7 @@ class SqliteMapWriter : public MapWriter {
   TilePoints read_tile(const TileId& id) override;
 
   void commit() override {
+    if (!copy_.empty()) return;  // of use only when it is whole
     write([&] {
       put_counts();
       database_->execute("COMMIT");
@@ -140,8 +150,10 @@ class SqliteMapWriter : public MapWriter {
   void publish();
   void open_published_file();
 
-  fs::path path_;    // as the user named it
-  fs::path target_;  // the file itself, where path_ is a symbolic link
+  fs::path path_;     // as the user named it
+  fs::path target_;   // the file itself, where path_ is a symbolic link
+  fs::path partial_;  // where a new map grows
+  fs::path copy_;     // next to the target, of a map that grows in a scratch folder; or empty
   bool force_;
   bool published_ = false;
   bool ended_ = false;                          // by finish() or by an error
@@ -152,15 +164,14 @@ class SqliteMapWriter : public MapWriter {
 };
 
 void SqliteMapWriter::start_partial_file() {
-  const fs::path partial = partial_path(target_);
-  if (fs::exists(partial)) {
+  if (fs::exists(partial_)) {
     // Left by a killed program, unless one still has its lock.
-    Database left(partial, Access::kWrite, path_);
+    Database left(partial_, Access::kWrite, path_);
     if (left.attempt("BEGIN EXCLUSIVE") == Outcome::kBusy) left.throw_busy();
-    fs::remove(partial);
+    fs::remove(partial_);
   }
-  remove_side_files(partial);
-  database_ = std::make_unique<Database>(partial, Access::kCreate, path_);
+  remove_side_files(partial_);
+  database_ = std::make_unique<Database>(partial_, Access::kCreate, path_);
   try {
     // A file that is thrown away on any failure needs no journal, and one sync when it is whole.
     database_->execute(
@@ -182,15 +193,20 @@ void SqliteMapWriter::start_partial_file() {
 
 void SqliteMapWriter::remove_partial_file() {
   std::error_code ignored;
-  fs::remove(partial_path(target_), ignored);
-  remove_side_files(partial_path(target_));
+  fs::remove(partial_, ignored);
+  remove_side_files(partial_);
 }
 
 void SqliteMapWriter::publish() {
-  // Another program may have made the file meanwhile.
-  check_output_path(path_, force_);
-  remove_old_map_logs(target_);
-  publish_file(partial_path(target_), target_, *unfinished_);
+  if (copy_.empty()) {
+    // Another program may have made the file meanwhile.
+    check_output_path(path_, force_);
+    remove_old_map_logs(target_);
+    publish_file(partial_, target_, *unfinished_);
+  } else {
+    // A second run of the same job may have made the file meanwhile: with the same content.
+    publish_copy(partial_, copy_, target_, *unfinished_);
+  }
   published_ = true;
   statements_.reset();
   database_.reset();
@@ -289,6 +305,11 @@ void SqliteMapWriter::put_tiles(std::size_t count,
 
 std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
   return std::make_unique<SqliteMapWriter>(path, force);
+}
+
+std::unique_ptr<MapWriter> MapWriter::create_in_scratch(const fs::path& path, bool force,
+                                                        const fs::path& scratch) {
+  return std::make_unique<SqliteMapWriter>(path, force, scratch);
 }
 
 std::unique_ptr<MapWriter> MapWriter::open(const fs::path& path) {

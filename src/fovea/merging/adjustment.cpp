@@ -40,7 +40,7 @@ class Adjustment {
 
  private:
   std::size_t node(std::size_t map, std::size_t submap) const { return first_[map] + submap; }
-  std::size_t map_of(const std::string& digest, const char* of_what) const;
+  std::size_t map_of(const std::string& identity, const char* of_what) const;
   RigidMotion T_city_local(const AdjustedMap& map) const;
   const PlacedMap* fixed(std::size_t map) const;
 
@@ -65,9 +65,9 @@ class Adjustment {
 Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
   if (job.maps.empty()) throw InputError("no maps to adjust", "the command", "give two or more");
   T_ecef_city_ = T_ecef_enu(origin_of(job.maps.front().content));
-  std::set<std::string> digests;
+  std::set<std::string> identities;
   for (const AdjustedMap& map : job.maps) {
-    if (!digests.insert(map.name.digest).second) {
+    if (!identities.insert(map.name.identity).second) {
       throw InputError("a map is given twice", map.name.drive, "give each map once");
     }
     require_one_drive(map.content, map.name.drive);
@@ -76,7 +76,7 @@ Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
   }
   for (const PlacedMap& placed : job.fixed) {
     if (placed.submaps.size() !=
-        job.maps[map_of(placed.name.digest, "the fixed poses")].name.submaps) {
+        job.maps[map_of(placed.name.identity, "the fixed poses")].name.submaps) {
       throw InputError("fixed poses have other submaps than the map", placed.name.drive,
                        "give the poses of this map");
     }
@@ -86,11 +86,11 @@ Adjustment::Adjustment(const AdjustmentJob& job) : job_(job) {
   for (const SurveyedPoint& point : job.points) positions_.push_back(position_of(point));
 }
 
-std::size_t Adjustment::map_of(const std::string& digest, const char* of_what) const {
+std::size_t Adjustment::map_of(const std::string& identity, const char* of_what) const {
   for (std::size_t k = 0; k < job_.maps.size(); ++k) {
-    if (job_.maps[k].name.digest == digest) return k;
+    if (job_.maps[k].name.identity == identity) return k;
   }
-  throw InputError(fmt::format("{} are of a map that is not given", of_what), digest,
+  throw InputError(fmt::format("{} are of a map that is not given", of_what), identity,
                    "give this map, too, or make the file again for the maps given");
 }
 
@@ -100,7 +100,7 @@ RigidMotion Adjustment::T_city_local(const AdjustedMap& map) const {
 
 const PlacedMap* Adjustment::fixed(std::size_t map) const {
   for (const PlacedMap& placed : job_.fixed) {
-    if (placed.name.digest == job_.maps[map].name.digest) return &placed;
+    if (placed.name.identity == job_.maps[map].name.identity) return &placed;
   }
   return nullptr;
 }
@@ -121,7 +121,7 @@ void Adjustment::add_nodes() {
 void Adjustment::add_ties() {
   std::set<std::pair<std::size_t, std::size_t>> aligned;
   for (const MapPair& pair : job_.pairs) {
-    const std::size_t a = map_of(pair.a.digest, "a pair"), b = map_of(pair.b.digest, "a pair");
+    const std::size_t a = map_of(pair.a.identity, "a pair"), b = map_of(pair.b.identity, "a pair");
     if (a == b) throw InputError("a pair has one map twice", pair.a.drive, "align two maps");
     if (pair.a.submaps != job_.maps[a].name.submaps ||
         pair.b.submaps != job_.maps[b].name.submaps) {
@@ -148,17 +148,17 @@ void Adjustment::add_ties() {
 }
 
 std::size_t Adjustment::map_named(const SurveyedPoint& point) const {
-  std::vector<std::size_t> by_drive, by_digest;
+  std::vector<std::size_t> by_drive, by_identity;
   for (std::size_t k = 0; k < job_.maps.size(); ++k) {
     if (job_.maps[k].name.drive == point.map) by_drive.push_back(k);
-    if (job_.maps[k].name.digest.starts_with(point.map)) by_digest.push_back(k);
+    if (job_.maps[k].name.identity.starts_with(point.map)) by_identity.push_back(k);
   }
-  const std::vector<std::size_t>& named = by_drive.empty() ? by_digest : by_drive;
+  const std::vector<std::size_t>& named = by_drive.empty() ? by_identity : by_drive;
   if (named.size() == 1) return named.front();
   throw InputError(
       fmt::format("the point {} is of {}", point.name,
                   named.empty() ? "a map that is not given" : "a name that several maps have"),
-      point.map, "name a drive of the maps, or the first digits of a map's digest");
+      point.map, "name a drive of the maps, or the first digits of a map's identity");
 }
 
 PointPosition Adjustment::position_of(const SurveyedPoint& point) const {
@@ -213,7 +213,7 @@ void Adjustment::reject_wrong_ties(const std::vector<RigidMotion>& poses, CityPo
       kept.push_back(tie);
       continue;
     }
-    city.rejected.push_back({tie.pair->a.digest, tie.pair->b.digest, tie.match->submap_a,
+    city.rejected.push_back({tie.pair->a.identity, tie.pair->b.identity, tie.match->submap_a,
                              tie.match->submap_b, distance});
   }
   ties_ = std::move(kept);
@@ -264,7 +264,8 @@ CityPoses Adjustment::result(const std::vector<RigidMotion>& poses) const {
     }
     map.moved = median_of(std::move(moves));
     for (const Tie& tie : ties_) {
-      map.matches += tie.pair->a.digest == map.name.digest || tie.pair->b.digest == map.name.digest;
+      map.matches +=
+          tie.pair->a.identity == map.name.identity || tie.pair->b.identity == map.name.identity;
     }
   }
   for (std::size_t i = 0; i < job_.points.size(); ++i) {

@@ -145,7 +145,7 @@ TEST_F(Adjustment, AWrongMatchIsLeftOutAndNamed) {
   job_.pairs[0].matches[3].T_a_b.translation().x() += 3;
   const CityPoses city = adjust_city(job_);
   ASSERT_EQ(city.rejected.size(), 1u);
-  EXPECT_EQ(city.rejected[0].digest_a, "a_digest");
+  EXPECT_EQ(city.rejected[0].identity_a, "a_digest");
   EXPECT_EQ(city.rejected[0].submap_b, job_.pairs[0].matches[3].submap_b);
   EXPECT_NEAR(city.rejected[0].distance, 3, 0.1);
   EXPECT_LT(worst_relative_error(city), worst_relative_error(right) + 0.02);

@@ -23,9 +23,9 @@ CellSource CellReader::read(const std::filesystem::path& path) const {
   source.reader = std::make_unique<MapReader>(path);
   source.content = MapContent(*source.reader);
   require_one_drive(source.content, path.string());
-  const std::string& digest = source.content.drives.front().digest;
+  const std::string& identity = source.content.drives.front().digest;
   for (const PlacedMap& placed : city_.maps) {
-    if (placed.name.digest == digest) source.placed = &placed;
+    if (placed.name.identity == identity) source.placed = &placed;
   }
   if (source.placed == nullptr ||
       source.placed->submaps.size() != source.content.T_local_submap.size()) {

@@ -29,7 +29,7 @@ struct PlacedMap {
 
 /// A match that contradicts the others.
 struct RejectedMatch {
-  std::string digest_a, digest_b;  ///< of the maps
+  std::string identity_a, identity_b;  ///< of the maps
   std::size_t submap_a = 0, submap_b = 0;
   double distance = 0;  ///< m, from where it places the submap of B
 };

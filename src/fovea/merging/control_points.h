@@ -15,7 +15,7 @@ struct SurveyedPoint {
   bool is_check = false;   ///< only compared, without influence on the poses
   GeodeticPoint position;  ///< by the survey
   double sigma = 0.02;     ///< of each coordinate, m
-  std::string map;         ///< name of the drive, or the first digits of the map's digest
+  std::string map;         ///< name of the drive, or the first digits of the map's identity
   Eigen::Vector3d p_local = Eigen::Vector3d::Zero();  ///< where the map shows it, m
 };
 

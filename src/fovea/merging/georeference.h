@@ -10,6 +10,10 @@ namespace fovea {
 /// InputError for a map without georeference.
 GeodeticPoint origin_of(const MapContent& map);
 
+/// Applies what the user states to a map whose drive states no coordinates. Of others nothing
+/// changes.
+void state_coordinates(const CoordinateReference& stated, MapContent& map);
+
 /// InputError if datum, epoch or type of heights of two maps differ, or are stated by one of them
 /// alone: ITRF and ETRS89 are 0.8 m apart, geoid and ellipsoid up to 100 m.
 void require_same_coordinates(const MapContent& a, const MapContent& b);

@@ -24,9 +24,9 @@ void describe(const MergedDrive& drive, DriveRecord& record) {
 }
 
 /// The drive of a map that is not merged.
-MergedDrive only_drive(const MapReader& map, const MapContent& content) {
+MergedDrive only_drive(const MapReader& map, const MapContent& content, bool with_digest) {
   MergedDrive drive;
-  drive.digest = map.digest();
+  drive.digest = with_digest ? map.digest() : map.identity();
   drive.name = content.text(meta_key::kDriveName);
   if (!content.frames.empty()) {
     drive.first_frame = content.frames.front().index;
@@ -38,7 +38,7 @@ MergedDrive only_drive(const MapReader& map, const MapContent& content) {
 
 }  // namespace
 
-MapContent::MapContent(const MapReader& map)
+MapContent::MapContent(const MapReader& map, bool with_digest)
     : meta(map.meta()),
       frames(map.frames()),
       T_local_submap(map.submaps()),
@@ -48,7 +48,7 @@ MapContent::MapContent(const MapReader& map)
       tile_size(map_tile_size(meta)) {
   is_merged = !drives.empty();
   if (!is_merged) {
-    drives.push_back(only_drive(map, *this));
+    drives.push_back(only_drive(map, *this, with_digest));
     records.resize(1);
   }
   for (std::size_t k = 0; k < drives.size(); ++k) describe(drives[k], records[k]);

@@ -12,7 +12,9 @@ namespace fovea {
 /// A map without its points.
 struct MapContent {
   MapContent() = default;  // without frames
-  explicit MapContent(const MapReader& map);
+  /// @param with_digest  the drive of a map that is not merged gets the map's digest, which merged
+  ///                     maps state. Otherwise it gets its identity, which takes no time.
+  explicit MapContent(const MapReader& map, bool with_digest = false);
 
   /// Of a key of the meta data; empty without it.
   std::string text(const std::string& key) const;

@@ -131,7 +131,7 @@ class Aligner {
 }  // namespace
 
 MapName name_of(const MapReader& map, const MapContent& content) {
-  return {content.is_merged ? map.digest() : content.drives.front().digest,
+  return {content.is_merged ? map.identity() : content.drives.front().digest,
           content.drives.front().name, content.T_local_submap.size()};
 }
 

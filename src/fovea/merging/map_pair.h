@@ -12,8 +12,8 @@ namespace fovea {
 
 /// A map as files name it that refer to it.
 struct MapName {
-  std::string digest;  ///< MapReader::digest()
-  std::string drive;   ///< for people: name of the drive
+  std::string identity;  ///< MapReader::identity()
+  std::string drive;     ///< for people: name of the drive
   std::size_t submaps = 0;
 };
 MapName name_of(const MapReader& map, const MapContent& content);

@@ -76,7 +76,7 @@ RigidMotion compare(const MapReader& a, const MapReader& b, const MapContent& co
 
 MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& job) {
   const auto held_a = a.hold_state(), held_b = b.hold_state();
-  const MapContent content_a(a), content_b(b);
+  const MapContent content_a(a, /*with_digest=*/true), content_b(b, /*with_digest=*/true);
   require_fit(content_a, content_b, job.output.string());
   const std::vector<AddedDrive> added = drives_to_add(content_a, content_b);
   MergeFigures figures;

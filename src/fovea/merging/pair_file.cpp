@@ -10,11 +10,11 @@ constexpr const char* kRemedy = "make it again with 'fovea align'";
 using Covariance = Eigen::Matrix<double, 6, 6>;
 
 Json json_of_name(const MapName& name) {
-  return {{"digest", name.digest}, {"drive", name.drive}, {"submaps", name.submaps}};
+  return {{"identity", name.identity}, {"drive", name.drive}, {"submaps", name.submaps}};
 }
 
 MapName name_from(const Json& json) {
-  return {json.at("digest").get<std::string>(), json.at("drive").get<std::string>(),
+  return {json.at("identity").get<std::string>(), json.at("drive").get<std::string>(),
           count_of(json.at("submaps"))};
 }
 

@@ -54,7 +54,7 @@ class PairFile : public JsonFileTest {
 };
 
 void expect_same(const MapName& read, const MapName& written) {
-  EXPECT_EQ(read.digest, written.digest);
+  EXPECT_EQ(read.identity, written.identity);
   EXPECT_EQ(read.drive, written.drive);
   EXPECT_EQ(read.submaps, written.submaps);
 }
@@ -192,7 +192,7 @@ TEST_F(PairFile, ValuesHaveTheirType) {
     expect_damaged_with(place, nullptr);
     expect_damaged_with(place, Json::array());
   }
-  for (const std::string place : {"/a/digest", "/b/drive"}) expect_damaged_with(place, 1);
+  for (const std::string place : {"/a/identity", "/b/drive"}) expect_damaged_with(place, 1);
   for (const std::string place : {"/a", "/b", "/matches/0", "/matches/0/T_a_b"}) {
     expect_damaged_with(place, Json::array({1, 2}));
     expect_damaged_with(place, "text");

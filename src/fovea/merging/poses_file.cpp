@@ -11,8 +11,8 @@ constexpr std::size_t kVersion = 1;
 constexpr const char* kRemedy = "make it again with 'fovea adjust'";
 
 Json json_of_map(const PlacedMap& map) {
-  Json json{{"digest", map.name.digest}, {"drive", map.name.drive}, {"fixed", map.is_fixed},
-            {"matches", map.matches},    {"moved_m", map.moved},    {"submaps", Json::array()}};
+  Json json{{"identity", map.name.identity}, {"drive", map.name.drive}, {"fixed", map.is_fixed},
+            {"matches", map.matches},        {"moved_m", map.moved},    {"submaps", Json::array()}};
   for (const SubmapPlacement& submap : map.submaps) {
     json["submaps"].push_back({{"T_ecef_submap", json_of(submap.T_ecef_submap)},
                                {"log2_gain", json_of<3>(submap.log2_gain)}});
@@ -22,7 +22,7 @@ Json json_of_map(const PlacedMap& map) {
 
 PlacedMap map_from(const Json& json) {
   PlacedMap map;
-  map.name.digest = json.at("digest").get<std::string>();
+  map.name.identity = json.at("identity").get<std::string>();
   map.name.drive = json.at("drive").get<std::string>();
   map.is_fixed = json.at("fixed").get<bool>();
   map.matches = count_of(json.at("matches"));
@@ -36,15 +36,15 @@ PlacedMap map_from(const Json& json) {
 }
 
 Json json_of_rejected(const RejectedMatch& match) {
-  return {{"digest_a", match.digest_a},
-          {"digest_b", match.digest_b},
+  return {{"identity_a", match.identity_a},
+          {"identity_b", match.identity_b},
           {"submap_a", match.submap_a},
           {"submap_b", match.submap_b},
           {"distance_m", match.distance}};
 }
 
 RejectedMatch rejected_from(const Json& json) {
-  return {json.at("digest_a").get<std::string>(), json.at("digest_b").get<std::string>(),
+  return {json.at("identity_a").get<std::string>(), json.at("identity_b").get<std::string>(),
           count_of(json.at("submap_a")), count_of(json.at("submap_b")),
           json.at("distance_m").get<double>()};
 }

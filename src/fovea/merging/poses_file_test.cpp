@@ -55,7 +55,7 @@ TEST_F(PosesFile, OriginAndMapsReadBack) {
   ASSERT_EQ(read.maps.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) {
     const PlacedMap &a = read.maps[k], &b = written.maps[k];
-    EXPECT_EQ(a.name.digest, b.name.digest);
+    EXPECT_EQ(a.name.identity, b.name.identity);
     EXPECT_EQ(a.name.drive, b.name.drive);
     EXPECT_EQ(a.name.submaps, b.name.submaps);
     EXPECT_EQ(a.is_fixed, b.is_fixed);
@@ -75,8 +75,8 @@ TEST_F(PosesFile, OriginAndMapsReadBack) {
 TEST_F(PosesFile, RejectedMatchesAndPointsReadBack) {
   const CityPoses read = read_city_poses(path_);
   ASSERT_EQ(read.rejected.size(), 1u);
-  EXPECT_EQ(read.rejected[0].digest_a, "0123abcd");
-  EXPECT_EQ(read.rejected[0].digest_b, "ffee");
+  EXPECT_EQ(read.rejected[0].identity_a, "0123abcd");
+  EXPECT_EQ(read.rejected[0].identity_b, "ffee");
   EXPECT_EQ(read.rejected[0].submap_a, 1u);
   EXPECT_EQ(read.rejected[0].submap_b, 0u);
   EXPECT_EQ(read.rejected[0].distance, std::sqrt(2));
@@ -164,7 +164,7 @@ TEST_F(PosesFile, ValuesHaveTheirType) {
   }
   expect_damaged_with("/maps/0/fixed", 1);
   expect_damaged_with("/maps/0/fixed", "true");
-  for (const std::string place : {"/maps/0/digest", "/maps/0/drive", "/rejected/0/digest_b",
+  for (const std::string place : {"/maps/0/identity", "/maps/0/drive", "/rejected/0/identity_b",
                                   "/points/0/name", "/points/0/role"}) {
     expect_damaged_with(place, 1);
   }

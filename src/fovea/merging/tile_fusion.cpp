@@ -24,6 +24,7 @@ namespace fovea {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1 << 30;
+constexpr double kNoPoints = 1;  // size of the tiles of a map that has none, m
 
 /// Reads and fuses one cell.
 class TileFusion {
@@ -46,7 +47,7 @@ class TileFusion {
 
   const TileFusionJob& job_;
   CellReader cell_;
-  std::set<std::string> digests_;  // of all maps, also of those without a point in the cell
+  std::set<std::string> identities_;  // of all maps, also of those without a point in the cell
   std::vector<CellSource> sources_;
   int next_frame_ = 0;
   std::size_t next_sensor_ = 0;
@@ -54,7 +55,7 @@ class TileFusion {
 
 void TileFusion::read(const std::filesystem::path& path) {
   CellSource source = cell_.read(path);
-  if (!digests_.insert(source.placed->name.digest).second) {
+  if (!identities_.insert(source.placed->name.identity).second) {
     throw InputError("a map is given twice", path.string(), "give each map once");
   }
   if (source.points == 0) return;
@@ -81,7 +82,8 @@ void TileFusion::sort_sources() {
   }
   std::sort(sources_.begin(), sources_.end(), [&](const CellSource& a, const CellSource& b) {
     const auto rank = [&](const CellSource& source) {
-      return std::tuple(!is_chosen(source), -double(source.well_seen), source.placed->name.digest);
+      return std::tuple(!is_chosen(source), -double(source.well_seen),
+                        source.placed->name.identity);
     };
     return rank(a) < rank(b);
   });
@@ -109,7 +111,8 @@ void TileFusion::remove_parked(TileFusionFigures& figures) {
 }
 
 MapMeta TileFusion::meta() const {
-  MapMeta meta = sources_.front().content.meta;
+  MapMeta meta;
+  if (!sources_.empty()) meta = sources_.front().content.meta;
   meta.erase(meta_key::kFormatVersion);
   meta[meta_key::kFoveaVersion] = version();
   meta[meta_key::kDriveName] = "city tile " + job_.tile.text();
@@ -177,7 +180,7 @@ void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOu
     output.put({place->second, piece.id.key}, std::move(points));
   }
   DriveRecord drive = source.content.records.front();
-  drive.source_digest = source.placed->name.digest;
+  drive.source_digest = source.placed->name.identity;
   drive.first_frame = next_frame_;
   drive.frame_shift += shift;
   put_frames(source, submaps, writer);
@@ -193,7 +196,7 @@ void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOu
 
 TileFusionFigures TileFusion::write() {
   TileFusionFigures figures;
-  if (sources_.empty()) {
+  if (sources_.empty() && !job_.allow_empty) {
     throw InputError(fmt::format("no map has a point in tile {}", job_.tile.text()),
                      job_.output.string(), "give the maps around the tile, or another tile");
   }
@@ -208,11 +211,13 @@ TileFusionFigures TileFusion::write() {
     throw InputError("the maps have more frames than one can number", job_.output.string(),
                      "fuse smaller tiles, or fewer maps");
   }
-  sort_sources();
+  if (!sources_.empty()) sort_sources();
   remove_parked(figures);
 
-  TileMap map(sources_.front().content.tile_size);
-  auto writer = MapWriter::create(job_.output, job_.force);
+  TileMap map(sources_.empty() ? kNoPoints : sources_.front().content.tile_size);
+  auto writer = job_.scratch.empty()
+                    ? MapWriter::create(job_.output, job_.force)
+                    : MapWriter::create_in_scratch(job_.output, job_.force, job_.scratch);
   TileOutput output(*writer, map);
   std::vector<std::size_t> first_submap;
   for (std::size_t k = 0; k < sources_.size(); ++k) {

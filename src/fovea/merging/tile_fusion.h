@@ -14,6 +14,8 @@ namespace fovea {
 struct TileFusionJob {
   std::filesystem::path output;
   bool force = false;
+  std::filesystem::path scratch;  ///< as MapJob::scratch
+  bool allow_empty = false;       ///< a tile without points is a map without points, no error
   CityTile tile;
   double tile_size = 64;  ///< m
   /// Whose color a surface gets: "best" (the map with the most points that were seen well in this

@@ -41,8 +41,9 @@ DriveRecord drive_record(const FrameSource& source) {
   if (info.has_time_stamps && first_stamp != stamps.end()) drive.session = utc_day(*first_stamp);
   if (info.origin) {
     drive.origin = info.origin;
-    drive.datum = kWgs84;
-    drive.height_type = HeightType::kEllipsoidal;
+    drive.datum = info.coordinates.datum.value_or(kWgs84);
+    drive.epoch_year = info.coordinates.epoch_year;
+    drive.height_type = info.coordinates.heights.value_or(HeightType::kEllipsoidal);
   }
   return drive;
 }

@@ -35,6 +35,12 @@ void require_no_stop(const MapJob& job) {
               "give the same command again");
 }
 
+std::unique_ptr<MapWriter> open_output(const MapJob& job) {
+  if (job.resume) return MapWriter::open(job.output);
+  if (job.scratch.empty()) return MapWriter::create(job.output, job.force);
+  return MapWriter::create_in_scratch(job.output, job.force, job.scratch);
+}
+
 /// A run of a mapper over a drive, with its figures and its file. Over ten members: all state that
 /// lives as long as the run. The order counts: the mapper loads tiles through the cache, the cache
 /// through the file.
@@ -48,8 +54,7 @@ class MapRun {
         drive_records_{drive_record(source)},
         sensor_records_(sensor_records(drive)),
         threaded_(job.overlap && available_threads() > 1),
-        file_(job.resume ? MapWriter::open(job.output) : MapWriter::create(job.output, job.force),
-              checkpointer_options()),
+        file_(open_output(job), checkpointer_options()),
         cache_(file_, job.memory),
         mapper_(mapper_of_drive()),
         keyframes_(job.settings.run.range_image_spacing, drive),
@@ -120,6 +125,7 @@ class MapRun {
 
 CheckpointerOptions MapRun::checkpointer_options() {
   CheckpointerOptions options{threaded_, job_.memory};
+  options.commit_at_end = !job_.scratch.empty();
   if (job_.observer != nullptr) {
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
       job_.observer->map_changed(changes, rows, mapper_->map());
@@ -240,6 +246,7 @@ void MapRun::finish() {
   check_points();
   // While the writer thread writes the checkpoint before.
   if (check_) calibration_ = check_->estimate();
+  if (!job_.scratch.empty()) require_whole_drive();
   file_.finish(mapper_->map(), fresh_rows(/*last=*/true));
 }
 
