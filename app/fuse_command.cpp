@@ -25,7 +25,6 @@ struct FuseArguments {
   std::string poses, tile, output, scratch;
   std::string session = TileFusionJob().session;
   double tile_size = TileFusionJob().tile_size;
-  std::size_t memory = TileFusionJob().memory;
   int threads = 0;
   bool if_missing = false, force = false, quiet = false, allow_empty = false;
 };
@@ -60,7 +59,6 @@ void run(const FuseArguments& arguments) {
   job.allow_empty = arguments.allow_empty;
   job.tile_size = arguments.tile_size;
   job.session = arguments.session;
-  job.memory = arguments.memory;
   job.spacing = finest_spacing(arguments.maps);
   const TileFusionFigures figures = fuse_tile({arguments.maps.begin(), arguments.maps.end()},
                                               read_city_poses(arguments.poses), job);
@@ -95,9 +93,6 @@ void add_fuse_command(CLI::App& app, Session& /*session*/) {
   command->add_option("-o,--output", arguments->output, "Map file to write")
       ->required()
       ->type_name("TILE.fovea");
-  command->add_option("--memory", arguments->memory, "As of 'fovea map'")
-      ->transform(memory_size())
-      ->type_name("SIZE");
   command->add_option("--threads", arguments->threads, "Threads that may be used (default: all)")
       ->check(whole_number(0, kMaxThreads));
   command->add_flag("--allow-empty", arguments->allow_empty,

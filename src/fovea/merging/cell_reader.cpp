@@ -18,7 +18,7 @@ CellReader::CellReader(const CityPoses& city, const CityTile& tile, double tile_
       middle_(grid_.middle(tile)),
       T_ecef_cell_(T_ecef_enu(middle_)) {}
 
-CellSource CellReader::read(const std::filesystem::path& path) const {
+CellSource CellReader::open(const std::filesystem::path& path) const {
   CellSource source;
   source.reader = std::make_unique<MapReader>(path);
   source.content = MapContent(*source.reader);
@@ -36,41 +36,70 @@ CellSource CellReader::read(const std::filesystem::path& path) const {
   for (const SubmapPlacement& submap : source.placed->submaps) {
     source.T_cell_submap.push_back(T_ecef_cell_.inverse() * submap.T_ecef_submap);
   }
-  for (const auto& [id, points] : source.reader->tile_sizes()) take(id, source);
+  for_each_piece(source, [&](const CellPiece& piece) {
+    source.points += piece.points.size();
+    for (const FusedColor& color : piece.points.colors) {
+      source.well_seen += color.views >= kGoodViews;
+    }
+  });
   return source;
 }
 
-void CellReader::take(const TileId& id, CellSource& source) const {
-  const double size = source.content.tile_size;
-  const RigidMotion& T_cell_submap = source.T_cell_submap.at(id.submap);
-  const Eigen::Vector3d middle_cell = T_cell_submap * middle_of(id.key, size);
-  // Far from the origin, cells are turned against east and north.
-  const double reach = reach_of_tile(size) + 0.75 * grid_.size();
-  if (!(middle_cell.head<2>().cwiseAbs().maxCoeff() <= reach)) return;
-  auto tile = source.reader->find_tile(id);
-  if (!tile) return;
-  std::vector<char> inside(tile->size());
+void CellReader::for_each_piece(const CellSource& source,
+                                const std::function<void(CellPiece&)>& f) const {
+  for (const auto& [id, points] : source.reader->tile_sizes()) {
+    CellPiece piece = piece_of(id, source);
+    if (!piece.points.empty()) f(piece);
+  }
+}
+
+std::optional<CityTile> CellReader::tile_of_box(const RigidMotion& T_ecef_submap,
+                                                const Eigen::Vector3d& middle, double size) const {
+  constexpr double kMargin = 0.01;  // m, far more than a grid line bends within a box
+  std::optional<CityTile> tile;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sides((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                                (corner & 4) != 0 ? 1 : -1);
+    const CityTile of_corner =
+        grid_.tile_at(T_ecef_submap * (middle + (size / 2 + kMargin) * sides));
+    if (tile && of_corner != *tile) return std::nullopt;
+    tile = of_corner;
+  }
+  return tile;
+}
+
+void CellReader::keep_inside(const RigidMotion& T_ecef_submap, TilePoints& points) const {
+  std::vector<char> inside(points.size());
   parallel_chunks(inside.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d p_cell =
-          T_cell_submap * (tile->origin + tile->position_at(i).cast<double>());
-      inside[i] = grid_.tile_at(T_ecef_cell_ * p_cell) == tile_;
+      const Eigen::Vector3d p_submap = points.origin + points.position_at(i).cast<double>();
+      inside[i] = grid_.tile_at(T_ecef_submap * p_submap) == tile_;
     }
   });
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < inside.size(); ++i) {
     if (inside[i]) kept.push_back(i);
   }
-  if (kept.empty()) return;
-  if (kept.size() < inside.size()) tile->keep(kept);
+  if (kept.size() < inside.size()) points.keep(kept);
+}
+
+CellPiece CellReader::piece_of(const TileId& id, const CellSource& source) const {
+  const double size = source.content.tile_size;
+  const RigidMotion& T_cell_submap = source.T_cell_submap.at(id.submap);
+  const Eigen::Vector3d middle_cell = T_cell_submap * middle_of(id.key, size);
+  // Far from the origin, cells are turned against east and north.
+  const double reach = reach_of_tile(size) + 0.75 * grid_.size();
+  if (!(middle_cell.head<2>().cwiseAbs().maxCoeff() <= reach)) return {id, {}};
+  const RigidMotion T_ecef_submap = T_ecef_cell_ * T_cell_submap;
+  const std::optional<CityTile> of_all = tile_of_box(T_ecef_submap, middle_of(id.key, size), size);
+  if (of_all && *of_all != tile_) return {id, {}};
+  auto tile = source.reader->find_tile(id);
+  if (!tile) return {id, {}};
+  if (!of_all) keep_inside(T_ecef_submap, *tile);
   const Eigen::Array3f codes =
       source.placed->submaps[id.submap].log2_gain.cast<float>().array() * float(kColorCodesPerStop);
-  for (FusedColor& color : tile->colors) {
-    source.well_seen += color.views >= kGoodViews;
-    color.color = with_offset(color.color, codes);
-  }
-  source.points += tile->size();
-  source.pieces.push_back({id, *std::move(tile)});
+  for (FusedColor& color : tile->colors) color.color = with_offset(color.color, codes);
+  return {id, *std::move(tile)};
 }
 
 }  // namespace fovea

@@ -19,6 +19,8 @@ class FreeSpace {
   FreeSpace(const MapReader& map, const MapContent& content,
             const std::vector<RigidMotion>& T_cell_submap, double size);
 
+  /// Whether no range image is in reach.
+  bool empty() const { return views_.empty(); }
   /// Which points lie in free space.
   std::vector<bool> contains(const TilePoints& points, const RigidMotion& T_cell_submap) const;
 

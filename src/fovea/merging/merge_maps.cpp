@@ -99,8 +99,7 @@ MergeFigures merge_maps(const MapReader& a, const MapReader& b, const MergeJob& 
     Checkpointer file(std::move(writer),
                       {available_threads() > 1, job.memory, /*commit_at_end=*/true});
     TileCache cache(file, job.memory);
-    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing,
-                                  KnownColors::kFuse, file, cache);
+    figures.merged = merge_points(map, content_a.T_local_submap.size(), job.spacing, file, cache);
     file.finish(map, {});
   }
   figures.points = map.size();

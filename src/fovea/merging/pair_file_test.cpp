@@ -8,8 +8,8 @@
 #include <limits>
 #include <sstream>
 
+#include "fovea/city/json_file_test_support.h"
 #include "fovea/core/errors.h"
-#include "fovea/merging/json_file_test_support.h"
 
 namespace fovea::pair_file_test {
 

@@ -43,12 +43,10 @@ class CubeMerger {
         a_(center_local_),
         b_(center_local_) {}
 
-  void merge(KnownColors colors, PointMergeFigures& figures) {
+  void merge(PointMergeFigures& figures) {
     gather();
     const std::vector<bool> known = known_points(PointIndex(a_.position(), kIndexSpacing));
-    if (colors == KnownColors::kFuse) {
-      fuse_colors(PointIndex(b_.position(), kIndexSpacing), figures);
-    }
+    fuse_colors(PointIndex(b_.position(), kIndexSpacing), figures);
     keep_new_points(known, figures);
   }
 
@@ -187,11 +185,11 @@ std::vector<Cube> cubes_of(const TileMap& map, std::size_t first_b) {
 }  // namespace
 
 PointMergeFigures merge_points(TileMap& map, std::size_t first_b, double spacing,
-                               KnownColors colors, Checkpointer& file, TileCache& cache) {
+                               Checkpointer& file, TileCache& cache) {
   PointMergeFigures figures;
   for (const Cube& cube : cubes_of(map, first_b)) {
     cache.load_within(map, middle_of(cube), kCubeReach);
-    CubeMerger(map, first_b, spacing, cube).merge(colors, figures);
+    CubeMerger(map, first_b, spacing, cube).merge(figures);
     if (!cache.is_full(map)) continue;
     cache.evict_beyond(map, middle_of(cube), kCubeReach);
     file.checkpoint(map, {});

@@ -13,19 +13,14 @@ struct PointMergeFigures {
   std::size_t fused = 0;  ///< points of A that got a color from B
 };
 
-enum class KnownColors {
-  kFuse,  ///< the colors of B's points on a known surface count there
-  kDrop,  ///< each surface keeps the colors of one map
-};
-
 /// Removes the points of the later of two maps where the earlier one knows the surface. Their
-/// colors are fused into its points, or dropped.
+/// colors are fused into its points.
 /// @param map      both, in one local frame: A's submaps, then B's; all tiles in `file`
 /// @param first_b  B's first submap
 /// @param spacing  of the points, m. Where no camera of A colored a surface, only B's points within
 ///                 this distance of A's are removed.
 /// @param file     of the map; the last changes are not yet written
 PointMergeFigures merge_points(TileMap& map, std::size_t first_b, double spacing,
-                               KnownColors colors, Checkpointer& file, TileCache& cache);
+                               Checkpointer& file, TileCache& cache);
 
 }  // namespace fovea

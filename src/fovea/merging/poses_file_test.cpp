@@ -8,9 +8,9 @@
 #include <limits>
 #include <sstream>
 
+#include "fovea/city/json_file_test_support.h"
 #include "fovea/core/errors.h"
 #include "fovea/geometry/geodesy.h"
-#include "fovea/merging/json_file_test_support.h"
 
 namespace fovea::poses_file_test {
 

@@ -4,19 +4,15 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <tuple>
 
 #include "fovea/core/errors.h"
-#include "fovea/core/parallel.h"
 #include "fovea/core/version.h"
-#include "fovea/map/checkpointer.h"
 #include "fovea/map/meta_keys.h"
-#include "fovea/map/tile_cache.h"
 #include "fovea/merging/cell_reader.h"
 #include "fovea/merging/free_space.h"
-#include "fovea/merging/point_merge.h"
+#include "fovea/merging/known_surfaces.h"
 #include "fovea/merging/renumbered_column.h"
 #include "fovea/merging/tile_output.h"
 
@@ -26,48 +22,77 @@ namespace {
 constexpr std::int64_t kMostFrames = 1 << 30;
 constexpr double kNoPoints = 1;  // size of the tiles of a map that has none, m
 
-/// Reads and fuses one cell.
+/// Leaves the points that `drop` does not name.
+/// @return the number of points left out
+std::size_t leave_out(const std::vector<bool>& drop, TilePoints& points) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < drop.size(); ++i) {
+    if (!drop[i]) kept.push_back(i);
+  }
+  if (kept.size() < drop.size()) points.keep(kept);
+  return drop.size() - kept.size();
+}
+
+/// What a drive saw of the space around the cell.
+struct Witness {
+  std::string session;
+  FreeSpace free;
+};
+
+/// Fuses one cell, one map after the other: memory grows with the surfaces, not with the maps.
 class TileFusion {
  public:
   TileFusion(const CityPoses& city, const TileFusionJob& job)
-      : job_(job), cell_(city, job.tile, job.tile_size) {}
+      : job_(job), cell_(city, job.tile, job.tile_size), known_(job.spacing) {}
 
-  /// Takes a map's points in the cell.
-  void read(const std::filesystem::path& path);
+  void add_map(const std::filesystem::path& path);
   TileFusionFigures write();
 
  private:
+  void require_points() const;
   void sort_sources();
-  void remove_parked(TileFusionFigures& figures);
+  void read_witnesses();
+  std::unique_ptr<MapWriter> create_output() const;
   MapMeta meta() const;
-  /// Puts the points, frames and drives of a source, and opens its submaps.
+  /// Puts the points, frames and drive of a source, and opens its submaps.
   void put(std::size_t number, MapWriter& writer, TileMap& map, TileOutput& output);
+  /// Leaves out what is gone and what the tile has already.
+  void reduce(const CellSource& source, CellPiece& piece);
   void put_frames(const CellSource& source, const std::map<std::size_t, std::size_t>& submaps,
                   MapWriter& writer);
+  void put_drive(std::size_t number, int shift, int first_frame, MapWriter& writer);
 
   const TileFusionJob& job_;
   CellReader cell_;
   std::set<std::string> identities_;  // of all maps, also of those without a point in the cell
-  std::vector<CellSource> sources_;
+  std::vector<CellSource> sources_, empty_sources_;
+  std::vector<Witness> witnesses_;
+  KnownSurfaces known_;
+  TileFusionFigures figures_;
   int next_frame_ = 0;
   std::size_t next_sensor_ = 0;
 };
 
-void TileFusion::read(const std::filesystem::path& path) {
-  CellSource source = cell_.read(path);
+void TileFusion::add_map(const std::filesystem::path& path) {
+  CellSource source = cell_.open(path);
   if (!identities_.insert(source.placed->name.identity).second) {
     throw InputError("a map is given twice", path.string(), "give each map once");
   }
-  if (source.points == 0) return;
+  if (source.points == 0) {
+    empty_sources_.push_back(std::move(source));
+    return;
+  }
   if (!sources_.empty() && sources_.front().content.tile_size != source.content.tile_size) {
     throw InputError("the tiles of the maps differ in size", path.string(),
                      "map the drives with one map.tile_size_m");
   }
+  figures_.read += source.points;
   sources_.push_back(std::move(source));
 }
 
 /// The source whose colors count most comes first.
 void TileFusion::sort_sources() {
+  if (sources_.empty()) return;
   const auto latest = std::max_element(
       sources_.begin(), sources_.end(),
       [](const CellSource& a, const CellSource& b) { return a.session < b.session; });
@@ -89,25 +114,31 @@ void TileFusion::sort_sources() {
   });
 }
 
-/// Leaves out points in space that a later drive saw as free.
-void TileFusion::remove_parked(TileFusionFigures& figures) {
-  for (const CellSource& later : sources_) {
-    std::optional<FreeSpace> free;  // read when it is needed
-    for (CellSource& earlier : sources_) {
-      if (earlier.session.empty() || !(earlier.session < later.session)) continue;
-      if (!free) free.emplace(*later.reader, later.content, later.T_cell_submap, job_.tile_size);
-      for (CellPiece& piece : earlier.pieces) {
-        const std::vector<bool> gone =
-            free->contains(piece.points, earlier.T_cell_submap[piece.id.submap]);
-        std::vector<std::uint32_t> kept;
-        for (std::uint32_t i = 0; i < gone.size(); ++i) {
-          if (!gone[i]) kept.push_back(i);
-        }
-        figures.parked += gone.size() - kept.size();
-        if (kept.size() < gone.size()) piece.points.keep(kept);
-      }
+/// Drives of the last day saw no later state of anything, but those of the first day no earlier
+/// one.
+void TileFusion::read_witnesses() {
+  std::string first;
+  for (const CellSource& source : sources_) {
+    if (!source.session.empty() && (first.empty() || source.session < first)) {
+      first = source.session;
     }
   }
+  for (const std::vector<CellSource>* sources : {&sources_, &empty_sources_}) {
+    for (const CellSource& source : *sources) {
+      if (first.empty() || source.session <= first) continue;
+      FreeSpace free(*source.reader, source.content, source.T_cell_submap, job_.tile_size);
+      if (!free.empty()) witnesses_.push_back({source.session, std::move(free)});
+    }
+  }
+}
+
+void TileFusion::reduce(const CellSource& source, CellPiece& piece) {
+  const RigidMotion& T_cell_submap = source.T_cell_submap[piece.id.submap];
+  for (const Witness& later : witnesses_) {
+    if (source.session.empty() || later.session <= source.session || piece.points.empty()) continue;
+    figures_.parked += leave_out(later.free.contains(piece.points, T_cell_submap), piece.points);
+  }
+  figures_.known += leave_out(known_.find(piece.points, T_cell_submap), piece.points);
 }
 
 MapMeta TileFusion::meta() const {
@@ -158,11 +189,13 @@ void TileFusion::put_frames(const CellSource& source,
 }
 
 void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOutput& output) {
-  CellSource& source = sources_[number];
-  const int shift = next_frame_ - source.content.drives.front().first_frame;
+  const CellSource& source = sources_[number];
+  const int first_frame = next_frame_;
+  const int shift = first_frame - source.content.drives.front().first_frame;
   std::map<std::size_t, std::size_t> submaps;  // number in the tile by the number in the map
-  for (CellPiece& piece : source.pieces) {
-    if (piece.points.empty()) continue;
+  cell_.for_each_piece(source, [&](CellPiece& piece) {
+    reduce(source, piece);
+    if (piece.points.empty()) return;
     const auto [place, is_new] = submaps.try_emplace(piece.id.submap, map.submaps().size());
     if (is_new) {
       SubmapRecord record;
@@ -172,18 +205,25 @@ void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOu
       map.add_submap(record.T_local_submap);
     }
     TilePoints& points = piece.points;
+    known_.add(points, source.T_cell_submap[piece.id.submap]);
     renumber(points.frame, [&](std::int32_t frame) { return frame < 0 ? -1 : frame + shift; });
     fill_with_zeros(points.size(), points.session);
     renumber(points.session, [&](std::uint16_t) { return number; });
     fill_with_zeros(points.size(), points.sensor);
     renumber(points.sensor, [&](std::uint16_t sensor) { return sensor + next_sensor_; });
     output.put({place->second, piece.id.key}, std::move(points));
-  }
+  });
+  known_.end_drive();
+  put_frames(source, submaps, writer);
+  put_drive(number, shift, first_frame, writer);
+}
+
+void TileFusion::put_drive(std::size_t number, int shift, int first_frame, MapWriter& writer) {
+  const CellSource& source = sources_[number];
   DriveRecord drive = source.content.records.front();
   drive.source_digest = source.placed->name.identity;
-  drive.first_frame = next_frame_;
+  drive.first_frame = first_frame;
   drive.frame_shift += shift;
-  put_frames(source, submaps, writer);
   drive.end_frame = next_frame_;
   drive.T_local_drive =
       cell_.T_ecef_cell().inverse() * T_ecef_enu(drive.origin.value_or(cell_.middle()));
@@ -194,16 +234,13 @@ void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOu
   }
 }
 
-TileFusionFigures TileFusion::write() {
-  TileFusionFigures figures;
+void TileFusion::require_points() const {
   if (sources_.empty() && !job_.allow_empty) {
     throw InputError(fmt::format("no map has a point in tile {}", job_.tile.text()),
                      job_.output.string(), "give the maps around the tile, or another tile");
   }
-  figures.maps = sources_.size();
   std::int64_t frames = 0;
   for (const CellSource& source : sources_) {
-    figures.read += source.points;
     const MergedDrive& drive = source.content.drives.front();
     frames += std::int64_t{drive.end_frame} - drive.first_frame;
   }
@@ -211,31 +248,26 @@ TileFusionFigures TileFusion::write() {
     throw InputError("the maps have more frames than one can number", job_.output.string(),
                      "fuse smaller tiles, or fewer maps");
   }
-  if (!sources_.empty()) sort_sources();
-  remove_parked(figures);
+}
 
+std::unique_ptr<MapWriter> TileFusion::create_output() const {
+  if (job_.scratch.empty()) return MapWriter::create(job_.output, job_.force);
+  return MapWriter::create_in_scratch(job_.output, job_.force, job_.scratch);
+}
+
+TileFusionFigures TileFusion::write() {
+  require_points();
+  sort_sources();
+  read_witnesses();
   TileMap map(sources_.empty() ? kNoPoints : sources_.front().content.tile_size);
-  auto writer = job_.scratch.empty()
-                    ? MapWriter::create(job_.output, job_.force)
-                    : MapWriter::create_in_scratch(job_.output, job_.force, job_.scratch);
+  const auto writer = create_output();
   TileOutput output(*writer, map);
-  std::vector<std::size_t> first_submap;
-  for (std::size_t k = 0; k < sources_.size(); ++k) {
-    first_submap.push_back(map.submaps().size());
-    put(k, *writer, map, output);
-    sources_[k].pieces.clear();
-  }
+  for (std::size_t k = 0; k < sources_.size(); ++k) put(k, *writer, map, output);
   for (const auto& [key, value] : meta()) writer->put_meta(key, value);
-  Checkpointer file(std::move(writer),
-                    {available_threads() > 1, job_.memory, /*commit_at_end=*/true});
-  TileCache cache(file, job_.memory);
-  for (const std::size_t first : first_submap) {
-    if (first == 0) continue;
-    figures.known += merge_points(map, first, job_.spacing, KnownColors::kDrop, file, cache).known;
-  }
-  file.finish(map, {});
-  figures.points = map.size();
-  return figures;
+  writer->finish();
+  figures_.maps = sources_.size();
+  figures_.points = map.size();
+  return figures_;
 }
 
 }  // namespace
@@ -243,7 +275,7 @@ TileFusionFigures TileFusion::write() {
 TileFusionFigures fuse_tile(const std::vector<std::filesystem::path>& maps, const CityPoses& city,
                             const TileFusionJob& job) {
   TileFusion fusion(city, job);
-  for (const std::filesystem::path& map : maps) fusion.read(map);
+  for (const std::filesystem::path& map : maps) fusion.add_map(map);
   return fusion.write();
 }
 

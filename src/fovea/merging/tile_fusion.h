@@ -23,7 +23,6 @@ struct TileFusionJob {
   /// others follow by "best".
   std::string session = "best";
   double spacing = 0.02;  ///< of the maps' points, m
-  std::size_t memory = std::size_t{1} << 30;
 };
 
 struct TileFusionFigures {
