@@ -38,8 +38,8 @@ class KnownSurfacesTest : public testing::Test {
   }
 
   KnownSurfaces surfaces_{kSpacing};
-  RigidMotion T_cell_submap_ =
-      Eigen::Translation3d(-5, 3, 1) * RigidMotion(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
+  RigidMotion T_cell_submap_ = Eigen::Translation3d(-5, 3, 1) *
+                               RigidMotion(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()));
 };
 
 TEST_F(KnownSurfacesTest, PointsWithin5CmShowTheSameSurface) {
