@@ -64,9 +64,9 @@ TemporaryFolder* CityProgram::scratch_ = nullptr;
 
 RigidMotion motion_of(const nlohmann::json& json) {
   const auto t = json.at("translation").get<std::vector<double>>();
-  const auto q = json.at("rotation").get<std::vector<double>>();
+  const auto R = json.at("rotation").get<std::vector<double>>();
   RigidMotion T = RigidMotion::Identity();
-  T.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+  T.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
   T.translation() << t[0], t[1], t[2];
   return T;
 }
@@ -184,6 +184,7 @@ TEST_F(CityTiles, ATileHasEachSurfaceOnceAndItsColorsOfOneDrive) {
   EXPECT_GT(tile.size(), std::max(east, north));
   EXPECT_LT(tile.size(), 0.95 * double(east + north));
   EXPECT_EQ(tile.drives().size(), 2u);
+  EXPECT_GT(fs::file_size(own("tile.overview.glb")), 10'000u);
 }
 
 TEST_F(CityTiles, RefusesWhatIsNoTileOfTheseMaps) {
@@ -191,8 +192,9 @@ TEST_F(CityTiles, RefusesWhatIsNoTileOfTheseMaps) {
   EXPECT_THAT(fuse("east", "1.5,0", "tile.fovea").err, HasSubstr("X,Y"));
   EXPECT_THAT(fuse("east far", "0,0", "tile.fovea").err, HasSubstr("the poses are of other maps"));
   EXPECT_THAT(fuse("east", "0,0", "tile.fovea", "--session 1999-01-01").err,
-              HasSubstr("has the session"));
+              HasSubstr("no map has the session"));
   EXPECT_FALSE(fs::exists(own("tile.fovea")));
+  EXPECT_FALSE(fs::exists(own("tile.overview.glb")));
 }
 
 TEST_F(CityProgram, RefusesFilesThatDoNotBelongTogether) {

@@ -12,17 +12,17 @@
 namespace fovea {
 
 Json json_of(const RigidMotion& T) {
-  const Eigen::Quaterniond q(T.linear());
-  return {{"translation", json_of<3>(T.translation())}, {"rotation", {q.x(), q.y(), q.z(), q.w()}}};
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const RowMajor R = T.linear();
+  return {{"translation", json_of<3>(T.translation())},
+          {"rotation", std::vector<double>(R.data(), R.data() + R.size())}};
 }
 
 RigidMotion motion_of(const Json& json) {
-  constexpr double kUnit = 1e-6;
-  const Eigen::Quaterniond q(vector_of<4>(json.at("rotation")));  // x, y, z, w
-  if (std::abs(q.norm() - 1) > kUnit)
-    throw std::invalid_argument("a rotation is no unit quaternion");
+  constexpr double kTolerance = 1e-9;
   RigidMotion T = RigidMotion::Identity();
-  T.linear() = q.normalized().toRotationMatrix();
+  T.linear() = vector_of<9>(json.at("rotation")).reshaped<Eigen::RowMajor>(3, 3);
+  if (!is_rotation(T.linear(), kTolerance)) throw std::invalid_argument("a pose has no rotation");
   T.translation() = vector_of<3>(json.at("translation"));
   return T;
 }

@@ -11,8 +11,8 @@ namespace fovea {
 
 using Json = nlohmann::ordered_json;
 
-/// {"translation": [x, y, z] (m), "rotation": [x, y, z, w] (unit quaternion)}; reads back to
-/// rounding.
+/// {"translation": [x, y, z] (m), "rotation": [9 numbers, row by row]}; reads back to the bit, so
+/// that fixed poses stay what they are.
 Json json_of(const RigidMotion& T);
 /// std::invalid_argument if it is no rigid motion.
 RigidMotion motion_of(const Json& json);

@@ -65,8 +65,7 @@ TEST_F(PosesFile, OriginAndMapsReadBack) {
     for (std::size_t id = 0; id < a.submaps.size(); ++id) {
       const RigidMotion &T = a.submaps[id].T_ecef_submap, &truth = b.submaps[id].T_ecef_submap;
       EXPECT_GT(truth.translation().norm(), 6.3e6);
-      EXPECT_LT((T.translation() - truth.translation()).norm(), 1e-9);
-      EXPECT_LT((T.linear() - truth.linear()).cwiseAbs().maxCoeff(), 1e-15);
+      EXPECT_EQ(T.matrix(), truth.matrix());
       EXPECT_EQ(a.submaps[id].log2_gain, b.submaps[id].log2_gain);
     }
   }
@@ -133,12 +132,12 @@ TEST_F(PosesFile, EachValueIsNeeded) {
   }
 }
 
-TEST_F(PosesFile, RotationsAreUnitQuaternions) {
+TEST_F(PosesFile, RotationsAreChecked) {
   const std::string rotation = "/maps/0/submaps/1/T_ecef_submap/rotation";
-  expect_damaged_with(rotation, {0, 0, 0, 1.001});
-  expect_damaged_with(rotation, {0, 0, 0, 0});
-  expect_damaged_with(rotation, {nullptr, 0, 0, 1});
-  expect_damaged_with(rotation, {0, 0, 0, 1, 0});
+  expect_damaged_with(rotation, {1.001, 0, 0, 0, 1, 0, 0, 0, 1});
+  expect_damaged_with(rotation, {1, 0, 0, 0, 1, 0, 0, 0, -1});
+  expect_damaged_with(rotation, {nullptr, 0, 0, 0, 1, 0, 0, 0, 1});
+  expect_damaged_with(rotation, {0, 0, 0, 1});
 }
 
 // JSON has no such number: the writer stores null.

@@ -100,10 +100,12 @@ void TileFusion::sort_sources() {
   const auto is_chosen = [&](const CellSource& source) {
     return (!day.empty() && source.session == day) || source.content.drives.front().name == day;
   };
+  // A session may have nothing in this tile. Then the best one counts.
   if (job_.session != "best" && job_.session != "latest" &&
-      std::none_of(sources_.begin(), sources_.end(), is_chosen)) {
-    throw InputError(fmt::format("no map in tile {} has the session \"{}\"", job_.tile.text(), day),
-                     "--session", "give best, latest, a recording day or the name of a drive");
+      std::none_of(sources_.begin(), sources_.end(), is_chosen) &&
+      std::none_of(empty_sources_.begin(), empty_sources_.end(), is_chosen)) {
+    throw InputError(fmt::format("no map has the session \"{}\"", day), "--session",
+                     "give best, latest, a recording day or the name of a drive");
   }
   std::sort(sources_.begin(), sources_.end(), [&](const CellSource& a, const CellSource& b) {
     const auto rank = [&](const CellSource& source) {

@@ -152,6 +152,11 @@ TEST_F(TileFusionOf, TheSessionDecidesWhoseColorsCount) {
     fuse(other);
     EXPECT_EQ(first_drive(), "poor") << session;
   }
+  add("elsewhere", {.session = "2026-05-19", .east = 40});
+  TileFusionJob other = job();
+  other.session = "2026-05-19";  // has nothing in the tile
+  fuse(other);
+  EXPECT_EQ(first_drive(), "good");
   TileFusionJob wrong = job();
   wrong.session = "2025-01-01";
   EXPECT_THROW(fuse(wrong), InputError);
