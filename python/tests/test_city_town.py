@@ -1,0 +1,129 @@
+"""python3 -m fovea.city with the program itself: a small simulated town."""
+import functools
+import json
+import pathlib
+import shutil
+import stat
+import unittest
+
+import psutil
+
+import sample
+from city_command import CityTestCase
+
+FRAMES = 16
+ROUTES = {"a": ("0,0 1,0", 12), "b": ("0,0 1,0", 16), "c": ("0,1 0,0", 32), "d": ("1,0 0,0", 55)}
+SIMULATED = ["lidar.columns=1000", "camera.numbers=[2]", "camera.width=414", "camera.height=125", "camera.focal=240.5",
+             "camera.cx=203.2", "camera.cy=57.6", "town.blocks_x=1", "town.blocks_y=1"]
+SETTINGS = ["--set", "surface.spacing_m=0.1", "--tile-size", 32]
+
+
+@functools.lru_cache(maxsize=None)
+def town_drive(name):
+    """Simulates a drive of the town; each has its own day."""
+    drive = sample.folder() / "town" / name
+    drive.parent.mkdir(exist_ok=True)
+    route, begin = ROUTES[name]
+    settings = [*SIMULATED, f"drive.pass={ord(name) - ord('a') + 1}", f"town.route={route}", f"town.begin={begin}"]
+    sample.run("simulate", "-o", drive, "--scene", "town", "--format", "generic", "--frames", FRAMES, "--quiet",
+               *(word for setting in settings for word in ("--set", setting)))
+    shutil.rmtree(drive / "truth")
+    return drive
+
+
+@functools.lru_cache(maxsize=None)
+def digest(tile):
+    """Of a map."""
+    return sample.run("info", tile, "--digest").strip()
+
+
+def points_of(manifest):
+    """By tile."""
+    return {(tile["x"], tile["y"]): tile["points"] for tile in manifest["tiles"]}
+
+
+class TownTest(CityTestCase):
+    program = pathlib.Path(sample.PROGRAM).resolve()
+
+    def setUp(self):
+        super().setUp()
+        self.drives = [town_drive(name) for name in "abc"]
+
+    def digests(self):
+        """Of the city, and of its tiles."""
+        tiles = {file: digest(self.city / file) for file in self.tiles()}
+        return {**tiles, "city": sample.run("info", self.city, "--digest")}
+
+    def expected(self):
+        """The digests of a build on one worker without faults."""
+        city, self.city = self.city, sample.folder() / "expected city"
+        if not self.city.exists():
+            _, err = self.run_city("build", *self.drives, "-o", self.city, *SETTINGS, "--workers", 1)
+            self.assertIn("3 maps, 3 pairs", err)
+        digests, self.city = self.digests(), city
+        return digests
+
+    def test_the_maps_of_the_town_fit(self):
+        self.assertGreaterEqual(len(self.expected()), 6)
+        self.city = sample.folder() / "expected city"
+        manifest = self.manifest()
+        poses = json.loads((self.city / manifest["poses"]).read_text())
+        self.assertEqual(manifest["origin"], poses["origin"])
+        matches = {placed["drive"]: placed["matches"] for placed in poses["maps"]}
+        self.assertGreater(min(matches.values()), 0, matches)
+        info = json.loads(sample.run("info", self.city / manifest["tiles"][0]["file"], "--json"))
+        self.assertEqual(info["points"], manifest["tiles"][0]["points"])
+        before = self.manifest()
+        out, err = self.run_city("build", *self.drives[::-1], "-o", self.city, *SETTINGS)
+        self.assertIn("everything is done", out)
+        self.assertEqual((err, self.manifest()), ("", before))
+
+    def test_a_killed_worker_of_two(self):
+        expected = self.expected()
+        build = self.start("build", *self.drives, "-o", self.city, *SETTINGS, "--workers", 2)
+        job = self.wait_for_job(build)
+        psutil.Process(job.ppid()).kill()
+        job.wait(timeout=5)
+        _, err = self.end(build)
+        self.assertNotIn("error", err)
+        self.assertEqual(self.digests(), expected)
+        self.assertFalse((self.city / "lock").exists())
+        self.assertEqual(list(self.city.rglob("*.partial*")), [])
+
+    def test_a_full_disk_and_a_broken_drive_on_four(self):
+        expected = self.expected()
+        claim, limited = self.folder / "claim", self.folder / "fovea"
+        limited.write_text(f"#!/bin/bash\nif [[ $1 == map ]]; then\n"
+                           f"  mkdir {claim} 2>/dev/null && echo $PPID >{claim}/pid\n"
+                           f"  [[ $(cat {claim}/pid) == $PPID ]] && ulimit -f 8\n"
+                           f"fi\nexec {self.program} \"$@\"\n")
+        limited.chmod(limited.stat().st_mode | stat.S_IXUSR)
+        self.program = limited
+        broken = self.folder / "broken"
+        broken.mkdir()
+        shutil.copy(self.drives[0] / "drive.toml", broken)
+        _, err = self.run_city("build", broken, *self.drives, "-o", self.city, *SETTINGS, "--workers", 4, code=1)
+        self.assertTrue(claim.exists())
+        [line] = [line for line in err.splitlines() if "error" in line]
+        self.assertIn("the job catalog of broken failed", line)
+        self.assertEqual(self.digests(), expected)
+
+    def test_add_and_remove(self):
+        expected = self.expected()
+        shutil.copytree(sample.folder() / "expected city", self.city)
+        new = town_drive("d")
+        self.run_city("add", new, self.city)
+        manifest = self.manifest()
+        self.assertEqual(len(manifest["drives"]), 4)
+        self.assertNotEqual(self.digests(), expected)
+        poses = json.loads((self.city / self.manifest()["poses"]).read_text())
+        self.assertEqual({placed["drive"]: placed["fixed"] for placed in poses["maps"]},
+                         {"a": True, "b": True, "c": True, "d": False})
+        self.run_city("remove", "d", self.city)
+        self.assertEqual(self.digests(), expected)
+        self.run_city("add", new, self.city)
+        self.assertEqual(points_of(self.manifest()), points_of(manifest))
+
+
+if __name__ == "__main__":
+    unittest.main()
