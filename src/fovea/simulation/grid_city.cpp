@@ -12,7 +12,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 GridCity::GridCity(const SimulationOptions& options)
-    : City(options), straight_([](double) { return 0.0; }, [](double) { return 0.0; }, -10, 500) {}
+    : StreetScenery(options),
+      straight_([](double) { return 0.0; }, [](double) { return 0.0; }, -10, 500) {}
 
 std::vector<ChunkPlace> GridCity::chunks_near(const Vector2d& place, double radius) const {
   std::vector<ChunkPlace> chunks;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/simulation/city.h"
+#include "fovea/simulation/street_scenery.h"
 
 namespace fovea {
 
@@ -13,7 +13,7 @@ inline constexpr int kArmChunks = 2;  ///< chunks of a street that leads out of 
 
 /// A scene of such streets; the subclass lays them out and gives the path. Ids of chunks: pieces of
 /// street in the order in which they were added, then the crossings.
-class GridCity : public City {
+class GridCity : public StreetScenery {
  public:
   explicit GridCity(const SimulationOptions& options);
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "fovea/core/errors.h"
-#include "fovea/simulation/city.h"
 #include "fovea/simulation/ray_caster.h"
+#include "fovea/simulation/street_scenery.h"
 #include "fovea/simulation/town_route.h"
 #include "fovea/simulation/vehicle_motion.h"
 

@@ -1,5 +1,5 @@
 // The scenes: a street without end, and a block with streets round it.
-#include "fovea/simulation/city.h"
+#include "fovea/simulation/street_scenery.h"
 
 #include <cmath>
 #include <numbers>
@@ -42,9 +42,9 @@ struct Bends {
   }
 };
 
-class EndlessStreet : public City {
+class EndlessStreet : public StreetScenery {
  public:
-  explicit EndlessStreet(const SimulationOptions& options) : City(options) {
+  explicit EndlessStreet(const SimulationOptions& options) : StreetScenery(options) {
     Random random(static_cast<std::uint64_t>(options.seed) + 5);
     const Bends bends{options.bends, options.curvature, random.uniform(0, 6), random.uniform(0, 6)};
     path_ = std::make_unique<Path>([bends](double s) { return bends.heading(s); },
@@ -162,18 +162,19 @@ class Block : public GridCity {
 
 }  // namespace
 
-City::City(const SimulationOptions& options) : options_(options), style_(style_of(options.scene)) {
+StreetScenery::StreetScenery(const SimulationOptions& options)
+    : options_(options), style_(style_of(options.scene)) {
   palette_ = make_palette();
   set_ = make_models(palette_);
   models_ = set_.models;
 }
 
-double City::lane_offset() const { return kLane; }
+double StreetScenery::lane_offset() const { return kLane; }
 
-std::vector<Placement> City::movers(double /*time*/, double /*way*/) const { return {}; }
+std::vector<Placement> StreetScenery::movers(double /*time*/, double /*way*/) const { return {}; }
 
-Chunk City::street_chunk(const StreetAxis& axis, double begin, std::uint32_t id,
-                         std::optional<Random> parked_cars) const {
+Chunk StreetScenery::street_chunk(const StreetAxis& axis, double begin, std::uint32_t id,
+                                  std::optional<Random> parked_cars) const {
   return build_street(axis, begin, style_, palette_, set_, chunk_random(options_.seed, id),
                       id * kSurfacesPerChunk, parked_cars);
 }

@@ -15,9 +15,9 @@ namespace fovea {
 inline constexpr std::uint32_t kSurfacesPerChunk = 4096;
 
 /// Palette, models and style of a scene, and its pieces of street. Nothing moves.
-class City : public Scenery {
+class StreetScenery : public Scenery {
  public:
-  explicit City(const SimulationOptions& options);
+  explicit StreetScenery(const SimulationOptions& options);
 
   double lane_offset() const override;
   std::vector<Placement> movers(double time, double way) const override;
