@@ -18,13 +18,11 @@
 namespace fovea {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
 
 class GenericDrive {
  public:
-  GenericDrive(const fs::path& path, const DriveOptions& options)
+  GenericDrive(const std::filesystem::path& path, const DriveOptions& options)
       : options_(options), description_(read_drive_description(path / "drive.toml")) {
     info_.path = path;
     info_.kind = "generic";
@@ -53,13 +51,13 @@ class GenericDrive {
   }
 
   void find_scan_stamps() {
-    const fs::path file = info_.path / description_.lidar.folder / "stamps.csv";
+    const std::filesystem::path file = info_.path / description_.lidar.folder / "stamps.csv";
     files_.stamps_name_scans = true;
     files_.stamps = read_stamps_of_scans(file, files_.scans, info_);
     info_.has_time_stamps = files_.stamps.any();
     if (!info_.has_time_stamps) {
       info_.warn(fmt::format("{} {}: scans are counted as 10 Hz", file.string(),
-                             fs::exists(file) ? "has no usable line" : "is missing"));
+                             std::filesystem::exists(file) ? "has no usable line" : "is missing"));
       return;
     }
     if (!description_.lidar.sweep.period && find_sweep_period(file, files_.stamps, info_)) {
@@ -118,7 +116,7 @@ class GenericDrive {
   std::map<int, NumberedFiles> list_images() {
     std::map<int, NumberedFiles> images;
     for (const CameraDescription& camera : description_.cameras) {
-      const fs::path folder = info_.path / camera.folder;
+      const std::filesystem::path folder = info_.path / camera.folder;
       NumberedFiles files = list_numbered_files(folder, {".png", ".jpg", ".jpeg"});
       if (files.empty()) {
         info_.warn(fmt::format("camera {} ({}) has no image in {}: it is left out", camera.index,
@@ -193,9 +191,9 @@ class GenericDrive {
     files_.images.push_back(images_of_scans(described, images, camera));
     info_.calibration.cameras.push_back(camera);
     const auto asked = options_.masks.find(camera.index);
-    const fs::path mask = asked != options_.masks.end() ? asked->second
-                          : described.mask.empty()      ? fs::path()
-                                                        : info_.path / described.mask;
+    const std::filesystem::path mask = asked != options_.masks.end() ? asked->second
+                                       : described.mask.empty()      ? std::filesystem::path()
+                                                                     : info_.path / described.mask;
     if (mask.empty()) return;
     const auto& rectifier = files_.rectifiers.back();
     info_.masks.emplace(camera.index, read_mask(mask, camera, rectifier ? &*rectifier : nullptr));
@@ -205,8 +203,8 @@ class GenericDrive {
   /// offsets of its images from that median, and their exposures.
   NumberedFiles images_of_scans(const CameraDescription& described, const NumberedFiles& images,
                                 Camera& camera) {
-    const fs::path file = info_.path / described.folder / "stamps.csv";
-    if (!fs::exists(file)) return images;
+    const std::filesystem::path file = info_.path / described.folder / "stamps.csv";
+    if (!std::filesystem::exists(file)) return images;
     if (!info_.has_time_stamps) {
       info_.warn(file.string() + " is not used: the scans have no stamps");
       return images;
@@ -294,7 +292,8 @@ class GenericDrive {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_generic_drive(const fs::path& path, const DriveOptions& options) {
+std::unique_ptr<FrameSource> open_generic_drive(const std::filesystem::path& path,
+                                                const DriveOptions& options) {
   return GenericDrive(path, options).open();
 }
 

@@ -10,6 +10,7 @@
 #include "fovea/core/file_format.h"
 #include "fovea/core/input_file.h"
 #include "fovea/core/path_remedy.h"
+#include "fovea/map/map_opening.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/map/row_scan.h"
 
@@ -17,7 +18,6 @@ namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
-using sqlite::Access;
 using sqlite::Statement;
 
 constexpr const char* kGiveMap = "give a map that 'fovea map' wrote";
@@ -39,45 +39,6 @@ void require_file(const fs::path& path) {
     throw InputError(fmt::format("this is {}, not a Fovea map", found.name), path.string(),
                      kGiveMap);
   }
-}
-
-/// A map whose log is empty can be read without side files: from a read-only folder, say.
-bool has_log(const fs::path& path) {
-  std::error_code ignored;
-  for (const char* ending : {"-wal", "-journal"}) {
-    const fs::path side = fs::path(path) += ending;
-    if (fs::exists(side, ignored) && fs::file_size(side, ignored) > 0) return true;
-  }
-  return false;
-}
-
-/// No user may write the file, so it does not change. SQLite needs no locks, which shared folders
-/// often lack.
-bool is_read_only(const fs::path& path) {
-  constexpr auto kMayWrite =
-      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  return !error && (status.permissions() & kMayWrite) == fs::perms::none;
-}
-
-/// @param shown_path  the map, of which `path` may be a copy
-std::unique_ptr<sqlite::Database> open_for_reading(const fs::path& path,
-                                                   const fs::path& shown_path) {
-  if (is_read_only(path) && !has_log(path)) {
-    return std::make_unique<sqlite::Database>(path, Access::kReadImmutable, shown_path);
-  }
-  auto database = std::make_unique<sqlite::Database>(path, Access::kRead, shown_path);
-  // SQLite reads nothing before the first statement.
-  constexpr const char* kFirstStatement = "SELECT count(*) FROM sqlite_master";
-  if (database->attempt(kFirstStatement) != sqlite::Outcome::kFailed) return database;
-  if (!has_log(path)) {
-    return std::make_unique<sqlite::Database>(path, Access::kReadImmutable, shown_path);
-  }
-  // A program was killed while it changed how the file is journalled. A connection that may write
-  // repairs that; then the file can be read.
-  sqlite::Database(path, Access::kWrite, shown_path).attempt(kFirstStatement);
-  return std::make_unique<sqlite::Database>(path, Access::kRead, shown_path);
 }
 
 /// Whether the table `meta` states the present version, with its checksum.

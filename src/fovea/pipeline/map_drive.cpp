@@ -35,12 +35,6 @@ void require_no_stop(const MapJob& job) {
               "give the same command again");
 }
 
-std::unique_ptr<MapWriter> open_output(const MapJob& job) {
-  if (job.resume) return MapWriter::open(job.output);
-  if (job.scratch.empty()) return MapWriter::create(job.output, job.force);
-  return MapWriter::create_in_scratch(job.output, job.force, job.scratch);
-}
-
 /// A run of a mapper over a drive, with its figures and its file. Over ten members: all state that
 /// lives as long as the run. The order counts: the mapper loads tiles through the cache, the cache
 /// through the file.
@@ -124,8 +118,7 @@ class MapRun {
 };
 
 CheckpointerOptions MapRun::checkpointer_options() {
-  CheckpointerOptions options{threaded_, job_.memory};
-  options.commit_at_end = !job_.scratch.empty();
+  CheckpointerOptions options{threaded_, job_.memory, /*commit_at_end=*/!job_.scratch.empty()};
   if (job_.observer != nullptr) {
     options.on_checkpoint = [this](const TileChanges& changes, const MapRows& rows) {
       job_.observer->map_changed(changes, rows, mapper_->map());

@@ -21,4 +21,7 @@ bool has_sweep_motion(const DriveInfo& drive, const MapJob& job);
 DriveCalibration correct_calibration(const FrameSource& source, const MapJob& job, DriveInfo& drive,
                                      MapMeta& meta);
 
+/// Opens the map to continue, or a new one at its place or in the scratch folder.
+std::unique_ptr<MapWriter> open_output(const MapJob& job);
+
 }  // namespace fovea
