@@ -196,8 +196,7 @@ void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOu
   const int shift = first_frame - source.content.drives.front().first_frame;
   std::map<std::size_t, std::size_t> submaps;  // number in the tile by the number in the map
   cell_.for_each_piece(source, [&](CellPiece& piece) {
-    reduce(source, piece);
-    if (piece.points.empty()) return;
+    // Also for points that other drives show: the frames around them belong to the tile.
     const auto [place, is_new] = submaps.try_emplace(piece.id.submap, map.submaps().size());
     if (is_new) {
       SubmapRecord record;
@@ -206,6 +205,8 @@ void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOu
       writer.put_submap(place->second, record);
       map.add_submap(record.T_local_submap);
     }
+    reduce(source, piece);
+    if (piece.points.empty()) return;
     TilePoints& points = piece.points;
     known_.add(points, source.T_cell_submap[piece.id.submap]);
     renumber(points.frame, [&](std::int32_t frame) { return frame < 0 ? -1 : frame + shift; });

@@ -132,6 +132,16 @@ TEST_F(TileFusionOf, AWallThatThreeDrivesShowIsThereOnce) {
   }
 }
 
+TEST_F(TileFusionOf, ADriveWhosePointsAreAllKnownKeepsItsFrames) {
+  add("first", {.views = 3});
+  add("second", {});
+  fuse();
+  const MapReader tile(folder_ / "tile.fovea");
+  EXPECT_EQ(tile.size(), wall_points_);
+  EXPECT_EQ(tile.frames().size(), 8u);
+  EXPECT_EQ(tile.submaps().size(), 2u);
+}
+
 TEST_F(TileFusionOf, TheOrderOfTheMapsDoesNotCount) {
   for (int k = 0; k < 3; ++k) add(fmt::format("drive_{}", k), {.east = 10 + 0.03 * k});
   fuse();
