@@ -52,6 +52,7 @@ def _add_settings(command: argparse.ArgumentParser) -> None:
     group.add_argument("--config", metavar="FILE.toml", help="of `fovea map`")
     group.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="of `fovea map`")
     group.add_argument("--cameras", metavar="K,...", help="of `fovea map`")
+    group.add_argument("--hold-out", metavar="SPEC", help="of `fovea map`: frames that only get a pose")
     group.add_argument("--datum", help="of drives that state none")
     group.add_argument("--epoch", type=float, metavar="YEAR", help="of the datum, for drives that state none")
     group.add_argument("--heights", choices=("ellipsoidal", "orthometric"), help="of drives that state none")
@@ -77,6 +78,8 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         raise config_error(f"segments of {arguments.segment_length:g} m are not possible", "--segment-length",
                            "give 50 or more")
     extra = [word for setting in arguments.set for word in ("--set", setting)]
+    if arguments.hold_out:
+        extra += ["--hold-out", arguments.hold_out]
     return Settings(arguments.tile_size, arguments.session, arguments.segment_length, tuple(extra),
                     arguments.cameras, _absolute(arguments.config), _absolute(arguments.control), arguments.datum,
                     arguments.epoch, arguments.heights)

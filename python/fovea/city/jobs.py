@@ -133,7 +133,7 @@ class JobMaker:
                    expected_s=costs.ROOT_S)
 
     def _fovea(self, command: str, inputs: Sequence[str], output: str, *options: str) -> tuple[str, ...]:
-        return (self.options.program, command, *inputs, "-o", self._path(output), "--if-missing", "--quiet", *options)
+        return (self.options.program, command, *inputs, "-o", self._path(output), "--if-missing", *options)
 
     def _python(self, command: str) -> tuple[str, ...]:
         return (sys.executable, "-m", "fovea.city", command)

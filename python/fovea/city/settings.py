@@ -23,7 +23,7 @@ class Settings:
     tile_size_m: float = 64.0
     session: str = "best"
     segment_length_m: float = 1000.0
-    map_arguments: tuple[str, ...] = ()  # --set KEY=VALUE of `fovea map`
+    map_arguments: tuple[str, ...] = ()  # --set KEY=VALUE and --hold-out SPEC of `fovea map`
     cameras: str | None = None  # of `fovea map` and `fovea catalog`
     config: str | None = None  # file of `fovea map --config`
     control: str | None = None  # file of surveyed points
