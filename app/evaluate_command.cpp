@@ -14,15 +14,18 @@
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
+#include "fovea/city/city.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/path_name.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/evaluation/compare_color_rules.h"
+#include "fovea/evaluation/drive_in_city.h"
 #include "fovea/evaluation/evaluate.h"
 #include "fovea/evaluation/evaluate_truth.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
+#include "fovea/evaluation/scored_city.h"
 #include "fovea/map/map_store.h"
 #include "fovea/map/point_files/cloud_format.h"
 #include "fovea/pipeline/stored_calibration.h"
@@ -63,6 +66,70 @@ void put_report(const Report& report, std::optional<OutputFile>& json, Warnings&
   warnings.add(report.warnings);
 }
 
+struct ScoredDrive {
+  ScoredMap map;
+  std::unique_ptr<FrameSource> drive;
+};
+
+/// The cameras to score and to open the drive with: those of the map if none are named.
+void choose_cameras(EvaluateArguments& arguments, const ScoredMap& map, ProtocolOptions& options) {
+  if (!has_colors(map) && !arguments.html.empty()) {
+    throw InputError("the map has no colors, of which the page makes pictures", arguments.map,
+                     "evaluate it without --html");
+  }
+  std::string& cameras = arguments.drive.cameras;
+  if (cameras.empty() && !has_colors(map)) cameras = kNoCameras;
+  if (cameras == kNoCameras) {
+    if (has_colors(map)) {
+      throw ConfigError("scores of a map with colors need a camera", "--cameras",
+                        "name the cameras to score, or leave it out");
+    }
+  } else if (!cameras.empty()) {
+    options.cameras = parse_cameras(cameras);
+  } else {
+    cameras = fmt::format("{}", fmt::join(map.cameras, ","));
+  }
+}
+
+/// Of a map or a cloud.
+ScoredDrive load_map(EvaluateArguments& arguments, ProtocolOptions& options) {
+  ScoredMapOptions loading;
+  if (!arguments.poses.empty()) loading.poses = arguments.poses;
+  loading.first_frame = arguments.first_frame;
+  std::optional<MapReader> reader;  // of a map; a cloud has none
+  if (!cloud_format(arguments.map)) reader.emplace(open_map(arguments.map));
+  ScoredDrive scored;
+  scored.map =
+      reader && !loading.poses ? load_scored_map(*reader) : load_scored_map(arguments.map, loading);
+  choose_cameras(arguments, scored.map, options);
+  scored.drive = arguments.drive.open();
+  if (reader) {
+    const auto match = find_drive_in_map(*reader, arguments.map, *scored.drive, arguments.foreign);
+    if (match && !match->keeps_numbers) choose_frames(match->number_in_drive, scored.map);
+  }
+  return scored;
+}
+
+/// The part of a city around the drive.
+ScoredDrive load_city(EvaluateArguments& arguments, ProtocolOptions& options) {
+  if (!arguments.poses.empty()) {
+    throw ConfigError("a city has poses of its own", arguments.map, "leave out --poses");
+  }
+  if (options.protocol == Protocol::kInSampleNavigation) {
+    throw ConfigError("a city has no navigation poses", "protocol in-sample-nav",
+                      "use the protocol in-sample");
+  }
+  const City city = open_city(arguments.map);
+  ScoredDrive scored;
+  scored.drive = arguments.drive.open();
+  const DriveInCity found = find_drive_in_city(city, *scored.drive, arguments.foreign);
+  for (const std::string& note : found.notes) print_out("note: {}\n", note);
+  scored.map = load_scored_city(city, found);
+  choose_cameras(arguments, scored.map, options);
+  scored.drive = arguments.drive.open();  // with the cameras that are scored
+  return scored;
+}
+
 /// Whose calibration to score under: the drive's or a map's.
 std::string calibration_of(const EvaluateArguments& arguments, const ScoredMap& map) {
   if (!arguments.calibration.empty()) return arguments.calibration;
@@ -88,33 +155,8 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
   std::optional<OutputFile> html;
   if (!arguments.html.empty()) html.emplace(arguments.html, /*force=*/true);
 
-  ScoredMapOptions loading;
-  if (!arguments.poses.empty()) loading.poses = arguments.poses;
-  loading.first_frame = arguments.first_frame;
-  std::optional<MapReader> reader;  // of a map; a cloud has none
-  if (!cloud_format(arguments.map)) reader.emplace(open_map(arguments.map));
-  ScoredMap map =
-      reader && !loading.poses ? load_scored_map(*reader) : load_scored_map(arguments.map, loading);
-  if (!has_colors(map) && !arguments.html.empty()) {
-    throw InputError("the map has no colors, of which the page makes pictures", arguments.map,
-                     "evaluate it without --html");
-  }
-  if (arguments.drive.cameras.empty() && !has_colors(map)) arguments.drive.cameras = kNoCameras;
-  if (arguments.drive.cameras == kNoCameras) {
-    if (has_colors(map)) {
-      throw ConfigError("scores of a map with colors need a camera", "--cameras",
-                        "name the cameras to score, or leave it out");
-    }
-  } else if (!arguments.drive.cameras.empty()) {
-    options.cameras = parse_cameras(arguments.drive.cameras);
-  } else {
-    arguments.drive.cameras = fmt::format("{}", fmt::join(map.cameras, ","));
-  }
-  auto drive = arguments.drive.open();
-  if (reader) {
-    const auto match = find_drive_in_map(*reader, arguments.map, *drive, arguments.foreign);
-    if (match && !match->keeps_numbers) choose_frames(match->number_in_drive, map);
-  }
+  auto [map, drive] =
+      is_city(arguments.map) ? load_city(arguments, options) : load_map(arguments, options);
   const std::string calibration = calibration_of(arguments, map);
   if (calibration != kDrive) {
     const MapMeta meta = calibration == arguments.map ? map.meta : open_map(calibration).meta();
@@ -148,10 +190,11 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
 
 void add_evaluate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<EvaluateArguments>();
-  CLI::App* command = app.add_subcommand("evaluate", "Score a map against a drive");
+  CLI::App* command = app.add_subcommand("evaluate", "Score a map or a city against a drive");
   command
       ->add_option("MAP", arguments->map,
-                   "Fovea map, or coloured cloud (PLY, PCD, LAS) with --poses")
+                   "Fovea map, city (folder or manifest), or colored cloud (PLY, PCD, LAS) with "
+                   "--poses")
       ->required();
   command->add_option("DRIVE", arguments->drive.drive, "The drive whose scans and images score it")
       ->required();

@@ -11,6 +11,7 @@
 #include "app/map_arguments.h"
 #include "app/number_checks.h"
 #include "app/print.h"
+#include "app/tile_overview.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
@@ -60,8 +61,8 @@ void run(const FuseArguments& arguments) {
   job.tile_size = arguments.tile_size;
   job.session = arguments.session;
   job.spacing = finest_spacing(arguments.maps);
-  const TileFusionFigures figures = fuse_tile({arguments.maps.begin(), arguments.maps.end()},
-                                              read_city_poses(arguments.poses), job);
+  const TileFusionFigures figures = fuse_with_overview(
+      {arguments.maps.begin(), arguments.maps.end()}, read_city_poses(arguments.poses), job);
   if (arguments.quiet) return;
   print_out("{}: tile {}, {} points of {} maps\n", arguments.output, job.tile.text(),
             figures.points, figures.maps);

@@ -1,4 +1,4 @@
-// fovea info: what a map holds.
+// fovea info: what a map or a city holds.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "app/city_info.h"
 #include "app/commands.h"
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "app/sensor_text.h"
+#include "fovea/city/city.h"
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/map/map_meta.h"
@@ -204,6 +206,9 @@ void report_log(const std::string& map) {
 }
 
 void run(const InfoArguments& arguments) {
+  if (is_city(arguments.map)) {
+    return print_city(arguments.map, {arguments.json, arguments.digest, arguments.check});
+  }
   fold_log(arguments.map);
   if (arguments.check) {
     check(arguments.map);
@@ -224,8 +229,11 @@ void run(const InfoArguments& arguments) {
 
 void add_info_command(CLI::App& app, Session&) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* command = app.add_subcommand("info", "Describe a map");
-  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  CLI::App* command = app.add_subcommand("info", "Describe a map or a city");
+  command
+      ->add_option("MAP.fovea", arguments->map,
+                   "Map file, or a city: its folder or one of its manifests")
+      ->required();
   CLI::Option* json = command->add_flag("--json", arguments->json, "As JSON");
   command
       ->add_flag("--digest", arguments->digest,

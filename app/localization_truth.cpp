@@ -10,6 +10,7 @@
 #include "app/map_arguments.h"
 #include "app/print.h"
 #include "fovea/core/errors.h"
+#include "fovea/evaluation/drive_in_city.h"
 #include "fovea/map/map_meta.h"
 
 namespace fovea::app {
@@ -50,7 +51,31 @@ LocalizationTruth open_truth(const std::string& truth, const FrameSource& drive,
   const auto map_drive = open_drive(truth, scans);
   return {pose_pairs(frames_of_truth(map, *map_drive, map_path, quiet),
                      DriveTruth(map_drive->info().path)),
-          DriveTruth(drive.info().path)};
+          DriveTruth(drive.info().path),
+          {}};
+}
+
+LocalizationTruth open_city_truth(const std::vector<std::string>& truths, const FrameSource& drive,
+                                  const City& city, bool quiet) {
+  LocalizationTruth result{{}, DriveTruth(drive.info().path), {}};
+  const LocalTangentPlane world(result.drive.origin());
+  DriveOptions scans;
+  scans.use_images = false;
+  for (const std::string& folder : truths) {
+    const auto city_drive = open_drive(folder, scans);
+    const DriveInCity found = find_drive_in_city(city, *city_drive, /*foreign=*/false);
+    if (!quiet) {
+      for (const std::string& note : found.notes) print_out("note: {}\n", note);
+    }
+    const DriveTruth truth(city_drive->info().path);
+    const RigidMotion T_world_truth = world.T_local_enu(truth.origin());
+    for (PosePair pair : pose_pairs(found.frames, truth)) {
+      pair.T_true_lidar = T_world_truth * pair.T_true_lidar;
+      result.map.push_back(pair);
+    }
+  }
+  result.T_true_city = align_drives(result.map);
+  return result;
 }
 
 LocalizationErrors localization_errors(const LocalizationTruth& truth,
@@ -62,7 +87,9 @@ LocalizationErrors localization_errors(const LocalizationTruth& truth,
     if (frame.index < 0 || frame.index >= truth.drive.frames()) continue;
     const PosePair pair{frame.index, truth.drive.T_local_lidar()[std::size_t(frame.index)],
                         frame.T_local_lidar};
-    const Twist error = log_se3(error_beside(truth.map, pair));
+    const Twist error = log_se3(truth.T_true_city ? pair.T_true_lidar.inverse() *
+                                                        *truth.T_true_city * pair.T_map_lidar
+                                                  : error_beside(truth.map, pair));
     const double position = error.tail<3>().norm();
     const double rotation = error.head<3>().norm() * 180 / std::numbers::pi;
     errors.position_rms += position * position;
@@ -73,7 +100,7 @@ LocalizationErrors localization_errors(const LocalizationTruth& truth,
     ++count;
   }
   if (count == 0) {
-    throw InputError("the truth knows none of the localised frames", truth.drive.folder().string(),
+    throw InputError("the truth knows none of the localized frames", truth.drive.folder().string(),
                      "check that it belongs to the drive");
   }
   errors.position_rms = std::sqrt(errors.position_rms / double(count));

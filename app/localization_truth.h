@@ -2,9 +2,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fovea/city/city.h"
 #include "fovea/drive/drive_truth.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/evaluation/truth_poses.h"
@@ -14,11 +16,14 @@
 namespace fovea::app {
 
 struct LocalizationTruth {
-  std::vector<PosePair> map;  ///< true poses of the map's frames
+  std::vector<PosePair> map;  ///< true poses of the frames of the map or the city
   DriveTruth drive;           ///< of the drive that is localized
+  /// Lays the frames of a city over their truth; absent for a map.
+  std::optional<RigidMotion> T_true_city;
 };
 
-/// Errors relative to the nearest poses of the map, so that errors of the map do not count.
+/// In a map: relative to the nearest pose of the map, so that errors of the map do not count. In a
+/// city: after one rigid alignment of the city's drives to their truth.
 struct LocalizationErrors {
   double position_rms = 0, position_max = 0;  ///< m
   double rotation_rms = 0, rotation_max = 0;  ///< degrees
@@ -31,6 +36,11 @@ struct LocalizationErrors {
 /// @throws InputError  if the map was not made of that drive alone
 LocalizationTruth open_truth(const std::string& truth, const FrameSource& drive,
                              const MapReader& map, const std::string& map_path, bool quiet);
+
+/// @param truths  folders of drives of the city; at least one
+/// @throws InputError  if the city was not made of one of these drives
+LocalizationTruth open_city_truth(const std::vector<std::string>& truths, const FrameSource& drive,
+                                  const City& city, bool quiet);
 
 /// @throws InputError  if the truth has none of the localized frames
 LocalizationErrors localization_errors(const LocalizationTruth& truth,

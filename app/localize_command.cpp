@@ -4,7 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
@@ -14,6 +16,7 @@
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
+#include "fovea/city/city.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/command_files.h"
@@ -28,7 +31,8 @@ namespace {
 
 struct LocalizeArguments {
   DriveArguments drive;
-  std::string map, output, guess, only, truth, report;
+  std::string map, output, guess, only, report;
+  std::vector<std::string> truths;
   int threads = 0;
   bool force = false, quiet = false;
 };
@@ -58,12 +62,35 @@ LocalizationGuess guess_of_file(const std::string& file, const FrameSource& driv
   return guess;
 }
 
+/// A map or a city.
+struct Place {
+  std::optional<City> city;
+  std::optional<MapReader> map;
+  std::optional<GeodeticPoint> origin;  ///< of its local frame
+
+  std::unique_ptr<SurfaceSource> surfaces() const {
+    return city ? city_surface_source(*city) : map_surface_source(*map);
+  }
+};
+
+Place open_place(const std::string& path) {
+  Place place;
+  if (is_city(path)) {
+    place.city = open_city(path);
+    place.origin = place.city->origin;
+  } else {
+    place.map.emplace(open_map(path));
+    place.origin = map_origin(place.map->meta());
+  }
+  return place;
+}
+
 LocalizationGuess find_guess(LocalizeArguments& arguments, const FrameSource& drive,
-                             const MapMeta& map) {
+                             const std::optional<GeodeticPoint>& origin) {
   const bool choose = arguments.guess.empty();
   LocalizationGuess guess;
   if (choose || arguments.guess == kNavigation) {
-    guess.trajectory = navigation_in_map(drive.info(), map);
+    if (origin) guess.trajectory = navigation_in_local(drive.info(), *origin);
     if (!guess.trajectory && !choose) {
       throw InputError(
           "there is no navigation to guess by: it takes a drive with GPS/INS and a "
@@ -100,7 +127,7 @@ nlohmann::ordered_json to_json(const LocalizedDrive& localized, const std::strin
 }
 
 void print_summary(const LocalizeArguments& arguments, const LocalizedDrive& localized) {
-  print_out("{}: {} of {} frames localised (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
+  print_out("{}: {} of {} frames localized (guess: {}), {:.1f} frames/s, {:.0f} MB peak\n",
             arguments.output, localized.count(LocalizationState::kLocalized),
             localized.frames.size(), arguments.guess, localized.frames_per_second,
             localized.peak_rss_mb);
@@ -127,7 +154,7 @@ void require_poses(const LocalizedDrive& localized, const LocalizeArguments& arg
   const bool outside =
       localized.count(LocalizationState::kOutside) > localized.count(LocalizationState::kLost);
   throw InputError(
-      fmt::format("no scan could be localised: {}",
+      fmt::format("no scan could be localized: {}",
                   outside ? "the drive lies outside the map" : "the scans fit nowhere in the map"),
       fmt::format("{} in {}", arguments.drive.drive, arguments.map),
       "give a map of the place, or a better --guess");
@@ -139,7 +166,8 @@ bool writes_table(const LocalizeArguments& arguments) {
 
 CommandFiles files_of(const LocalizeArguments& arguments) {
   CommandFiles files;
-  files.inputs = {arguments.drive.drive, arguments.map, arguments.truth};
+  files.inputs = {arguments.drive.drive, arguments.map};
+  files.inputs.insert(files.inputs.end(), arguments.truths.begin(), arguments.truths.end());
   if (arguments.guess != kNavigation && arguments.guess != kFirst) {
     files.inputs.push_back(arguments.guess);
   }
@@ -149,26 +177,35 @@ CommandFiles files_of(const LocalizeArguments& arguments) {
   return files;
 }
 
+std::optional<LocalizationTruth> open_truths(const LocalizeArguments& arguments,
+                                             const FrameSource& drive, const Place& place) {
+  const std::vector<std::string>& truths = arguments.truths;
+  if (truths.empty()) return std::nullopt;
+  if (place.city) return open_city_truth(truths, drive, *place.city, arguments.quiet);
+  if (truths.size() > 1) {
+    throw ConfigError("several drives are for a city", "--truth", "give the drive of the map");
+  }
+  return open_truth(truths.front(), drive, *place.map, arguments.map, arguments.quiet);
+}
+
 void run(LocalizeArguments arguments, Warnings& warnings) {
   check_files(files_of(arguments));
   const ThreadLimit threads(arguments.threads);
   OutputFile output(arguments.output, arguments.force);  // first: a bad path must not cost a run
   std::optional<OutputFile> report;
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
-  const MapReader map = open_map(arguments.map);
+  const Place place = open_place(arguments.map);
   DriveOptions wanted = arguments.drive.options();
   wanted.use_images = false;
   const auto drive = open_drive(arguments.drive.drive, wanted);
   LocalizationJob job;
-  job.guess = find_guess(arguments, *drive, map.meta());
+  job.guess = find_guess(arguments, *drive, place.origin);
   job.only = parse_frame_set(arguments.only, "--only");
-  std::optional<LocalizationTruth> truth;
-  if (!arguments.truth.empty()) {
-    truth = open_truth(arguments.truth, *drive, map, arguments.map, arguments.quiet);
-  }
+  const std::optional<LocalizationTruth> truth = open_truths(arguments, *drive, place);
   const LocalizedDrive localized = [&] {
     ProgressBar bar(arguments.quiet);
-    return localize_drive(*drive, map, job, [&](int done, int total) { bar.draw(done, total); });
+    return localize_drive(*drive, place.surfaces(), job,
+                          [&](int done, int total) { bar.draw(done, total); });
   }();
   require_poses(localized, arguments);
   if (writes_table(arguments)) {
@@ -195,10 +232,11 @@ void run(LocalizeArguments arguments, Warnings& warnings) {
 void add_localize_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<LocalizeArguments>();
   CLI::App* command =
-      app.add_subcommand("localize", "Find where a drive's scans were taken in a map made before");
+      app.add_subcommand("localize", "Find where a drive's scans were taken in a map or a city");
   command->add_option("DRIVE", arguments->drive.drive, "Drive folder; its images are not needed")
       ->required();
-  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  command->add_option("MAP", arguments->map, "Map file, or the folder or manifest of a city")
+      ->required();
   command
       ->add_option("-o,--output", arguments->output,
                    "Poses to write: KITTI's lines, or a table with covariances (.csv)")
@@ -211,9 +249,12 @@ void add_localize_command(CLI::App& app, Session& session) {
   command->add_option("--frames", arguments->drive.frames, "Half-open range A:B");
   command->add_option("--only", arguments->only, "Only these frames, as --hold-out of map");
   command
-      ->add_option("--truth", arguments->truth,
-                   "Of simulated drives: the drive that the map was made of; errors are told")
-      ->type_name("MAP_DRIVE");
+      ->add_option(
+          "--truth", arguments->truths,
+          "Of simulated drives: the drive that the map was made of, to report errors; of a "
+          "city one of its drives, may be repeated")
+      ->type_name("MAP_DRIVE")
+      ->allow_extra_args(false);
   command->add_option("--report", arguments->report, "Write figures as JSON")->type_name("FILE");
   command->add_option("--threads", arguments->threads, "At most this many threads (default: all)")
       ->check(whole_number(0, kMaxThreads));

@@ -19,14 +19,17 @@
 #include "app/number_checks.h"
 #include "app/render_drive.h"
 #include "app/render_views.h"
+#include "fovea/city/city.h"
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/core/stable_order.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/writers/png_encode.h"
+#include "fovea/evaluation/drive_in_city.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
 #include "fovea/evaluation/predicted_light.h"
+#include "fovea/evaluation/scored_city.h"
 #include "fovea/evaluation/scored_map.h"
 #include "fovea/geometry/lidar_data_sheet.h"
 #include "fovea/map/meta_keys.h"
@@ -108,12 +111,9 @@ RecordedFrame load_frame(const RenderArguments& arguments, const ScoredMap& map,
 }
 
 /// The map as one of the drive's cameras sees it, above the photograph that it took.
-Image beside_photograph(const RenderArguments& arguments, const MapReader& reader, ScoredMap& map) {
-  const DriveArguments drive_arguments{arguments.drive, "", arguments.camera, {}};
-  auto drive = drive_arguments.open();
-  const auto match =
-      find_drive_in_map(reader, arguments.map, *drive, arguments.foreign, /*quiet=*/true);
-  if (match) choose_frames(match->number_in_drive, map);
+/// @param map  with the frames of the drive
+Image above_photograph(const RenderArguments& arguments, const ScoredMap& map,
+                       std::unique_ptr<FrameSource> drive) {
   if (has_stored_calibration(map.meta)) {
     drive = with_stored_calibration(std::move(drive), map.meta, arguments.map);
   }
@@ -158,8 +158,12 @@ Image from_view(const RenderArguments& arguments, const ScoredMap& map) {
 }
 
 /// What would otherwise be ignored without a word.
-void check_options(const CLI::App& command) {
+void check_options(const CLI::App& command, const RenderArguments& arguments) {
   const bool drive = command.count("--poses") > 0;
+  if (is_city(arguments.map) && (drive || arguments.drive.empty())) {
+    throw ConfigError("of a city only pictures with DRIVE are made, without --poses", arguments.map,
+                      "give one of its drives, or a tile");
+  }
   for (const char* option : {"--view", "--frame", "--width", "--height", "--from", "--to"}) {
     if (drive && command.count(option) > 0) {
       throw CLI::ValidationError(option, "is for a single picture, without --poses");
@@ -181,13 +185,29 @@ CommandFiles files_of(const RenderArguments& arguments) {
   return files;
 }
 
-void run(const RenderArguments& arguments) {
-  OutputFile output(arguments.output, arguments.force);
+Image picture_of_map(const RenderArguments& arguments) {
   const MapReader reader = open_map(arguments.map);
   ScoredMap map = load_scored_map(reader);
+  if (arguments.drive.empty()) return from_view(arguments, map);
+  auto drive = DriveArguments{arguments.drive, "", arguments.camera, {}}.open();
+  const auto match =
+      find_drive_in_map(reader, arguments.map, *drive, arguments.foreign, /*quiet=*/true);
+  if (match) choose_frames(match->number_in_drive, map);
+  return above_photograph(arguments, map, std::move(drive));
+}
+
+/// Only the tiles around the drive are read.
+Image picture_of_city(const RenderArguments& arguments) {
+  const City city = open_city(arguments.map);
+  auto drive = DriveArguments{arguments.drive, "", arguments.camera, {}}.open();
+  const ScoredMap map = load_scored_city(city, find_drive_in_city(city, *drive, arguments.foreign));
+  return above_photograph(arguments, map, std::move(drive));
+}
+
+void run(const RenderArguments& arguments) {
+  OutputFile output(arguments.output, arguments.force);
   const std::vector<std::uint8_t> png =
-      encode_png(arguments.drive.empty() ? from_view(arguments, map)
-                                         : beside_photograph(arguments, reader, map));
+      encode_png(is_city(arguments.map) ? picture_of_city(arguments) : picture_of_map(arguments));
   output.stream().write(reinterpret_cast<const char*>(png.data()),
                         static_cast<std::streamsize>(png.size()));
   output.commit();
@@ -198,7 +218,7 @@ void run(const RenderArguments& arguments) {
 void add_render_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand("render", "Draw a picture of a map");
-  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  command->add_option("MAP", arguments->map, "Map file; with DRIVE also a city")->required();
   command->add_option("DRIVE", arguments->drive,
                       "Draw what a camera of this drive sees, above its photograph");
   command->add_option("-o,--output", arguments->output, "Picture to write, or with --poses a drive")
@@ -261,7 +281,7 @@ void add_render_command(CLI::App& app, Session& session) {
       ->check(whole_number(0, kMaxThreads));
   command->add_flag("--quiet", path.quiet, "Say nothing but errors");
   command->callback([arguments, command, &session] {
-    check_options(*command);
+    check_options(*command, *arguments);
     check_files(files_of(*arguments));
     RenderDriveArguments& drive = arguments->path;
     if (drive.poses.empty()) return run(*arguments);

@@ -1,7 +1,8 @@
-// fovea view: a finished map in a browser.
+// fovea view: a finished map or a city in a browser.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,8 +14,12 @@
 #include "app/print.h"
 #include "app/view_arguments.h"
 #include "app/viewer_page.h"
+#include "fovea/city/city.h"
+#include "fovea/core/errors.h"
+#include "fovea/exporting/city/tile_overview.h"
 #include "fovea/map/meta_keys.h"
 #include "fovea/pipeline/stored_calibration.h"
+#include "fovea/server/city_content.h"
 #include "fovea/server/map_server.h"
 
 namespace fovea::app {
@@ -45,13 +50,43 @@ std::shared_ptr<const DriveImages> open_images(const MapReader& map,
   return std::make_shared<const DriveImages>(std::move(source));
 }
 
+/// Of all tiles.
+ExposureChoice city_exposure(const std::string& text) {
+  const ExposureChoice exposure = parse_exposure(text);
+  if (exposure.kind == ExposureChoice::Kind::kAuto) return kCityExposure;
+  if (exposure.kind != ExposureChoice::Kind::kFrame) return exposure;
+  throw ConfigError("the frames of a city have no common numbers", "--exposure",
+                    "give auto or stops");
+}
+
+/// Makes the content of a site, as often as it is called.
+using MakeContent = std::function<std::unique_ptr<SiteContent>()>;
+
+MakeContent city_content(const ViewArguments& arguments) {
+  if (!arguments.drive.drive.empty()) {
+    throw ConfigError("a city has many drives", "--drive", "leave it out, or view a map");
+  }
+  return [city = open_city(arguments.map), exposure = city_exposure(arguments.exposure)] {
+    return make_city_content(city, exposure);
+  };
+}
+
 void run(const ViewArguments& arguments, Session& session) {
-  // The map is not kept open: its writer could not merge the log.
-  const auto images = open_images(open_map(arguments.map), arguments);
-  const ExposureChoice exposure = parse_exposure(arguments.exposure);
+  std::shared_ptr<const DriveImages> images;
+  MakeContent content;
+  const bool is_of_city = is_city(arguments.map);
+  if (is_of_city) {
+    content = city_content(arguments);
+  } else {
+    // The map is not kept open: its writer could not merge the log.
+    images = open_images(open_map(arguments.map), arguments);
+    content = [&arguments, images, exposure = parse_exposure(arguments.exposure)] {
+      return make_map_content(arguments.map, images.get(), exposure);
+    };
+  }
   std::optional<MapServer> show;
   open_at_port(arguments.server, arguments.port, [&](const WebServerOptions& options) {
-    show.emplace(arguments.map, viewer_page(), images, options, exposure);
+    show.emplace(content(), viewer_page(), images, options);
   });
   if (!arguments.quiet) {
     print_out("{} is shown at {} (Ctrl-C ends)\n", arguments.map, show->url());
@@ -60,7 +95,7 @@ void run(const ViewArguments& arguments, Session& session) {
   if (!arguments.no_browser) open_browser(show->url());
   wait_for(session.interrupt.stop_gently());
   show.reset();
-  fold_log(arguments.map);  // of a map whose writer ended in the meantime
+  if (!is_of_city) fold_log(arguments.map);  // of a map whose writer ended in the meantime
 }
 
 }  // namespace
@@ -68,8 +103,11 @@ void run(const ViewArguments& arguments, Session& session) {
 void add_view_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ViewArguments>();
   arguments->server.threads = 2;
-  CLI::App* command = app.add_subcommand("view", "Show a map in a browser");
-  command->add_option("MAP.fovea", arguments->map, "Map file")->required();
+  CLI::App* command = app.add_subcommand("view", "Show a map or a city in a browser");
+  command
+      ->add_option("MAP.fovea", arguments->map,
+                   "Map file, or a city: its folder or one of its manifests")
+      ->required();
   command
       ->add_option("--drive", arguments->drive.drive,
                    "The drive that the map was made of, for its cameras' images")
@@ -87,9 +125,10 @@ void add_view_command(CLI::App& app, Session& session) {
       ->add_option("--address", arguments->server.address,
                    "Address to serve at: 0.0.0.0 shows the map to all that reach this machine")
       ->capture_default_str();
-  command->add_option("--exposure", arguments->exposure,
-                      "Of the colors: auto (the median exposure of the images), frame:N, or stops "
-                      "above the exposure of the map");
+  command->add_option(
+      "--exposure", arguments->exposure,
+      "Of the colors: auto (the median exposure of the images; of a city: map), map "
+      "(the map's own), frame:N, or stops above the exposure of the map");
   add_foreign_option(*command, arguments->foreign);
   command->add_flag("--no-browser", arguments->no_browser, "Open no browser");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

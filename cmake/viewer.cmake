@@ -19,6 +19,6 @@ function(fovea_embed_viewer target)
   set(generated ${PROJECT_BINARY_DIR}/generated/viewer_page.cpp)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/viewer_page.cpp.in ${generated} @ONLY)
   set_source_files_properties(${generated} PROPERTIES OBJECT_DEPENDS "${files}"
-                              SKIP_PRECOMPILE_HEADERS ON)
+                              SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${generated})
 endfunction()

@@ -64,7 +64,7 @@ TEST_F(LocalizeProgram, ThePosesAreOnesThatFoveaReads) {
   const std::string command =
       fmt::format("localize '{}' '{}' -o '{}'", path("b"), path("a.fovea"), path("b.txt"));
   const ProgramRun run = run_fovea(command);
-  EXPECT_THAT(run.out, HasSubstr("20 of 20 frames localised (guess: navigation)"));
+  EXPECT_THAT(run.out, HasSubstr("20 of 20 frames localized (guess: navigation)"));
   EXPECT_EQ(read_poses(path("b.txt")).size(), 20u);
   // Frames' poses are a guess, too, also where some are not known.
   succeed(fmt::format("localize '{}' '{}' -o '{}' --only 0-7,12-19", path("b"), path("a.fovea"),

@@ -1,10 +1,11 @@
 // Writes maps for tests/web: map.fovea, a small georeferenced one, with points.json, what its
-// exports must hold; and plain.fovea, a large one with known distances.
+// exports must hold; plain.fovea, a large one with known distances; and city/, three tiles.
 #include <fmt/format.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/sample_city.h"
 #include "tests/sample_map.h"
 
 namespace {
@@ -150,5 +151,6 @@ int main(int argc, char** argv) {
   }
   write(argv[1]);
   write_plain(argv[1]);
+  fovea::write_sample_city(std::filesystem::path(argv[1]) / "city", {{0, 0}, {1, 0}, {0, 1}});
   return 0;
 }

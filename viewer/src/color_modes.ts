@@ -98,6 +98,7 @@ export function kindTable(): Uint8Array<ArrayBuffer> {
 export function modesOf(map: MapInfo): ColorMode[] {
   if (map.mesh) return ['photograph'];
   return colorModes.filter((mode) => {
+    if (mode === 'age') return map.city === null;  // its tiles number their frames by themselves
     if (mode === 'zone') return map.foveal !== null;
     if (mode === 'error') return map.images && map.cameras.length > 0;
     return true;

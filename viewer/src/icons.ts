@@ -23,6 +23,7 @@ const paths = {
     '<circle cx="16.5" cy="16.5" r="2"/>',
   previous: '<path d="m14.5 5-7 7 7 7"/>',
   next: '<path d="m9.5 5 7 7-7 7"/>',
+  north: '<path d="m12 2.5 4.5 11h-9z" fill="currentColor"/><path d="m12 21.5-4.5-8h9z"/>',
   close: '<path d="m6 6 12 12M18 6 6 18"/>',
   undo: '<path d="M8 5 4 9l4 4M4 9h10a6 6 0 0 1 0 12h-3"/>',
 } as const;

@@ -17,8 +17,11 @@ async function start(root: HTMLElement): Promise<void> {
   root.replaceChildren(waiting.element);
   const failure = await untilReady(map.status, (progress) => waiting.show('reading',
     { text: 'The map is being read for its coarse levels', progress, calm: true }));
-  const viewer = new Viewer(root, map, await loadFrames(map.frames), graphics);
+  // A city is seen before the server has read the paths of all drives.
+  const frames = map.city ? [] : (await loadFrames(map.frames)).frames;
+  const viewer = new Viewer(root, map, frames, graphics);
   if (failure !== null) viewer.warn(failure);
+  if (map.city) void viewer.loadPaths();
   window.fovea = { state: () => viewer.state(), pick: (x, y) => viewer.pick(x, y) };
 }
 

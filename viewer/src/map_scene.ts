@@ -47,6 +47,12 @@ export class MapScene {
     this.eyeDome.setSize(this.canvas.width, this.canvas.height, ratio);
   }
 
+  /** How far one can see in a map of this size (m). */
+  setReach(size: number): void {
+    this.camera.far = Math.max(far, 4 * size);
+    this.camera.near = Math.max(near, this.camera.far / 100_000);
+  }
+
   setBackground(above: Color, below: Color): void {
     this.eyeDome.setBackground(above, below);
   }

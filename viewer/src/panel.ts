@@ -28,9 +28,11 @@ export class Panel {
   private readonly automatic = el('input', { type: 'checkbox' });
   private readonly budgetText = el('output');
 
-  constructor(private readonly map: MapInfo, private readonly settings: Store<Settings>) {
+  /** `first`: a section above the settings. */
+  constructor(private readonly map: MapInfo, private readonly settings: Store<Settings>,
+              first: HTMLElement | null = null) {
     this.element = el('aside', { class: 'panel card', 'aria-label': 'What to show' },
-      this.colors(), this.points(), this.extras());
+      first, this.colors(), this.points(), this.extras());
     settings.listen((now) => this.show(now));
   }
 
@@ -82,8 +84,10 @@ export class Panel {
   }
 
   private extras(): HTMLElement {
-    return el('section', {}, el('h2', {}, 'Also show'),
-      row('Trajectory and vehicle', this.toggle('trajectory')),
+    const title = el('h2', {}, 'Also show');
+    const trajectory = row('Trajectory and vehicle', this.toggle('trajectory'));
+    if (this.map.city) return el('section', {}, title, trajectory);  // its points have no frames
+    return el('section', {}, title, trajectory,
       row('Foveal region of the frame', this.toggle('foveal')),
       ...this.ofPoints(() => [row('Rays to its points', this.toggle('rays'))]));
   }

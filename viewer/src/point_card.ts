@@ -34,9 +34,10 @@ export class PointCard {
       rows.push(['Latitude', `${latitude.toFixed(8)}°`],
         ['Longitude', `${longitude.toFixed(8)}°`], ['Altitude', `${altitude.toFixed(3)} m`]);
     }
-    const row = facts.frame === null ? undefined : this.trajectory.row(facts.frame);
+    const { frame, camera } = facts;
+    const row = frame === null ? undefined : this.trajectory.row(frame);
     const time = row === undefined ? null : this.trajectory.frame(row)!.time;
-    if (facts.frame !== null) rows.push(['Frame', String(facts.frame)]);
+    if (frame !== null) rows.push(['Frame', String(frame)]);
     if (time !== null) rows.push(['Time', `${time.toFixed(2)} s`]);
     if (point.object.known) {
       rows.push(['Camera', facts.camera === null ? 'none' : String(facts.camera)]);
@@ -50,7 +51,6 @@ export class PointCard {
     swatch.style.background = `rgb(${facts.color.join(' ')})`;
     const color = el('dd', {}, swatch, facts.color.join(' '),
       facts.matched ? ' (exposure matched)' : '');
-    const { frame, camera } = facts;
     this.element.replaceChildren(
       el('header', {}, el('h2', {}, 'Point'),
         iconButton(icon('close'), 'Close', () => this.events.close())),

@@ -43,7 +43,8 @@ export function factsOf({ object, index }: PickedPoint, map: MapInfo): PointFact
   const hundredths = sight.getY(index);
   return {
     color: rgb,
-    frame: geometry.getAttribute('_frame').getX(index),
+    // The tiles of a city number their frames by themselves.
+    frame: map.city ? null : geometry.getAttribute('_frame').getX(index),
     camera: camera === uncolored ? null : camera,
     range: centimetres === unknown ? null : centimetres / 100,
     incidence: hundredths === unknown ? null : hundredths / 100,

@@ -1,6 +1,8 @@
 import { describe, expect, test } from 'vitest';
 
-import { parseFrames, parseMapInfo, parseServerStatus, ProtocolError } from './protocol';
+import {
+  parseFrames, parseFramesFile, parseMapInfo, parseServerStatus, ProtocolError,
+} from './protocol';
 
 const pose = [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7];
 const map = {
@@ -38,11 +40,38 @@ describe('map.json', () => {
   });
 });
 
+describe('map.json of a city', () => {
+  const city = {
+    revision: 3, session: 'best', tiles: 15, extent_m: [256, 320],
+    drives: [{ name: 'drive_01', length_m: 163.2, frames: 170 }],
+  };
+
+  test('has drives, tiles and a revision', () => {
+    expect(parseMapInfo(map).city).toBeNull();
+    const parsed = parseMapInfo({ ...map, city }).city!;
+    expect(parsed.revision).toBe(3);
+    expect(parsed.extent).toEqual([256, 320]);
+    expect(parsed.drives).toEqual([{ name: 'drive_01', length: 163.2, frames: 170 }]);
+  });
+
+  test('without a number it needs is refused by name', () => {
+    expect(() => parseMapInfo({ ...map, city: { ...city, tiles: null } })).toThrow(/city.tiles/);
+    expect(() => parseMapInfo({ ...map, city: { ...city, extent_m: [1] } })).toThrow(/extent_m/);
+  });
+});
+
 describe('frames.json', () => {
   const frames = {
     index: [4, 5], time: [0, null], status: ['mapped', 'held-out'], T_local_lidar: [pose, pose],
     score: [null, 14.2], milliseconds: { frame: [90, 95], register: [30, 31] },
   };
+
+  test('of a city has the drive of each frame, and what failed', () => {
+    const file = parseFramesFile({ ...frames, drive: [0, 2], failures: ['tile 1,0: damaged'] });
+    expect(file.frames.map(({ drive }) => drive)).toEqual([0, 2]);
+    expect(file.failures).toEqual(['tile 1,0: damaged']);
+    expect(parseFramesFile(frames).failures).toEqual([]);
+  });
 
   test('has a row a frame', () => {
     expect(parseFrames(frames)[1]).toEqual({

@@ -15,6 +15,23 @@ export interface GeodeticPoint {
   readonly altitude: number;
 }
 
+export interface DriveInfo {
+  readonly name: string;
+  /** m */
+  readonly length: number;
+  readonly frames: number;
+}
+
+/** What a city has instead of one drive. */
+export interface CityInfo {
+  readonly revision: number;
+  readonly session: string;
+  readonly tiles: number;
+  /** Of all tiles, to the east and to the north (m). */
+  readonly extent: readonly [number, number];
+  readonly drives: readonly DriveInfo[];
+}
+
 export interface MapInfo {
   readonly generator: string;
   readonly name: string;
@@ -34,6 +51,8 @@ export interface MapInfo {
   readonly foveal: { readonly near: number; readonly far: number } | null;
   readonly cameras: readonly CameraInfo[];
   readonly rules: readonly string[];
+  /** null: this is a map. */
+  readonly city: CityInfo | null;
 }
 
 export type FrameStatus = 'mapped' | 'held-out' | 'skipped';
@@ -46,6 +65,14 @@ export interface Frame {
   readonly T_local_lidar: Pose;
   readonly score: number | null;
   readonly milliseconds: Readonly<Record<string, number>>;
+  /** Number of its drive. */
+  readonly drive?: number;
+}
+
+export interface FramesFile {
+  readonly frames: Frame[];
+  /** A line for each part of a city that cannot be read. */
+  readonly failures: readonly string[];
 }
 
 export interface ServerStatus {
@@ -106,6 +133,23 @@ function parseCamera(value: unknown): CameraInfo {
   };
 }
 
+function parseCity(value: unknown): CityInfo | null {
+  if (!isObject(value)) return null;
+  const number = (of: Json, key: string) => asNumber(of[key], `map.json: city.${key}`);
+  const extent = asArray(value.extent_m, 'map.json: city.extent_m');
+  const metres = (i: number) => asNumber(extent[i], 'map.json: city.extent_m');
+  return {
+    revision: number(value, 'revision'),
+    session: String(value.session ?? ''),
+    tiles: number(value, 'tiles'),
+    extent: [metres(0), metres(1)],
+    drives: asArray(value.drives, 'map.json: city.drives').map((drive) => {
+      const of = asObject(drive, 'a drive of the city');
+      return { name: String(of.name), length: number(of, 'length_m'), frames: number(of, 'frames') };
+    }),
+  };
+}
+
 export function parseMapInfo(value: unknown): MapInfo {
   const map = asObject(value, 'map.json');
   if (map.format !== 1) {
@@ -135,6 +179,7 @@ export function parseMapInfo(value: unknown): MapInfo {
     foveal: foveal && { near: number(foveal, 'near'), far: number(foveal, 'far') },
     cameras: asArray(map.cameras ?? [], 'map.json: cameras').map(parseCamera),
     rules: asArray(map.rules ?? [], 'map.json: rules').map(String),
+    city: parseCity(map.city),
   };
 }
 
@@ -164,6 +209,7 @@ export function parseFrames(value: unknown): Frame[] {
   };
   const [time, status, poses] = [column('time'), column('status'), column('T_local_lidar')];
   const score = columns.score === undefined ? [] : column('score');
+  const drives = columns.drive === undefined ? null : column('drive');
   const stages = Object.entries(isObject(columns.milliseconds) ? columns.milliseconds : {})
     .filter((entry): entry is [string, unknown[]] => Array.isArray(entry[1]));
   return index.map((number, row) => ({
@@ -174,7 +220,16 @@ export function parseFrames(value: unknown): Frame[] {
     score: asNumberOrNull(score[row]),
     milliseconds: parseMilliseconds(
       Object.fromEntries(stages.map(([stage, times]) => [stage, times[row]]))),
+    ...(drives && { drive: asNumber(drives[row], 'frames.json: drive') }),
   }));
+}
+
+export function parseFramesFile(value: unknown): FramesFile {
+  const failures = asObject(value, 'frames.json').failures ?? [];
+  return {
+    frames: parseFrames(value),
+    failures: asArray(failures, 'frames.json: failures').map(String),
+  };
 }
 
 export function parseServerStatus(value: unknown): ServerStatus {

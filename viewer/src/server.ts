@@ -1,5 +1,5 @@
 import {
-  parseFrames, parseMapInfo, parseServerStatus, ProtocolError, type Frame, type MapInfo,
+  parseFramesFile, parseMapInfo, parseServerStatus, ProtocolError, type FramesFile, type MapInfo,
 } from './protocol';
 
 async function json(path: string): Promise<unknown> {
@@ -16,8 +16,8 @@ export async function loadMapInfo(): Promise<MapInfo> {
   return parseMapInfo(await json('map.json'));
 }
 
-export async function loadFrames(path: string): Promise<Frame[]> {
-  return parseFrames(await json(path));
+export async function loadFrames(path: string): Promise<FramesFile> {
+  return parseFramesFile(await json(path));
 }
 
 const pause = (milliseconds: number) =>

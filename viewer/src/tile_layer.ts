@@ -1,5 +1,6 @@
 import {
-  Box3, Group, Mesh, Points, Vector2, Vector3, type Camera, type Object3D, type PerspectiveCamera,
+  Box3, Group, Matrix4, Mesh, Points, Vector2, Vector3, type Camera, type Object3D,
+  type PerspectiveCamera,
 } from 'three';
 import { TilesRenderer } from '3d-tiles-renderer/three';
 
@@ -18,6 +19,7 @@ interface JsonTile {
   children?: JsonTile[];
   content?: { uri: string };
   transform?: number[];
+  parent?: JsonTile | null;
 }
 
 interface JsonTileset {
@@ -50,29 +52,63 @@ class MapTiles extends TilesRenderer {
     base.calculateTileViewError.call(this, tile, target);
     const highest = tile.geometricError * this.pixelsPerUnit / nearestDistance;
     target.error = this.stuck.has(tile) ? 0 : Math.min(target.error, highest);
+    // Without points of its own it would be a hole.
+    const isEmpty = !tile.content && (tile.children ?? []).length > 0;
+    if (isEmpty) target.error = Infinity;
   }
 }
 
-function nodeOf(tile: JsonTile, nodes: Map<JsonTile, TileNode>): TileNode {
-  const b = tile.boundingVolume.box;
-  const center = new Vector3(b[0], b[1], b[2]);
-  const half = new Vector3(
-    Math.abs(b[3]!) + Math.abs(b[6]!) + Math.abs(b[9]!),
-    Math.abs(b[4]!) + Math.abs(b[7]!) + Math.abs(b[10]!),
-    Math.abs(b[5]!) + Math.abs(b[8]!) + Math.abs(b[11]!));
-  const node: TileNode = {
-    box: new Box3(center.clone().sub(half), center.clone().add(half)),
+/** A tile with its place in the frame of the root. */
+interface PlacedNode extends TileNode {
+  readonly T_root_tile: Matrix4;
+  children: TileNode[];
+}
+
+function isTileset(tile: JsonTile): boolean {
+  return tile.content !== undefined && /\.json$/.test(tile.content.uri);
+}
+
+/** The box around a box whose half axes have any directions. */
+function boxAround(b: readonly number[], T_root_tile: Matrix4): Box3 {
+  const center = new Vector3(b[0], b[1], b[2]).applyMatrix4(T_root_tile);
+  const half = new Vector3();
+  const { elements: e } = T_root_tile;
+  for (const at of [3, 6, 9]) {
+    const [x, y, z] = [b[at]!, b[at + 1]!, b[at + 2]!];
+    half.x += Math.abs(e[0]! * x + e[4]! * y + e[8]! * z);
+    half.y += Math.abs(e[1]! * x + e[5]! * y + e[9]! * z);
+    half.z += Math.abs(e[2]! * x + e[6]! * y + e[10]! * z);
+  }
+  return new Box3(center.clone().sub(half), center.clone().add(half));
+}
+
+function nodeOf(tile: JsonTile, T_root_parent: Matrix4,
+                nodes: WeakMap<JsonTile, PlacedNode>): PlacedNode {
+  const T_root_tile = tile.transform ?
+    T_root_parent.clone().multiply(new Matrix4().fromArray(tile.transform)) : T_root_parent;
+  const node: PlacedNode = {
+    T_root_tile,
+    box: boxAround(tile.boundingVolume.box, T_root_tile),
     geometricError: tile.geometricError,
-    children: (tile.children ?? []).map((child) => nodeOf(child, nodes)),
-    points: tile.content ? null : 0,
+    children: (tile.children ?? []).map((child) => nodeOf(child, T_root_tile, nodes)),
+    points: tile.content && !isTileset(tile) ? null : 0,
   };
   nodes.set(tile, node);
   return node;
 }
 
+/** Why the server did not send a file: its own words if it says them. */
+async function reasonOf(response: Response): Promise<string> {
+  const isText = response.headers.get('content-type')?.startsWith('text/plain') ?? false;
+  const text = isText ? (await response.text()).trim() : '';
+  return text !== '' && text.length < 1000 ? text : `${response.status} ${response.statusText}`;
+}
+
 /** What happens to the tiles, for those who must act on it. */
 export interface TileEvents {
   changed(): void;
+  /** The tileset is there. */
+  begins(box: Box3): void;
   /** Not called for triangles. */
   firstTile(points: PointObject): void;
   failed(count: number, error: Error): void;
@@ -83,7 +119,7 @@ export class TileLayer {
   readonly group = new Group();
   readonly cameras = new Set<number>();
   private readonly tiles: MapTiles;
-  private readonly nodes = new Map<JsonTile, TileNode>();
+  private readonly nodes = new WeakMap<JsonTile, PlacedNode>();
   private root: TileNode | null = null;
   private selection: Selection = { errorTarget: finestError, points: 0, limited: false };
   private failures = 0;
@@ -95,23 +131,24 @@ export class TileLayer {
   constructor(url: string, private readonly materials: PointMaterials,
               private readonly events: TileEvents) {
     // Whole: against an address without a folder the renderer takes the tileset itself for one.
-    this.tiles = new MapTiles(new URL(url, document.baseURI).href);
+    const rootAddress = new URL(url, document.baseURI).href;
+    this.tiles = new MapTiles(rootAddress);
     this.tiles.autoDisableRendererCulling = false;
     this.tiles.registerPlugin({
       // The page works in `local`: the root's way to the earth's centre is left out, not undone,
       // so that nothing is rounded.
       async fetchData(address: string | URL, options: RequestInit) {
         const response = await fetch(address, options);
-        if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+        if (!response.ok) throw new Error(await reasonOf(response));
         if (!/\.json$/.test(new URL(response.url).pathname)) return response;
         const tileset = await response.json() as JsonTileset;
-        delete tileset.root.transform;
+        if (String(address) === rootAddress) delete tileset.root.transform;
         tileset.asset.version = '1.0';  // of 1.1 it has nothing but glTF, which the reader knows
         return tileset;
       },
     });
-    this.tiles.addEventListener('load-root-tileset', ({ tileset }) => {
-      this.root = nodeOf((tileset as unknown as JsonTileset).root, this.nodes);
+    this.tiles.addEventListener('load-tileset', ({ tileset }) => {
+      this.addTileset((tileset as unknown as JsonTileset).root);
     });
     this.tiles.addEventListener('load-model', ({ scene, tile }) => {
       this.adopt(scene, tile as unknown as JsonTile);
@@ -119,8 +156,9 @@ export class TileLayer {
     });
     this.tiles.addEventListener('load-error', ({ tile, error }) => {
       this.rootFailed ||= tile === null;
-      const parent = (tile as { parent?: object } | null)?.parent;
-      if (parent) this.tiles.stuck.add(parent);
+      let above = (tile as unknown as JsonTile | null)?.parent;
+      while (above && (!above.content || isTileset(above))) above = above.parent;
+      if (above) this.tiles.stuck.add(above);
       this.events.failed(++this.failures, error);
     });
     this.tiles.addEventListener('needs-update', () => this.events.changed());
@@ -213,6 +251,18 @@ export class TileLayer {
       wanted.errorTarget > 0.85 * errorTarget;
     if (!keep) this.tiles.errorTarget = wanted.errorTarget;
     this.selection = wanted;
+  }
+
+  /** A tileset's root replaces the tile that refers to it. */
+  private addTileset(root: JsonTile): void {
+    const parent = root.parent ? this.nodes.get(root.parent) : undefined;
+    const node = nodeOf(root, parent?.T_root_tile ?? new Matrix4(), this.nodes);
+    if (parent) {
+      parent.children = [node];
+    } else {
+      this.root = node;
+      this.events.begins(node.box);
+    }
   }
 
   private adopt(scene: Object3D, tile: JsonTile): void {

@@ -55,4 +55,13 @@ describe('the error that a budget affords', () => {
     const inside = { ...view, eye: new Vector3(0, 0, -20) };
     expect(Number.isFinite(selectError(root, inside, 1500, 0.5).errorTarget)).toBe(true);
   });
+
+  test('tiles below one without points are guessed by those above it', () => {
+    const { view } = world();
+    const unknown = [tile([0, 0, -20], 5, 0.1, null), tile([0, 0, -25], 5, 0.1, null)];
+    const reference = tile([0, 0, -20], 6, 0.2, 0, unknown);
+    const root = tile([0, 0, -20], 7, 0.2, 100, [reference]);
+    expect(selectError(root, view, 1e6, 0.5).points).toBe(400);
+    expect(selectError(root, view, 300, 0.5)).toMatchObject({ points: 100, limited: true });
+  });
 });

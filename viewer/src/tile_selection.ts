@@ -38,6 +38,8 @@ const childrenShare = 4;
 interface Candidate {
   readonly node: TileNode;
   readonly error: number;
+  /** What it counts as. */
+  readonly points: number;
 }
 
 /** A binary heap, the largest error first. */
@@ -80,6 +82,16 @@ class Heap {
   }
 }
 
+/** Tiles are counted when they come; until then they are taken to be like those above them. A tile
+ * without points of its own counts as its children, which are always drawn in its place. */
+function pointsOf(node: TileNode, guess: number, isInView: (node: TileNode) => boolean): number {
+  const { points, children } = node;
+  if (points === null) return guess;
+  if (points > 0 || children.length === 0) return points;
+  return children.filter(isInView).reduce(
+    (sum, child) => sum + pointsOf(child, guess / children.length, isInView), 0);
+}
+
 export interface Selection {
   /** Tiles whose error on the screen is larger are refined (pixels). */
   readonly errorTarget: number;
@@ -96,29 +108,25 @@ export function selectError(root: TileNode, view: Viewpoint, budget: number,
                             finest: number): Selection {
   const errorOf = (node: TileNode) => node.geometricError * view.pixelsPerUnit /
     Math.max(node.box.distanceToPoint(view.eye), nearestDistance);
-  // Tiles are counted when they come; until then they are taken to be like those above them.
-  const guessed = new Map<TileNode, number>();
-  const points = (node: TileNode) => node.points ?? guessed.get(node) ?? usualPoints;
+  const isInView = (node: TileNode) => view.frustum.intersectsBox(node.box);
   const heap = new Heap();
-  let drawn = 0;
-  if (view.frustum.intersectsBox(root.box)) {
-    drawn = points(root);
-    heap.push({ node: root, error: errorOf(root) });
-  }
+  const ofRoot = isInView(root) ? pointsOf(root, usualPoints, isInView) : 0;
+  let drawn = ofRoot;
+  if (isInView(root)) heap.push({ node: root, error: errorOf(root), points: ofRoot });
   while (heap.size > 0) {
-    const { node, error } = heap.pop();
+    const { node, error, points } = heap.pop();
     if (error <= finest) break;
-    const children = node.children.filter((child) => view.frustum.intersectsBox(child.box));
-    if (node.children.length === 0) continue;
-    for (const child of children) {
-      guessed.set(child, points(node) * childrenShare / node.children.length);
-    }
-    const refined = drawn - points(node) + children.reduce((sum, c) => sum + points(c), 0);
-    if (refined > budget) {
+    const { children } = node;
+    if (children.length === 0) continue;
+    const guess = points * (node.points === 0 ? 1 : childrenShare) / children.length;
+    const refined = children.filter(isInView).map((child) => (
+      { node: child, error: errorOf(child), points: pointsOf(child, guess, isInView) }));
+    const ofAll = refined.reduce((sum, child) => sum + child.points, drawn - points);
+    if (ofAll > budget && node.points !== 0) {
       return { errorTarget: Math.max(error, finest), points: drawn, limited: true };
     }
-    drawn = refined;
-    for (const child of children) heap.push({ node: child, error: errorOf(child) });
+    drawn = ofAll;
+    for (const child of refined) heap.push(child);
   }
   return { errorTarget: finest, points: drawn, limited: false };
 }

@@ -59,7 +59,8 @@ export class TrajectoryLine {
         frame.status];
       places.push(...at.toArray());
       placeColors.push(...color.toArray());
-      if (row === 0) return;
+      const before = this.trajectory.frame(row - 1);
+      if (!before || before.drive !== frame.drive) return;
       positions.push(...this.trajectory.position(row - 1).toArray(), ...at.toArray());
       colors.push(...color.toArray(), ...color.toArray());
     });

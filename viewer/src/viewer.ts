@@ -1,8 +1,10 @@
-import { Vector3 } from 'three';
+import { Vector3, type Box3 } from 'three';
 
 import { AddressBar, stateOf, tripleOf, type AddressState } from './address';
 import { Budget } from './budget';
+import { CitySection, figuresOfCity } from './city_section';
 import { modesOf, type DataRanges } from './color_modes';
+import { Compass } from './compass';
 import { DepthProbe } from './depth_probe';
 import { el, short } from './dom';
 import { FovealOverlay } from './foveal_overlay';
@@ -15,7 +17,9 @@ import { TopBar } from './layout';
 import { LiveView } from './live_view';
 import { MapScene } from './map_scene';
 import { Navigation, type NavigationMode } from './navigation/navigation';
-import { forwardOf, matrixOfView, place, viewAlong, viewOfMatrix } from './navigation/view';
+import {
+  forwardOf, matrixOfView, overviewOf, place, viewAlong, viewOfMatrix, type View,
+} from './navigation/view';
 import { chasing } from './navigation/walk';
 import { Notices, showInstead } from './notices';
 import { Panel } from './panel';
@@ -72,6 +76,8 @@ export class Viewer {
   private readonly line: TrajectoryLine;
   private readonly foveal: FovealOverlay;
   private readonly comparison: ImageComparison;
+  private readonly compass = new Compass(() => this.turnNorth());
+  private readonly citySection: CitySection | null;
   private readonly address = new AddressBar(() => this.addressState());
   private tiles: TileLayer | null = null;
   private live: LiveView | null = null;
@@ -98,7 +104,9 @@ export class Viewer {
     this.ranges = { height: [-2, 8], frame: [0, 1] };
     this.navigation = this.makeNavigation();
     this.topBar = this.makeTopBar();
-    this.panel = new Panel(map, this.settings);
+    this.citySection = map.city &&
+      new CitySection(map, map.city, (drive) => this.lookAtDrive(drive));
+    this.panel = new Panel(map, this.settings, this.citySection?.element);
     this.panel.element.hidden = innerWidth < narrow;
     this.timeline = new Timeline(this.trajectory, {
       setRow: (row) => this.setRow(row),
@@ -123,7 +131,7 @@ export class Viewer {
     this.scene.lines.add(this.line.group, this.foveal.group);
     this.bottom = el('footer', { class: 'bottom' }, this.status, this.timeline.element);
     this.element = el('div', { class: 'viewer' }, this.canvas, this.frameView.element,
-      this.tools.labels, this.topBar.element, this.panel.element, this.tools.card.element,
+      this.tools.labels, map.origin ? this.compass.element : '', this.topBar.element, this.panel.element, this.tools.card.element,
       this.bottom, this.notices.element, this.help.element);
     root.replaceChildren(this.element);
     this.theme = new ThemeChoice((theme) => {
@@ -143,7 +151,8 @@ export class Viewer {
     else if (map.tileset) this.tiles = this.makeTiles(map.tileset);
     if (this.tiles) this.scene.add(this.tiles.group);
     if (!map.live && map.points === 0) this.sayEmpty();
-    this.navigation.setView(chasing(this.trajectory, 0));
+    if (map.city) this.settings.set({ follow: false });
+    else this.navigation.setView(chasing(this.trajectory, 0));
     this.restore(stateOf(location.hash));
     window.addEventListener('hashchange', () => this.restore(stateOf(location.hash)));
     this.settings.listen((now) => this.apply(now));
@@ -152,6 +161,21 @@ export class Viewer {
   /** Tells of something that does not keep the map from being shown. */
   warn(text: string): void {
     this.notices.show('warning', { text });
+  }
+
+  /** Of a city: the paths of its drives. */
+  async loadPaths(): Promise<void> {
+    try {
+      const { frames, failures } = await loadFrames(this.map.frames);
+      for (const frame of frames) this.trajectory.put(frame);
+      this.framesChanged();
+      this.citySection?.setPaths(new Set(frames.map(({ drive }) => drive ?? 0)));
+      if (failures.length > 0) this.notices.show('failures', { text: failures.join('\n') });
+    } catch (error) {
+      this.notices.show('failures', {
+        text: `The paths of the drives cannot be read: ${(error as Error).message}`,
+      });
+    }
   }
 
   state(): PageState {
@@ -231,6 +255,7 @@ export class Viewer {
         this.raysStale = true;
         this.loop.invalidate();
       },
+      begins: (box) => this.seeCity(box),
       firstTile: (points) => {
         this.measureHeights(points);
         if (!points.known) this.sayPlain();
@@ -376,10 +401,38 @@ export class Viewer {
     this.placeChanged();
   }
 
+  /** The first view of a city, unless the address has one. */
+  private seeCity(box: Box3): void {
+    if (!this.map.city || box.isEmpty()) return;
+    this.scene.setReach(box.getSize(new Vector3()).length());
+    if (!stateOf(location.hash).at) this.navigation.setView(this.homeView());
+  }
+
+  private homeView(): View {
+    const box = this.map.city ? this.tiles?.box : null;
+    return box && !box.isEmpty() ? overviewOf(box, this.scene.camera.fov) :
+      chasing(this.trajectory, this.row);
+  }
+
+  private lookAtDrive(drive: number): void {
+    const row = this.trajectory.all().findIndex((frame) => frame.drive === drive);
+    if (row < 0) return;
+    this.setRow(row);
+    this.leaveFrame();
+    this.navigation.setMode('orbit');
+    this.navigation.flyTo(chasing(this.trajectory, row));
+    this.placeChanged();
+  }
+
+  private turnNorth(): void {
+    const { eye, pitch } = this.navigation.view;
+    this.navigation.flyTo({ eye: eye.clone(), yaw: Math.PI / 2, pitch });
+  }
+
   private resetView(): void {
     this.leaveFrame();
     this.navigation.setMode('orbit');
-    this.navigation.flyTo(chasing(this.trajectory, this.row));
+    this.navigation.flyTo(this.homeView());
     this.placeChanged();
   }
 
@@ -417,7 +470,7 @@ export class Viewer {
       this.navigation.setMode('fly');
       this.navigation.flyTo(viewAlong(new Vector3().setFromMatrixPosition(pose),
         new Vector3().setFromMatrixColumn(pose, 0)));
-      this.notices.show('no-images', {
+      if (!this.map.city) this.notices.show('no-images', {
         calm: true,
         text: 'From the LiDAR, forward. For the cameras and their images the drive must be at ' +
           'hand: fovea view MAP --drive DRIVE',
@@ -594,7 +647,7 @@ export class Viewer {
   private async finish(): Promise<void> {
     try {
       this.map = await loadMapInfo();
-      const frames = await loadFrames(this.map.frames);
+      const { frames } = await loadFrames(this.map.frames);
       this.trajectory.clear();
       for (const frame of frames) this.trajectory.put(frame);
       this.framesChanged();
@@ -739,6 +792,7 @@ export class Viewer {
     this.scene.draw();
     this.live?.session.drawn();
     this.tools.place(camera, width, height);
+    this.compass.show(this.navigation.view.yaw);
   }
 
   private showStatus(): void {
@@ -752,7 +806,8 @@ export class Viewer {
     this.panel.setBudget(this.budget.points);
     if (!this.map.live) {
       const { length } = this.trajectory;
-      this.topBar.setFigures(`${short(this.map.points)} points, ${length} frames`);
+      this.topBar.setFigures(this.map.city ? figuresOfCity(this.map, this.map.city) :
+        `${short(this.map.points)} points, ${length} frames`);
     }
   }
 
@@ -765,7 +820,8 @@ export class Viewer {
 
   private sayEmpty(): void {
     this.notices.show('empty', {
-      text: 'This map has no points. Was the drive mapped to its end?',
+      text: this.map.city ? 'This city has no points.' :
+        'This map has no points. Was the drive mapped to its end?',
     });
   }
 

@@ -9,6 +9,8 @@
 #include "fovea/city/json_values.h"
 #include "fovea/core/content_kind.h"
 #include "fovea/core/errors.h"
+#include "fovea/map/map_store.h"
+#include "fovea/map/value_hash.h"
 
 namespace fovea {
 namespace {
@@ -92,6 +94,16 @@ std::size_t City::points() const {
   return points;
 }
 
+std::array<double, 2> City::extent() const {
+  if (tiles.empty()) return {};
+  const auto by_y = [](const CityTileFile& a, const CityTileFile& b) {
+    return a.tile.y < b.tile.y;
+  };
+  const auto [south, north] = std::minmax_element(tiles.begin(), tiles.end(), by_y);
+  return {tile_size * (1.0 + tiles.back().tile.x - tiles.front().tile.x),
+          tile_size * (1.0 + north->tile.y - south->tile.y)};
+}
+
 RigidMotion City::T_local_tile(const CityTile& tile) const {
   return T_ecef_enu(origin).inverse() * T_ecef_enu(CityGrid(origin, tile_size).middle(tile));
 }
@@ -116,17 +128,36 @@ std::vector<std::size_t> City::tiles_near(const Eigen::Vector3d& center_local,
   return near;
 }
 
+fs::path overview_of_tile(const fs::path& map) {
+  return fs::path(map).replace_extension(".overview.glb");
+}
+
+std::string city_digest(const City& city) {
+  ValueHash hash;
+  hash.section("tiles");
+  for (const CityTileFile& tile : city.tiles) {
+    hash.row();
+    hash.value(std::int64_t{tile.tile.x});
+    hash.value(std::int64_t{tile.tile.y});
+    hash.value(std::string_view(MapReader(tile.map).digest()));
+  }
+  return hash.hex128();
+}
+
 bool is_city(const fs::path& path) {
   std::error_code ignored;
-  const fs::path manifest = fs::is_directory(path, ignored) ? path / kManifest : path;
-  return fs::is_regular_file(manifest, ignored) &&
-         content_kind_of(manifest) == ContentKind::kCityManifest;
+  return fs::is_directory(path, ignored) || (fs::is_regular_file(path, ignored) &&
+                                             content_kind_of(path) == ContentKind::kCityManifest);
 }
 
 City open_city(const fs::path& path) {
   std::error_code ignored;
   const bool is_folder = fs::is_directory(path, ignored);
   const fs::path manifest = is_folder ? path / kManifest : path;
+  if (is_folder && !fs::exists(manifest, ignored)) {
+    throw InputError(fmt::format("the folder is no city: it has no {}", kManifest), path.string(),
+                     "give a folder that 'python3 -m fovea.city build' made");
+  }
   City city;
   city.folder = is_folder ? path : fs::absolute(path).parent_path();
   if (!is_folder && city.folder.filename() == kManifests) city.folder = city.folder.parent_path();

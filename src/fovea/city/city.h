@@ -1,6 +1,7 @@
 // A city: a folder with one map for each tile, and the manifest that lists them (docs/city.md).
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -38,13 +39,22 @@ struct City {
   std::vector<CityTileFile> tiles;  ///< by x, then y
 
   std::size_t points() const;
+  /// From the first to the last column and row of tiles, m.
+  std::array<double, 2> extent() const;
   /// T_local_tile of a tile's map.
   RigidMotion T_local_tile(const CityTile& tile) const;
   /// Numbers of the tiles of which some part lies within `radius` (m) of a place, at any height.
   std::vector<std::size_t> tiles_near(const Eigen::Vector3d& center_local, double radius) const;
 };
 
-/// Whether a path is the folder of a city, or a manifest.
+/// The file with a coarse picture of a tile, next to its map: MAP.overview.glb. It may be missing.
+std::filesystem::path overview_of_tile(const std::filesystem::path& map);
+
+/// Hash of the places of all tiles and of the digests of their maps: 32 hexadecimal digits. Names
+/// of files and the revision do not count. InputError if a map is damaged.
+std::string city_digest(const City& city);
+
+/// Whether a path is a folder, or a manifest of a city: no map is a folder.
 bool is_city(const std::filesystem::path& path);
 
 /// Reads the manifest: city.json of a folder, or an older manifest that `path` names. InputError if

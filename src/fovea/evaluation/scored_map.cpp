@@ -86,25 +86,37 @@ ScoredMap load_scored_map(const MapReader& reader) {
   ScoredMap map;
   map.frames = reader.frames();
   map.meta = reader.meta();
-  map.points_local.origin = center_of(map.frames);
+  begin_points(map);
   const std::vector<RigidMotion> submaps = reader.submaps();
   reader.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
-    PointCloud part;  // only what is scored: a map may be as large as memory allows
-    part.origin = tile.origin;
-    part.position = tile.position;
-    part.color = tile.color;
-    if (!tile.intensity.empty()) show_intensity(tile, part.color);
-    part.camera = tile.camera;
-    part.frame = tile.frame;
-    part.interpolated = tile.interpolated;
-    part.reason = tile.reason;
-    part.sampling_level = tile.sampling_level;
-    map.points_local.append(
-        transform_cloud(std::move(part), submaps.at(submap), map.points_local.origin));
+    append_points(scored_columns(tile), submaps.at(submap), map);
   });
-  map.cameras = cameras_of(map.points_local);
+  finish_points(map);
   return map;
 }
+
+void begin_points(ScoredMap& map) { map.points_local.origin = center_of(map.frames); }
+
+PointCloud scored_columns(const PointCloud& tile) {
+  PointCloud part;
+  part.origin = tile.origin;
+  part.position = tile.position;
+  part.color = tile.color;
+  if (!tile.intensity.empty()) show_intensity(tile, part.color);
+  part.camera = tile.camera;
+  part.frame = tile.frame;
+  part.interpolated = tile.interpolated;
+  part.reason = tile.reason;
+  part.sampling_level = tile.sampling_level;
+  return part;
+}
+
+void append_points(PointCloud points, const RigidMotion& T_local_points, ScoredMap& map) {
+  map.points_local.append(
+      transform_cloud(std::move(points), T_local_points, map.points_local.origin));
+}
+
+void finish_points(ScoredMap& map) { map.cameras = cameras_of(map.points_local); }
 
 std::vector<float> spacing_of(const ColoredPoints& points, const MapMeta& meta) {
   const auto config = meta.find(meta_key::kConfig);

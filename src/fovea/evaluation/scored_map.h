@@ -38,6 +38,17 @@ ScoredMap load_scored_map(const std::filesystem::path& path, const ScoredMapOpti
 /// The same of a map that is open.
 ScoredMap load_scored_map(const MapReader& reader);
 
+// Steps of loading, also for a city (scored_city.h).
+
+/// Puts the origin of the points near the frames.
+void begin_points(ScoredMap& map);
+/// The columns of a tile that are scored. Points without color get their intensity as gray.
+PointCloud scored_columns(const PointCloud& tile);
+/// @param T_local_points  from the frame of the points to the local frame
+void append_points(PointCloud points, const RigidMotion& T_local_points, ScoredMap& map);
+/// Finds out which cameras colored the points.
+void finish_points(ScoredMap& map);
+
 /// Distance between neighboring samples around each point, m (sample_spacing). If the settings of
 /// the map are known, by its cells.
 std::vector<float> spacing_of(const ColoredPoints& points, const MapMeta& meta);

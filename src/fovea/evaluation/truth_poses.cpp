@@ -61,6 +61,24 @@ RigidMotion align_trajectories(const std::vector<PosePair>& pairs) {
   return T_true_map;
 }
 
+RigidMotion align_drives(const std::vector<PosePair>& pairs) {
+  Eigen::Vector3d true_center = Eigen::Vector3d::Zero(), map_center = Eigen::Vector3d::Zero();
+  for (const PosePair& pair : pairs) {
+    true_center += pair.T_true_lidar.translation() / static_cast<double>(pairs.size());
+    map_center += pair.T_map_lidar.translation() / static_cast<double>(pairs.size());
+  }
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const PosePair& pair : pairs) {
+    moments += pair.T_true_lidar.linear() * pair.T_map_lidar.linear().transpose() +
+               (pair.T_true_lidar.translation() - true_center) *
+                   (pair.T_map_lidar.translation() - map_center).transpose();
+  }
+  RigidMotion T_true_map = RigidMotion::Identity();
+  T_true_map.linear() = nearest_rotation(moments);
+  T_true_map.translation() = true_center - T_true_map.linear() * map_center;
+  return T_true_map;
+}
+
 RigidMotion error_beside(const std::vector<PosePair>& map, const PosePair& pose) {
   const auto away = [&](const PosePair& other) {
     return (other.T_true_lidar.translation() - pose.T_true_lidar.translation()).squaredNorm();

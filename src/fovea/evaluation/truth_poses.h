@@ -30,6 +30,11 @@ std::optional<RigidMotion> georeference(const MapMeta& meta, const GeodeticPoint
 /// (chordal) and the translation that then minimises the squared distances of the LiDARs.
 RigidMotion align_trajectories(const std::vector<PosePair>& pairs);
 
+/// T_true_map that lays many drives over their truths: least squares of the positions of the LiDARs
+/// and of points 1 m from them along their axes. Rotations of single frames count little, as those
+/// of a city do.
+RigidMotion align_drives(const std::vector<PosePair>& pairs);
+
 /// What a pose in the map is off beside the map's own pose nearest to it, in its own frame: errors
 /// that the map has from end to end are not counted.
 /// @param map  at least one

@@ -37,11 +37,11 @@ int LocalizedDrive::found() const {
       std::count_if(frames.begin(), frames.end(), [](const Localization& f) { return f.found; }));
 }
 
-LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
+LocalizedDrive localize_drive(const FrameSource& drive, std::unique_ptr<SurfaceSource> source,
                               const LocalizationJob& job,
                               const std::function<void(int, int)>& progress) {
   const std::vector<int> wanted = wanted_frames(drive.info(), job.only);
-  Localizer localizer(map, drive.info(), job.guess, job.options);
+  Localizer localizer(std::move(source), drive.info(), job.guess, job.options);
   FrameReader frames(drive, wanted, /*rate=*/0);
   BoundedQueue<ReadFrame> read(/*capacity=*/1);
   const std::jthread reader = start_thread("fovea-read", [&](const std::stop_token& stop) {
@@ -86,13 +86,17 @@ LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
   return localized;
 }
 
+std::optional<Trajectory> navigation_in_local(const DriveInfo& drive, const GeodeticPoint& origin) {
+  if (!drive.navigation || !drive.origin) return std::nullopt;
+  const RigidMotion T_local_drive = LocalTangentPlane(origin).T_local_enu(*drive.origin);
+  std::vector<StampedPose> poses = drive.navigation->poses();
+  for (StampedPose& pose : poses) pose.T_local_body = T_local_drive * pose.T_local_body;
+  return Trajectory(std::move(poses));
+}
+
 std::optional<Trajectory> navigation_in_map(const DriveInfo& drive, const MapMeta& map) {
   const std::optional<GeodeticPoint> origin = map_origin(map);
-  if (!drive.navigation || !drive.origin || !origin) return std::nullopt;
-  const RigidMotion T_map_drive = LocalTangentPlane(*origin).T_local_enu(*drive.origin);
-  std::vector<StampedPose> poses = drive.navigation->poses();
-  for (StampedPose& pose : poses) pose.T_local_body = T_map_drive * pose.T_local_body;
-  return Trajectory(std::move(poses));
+  return origin ? navigation_in_local(drive, *origin) : std::nullopt;
 }
 
 }  // namespace fovea

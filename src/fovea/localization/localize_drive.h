@@ -1,8 +1,9 @@
-// A whole drive localised in a map.
+// A whole drive localized in a map or a city.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,12 +35,15 @@ struct LocalizedDrive : Messages {
 /// `progress` is called after each frame with how many are done, of how many. InputError as
 /// Localizer, or if no frame of the range has a scan.
 /// @param drive  its images are not needed (DriveOptions::use_images)
-LocalizedDrive localize_drive(const FrameSource& drive, const MapReader& map,
+/// @param source  of a map or a city
+LocalizedDrive localize_drive(const FrameSource& drive, std::unique_ptr<SurfaceSource> source,
                               const LocalizationJob& job,
                               const std::function<void(int, int)>& progress);
 
-/// Navigation as a guess; nothing if the drive has none, or drive or map do not tell where on earth
-/// they are.
+/// Navigation as a guess; nothing if the drive has none, or has no georeference.
+/// @param origin  of the local frame of the map or the city
+std::optional<Trajectory> navigation_in_local(const DriveInfo& drive, const GeodeticPoint& origin);
+/// The same in a map; nothing if the map has no georeference.
 std::optional<Trajectory> navigation_in_map(const DriveInfo& drive, const MapMeta& map);
 
 }  // namespace fovea

@@ -13,6 +13,7 @@
 #include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/scans/sensor_scans.h"
 #include "fovea/geometry/voxel_grid.h"
+#include "fovea/map/map_surfaces.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/optimizer.h"
 
@@ -24,9 +25,8 @@ namespace {
 constexpr double kHeight = 0.5, kFarHeight = 2;
 /// Fewer points where the map has something are no evidence.
 constexpr std::size_t kMinPoints = 300, kMinStanding = 50;
-/// A scan is where the prediction has it if this share of what stands fits, and the pose did not
-/// run away. Others' cars and what has changed since take their share. Found anew, it must fit
-/// better.
+/// A scan is where the prediction has it if this share of the vertical surfaces fits, and if the
+/// pose moved little. A place that was searched must fit better.
 constexpr PlaceFitOptions kOnSurface{.pair_distance = 0.3f, .on_plane = 0.06f, .alike = 0.8f};
 constexpr double kMinHealth = 0.35, kMinHealthFound = 0.5;
 constexpr double kMaxCorrection = 1.5, kMaxTurn = 5 * kDegree;  // m, rad
@@ -94,28 +94,24 @@ const char* to_string(LocalizationState state) {
 
 void LocalizerOptions::validate() const {
   if (registration.method == RegistrationMethod::kPointToPoint) {
-    throw ConfigError("scans are localised by surfaces", "registration.method",
+    throw ConfigError("scans are localized by surfaces", "registration.method",
                       "give gicp or plane");
   }
 }
 
 Localizer::Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
                      const LocalizerOptions& options)
+    : Localizer(map_surface_source(map), drive, std::move(guess), options) {}
+
+Localizer::Localizer(std::unique_ptr<SurfaceSource> source, const DriveInfo& drive,
+                     LocalizationGuess guess, const LocalizerOptions& options)
     : drive_(drive),
       options_(options),
-      state_(map.hold_state()),
+      source_(std::move(source)),
       guess_(std::move(guess)),
       motion_model_(new_motion_model()),
-      prior_(map, options.registration),
-      candidates_(map.frames()) {
+      prior_(*source_, options.registration) {
   options_.validate();
-  if (map.size() == 0) {
-    throw InputError("the map is empty", "the map's table 'tiles'", "map a drive first");
-  }
-  if (candidates_.empty()) {
-    throw InputError("the map has no frame that was mapped", "the map's table 'frames'",
-                     kRestoreMap);
-  }
 }
 
 MotionModel Localizer::new_motion_model() const {
@@ -125,7 +121,7 @@ MotionModel Localizer::new_motion_model() const {
 
 Localization Localizer::localize(const Frame& frame) {
   if (latest_ && frame.stamp <= *latest_) {
-    throw std::invalid_argument("scans are localised in the order of time");
+    throw std::invalid_argument("scans are localized in the order of time");
   }
   latest_ = frame.stamp;
   Localization result;
@@ -193,8 +189,10 @@ Localizer::Attempt Localizer::follow(const Scan& scan, const RigidMotion& guess)
                            options_.registration);
   const PlaceFit fit =
       place_fit(target.cloud, target.index, source, result.T_target_source, kOnSurface);
-  attempt.health = fit.overlap * fit.on_plane *
-                   (1 - seen_through(target.cloud, scan.image, result.T_target_source));
+  double free = seen_through(target.cloud, scan.image, result.T_target_source);
+  // At the right place of a city it is up to 0.5, at others around 0.7.
+  if (source_->is_of_many_drives()) free *= free;
+  attempt.health = fit.overlap * fit.on_plane * (1 - free);
   result.T_target_source = T_local_target * result.T_target_source;
   const RigidMotion correction = guess.inverse() * result.T_target_source;
   attempt.fits = result.converged && fit.vertical >= kMinStanding && attempt.health >= kMinHealth &&
@@ -266,9 +264,12 @@ Localizer::Attempt Localizer::search(const Frame& frame, const MotionPrediction&
                    [](const MotionGuess& guess) { return guess.by_navigation; });
   const Scan scan =
       prepare(frame, by_navigation == motion.guesses.end() ? std::nullopt : by_navigation->motion);
-  const Eigen::Vector3d near =
-      placed ? first.T_odom_lidar.translation() : candidates_.first().translation();
-  for (int i = 0; i < kTries && !best.fits; ++i) take(scan, candidates_.next(near), true);
+  Eigen::Vector3d near = first.T_odom_lidar.translation();
+  candidates_.add(placed ? source_->new_frames_near(near) : source_->new_frames());
+  if (!placed && !candidates_.empty()) near = candidates_.first().translation();
+  for (int i = 0; i < kTries && !best.fits && !candidates_.empty(); ++i) {
+    take(scan, candidates_.next(near), true);
+  }
   best.covered = covered;
   return best;
 }

@@ -10,6 +10,7 @@
 #include "fovea/drive/frame_source.h"
 #include "fovea/localization/place_candidates.h"
 #include "fovea/localization/prior_map.h"
+#include "fovea/localization/surface_source.h"
 #include "fovea/map/map_store.h"
 #include "fovea/mapping/range_image.h"
 #include "fovea/pipeline/motion_model.h"
@@ -34,7 +35,7 @@ struct Localization {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   /// Of what the scan has standing where the map has something, the share that lies on a surface of
   /// the map, times the share of the map's that the scan does not see through: 0 to 1. Where not
-  /// localised, of the best that was tried.
+  /// localized, of the best that was tried.
   double health = 0;
   /// Not from the pose before: the first of all, after it was lost, or elsewhere than predicted.
   bool found = false;
@@ -64,9 +65,13 @@ struct LocalizerOptions {
 /// the vehicle comes.
 class Localizer {
  public:
-  /// InputError if the map has no points, no frame that was mapped, or is damaged; ConfigError as
-  /// LocalizerOptions::validate.
-  /// @param map, drive  must outlive this; the map may be being written: its present state counts
+  /// @param source  of a map or a city
+  /// @param drive   must outlive this
+  /// @throws InputError   if the map or the city is damaged
+  /// @throws ConfigError  as LocalizerOptions::validate
+  Localizer(std::unique_ptr<SurfaceSource> source, const DriveInfo& drive, LocalizationGuess guess,
+            const LocalizerOptions& options = {});
+  /// In a map, see map_surface_source().
   Localizer(const MapReader& map, const DriveInfo& drive, LocalizationGuess guess,
             const LocalizerOptions& options = {});
   Localizer(const Localizer&) = delete;
@@ -109,13 +114,13 @@ class Localizer {
 
   const DriveInfo& drive_;
   LocalizerOptions options_;
-  std::shared_ptr<const void> state_;  // of the map
+  std::unique_ptr<SurfaceSource> source_;
   LocalizationGuess guess_;
   MotionModel motion_model_;
   PriorMap prior_;
-  PlaceCandidates candidates_;
-  std::optional<StampedPose> last_;  // localised
-  std::optional<TimeNs> latest_;     // scan, localised or not
+  PlaceCandidates candidates_;       // added when they are needed
+  std::optional<StampedPose> last_;  // localized
+  std::optional<TimeNs> latest_;     // scan, localized or not
   bool tracking_ = false;
   int open_frames_ = 0;  // in a row whose scene left a direction open
 };

@@ -66,7 +66,7 @@ class Localize : public testing::Test {
     LocalizationJob job;
     job.guess = std::move(guess);
     job.only = HoldOut::parse(only);
-    return localize_drive(drive, map_, job, [](int, int) {});
+    return localize_drive(drive, map_surface_source(map_), job, [](int, int) {});
   }
   static LocalizationGuess navigation_of(const SyntheticDrive& drive) {
     LocalizationGuess guess;
@@ -221,7 +221,8 @@ TEST_F(Localize, WhatTheSceneLeavesOpenTheCovarianceSays) {
   const MapReader map(mapped(street, "street.fovea"));
   LocalizationJob job;
   job.guess = navigation_of(visit);
-  const LocalizedDrive localized = localize_drive(visit, map, job, [](int, int) {});
+  const LocalizedDrive localized =
+      localize_drive(visit, map_surface_source(map), job, [](int, int) {});
   const auto along = [&](int i) {
     return std::sqrt(localized.frames[std::size_t(i)].covariance(3, 3));
   };

@@ -13,7 +13,7 @@ constexpr double kOtherWay = 30;
 
 }  // namespace
 
-PlaceCandidates::PlaceCandidates(const std::vector<FrameRecord>& frames) {
+void PlaceCandidates::add(const std::vector<FrameRecord>& frames) {
   const RigidMotion turned(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ()));
   const FrameRecord* last = nullptr;
   for (const FrameRecord& frame : frames) {

@@ -1,4 +1,4 @@
-// Where a vehicle may be that does not know where it is: where the map's own vehicle has been.
+// Places to try for a scan whose place is unknown: where the drives of the map went.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,12 @@ namespace fovea {
 
 class PlaceCandidates {
  public:
-  /// Poses some metres apart along the map's drives, either way round.
-  explicit PlaceCandidates(const std::vector<FrameRecord>& frames);
+  /// Adds poses some meters apart along the drives, either way round.
+  /// @param frames  of the drives, in order
+  void add(const std::vector<FrameRecord>& frames);
 
   bool empty() const { return candidates_.empty(); }
-  /// Of the map's first frame.
+  /// Of the first frame. There must be one.
   const RigidMotion& first() const { return candidates_.front().T_local_lidar; }
 
   /// The next place to try: of those least tried the nearest one. There must be one.

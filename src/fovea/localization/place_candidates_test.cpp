@@ -15,7 +15,8 @@ std::vector<FrameRecord> frames_along_x(int count) {
 }
 
 TEST(PlaceCandidates, NearestFirstAndEachOnceBeforeAnyTwice) {
-  PlaceCandidates candidates(frames_along_x(14));  // places at 1, 5, 9, 13, either way round
+  PlaceCandidates candidates;
+  candidates.add(frames_along_x(14));  // places at 1, 5, 9, 13, either way round
   EXPECT_EQ(candidates.first().translation().x(), 1);
   const Eigen::Vector3d near(8, 0, 0);
   std::vector<double> forward, backward;
@@ -32,8 +33,12 @@ TEST(PlaceCandidates, NearestFirstAndEachOnceBeforeAnyTwice) {
 }
 
 TEST(PlaceCandidates, AMapOfSkippedFramesHasNone) {
-  EXPECT_TRUE(PlaceCandidates(frames_along_x(1)).empty());
-  EXPECT_TRUE(PlaceCandidates({}).empty());
+  PlaceCandidates candidates;
+  EXPECT_TRUE(candidates.empty());
+  candidates.add(frames_along_x(1));
+  EXPECT_TRUE(candidates.empty());
+  candidates.add(frames_along_x(2));
+  EXPECT_FALSE(candidates.empty());
 }
 
 }  // namespace fovea::place_candidates_test

@@ -1,9 +1,9 @@
-// A finished map as what scans are registered to, a place at a time.
+// The surfaces around a place, as scans are registered to them.
 #pragma once
 
 #include <optional>
 
-#include "fovea/map/map_surfaces.h"
+#include "fovea/localization/surface_source.h"
 #include "fovea/mapping/fusion/plan_view.h"
 #include "fovea/mapping/registration/registration.h"
 
@@ -15,7 +15,7 @@ inline constexpr double kLocalizationRange = 50;
 
 class PriorMap {
  public:
-  /// What the map has around a place, in the axes of its local frame, seen from the place.
+  /// The surfaces around a place, in the axes of local, relative to the place.
   struct Target {
     Eigen::Vector3d center_local = Eigen::Vector3d::Zero();
     RegistrationCloud cloud;  ///< with normals
@@ -23,16 +23,16 @@ class PriorMap {
     PlanView plan;
   };
 
-  /// @param map           must outlive this
+  /// @param source        must outlive this
   /// @param registration  how normals are computed
-  PriorMap(const MapReader& map, const RegistrationOptions& registration);
+  PriorMap(SurfaceSource& source, const RegistrationOptions& registration);
 
   /// For scans that were taken near a place; valid until the next call. InputError if the map is
   /// damaged there.
   const Target& around(const Eigen::Vector3d& place_local);
 
  private:
-  MapSurfaces surfaces_;
+  SurfaceSource& source_;
   RegistrationOptions registration_;
   std::optional<Target> target_;
 };

@@ -71,6 +71,7 @@ std::string describe(const ViewLight& light) {
 
 /// Of a choice other than auto.
 ViewLight light_of_choice(const ExposureChoice& choice, const std::vector<FrameRecord>& frames) {
+  if (choice.kind == ExposureChoice::Kind::kMap) return {};
   if (choice.kind == ExposureChoice::Kind::kStops) {
     ViewLight light = median_light(frames).value_or(ViewLight());
     light.gain.setConstant(static_cast<float>(choice.stops));
@@ -116,6 +117,7 @@ DeepColorDisplay::DeepColorDisplay(const ViewLight& light) : description_(descri
 ExposureChoice parse_exposure(std::string_view text) {
   constexpr std::string_view kFramePrefix = "frame:";
   if (text == "auto") return {};
+  if (text == "map") return {ExposureChoice::Kind::kMap, 0, 0};
   if (text.starts_with(kFramePrefix)) {
     const auto frame = one_number(text.substr(kFramePrefix.size()));
     if (frame && *frame >= 0 && *frame <= kMaxFrame && *frame == std::floor(*frame)) {
@@ -124,11 +126,13 @@ ExposureChoice parse_exposure(std::string_view text) {
   } else if (const auto stops = one_number(text); stops && std::abs(*stops) <= kMaxStops) {
     return {ExposureChoice::Kind::kStops, 0, *stops};
   }
-  throw ConfigError(fmt::format("'{}' is no exposure", text), "--exposure",
-                    fmt::format("write auto, frame:N or stops from -{0:g} to {0:g}", kMaxStops));
+  throw ConfigError(
+      fmt::format("'{}' is no exposure", text), "--exposure",
+      fmt::format("write auto, map, frame:N or stops from -{0:g} to {0:g}", kMaxStops));
 }
 
 ColorDisplay color_display(const ExposureChoice& choice, const std::vector<FrameRecord>& frames) {
+  if (choice.kind == ExposureChoice::Kind::kMap) return {ViewLight(), /*tone_mapped=*/true};
   if (choice.kind != ExposureChoice::Kind::kAuto) {
     return {light_of_choice(choice, frames), /*tone_mapped=*/false};
   }

@@ -53,6 +53,7 @@ class DeepColorDisplay {
 struct ExposureChoice {
   enum class Kind {
     kAuto,   ///< the median of the camera's exposures, tone-mapped
+    kMap,    ///< the reference exposure of the map, tone-mapped
     kFrame,  ///< as in the images of a frame
     kStops   ///< stops above the reference exposure of the map
   };
@@ -61,7 +62,7 @@ struct ExposureChoice {
   double stops = 0;
 };
 
-/// "auto", "frame:N" or a number of stops, -16 to 16. ConfigError for other text.
+/// "auto", "map", "frame:N" or a number of stops, -16 to 16. ConfigError for other text.
 ExposureChoice parse_exposure(std::string_view text);
 
 /// Of several cameras in the chosen frame, the first counts. A map without gains is shown in its
@@ -72,7 +73,7 @@ ColorDisplay color_display(const ExposureChoice& choice, const std::vector<Frame
 /// Number of points by the largest code of their channels.
 using CodeCounts = std::array<std::size_t, kMaxColorCode + 1>;
 /// For `auto` the reference exposure of the map, lowered in steps of half a stop until at most 0.1
-/// % of the points are cut off. InputError as above.
+/// % of the points are cut off; for `map` not lowered. InputError as above.
 DeepColorDisplay deep_color_display(const ExposureChoice& choice,
                                     const std::vector<FrameRecord>& frames,
                                     const CodeCounts& points);

@@ -1,5 +1,5 @@
 // Hash of a sequence of values: the digest of a map and the checksums of its rows
-// (docs/map-format.md). Private to map/.
+// (docs/map-format.md).
 #pragma once
 
 #include <cstddef>

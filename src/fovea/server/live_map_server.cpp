@@ -166,7 +166,8 @@ LiveSession::Bytes LiveMapServer::whole_section(const TileId& id, const TileMap&
 }
 
 void LiveMapServer::finish() {
-  auto site = std::make_shared<MapSite>(job_.output, page_, images_);
+  auto site =
+      std::make_shared<MapSite>(make_map_content(job_.output, images_.get()), page_, images_);
   {
     const std::lock_guard lock(guard_);
     site_ = std::move(site);

@@ -4,10 +4,9 @@
 
 namespace fovea {
 
-MapServer::MapServer(const std::filesystem::path& map, std::span<const PageFile> page,
-                     std::shared_ptr<const DriveImages> images, const WebServerOptions& options,
-                     const ExposureChoice& exposure)
-    : site_(std::make_unique<MapSite>(map, page, std::move(images), exposure)),
+MapServer::MapServer(std::unique_ptr<SiteContent> content, std::span<const PageFile> page,
+                     std::shared_ptr<const DriveImages> images, const WebServerOptions& options)
+    : site_(std::make_unique<MapSite>(std::move(content), page, std::move(images))),
       server_(options, [this](const std::string& path, WebServer::Reply reply) {
         site_->answer(path, std::move(reply));
       }) {}

@@ -1,7 +1,6 @@
-// Serves a finished map to browsers.
+// Serves a finished map or city to browsers.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,12 +10,12 @@
 
 namespace fovea {
 
-/// Serves a map file from construction to destruction. Errors as MapSite and WebServer.
+/// Serves from construction to destruction. Errors as WebServer.
 class MapServer {
  public:
-  MapServer(const std::filesystem::path& map, std::span<const PageFile> page,
-            std::shared_ptr<const DriveImages> images, const WebServerOptions& options,
-            const ExposureChoice& exposure = {});
+  /// Parameters as of MapSite.
+  MapServer(std::unique_ptr<SiteContent> content, std::span<const PageFile> page,
+            std::shared_ptr<const DriveImages> images, const WebServerOptions& options);
   ~MapServer();
 
   std::string url() const { return server_.url(); }

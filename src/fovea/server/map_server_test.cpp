@@ -28,7 +28,8 @@ constexpr std::array kPage{PageFile{"index.html", "<html>"}, PageFile{"assets/pa
 class MapServerTest : public testing::Test {
  protected:
   void show(std::shared_ptr<const DriveImages> images = nullptr) {
-    show_.emplace(folder_ / "a.fovea", kPage, std::move(images), WebServerOptions());
+    auto content = make_map_content(folder_ / "a.fovea", images.get());
+    show_.emplace(std::move(content), kPage, std::move(images), WebServerOptions());
     client_.emplace(std::stoi(show_->url().substr(show_->url().rfind(':') + 1)));
   }
   WebClient::Response get(const std::string& path) { return client_->get("/" + path); }

@@ -2,22 +2,17 @@
 
 #include <array>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "fovea/exporting/jpeg_encode.h"
-#include "fovea/exporting/viewer/map_description.h"
 
 namespace fovea {
 namespace {
 
-using Bytes = std::shared_ptr<const std::string>;
+using Bytes = SiteContent::Bytes;
 
-constexpr std::string_view kTiles = "tiles/", kTileEnding = ".glb";
 constexpr const char* kJson = "application/json";
 constexpr int kPhotographJpegQuality = 90;
-
-Bytes bytes(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 WebResponse not_found() { return refusal(404, "there is no such thing here"); }
 
@@ -51,7 +46,8 @@ std::string media_type(std::string_view name) {
 WebResponse page_response(std::span<const PageFile> page, const std::string& path) {
   const std::string_view wanted = path.empty() ? std::string_view("index.html") : path;
   for (const PageFile& file : page) {
-    if (file.name == wanted) return {200, media_type(wanted), bytes(std::string(file.bytes))};
+    if (file.name == wanted)
+      return {200, media_type(wanted), shared_bytes(std::string(file.bytes))};
   }
   return not_found();
 }
@@ -73,52 +69,19 @@ WebResponse DriveImages::response(std::string_view path) const {
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (cameras[i].index != *camera || of_drive->images[i].empty()) continue;
     const std::vector<std::uint8_t> jpeg = encode_jpeg(of_drive->images[i], kPhotographJpegQuality);
-    return {200, "image/jpeg", bytes(std::string(jpeg.begin(), jpeg.end()))};
+    return {200, "image/jpeg", shared_bytes(std::string(jpeg.begin(), jpeg.end()))};
   }
   return not_found();
 }
 
-MapSite::MapSite(const std::filesystem::path& map, std::span<const PageFile> page,
-                 std::shared_ptr<const DriveImages> images, const ExposureChoice& exposure)
-    : page_(page), images_(std::move(images)), tiles_(map, exposure) {
-  const MapReader reader(map);
-  MapDescription description = describe_map(reader);
-  description.tileset = "tiles/tileset.json";
-  description.status = true;
-  if (images_) {
-    description.images = true;
-    description.cameras = images_->info().calibration.cameras;
-    description.sensor_period = images_->info().sweep.period;
-  }
-  map_json_ = bytes(to_json(description));
-  frames_json_ = bytes(frames_json(reader.frames()).dump());
-}
-
-std::string MapSite::status_json() const {
-  nlohmann::json json = {{"state", tiles_.read() < 1 ? "reading" : "ready"},
-                         {"read", tiles_.read()}};
-  const std::string failure = tiles_.failure();
-  if (!failure.empty()) json["failure"] = failure;
-  return json.dump();
-}
-
 void MapSite::answer(const std::string& path, WebServer::Reply reply) {
-  if (path == "map.json") return reply({200, kJson, map_json_});
-  if (path == "frames.json") return reply({200, kJson, frames_json_});
-  if (path == "status.json") return reply({200, kJson, bytes(status_json())});
-  if (path == "tiles/tileset.json") return reply({200, kJson, tiles_.tileset()});
-  if (path.starts_with(kTiles) && path.ends_with(kTileEnding)) {
-    const std::string name =
-        path.substr(kTiles.size(), path.size() - kTiles.size() - kTileEnding.size());
-    return tiles_.request(
-        name, [reply = std::move(reply)](const Bytes& tile, const std::string& failure) {
-          if (!failure.empty()) return reply(refusal(500, failure));
-          if (!tile) return reply(not_found());
-          reply({200, media_type(kTileEnding), tile});
-        });
-  }
   if (images_ && DriveImages::has(path)) return reply(images_->response(path));
-  reply(page_response(page_, path));
+  content_->request(
+      path, [this, path, reply = std::move(reply)](const Bytes& file, const std::string& failure) {
+        if (!failure.empty()) return reply(refusal(500, failure));
+        if (!file) return reply(page_response(page_, path));
+        reply({200, media_type(path), file});
+      });
 }
 
 }  // namespace fovea

@@ -1,16 +1,17 @@
-// A finished map as a web site: the viewer's page, the map's tiles and frames, the drive's images.
+// A finished map or city as a web site: the viewer's page, tiles and frames, the drive's images.
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "fovea/drive/frame_source.h"
 #include "fovea/exporting/viewer/viewer_folder.h"
-#include "fovea/server/tile_source.h"
+#include "fovea/map/color_display.h"
+#include "fovea/server/site_content.h"
 #include "fovea/server/web_server.h"
 
 namespace fovea {
@@ -40,22 +41,26 @@ class DriveImages {
 /// The HTTP part of docs/viewer-protocol.md. Thread-safe.
 class MapSite {
  public:
-  /// @param page      must outlive the site
-  /// @param images    may be null
-  /// @param exposure  of the colors
-  /// @throws InputError  if the map cannot be read
-  MapSite(const std::filesystem::path& map, std::span<const PageFile> page,
-          std::shared_ptr<const DriveImages> images, const ExposureChoice& exposure = {});
+  /// @param page    must outlive the site
+  /// @param images  may be null
+  MapSite(std::unique_ptr<SiteContent> content, std::span<const PageFile> page,
+          std::shared_ptr<const DriveImages> images)
+      : page_(page), images_(std::move(images)), content_(std::move(content)) {}
 
   void answer(const std::string& path, WebServer::Reply reply);
 
  private:
-  std::string status_json() const;
-
   std::span<const PageFile> page_;
   std::shared_ptr<const DriveImages> images_;
-  std::shared_ptr<const std::string> map_json_, frames_json_;
-  TileSource tiles_;
+  std::unique_ptr<SiteContent> content_;
 };
+
+/// A map: its description, frames and tiles.
+/// @param images    may be null
+/// @param exposure  of the colors
+/// @throws InputError  if the map cannot be read
+std::unique_ptr<SiteContent> make_map_content(const std::filesystem::path& map,
+                                              const DriveImages* images,
+                                              const ExposureChoice& exposure = {});
 
 }  // namespace fovea

@@ -1,4 +1,4 @@
-import { Matrix4, Vector3, type PerspectiveCamera } from 'three';
+import { Matrix4, Vector3, type Box3, type PerspectiveCamera } from 'three';
 
 export const steepest = 0.499 * Math.PI;
 
@@ -45,6 +45,15 @@ export function viewAlong(eye: Vector3, forward: Vector3): View {
     yaw: Math.atan2(forward.y, forward.x),
     pitch: Math.min(steepest, Math.max(-steepest, pitch)),
   };
+}
+
+/** All of a box, from the south and above. */
+export function overviewOf(box: Box3, fovDegrees: number): View {
+  const center = box.getCenter(new Vector3());
+  const { x, y } = box.getSize(new Vector3());
+  const forward = forwardOf({ yaw: Math.PI / 2, pitch: -Math.PI / 3.4 });
+  const distance = 0.45 * Math.hypot(x, y) / Math.tan(fovDegrees * Math.PI / 360);
+  return viewAlong(center.addScaledVector(forward, -Math.max(distance, 20)), forward);
 }
 
 /** Between two views, the shorter way round. */

@@ -38,6 +38,19 @@ Json camera_json(const Camera& camera) {
           {"cy", camera.cy},         {"T_cam_lidar", matrix_rows(camera.T_cam_lidar)}};
 }
 
+Json city_json(const MapDescription::OfCity& city) {
+  Json json = {{"revision", city.revision},
+               {"session", city.session},
+               {"tiles", city.tiles},
+               {"extent_m", city.extent},
+               {"drives", Json::array()}};
+  for (const MapDescription::Drive& drive : city.drives) {
+    json["drives"].push_back(
+        {{"name", drive.name}, {"length_m", drive.length}, {"frames", drive.frames}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::array<double, 12> matrix_rows(const RigidMotion& T) {
@@ -80,7 +93,8 @@ std::string to_json(const MapDescription& map) {
                {"sensor_period", map.sensor_period},
                {"foveal", nullptr},
                {"cameras", Json::array()},
-               {"rules", kPointRuleNames}};
+               {"rules", kPointRuleNames},
+               {"city", nullptr}};
   if (map.status) json["status"] = "status.json";
   if (!map.tileset.empty()) json["tileset"] = map.tileset;
   if (map.origin) {
@@ -89,6 +103,7 @@ std::string to_json(const MapDescription& map) {
                       {"altitude", map.origin->altitude}};
   }
   if (map.foveal) json["foveal"] = {{"near", map.foveal->near}, {"far", map.foveal->far}};
+  if (map.city) json["city"] = city_json(*map.city);
   for (const Camera& camera : map.cameras) json["cameras"].push_back(camera_json(camera));
   return json.dump();
 }

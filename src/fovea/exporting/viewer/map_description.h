@@ -1,4 +1,4 @@
-// What the viewer's page is told of a map (docs/viewer-protocol.md).
+// The files about a map that the viewer's page reads (docs/viewer-protocol.md).
 #pragma once
 
 #include <array>
@@ -33,6 +33,20 @@ struct MapDescription {
   };
   std::optional<Foveal> foveal;
   std::vector<Camera> cameras;
+
+  struct Drive {
+    std::string name;
+    double length = 0;  ///< m
+    std::size_t frames = 0;
+  };
+  struct OfCity {
+    int revision = 0;
+    std::string session;
+    std::size_t tiles = 0;
+    std::array<double, 2> extent{};  ///< of the tiles to the east and to the north, m
+    std::vector<Drive> drives;
+  };
+  std::optional<OfCity> city;  ///< of a city instead of a map
 };
 
 /// What a map tells of itself; InputError if its meta data are damaged.

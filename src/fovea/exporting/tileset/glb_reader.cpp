@@ -1,0 +1,170 @@
+#include "fovea/exporting/tileset/glb_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "fovea/core/angle.h"
+#include "fovea/core/errors.h"
+#include "fovea/exporting/gltf.h"
+#include "fovea/map/point_files/point_source.h"
+
+namespace fovea {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kHeader = 20, kChunkHeader = 8;  // bytes
+constexpr double kMostSteps = 65535 + 0.5;             // with rounding
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t offset) {
+  if (offset > bytes.size() || sizeof(T) > bytes.size() - offset) {
+    throw std::invalid_argument("it ends too early");
+  }
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+/// The head of a file: position = low + step * quantized position.
+struct GlbHead {
+  std::size_t points = 0;
+  double step = 0;
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+  Json json;
+  std::size_t binary = 0;  // offset of the binary chunk's content
+
+  /// Offset of an attribute's first value; nothing if the file does not have the attribute.
+  std::optional<std::size_t> offset_of(const char* attribute) const {
+    const Json& attributes = json.at("meshes").at(0).at("primitives").at(0).at("attributes");
+    if (!attributes.contains(attribute)) return std::nullopt;
+    const Json& accessor = json.at("accessors").at(attributes.at(attribute).get<std::size_t>());
+    if (accessor.at("count").get<std::size_t>() != points) {
+      throw std::invalid_argument("its attributes differ in number");
+    }
+    const Json& view = json.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
+    return binary + view.value("byteOffset", std::size_t{0});
+  }
+};
+
+GlbHead head_of(std::string_view bytes) {
+  if (!bytes.starts_with("glTF")) throw std::invalid_argument("it is no binary glTF");
+  const std::size_t json_bytes = value_at<std::uint32_t>(bytes, 12);
+  if (json_bytes > bytes.size() - std::min(bytes.size(), kHeader)) {
+    throw std::invalid_argument("it ends too early");
+  }
+  GlbHead head;
+  head.json = Json::parse(bytes.substr(kHeader, json_bytes));
+  head.binary = kHeader + json_bytes + kChunkHeader;
+  if (!head.json.contains("meshes")) return head;
+  const Json& position = head.json.at("accessors").at(0);
+  head.points = position.at("count").get<std::size_t>();
+  const auto matrix = head.json.at("nodes").at(0).at("matrix").get<std::array<double, 16>>();
+  head.step = matrix[0];
+  head.low = {matrix[12], -matrix[14], matrix[13]};  // gltf_matrix()
+  const auto high = position.at("max").get<std::array<double, 3>>();
+  head.high = head.low + head.step * Eigen::Vector3d(high[0], high[1], high[2]);
+  const bool is_plausible = head.step > 0 && head.low.allFinite() && head.high.allFinite() &&
+                            (head.high - head.low).maxCoeff() <= kMostSteps * head.step;
+  if (!is_plausible) throw std::invalid_argument("its positions are impossible");
+  return head;
+}
+
+/// Inverse of linear_light().
+std::uint8_t channel_of_light(std::uint16_t light) {
+  static const auto kLights = [] {
+    std::array<std::uint16_t, 256> lights{};
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      lights[i] = linear_light(static_cast<std::uint8_t>(i));
+    }
+    return lights;
+  }();
+  const auto* const upper = std::lower_bound(kLights.begin(), kLights.end(), light);
+  return static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(upper - kLights.begin(), 255));
+}
+
+/// Inverse of steps_of(); NaN if it is unknown.
+float value_of_steps(std::uint16_t steps, double steps_per_unit) {
+  constexpr std::uint16_t kUnknown = 65535;
+  if (steps == kUnknown) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(steps / steps_per_unit);
+}
+
+void read_sources(std::string_view bytes, const GlbHead& head, std::vector<ExportPoint>& points) {
+  const auto frame = head.offset_of("_FRAME"), sight = head.offset_of("_SIGHT"),
+             source = head.offset_of("_SOURCE");
+  if (!frame || !sight || !source) return;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ExportPoint& point = points[i];
+    point.frame = static_cast<std::int32_t>(value_at<float>(bytes, *frame + 4 * i));
+    point.range = value_of_steps(value_at<std::uint16_t>(bytes, *sight + 4 * i), 100);
+    point.incidence =
+        value_of_steps(value_at<std::uint16_t>(bytes, *sight + 4 * i + 2), 100 / kDegree);
+    const auto byte = [&](std::size_t k) {
+      return value_at<std::uint8_t>(bytes, *source + 4 * i + k);
+    };
+    point.camera = static_cast<std::int8_t>(byte(0));
+    point.reason = byte(1) & 0x7f;
+    point.interpolated = byte(1) >> 7;
+    point.views = byte(2);
+    point.spread = byte(3);
+  }
+}
+
+std::vector<ExportPoint> points_of(std::string_view bytes) {
+  const GlbHead head = head_of(bytes);
+  if (head.points == 0) return {};
+  const auto position = head.offset_of("POSITION"), color = head.offset_of("COLOR_0");
+  if (!position || !color) throw std::invalid_argument("it has no positions or no colors");
+  constexpr std::size_t kStride = 8;
+  value_at<std::uint64_t>(bytes, *color + kStride * (head.points - 1));  // all are there
+  std::vector<ExportPoint> points(head.points);
+  const auto three = [&](std::size_t offset, std::size_t i) {
+    std::array<std::uint16_t, 3> values{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      values[k] = value_at<std::uint16_t>(bytes, offset + kStride * i + 2 * k);
+    }
+    return values;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto at = three(*position, i), light = three(*color, i);
+    points[i].position = head.low + head.step * Eigen::Vector3d(at[0], at[1], at[2]);
+    points[i].color = {channel_of_light(light[0]), channel_of_light(light[1]),
+                       channel_of_light(light[2])};
+    points[i].camera = 0;  // unless the file says otherwise
+  }
+  read_sources(bytes, head, points);
+  return points;
+}
+
+/// What `read` returns; its errors as InputError.
+template <class Read>
+auto checked(std::string_view where, Read&& read) {
+  try {
+    return read();
+  } catch (const std::exception& error) {
+    throw InputError(std::string("the points of the tile cannot be read: ") + error.what(), where,
+                     "write the file again");
+  }
+}
+
+}  // namespace
+
+std::vector<ExportPoint> read_glb(std::string_view bytes, std::string_view where) {
+  return checked(where, [&] { return points_of(bytes); });
+}
+
+Eigen::AlignedBox3d glb_box(std::string_view bytes, std::string_view where) {
+  return checked(where, [&] {
+    const GlbHead head = head_of(bytes);
+    return head.points == 0 ? Eigen::AlignedBox3d() : Eigen::AlignedBox3d(head.low, head.high);
+  });
+}
+
+}  // namespace fovea

@@ -1,0 +1,87 @@
+#include "fovea/exporting/tileset/glb_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fovea/core/errors.h"
+#include "fovea/exporting/tileset/glb.h"
+
+namespace fovea::glb_reader_test {
+
+using testing::HasSubstr;
+
+std::vector<ExportPoint> some_points() {
+  std::vector<ExportPoint> points(3);
+  points[0].position = {10, -20, 30};
+  points[1].position = {14.7, -21, 30};
+  points[2].position = {10, -20, 33.1};
+  points[0].color = {0, 128, 255};
+  points[0].camera = 3;
+  points[0].frame = 123'456;
+  points[0].range = 12.34f;
+  points[0].incidence = 0.5f;
+  points[0].reason = 0x12;
+  points[0].interpolated = 1;
+  points[0].views = 7;
+  points[0].spread = 9;
+  points[1].incidence = std::nanf("");
+  return points;
+}
+
+TEST(GlbReader, ReadsBackWhatWasWritten) {
+  const std::vector<ExportPoint> points = some_points();
+  const Glb glb = make_glb(points, /*with_sources=*/true);
+  const std::vector<ExportPoint> read = read_glb(glb.bytes, "a.glb");
+  ASSERT_EQ(read.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((read[i].position - points[i].position).cwiseAbs().maxCoeff(), 0.51 * glb.step);
+    EXPECT_EQ(read[i].color, points[i].color);
+    EXPECT_EQ(read[i].camera, points[i].camera);
+  }
+  EXPECT_EQ(read[0].frame, 123'456);
+  EXPECT_NEAR(read[0].range, 12.34, 1e-4);
+  EXPECT_NEAR(read[0].incidence, 0.5, 1e-4);
+  EXPECT_EQ(read[0].reason, 0x12);
+  EXPECT_EQ(read[0].interpolated, 1);
+  EXPECT_EQ(read[0].views, 7);
+  EXPECT_EQ(read[0].spread, 9);
+  EXPECT_TRUE(std::isnan(read[1].incidence));
+  EXPECT_EQ(make_glb(read, true).bytes.size(), glb.bytes.size());
+}
+
+TEST(GlbReader, ReadsPlainPoints) {
+  const auto read = read_glb(make_glb(some_points(), /*with_sources=*/false).bytes, "a.glb");
+  EXPECT_EQ(read[0].color, (Rgb{0, 128, 255}));
+  EXPECT_TRUE(read_glb(make_glb({}, true).bytes, "a.glb").empty());
+}
+
+TEST(GlbReader, TheHeadStatesTheBox) {
+  const std::string bytes = make_glb(some_points(), true).bytes.substr(0, kGlbHead);
+  const Eigen::AlignedBox3d box = glb_box(bytes, "a.glb");
+  EXPECT_NEAR(box.min().y(), -21, 1e-3);
+  EXPECT_NEAR(box.max().z(), 33.1, 1e-3);
+  EXPECT_TRUE(glb_box(make_glb({}, true).bytes, "a.glb").isEmpty());
+}
+
+TEST(GlbReader, DamagedFilesAreErrors) {
+  const std::string whole = make_glb(some_points(), true).bytes;
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{3}, std::size_t{15}, std::size_t{100}, whole.size() - 1}) {
+    EXPECT_THROW(read_glb(whole.substr(0, size), "a.glb"), InputError) << size;
+  }
+  std::string other = whole;
+  other.replace(other.find("POSITION"), 8, "POSITIOM");
+  EXPECT_THROW(read_glb(other, "a.glb"), InputError);
+  other = whole;
+  other.replace(other.find("\"count\":3"), 9, "\"count\":9");
+  EXPECT_THROW(read_glb(other, "a.glb"), InputError);
+  try {
+    read_glb("no glTF", "a.glb");
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.glb"));
+  }
+}
+
+}  // namespace fovea::glb_reader_test
