@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -63,16 +64,24 @@ void require_one_zone(const City& city, const ExportArguments& arguments) {
   }
 }
 
+bool is_ending_of_part(const std::string& ending) {
+  constexpr std::array kEndings{"", ".partial", ".las", ".ply", ".pcd"};
+  const bool is_partial = ending.ends_with(".partial") && ending.size() == 12;  // ".las.partial"
+  return is_partial || std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
 /// Names that the folder of an earlier export, or what a killed program left of one, may have.
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
-    std::string place = name.substr(0, name.find('.'));
+    const std::size_t dot = std::min(name.find('.'), name.size());
+    std::string place = name.substr(0, dot);
     std::replace(place.begin(), place.end(), '_', ',');
     const bool is_node_folder = name == "q" || name == "q.partial";
-    if (is_node_folder || CityTile::parse(place)) names.push_back(name);
+    const bool is_part = CityTile::parse(place) && is_ending_of_part(name.substr(dot));
+    if (is_node_folder || is_part) names.push_back(name);
   }
   return names;
 }

@@ -13,6 +13,7 @@
 #include "app/commands.h"
 #include "app/export_city.h"
 #include "app/export_map.h"
+#include "app/job_arguments.h"
 #include "app/number_checks.h"
 #include "fovea/city/city.h"
 #include "fovea/drive/command_files.h"
@@ -93,6 +94,7 @@ void run(ExportArguments& arguments, const CLI::App& command, Warnings& warnings
   if (arguments.root_only && !is_of_city) {
     throw CLI::ValidationError("--root-only", "is for a city");
   }
+  if (is_done(arguments.output, arguments.if_missing, arguments.quiet)) return;
   check_files(files_of(arguments, format, is_of_city));
   const auto write = is_of_city ? export_city : export_map;
   write(arguments, format, warnings);
@@ -159,6 +161,7 @@ void add_export_command(CLI::App& app, Session& session) {
       "Only points that meet conditions, e.g. \"views >= 2 and range < 10\"; fields: "
       "views, spread, range, incidence (degrees), frame, camera, rule (measured, short-edges, "
       "planar, centroid), matched (exposure, 0 or 1), interpolated, intensity");
+  add_if_missing_option(*command, arguments->if_missing);
   command->add_flag("--force", arguments->force, "Overwrite OUT");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->callback(

@@ -17,7 +17,8 @@ struct ExportArguments {
   std::optional<double> utc_offset;  // h
   double voxel = MeshOptions().voxel;
   int color_depth = 8;  // bits
-  bool double_positions = false, viewer = false, root_only = false, force = false, quiet = false;
+  bool double_positions = false, viewer = false, root_only = false;
+  bool if_missing = false, force = false, quiet = false;
 };
 
 /// Files that lie next to a tileset: their bytes, by their place in the folder.

@@ -21,7 +21,7 @@ CLI::Option* add_scratch_option(CLI::App& command, std::string& scratch) {
 
 bool is_done(const std::string& output, bool if_missing, bool quiet) {
   std::error_code ignored;
-  if (!if_missing || !std::filesystem::is_regular_file(output, ignored)) return false;
+  if (!if_missing || !std::filesystem::exists(output, ignored)) return false;
   if (!quiet) print_out("{} exists: nothing to do\n", output);
   return true;
 }

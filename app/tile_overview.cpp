@@ -2,6 +2,7 @@
 
 #include "fovea/city/city.h"
 #include "fovea/core/output_file.h"
+#include "fovea/core/unfinished_output.h"
 #include "fovea/exporting/city/tile_overview.h"
 
 namespace fovea::app {
@@ -11,18 +12,17 @@ namespace fs = std::filesystem;
 TileFusionFigures fuse_with_overview(const std::vector<fs::path>& maps, const CityPoses& city,
                                      TileFusionJob job) {
   const fs::path output = check_output_path(job.output, job.force);
-  job.output = scratch_name(output);
+  job.output = output.parent_path() / scratch_name(output);
   const TileFusionFigures figures = fuse_tile(maps, city, job);
-  std::error_code error;
+  UnfinishedOutput unfinished(output, {job.output}, [] {});
   try {
     write_tile_overview(job.output, overview_of_tile(output), job.tile_size);
-    fs::rename(job.output, output, error);
-    if (error) throw_output_error(output, error.value());
+    publish_file(job.output, output, unfinished);
   } catch (...) {
-    fs::remove(job.output, error);
+    std::error_code ignored;
+    fs::remove(job.output, ignored);
     throw;
   }
-  sync_folder_of(output);
   return figures;
 }
 

@@ -1,15 +1,17 @@
 #!/usr/bin/python3 -IS
 """A stand-in for the program `fovea` with the commands of a city, which take milliseconds, and drives for it.
 
-A drive is a folder with drive.json: the catalog, and `fails`, the kinds of its jobs that fail. The environment
-has FAKE_SLEEP: seconds that a map and a tile take; FAKE_CALLS: a file that lists the calls; FAKE_FULL: a file in
-which the first worker that maps writes its process; a full disk is simulated on that worker.
+A drive is a folder with drive.json: the catalog; `fails`, the kinds of its jobs that fail; and `killed`, the kinds of
+its jobs that a signal ends. The environment has FAKE_SLEEP: seconds that a map and a tile take; FAKE_CALLS: a file that
+lists the calls; FAKE_FULL: a file in which the first worker that maps writes its process; a full disk is simulated on
+that worker.
 """
 import hashlib
 import json
 import math
 import os
 import pathlib
+import signal
 import sqlite3
 import sys
 import time
@@ -93,6 +95,8 @@ def _drive(folder, kind):
     content = json.loads(pathlib.Path(folder, "drive.json").read_text())
     if kind in content.get("fails", []):
         sys.exit(f"fovea: error: the drive is broken, {folder}, repair it")
+    if kind in content.get("killed", []):
+        os.kill(os.getpid(), signal.SIGKILL)
     return content
 
 

@@ -194,6 +194,13 @@ class AddAndRemoveTest(CityTestCase):
         self.run_city("remove", drives[1], self.city)  # by its folder
         self.assertEqual([drive["name"] for drive in self.manifest()["drives"]], ["a", "c"])
 
+    def test_add_after_the_drive_of_the_session_is_removed(self):
+        drives = self.drives()
+        self.build(*drives[:2], "--session", "a")
+        self.run_city("remove", "a", self.city)
+        self.run_city("add", drives[2], self.city)
+        self.assertEqual([drive["name"] for drive in self.manifest()["drives"]], ["b", "c"])
+
     def test_add_and_remove_need_a_city(self):
         drives = self.drives()
         self.assertIn("the folder is not a city", self.refuse("add", drives[0], self.folder))

@@ -96,6 +96,21 @@ class FaultsTest(CityTestCase):
         self.assertIn("the job pair of ", err)
         self.assertEqual(len(self.manifest()["drives"]), 5)
 
+    def test_a_map_that_a_signal_ends_does_not_freeze_the_poses(self):
+        drives = self.drives()
+        self.build(*drives[:2])
+        city, poses = self.manifest(), list((self.city / "poses").iterdir())
+        killed = city_fake.write_drive(self.folder / "killed", CROSSING["a"], killed=["map"])
+        _, err = self.run_city("add", drives[2], killed, self.city, "--retries", 0, code=1)
+        self.assertIn("the job map of killed frames 0:151 failed: ended by signal 9", err)
+        self.assertIn("run add again", err)
+        self.assertEqual(self.manifest(), city)
+        self.assertEqual(list((self.city / "poses").iterdir()), poses)
+        drive = killed / "drive.json"
+        drive.write_text(json.dumps({**json.loads(drive.read_text()), "killed": []}))
+        self.run_city("add", drives[2], killed, self.city)
+        self.assertEqual(len(self.manifest()["drives"]), 4)
+
     def test_a_full_disk_on_one_worker(self):
         drives = self.drives(**CROSSING, **FAR)
         expected = self.expected(drives)
@@ -117,6 +132,8 @@ class FaultsTest(CityTestCase):
         left = self.city / "maps" / "x.fovea.host-1.partial"
         left.write_text("")
         (self.city / "tiles" / "folder.partial").mkdir()
+        for name in ("city.json", "jobs.json", "lock"):
+            (self.city / f"{name}.1.partial").write_text("")
         self.build(*drives)
         self.assert_clean()
 

@@ -92,6 +92,11 @@ class NamesTest(unittest.TestCase):
             self.assertEqual(jobs_of(self.plan, kind), jobs_of(other, kind))
         self.assertTrue(jobs_of(self.plan, "tile").keys().isdisjoint(jobs_of(other, "tile")))
 
+    def test_the_size_of_tiles_keeps_all_digits(self):
+        for size, text in ((64, "64.0"), (100.0000001, "100.0000001")):
+            for job in jobs_of(plan(self.drives[:1], Settings(tile_size_m=size)), "tile").values():
+                self.assertEqual(job.command[job.command.index("--tile-size") + 1], text)
+
     def test_a_session_that_is_not_around_a_tile_is_best_there(self):
         tiles = jobs_of(plan([*self.drives, street("far", north=3000.0)], Settings(session="far")), "tile").values()
         sessions = {job.command[job.command.index("--session") + 1] for job in tiles}

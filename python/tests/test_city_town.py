@@ -108,6 +108,22 @@ class TownTest(CityTestCase):
         self.assertIn("the job catalog of broken failed", line)
         self.assertEqual(self.digests(), expected)
 
+    def test_exports(self):
+        self.expected()
+        shutil.copytree(sample.folder() / "expected city", self.city)
+        tiles = {pathlib.Path(tile["file"]).stem for tile in self.manifest()["tiles"]}
+        self.run_city("export", self.city, "--format", "las", "--workers", 2)
+        folder = self.city / "exports" / "las"
+        self.assertEqual({file.name for file in folder.iterdir()}, {f"{tile}.las" for tile in tiles})
+        self.run_city("export", self.city)
+        folder = self.city / "exports" / "3dtiles"
+        self.assertEqual({file.name for file in folder.iterdir()}, {*tiles, "q", "tileset.json"})
+        root = (folder / "tileset.json").read_text()
+        self.assertTrue(all(f"{tile}/tileset.json" in root for tile in tiles))
+        before = {file: file.stat().st_mtime_ns for file in folder.glob("*/tileset.json")}
+        self.run_city("export", self.city)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in folder.glob("*/tileset.json")}, before)
+
     def test_add_and_remove(self):
         expected = self.expected()
         shutil.copytree(sample.folder() / "expected city", self.city)

@@ -14,6 +14,7 @@ from ..errors import Error
 from . import build as commands
 from .arguments import parser, run_options_of, settings_of
 from .folder import CityFolder, read_json, write_json
+from .jobs import export_folder
 from .lock import CityLock
 from .manifest import city_of, read_jobs, read_manifest, write_manifest
 from .problems import input_error
@@ -84,6 +85,14 @@ def _remove(arguments: argparse.Namespace) -> int:
     return _end(arguments, build, outcome)
 
 
+def _export(arguments: argparse.Namespace) -> int:
+    build, manifest = _build_of_city(arguments)
+    with build:
+        failed = commands.export_city(build, manifest, arguments.format)
+    _say(arguments, f"{build.folder.path / export_folder(arguments.format)}: {len(manifest['tiles'])} tiles")
+    return _report(failed)
+
+
 def _status(arguments: argparse.Namespace) -> int:
     folder = CityFolder(arguments.city)
     folder.require()
@@ -113,8 +122,8 @@ def _keep_poses(arguments: argparse.Namespace) -> int:
     return 0
 
 
-_COMMANDS = {"plan": _plan, "build": _build, "add": _add, "remove": _remove, "status": _status, "root": _root,
-             "keep-poses": _keep_poses}
+_COMMANDS = {"plan": _plan, "build": _build, "add": _add, "remove": _remove, "export": _export,
+             "status": _status, "root": _root, "keep-poses": _keep_poses}
 
 
 def _build_of(arguments: argparse.Namespace) -> commands.CityBuild:

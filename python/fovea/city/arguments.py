@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import shutil
 import tempfile
@@ -30,6 +31,11 @@ def parser() -> argparse.ArgumentParser:
     command = commands.add_parser("remove", help="take drives out; the poses of the others stay as they are")
     command.add_argument("names", nargs="+", metavar="NAME", help="name or folder of a drive")
     command.add_argument("city", metavar="CITY", help="folder of the city")
+    _add_run_options(command)
+    command = commands.add_parser("export", help="export all tiles, by a job each, to CITY/exports")
+    command.add_argument("city", metavar="CITY", help="folder of the city")
+    command.add_argument("--format", choices=("3dtiles", "las", "ply", "pcd"), default="3dtiles",
+                         help="one tileset (default), or a file for each tile")
     _add_run_options(command)
     command = commands.add_parser("status", help="what is done, missing and failed, and the disk space")
     command.add_argument("city", metavar="CITY", help="folder of the city")
@@ -74,9 +80,11 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
     """Of plan and build. ConfigError if they contradict each other."""
     if not 1 <= arguments.tile_size <= 1000:
         raise config_error(f"a tile of {arguments.tile_size:g} m is not possible", "--tile-size", "give 1 to 1000")
-    if not arguments.segment_length >= 50:
+    if not 50 <= arguments.segment_length < math.inf:
         raise config_error(f"segments of {arguments.segment_length:g} m are not possible", "--segment-length",
                            "give 50 or more")
+    if arguments.epoch is not None and not math.isfinite(arguments.epoch):
+        raise config_error(f"the epoch {arguments.epoch:g} is not possible", "--epoch", "give a year, as 2020.5")
     extra = [word for setting in arguments.set for word in ("--set", setting)]
     if arguments.hold_out:
         extra += ["--hold-out", arguments.hold_out]

@@ -12,15 +12,15 @@ from typing import Any
 
 from ..errors import Error
 from .catalog import read_catalog
-from .drives import Drive, Segment, check_control, check_coordinates, check_given_once
+from .drives import Drive, Segment, check_control, check_coordinates, check_given_once, check_session
 from .folder import CityFolder
-from .jobs import Job, JobMaker, map_file, poses_file
+from .jobs import Job, JobMaker, export_folder, map_file, poses_file
 from .lock import CityLock
 from .manifest import (city_of, placed_city, points_of, read_manifest, read_poses, write_jobs,
                        write_manifest)
 from .names import drive_digest, name_of
 from .plan import Plan, Request, make_plan, segments_of
-from .problems import config_error, input_error
+from .problems import input_error
 from .progress import Progress
 from .runner import Failure, Runner, worker_count
 from .settings import RunOptions, Settings
@@ -85,13 +85,12 @@ class CityBuild:
             digest = drive_digest(pathlib.Path(path))
             named.append((path, digest, name_of("catalog", digest, self.settings.cameras or "", self.options.version)))
         self._catalogs = [self.maker.catalog(path, name) for path, _, name in named]
-        missing = [job for job in self._catalogs if not self.folder.has(job.output)]
-        self.progress.expect(missing)
-        self._run(missing)
+        self.run_missing(self._catalogs)
+        failed = {failure.job.id for failure in self._failures}
         drives = []
         for path, digest, name in named:
-            if not self.folder.has(f"catalog/{name}.json"):
-                continue  # a failed job
+            if f"catalog-{name}" in failed:
+                continue
             catalog = read_catalog(self.folder.path / "catalog" / f"{name}.json")
             for line in catalog.warnings:
                 self.warn(f"{catalog.name}: {line}")
@@ -112,11 +111,6 @@ class CityBuild:
             self.warn(line)
         check_coordinates(drives, self.settings)
         check_control(segments, self.settings)
-        sessions = {"best", "latest", *(drive.catalog.name for drive in drives),
-                    *(drive.catalog.session for drive in drives)}
-        if self.settings.session not in sessions:
-            raise config_error(f'no drive has the session "{self.settings.session}"', "--session",
-                               "give best, latest, a recording day or the name of a drive")
 
     def write_plan(self, request: Request) -> Plan:
         """Plans, and writes jobs.json."""
@@ -142,12 +136,17 @@ class CityBuild:
     def _make_maps(self, request: Request, plan: Plan) -> tuple[Plan, bool]:
         """Makes maps and pairs. Plans again without those that fail. Returns the plan, and whether a map is left."""
         while todo := [job for job in self._needed(plan) if job.kind in ("map", "pair")]:
-            failed = {failure.job.id for failure in self._run(todo)}
+            failures = self._run(todo)
+            failed = {failure.job.id for failure in failures}
             for segment in request.segments:
                 if segment.placed_by and f"map-{segment.name}" in failed:
                     raise input_error(f"a map of the city is missing and cannot be made again: {segment.text}",
                                       map_file(segment.name), f"see {self.folder.path}/logs/map-{segment.name}.log, "
                                       "or remove the drive")
+            if request.fixed and any(failure.of_machine for failure in failures):
+                self._problems.append("no poses are made: without these maps or pairs, they would stay so; "
+                                      "run add again")
+                return plan, False
             request = dataclasses.replace(request, failed=request.failed | failed)
             if all(f"map-{segment.name}" in request.failed for segment in request.segments):
                 return plan, False
@@ -174,6 +173,12 @@ class CityBuild:
             self.warn(f"{len(content['rejected'])} matches contradict the rest and are left out: "
                       f"`rejected` in {poses_file(plan.poses)}")
 
+    def run_missing(self, jobs: Sequence[Job]) -> None:
+        """Runs the jobs whose outputs are missing."""
+        missing = [job for job in jobs if not self.folder.has(job.output)]
+        self.progress.expect(missing)
+        self._run(missing)
+
     def _outcome(self, plan: Plan, manifest: dict[str, Any] | None) -> Outcome:
         return Outcome(plan, manifest, self._jobs_run, self.problems())
 
@@ -186,8 +191,11 @@ class CityBuild:
         if not jobs:
             return []
 
+        ended: list[Job] = []
+
         def on_done(job: Job) -> None:
             self._jobs_run += 1
+            ended.append(job)
             points = 0
             with contextlib.suppress(Error):  # write_manifest() reports it
                 points = points_of(self.folder.path / job.output) if job.kind == "tile" else 0
@@ -196,6 +204,8 @@ class CityBuild:
         self.progress.begin_stage()
         failures = self._runner.run(jobs, on_done, self.progress.show)
         self.progress.end_stage()
+        failures += [Failure(job, f"it ended well, but {job.output} does not show here: run the command again",
+                             of_machine=True) for job in ended if not self.folder.has(job.output)]
         self._failures += failures
         return failures
 
@@ -227,6 +237,7 @@ def build_city(build: CityBuild, paths: Sequence[str]) -> Outcome:
 def _new_city(build: CityBuild, drives: Sequence[Drive]) -> Request:
     segments = [segment for drive in drives for segment in segments_of(drive, build.settings, build.options.version)]
     build.check(drives, segments)
+    check_session(drives, build.settings.session)
     return Request(build.settings, tuple(segments))
 
 
@@ -264,6 +275,22 @@ def remove_drives(build: CityBuild, manifest: dict[str, Any], names: Sequence[st
     if not kept:
         raise input_error("no drive would be left", build.folder.path, "remove the folder of the city instead")
     return build.execute(Request(build.settings, kept, city.fixed()))
+
+
+def export_city(build: CityBuild, manifest: dict[str, Any], form: str) -> list[str]:
+    """Exports the tiles of a city that have no export yet, and the root of a tileset.
+
+    @return what failed, a line each
+    """
+    folder = build.folder.path / export_folder(form)
+    folder.mkdir(parents=True, exist_ok=True)
+    parts = [build.maker.export(tile["file"], form) for tile in manifest["tiles"]]
+    build.run_missing(parts)
+    if form == "3dtiles" and not build.problems():
+        root = build.maker.export_root(parts)
+        (build.folder.path / root.output).unlink(missing_ok=True)  # it may be of another revision
+        build.run_missing([root])
+    return build.problems()
 
 
 def _line_of(failure: Failure) -> str:

@@ -8,6 +8,7 @@ POSES_S_PER_MAP = 0.1
 TILE_S = 0.2
 TILE_S_PER_MAP = 2.0  # of those in its reach
 ROOT_S = 1.0
+EXPORT_S = 4.0  # of a tile
 
 SMALL_JOB_MB = 256  # memory of a catalog, a pair and the manifest
 POSES_MB_PER_MAP = 1  # and SMALL_JOB_MB

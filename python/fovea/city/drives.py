@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from .catalog import Catalog, Sample
 from .ground import Plane
-from .problems import input_error
+from .problems import config_error, input_error
 from .settings import Settings
 
 _DEFAULT_ACCURACY_M = 0.5  # of navigation that states none, as `fovea adjust` takes it
@@ -113,12 +113,21 @@ def _shortened(names: list[str]) -> str:
     return ", ".join(shown) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
-def check_control(drives: Sequence[Segment], settings: Settings) -> None:
+def check_session(drives: Sequence[Drive], session: str) -> None:
+    """ConfigError if no drive has the session."""
+    sessions = {"best", "latest", *(drive.catalog.name for drive in drives),
+                *(drive.catalog.session for drive in drives)}
+    if session not in sessions:
+        raise config_error(f'no drive has the session "{session}"', "--session",
+                           "give best, latest, a recording day or the name of a drive")
+
+
+def check_control(segments: Sequence[Segment], settings: Settings) -> None:
     """InputError if a surveyed point names a drive that becomes several maps: its coordinates have no one frame."""
     if settings.control is None:
         return
     maps: dict[str, int] = {}
-    for segment in drives:
+    for segment in segments:
         maps[segment.drive.catalog.name] = maps.get(segment.drive.catalog.name, 0) + 1
     for name in _maps_of_points(settings.control):
         if maps.get(name, 1) > 1:

@@ -1,6 +1,7 @@
 """The folder of a city: its files, and JSON files in it that appear whole."""
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import pathlib
@@ -43,22 +44,32 @@ class CityFolder:
         return self.manifest.is_file() or all((self.path / name).is_dir() for name in ("catalog", "maps", "tiles"))
 
     def has(self, file: str) -> bool:
-        """A file is there, given relative to the folder or absolute."""
-        return (self.path / file).exists()
+        """A file is there, given relative to the folder or absolute. On NFS it may be new, from another machine."""
+        path = self.path / file
+        if path.exists():
+            return True
+        try:
+            os.scandir(path.parent).close()  # NFS reads the folder again
+        except OSError:
+            return False
+        return path.exists()
 
     def remove_partial_files(self, older_than_s: float | None = None) -> None:
         """Removes what killed jobs left; with a limit, only files last written before it (seconds since 1970)."""
-        for name in FOLDERS:
-            for file in (self.path / name).glob("*.partial*"):
-                try:
-                    if older_than_s is not None and file.lstat().st_mtime >= older_than_s:
-                        continue
-                    if file.is_dir():
-                        shutil.rmtree(file)
-                    else:
-                        file.unlink()
-                except FileNotFoundError:
+        folders = [*(self.path / name for name in FOLDERS), *(self.path / "exports").glob("*")]
+        files = [file for folder in folders for file in folder.glob("*.partial*")]
+        for own in (self.manifest, self.jobs, self.lock):
+            files += self.path.glob(f"{own.name}.*.partial")
+        for file in files:
+            try:
+                if older_than_s is not None and file.lstat().st_mtime >= older_than_s:
                     continue
+                if file.is_dir():
+                    shutil.rmtree(file)
+                else:
+                    file.unlink()
+            except FileNotFoundError:
+                continue
 
     def bytes_of(self, name: str) -> int:
         """Of the files in one of FOLDERS."""
@@ -76,15 +87,22 @@ def write_json(content: dict[str, Any], file: pathlib.Path) -> None:
     partial = file.with_name(f"{file.name}.{os.getpid()}.partial")
     try:
         with open(partial, "w", encoding="utf-8") as output:
-            json.dump(content, output, indent=1, ensure_ascii=False)
+            json.dump(content, output, indent=1, ensure_ascii=False, allow_nan=False)
             output.write("\n")
             output.flush()
             os.fsync(output.fileno())
         os.replace(partial, file)
     except OSError as error:
-        partial.unlink(missing_ok=True)
         raise output_error(f"the file cannot be written ({error.strerror})", file,
                            "free disk space, or give a folder that you can write to") from error
+    except UnicodeEncodeError as error:
+        raise output_error(f"the file cannot be written: {error.object!a} is not UTF-8", file,
+                           "rename the folder or file") from error
+    except ValueError as error:
+        raise output_error(f"the file cannot be written ({error})", file, "report this as a fault of Fovea") from error
+    finally:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 def read_json(file: pathlib.Path, kind: str, version_key: str, version: int, remedy: str) -> dict[str, Any]:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import pathlib
 import shlex
 import sys
 from collections.abc import Iterable, Sequence
@@ -14,7 +15,7 @@ from .drives import Segment
 from .ground import Cell
 from .settings import RunOptions, Settings
 
-STAGES = ("catalog", "map", "pair", "poses", "tile", "root")  # kinds of jobs in their order
+STAGES = ("catalog", "map", "pair", "poses", "tile", "root", "export", "export root")  # kinds of jobs in their order
 
 
 @dataclass(frozen=True)
@@ -118,8 +119,8 @@ class JobMaker:
         output, inputs = tile_file(tile, name), tuple(map(map_file, maps))
         place = f"{tile[0]},{tile[1]}"
         command = self._fovea("fuse", self._paths(inputs), output, "--poses", self._path(poses_file(poses)),
-                              f"--tile={place}", "--tile-size", f"{self.settings.tile_size_m:g}", "--session", session,
-                              "--allow-empty", *self._limits(scratch=True))
+                              f"--tile={place}", "--tile-size", repr(float(self.settings.tile_size_m)),
+                              "--session", session, "--allow-empty", *self._limits(scratch=True))
         after = (f"poses-{poses}", *(f"map-{m}" for m in maps))
         return Job(f"tile-{tile[0]}_{tile[1]}-{name}", "tile", f"tile {place}", command, output,
                    (poses_file(poses), *inputs), after, memory_mb=self.memory_mb,
@@ -131,6 +132,24 @@ class JobMaker:
         return Job("root", "root", "manifest", (*self._python("root"), self.city), "city.json",
                    (poses_file(poses), *(job.output for job in jobs)), (f"poses-{poses}", *(job.id for job in jobs)),
                    expected_s=costs.ROOT_S)
+
+    def export(self, tile: str, form: str) -> Job:
+        """Exports a tile, given by its file."""
+        name = pathlib.PurePath(tile).stem
+        output = f"{export_folder(form)}/{name}" + ("" if form == "3dtiles" else f".{form}")
+        coordinates = [] if form == "3dtiles" else ["--crs", "utm"]
+        command = (self.options.program, "export", self._path(tile), self._path(output), "--if-missing",
+                   "--format", form, "--exposure", "map", *coordinates)
+        return Job(f"export-{form}-{name}", "export", f"tile {name}", command, output, (tile,),
+                   expected_s=costs.EXPORT_S)
+
+    def export_root(self, parts: Iterable[Job]) -> Job:
+        """Writes the root of the tileset above its parts."""
+        folder = export_folder("3dtiles")
+        command = (self.options.program, "export", self._path("city.json"), self._path(folder),
+                   "--format", "3dtiles", "--root-only", "--force")
+        return Job("export-root", "export root", "the city", command, f"{folder}/tileset.json",
+                   ("city.json",), tuple(part.id for part in parts), expected_s=costs.ROOT_S)
 
     def _fovea(self, command: str, inputs: Sequence[str], output: str, *options: str) -> tuple[str, ...]:
         return (self.options.program, command, *inputs, "-o", self._path(output), "--if-missing", *options)
@@ -156,6 +175,10 @@ def map_file(name: str) -> str:
 
 def pair_file(name: str) -> str:
     return f"pairs/{name}.json"
+
+
+def export_folder(form: str) -> str:
+    return f"exports/{form}"
 
 
 def poses_file(name: str) -> str:

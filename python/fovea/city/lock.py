@@ -1,6 +1,7 @@
 """The lock of a city: one build at a time."""
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import socket
@@ -42,12 +43,16 @@ class CityLock:
         pid = os.getpid()
         self._own: dict[str, Any] = {"host": socket.gethostname(), "pid": pid, "process_start": process_start(pid),
                                      "start": time.strftime("%Y-%m-%d %H:%M:%S")}
+        is_made = False
         try:
             with open(self._file, "x", encoding="utf-8") as output:
+                is_made = True
                 json.dump(self._own, output)
         except FileExistsError:
             return False
         except OSError as error:
+            if is_made:
+                self._file.unlink(missing_ok=True)
             raise output_error(f"the lock cannot be made ({error.strerror})", self._file,
                                "give a folder that you can write to") from error
         return True
@@ -59,10 +64,19 @@ class CityLock:
             os.rename(self._file, aside)
         except FileNotFoundError:
             return True
+        except OSError as error:
+            raise output_error(f"the lock of a build that has ended cannot be replaced ({error.strerror})", self._file,
+                               "give a folder that you can write to") from error
         is_stale = read_lock(aside) == holder
-        if not is_stale:
-            os.link(aside, self._file)
-        aside.unlink()
+        try:
+            if not is_stale:
+                os.link(aside, self._file)
+        except FileExistsError:
+            pass  # a third build has the lock by now
+        except OSError:  # the file system has no hard links
+            with contextlib.suppress(FileNotFoundError):
+                os.rename(aside, self._file)
+        aside.unlink(missing_ok=True)
         return is_stale
 
     def _busy(self, holder: dict[str, Any] | None) -> Exception:

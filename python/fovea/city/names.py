@@ -5,10 +5,12 @@ import hashlib
 import json
 import os
 import pathlib
+import tomllib
 
 from .problems import input_error
 
 _DIGITS = 20  # of a name
+_MOST_LEVELS = 8  # of calibrated drives, one above the other
 
 
 def name_of(kind: str, *inputs: object) -> str:
@@ -28,20 +30,53 @@ def content_digest(path: pathlib.Path | None) -> str:
 
 
 def drive_digest(drive: pathlib.Path) -> str:
-    """The digest of a drive's name, and of the names, sizes and times of its files. It does not read their content."""
+    """The digest of a drive's name, and of the names, sizes and times of its files. It does not read their content.
+
+    The files of the drives that a calibrated drive corrects belong to it.
+    """
     if not drive.is_dir():
         raise input_error("the drive does not exist", drive, "give the folder of a drive (docs/drives.md)")
+    try:
+        os.path.abspath(drive).encode()
+    except UnicodeEncodeError as error:
+        raise input_error("the path of the drive is not UTF-8", ascii(str(drive)), "rename the folder") from error
+    content: list[object] = [drive.name, *_entries(drive)]
+    seen = {os.path.realpath(drive)}
+    for _ in range(_MOST_LEVELS):
+        corrected = _corrected_drive(drive)
+        if corrected is None or os.path.realpath(corrected) in seen:
+            break
+        drive = corrected
+        seen.add(os.path.realpath(drive))
+        content.append([drive.name, *_entries(drive)])
+    return hashlib.sha256(json.dumps(content).encode()).hexdigest()
+
+
+def _corrected_drive(drive: pathlib.Path) -> pathlib.Path | None:
+    """The folder that a calibrated drive names (docs/drives.md). None for any other drive, or without this folder."""
+    try:
+        named = tomllib.loads((drive / "drive.toml").read_text(encoding="utf-8"))["calibrated"]["drive"]
+        corrected = pathlib.Path(os.path.realpath(drive / named))
+    except (OSError, ValueError, LookupError, TypeError):
+        return None  # `fovea catalog` reports a damaged file
+    return corrected if corrected.is_dir() else None
+
+
+def _entries(drive: pathlib.Path) -> list[tuple[str, int, int]]:
+    """Names, sizes and times of the files of a drive."""
     entries = []
     for file, name in _files(drive):
         status = file.stat()
         entries.append((name, status.st_size, status.st_mtime_ns))
-    return hashlib.sha256(json.dumps([drive.name, *sorted(entries)]).encode()).hexdigest()
+    return sorted(entries)
 
 
 def _files(drive: pathlib.Path) -> list[tuple[pathlib.Path, str]]:
     """The files of a drive and their names from its folder, with those of KITTI that lie outside the folder."""
     files = []
-    for folder, _, names in os.walk(drive):
+    visited = {os.path.realpath(drive)}
+    for folder, folders, names in os.walk(drive, followlinks=True):
+        folders[:] = [name for name in sorted(folders) if _visit(os.path.join(folder, name), visited)]
         for name in names:
             file = pathlib.Path(folder, name)
             if file.exists():  # not a broken link
@@ -51,3 +86,12 @@ def _files(drive: pathlib.Path) -> list[tuple[pathlib.Path, str]]:
     if resolved.parent.name == "sequences":  # KITTI odometry
         outside += resolved.parent.parent.glob(f"poses/{resolved.name}.txt")
     return files + [(file, os.path.relpath(file, resolved)) for file in outside]
+
+
+def _visit(folder: str, visited: set[str]) -> bool:
+    """Adds a folder. Returns whether it is new: links may form a circle."""
+    real = os.path.realpath(folder)
+    if real in visited:
+        return False
+    visited.add(real)
+    return True

@@ -8,7 +8,8 @@ from .jobs import STAGES, Job
 
 _WIDTH = 24  # of the bar, characters
 _NAMES = {"catalog": ("drive listed", "drives listed"), "map": ("map", "maps"), "pair": ("pair", "pairs"),
-          "poses": ("file of poses", "files of poses"), "tile": ("tile", "tiles"), "root": ("manifest", "manifests")}
+          "poses": ("file of poses", "files of poses"), "tile": ("tile", "tiles"), "root": ("manifest", "manifests"),
+          "export": ("tile exported", "tiles exported"), "export root": ("root", "roots")}
 
 
 class Progress:

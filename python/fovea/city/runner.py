@@ -32,6 +32,7 @@ class Failure:
 
     job: Job
     reason: str
+    of_machine: bool = False  # see JobError
 
 
 @dataclass
@@ -54,6 +55,7 @@ class Runner:
         self._client: Any = None
         self._cluster: Any = None
         self._local: str | None = None  # folder of the embedded cluster
+        self._futures: dict[str, Any] = {}  # of the newest graph
         self._rounds = 0
 
     def __enter__(self) -> Runner:
@@ -85,7 +87,7 @@ class Runner:
                 tries[id] = tries.get(id, 0) + 1
                 avoid.setdefault(id, set()).add(error.worker)
                 if tries[id] > self._options.retries:
-                    failures.append(Failure(left[id], error.reason))
+                    failures.append(Failure(left[id], error.reason, error.of_machine))
                     _remove_with_later(left, id)
         return failures
 
@@ -119,7 +121,8 @@ class Runner:
                 ended: queue.Queue[tuple[Job, Any]]) -> _Round:
         self._rounds += 1
         graph = _Round()
-        workers = set(self._client.scheduler_info()["workers"])
+        self._futures = graph.futures
+        workers = self._workers()
         for job in jobs:
             before = [graph.futures[id] for id in job.after if id in graph.futures]
             if job.id in avoid and workers - avoid[job.id]:
@@ -136,16 +139,21 @@ class Runner:
         if self._client.status != "running":
             graph.lost = self._client.status in ("closing", "closed")
             return quiet_since
-        workers = self._client.scheduler_info()["workers"]
+        workers = self._workers()
         for id, place in graph.places.items():
             if place.isdisjoint(workers) and not graph.futures[id].done():
                 graph.futures[id].cancel()  # its workers have gone
         if self._options.scheduler is None or time.monotonic() - quiet_since < _WORKER_WARNING_S:
             return quiet_since
-        if not any(worker.get("resources", {}).get(RESOURCE) for worker in workers.values()):
+        if not workers:
             self._warn(f"no worker of {self._options.scheduler} runs jobs: start workers with "
                        f"`dask worker {self._options.scheduler} --nthreads 1 --resources {RESOURCE}=1`")
         return time.monotonic()
+
+    def _workers(self) -> set[str]:
+        """The addresses of the workers that can run jobs."""
+        workers = self._client.scheduler_info()["workers"]
+        return {address for address, worker in workers.items() if worker.get("resources", {}).get(RESOURCE)}
 
     def _description(self, job: Job) -> dict[str, Any]:
         return {**job.json(), "output": str(self._folder.path / job.output), "log": str(self._folder.path / job.log),
@@ -184,6 +192,7 @@ class Runner:
         if self._client is not None:
             try:
                 if stop:
+                    self._client.cancel(list(self._futures.values()), force=True)  # else the next jobs begin
                     self._client.run(stop_jobs, self._token)
             except Exception:  # pylint: disable=broad-except  # workers or the scheduler are gone
                 pass
@@ -213,7 +222,7 @@ def _own_error(job: Job, error: BaseException | None) -> JobError | None:
     if not task.startswith(job.id):
         return None
     reason = "its workers were killed" if hasattr(error, "task") else f"{type(error).__name__}: {error}"
-    return JobError(job.id, reason.splitlines()[0], "")
+    return JobError(job.id, reason.splitlines()[0], "", of_machine=True)
 
 
 def _remove_with_later(left: dict[str, Job], id: str) -> None:

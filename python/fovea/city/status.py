@@ -37,7 +37,7 @@ def _job_lines(folder: CityFolder, listed: JobList) -> list[str]:
     lines = []
     failed: list[Job] = []
     needed = {job.id for job in needed_jobs(listed.jobs, folder)}
-    for kind in STAGES[:-1]:
+    for kind in STAGES[:STAGES.index("root")]:
         jobs = [job for job in listed.jobs if job.kind == kind]
         if not jobs:
             continue

@@ -1,29 +1,37 @@
 """Runs one job on a worker of Dask."""
 from __future__ import annotations
 
+import contextlib
 import os
+import re
 import shutil
 import signal
 import socket
 import subprocess
 import threading
 import time
+from collections.abc import Sequence
 from typing import IO, Any
 
 from .dask_module import dask_module
 
 _STOP_S = 5.0  # a stopped program has this time to remove its unfinished files
+_SIGNALED = 128  # exit code of a program that a signal ended, less the signal
 _running: dict[str, set[subprocess.Popen[bytes]]] = {}  # by the token of the build
+_stopped: set[str] = set()  # tokens of builds whose jobs must not begin
 _versions: dict[str, str] = {}  # by the path of the program
 _guard = threading.Lock()
 
 
 class JobError(Exception):
-    """A job has failed: its id, the reason in one line, and the address of the worker."""
+    """A job has failed: its id, the reason in one line, and the address of the worker.
 
-    def __init__(self, job: str, reason: str, worker: str) -> None:
-        super().__init__(job, reason, worker)
-        self.job, self.reason, self.worker = job, reason, worker
+    `of_machine`: the machine is the cause, not the inputs. The job may end well later.
+    """
+
+    def __init__(self, job: str, reason: str, worker: str, of_machine: bool = False) -> None:
+        super().__init__(job, reason, worker, of_machine)
+        self.job, self.reason, self.worker, self.of_machine = job, reason, worker, of_machine
 
 
 class IgnoreCtrlC:
@@ -47,7 +55,8 @@ def run_job(job: dict[str, Any], token: str, *_after: object) -> str:
     version = program_version(job["program"])
     if version != job["version"]:
         raise JobError(job["id"], f"{job['program']} is {version or 'missing'} on {socket.gethostname()}, "
-                                  f"the plan was made with {job['version']}", worker)
+                                  f"the plan was made with {job['version']}", worker, of_machine=True)
+    remove_scratch_files(job["command"])
     began = time.monotonic()
     try:
         with open(job["log"], "wb") as log:
@@ -56,13 +65,15 @@ def run_job(job: dict[str, Any], token: str, *_after: object) -> str:
             code = _run(job["command"], log, token)
             _write(log, f"# exit code {code} after {time.monotonic() - began:.1f} s")
     except OSError as error:
-        raise JobError(job["id"], f"{error.strerror}: {error.filename or job['log']}", worker) from error
-    if code < 0:
-        raise JobError(job["id"], f"ended by signal {-code}", worker)
+        raise JobError(job["id"], f"{error.strerror}: {error.filename or job['log']}", worker,
+                       of_machine=True) from error
+    number = -code if code < 0 else code - _SIGNALED
+    if number > 0:
+        raise JobError(job["id"], f"ended by signal {number}", worker, of_machine=True)
     if code != 0:
         raise JobError(job["id"], error_line(job["log"]), worker)
     if not os.path.exists(job["output"]):
-        raise JobError(job["id"], f"the command made no {job['output']}", worker)
+        raise JobError(job["id"], f"the command made no {job['output']}", worker, of_machine=True)
     return worker
 
 
@@ -77,9 +88,26 @@ def error_line(log: str) -> str:
     return errors[-1].removeprefix("fovea: ").removeprefix("error: ")
 
 
+def remove_scratch_files(command: Sequence[str]) -> None:
+    """Removes the files that killed jobs of this machine left in the scratch folder of a command.
+
+    The program names them NAME.HOST-PROCESS-NUMBER.partial.
+    """
+    if "--scratch" not in command:
+        return
+    name = re.compile(rf".+\.{re.escape(socket.gethostname())}-(\d+)-\d+\.partial.*")
+    with contextlib.suppress(OSError):  # the program reports a folder that it cannot use
+        for entry in os.scandir(command[command.index("--scratch") + 1]):
+            match = name.fullmatch(entry.name)
+            if match and not os.path.exists(f"/proc/{match[1]}"):
+                with contextlib.suppress(OSError):  # of another user, or removed by another worker
+                    os.unlink(entry.path)
+
+
 def stop_jobs(token: str) -> None:
-    """Ends the running jobs of a build on this worker."""
+    """Ends the running jobs of a build on this worker. No other job of the build begins here."""
     with _guard:
+        _stopped.add(token)
         processes = list(_running.get(token, ()))
     for process in processes:
         process.terminate()
@@ -106,9 +134,11 @@ def _run(command: list[str], log: IO[bytes], token: str) -> int:
     """The exit code; below 0 the signal that ended the program. The program ends if this thread does."""
     setpriv = shutil.which("setpriv")  # of util-linux
     with_parent = [setpriv, "--pdeathsig", "KILL", "--"] if setpriv else []
-    process = subprocess.Popen([*with_parent, *command], stdin=subprocess.DEVNULL, stdout=log,
-                               stderr=subprocess.STDOUT, start_new_session=True)
     with _guard:
+        if token in _stopped:
+            return -signal.SIGTERM
+        process = subprocess.Popen([*with_parent, *command], stdin=subprocess.DEVNULL, stdout=log,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
         _running.setdefault(token, set()).add(process)
     try:
         return process.wait()
@@ -118,7 +148,7 @@ def _run(command: list[str], log: IO[bytes], token: str) -> int:
 
 
 def _write(log: IO[bytes], line: str) -> None:
-    log.write(line.encode() + b"\n")
+    log.write(line.encode(errors="backslashreplace") + b"\n")
     log.flush()
 
 

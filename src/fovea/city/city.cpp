@@ -50,9 +50,19 @@ int revision_of(const Json& json) {
   return static_cast<int>(revision);
 }
 
+std::int32_t place_of(const Json& json) {
+  constexpr std::int64_t kMost = 1 << 30;
+  const bool is_whole = json.is_number_integer();
+  const auto place = is_whole ? json.get<std::int64_t>() : std::int64_t{0};
+  if (!is_whole || place < -kMost || place > kMost) {
+    throw std::invalid_argument(json.dump() + " is no place of a tile");
+  }
+  return static_cast<std::int32_t>(place);
+}
+
 CityTileFile tile_of(const Json& json, const fs::path& folder) {
   CityTileFile tile;
-  tile.tile = {json.at("x").get<std::int32_t>(), json.at("y").get<std::int32_t>()};
+  tile.tile = {place_of(json.at("x")), place_of(json.at("y"))};
   tile.map = file_of(json.at("file"), folder);
   tile.points = count_of(json.at("points"));
   tile.revision = revision_of(json.at("revision"));

@@ -201,7 +201,9 @@ class OutputFile::Buffer : public std::streambuf {
     fd_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     if (fd_ < 0) throw_output_error(target_, errno);
     // A partial file without a lock was left behind by a killed program.
-    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 || !still_named()) {
+    // Some shared folders have no locks.
+    const bool is_busy = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (is_busy || !still_named()) {
       ::close(fd_);
       throw OutputError("another program is writing this output", target_.string(),
                         "wait until it has ended or give another name");

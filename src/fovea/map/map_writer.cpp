@@ -171,7 +171,9 @@ void SqliteMapWriter::start_partial_file() {
     fs::remove(partial_);
   }
   remove_side_files(partial_);
-  database_ = std::make_unique<Database>(partial_, Access::kCreate, path_);
+  const bool is_in_scratch = !copy_.empty();
+  database_ =
+      std::make_unique<Database>(partial_, Access::kCreate, is_in_scratch ? partial_ : path_);
   try {
     // A file that is thrown away on any failure needs no journal, and one sync when it is whole.
     database_->execute(

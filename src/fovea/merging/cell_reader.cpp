@@ -39,7 +39,7 @@ CellSource CellReader::open(const std::filesystem::path& path) const {
   for_each_piece(source, [&](const CellPiece& piece) {
     source.points += piece.points.size();
     for (const FusedColor& color : piece.points.colors) {
-      source.well_seen += color.views >= kGoodViews;
+      source.points_of_two_views += color.views >= kGoodViews;
     }
   });
   return source;

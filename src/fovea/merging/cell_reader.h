@@ -28,7 +28,7 @@ struct CellSource {
   std::string session;                     ///< recording day; empty if it is unknown
   std::vector<RigidMotion> T_cell_submap;  ///< east-north-up axes at the middle of the cell
   std::size_t points = 0;                  ///< in the cell
-  std::size_t well_seen = 0;               ///< of these, by two or more images
+  std::size_t points_of_two_views = 0;     ///< of these, by two or more images
 };
 
 class CellReader {

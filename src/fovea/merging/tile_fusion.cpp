@@ -34,7 +34,7 @@ std::size_t leave_out(const std::vector<bool>& drop, TilePoints& points) {
 }
 
 /// What a drive saw of the space around the cell.
-struct Witness {
+struct LaterFreeSpace {
   std::string session;
   FreeSpace free;
 };
@@ -51,7 +51,7 @@ class TileFusion {
  private:
   void require_points() const;
   void sort_sources();
-  void read_witnesses();
+  void read_free_spaces();
   std::unique_ptr<MapWriter> create_output() const;
   MapMeta meta() const;
   /// Puts the points, frames and drive of a source, and opens its submaps.
@@ -66,7 +66,7 @@ class TileFusion {
   CellReader cell_;
   std::set<std::string> identities_;  // of all maps, also of those without a point in the cell
   std::vector<CellSource> sources_, empty_sources_;
-  std::vector<Witness> witnesses_;
+  std::vector<LaterFreeSpace> free_spaces_;
   KnownSurfaces known_;
   TileFusionFigures figures_;
   int next_frame_ = 0;
@@ -109,16 +109,15 @@ void TileFusion::sort_sources() {
   }
   std::sort(sources_.begin(), sources_.end(), [&](const CellSource& a, const CellSource& b) {
     const auto rank = [&](const CellSource& source) {
-      return std::tuple(!is_chosen(source), -double(source.well_seen),
+      return std::tuple(!is_chosen(source), -double(source.points_of_two_views),
                         source.placed->name.identity);
     };
     return rank(a) < rank(b);
   });
 }
 
-/// Drives of the last day saw no later state of anything, but those of the first day no earlier
-/// one.
-void TileFusion::read_witnesses() {
+/// A drive of the first day cannot show that an object has left.
+void TileFusion::read_free_spaces() {
   std::string first;
   for (const CellSource& source : sources_) {
     if (!source.session.empty() && (first.empty() || source.session < first)) {
@@ -129,14 +128,14 @@ void TileFusion::read_witnesses() {
     for (const CellSource& source : *sources) {
       if (first.empty() || source.session <= first) continue;
       FreeSpace free(*source.reader, source.content, source.T_cell_submap, job_.tile_size);
-      if (!free.empty()) witnesses_.push_back({source.session, std::move(free)});
+      if (!free.empty()) free_spaces_.push_back({source.session, std::move(free)});
     }
   }
 }
 
 void TileFusion::reduce(const CellSource& source, CellPiece& piece) {
   const RigidMotion& T_cell_submap = source.T_cell_submap[piece.id.submap];
-  for (const Witness& later : witnesses_) {
+  for (const LaterFreeSpace& later : free_spaces_) {
     if (source.session.empty() || later.session <= source.session || piece.points.empty()) continue;
     figures_.parked += leave_out(later.free.contains(piece.points, T_cell_submap), piece.points);
   }
@@ -146,6 +145,7 @@ void TileFusion::reduce(const CellSource& source, CellPiece& piece) {
 MapMeta TileFusion::meta() const {
   MapMeta meta;
   if (!sources_.empty()) meta = sources_.front().content.meta;
+  if (sources_.empty()) meta[meta_key::kComplete] = "1";
   meta.erase(meta_key::kFormatVersion);
   meta[meta_key::kFoveaVersion] = version();
   meta[meta_key::kDriveName] = "city tile " + job_.tile.text();
@@ -261,7 +261,7 @@ std::unique_ptr<MapWriter> TileFusion::create_output() const {
 TileFusionFigures TileFusion::write() {
   require_points();
   sort_sources();
-  read_witnesses();
+  read_free_spaces();
   TileMap map(sources_.empty() ? kNoPoints : sources_.front().content.tile_size);
   const auto writer = create_output();
   TileOutput output(*writer, map);

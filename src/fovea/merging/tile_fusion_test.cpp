@@ -201,7 +201,7 @@ TEST_F(TileFusionOf, WhatALaterDriveSeesThroughIsLeftOut) {
   EXPECT_EQ(figures.points, wall_points_);
 }
 
-TEST_F(TileFusionOf, ADriveWithoutPointsInTheTileIsAWitness) {
+TEST_F(TileFusionOf, ADriveWithoutPointsInTheTileShowsFreeSpace) {
   add("before", {.session = "2026-05-17", .east = 30});
   add("after", {.session = "2026-05-18", .east = 34, .free = 12});  // its wall is in the next tile
   const TileFusionFigures figures = fuse();

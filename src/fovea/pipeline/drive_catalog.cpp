@@ -81,6 +81,7 @@ DriveCatalog catalog_of(const FrameSource& source) {
   DriveCatalog catalog;
   catalog.append(source.info());
   catalog.drive = drive_record(source);
+  catalog.coordinates = source.info().coordinates;
   catalog.path = std::filesystem::absolute(source.info().path).lexically_normal();
   catalog.frames = source.info().frame_count();
   catalog.duration = duration_of(source);
@@ -104,14 +105,14 @@ std::string to_json(const DriveCatalog& catalog) {
       {"length_m", catalog.length},
       {"georeferenced", !catalog.places.empty()},
       {"accuracy_m", json_or_null(catalog.accuracy)},
-      {"datum", json_or_null(drive.datum)},
-      {"epoch_year", json_or_null(drive.epoch_year)},
+      {"datum", json_or_null(catalog.coordinates.datum)},
+      {"epoch_year", json_or_null(catalog.coordinates.epoch_year)},
       {"height_type", nullptr},
       {"calibration_fingerprint", json_or_null(drive.calibration_fingerprint)},
       {"stamps_fingerprint", json_or_null(drive.stamps_fingerprint)},
       {"warnings", catalog.warnings},
       {"places", nlohmann::ordered_json::array()}};
-  if (drive.height_type) json["height_type"] = to_string(*drive.height_type);
+  if (const auto heights = catalog.coordinates.heights) json["height_type"] = to_string(*heights);
   for (const CatalogPlace& place : catalog.places) {
     json["places"].push_back({{"frame", place.frame},
                               {"along_m", place.along},

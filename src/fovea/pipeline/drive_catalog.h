@@ -18,6 +18,7 @@ struct CatalogPlace {
 
 struct DriveCatalog : Messages {
   DriveRecord drive;
+  CoordinateReference coordinates;  ///< as the drive states them
   std::filesystem::path path;
   std::size_t frames = 0;
   double duration = 0;             ///< s, from the first to the last stamp

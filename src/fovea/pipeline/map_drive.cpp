@@ -245,10 +245,10 @@ void MapRun::finish() {
 
 void MapRun::require_whole_drive() const {
   if (lost_) {
+    if (!job_.scratch.empty()) throw DriveLostError(*lost_);  // there is no map to resume
     throw InputError(lost_->problem(), lost_->where(),
-                     lost_->remedy() + fmt::format(" and continue with --resume: {} holds the "
-                                                   "frames before",
-                                                   job_.output.string()));
+                     fmt::format("{} and continue with --resume: {} holds the frames before",
+                                 lost_->remedy(), job_.output.string()));
   }
   require_few_damaged(figures_.summary(), job_.settings.run.max_damaged_share, drive_.path.string(),
                       job_.output.string());

@@ -27,7 +27,7 @@ class CityContent : public SiteContent {
     if (path == "map.json") return receiver(map_json_, "");
     if (path == "status.json") return receiver(shared_bytes(status_json()), "");
     if (path == "frames.json") {
-      return jobs_.push([this, receiver = std::move(receiver)] { receiver(frames(), ""); });
+      return jobs_.push([this, receiver = std::move(receiver)] { send_frames(receiver); });
     }
     if (!path.starts_with(kTilesFolder)) return receiver(nullptr, "");
     tiles_.request(path.substr(kTilesFolder.size()), std::move(receiver));
@@ -38,13 +38,29 @@ class CityContent : public SiteContent {
     nlohmann::json json = {{"state", "ready"}, {"read", 1}};
     const std::string failure = tiles_.failure();
     if (!failure.empty()) json["failure"] = failure;
-    return json.dump();
+    return text_of(json);
+  }
+
+  /// Paths of files may be no UTF-8.
+  static std::string text_of(const nlohmann::json& json) {
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+
+  void send_frames(const Receiver& receiver) {
+    Bytes json;
+    std::string failure;
+    try {
+      json = frames();
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    receiver(json, failure);
   }
 
   /// Reads the tiles once.
   Bytes frames() {
     const std::lock_guard lock(reading_frames_);
-    if (!frames_json_) frames_json_ = shared_bytes(city_frames_json(city_).dump());
+    if (!frames_json_) frames_json_ = shared_bytes(text_of(city_frames_json(city_)));
     return frames_json_;
   }
 

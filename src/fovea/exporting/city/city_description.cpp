@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fovea/map/map_meta.h"
+#include "fovea/city/city_frames.h"
 
 namespace fovea {
 namespace {
@@ -20,19 +20,21 @@ struct PathFrame {
   RigidMotion T_local_lidar;
 };
 
-/// The frames of each drive by their number in the drive; several tiles may show the same frame.
-using Paths = std::map<std::string, std::map<int, PathFrame>>;
+struct DrivePath {
+  std::string name;  ///< of the drive
+  /// By their number in the drive; several tiles may show the same frame.
+  std::map<int, PathFrame> frames;
+};
+
+/// By CityFrames::map_id(): drives may have one name.
+using Paths = std::map<std::string, DrivePath>;
 
 void read_paths(const City& city, const CityTileFile& tile, Paths& paths) {
-  const MapReader map(tile.map);
-  const RigidMotion T_local_tile = city.T_local_tile(tile.tile);
-  const std::vector<FrameRecord> frames = map.frames();
-  for (const MergedDrive& drive : merged_drives(map)) {
-    auto& path = paths[drive.name];
-    for (const FrameRecord& frame : frames) {
-      if (frame.index < drive.first_frame || frame.index >= drive.end_frame) continue;
-      path.try_emplace(frame.index - drive.frame_shift,
-                       PathFrame{frame.status, T_local_tile * frame.T_local_lidar});
+  for (const CityFrames& of_map : frames_of_tile(city, tile.tile, MapReader(tile.map))) {
+    DrivePath& path = paths[of_map.map_id()];
+    path.name = of_map.drive.name;
+    for (const FrameRecord& frame : of_map.frames) {
+      path.frames.try_emplace(frame.index, PathFrame{frame.status, frame.T_local_lidar});
     }
   }
 }
@@ -96,11 +98,12 @@ nlohmann::json city_frames_json(const City& city) {
     }
   }
   const double step = step_of(city);
-  for (const auto& [name, path] : paths) {
-    const auto drive = std::find_if(city.drives.begin(), city.drives.end(),
-                                    [&](const CityDrive& of_city) { return of_city.name == name; });
-    if (path.empty()) continue;
-    append_path(path, std::size_t(drive - city.drives.begin()), step, json);
+  for (const auto& [id, path] : paths) {
+    const auto drive =
+        std::find_if(city.drives.begin(), city.drives.end(),
+                     [&](const CityDrive& of_city) { return of_city.name == path.name; });
+    if (path.frames.empty() || drive == city.drives.end()) continue;
+    append_path(path.frames, std::size_t(drive - city.drives.begin()), step, json);
   }
   return json;
 }

@@ -44,7 +44,9 @@ Part read_tileset(const fs::path& folder) {
   if (!center.allFinite() || !half.allFinite() || !(part.shape.spacing >= 0)) {
     throw std::invalid_argument("its root is impossible");
   }
-  part.content = folder / root.at("content").at("uri").get<std::string>();
+  const fs::path content = root.at("content").at("uri").get<std::string>();
+  if (content.has_parent_path()) throw std::invalid_argument("its content lies elsewhere");
+  part.content = folder / content;
   return part;
 }
 
@@ -67,7 +69,7 @@ class RootWriter {
       : city_(city), folder_(folder), options_(options) {
     check_output_path(folder / kTileset, options.force);
     for (const CityTileFile& tile : city.tiles) {
-      parts_.push_back(read_part(folder / city_part_name(tile.tile), tile.tile));
+      parts_.push_back(read_part(folder / part_name(tile), tile.tile));
     }
     root_ = make_city_tree(city, [&](std::size_t tile) { return parts_[tile].shape; });
   }
@@ -90,6 +92,11 @@ class RootWriter {
   }
 
  private:
+  std::string part_name(const CityTileFile& tile) const {
+    const std::string of_map = tile.map.stem().string();
+    return fs::is_directory(folder_ / of_map) ? of_map : city_part_name(tile.tile);
+  }
+
   /// In the city's frame. Nothing if the node is no tile.
   std::optional<std::vector<ExportPoint>> points_of_tile(const CityNode& node) const {
     if (!node.tile) return std::nullopt;
@@ -112,24 +119,26 @@ class RootWriter {
       return begins_tileset(node, root_.tiles) ? to_nodes + node.name + ".json" : std::string();
     };
     form.tile = [=, this](const CityNode& node) {
-      const CityTile& tile = city_.tiles[*node.tile].tile;
+      const CityTileFile& tile = city_.tiles[*node.tile];
       CityTileEntry entry;
       // The part's own root places it on earth.
       entry.T_parent_entry = T_ecef_enu(city_.origin).inverse();
-      entry.T_entry_tile = T_ecef_enu(city_.origin) * city_.T_local_tile(tile);
-      entry.content = to_folder + city_part_name(tile) + "/" + kTileset;
+      entry.T_entry_tile = T_ecef_enu(city_.origin) * city_.T_local_tile(tile.tile);
+      entry.content = to_folder + part_name(tile) + "/" + kTileset;
       return entry;
     };
     return form;
   }
 
-  /// Tilesets of their own.
+  /// Tilesets of their own, each with all nodes below it.
   void write_subtrees(const CityNode& node, OutputFolder& nodes) const {
+    CityTilesetForm of_subtree = form("../", "");
+    of_subtree.subtree = [](const CityNode&) { return std::string(); };
     for (const CityNode& child : node.children) {
       if (child.tiles > kMostTilesOfTileset) {
         write_subtrees(child, nodes);
       } else if (begins_tileset(child, node.tiles)) {
-        nodes.write(child.name + ".json", city_tileset_json(child, form("../", "")));
+        nodes.write(child.name + ".json", city_tileset_json(child, of_subtree));
       }
     }
   }

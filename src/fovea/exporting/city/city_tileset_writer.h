@@ -24,7 +24,8 @@ struct CityRootFigures {
 };
 
 /// Writes the root of a city above the parts of its tiles: FOLDER/tileset.json on earth, and
-/// FOLDER/q with the levels above the tiles. The parts are folders of write_tileset(), FOLDER/X_Y.
+/// FOLDER/q with the levels above the tiles. The parts are folders of write_tileset(): FOLDER/X_Y,
+/// or the name of the tile's map without its ending, by which jobs find parts of this revision.
 /// Only their coarsest levels are read, and the points of one path of the quadtree are in memory.
 /// @throws InputError   if a part is missing or damaged
 /// @throws OutputError  if the root exists and `force` is false, or if it cannot be written

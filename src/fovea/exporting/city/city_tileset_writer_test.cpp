@@ -82,6 +82,41 @@ TEST_F(CityRoot, LiesAboveThePartsOnEarth) {
               UnorderedElementsAre("0_0/tileset.json", "1_0/tileset.json", "-1_2/tileset.json"));
 }
 
+/// The addresses in a tileset and in those it refers to, but not in the parts.
+void expect_files_of(const fs::path& tileset, std::size_t& parts) {
+  const auto json = nlohmann::json::parse(content(tileset));
+  const std::function<void(const nlohmann::json&)> visit = [&](const nlohmann::json& node) {
+    if (node.contains("content")) {
+      const std::string uri = node.at("content").at("uri");
+      EXPECT_TRUE(fs::exists(tileset.parent_path() / uri)) << tileset << " " << uri;
+      const bool is_part = uri.ends_with("/tileset.json");
+      parts += is_part;
+      if (uri.ends_with(".json") && !is_part) expect_files_of(tileset.parent_path() / uri, parts);
+    }
+    if (!node.contains("children")) return;
+    for (const auto& child : node.at("children")) visit(child);
+  };
+  visit(json.at("root"));
+}
+
+TEST_F(CityRoot, EveryAddressOfALargeCityIsAFile) {
+  write_parts();
+  const CityTileFile sample = city_.tiles.front();
+  const fs::path part = out_ / city_part_name(sample.tile);
+  city_.tiles.clear();
+  for (int x = 10; x < 27; ++x) {
+    for (int y = 10; y < 27; ++y) {
+      city_.tiles.push_back(sample);
+      city_.tiles.back().tile = {x, y};
+      fs::copy(part, out_ / city_part_name({x, y}), fs::copy_options::recursive);
+    }
+  }
+  write_city_root(city_, out_);
+  std::size_t parts = 0;
+  expect_files_of(out_ / "tileset.json", parts);
+  EXPECT_EQ(parts, 17u * 17u);
+}
+
 TEST_F(CityRoot, ItsPointsAreThoseOfTheParts) {
   write_parts();
   write_city_root(city_, out_);
