@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -45,7 +46,8 @@ Part read_tileset(const fs::path& folder) {
     throw std::invalid_argument("its root is impossible");
   }
   const fs::path content = root.at("content").at("uri").get<std::string>();
-  if (content.has_parent_path()) throw std::invalid_argument("its content lies elsewhere");
+  const bool leaves = std::find(content.begin(), content.end(), "..") != content.end();
+  if (content.is_absolute() || leaves) throw std::invalid_argument("its content lies elsewhere");
   part.content = folder / content;
   return part;
 }
