@@ -6,18 +6,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "app/print.h"
 #include "fovea/city/city.h"
+#include "fovea/city/json_values.h"
 #include "fovea/core/errors.h"
 #include "fovea/map/map_store.h"
 
 namespace fovea::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The tiles by the revision in which they last changed, the newest first.
 using TilesByRevision = std::map<int, std::vector<CityTile>, std::greater<>>;
@@ -80,10 +78,7 @@ void print_json(const City& city) {
       {"city", true},
       {"revision", city.revision},
       {"session", city.session},
-      {"origin",
-       {{"latitude_deg", city.origin.latitude},
-        {"longitude_deg", city.origin.longitude},
-        {"height_m", city.origin.altitude}}},
+      {"origin", json_of(city.origin)},
       {"poses", city.poses.string()},
       {"points", city.points()},
       {"bytes", bytes_of(city)},

@@ -36,12 +36,7 @@ void check_city_options(const ExportArguments& arguments, const std::string& for
 void choose_points(const City& city, ExportArguments& arguments, const std::string& format) {
   if (format != "3dtiles" && arguments.crs.empty()) arguments.crs = "utm";
   parse_point_choice(arguments);
-  ExposureChoice& exposure = arguments.points.exposure;
-  if (exposure.kind == ExposureChoice::Kind::kFrame) {
-    throw ConfigError("the frames of a city have no common numbers", "--exposure",
-                      "give auto or stops");
-  }
-  if (exposure.kind == ExposureChoice::Kind::kAuto) exposure = kCityExposure;
+  arguments.points.exposure = exposure_of_city(arguments.points.exposure);
   const bool has_colors =
       std::any_of(city.tiles.begin(), city.tiles.end(),
                   [](const CityTileFile& tile) { return MapReader(tile.map).colored_size() > 0; });
@@ -103,7 +98,7 @@ FilesBeside viewer_files_of(const City& city) {
   MapDescription description = describe_city(city);
   description.tileset = "tileset.json";
   files["map.json"] = to_json(description);
-  files["frames.json"] = city_frames_json(city).dump();
+  files["frames.json"] = city_frames_text(city);
   return files;
 }
 

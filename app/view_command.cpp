@@ -50,15 +50,6 @@ std::shared_ptr<const DriveImages> open_images(const MapReader& map,
   return std::make_shared<const DriveImages>(std::move(source));
 }
 
-/// Of all tiles.
-ExposureChoice city_exposure(const std::string& text) {
-  const ExposureChoice exposure = parse_exposure(text);
-  if (exposure.kind == ExposureChoice::Kind::kAuto) return kCityExposure;
-  if (exposure.kind != ExposureChoice::Kind::kFrame) return exposure;
-  throw ConfigError("the frames of a city have no common numbers", "--exposure",
-                    "give auto or stops");
-}
-
 /// Makes the content of a site, as often as it is called.
 using MakeContent = std::function<std::unique_ptr<SiteContent>()>;
 
@@ -66,7 +57,8 @@ MakeContent city_content(const ViewArguments& arguments) {
   if (!arguments.drive.drive.empty()) {
     throw ConfigError("a city has many drives", "--drive", "leave it out, or view a map");
   }
-  return [city = open_city(arguments.map), exposure = city_exposure(arguments.exposure)] {
+  return [city = open_city(arguments.map),
+          exposure = exposure_of_city(parse_exposure(arguments.exposure))] {
     return make_city_content(city, exposure);
   };
 }

@@ -3,12 +3,11 @@ import assert from 'node:assert/strict';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { setTimeout as sleep } from 'node:timers/promises';
-import { fileURLToPath, pathToFileURL } from 'node:url';
 
 import { validateBytes } from 'gltf-validator';
 
 import { bytesOf, distance, ecefOfLocal, light, TestMap } from './test_map.mjs';
+import { shownPoints } from './tiles_renderer.mjs';
 
 let map, folder;
 before(() => {
@@ -55,50 +54,10 @@ test('the tree is sound', () => {
   assert.equal(uris.size, readdirSync(join(folder, 'tiles')).length);
 });
 
-/// What a renderer in a browser would load at this error target (pixels), as world positions.
-async function render(errorTarget) {
-  globalThis.window ??= { location: { href: 'file:///' } };
-  globalThis.self ??= globalThis;
-  globalThis.requestAnimationFrame ??= (f) => setTimeout(f, 1);
-  globalThis.cancelAnimationFrame ??= clearTimeout;
-  const { PerspectiveCamera, Vector3 } = await import('three');
-  const { TilesRenderer } = await import('3d-tiles-renderer/three');
-  const renderer = new TilesRenderer(pathToFileURL(join(folder, 'tileset.json')).href);
-  renderer.registerPlugin({
-    async fetchData(url) {
-      return new Response(readFileSync(fileURLToPath(url)));
-    },
-  });
-  const failures = [];
-  renderer.addEventListener('load-error', ({ error }) => failures.push(error));
-  renderer.errorTarget = errorTarget;
-
-  const eye = new Vector3(...ecefOfLocal([0, 0, 200])), target = new Vector3(...ecefOfLocal([20, 25, 0]));
-  const camera = new PerspectiveCamera(60, 1, 1, 1e4);
-  camera.position.copy(eye);
-  camera.lookAt(target);
-  camera.updateMatrixWorld();
-  renderer.setCamera(camera);
-  renderer.setResolution(camera, 1000, 1000);
-  for (let i = 0; i < 100; ++i) {
-    renderer.update();
-    await sleep(10);
-  }
-  assert.deepEqual(failures, []);
-
-  renderer.group.updateMatrixWorld(true);
-  const points = [];
-  renderer.group.traverse((object) => {
-    if (!object.isPoints) return;
-    const { position, color } = object.geometry.attributes;
-    for (let i = 0; i < position.count; ++i) {
-      const p = new Vector3().fromBufferAttribute(position, i).applyMatrix4(object.matrixWorld);
-      points.push({ p: p.toArray(), rgb: [color.getX(i), color.getY(i), color.getZ(i)] });
-    }
-  });
-  renderer.dispose();
-  return points;
-}
+/// From above the street.
+const render = (errorTarget) => shownPoints(folder, {
+  eye: ecefOfLocal([0, 0, 200]), target: ecefOfLocal([20, 25, 0]), errorTarget, updates: 100,
+});
 
 test('a renderer shows every point where it is on earth, in its colour', async () => {
   const shown = await render(0);

@@ -132,7 +132,7 @@ def check_control(segments: Sequence[Segment], settings: Settings) -> None:
     for name in _maps_of_points(settings.control):
         if maps.get(name, 1) > 1:
             raise input_error(f"a surveyed point is in the drive {name}, which becomes {maps[name]} maps",
-                              settings.control, "give a larger --segment-length, or the digest of one of its maps")
+                              settings.control, "give a larger --segment-length, or the identity of one of its maps")
 
 
 def _maps_of_points(file: str) -> list[str]:

@@ -35,9 +35,10 @@ def choose_pairs(segments: Sequence[Segment], paths: Sequence[Sequence[Point]]) 
     @param paths  of the segments, in the plane, a point each 5 m
     """
     covered = [_cells_of(path, allowance_of(segment)) for segment, path in zip(segments, paths)]
-    lonely = lonely_drives(segments, _Choice(segments, covered).pairs())
+    pairs = _Choice(segments, covered).pairs()
+    lonely = lonely_drives(segments, pairs)
     if not lonely:
-        return sorted(_Choice(segments, covered).pairs())
+        return sorted(pairs)
     for number, segment in enumerate(segments):
         if segment.drive.digest in lonely:
             covered[number] = _cells_of(paths[number], allowance_of(segment, WIDE_ALLOWANCE_M))

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "fovea/city/json_values.h"
 #include "fovea/core/content_kind.h"
@@ -21,16 +22,6 @@ constexpr std::size_t kVersion = 1;
 constexpr const char* kManifest = "city.json";
 constexpr const char* kManifests = "manifests";  // folder of all revisions
 constexpr const char* kRemedy = "build the city again with 'python3 -m fovea.city build'";
-
-GeodeticPoint point_of(const Json& json) {
-  const GeodeticPoint point{json.at("latitude_deg").get<double>(),
-                            json.at("longitude_deg").get<double>(),
-                            json.at("height_m").get<double>()};
-  const bool is_on_earth = std::abs(point.latitude) < 90 && std::abs(point.longitude) <= 180 &&
-                           std::abs(point.altitude) < 1e5;
-  if (!is_on_earth) throw std::invalid_argument("the origin is no place on the earth");
-  return point;
-}
 
 /// A file below the city's folder.
 fs::path file_of(const Json& json, const fs::path& folder) {
@@ -84,7 +75,7 @@ void read_manifest(const Json& json, City& city) {
     throw std::invalid_argument("it is of another version of Fovea");
   }
   city.revision = revision_of(json.at("revision"));
-  city.origin = point_of(json.at("origin"));
+  city.origin = geodetic_point_of(json.at("origin"));
   city.tile_size = json.at("tile_size_m").get<double>();
   if (!(city.tile_size >= 1 && city.tile_size <= 1000)) {
     throw std::invalid_argument("the size of the tiles is impossible");
@@ -136,6 +127,16 @@ std::vector<std::size_t> City::tiles_near(const Eigen::Vector3d& center_local,
     if (is_near(tile->tile)) near.push_back(std::size_t(tile - tiles.begin()));
   }
   return near;
+}
+
+std::vector<std::size_t> City::tiles_near(std::span<const Eigen::Vector3d> path_local,
+                                          double radius) const {
+  std::set<std::size_t> numbers;
+  for (const Eigen::Vector3d& place : path_local) {
+    const std::vector<std::size_t> near = tiles_near(place, radius);
+    numbers.insert(near.begin(), near.end());
+  }
+  return {numbers.begin(), numbers.end()};
 }
 
 fs::path overview_of_tile(const fs::path& map) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ struct City {
   RigidMotion T_local_tile(const CityTile& tile) const;
   /// Numbers of the tiles of which some part lies within `radius` (m) of a place, at any height.
   std::vector<std::size_t> tiles_near(const Eigen::Vector3d& center_local, double radius) const;
+  /// Of all places of a path.
+  std::vector<std::size_t> tiles_near(std::span<const Eigen::Vector3d> path_local,
+                                      double radius) const;
 };
 
 /// The file with a coarse picture of a tile, next to its map: MAP.overview.glb. It may be missing.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string_view>
 
 #include "fovea/core/errors.h"
@@ -25,6 +26,22 @@ RigidMotion motion_of(const Json& json) {
   if (!is_rotation(T.linear(), kTolerance)) throw std::invalid_argument("a pose has no rotation");
   T.translation() = vector_of<3>(json.at("translation"));
   return T;
+}
+
+Json json_of(const GeodeticPoint& point) {
+  return {{"latitude_deg", point.latitude},
+          {"longitude_deg", point.longitude},
+          {"height_m", point.altitude}};
+}
+
+GeodeticPoint geodetic_point_of(const Json& json) {
+  const GeodeticPoint point{json.at("latitude_deg").get<double>(),
+                            json.at("longitude_deg").get<double>(),
+                            json.at("height_m").get<double>()};
+  const bool is_on_earth = std::abs(point.latitude) < 90 && std::abs(point.longitude) <= 180 &&
+                           std::abs(point.altitude) < 1e5;
+  if (!is_on_earth) throw std::invalid_argument("the origin is no place on the earth");
+  return point;
 }
 
 std::size_t count_of(const Json& json) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "fovea/geometry/geodesy.h"
 #include "fovea/geometry/rigid_motion.h"
 
 namespace fovea {
@@ -16,6 +17,11 @@ using Json = nlohmann::ordered_json;
 Json json_of(const RigidMotion& T);
 /// std::invalid_argument if it is no rigid motion.
 RigidMotion motion_of(const Json& json);
+
+/// {"latitude_deg", "longitude_deg", "height_m"}.
+Json json_of(const GeodeticPoint& point);
+/// std::invalid_argument if the point is not on the earth.
+GeodeticPoint geodetic_point_of(const Json& json);
 
 template <int N>
 Json json_of(const Eigen::Matrix<double, N, 1>& vector) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "fovea/city/city_frames.h"
@@ -30,16 +29,12 @@ std::vector<std::size_t> tiles_around(const City& city, const DriveInfo& drive) 
     return all;
   }
   const RigidMotion T_city_drive = LocalTangentPlane(city.origin).T_local_enu(*drive.origin);
-  std::set<std::size_t> tiles;
-  std::optional<Eigen::Vector3d> last;
+  std::vector<Eigen::Vector3d> path;
   for (const StampedPose& pose : drive.navigation->poses()) {
     const Eigen::Vector3d place = T_city_drive * pose.T_local_body.translation();
-    if (last && (*last - place).norm() < kStep) continue;
-    last = place;
-    const std::vector<std::size_t> near = city.tiles_near(place, kNavigationReach);
-    tiles.insert(near.begin(), near.end());
+    if (path.empty() || (path.back() - place).norm() >= kStep) path.push_back(place);
   }
-  return {tiles.begin(), tiles.end()};
+  return city.tiles_near(path, kNavigationReach);
 }
 
 /// Reads tiles, and compares each map of the city with the drive once.
@@ -50,7 +45,7 @@ class DriveFinder {
 
   void read(const CityTileFile& file) {
     const MapReader map(file.map);
-    std::vector<CityFrames> all = frames_of_tile(city_, file.tile, map);
+    const std::vector<CityFrames> all = frames_of_tile(city_, file.tile, map);
     compare(all, map, file.map);
     for (const CityFrames& of_map : all) {
       if (is_drive_.at(of_map.map_id())) take(of_map);
@@ -96,7 +91,7 @@ class DriveFinder {
       result_.notes = std::move(match.notes);
       return std::move(match.drives);
     } catch (const InputError& error) {  // the tables were read before: they are not damaged
-      const std::string problem = error.problem();
+      const std::string& problem = error.problem();
       difference_ = problem.substr(problem.find(": ") + 2);
       return {};
     }

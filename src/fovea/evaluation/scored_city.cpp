@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "fovea/city/city_frames.h"
@@ -26,15 +25,6 @@ std::vector<Eigen::Vector3d> path_of(const std::vector<FrameRecord>& frames) {
     if (path.empty() || (path.back() - place).norm() >= kStep) path.push_back(place);
   }
   return path;
-}
-
-std::vector<std::size_t> tiles_around(const City& city, const std::vector<Eigen::Vector3d>& path) {
-  std::set<std::size_t> tiles;
-  for (const Eigen::Vector3d& place : path) {
-    const std::vector<std::size_t> near = city.tiles_near(place, kScoredReach);
-    tiles.insert(near.begin(), near.end());
-  }
-  return {tiles.begin(), tiles.end()};
 }
 
 /// Meta data of the drive's own map if the city still has the file: a tile has those of another
@@ -100,7 +90,7 @@ void append_tile(const City& city, const CityTileFile& file, const DriveInCity& 
 
 ScoredMap load_scored_city(const City& city, const DriveInCity& drive) {
   const std::vector<Eigen::Vector3d> path = path_of(drive.frames);
-  const std::vector<std::size_t> tiles = tiles_around(city, path);
+  const std::vector<std::size_t> tiles = city.tiles_near(path, kScoredReach);
   ScoredMap scored;
   scored.frames = drive.frames;
   if (!tiles.empty()) {

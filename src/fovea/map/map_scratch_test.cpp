@@ -17,7 +17,7 @@ using testing::IsEmpty;
 class MapScratch : public testing::Test {
  protected:
   std::unique_ptr<MapWriter> start(bool force = false) const {
-    auto writer = MapWriter::create_in_scratch(shared_ / "a.fovea", force, scratch_.path());
+    auto writer = MapWriter::create(shared_ / "a.fovea", force, scratch_.path());
     put_sample_map(*writer, map_);
     return writer;
   }
@@ -77,8 +77,7 @@ TEST_F(MapScratch, AnExistingFileNeedsForce) {
 }
 
 TEST_F(MapScratch, AScratchFolderThatIsNotThereIsAnError) {
-  EXPECT_THROW(MapWriter::create_in_scratch(shared_ / "a.fovea", false, scratch_ / "none"),
-               OutputError);
+  EXPECT_THROW(MapWriter::create(shared_ / "a.fovea", false, scratch_ / "none"), OutputError);
 }
 
 TEST_F(MapScratch, IdentityFollowsThePointsAndNotTheTimings) {

@@ -41,13 +41,12 @@ class MapWriter {
  public:
   /// Starts a new map. OutputError if `path` exists and `force` is false, its folder does not exist
   /// or nothing can be written there. The file appears under its name at the first commit.
-  static std::unique_ptr<MapWriter> create(const std::filesystem::path& path, bool force);
-  /// A new map for a shared folder. It grows in `scratch`, a folder of this machine, without a
-  /// write-ahead log. Commits before the end do nothing. The end copies it next to `path`, makes
-  /// the copy durable and read-only, and renames it. Errors as create(), and if `scratch` is no
-  /// folder.
-  static std::unique_ptr<MapWriter> create_in_scratch(const std::filesystem::path& path, bool force,
-                                                      const std::filesystem::path& scratch);
+  /// @param scratch  a folder of this machine, for a map in a shared folder; empty: none. The map
+  ///                 grows there without a write-ahead log. Commits before the end do nothing. The
+  ///                 end copies it next to `path`, makes the copy durable and read-only, and
+  ///                 renames it. OutputError if it is no folder.
+  static std::unique_ptr<MapWriter> create(const std::filesystem::path& path, bool force,
+                                           const std::filesystem::path& scratch = {});
   /// Opens an existing map to extend it. InputError as MapReader, and for a map of an older format;
   /// OutputError if it cannot be written or another program is writing it.
   static std::unique_ptr<MapWriter> open(const std::filesystem::path& path);

@@ -305,12 +305,9 @@ void SqliteMapWriter::put_tiles(std::size_t count,
 
 }  // namespace
 
-std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force) {
-  return std::make_unique<SqliteMapWriter>(path, force);
-}
-
-std::unique_ptr<MapWriter> MapWriter::create_in_scratch(const fs::path& path, bool force,
-                                                        const fs::path& scratch) {
+std::unique_ptr<MapWriter> MapWriter::create(const fs::path& path, bool force,
+                                             const fs::path& scratch) {
+  if (scratch.empty()) return std::make_unique<SqliteMapWriter>(path, force);
   return std::make_unique<SqliteMapWriter>(path, force, scratch);
 }
 

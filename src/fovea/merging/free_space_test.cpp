@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/angle.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/merging/keyframe_test_support.h"
 
 namespace fovea::free_space_test {
 
@@ -26,17 +24,7 @@ class FreeSpaceOf : public testing::Test {
       frame.submap = 0;
       frame.T_local_lidar.translation().x() = 2.0 * k;
       writer->put_frame(frame);
-      KeyframeRecord image;
-      image.frame = k;
-      for (double elevation = 20; elevation >= -20; elevation -= 0.5) {
-        image.elevations.push_back(elevation * kDegree);
-      }
-      image.columns = 1440;
-      image.first_azimuth = -std::numbers::pi;
-      image.azimuth_step = 2 * std::numbers::pi / 1440;
-      image.ranges.assign(image.elevations.size() * image.columns,
-                          std::uint16_t(std::lround(100 * ranges[std::size_t(k)])));
-      writer->put_keyframe(image);
+      writer->put_keyframe(keyframe_of_range(k, ranges[std::size_t(k)]));
     }
     writer->finish();
     const MapReader map(path);

@@ -59,9 +59,8 @@ std::vector<bool> KnownSurfaces::find(const TilePoints& points,
     for (std::size_t i = begin; i < end; ++i) {
       const Neighbor nearest = index.nearest(positions[i], kSameSurface);
       if (!std::isfinite(nearest.squared_distance)) continue;
-      // Where no camera saw the surface, its points may be as sparse as the scan.
-      const bool is_dense = near.has_color[nearest.index] || points.colors[i].views == 0;
-      known[i] = is_dense || nearest.squared_distance < spacing_ * spacing_;
+      known[i] = shows_surface(nearest.squared_distance, near.has_color[nearest.index],
+                               points.colors[i].views > 0, spacing_);
     }
   });
   return {known.begin(), known.end()};

@@ -78,7 +78,7 @@ void Renumbering::apply(TilePoints& tile) const {
 void MapJoiner::copy_a(const MapContent& content) {
   copy_all_but_tiles(a_, output_);
   for (const RigidMotion& T : content.T_local_submap) map_.add_submap(T);
-  a_.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) { tiles_.put(id, tile); });
+  a_.for_each_stored_tile([&](const TileId& id, const TilePoints& tile) { put(id, tile); });
 }
 
 void MapJoiner::add_b(const MapContent& content, const std::vector<AddedDrive>& drives,
@@ -102,8 +102,13 @@ void MapJoiner::add_b(const MapContent& content, const std::vector<AddedDrive>& 
     renumber(moved.frame, [&](std::int32_t frame) { return drive->number_of(frame); });
     renumbering.apply(moved);
     const int shift = drive->merged.first_submap - drive->in_b.first_submap;
-    tiles_.put({id.submap + std::size_t(shift), id.key}, std::move(moved));
+    put({id.submap + std::size_t(shift), id.key}, std::move(moved));
   });
+}
+
+void MapJoiner::put(const TileId& id, TilePoints tile) {
+  map_.declare_stored(id, tile.size());
+  tiles_.put(id, std::move(tile));
 }
 
 void MapJoiner::add_submap(const RigidMotion& T_local_submap, const AddedDrive& drive) {

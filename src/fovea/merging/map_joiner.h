@@ -35,7 +35,7 @@ class Renumbering {
 class MapJoiner {
  public:
   MapJoiner(const MapReader& a, const MapReader& b, MapWriter& output, TileMap& map)
-      : a_(a), b_(b), output_(output), map_(map), tiles_(output, map) {}
+      : a_(a), b_(b), output_(output), map_(map), tiles_(output) {}
 
   void copy_a(const MapContent& content);
   /// @param gain  of B, see gain_of_maps()
@@ -44,6 +44,7 @@ class MapJoiner {
              const RigidMotion& stated_T_a_b, const LogGain& gain);
 
  private:
+  void put(const TileId& id, TilePoints tile);
   void add_submap(const RigidMotion& T_local_submap, const AddedDrive& drive);
   void add_frames(const MapContent& content, const AddedDrive& drive, const MapAlignment& alignment,
                   const RigidMotion& stated_T_a_b, const LogGain& gain);

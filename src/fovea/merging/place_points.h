@@ -13,6 +13,14 @@ namespace fovea {
 /// Points of two maps nearer than this show one surface: what is left of registration and of the
 /// LiDAR's noise, m.
 inline constexpr float kSameSurface = 0.05f;
+/// Whether the nearest point of a surface, within kSameSurface, shows the surface of another point.
+/// Where no camera saw the surface, its points may be as sparse as the scan.
+/// @param spacing  of the maps' points, m
+inline bool shows_surface(float squared_distance, bool surface_has_color, bool point_has_color,
+                          float spacing) {
+  return surface_has_color || !point_has_color || squared_distance < spacing * spacing;
+}
+
 /// What an index of a map's points is built for, m.
 inline constexpr double kIndexSpacing = kSameSurface / 4;
 

@@ -73,9 +73,8 @@ class CubeMerger {
         if (!is_inside(b_.position()[i])) continue;
         const Neighbor nearest = index_a.nearest(b_.position()[i], kSameSurface);
         if (!std::isfinite(nearest.squared_distance)) continue;
-        // Where no camera saw A's points they may be as sparse as the scan.
-        const bool is_dense = views(a_, nearest.index) > 0 || views(b_, i) == 0;
-        known[i] = is_dense || nearest.squared_distance < spacing_ * spacing_;
+        known[i] = shows_surface(nearest.squared_distance, views(a_, nearest.index) > 0,
+                                 views(b_, i) > 0, spacing_);
       }
     });
     return {known.begin(), known.end()};

@@ -1,7 +1,5 @@
 #include "fovea/merging/poses_file.h"
 
-#include <cmath>
-
 #include "fovea/city/json_values.h"
 
 namespace fovea {
@@ -66,10 +64,7 @@ PointResidual point_from(const Json& json) {
 
 void write_city_poses(const CityPoses& city, const std::filesystem::path& path, bool force) {
   Json json{{"fovea_poses", kVersion},
-            {"origin",
-             {{"latitude_deg", city.origin.latitude},
-              {"longitude_deg", city.origin.longitude},
-              {"height_m", city.origin.altitude}}},
+            {"origin", json_of(city.origin)},
             {"maps", Json::array()},
             {"rejected", Json::array()},
             {"points", Json::array()}};
@@ -87,13 +82,7 @@ CityPoses read_city_poses(const std::filesystem::path& path) {
     if (count_of(json.at("fovea_poses")) != kVersion) {
       throw std::invalid_argument("it is of another version of Fovea");
     }
-    const Json& origin = json.at("origin");
-    city.origin = {origin.at("latitude_deg").get<double>(),
-                   origin.at("longitude_deg").get<double>(), origin.at("height_m").get<double>()};
-    if (!(std::abs(city.origin.latitude) < 90 && std::abs(city.origin.longitude) <= 180 &&
-          std::abs(city.origin.altitude) < 1e5)) {
-      throw std::invalid_argument("the origin is no place on the earth");
-    }
+    city.origin = geodetic_point_of(json.at("origin"));
     for (const Json& map : list_at(json, "maps")) city.maps.push_back(map_from(map));
     for (const Json& match : list_at(json, "rejected"))
       city.rejected.push_back(rejected_from(match));

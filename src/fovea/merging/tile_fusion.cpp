@@ -20,7 +20,6 @@ namespace fovea {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1 << 30;
-constexpr double kNoPoints = 1;  // size of the tiles of a map that has none, m
 
 /// Leaves the points that `drop` does not name.
 /// @return the number of points left out
@@ -52,10 +51,9 @@ class TileFusion {
   void require_points() const;
   void sort_sources();
   void read_free_spaces();
-  std::unique_ptr<MapWriter> create_output() const;
   MapMeta meta() const;
   /// Puts the points, frames and drive of a source, and opens its submaps.
-  void put(std::size_t number, MapWriter& writer, TileMap& map, TileOutput& output);
+  void put(std::size_t number, MapWriter& writer, TileOutput& output);
   /// Leaves out what is gone and what the tile has already.
   void reduce(const CellSource& source, CellPiece& piece);
   void put_frames(const CellSource& source, const std::map<std::size_t, std::size_t>& submaps,
@@ -70,7 +68,7 @@ class TileFusion {
   KnownSurfaces known_;
   TileFusionFigures figures_;
   int next_frame_ = 0;
-  std::size_t next_sensor_ = 0;
+  std::size_t next_submap_ = 0, next_sensor_ = 0;
 };
 
 void TileFusion::add_map(const std::filesystem::path& path) {
@@ -143,9 +141,8 @@ void TileFusion::reduce(const CellSource& source, CellPiece& piece) {
 }
 
 MapMeta TileFusion::meta() const {
-  MapMeta meta;
+  MapMeta meta{{meta_key::kComplete, "1"}};  // of a tile without points
   if (!sources_.empty()) meta = sources_.front().content.meta;
-  if (sources_.empty()) meta[meta_key::kComplete] = "1";
   meta.erase(meta_key::kFormatVersion);
   meta[meta_key::kFoveaVersion] = version();
   meta[meta_key::kDriveName] = "city tile " + job_.tile.text();
@@ -190,24 +187,24 @@ void TileFusion::put_frames(const CellSource& source,
   }
 }
 
-void TileFusion::put(std::size_t number, MapWriter& writer, TileMap& map, TileOutput& output) {
+void TileFusion::put(std::size_t number, MapWriter& writer, TileOutput& output) {
   const CellSource& source = sources_[number];
   const int first_frame = next_frame_;
   const int shift = first_frame - source.content.drives.front().first_frame;
   std::map<std::size_t, std::size_t> submaps;  // number in the tile by the number in the map
   cell_.for_each_piece(source, [&](CellPiece& piece) {
     // Also for points that other drives show: the frames around them belong to the tile.
-    const auto [place, is_new] = submaps.try_emplace(piece.id.submap, map.submaps().size());
+    const auto [place, is_new] = submaps.try_emplace(piece.id.submap, next_submap_);
     if (is_new) {
       SubmapRecord record;
       record.T_local_submap = source.T_cell_submap[piece.id.submap];
       record.drive = static_cast<int>(number);
-      writer.put_submap(place->second, record);
-      map.add_submap(record.T_local_submap);
+      writer.put_submap(next_submap_++, record);
     }
     reduce(source, piece);
     if (piece.points.empty()) return;
     TilePoints& points = piece.points;
+    figures_.points += points.size();
     known_.add(points, source.T_cell_submap[piece.id.submap]);
     renumber(points.frame, [&](std::int32_t frame) { return frame < 0 ? -1 : frame + shift; });
     fill_with_zeros(points.size(), points.session);
@@ -253,23 +250,16 @@ void TileFusion::require_points() const {
   }
 }
 
-std::unique_ptr<MapWriter> TileFusion::create_output() const {
-  if (job_.scratch.empty()) return MapWriter::create(job_.output, job_.force);
-  return MapWriter::create_in_scratch(job_.output, job_.force, job_.scratch);
-}
-
 TileFusionFigures TileFusion::write() {
   require_points();
   sort_sources();
   read_free_spaces();
-  TileMap map(sources_.empty() ? kNoPoints : sources_.front().content.tile_size);
-  const auto writer = create_output();
-  TileOutput output(*writer, map);
-  for (std::size_t k = 0; k < sources_.size(); ++k) put(k, *writer, map, output);
+  const auto writer = MapWriter::create(job_.output, job_.force, job_.scratch);
+  TileOutput output(*writer);
+  for (std::size_t k = 0; k < sources_.size(); ++k) put(k, *writer, output);
   for (const auto& [key, value] : meta()) writer->put_meta(key, value);
   writer->finish();
   figures_.maps = sources_.size();
-  figures_.points = map.size();
   return figures_;
 }
 

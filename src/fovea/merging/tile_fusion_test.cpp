@@ -5,14 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "../../../tests/sample_map.h"
 #include "../../../tests/temporary_folder.h"
-#include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/map/meta_keys.h"
-#include "fovea/merging/map_content.h"
+#include "fovea/merging/keyframe_test_support.h"
 
 namespace fovea::tile_fusion_test {
 
@@ -63,17 +60,7 @@ class TileFusionOf : public testing::Test {
     frame.T_local_lidar.translation() = Eigen::Vector3d(wall.east - 5, 0.2 * k, 0.2);
     writer.put_frame(frame);
     if (wall.free == 0) return;
-    KeyframeRecord image;
-    image.frame = k;
-    for (double elevation = 20; elevation >= -20; elevation -= 0.5) {
-      image.elevations.push_back(elevation * kDegree);
-    }
-    image.columns = 1440;
-    image.first_azimuth = -std::numbers::pi;
-    image.azimuth_step = 2 * std::numbers::pi / 1440;
-    image.ranges.assign(image.elevations.size() * image.columns,
-                        std::uint16_t(std::lround(100 * wall.free)));
-    writer.put_keyframe(image);
+    writer.put_keyframe(keyframe_of_range(k, wall.free));
   }
 
   static void put_wall(const Wall& wall, MapWriter& writer) {

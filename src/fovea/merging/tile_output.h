@@ -4,15 +4,13 @@
 #include <optional>
 
 #include "fovea/map/map_store.h"
-#include "fovea/map/tile_map.h"
 
 namespace fovea {
 
 class TileOutput {
  public:
-  /// Both must outlive this.
-  /// @param map  gets to know the tiles
-  TileOutput(MapWriter& writer, TileMap& map) : writer_(writer), map_(map) {}
+  /// @param writer  must outlive this
+  explicit TileOutput(MapWriter& writer) : writer_(writer) {}
 
   /// A map has intensities in all tiles or in none: as the first tile has them.
   void put(const TileId& id, TilePoints tile) {
@@ -22,12 +20,10 @@ class TileOutput {
       tile.intensity.push_back(0.0f, static_cast<std::uint32_t>(tile.size()));
     }
     writer_.put_tile(id, tile);
-    map_.declare_stored(id, tile.size());
   }
 
  private:
   MapWriter& writer_;
-  TileMap& map_;
   std::optional<bool> has_intensity_;
 };
 

@@ -46,7 +46,7 @@ struct MapJob {
   bool force = false;          ///< overwrite `output`
   bool allow_dropped = false;  ///< no limit for the share of dropped points
   bool resume = false;         ///< continue `output`, which an earlier run did not finish
-  /// A folder in which the map grows (MapWriter::create_in_scratch); empty: it grows at `output`.
+  /// A folder in which the map grows (MapWriter::create); empty: it grows at `output`.
   /// The output is then a whole map or missing.
   std::filesystem::path scratch;
   /// Bytes that the process should keep to. Tiles out of reach are only in the file.

@@ -39,8 +39,7 @@ void require_sources(const DriveInfo& drive, const MapJob& job) {
 
 std::unique_ptr<MapWriter> open_output(const MapJob& job) {
   if (job.resume) return MapWriter::open(job.output);
-  if (job.scratch.empty()) return MapWriter::create(job.output, job.force);
-  return MapWriter::create_in_scratch(job.output, job.force, job.scratch);
+  return MapWriter::create(job.output, job.force, job.scratch);
 }
 
 }  // namespace fovea

@@ -38,11 +38,6 @@ class CityContent : public SiteContent {
     nlohmann::json json = {{"state", "ready"}, {"read", 1}};
     const std::string failure = tiles_.failure();
     if (!failure.empty()) json["failure"] = failure;
-    return text_of(json);
-  }
-
-  /// Paths of files may be no UTF-8.
-  static std::string text_of(const nlohmann::json& json) {
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
 
@@ -60,7 +55,7 @@ class CityContent : public SiteContent {
   /// Reads the tiles once.
   Bytes frames() {
     const std::lock_guard lock(reading_frames_);
-    if (!frames_json_) frames_json_ = shared_bytes(text_of(city_frames_json(city_)));
+    if (!frames_json_) frames_json_ = shared_bytes(city_frames_text(city_));
     return frames_json_;
   }
 

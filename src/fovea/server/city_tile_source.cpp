@@ -96,9 +96,7 @@ std::string CityTileSource::tree_json(const CityNode& root, const std::string& t
   form.content = [&](const CityNode& node) {
     return node.tiles <= kMostTilesOfTileset ? to_nodes + node.name + kGlb : std::string();
   };
-  form.subtree = [&](const CityNode& node) {
-    return begins_tileset(node, root_.tiles) ? to_nodes + node.name + kJson : std::string();
-  };
+  form.subtree = [&](const CityNode& node) { return to_nodes + node.name + kJson; };
   form.tile = [&](const CityNode& node) {
     CityTileEntry entry;
     entry.T_parent_entry = city_.T_local_tile(city_.tiles[*node.tile].tile);

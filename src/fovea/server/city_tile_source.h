@@ -25,7 +25,7 @@ namespace fovea {
 ///   X_Y/overview.glb  a tile's coarsest level: the file of 'fovea fuse', or made of the map
 ///   X_Y/tileset.json  a tile's finer levels, X_Y/NAME.glb
 ///
-/// A tile's map is open only while someone looks closely at it: the latest few stay open.
+/// The maps of the eight tiles that were requested last are open.
 class CityTileSource : public SiteContent {
  public:
   /// @param city      outlives the source

@@ -108,4 +108,8 @@ nlohmann::json city_frames_json(const City& city) {
   return json;
 }
 
+std::string city_frames_text(const City& city) {
+  return city_frames_json(city).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace fovea

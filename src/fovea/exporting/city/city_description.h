@@ -14,5 +14,7 @@ MapDescription describe_city(const City& city);
 /// frames.json: the frames of all tiles by columns, drive by drive. A tile that cannot be read is
 /// left out and named under "failures".
 nlohmann::json city_frames_json(const City& city);
+/// As text. Names that are no UTF-8 get replacement characters.
+std::string city_frames_text(const City& city);
 
 }  // namespace fovea

@@ -22,12 +22,12 @@ void append_entry(std::string& json, const CityNode& node, const CityTileEntry& 
 }
 
 /// What a node's object has between its braces.
-/// @param is_root  of the tileset
+/// @param parent_tiles  number of tiles below its parent in the tileset; 0: it has none
 void append_node(std::string& json, const CityNode& node, const CityTilesetForm& form,
-                 bool is_root) {
+                 std::size_t parent_tiles) {
   if (node.tile) return append_entry(json, node, form.tile(node));
   json += fmt::format(R"({},"geometricError":{})", bounding_volume_json(node.box), node.spacing);
-  const std::string subtree = is_root ? "" : form.subtree(node);
+  const std::string subtree = begins_tileset(node, parent_tiles) ? form.subtree(node) : "";
   if (!subtree.empty()) {
     json += content_json(subtree);
     return;
@@ -38,7 +38,7 @@ void append_node(std::string& json, const CityNode& node, const CityTilesetForm&
     if (child.box.isEmpty()) continue;  // it has no points
     json += is_first ? "\n{" : ",\n{";
     is_first = false;
-    append_node(json, child, form, /*is_root=*/false);
+    append_node(json, child, form, node.tiles);
     json += '}';
   }
   json += ']';
@@ -54,7 +54,7 @@ std::string city_tileset_json(const CityNode& root, const CityTilesetForm& form)
   if (is_empty) {
     json += no_content_json();
   } else {
-    append_node(json, root, form, /*is_root=*/true);
+    append_node(json, root, form, /*parent_tiles=*/0);
   }
   return json + "}}\n";
 }

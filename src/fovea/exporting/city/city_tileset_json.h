@@ -23,7 +23,8 @@ struct CityTilesetForm {
   std::optional<RigidMotion> T_parent_root = {};
   /// Address of the points of a node that is no tile; empty: it has none of its own.
   std::function<std::string(const CityNode&)> content;
-  /// Address of the tileset that has a node and all below it; empty: these are part of this one.
+  /// Address of the tileset that has a node and all below it, where begins_tileset(); empty: these
+  /// are part of this one.
   std::function<std::string(const CityNode&)> subtree;
   std::function<CityTileEntry(const CityNode&)> tile;
 };

@@ -117,9 +117,7 @@ class RootWriter {
     CityTilesetForm form;
     if (to_folder.empty()) form.T_parent_root = T_ecef_enu(city_.origin);
     form.content = [=](const CityNode& node) { return to_nodes + node.name + ".glb"; };
-    form.subtree = [=, this](const CityNode& node) {
-      return begins_tileset(node, root_.tiles) ? to_nodes + node.name + ".json" : std::string();
-    };
+    form.subtree = [=](const CityNode& node) { return to_nodes + node.name + ".json"; };
     form.tile = [=, this](const CityNode& node) {
       const CityTileFile& tile = city_.tiles[*node.tile];
       CityTileEntry entry;
@@ -134,13 +132,11 @@ class RootWriter {
 
   /// Tilesets of their own, each with all nodes below it.
   void write_subtrees(const CityNode& node, OutputFolder& nodes) const {
-    CityTilesetForm of_subtree = form("../", "");
-    of_subtree.subtree = [](const CityNode&) { return std::string(); };
     for (const CityNode& child : node.children) {
       if (child.tiles > kMostTilesOfTileset) {
         write_subtrees(child, nodes);
       } else if (begins_tileset(child, node.tiles)) {
-        nodes.write(child.name + ".json", city_tileset_json(child, of_subtree));
+        nodes.write(child.name + ".json", city_tileset_json(child, form("../", "")));
       }
     }
   }

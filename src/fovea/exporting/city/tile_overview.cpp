@@ -1,10 +1,18 @@
 #include "fovea/exporting/city/tile_overview.h"
 
+#include "fovea/core/errors.h"
 #include "fovea/core/output_file.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/exporting/tileset/node_points.h"
 
 namespace fovea {
+
+ExposureChoice exposure_of_city(const ExposureChoice& chosen) {
+  if (chosen.kind == ExposureChoice::Kind::kAuto) return kCityExposure;
+  if (chosen.kind != ExposureChoice::Kind::kFrame) return chosen;
+  throw ConfigError("the frames of a city have no common numbers", "--exposure",
+                    "give auto or stops");
+}
 
 std::vector<ExportPoint> overview_points(const MapReader& map, double spacing,
                                          const ExposureChoice& exposure) {

@@ -14,6 +14,10 @@ namespace fovea {
 /// tile.
 inline constexpr ExposureChoice kCityExposure{ExposureChoice::Kind::kMap, 0, 0};
 
+/// The exposure of all tiles for a user's choice. ConfigError for that of a frame: each tile
+/// numbers its frames by itself.
+ExposureChoice exposure_of_city(const ExposureChoice& chosen);
+
 /// Grid that thins an overview, m.
 inline double overview_spacing(double tile_size) { return tile_size / 128; }
 
