@@ -126,9 +126,9 @@ std::size_t InputFile::read_at(std::uintmax_t offset, char* bytes, std::size_t c
   return got;
 }
 
-std::string InputFile::beginning(std::size_t count) const {
+std::string InputFile::range(std::uintmax_t offset, std::size_t count) const {
   std::string bytes(count, '\0');
-  bytes.resize(read_at(0, bytes.data(), bytes.size()));
+  bytes.resize(read_at(offset, bytes.data(), bytes.size()));
   return bytes;
 }
 

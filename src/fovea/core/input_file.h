@@ -43,7 +43,9 @@ class InputFile {
   int descriptor() const { return descriptor_; }
 
   /// The first bytes, at most `count`. Does not move the stream.
-  std::string beginning(std::size_t count) const;
+  std::string beginning(std::size_t count) const { return range(0, count); }
+  /// The bytes from an offset on, at most `count`. Does not move the stream.
+  std::string range(std::uintmax_t offset, std::size_t count) const;
   /// All bytes. InputError if the file cannot be read to its end.
   std::vector<std::uint8_t> bytes() const;
   /// A stream of the content, from its begin at the first call.

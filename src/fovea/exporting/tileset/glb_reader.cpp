@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,8 +21,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kHeader = 20, kChunkHeader = 8;  // bytes
-constexpr double kMostSteps = 65535 + 0.5;             // with rounding
+constexpr std::size_t kHeader = 20, kChunkHeader = 8;   // bytes
+constexpr double kMostSteps = 65535 + 0.5;              // with rounding
+constexpr double kMostDistance = 1e8, kMostStep = 1e4;  // m; no map is as large
 
 template <class T>
 T value_at(std::string_view bytes, std::size_t offset) {
@@ -31,6 +34,12 @@ T value_at(std::string_view bytes, std::size_t offset) {
   std::memcpy(&value, bytes.data() + offset, sizeof(T));
   return value;
 }
+
+/// A file, or its bytes in memory.
+struct GlbBytes {
+  std::size_t size = 0;
+  std::function<std::string(std::size_t offset, std::size_t count)> range;  ///< at most `count`
+};
 
 /// The head of a file: position = low + step * quantized position.
 struct GlbHead {
@@ -70,8 +79,10 @@ GlbHead head_of(std::string_view bytes) {
   head.low = {matrix[12], -matrix[14], matrix[13]};  // gltf_matrix()
   const auto high = position.at("max").get<std::array<double, 3>>();
   head.high = head.low + head.step * Eigen::Vector3d(high[0], high[1], high[2]);
-  const bool is_plausible = head.step > 0 && head.low.allFinite() && head.high.allFinite() &&
-                            (head.high - head.low).maxCoeff() <= kMostSteps * head.step;
+  const Eigen::Array3d size = head.high - head.low;
+  const bool is_plausible = head.step > 0 && head.step <= kMostStep &&
+                            (head.low.array().abs() <= kMostDistance).all() && (size >= 0).all() &&
+                            (size <= kMostSteps * head.step).all();
   if (!is_plausible) throw std::invalid_argument("its positions are impossible");
   return head;
 }
@@ -96,18 +107,40 @@ float value_of_steps(std::uint16_t steps, double steps_per_unit) {
   return static_cast<float>(steps / steps_per_unit);
 }
 
-void read_sources(std::string_view bytes, const GlbHead& head, std::vector<ExportPoint>& points) {
-  const auto frame = head.offset_of("_FRAME"), sight = head.offset_of("_SIGHT"),
-             source = head.offset_of("_SOURCE");
-  if (!frame || !sight || !source) return;
+/// The first values of an attribute; empty if the file does not have the attribute.
+std::string first_values(const GlbBytes& file, const GlbHead& head, const char* attribute,
+                         std::size_t stride, std::size_t count) {
+  const auto offset = head.offset_of(attribute);
+  if (!offset) return "";
+  if (*offset > file.size || count > (file.size - *offset) / stride) {
+    throw std::invalid_argument("it ends too early");
+  }
+  std::string values = file.range(*offset, stride * count);
+  if (values.size() != stride * count) throw std::invalid_argument("it ends too early");
+  return values;
+}
+
+/// Frames are stored as float.
+std::int32_t frame_of(float number) {
+  constexpr float kEnd = 2147483648.0f;
+  if (!(std::abs(number) < kEnd)) throw std::invalid_argument("a frame is impossible");
+  return static_cast<std::int32_t>(number);
+}
+
+void read_sources(const GlbBytes& file, const GlbHead& head, std::vector<ExportPoint>& points) {
+  constexpr std::size_t kStride = 4;
+  const std::string frame = first_values(file, head, "_FRAME", kStride, points.size()),
+                    sight = first_values(file, head, "_SIGHT", kStride, points.size()),
+                    source = first_values(file, head, "_SOURCE", kStride, points.size());
+  if (frame.empty() || sight.empty() || source.empty()) return;
   for (std::size_t i = 0; i < points.size(); ++i) {
     ExportPoint& point = points[i];
-    point.frame = static_cast<std::int32_t>(value_at<float>(bytes, *frame + 4 * i));
-    point.range = value_of_steps(value_at<std::uint16_t>(bytes, *sight + 4 * i), 100);
+    point.frame = frame_of(value_at<float>(frame, kStride * i));
+    point.range = value_of_steps(value_at<std::uint16_t>(sight, kStride * i), 100);
     point.incidence =
-        value_of_steps(value_at<std::uint16_t>(bytes, *sight + 4 * i + 2), 100 / kDegree);
+        value_of_steps(value_at<std::uint16_t>(sight, kStride * i + 2), 100 / kDegree);
     const auto byte = [&](std::size_t k) {
-      return value_at<std::uint8_t>(bytes, *source + 4 * i + k);
+      return value_at<std::uint8_t>(source, kStride * i + k);
     };
     point.camera = static_cast<std::int8_t>(byte(0));
     point.reason = byte(1) & 0x7f;
@@ -117,30 +150,39 @@ void read_sources(std::string_view bytes, const GlbHead& head, std::vector<Expor
   }
 }
 
-std::vector<ExportPoint> points_of(std::string_view bytes) {
-  const GlbHead head = head_of(bytes);
-  if (head.points == 0) return {};
-  const auto position = head.offset_of("POSITION"), color = head.offset_of("COLOR_0");
-  if (!position || !color) throw std::invalid_argument("it has no positions or no colors");
+/// The first points of a file.
+std::vector<ExportPoint> first_points(const GlbBytes& file, const GlbHead& head,
+                                      std::size_t count) {
+  if (count == 0) return {};
   constexpr std::size_t kStride = 8;
-  value_at<std::uint64_t>(bytes, *color + kStride * (head.points - 1));  // all are there
-  std::vector<ExportPoint> points(head.points);
-  const auto three = [&](std::size_t offset, std::size_t i) {
-    std::array<std::uint16_t, 3> values{};
+  const std::string position = first_values(file, head, "POSITION", kStride, count),
+                    color = first_values(file, head, "COLOR_0", kStride, count);
+  if (position.empty() || color.empty()) {
+    throw std::invalid_argument("it has no positions or no colors");
+  }
+  std::vector<ExportPoint> points(count);
+  const auto three = [](const std::string& values, std::size_t i) {
+    std::array<std::uint16_t, 3> of_point{};
     for (std::size_t k = 0; k < 3; ++k) {
-      values[k] = value_at<std::uint16_t>(bytes, offset + kStride * i + 2 * k);
+      of_point[k] = value_at<std::uint16_t>(values, kStride * i + 2 * k);
     }
-    return values;
+    return of_point;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto at = three(*position, i), light = three(*color, i);
+    const auto at = three(position, i), light = three(color, i);
     points[i].position = head.low + head.step * Eigen::Vector3d(at[0], at[1], at[2]);
     points[i].color = {channel_of_light(light[0]), channel_of_light(light[1]),
                        channel_of_light(light[2])};
     points[i].camera = 0;  // unless the file says otherwise
   }
-  read_sources(bytes, head, points);
+  read_sources(file, head, points);
   return points;
+}
+
+GlbBytes in_memory(std::string_view bytes) {
+  return {bytes.size(), [bytes](std::size_t offset, std::size_t count) {
+            return std::string(bytes.substr(std::min(offset, bytes.size()), count));
+          }};
 }
 
 /// What `read` returns; its errors as InputError.
@@ -157,7 +199,10 @@ auto checked(std::string_view where, Read&& read) {
 }  // namespace
 
 std::vector<ExportPoint> read_glb(std::string_view bytes, std::string_view where) {
-  return checked(where, [&] { return points_of(bytes); });
+  return checked(where, [&] {
+    const GlbHead head = head_of(bytes);
+    return first_points(in_memory(bytes), head, head.points);
+  });
 }
 
 Eigen::AlignedBox3d glb_box(std::string_view bytes, std::string_view where) {

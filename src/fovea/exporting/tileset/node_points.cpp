@@ -33,7 +33,8 @@ std::vector<ExportPoint> LeafReader::read(const TileNode& leaf) {
   return points;
 }
 
-std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const TileNode& node) {
+std::vector<std::uint32_t> thinned_numbers(std::span<const ExportPoint> points,
+                                           const Eigen::Vector3d& low, double spacing) {
   struct Nearest {
     std::uint32_t index;
     double distance2;  // cells^2, from the middle
@@ -41,7 +42,7 @@ std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const T
   FlatMap<std::uint32_t> number_of_cell;
   std::vector<Nearest> nearest;  // by the cell's number
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Array3d place = (points[i].position - node.low).array() / node.spacing;
+    const Eigen::Array3d place = (points[i].position - low).array() / spacing;
     const Eigen::Array3d cell = place.floor();
     const Nearest here{static_cast<std::uint32_t>(i), (place - cell - 0.5).square().sum()};
     const auto [number, is_new] =
@@ -52,9 +53,17 @@ std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const T
       nearest[*number] = here;
     }
   }
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(nearest.size());
+  for (const Nearest& point : nearest) numbers.push_back(point.index);
+  return numbers;
+}
+
+std::vector<ExportPoint> thinned(const std::vector<ExportPoint>& points, const TileNode& node) {
   std::vector<ExportPoint> kept;
-  kept.reserve(nearest.size());
-  for (const Nearest& point : nearest) kept.push_back(points[point.index]);
+  for (const std::uint32_t number : thinned_numbers(points, node.low, node.spacing)) {
+    kept.push_back(points[number]);
+  }
   return kept;
 }
 

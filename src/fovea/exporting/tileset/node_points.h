@@ -1,7 +1,9 @@
 // The points of a tileset's nodes.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "fovea/exporting/tileset/tile_tree.h"
@@ -23,6 +25,13 @@ class LeafReader {
   std::vector<TileId> tiles_;
   std::vector<ExportPoint> of_tiles_;
 };
+
+/// Numbers of the points that are nearest to the middle of a grid's cells, one for each cell. They
+/// are in the order of the first points of the cells.
+/// @param low      corner of the grid
+/// @param spacing  of the grid
+std::vector<std::uint32_t> thinned_numbers(std::span<const ExportPoint> points,
+                                           const Eigen::Vector3d& low, double spacing);
 
 /// Of a node's children's points the one nearest to the middle of each cell of the node's grid; the
 /// same for the same points in the same order.
