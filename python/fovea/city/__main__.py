@@ -13,6 +13,7 @@ from typing import Any
 from ..errors import Error
 from . import build as commands
 from .arguments import parser, run_options_of, settings_of
+from .exports import export_city
 from .folder import CityFolder, read_json, write_json
 from .jobs import export_folder
 from .lock import CityLock
@@ -88,7 +89,7 @@ def _remove(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace) -> int:
     build, manifest = _build_of_city(arguments)
     with build:
-        failed = commands.export_city(build, manifest, arguments.format)
+        failed = export_city(build, manifest, arguments.format)
     _say(arguments, f"{build.folder.path / export_folder(arguments.format)}: {len(manifest['tiles'])} tiles")
     return _report(failed)
 

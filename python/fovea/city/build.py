@@ -14,7 +14,7 @@ from ..errors import Error
 from .catalog import read_catalog
 from .drives import Drive, Segment, check_control, check_coordinates, check_given_once, check_session
 from .folder import CityFolder
-from .jobs import Job, JobMaker, export_folder, map_file, poses_file
+from .jobs import Job, JobMaker, map_file, poses_file
 from .lock import CityLock
 from .manifest import (city_of, placed_city, points_of, read_manifest, read_poses, write_jobs,
                        write_manifest)
@@ -275,22 +275,6 @@ def remove_drives(build: CityBuild, manifest: dict[str, Any], names: Sequence[st
     if not kept:
         raise input_error("no drive would be left", build.folder.path, "remove the folder of the city instead")
     return build.execute(Request(build.settings, kept, city.fixed()))
-
-
-def export_city(build: CityBuild, manifest: dict[str, Any], form: str) -> list[str]:
-    """Exports the tiles of a city that have no export yet, and the root of a tileset.
-
-    @return what failed, a line each
-    """
-    folder = build.folder.path / export_folder(form)
-    folder.mkdir(parents=True, exist_ok=True)
-    parts = [build.maker.export(tile["file"], form) for tile in manifest["tiles"]]
-    build.run_missing(parts)
-    if form == "3dtiles" and not build.problems():
-        root = build.maker.export_root(parts)
-        (build.folder.path / root.output).unlink(missing_ok=True)  # it may be of another revision
-        build.run_missing([root])
-    return build.problems()
 
 
 def _line_of(failure: Failure) -> str:

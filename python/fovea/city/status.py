@@ -10,6 +10,7 @@ from .folder import FOLDERS, CityFolder
 from .jobs import STAGES, Job
 from .lock import is_dead, read_lock
 from .manifest import JobList, read_jobs, read_manifest
+from .progress import size_text
 from .worker import error_line
 
 
@@ -67,7 +68,7 @@ def _disk_lines(folder: CityFolder, jobs: Sequence[Job]) -> list[str]:
     used = sum(folder.bytes_of(name) for name in FOLDERS)
     needed = sum(_expected_bytes(folder, jobs, job) for job in needed_jobs(jobs, folder))
     free = shutil.disk_usage(folder.path).free
-    line = f"disk: {_size(used)} used, about {_size(needed)} more for the missing jobs, {_size(free)} free"
+    line = f"disk: {size_text(used)} used, about {size_text(needed)} more for the missing jobs, {size_text(free)} free"
     return [line + (": too little" if needed > free else "")]
 
 
@@ -82,7 +83,3 @@ def _expected_bytes(folder: CityFolder, jobs: Sequence[Job], job: Job) -> float:
     if job.kind == "tile":
         return costs.TILE_BYTES
     return costs.MAP_BYTES_PER_FRAME * job.expected_s / costs.MAP_S_PER_FRAME
-
-
-def _size(count: float) -> str:
-    return f"{count / 1e9:.1f} GB" if count >= 1e9 else f"{count / 1e6:.1f} MB"
