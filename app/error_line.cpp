@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/machine_error.h"
 #include "fovea/core/path_remedy.h"
 
 namespace fovea::app {
@@ -57,6 +58,11 @@ constexpr const char* kNoThread =
     "no thread can be started, this machine, end other programs or raise the limits of processes "
     "and memory (ulimit -u, -v)";
 
+bool has_no_thread(const std::exception& error) {
+  // TBB throws std::runtime_error with this text.
+  return std::string_view(error.what()).starts_with("pthread_create");
+}
+
 /// An error of the operating system.
 std::string system_line(const std::system_error& error) {
   const int code = error.code().value();
@@ -78,10 +84,18 @@ std::string error_line(const std::exception& error, std::string_view command) {
   if (const auto* of_system = dynamic_cast<const std::system_error*>(&error)) {
     return system_line(*of_system);
   }
-  // TBB throws std::runtime_error with this text.
-  if (std::string_view(error.what()).starts_with("pthread_create")) return kNoThread;
+  if (has_no_thread(error)) return kNoThread;
   return fmt::format("{}, inside fovea, please report this with the command that caused it",
                      error.what());
+}
+
+bool is_of_machine(const std::exception& error) {
+  if (const auto* of_system = dynamic_cast<const std::system_error*>(&error)) {
+    const int code = of_system->code().value();
+    return is_machine_error(code) || code == EAGAIN;  // EAGAIN: no thread can be started
+  }
+  return dynamic_cast<const MachineError*>(&error) != nullptr ||
+         dynamic_cast<const std::bad_alloc*>(&error) != nullptr || has_no_thread(error);
 }
 
 }  // namespace fovea::app

@@ -1,4 +1,4 @@
-// Errors that are not Fovea's own, as a line of the same form: WHAT, WHERE, WHAT TO DO.
+// Errors as a line of the form WHAT, WHERE, WHAT TO DO, also those that are not Fovea's own.
 #pragma once
 
 #include <exception>
@@ -9,5 +9,8 @@ namespace fovea::app {
 
 /// @param command  subcommand that ran, for the remedy
 std::string error_line(const std::exception& error, std::string_view command);
+
+/// Whether the machine is the cause, not the inputs: a full disk, too little memory.
+bool is_of_machine(const std::exception& error);
 
 }  // namespace fovea::app

@@ -1,5 +1,7 @@
-// fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage, 130, 143 and
-// 129 ended by SIGINT, SIGTERM and SIGHUP.
+// fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage, 74 the machine
+// failed, 130, 143 and 129 ended by SIGINT, SIGTERM and SIGHUP.
+#include <sysexits.h>
+
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdio>
@@ -21,6 +23,7 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
+constexpr int kMachineFailed = EX_IOERR;  // as a full disk: the command may end well later
 
 /// One line on standard error, whatever a library wrote. Must not throw: it is the last resort.
 void print_error(const char* message, const char* where_and_remedy = "") noexcept {
@@ -80,18 +83,24 @@ std::string_view command_of(int argc, char** argv) {
 
 std::string_view command;  // that runs
 
+int exit_code_of(const std::exception& error) {
+  return fovea::app::is_of_machine(error) ? kMachineFailed : kFailed;
+}
+
 /// For an error in a thread or a destructor, which no function can catch.
 [[noreturn]] void end_with_error() {
+  int code = kFailed;
   try {
     fovea::discard_unfinished_outputs();
     if (std::current_exception() != nullptr) throw;
     print_error("the program ended, inside fovea, please report this with the command");
   } catch (const std::exception& error) {
+    code = exit_code_of(error);
     print_error(fovea::app::error_line(error, command).c_str());
   } catch (...) {
     print_error("an unknown error, inside fovea, please report this with the command");
   }
-  std::_Exit(kFailed);
+  std::_Exit(code);
 }
 
 /// The exit code of `body`; each error is one line.
@@ -106,11 +115,12 @@ int report_errors(Body&& body) noexcept {
       } else {
         print_error(fovea::app::error_line(error, command).c_str());
       }
+      return exit_code_of(error);
     }
   } catch (...) {  // of the line itself
     print_error("out of memory, this machine, end other programs");
   }
-  return kFailed;
+  return kMachineFailed;
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "fovea/core/errors.h"
+#include "fovea/core/machine_error.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/process_memory.h"
 #include "fovea/drive/command_files.h"
@@ -89,11 +90,14 @@ void print_interruption(const MapSummary& summary, const MapArguments& arguments
   }
 }
 
-/// The error with what to do with the log that the run leaves next to its map, if there is one.
-OutputError with_log_remedy(const OutputError& error, const std::string& map) {
+/// Throws the error that is handled, with what to do with the log that the run leaves next to its
+/// map, if there is one.
+[[noreturn]] void rethrow_with_log_remedy(const OutputError& error, const std::string& map) {
   const std::string remedy = log_remedy(map);
-  if (log_of_map(map).empty() || error.remedy() == remedy) return error;
-  return {error.problem(), error.where(), error.remedy() + "; " + remedy};
+  if (log_of_map(map).empty() || error.remedy() == remedy) throw;
+  const bool of_machine = dynamic_cast<const MachineError*>(&error) != nullptr;
+  throw_error<OutputError>(of_machine, error.problem(), error.where(),
+                           error.remedy() + "; " + remedy);
 }
 
 CommandFiles files_of(const MapArguments& arguments) {
@@ -163,7 +167,7 @@ void run(const MapArguments& arguments, Session& session) {
     try {
       return map_drive(*source, job, std::ref(bar));
     } catch (const OutputError& error) {
-      throw with_log_remedy(error, arguments.output);
+      rethrow_with_log_remedy(error, arguments.output);
     }
   }();
   const Messages calibration = calibration_messages(summary.calibration, summary.calibrated);

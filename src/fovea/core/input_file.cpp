@@ -11,11 +11,10 @@
 #include <utility>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/machine_error.h"
 
 namespace fovea {
 namespace {
-
-std::string message_of(int error) { return std::generic_category().message(error); }
 
 /// Names what is no regular file; empty for a regular file.
 const char* special_type(mode_t mode) {
@@ -27,9 +26,19 @@ const char* special_type(mode_t mode) {
 }
 
 [[noreturn]] void throw_unreadable(const std::filesystem::path& path, const FileKind& kind,
-                                   const std::string& reason, const char* remedy) {
-  throw InputError(fmt::format("the {} cannot be read ({})", kind.noun, reason), path.string(),
-                   remedy);
+                                   const std::string& reason, const char* remedy,
+                                   bool of_machine = false) {
+  throw_error<InputError>(of_machine, fmt::format("the {} cannot be read ({})", kind.noun, reason),
+                          path.string(), remedy);
+}
+
+constexpr const char* kRestore = "restore it or make it readable";
+
+/// By errno.
+[[noreturn]] void throw_system_error(const std::filesystem::path& path, const FileKind& kind,
+                                     int error) {
+  throw_unreadable(path, kind, std::generic_category().message(error), kRestore,
+                   is_machine_error(error));
 }
 
 void require_regular(const std::filesystem::path& path, const FileKind& kind,
@@ -90,10 +99,10 @@ InputFile::InputFile(const std::filesystem::path& path, const FileKind& kind)
   // Before the file is opened: to open a device can have effects of its own.
   require_regular_if_present(path, kind);
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  if (descriptor_ < 0) fail(message_of(errno));
+  if (descriptor_ < 0) throw_system_error(path, kind, errno);
   struct ::stat status = {};
   try {
-    if (::fstat(descriptor_, &status) != 0) fail(message_of(errno));
+    if (::fstat(descriptor_, &status) != 0) throw_system_error(path, kind, errno);
     require_regular(path, kind, status);
     size_ = static_cast<std::uintmax_t>(status.st_size);
     if (size_ > kind.max_size) {
@@ -110,7 +119,7 @@ InputFile::InputFile(const std::filesystem::path& path, const FileKind& kind)
 InputFile::~InputFile() { ::close(descriptor_); }
 
 void InputFile::fail(const std::string& reason) const {
-  throw_unreadable(path_, kind_, reason, "restore it or make it readable");
+  throw_unreadable(path_, kind_, reason, kRestore);
 }
 
 std::size_t InputFile::read_at(std::uintmax_t offset, char* bytes, std::size_t count) const {
@@ -119,7 +128,7 @@ std::size_t InputFile::read_at(std::uintmax_t offset, char* bytes, std::size_t c
     const ssize_t part =
         ::pread(descriptor_, bytes + got, count - got, static_cast<off_t>(offset + got));
     if (part < 0 && errno == EINTR) continue;
-    if (part < 0) fail(message_of(errno));
+    if (part < 0) throw_system_error(path_, kind_, errno);
     if (part == 0) break;
     got += static_cast<std::size_t>(part);
   }

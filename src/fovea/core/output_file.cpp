@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/machine_error.h"
 #include "fovea/core/path_remedy.h"
 #include "fovea/core/unfinished_output.h"
 
@@ -45,16 +46,16 @@ fs::path folder_of(const fs::path& path) {
 void throw_output_error(const fs::path& path, int error) {
   const std::string reason = std::generic_category().message(error);
   if (error == EFBIG) {  // 4 GB on FAT
-    throw OutputError(
+    throw OfMachine<OutputError>(
         fmt::format("the disk is full or the file is larger than a limit allows ({})", reason),
         path.string(), "free some space, raise the limit (ulimit -f) or write to another disk");
   }
   if (error == ENOSPC || error == EDQUOT) {
-    throw OutputError(fmt::format("the disk is full ({})", reason), path.string(),
-                      "free some space or write to another disk");
+    throw OfMachine<OutputError>(fmt::format("the disk is full ({})", reason), path.string(),
+                                 "free some space or write to another disk");
   }
-  throw OutputError(fmt::format("cannot be written ({})", reason), path.string(),
-                    "check the path and its permissions");
+  throw_error<OutputError>(is_machine_error(error), fmt::format("cannot be written ({})", reason),
+                           path.string(), "check the path and its permissions");
 }
 
 fs::path check_output_path(const fs::path& path, bool force) {

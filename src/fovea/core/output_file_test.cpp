@@ -9,6 +9,7 @@
 #include "../../../tests/file_size_limit.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
+#include "fovea/core/machine_error.h"
 
 namespace fovea::output_file_test {
 
@@ -25,6 +26,17 @@ std::string output_error(F&& f) {
     return error.what();
   }
   return "no OutputError";
+}
+
+/// Whether `f` throws an OutputError that the machine causes.
+template <class F>
+bool is_of_machine(F&& f) {
+  try {
+    f();
+  } catch (const OutputError& error) {
+    return dynamic_cast<const MachineError*>(&error) != nullptr;
+  }
+  return false;
 }
 
 TEST(OutputFile, AppearsWholeAtCommit) {
@@ -142,6 +154,15 @@ TEST(OutputFile, ReportsAFullDiskWhereItHappensAndLeavesNothing) {
                 HasSubstr("the disk is full"));
   }
   EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(OutputFile, AFullDiskIsAnErrorOfTheMachine) {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "out.txt", false);
+  file.stream() << "buffered until commit";
+  const FileSizeLimit limit(3);
+  EXPECT_TRUE(is_of_machine([&] { file.commit(); }));
+  EXPECT_FALSE(is_of_machine([&] { OutputFile(folder / "missing" / "out.txt", false); }));
 }
 
 TEST(OutputFile, ReportsAFullDiskAtCommit) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/machine_error.h"
 
 namespace fovea {
 
@@ -26,8 +27,8 @@ ScratchFile::ScratchFile(std::filesystem::path folder) : folder_(std::move(folde
 ScratchFile::~ScratchFile() { ::close(fd_); }
 
 void ScratchFile::fail(const char* what) const {
-  throw OutputError(std::string(what) + ": " + std::strerror(errno), folder_.string(),
-                    "make room in the folder for temporary files");
+  throw_error<OutputError>(is_machine_error(errno), std::string(what) + ": " + std::strerror(errno),
+                           folder_.string(), "make room in the folder for temporary files");
 }
 
 ScratchFile::Place ScratchFile::append_bytes(std::span<const std::byte> bytes) {

@@ -13,6 +13,7 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/core/input_file.h"
+#include "fovea/core/machine_error.h"
 #include "fovea/core/output_file.h"
 
 namespace fovea::sqlite {
@@ -168,8 +169,10 @@ void Database::fail(int code) const {
       throw CorruptFile(fmt::format("the {} cannot be read ({})", words_.noun, message), where(),
                         words_.if_damaged);
     }
-    throw InputError(fmt::format("the {} cannot be read ({})", words_.noun, message), where(),
-                     "check the file, its permissions and that no program is replacing it");
+    throw_error<InputError>(is_machine_error(system_error(code)),
+                            fmt::format("the {} cannot be read ({})", words_.noun, message),
+                            where(),
+                            "check the file, its permissions and that no program is replacing it");
   }
   if (const int error = system_error(code); error != 0) throw_output_error(shown_path_, error);
   if (primary == SQLITE_BUSY || primary == SQLITE_LOCKED) throw_busy();
