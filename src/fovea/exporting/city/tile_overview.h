@@ -28,7 +28,13 @@ inline double overview_spacing(double tile_size) { return tile_size / 128; }
 std::vector<ExportPoint> overview_points(const MapReader& map, double spacing,
                                          const ExposureChoice& exposure);
 
-/// Writes the overview of a map as binary glTF (make_glb), in one step, over an older one.
+/// The overview of a map as binary glTF (make_glb). Its levels of detail are for the coarse
+/// pictures of a whole city: each has a grid of twice the spacing of the level below.
+/// @throws InputError  if the map is damaged
+std::string make_overview(const std::filesystem::path& map, double tile_size,
+                          const ExposureChoice& exposure);
+
+/// Writes make_overview() to a file, in one step, over an older one.
 /// @throws InputError as above, OutputError if it cannot be written
 void write_tile_overview(const std::filesystem::path& map, const std::filesystem::path& overview,
                          double tile_size);

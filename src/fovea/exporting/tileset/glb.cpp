@@ -1,6 +1,7 @@
 #include "fovea/exporting/tileset/glb.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -41,9 +42,18 @@ struct Quantiser {
   double step;
 };
 
+/// The mesh's member for levels of detail.
+std::string extras_json(std::span<const std::size_t> levels) {
+  return levels.empty()
+             ? ""
+             : fmt::format(R"(,"extras":{{"{}":[{}]}})", kGlbLevels, fmt::join(levels, ","));
+}
+
+/// @param extras  more members of the mesh, with a comma before them
 /// @param buffer  gets the attributes
 std::string json(const Quantiser& quantiser, std::size_t points,
-                 std::span<const Attribute> attributes, GltfBuffer& buffer) {
+                 std::span<const Attribute> attributes, const std::string& extras,
+                 GltfBuffer& buffer) {
   const Eigen::Array3i high = quantiser.quantised(quantiser.box.max());
   std::string names;
   for (const Attribute& a : attributes) {
@@ -60,9 +70,9 @@ std::string json(const Quantiser& quantiser, std::size_t points,
              R"("extensionsRequired":["KHR_mesh_quantization"],)"
              R"("scene":0,"scenes":[{{"nodes":[0]}}],)"
              R"("nodes":[{{"mesh":0,"matrix":{}}}],)"
-             R"("meshes":[{{"primitives":[{{"mode":0,"attributes":{{{}}},"material":0}}]}}],)"
+             R"("meshes":[{{"primitives":[{{"mode":0,"attributes":{{{}}},"material":0}}]{}}}],)"
              R"("materials":[{{"extensions":{{"KHR_materials_unlit":{{}}}}}}],{}}})",
-             gltf_matrix(quantiser.step, quantiser.box.min()), names, buffer.json());
+             gltf_matrix(quantiser.step, quantiser.box.min()), names, extras, buffer.json());
 }
 
 void put_sources(std::span<const ExportPoint> points, BytePacker& packer) {
@@ -81,7 +91,8 @@ void put_sources(std::span<const ExportPoint> points, BytePacker& packer) {
 
 }  // namespace
 
-Glb make_glb(std::span<const ExportPoint> points, bool with_sources) {
+Glb make_glb(std::span<const ExportPoint> points, bool with_sources,
+             std::span<const std::size_t> levels) {
   if (points.empty()) return {empty_glb(), 0};
   const Quantiser quantiser(points);
   const std::span<const Attribute> attributes =
@@ -90,7 +101,7 @@ Glb make_glb(std::span<const ExportPoint> points, bool with_sources) {
   Glb glb;
   glb.step = quantiser.step;
   GltfBuffer buffer;
-  const std::string text = json(quantiser, points.size(), attributes, buffer);
+  const std::string text = json(quantiser, points.size(), attributes, extras_json(levels), buffer);
   glb.bytes = glb_head(text, buffer.bytes());
   BytePacker packer(glb.bytes);
   for (const ExportPoint& point : points) {

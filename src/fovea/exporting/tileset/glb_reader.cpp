@@ -14,6 +14,7 @@
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/exporting/gltf.h"
+#include "fovea/exporting/tileset/glb.h"
 #include "fovea/map/point_files/point_source.h"
 
 namespace fovea {
@@ -179,6 +180,18 @@ std::vector<ExportPoint> first_points(const GlbBytes& file, const GlbHead& head,
   return points;
 }
 
+/// How many of the first points are a level's.
+std::size_t points_of_level(const GlbHead& head, std::size_t level) {
+  if (head.points == 0) return 0;
+  const Json& mesh = head.json.at("meshes").at(0);
+  if (!mesh.contains("extras")) return head.points;
+  const auto levels = mesh.at("extras").at(kGlbLevels).get<std::vector<std::size_t>>();
+  const std::size_t points =
+      levels.empty() ? head.points : levels[std::min(level, levels.size() - 1)];
+  if (points > head.points) throw std::invalid_argument("its levels have too many points");
+  return points;
+}
+
 GlbBytes in_memory(std::string_view bytes) {
   return {bytes.size(), [bytes](std::size_t offset, std::size_t count) {
             return std::string(bytes.substr(std::min(offset, bytes.size()), count));
@@ -202,6 +215,24 @@ std::vector<ExportPoint> read_glb(std::string_view bytes, std::string_view where
   return checked(where, [&] {
     const GlbHead head = head_of(bytes);
     return first_points(in_memory(bytes), head, head.points);
+  });
+}
+
+std::vector<ExportPoint> read_glb_level(std::string_view bytes, std::size_t level,
+                                        std::string_view where) {
+  return checked(where, [&] {
+    const GlbHead head = head_of(bytes);
+    return first_points(in_memory(bytes), head, points_of_level(head, level));
+  });
+}
+
+std::vector<ExportPoint> read_glb_level(const InputFile& file, std::size_t level) {
+  return checked(file.path().string(), [&] {
+    const GlbHead head = head_of(file.beginning(kGlbHead));
+    const auto range = [&](std::size_t offset, std::size_t count) {
+      return file.range(offset, count);
+    };
+    return first_points({file.size(), range}, head, points_of_level(head, level));
   });
 }
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
+#include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/exporting/tileset/glb.h"
 
@@ -63,6 +65,39 @@ TEST(GlbReader, TheHeadStatesTheBox) {
   EXPECT_NEAR(box.min().y(), -21, 1e-3);
   EXPECT_NEAR(box.max().z(), 33.1, 1e-3);
   EXPECT_TRUE(glb_box(make_glb({}, true).bytes, "a.glb").isEmpty());
+}
+
+TEST(GlbReader, ReadsOnlyTheLevelThatIsRequested) {
+  const std::vector<ExportPoint> points = some_points();
+  const std::vector<std::size_t> levels{3, 2, 1};
+  const std::string bytes = make_glb(points, /*with_sources=*/true, levels).bytes;
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.glb") << bytes;
+  const InputFile file(folder / "a.glb", kStreamedFile);
+  for (const std::size_t level : {0, 1, 2, 9}) {
+    const std::size_t expected = levels[std::min<std::size_t>(level, 2)];
+    const auto of_bytes = read_glb_level(bytes, level, "a.glb"),
+               of_file = read_glb_level(file, level);
+    ASSERT_EQ(of_bytes.size(), expected);
+    ASSERT_EQ(of_file.size(), expected);
+    for (std::size_t i = 0; i < expected; ++i) {
+      EXPECT_EQ(of_file[i].position, of_bytes[i].position);
+      EXPECT_EQ(of_file[i].color, points[i].color);
+      EXPECT_EQ(of_file[i].views, points[i].views);
+    }
+  }
+  EXPECT_EQ(read_glb(bytes, "a.glb").size(), 3u);
+  EXPECT_EQ(read_glb_level(make_glb(points, true).bytes, 2, "a.glb").size(), 3u) << "no levels";
+  EXPECT_TRUE(read_glb_level(make_glb({}, true, levels).bytes, 2, "a.glb").empty());
+}
+
+TEST(GlbReader, ImpossibleLevelsAreErrors) {
+  const std::string whole = make_glb(some_points(), true, std::vector<std::size_t>{3, 1}).bytes;
+  for (const std::string& levels : {std::string("[3,4]"), std::string("[3,x]")}) {
+    std::string other = whole;
+    other.replace(other.find("[3,1]"), 5, levels);
+    EXPECT_THROW(read_glb_level(other, 1, "a.glb"), InputError) << levels;
+  }
 }
 
 TEST(GlbReader, DamagedFilesAreErrors) {
