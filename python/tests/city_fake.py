@@ -1,10 +1,10 @@
 #!/usr/bin/python3 -IS
 """A stand-in for the program `fovea` with the commands of a city, which take milliseconds, and drives for it.
 
-A drive is a folder with drive.json: the catalog; `fails`, the kinds of its jobs that fail; and `killed`, the kinds of
-its jobs that a signal ends. The environment has FAKE_SLEEP: seconds that a map and a tile take; FAKE_CALLS: a file that
-lists the calls; FAKE_FULL: a file in which the first worker that maps writes its process; a full disk is simulated on
-that worker.
+A drive is a folder with drive.json: the catalog; `fails`, the kinds of its jobs that fail; `killed`, the kinds of its
+jobs that a signal ends; and `full`, the kinds of its jobs that find a full disk. The environment has FAKE_SLEEP:
+seconds that a map and a tile take; FAKE_CALLS: a file that lists the calls; FAKE_FULL: a file in which the first worker
+that maps writes its process; a full disk is simulated on that worker.
 """
 import hashlib
 import json
@@ -78,6 +78,11 @@ def read_map(file):
     return text, points
 
 
+def _exit_on_full_disk():
+    print("fovea: error: the disk is full (No space left on device), /scratch, free some space")
+    sys.exit(74)
+
+
 def _fail_on_full_disk():
     claim = os.environ.get("FAKE_FULL")
     if not claim:
@@ -88,13 +93,15 @@ def _fail_on_full_disk():
     except FileExistsError:
         pass
     if pathlib.Path(claim).read_text() == str(os.getppid()):
-        sys.exit("fovea: error: the disk is full, /scratch, free disk space")
+        _exit_on_full_disk()
 
 
 def _drive(folder, kind):
     content = json.loads(pathlib.Path(folder, "drive.json").read_text())
     if kind in content.get("fails", []):
         sys.exit(f"fovea: error: the drive is broken, {folder}, repair it")
+    if kind in content.get("full", []):
+        _exit_on_full_disk()
     if kind in content.get("killed", []):
         os.kill(os.getpid(), signal.SIGKILL)
     return content

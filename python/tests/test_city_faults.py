@@ -96,19 +96,20 @@ class FaultsTest(CityTestCase):
         self.assertIn("the job pair of ", err)
         self.assertEqual(len(self.manifest()["drives"]), 5)
 
-    def test_a_map_that_a_signal_ends_does_not_freeze_the_poses(self):
+    def test_a_map_that_the_machine_fails_to_make_does_not_freeze_the_poses(self):
         drives = self.drives()
         self.build(*drives[:2])
         city, poses = self.manifest(), list((self.city / "poses").iterdir())
-        killed = city_fake.write_drive(self.folder / "killed", CROSSING["a"], killed=["map"])
-        _, err = self.run_city("add", drives[2], killed, self.city, "--retries", 0, code=1)
-        self.assertIn("the job map of killed frames 0:151 failed: ended by signal 9", err)
-        self.assertIn("run add again", err)
-        self.assertEqual(self.manifest(), city)
-        self.assertEqual(list((self.city / "poses").iterdir()), poses)
-        drive = killed / "drive.json"
-        drive.write_text(json.dumps({**json.loads(drive.read_text()), "killed": []}))
-        self.run_city("add", drives[2], killed, self.city)
+        for number, (fault, reason) in enumerate((("killed", "ended by signal 9"), ("full", "the disk is full"))):
+            new = city_fake.write_drive(self.folder / f"new {number}", CROSSING["a"], **{fault: ["map"]})
+            _, err = self.run_city("add", drives[2], new, self.city, "--retries", 0, code=1)
+            self.assertIn(f"the job map of new {number} frames 0:151 failed: {reason}", err)
+            self.assertIn("run add again", err)
+            self.assertEqual(self.manifest(), city)
+            self.assertEqual(list((self.city / "poses").iterdir()), poses)
+        drive = new / "drive.json"
+        drive.write_text(json.dumps({**json.loads(drive.read_text()), "full": []}))
+        self.run_city("add", drives[2], new, self.city)
         self.assertEqual(len(self.manifest()["drives"]), 4)
 
     def test_a_full_disk_on_one_worker(self):

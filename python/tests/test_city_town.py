@@ -4,6 +4,7 @@ import json
 import pathlib
 import shutil
 import stat
+import subprocess
 import unittest
 
 import psutil
@@ -15,6 +16,7 @@ FRAMES = 16
 ROUTES = {"a": ("0,0 1,0", 12), "b": ("0,0 1,0", 16), "c": ("0,1 0,0", 32), "d": ("1,0 0,0", 55)}
 SIMULATED = ["lidar.columns=1000", "camera.numbers=[2]", "camera.width=414", "camera.height=125", "camera.focal=240.5",
              "camera.cx=203.2", "camera.cy=57.6", "town.blocks_x=1", "town.blocks_y=1"]
+OWN_MOUNTS = ["unshare", "--user", "--map-root-user", "--mount"]
 SETTINGS = ["--set", "surface.spacing_m=0.1", "--tile-size", 32]
 
 
@@ -35,6 +37,12 @@ def town_drive(name):
 def digest(tile):
     """Of a map."""
     return sample.run("info", tile, "--digest").strip()
+
+
+def can_mount():
+    """Whether a test can mount a file system that only its own processes see."""
+    return subprocess.run([*OWN_MOUNTS, "mount", "-t", "tmpfs", "none", "/mnt"], stderr=subprocess.DEVNULL,
+                          check=False).returncode == 0
 
 
 def points_of(manifest):
@@ -107,6 +115,42 @@ class TownTest(CityTestCase):
         [line] = [line for line in err.splitlines() if "error" in line]
         self.assertIn("the job catalog of broken failed", line)
         self.assertEqual(self.digests(), expected)
+
+    def program_with_full_disk(self, command, folder):
+        """The program, whose `command` finds a full disk in a folder of the city."""
+        full = self.folder / f"fovea with full {folder}"
+        place = self.city / folder
+        mount = f"mount -t tmpfs -o size=4k none {place} && head -c 1M /dev/zero >{place}/x 2>/dev/null"
+        full.write_text(f"#!/bin/bash\nif [[ $1 == {command} ]]; then\n"
+                        f"  exec {' '.join(OWN_MOUNTS)} bash -c '{mount}; exec \"$0\" \"$@\"' {self.program} \"$@\"\n"
+                        f"fi\nexec {self.program} \"$@\"\n")
+        full.chmod(full.stat().st_mode | stat.S_IXUSR)
+        return full
+
+    @unittest.skipUnless(can_mount(), "this user cannot mount a small file system")
+    def test_a_full_shared_disk(self):
+        expected = self.expected()
+        shutil.copytree(sample.folder() / "expected city", self.city)
+        whole, manifest, poses = self.program, self.manifest(), set((self.city / "poses").iterdir())
+        self.program = self.program_with_full_disk("align", "pairs")
+        _, err = self.run_city("add", town_drive("d"), self.city, code=1)
+        self.assertIn("the disk is full (No space left on device)", err)
+        self.assertIn("run add again", err)
+        self.assertEqual((self.manifest(), set((self.city / "poses").iterdir())), (manifest, poses))
+        self.program = whole
+        tile = manifest["tiles"][0]["file"]
+        (self.city / tile).unlink()
+        self.program = self.program_with_full_disk("fuse", "tiles")
+        _, err = self.run_city("build", *self.drives, "-o", self.city, *SETTINGS, code=1)
+        self.assertIn("the disk is full (No space left on device)", err)
+        [log] = (self.city / "logs").glob(f"tile-*{pathlib.Path(tile).stem.split('_')[-1]}.log")
+        self.assertIn("# exit code 74 after", log.read_text())
+        self.program = whole
+        self.run_city("build", *self.drives, "-o", self.city, *SETTINGS)
+        self.assertEqual(self.digests(), expected)
+        self.run_city("add", town_drive("d"), self.city)
+        added = json.loads((self.city / self.manifest()["poses"]).read_text())
+        self.assertGreater({placed["drive"]: placed["matches"] for placed in added["maps"]}["d"], 0)
 
     def test_exports(self):
         self.expected()

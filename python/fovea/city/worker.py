@@ -16,6 +16,7 @@ from typing import IO, Any
 from .dask_module import dask_module
 
 _STOP_S = 5.0  # a stopped program has this time to remove its unfinished files
+_MACHINE_FAILED = 74  # exit code of `fovea` (docs/command-line.md): a full disk, as an example
 _SIGNALED = 128  # exit code of a program that a signal ended, less the signal
 _running: dict[str, set[subprocess.Popen[bytes]]] = {}  # by the token of the build
 _stopped: set[str] = set()  # tokens of builds whose jobs must not begin
@@ -71,7 +72,7 @@ def run_job(job: dict[str, Any], token: str, *_after: object) -> str:
     if number > 0:
         raise JobError(job["id"], f"ended by signal {number}", worker, of_machine=True)
     if code != 0:
-        raise JobError(job["id"], error_line(job["log"]), worker)
+        raise JobError(job["id"], error_line(job["log"]), worker, of_machine=code == _MACHINE_FAILED)
     if not os.path.exists(job["output"]):
         raise JobError(job["id"], f"the command made no {job['output']}", worker, of_machine=True)
     return worker
