@@ -133,6 +133,8 @@ class FaultsTest(CityTestCase):
         left = self.city / "maps" / "x.fovea.host-1.partial"
         left.write_text("")
         (self.city / "tiles" / "folder.partial").mkdir()
+        (self.city / "exports").mkdir()
+        (self.city / "exports" / "las.jobs.json.1.partial").write_text("")
         for name in ("city.json", "jobs.json", "lock"):
             (self.city / f"{name}.1.partial").write_text("")
         self.build(*drives)

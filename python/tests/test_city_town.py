@@ -39,6 +39,11 @@ def digest(tile):
     return sample.run("info", tile, "--digest").strip()
 
 
+def contents_of(folder):
+    """Of all files in it."""
+    return {file.relative_to(folder): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
 def can_mount():
     """Whether a test can mount a file system that only its own processes see."""
     return subprocess.run([*OWN_MOUNTS, "mount", "-t", "tmpfs", "none", "/mnt"], stderr=subprocess.DEVNULL,
@@ -167,6 +172,31 @@ class TownTest(CityTestCase):
         before = {file: file.stat().st_mtime_ns for file in folder.glob("*/tileset.json")}
         self.run_city("export", self.city)
         self.assertEqual({file: file.stat().st_mtime_ns for file in folder.glob("*/tileset.json")}, before)
+
+    def test_any_engine_can_run_the_exports(self):
+        self.expected()
+        shutil.copytree(sample.folder() / "expected city", self.city)
+        count = len(self.manifest()["tiles"])
+        for form, kinds in (("las", ["export"]), ("3dtiles", ["export", "export root"])):
+            exports = self.city / "exports" / form
+            self.run_city("export", self.city, "--format", form)
+            expected = contents_of(exports)
+            shutil.rmtree(exports)
+            out, _ = self.run_city("export", self.city, "--format", form, "--plan")
+            self.assertIn(f"{form}.jobs.json: {count + len(kinds) - 1} jobs ({count} export", out)
+            self.assertEqual(contents_of(exports), {})
+            listed = json.loads((self.city / "exports" / f"{form}.jobs.json").read_text())
+            self.assertEqual((listed["fovea_city_jobs"], listed["revision"]), (1, 1))
+            stages = {job["stage"]: job["kind"] for job in listed["jobs"]}
+            self.assertEqual([stages[stage] for stage in sorted(stages)], kinds)
+            made = set()
+            for job in sorted(listed["jobs"][::-1], key=lambda job: job["stage"]):
+                self.assertLessEqual(set(job["after"]), made)
+                self.assertTrue(all((self.city / file).exists() for file in job["inputs"]))
+                subprocess.run(["bash", "-c", job["shell"]], check=True, stdout=subprocess.DEVNULL)
+                self.assertTrue((self.city / job["outputs"][0]).exists())
+                made.add(job["id"])
+            self.assertEqual(contents_of(exports), expected)
 
     def test_add_and_remove(self):
         expected = self.expected()

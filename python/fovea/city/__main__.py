@@ -7,15 +7,16 @@ import os
 import pathlib
 import signal
 import sys
+from collections.abc import Sequence
 from types import FrameType
 from typing import Any
 
 from ..errors import Error
 from . import build as commands
 from .arguments import parser, run_options_of, settings_of
-from .exports import export_city
+from .exports import export_city, plan_exports
 from .folder import CityFolder, read_json, write_json
-from .jobs import export_folder
+from .jobs import Job, export_folder
 from .lock import CityLock
 from .manifest import city_of, read_jobs, read_manifest, write_manifest
 from .problems import input_error
@@ -59,10 +60,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     with _build_of(arguments) as build:
         plan = commands.plan(build, arguments.drives)
         failed = build.problems()
-    counts = {kind: sum(job.kind == kind for job in plan.jobs) for kind in ("map", "pair", "poses", "tile")}
-    kinds = ", ".join(f"{count} {kind}" for kind, count in counts.items())
-    _say(arguments, f"{build.folder.jobs}: {len(plan.jobs)} jobs ({kinds}, 1 root), about "
-         f"{duration(sum(job.expected_s for job in plan.jobs))} on one core")
+    _say_plan(arguments, build.folder.jobs, plan.jobs, ("map", "pair", "poses", "tile", "root"))
     return _report(failed)
 
 
@@ -88,6 +86,11 @@ def _remove(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace) -> int:
     build, manifest = _build_of_city(arguments)
+    if arguments.plan:
+        with build:
+            file, jobs = plan_exports(build, manifest, arguments.format)
+        _say_plan(arguments, file, jobs, list(dict.fromkeys(job.kind for job in jobs)))
+        return 0
     with build:
         failed = export_city(build, manifest, arguments.format)
     _say(arguments, f"{build.folder.path / export_folder(arguments.format)}: {len(manifest['tiles'])} tiles")
@@ -161,6 +164,12 @@ def _summary(folder: CityFolder, manifest: dict[str, Any]) -> str:
     points = sum(tile["points"] for tile in manifest["tiles"])
     return (f"{folder.path}: {len(manifest['drives'])} drives, {length / 1000:.1f} km, {len(manifest['tiles'])} tiles, "
             f"{points / 1e6:.1f} million points, revision {manifest['revision']}")
+
+
+def _say_plan(arguments: argparse.Namespace, file: pathlib.Path, jobs: Sequence[Job], kinds: Sequence[str]) -> None:
+    counts = ", ".join(f"{sum(job.kind == kind for job in jobs)} {kind}" for kind in kinds)
+    _say(arguments, f"{file}: {len(jobs)} jobs ({counts}), about {duration(sum(job.expected_s for job in jobs))} "
+         "on one core")
 
 
 def _say(arguments: argparse.Namespace, line: str) -> None:

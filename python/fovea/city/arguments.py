@@ -7,6 +7,7 @@ import os
 import shutil
 import tempfile
 
+from .jobs import EXPORT_FORMS
 from .problems import config_error
 from .settings import RunOptions, Settings
 from .worker import program_version
@@ -34,8 +35,10 @@ def parser() -> argparse.ArgumentParser:
     _add_run_options(command)
     command = commands.add_parser("export", help="export all tiles, by a job each, to CITY/exports")
     command.add_argument("city", metavar="CITY", help="folder of the city")
-    command.add_argument("--format", choices=("3dtiles", "las", "ply", "pcd"), default="3dtiles",
+    command.add_argument("--format", choices=EXPORT_FORMS, default="3dtiles",
                          help="one tileset (default), or a file for each tile")
+    command.add_argument("--plan", action="store_true",
+                         help="write CITY/exports/FORMAT.jobs.json for another engine, and run no job")
     _add_run_options(command)
     command = commands.add_parser("status", help="what is done, missing and failed, and the disk space")
     command.add_argument("city", metavar="CITY", help="folder of the city")

@@ -56,7 +56,8 @@ class CityFolder:
 
     def remove_partial_files(self, older_than_s: float | None = None) -> None:
         """Removes what killed jobs left; with a limit, only files last written before it (seconds since 1970)."""
-        folders = [*(self.path / name for name in FOLDERS), *(self.path / "exports").glob("*")]
+        exports = self.path / "exports"
+        folders = [*(self.path / name for name in FOLDERS), exports, *exports.glob("*")]
         files = [file for folder in folders for file in folder.glob("*.partial*")]
         for own in (self.manifest, self.jobs, self.lock):
             files += self.path.glob(f"{own.name}.*.partial")

@@ -15,6 +15,7 @@ from .drives import Segment
 from .ground import Cell
 from .settings import RunOptions, Settings
 
+EXPORT_FORMS = ("3dtiles", "las", "ply", "pcd")
 STAGES = ("catalog", "map", "pair", "poses", "tile", "root", "export", "export root")  # kinds of jobs in their order
 
 
@@ -179,6 +180,10 @@ def pair_file(name: str) -> str:
 
 def export_folder(form: str) -> str:
     return f"exports/{form}"
+
+
+def export_jobs_file(form: str) -> str:
+    return f"exports/{form}.jobs.json"
 
 
 def poses_file(name: str) -> str:

@@ -80,10 +80,15 @@ def write_jobs(folder: CityFolder, version: str, plan: Plan, settings: Settings,
                problems: Sequence[str]) -> None:
     """Writes jobs.json; `others` are jobs besides those of the plan."""
     jobs = sorted((*others, *plan.jobs), key=lambda job: job.stage)
-    write_json({"fovea_city_jobs": _VERSION, "program": version, "city": str(folder.path),
-                "jobs": [job.json() for job in jobs], "problems": list(problems),
+    write_json({**json_of_jobs(folder, version, jobs), "problems": list(problems),
                 "tiles": [{"x": x, "y": y, "file": file} for (x, y), file in sorted(plan.tiles.items())],
                 "plan": placed_city(plan, settings).json()}, folder.jobs)
+
+
+def json_of_jobs(folder: CityFolder, version: str, jobs: Iterable[Job]) -> dict[str, Any]:
+    """What each list of jobs has, for any engine; `version` is that of the program."""
+    return {"fovea_city_jobs": _VERSION, "program": version, "city": str(folder.path),
+            "jobs": [job.json() for job in jobs]}
 
 
 def read_jobs(folder: CityFolder) -> JobList:
