@@ -14,9 +14,12 @@
 namespace fovea {
 namespace {
 
-/// How many of B's tiles are asked at most, and every how many of their points.
+/// Tiles of B that are compared, at most, and every how many of their points.
 constexpr std::size_t kTiles = 256, kStep = 8;
-constexpr std::size_t kTilesOfSubmap = 16;
+constexpr std::size_t kTilesOfMatch = 16;
+/// Submaps of B before and after a submap that count for its gain. On a few surfaces, shadows of
+/// different days may be the larger peak.
+constexpr std::size_t kNear = 5;
 /// Channels of a gain that differ by more (stops) are peaks of different surfaces.
 constexpr float kMostTint = 0.5f;
 
@@ -69,10 +72,10 @@ std::map<std::size_t, std::vector<TileKey>> tiles_by_submap(const MapReader& map
   return tiles;
 }
 
-/// Gains of pairs of submaps.
-class SubmapGains {
+/// Compares the colors of pairs of submaps.
+class SubmapColors {
  public:
-  SubmapGains(const MapReader& a, const MapReader& b)
+  SubmapColors(const MapReader& a, const MapReader& b)
       : a_(a),
         b_(b),
         size_a_(map_tile_size(a.meta())),
@@ -80,11 +83,12 @@ class SubmapGains {
         tiles_a_(tiles_by_submap(a)),
         tiles_b_(tiles_by_submap(b)) {}
 
-  std::optional<LogGain> gain(const SubmapMatch& match) const {
+  CodeDifferences b_minus_a(const SubmapMatch& match) const {
     const std::vector<TileKey> shared = shared_tiles(match);
-    CodeDifferences b_minus_a;
-    for (std::size_t k = 0; k < std::min(kTilesOfSubmap, shared.size()); ++k) {
-      const TileKey& key = shared[k * shared.size() / std::min(kTilesOfSubmap, shared.size())];
+    const std::size_t compared = std::min(kTilesOfMatch, shared.size());
+    CodeDifferences differences;
+    for (std::size_t k = 0; k < compared; ++k) {
+      const TileKey& key = shared[k * shared.size() / compared];
       const Eigen::Vector3d center_a = match.T_a_b * middle_of(key, size_b_);
       PlacePoints points_a(center_a), points_b(center_a);
       std::vector<PointCloud> tiles_a;
@@ -95,11 +99,9 @@ class SubmapGains {
       }
       const PointCloud tile_b = b_.read_tile({match.submap_b, key});
       points_b.add(0, tile_b, match.T_a_b, reach_of_tile(size_b_));
-      add_differences(tiles_a, points_a, tile_b, points_b, b_minus_a);
+      add_differences(tiles_a, points_a, tile_b, points_b, differences);
     }
-    std::optional<LogGain> gain = gain_of(b_minus_a);
-    if (!gain || gain->maxCoeff() - gain->minCoeff() > kMostTint) return std::nullopt;
-    return gain;
+    return differences;
   }
 
  private:
@@ -138,13 +140,32 @@ class SubmapGains {
 }  // namespace
 
 void set_gains(const MapReader& a, const MapReader& b, std::vector<SubmapMatch>& matches) {
-  std::map<std::size_t, SubmapMatch*> best;  // by submap of B
+  const SubmapColors colors(a, b);
+  struct Compared {
+    SubmapMatch* best = nullptr;  // has most surfaces in common
+    std::size_t most = 0;
+    CodeDifferences b_minus_a;  // of all partners
+  };
+  std::map<std::size_t, Compared> compared;  // by submap of B
   for (SubmapMatch& match : matches) {
-    SubmapMatch*& other = best.try_emplace(match.submap_b, &match).first->second;
-    if (match.overlap > other->overlap) other = &match;
+    const CodeDifferences b_minus_a = colors.b_minus_a(match);
+    if (b_minus_a.size() == 0) continue;
+    Compared& of_submap = compared[match.submap_b];
+    of_submap.b_minus_a.append(b_minus_a);
+    if (b_minus_a.size() <= of_submap.most) continue;
+    of_submap.best = &match;
+    of_submap.most = b_minus_a.size();
   }
-  const SubmapGains gains(a, b);
-  for (const auto& [submap, match] : best) match->log2_gain = gains.gain(*match);
+  for (auto& [submap, of_submap] : compared) {
+    CodeDifferences near;
+    const std::size_t first = submap - std::min(submap, kNear);
+    const auto end = compared.upper_bound(submap + kNear);
+    for (auto other = compared.lower_bound(first); other != end; ++other) {
+      near.append(other->second.b_minus_a);
+    }
+    const std::optional<LogGain> gain = gain_of(near);
+    if (gain && gain->maxCoeff() - gain->minCoeff() < kMostTint) of_submap.best->log2_gain = gain;
+  }
 }
 
 LogGain gain_of_maps(const MapReader& a, const MapReader& b,

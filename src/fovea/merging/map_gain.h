@@ -15,8 +15,8 @@ namespace fovea {
 LogGain gain_of_maps(const MapReader& a, const MapReader& b,
                      const std::vector<RigidMotion>& T_a_submap_b, double tile_size);
 
-/// Sets the gains of matches, one for each submap of B: of its partner with the best overlap. The
-/// others have none.
+/// Sets the gain of one match for each submap of B: the one with the most surfaces in common. It is
+/// the mode over the submaps of B near it and all their partners. The other matches have none.
 void set_gains(const MapReader& a, const MapReader& b, std::vector<SubmapMatch>& matches);
 
 }  // namespace fovea
