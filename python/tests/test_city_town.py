@@ -198,6 +198,24 @@ class TownTest(CityTestCase):
                 made.add(job["id"])
             self.assertEqual(contents_of(exports), expected)
 
+    def clean_and_build_again(self):
+        """Nothing that the newest revision needs is missing afterwards."""
+        before, digests, tiles = self.files(), self.digests(), {pathlib.Path(tile).stem for tile in self.tiles()}
+        out, _ = self.run_city("clean", self.city)
+        self.assertRegex(out, r": \d\d+ files, \d+\.\d MB freed; kept: revision 3\n$")
+        exports = self.city / "exports" / "3dtiles"
+        self.assertEqual({file.name for file in exports.iterdir()}, {*tiles, "q", "tileset.json"})
+        self.assertLess(self.files().items(), before.items())
+        self.assertIn(f": whole, {len(tiles)} tiles", sample.run("info", self.city, "--check"))
+        self.assertTrue(all((self.city / tile).with_suffix(".overview.glb").exists() for tile in self.tiles()))
+        out, _ = self.run_city("build", *self.drives, "-o", self.city, *SETTINGS)
+        self.assertIn("everything is done", out)
+        self.assertEqual(self.digests(), digests)
+
+    def files(self):
+        """Of the city, and when they were written."""
+        return {file: file.stat().st_mtime_ns for file in self.city.rglob("*") if file.is_file()}
+
     def test_add_and_remove(self):
         expected = self.expected()
         shutil.copytree(sample.folder() / "expected city", self.city)
@@ -209,8 +227,11 @@ class TownTest(CityTestCase):
         poses = json.loads((self.city / self.manifest()["poses"]).read_text())
         self.assertEqual({placed["drive"]: placed["fixed"] for placed in poses["maps"]},
                          {"a": True, "b": True, "c": True, "d": False})
+        self.run_city("export", self.city)
         self.run_city("remove", "d", self.city)
         self.assertEqual(self.digests(), expected)
+        self.run_city("export", self.city)
+        self.clean_and_build_again()
         self.run_city("add", new, self.city)
         self.assertEqual(points_of(self.manifest()), points_of(manifest))
 

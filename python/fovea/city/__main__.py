@@ -14,13 +14,14 @@ from typing import Any
 from ..errors import Error
 from . import build as commands
 from .arguments import parser, run_options_of, settings_of
+from .clean import clean
 from .exports import export_city, plan_exports
 from .folder import CityFolder, read_json, write_json
 from .jobs import Job, export_folder
 from .lock import CityLock
 from .manifest import city_of, read_jobs, read_manifest, write_manifest
 from .problems import input_error
-from .progress import duration
+from .progress import duration, size_text
 from .status import status_lines
 
 
@@ -104,6 +105,19 @@ def _status(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _clean(arguments: argparse.Namespace) -> int:
+    folder = CityFolder(arguments.city)
+    folder.require()
+    with CityLock(folder) as lock:
+        for line in lock.warnings:
+            print(f"fovea.city: warning: {line}", file=sys.stderr)
+        cleaned = clean(folder, arguments.keep, arguments.dry_run)
+    print(f"{folder.path}: {cleaned.files} files, {size_text(cleaned.bytes)} "
+          f"{'would be ' if arguments.dry_run else ''}freed; kept: revision {', '.join(map(str, cleaned.kept))}"
+          + (f"; unknown files that stay: {cleaned.unknown}" if cleaned.unknown else ""))
+    return 0
+
+
 def _root(arguments: argparse.Namespace) -> int:
     folder = CityFolder(arguments.city)
     folder.require()
@@ -127,7 +141,7 @@ def _keep_poses(arguments: argparse.Namespace) -> int:
 
 
 _COMMANDS = {"plan": _plan, "build": _build, "add": _add, "remove": _remove, "export": _export,
-             "status": _status, "root": _root, "keep-poses": _keep_poses}
+             "clean": _clean, "status": _status, "root": _root, "keep-poses": _keep_poses}
 
 
 def _build_of(arguments: argparse.Namespace) -> commands.CityBuild:

@@ -40,6 +40,10 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("--plan", action="store_true",
                          help="write CITY/exports/FORMAT.jobs.json for another engine, and run no job")
     _add_run_options(command)
+    command = commands.add_parser("clean", help="delete the files that only older revisions need")
+    command.add_argument("city", metavar="CITY", help="folder of the city")
+    command.add_argument("--keep", type=_positive, default=1, metavar="N", help="newest revisions to keep (default: 1)")
+    command.add_argument("--dry-run", action="store_true", help="delete nothing, print what would be freed")
     command = commands.add_parser("status", help="what is done, missing and failed, and the disk space")
     command.add_argument("city", metavar="CITY", help="folder of the city")
     command = commands.add_parser("root", help="the last job of jobs.json: writes the manifest of the tiles there are")

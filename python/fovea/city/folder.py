@@ -83,6 +83,16 @@ class CityFolder:
         return total
 
 
+def sync_folder(path: pathlib.Path) -> None:
+    """Makes durable which files a folder has. Some file systems refuse this: no error then."""
+    with contextlib.suppress(OSError):
+        descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
 def write_json(content: dict[str, Any], file: pathlib.Path) -> None:
     """Writes a file that appears whole, also for other machines."""
     partial = file.with_name(f"{file.name}.{os.getpid()}.partial")

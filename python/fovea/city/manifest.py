@@ -19,6 +19,7 @@ from .settings import Settings
 
 _VERSION = 1
 _REMEDY = "run build again"
+_COPY = "copy the newest file of manifests/ that is whole to city.json"
 
 
 @dataclass(frozen=True)
@@ -104,14 +105,19 @@ def read_jobs(folder: CityFolder) -> JobList:
 
 def read_manifest(folder: CityFolder) -> dict[str, Any] | None:
     """The newest manifest, None before the first one. InputError if it is damaged or of another version."""
-    if not folder.manifest.exists():
-        return None
-    content = read_json(folder.manifest, "the manifest of the city", "fovea_city", _VERSION,
-                        "copy the newest file of manifests/ to city.json")
+    return _manifest_in(folder.manifest, _COPY) if folder.manifest.exists() else None
+
+
+def read_revision(folder: CityFolder, revision: int) -> dict[str, Any]:
+    """The manifest of a revision. InputError if it is missing, damaged or of another version."""
+    return _manifest_in(folder.path / "manifests" / f"{revision}.json", "remove the file")
+
+
+def _manifest_in(file: pathlib.Path, remedy: str) -> dict[str, Any]:
+    content = read_json(file, "the manifest of the city", "fovea_city", _VERSION, remedy)
     missing = {"revision", "tiles", "plan"} - content.keys()
     if missing:
-        raise input_error(f"the manifest of the city is damaged: it has no {min(missing)}", folder.manifest,
-                          "copy the newest file of manifests/ to city.json")
+        raise input_error(f"the manifest of the city is damaged: it has no {min(missing)}", file, remedy)
     return content
 
 
@@ -120,8 +126,8 @@ def city_of(manifest: dict[str, Any], folder: CityFolder) -> PlacedCity:
     try:
         return PlacedCity.from_json(manifest["plan"], folder)
     except (KeyError, TypeError, ValueError) as error:
-        raise input_error(f"the manifest of the city is damaged ({error})", folder.manifest,
-                          "copy the newest file of manifests/ to city.json") from error
+        raise input_error(f"the manifest of revision {manifest['revision']} is damaged ({error})", folder.path,
+                          _COPY) from error
 
 
 def write_manifest(folder: CityFolder, tiles: dict[Cell, str], city: dict[str, Any]) -> dict[str, Any]:

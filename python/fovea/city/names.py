@@ -10,6 +10,7 @@ import tomllib
 from .problems import input_error
 
 _DIGITS = 20  # of a name
+NAME_PATTERN = rf"[0-9a-f]{{{_DIGITS}}}"  # of a name, as a regular expression
 _MOST_LEVELS = 8  # of calibrated drives, one above the other
 
 
