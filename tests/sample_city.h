@@ -113,6 +113,21 @@ inline nlohmann::ordered_json write_sample_city(const std::filesystem::path& fol
   return manifest;
 }
 
+/// A city of any size without much to write: all tiles have the map of one.
+inline void write_repeated_city(const std::filesystem::path& folder,
+                                const std::vector<CityTile>& tiles, std::size_t points) {
+  nlohmann::ordered_json manifest = write_sample_city(folder, {{0, 0}}, points);
+  const nlohmann::ordered_json of_one = manifest["tiles"][0];
+  manifest["tiles"].clear();
+  for (const CityTile& tile : tiles) {
+    nlohmann::ordered_json copy = of_one;
+    copy["x"] = tile.x;
+    copy["y"] = tile.y;
+    manifest["tiles"].push_back(copy);
+  }
+  write_sample_manifest(folder, manifest);
+}
+
 /// Changes a byte of a tile's points.
 inline void damage_sample_tile(const std::filesystem::path& map) {
   std::filesystem::permissions(map, std::filesystem::perms::owner_write,

@@ -128,6 +128,19 @@ test('the page shows a city that fovea view serves', async () => {
   }
 });
 
+test('the page shows a city of many tiles, also without overviews', async () => {
+  const server = await serve(program, 'view', join(made.folder, 'large_city'), '--port', '0', '--no-browser');
+  try {
+    await withPage(server.url, async (map) => {
+      await map.page.getByText('289 tiles').first().waitFor();
+      assert.ok((await map.settles()).pointsDrawn > 1000);
+      assert.deepEqual(map.complaints, []);
+    });
+  } finally {
+    assert.equal(await server.stop(), 130);
+  }
+});
+
 test('the page shows a city in a folder', async () => {
   const web = await serveFolder(made.exportOf('city', 'city_page', '--format', '3dtiles', '--viewer'));
   try {

@@ -1,5 +1,6 @@
 // Writes maps for tests/web: map.fovea, a small georeferenced one, with points.json, what its
-// exports must hold; plain.fovea, a large one with known distances; and city/, three tiles.
+// exports must hold; plain.fovea, a large one with known distances; city/, three tiles; and
+// large_city/, of more tiles than one tileset has.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -142,6 +143,14 @@ void write_plain(const std::filesystem::path& folder) {
   writer->commit();
 }
 
+std::vector<CityTile> square_of_tiles(int edge) {
+  std::vector<CityTile> tiles;
+  for (int x = 0; x < edge; ++x) {
+    for (int y = 0; y < edge; ++y) tiles.push_back({x, y});
+  }
+  return tiles;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -152,5 +161,7 @@ int main(int argc, char** argv) {
   write(argv[1]);
   write_plain(argv[1]);
   fovea::write_sample_city(std::filesystem::path(argv[1]) / "city", {{0, 0}, {1, 0}, {0, 1}});
+  fovea::write_repeated_city(std::filesystem::path(argv[1]) / "large_city", square_of_tiles(17),
+                             300);
   return 0;
 }

@@ -1,12 +1,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "../../../tests/sample_city.h"
 #include "../../../tests/temporary_folder.h"
+#include "fovea/exporting/city/city_tree.h"
 #include "fovea/exporting/city/tile_overview.h"
 #include "fovea/exporting/tileset/glb_reader.h"
 #include "fovea/server/city_content.h"
@@ -170,8 +175,6 @@ TEST_F(CitySite, LargeCitiesAreReadPartByPart) {
   }
   make(tiles, /*with_overviews=*/true, /*points=*/3);
   show();
-  const json root = get_json("tiles/tileset.json")["root"];
-  EXPECT_FALSE(root.contains("content"));
   std::size_t points = 0, overviews = 0;
   visit("tiles/tileset.json", [&](const std::string& uri, const WebClient::Response& response) {
     EXPECT_EQ(response.status, 200) << uri;
@@ -181,6 +184,89 @@ TEST_F(CitySite, LargeCitiesAreReadPartByPart) {
   });
   EXPECT_EQ(overviews, 289u);
   EXPECT_EQ(points, 3 * 289u);
+}
+
+class LargeCitySite : public CitySite {
+ protected:
+  /// A square of tiles.
+  void make_large(int edge) {
+    std::vector<CityTile> tiles;
+    for (int x = 0; x < edge; ++x) {
+      for (int y = 0; y < edge; ++y) tiles.push_back({x, y});
+    }
+    write_repeated_city(folder_ / "city", tiles, 3000);
+    const fs::path map = map_of_all();
+    write_tile_overview(map, overview_of_tile(map), 64);
+  }
+  fs::path map_of_all() const { return open_city(folder_ / "city").tiles.front().map; }
+
+  /// The addresses of the nodes above the tiles.
+  std::vector<std::string> nodes() {
+    std::vector<std::string> addresses;
+    const std::function<void(const std::string&)> enter = [&](const std::string& tileset) {
+      const std::function<void(const json&)> visit_tile = [&](const json& tile) {
+        const std::string uri = tile.contains("content") ? tile["content"]["uri"] : json("");
+        const std::string address = "tiles/q/" + uri.substr(uri.rfind('/') + 1);
+        const bool is_of_tile = uri.ends_with("overview.glb");
+        if (uri.ends_with(".json")) return enter(address);
+        if (!uri.empty() && !is_of_tile) addresses.push_back(address);
+        if (is_of_tile || !tile.contains("children")) return;
+        for (const json& child : tile["children"]) visit_tile(child);
+      };
+      visit_tile(get_json(tileset)["root"]);
+    };
+    enter("tiles/tileset.json");
+    return addresses;
+  }
+};
+
+TEST_F(LargeCitySite, TheRootShowsTheWholeCity) {
+  make_large(50);
+  show();
+  const json root = get_json("tiles/tileset.json")["root"];
+  ASSERT_TRUE(root.contains("content"));
+  const auto points = read_glb(get("tiles/q/q.glb").body, "q.glb");
+  EXPECT_LE(points.size(), kMostPointsOfNode);
+  std::set<std::array<int, 2>> squares;  // of 4 x 4 tiles
+  for (const ExportPoint& point : points) {
+    squares.insert({int(point.position.x() / 256), int(point.position.y() / 256)});
+  }
+  EXPECT_EQ(squares.size(), 13u * 13u);
+  EXPECT_EQ(get_json("status.json"), json({{"state", "ready"}, {"read", 1}}));
+}
+
+TEST_F(LargeCitySite, EveryNodeHasPointsThatDoNotDependOnTheOrderOfRequests) {
+  make_large(17);
+  show();
+  std::vector<std::string> addresses = nodes();
+  EXPECT_GT(addresses.size(), 289u / 4);
+  std::map<std::string, std::string> first;
+  for (const std::string& address : addresses) {
+    first[address] = get(address).body;
+    EXPECT_GT(read_glb(first[address], address).size(), 100u) << address;
+  }
+  show();
+  std::reverse(addresses.begin(), addresses.end());
+  for (const std::string& address : addresses) EXPECT_EQ(get(address).body, first[address]);
+}
+
+TEST_F(LargeCitySite, WithoutOverviewsItIsShownPartByPart) {
+  make_large(17);
+  fs::remove(overview_of_tile(map_of_all()));
+  show();
+  EXPECT_TRUE(read_glb(get("tiles/q/q.glb").body, "q.glb").empty());
+  EXPECT_EQ(get_json("status.json"), json({{"state", "ready"}, {"read", 1}}));
+  // Of another exposure there are no files.
+  show({ExposureChoice::Kind::kStops, 0, -1});
+  EXPECT_FALSE(get_json("tiles/tileset.json")["root"].contains("content"));
+}
+
+TEST_F(LargeCitySite, ADamagedOverviewIsNamed) {
+  make_large(17);
+  std::ofstream(overview_of_tile(map_of_all())) << "no glTF";
+  show();
+  EXPECT_EQ(get("tiles/q/q.glb").status, 200);
+  EXPECT_THAT(std::string(get_json("status.json")["failure"]), HasSubstr("tile 0,0: "));
 }
 
 TEST_F(CitySite, EndsWhileItReads) {

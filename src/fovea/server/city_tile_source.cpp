@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "fovea/core/read_file.h"
 #include "fovea/exporting/city/city_tileset_json.h"
@@ -19,6 +21,12 @@ constexpr const char *kTileset = "tileset", *kOverview = "overview", *kNodes = "
 constexpr const char *kJson = ".json", *kGlb = ".glb";
 constexpr std::size_t kMostOpenTiles = 8;
 constexpr double kGuessedHeight = 1000;  // m, above and below the origin
+
+/// The coarsest level of an overview whose points are at most half the spacing of a node apart: two
+/// grids of one spacing would leave holes in each other.
+std::size_t level_for(double spacing, double spacing_of_overview) {
+  return static_cast<std::size_t>(std::max(0.0, std::log2(spacing / spacing_of_overview) - 1));
+}
 
 }  // namespace
 
@@ -92,9 +100,11 @@ CityTileShape CityTileSource::shape(std::size_t tile) {
 std::string CityTileSource::tree_json(const CityNode& root, const std::string& to_tiles,
                                       const std::string& to_nodes) const {
   CityTilesetForm form;
-  // Nodes above the parts of a large city have no points: all overviews would have to be read.
+  // Without files of the exposure, the nodes above the parts of a large city have no points: all
+  // maps would have to be read.
   form.content = [&](const CityNode& node) {
-    return node.tiles <= kMostTilesOfTileset ? to_nodes + node.name + kGlb : std::string();
+    const bool has_points = node.tiles <= kMostTilesOfTileset || files_have_exposure();
+    return has_points ? to_nodes + node.name + kGlb : std::string();
   };
   form.subtree = [&](const CityNode& node) { return to_nodes + node.name + kJson; };
   form.tile = [&](const CityNode& node) {
@@ -152,29 +162,30 @@ SiteContent::Bytes CityTileSource::make_of_tree(const std::string& name,
 }
 
 SiteContent::Bytes CityTileSource::node_content(const CityNode& node) {
-  const auto path = [](const CityNode& of) {
-    return fmt::format("{}/{}{}", kNodes, of.name, kGlb);
-  };
+  const std::string path = fmt::format("{}/{}{}", kNodes, node.name, kGlb);
   const std::lock_guard one_at_a_time(making_nodes_);
-  for_each_city_node(
-      node,
-      [&](const CityNode& of) -> std::optional<std::vector<ExportPoint>> {
-        if (of.tile) return overview_points_of(*of.tile);
-        const Bytes cached = find_cached(path(of));
-        if (!cached) return std::nullopt;
-        return read_glb(*cached, path(of));
-      },
-      [&](const CityNode& of, const std::vector<ExportPoint>& points) {
-        cache(path(of), make_glb(points, true).bytes);
-      });
-  return find_cached(path(node));
+  if (const Bytes cached = find_cached(path)) return cached;
+  std::vector<ExportPoint> points;
+  for (const std::size_t tile : tiles_that_show(node)) {
+    const std::vector<ExportPoint> of_tile = points_for_node(tile, node);
+    points.insert(points.end(), of_tile.begin(), of_tile.end());
+  }
+  cache(path, make_glb(thinned_to_node(std::move(points), node), true).bytes);
+  return find_cached(path);
 }
 
-/// In the city's frame.
-std::vector<ExportPoint> CityTileSource::overview_points_of(std::size_t tile) {
+/// Points of a tile that are dense enough for a node. In the city's frame.
+std::vector<ExportPoint> CityTileSource::points_for_node(std::size_t tile, const CityNode& node) {
   const CityTile& place = city_.tiles[tile].tile;
+  const std::size_t level = level_for(node.spacing, overview_spacing(city_.tile_size));
   try {
-    std::vector<ExportPoint> points = read_glb(*overview(tile), tile_name(tile));
+    std::vector<ExportPoint> points;
+    if (has_overview_file(tile)) {
+      points =
+          read_glb_level(InputFile(overview_of_tile(city_.tiles[tile].map), kStreamedFile), level);
+    } else if (node.tiles <= kMostTilesOfTileset) {
+      points = read_glb_level(*overview(tile), level, tile_name(tile));
+    }  // else it would take too long to read the maps: the tile is missing from afar
     transform_points(city_.T_local_tile(place), points);
     return points;
   } catch (const std::exception& error) {
@@ -183,19 +194,21 @@ std::vector<ExportPoint> CityTileSource::overview_points_of(std::size_t tile) {
   }
 }
 
+bool CityTileSource::files_have_exposure() const { return exposure_.kind == kCityExposure.kind; }
+
+bool CityTileSource::has_overview_file(std::size_t tile) const {
+  return files_have_exposure() && std::filesystem::exists(overview_of_tile(city_.tiles[tile].map));
+}
+
 SiteContent::Bytes CityTileSource::overview(std::size_t tile) {
   const std::filesystem::path& map = city_.tiles[tile].map;
-  const std::filesystem::path file = overview_of_tile(map);
-  const bool has_exposure = exposure_.kind == kCityExposure.kind;  // that of the file
-  if (has_exposure && std::filesystem::exists(file)) {
-    const std::vector<std::uint8_t> bytes = read_bytes(file);
+  if (has_overview_file(tile)) {
+    const std::vector<std::uint8_t> bytes = read_bytes(overview_of_tile(map));
     return std::make_shared<const std::string>(bytes.begin(), bytes.end());
   }
   const std::string path = fmt::format("{}/{}{}", tile_name(tile), kOverview, kGlb);
   if (const Bytes cached = find_cached(path)) return cached;
-  const std::vector<ExportPoint> points =
-      overview_points(MapReader(map), overview_spacing(city_.tile_size), exposure_);
-  cache(path, make_glb(points, true).bytes);
+  cache(path, make_overview(map, city_.tile_size, exposure_));
   return find_cached(path);
 }
 

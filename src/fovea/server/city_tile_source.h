@@ -20,7 +20,8 @@ namespace fovea {
 /// The levels of detail of a city (docs/viewer-protocol.md):
 ///
 ///   tileset.json      the quadtree over the tiles
-///   q/NAME.glb        points of a node of the quadtree: made of the tiles' overviews
+///   q/NAME.glb        points of a node of the quadtree: made of the coarse levels of the tiles'
+///                     overviews
 ///   q/NAME.json       a part of the quadtree of a large city
 ///   X_Y/overview.glb  a tile's coarsest level: the file of 'fovea fuse', or made of the map
 ///   X_Y/tileset.json  a tile's finer levels, X_Y/NAME.glb
@@ -44,8 +45,10 @@ class CityTileSource : public SiteContent {
   Bytes make_of_tree(const std::string& name, const std::string& ending);
   Bytes make_of_tile(std::size_t tile, const std::string& name, const std::string& ending);
   Bytes node_content(const CityNode& node);
-  std::vector<ExportPoint> overview_points_of(std::size_t tile);
+  std::vector<ExportPoint> points_for_node(std::size_t tile, const CityNode& node);
   Bytes overview(std::size_t tile);
+  bool has_overview_file(std::size_t tile) const;
+  bool files_have_exposure() const;
   std::shared_ptr<MapTiles> open_tile(std::size_t tile);
 
   CityTileShape shape(std::size_t tile);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "fovea/exporting/tileset/node_points.h"
 
@@ -113,12 +114,32 @@ std::vector<ExportPoint> for_each_city_node(
     const std::vector<ExportPoint> below = for_each_city_node(child, known, f);
     points.insert(points.end(), below.begin(), below.end());
   }
+  points = thinned_to_node(std::move(points), node);
+  f(node, points);
+  return points;
+}
+
+std::vector<ExportPoint> thinned_to_node(std::vector<ExportPoint> points, const CityNode& node) {
   TileNode grid;
   grid.low = node.low;
   grid.spacing = node.spacing;
   points = thinned(points, grid);
-  f(node, points);
+  while (points.size() > kMostPointsOfNode) {
+    grid.spacing *= 2;
+    points = thinned(points, grid);
+  }
   return points;
+}
+
+std::vector<std::size_t> tiles_that_show(const CityNode& node) {
+  std::vector<std::size_t> tiles;
+  const std::function<void(const CityNode&)> collect = [&](const CityNode& below) {
+    if (below.tile) return tiles.push_back(*below.tile);
+    if (below.edge <= node.spacing) return collect(below.children.front());
+    for (const CityNode& child : below.children) collect(child);
+  };
+  collect(node);
+  return tiles;
 }
 
 void transform_points(const RigidMotion& T, std::vector<ExportPoint>& points) {

@@ -51,6 +51,16 @@ std::vector<ExportPoint> for_each_city_node(
     const std::function<std::optional<std::vector<ExportPoint>>(const CityNode&)>& known,
     const std::function<void(const CityNode&, const std::vector<ExportPoint>&)>& f);
 
+/// A node whose grid has more cells with points is thinned further.
+inline constexpr std::size_t kMostPointsOfNode = 65536;
+
+/// The points of a node, of the points of its tiles or children. In the city's frame.
+std::vector<ExportPoint> thinned_to_node(std::vector<ExportPoint> points, const CityNode& node);
+
+/// Numbers of the tiles whose points are enough for a node. Where several tiles lie in one cell of
+/// the node's grid, one of them is enough. So the number is bounded in a city of any size.
+std::vector<std::size_t> tiles_that_show(const CityNode& node);
+
 /// Moves points to another frame.
 void transform_points(const RigidMotion& T, std::vector<ExportPoint>& points);
 

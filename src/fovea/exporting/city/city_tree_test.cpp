@@ -94,6 +94,31 @@ TEST(CityTree, NodesThinThePointsOfTheirChildren) {
   EXPECT_EQ(points[0].position.x(), 5.5) << "the one nearest to the cell's middle";
 }
 
+TEST(CityTree, ANodeHasABoundedNumberOfPoints) {
+  const CityNode root = make_city_tree(square(2, 0, 0), box_of_30_m);
+  std::vector<ExportPoint> points;
+  for (int x = 0; x < 50; ++x) {
+    for (int y = 0; y < 50; ++y) {
+      for (int z = 0; z < 50; ++z) {
+        points.emplace_back().position = Eigen::Vector3d(x, y, z) + Eigen::Vector3d::Constant(0.5);
+      }
+    }
+  }
+  ASSERT_EQ(root.spacing, 1);
+  EXPECT_EQ(thinned_to_node(points, root).size(), 25u * 25u * 25u);
+}
+
+TEST(CityTree, AFewTilesAreEnoughForACoarseNode) {
+  const CityNode small = make_city_tree(square(8), box_of_30_m);
+  EXPECT_EQ(tiles_that_show(small).size(), 64u);
+  // 512 cells on the edge, so that a cell of the root's grid is 4 x 4 tiles.
+  City city = square(20);
+  city.tiles.push_back({{400, 400}, {}, 1, 1});
+  const CityNode large = make_city_tree(city, box_of_30_m);
+  ASSERT_EQ(large.spacing, 256);
+  EXPECT_THAT(tiles_that_show(large), testing::SizeIs(5 * 5 + 1));
+}
+
 CityTilesetForm form() {
   CityTilesetForm form;
   form.content = [](const CityNode& node) { return node.name + ".glb"; };
