@@ -110,6 +110,37 @@ TEST_F(CityFiles, ExportsATilesetInOneGoOrByJobs) {
               HasSubstr("the part of tile 1,0 is missing"));
 }
 
+TEST_F(CityFiles, AKilledExportOfTheRootLeavesAWholeTileset) {
+  ASSERT_EQ(run("export", "'" + path("out") + "' --format 3dtiles").exit_code, 0);
+  auto next = manifest_;
+  next["revision"] = 2;
+  next["tiles"].erase(1);
+  write_sample_manifest(folder_ / "city", next);
+  const std::string options = "'" + path("out") + "' --format 3dtiles --root-only --force";
+  const auto points_of = [&](const std::string& tileset) {
+    const auto root = nlohmann::json::parse(tileset).at("root");
+    return read_text(folder_ / "out" / root.at("content").at("uri").get<std::string>());
+  };
+  std::map<std::string, std::string> points;  // of the root, by the tileset of a revision
+  for (const char* revision : {"city/manifests/1.json", "city/manifests/2.json"}) {
+    ASSERT_EQ(run("export", options, revision).exit_code, 0);
+    const std::string tileset = read_text(folder_ / "out/tileset.json");
+    points[tileset] = points_of(tileset);
+  }
+  ASSERT_EQ(points.size(), 2u);
+  for (int i = 0; i < 40; ++i) {
+    const std::string revision = path(fmt::format("city/manifests/{}.json", 1 + i % 2));
+    run_fovea(fmt::format("export '{}' {}", revision, options),
+              fmt::format("timeout -s KILL {:.3f}", 0.001 * (1 + i)));
+    const std::string tileset = read_text(folder_ / "out/tileset.json");
+    ASSERT_TRUE(points.contains(tileset)) << "after " << i << " ms";
+    ASSERT_EQ(points_of(tileset), points[tileset]) << "after " << i << " ms";
+  }
+  EXPECT_EQ(run("export", options).exit_code, 0);
+  EXPECT_THAT(names_in("out"), UnorderedElementsAre("tileset.json", "q", "0_0", "1_0", "0_-1"));
+  EXPECT_EQ(names_in("out/q").size(), 1u);
+}
+
 TEST_F(CityFiles, ExportReplacesOnlyAnExportAndOnlyWithForce) {
   const std::string options = "'" + path("out") + "' --format ply --quiet";
   ASSERT_EQ(run("export", options).exit_code, 0);

@@ -138,6 +138,12 @@ void OutputFolder::commit() {
   sync_folder_of(target_);
 }
 
+void OutputFolder::commit_as(const std::string& name) {
+  path_.replace_filename(name);
+  target_ = check_target();
+  commit();
+}
+
 void OutputFolder::exchange() {
   std::error_code error;
   if (fs::exists(target_, error)) {

@@ -33,6 +33,8 @@ class OutputFolder {
   /// Flushes everything to disk and gives the folder its name, in one step also where it replaces
   /// another. Nothing can be written afterwards.
   void commit();
+  /// commit() under another name in the same folder: for names that depend on the contents.
+  void commit_as(const std::string& name);
 
  private:
   std::filesystem::path check_target() const;

@@ -64,6 +64,26 @@ TEST(OutputFolder, ReplacesOnlyWithForceAndOnlyItsLike) {
   EXPECT_THAT(folder.names(), ElementsAre("out"));
 }
 
+TEST(OutputFolder, GetsANameThatDependsOnItsContents) {
+  const TemporaryFolder folder;
+  const auto make = [&](bool force, const std::string& text) {
+    OutputFolder output(folder / "out", force, kContents);
+    output.write("index", text);
+    output.commit_as("out_1");
+  };
+  make(false, "old");
+  EXPECT_THAT(folder.names(), ElementsAre("out_1"));
+  EXPECT_THROW(make(false, "new"), OutputError);
+  EXPECT_THAT(folder.names(), ElementsAre("out_1"));
+  EXPECT_EQ(content(folder / "out_1/index"), "old");
+  make(true, "new");
+  EXPECT_EQ(content(folder / "out_1/index"), "new");
+  std::ofstream(folder / "out_1/letter.txt") << "dear";
+  EXPECT_THROW(make(true, "newer"), OutputError);
+  EXPECT_EQ(content(folder / "out_1/letter.txt"), "dear");
+  EXPECT_THAT(folder.names(), ElementsAre("out_1"));
+}
+
 TEST(OutputFolder, RefusesPathsWhereNoFolderCanBe) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "text";

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "fovea/core/errors.h"
@@ -17,6 +19,7 @@
 #include "fovea/exporting/city/city_tileset_json.h"
 #include "fovea/exporting/tileset/glb.h"
 #include "fovea/exporting/tileset/glb_reader.h"
+#include "fovea/map/value_hash.h"
 
 namespace fovea {
 namespace {
@@ -24,7 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTileset = "tileset.json";
-constexpr const char* kNodes = "q";  // folder of the levels above the tiles
+constexpr const char* kNodes = "q";       // folder of the levels above the tiles
+constexpr const char* kNodePrefix = "q";  // begins the names of their files
+constexpr const char* kNewNodes = "new";  // levels that have no hash yet
+constexpr std::size_t kHashDigits = 16;
 
 /// What the root must know of a tile's part.
 struct Part {
@@ -65,6 +71,77 @@ Part read_part(const fs::path& folder, const CityTile& tile) {
   }
 }
 
+bool is_node_file(const fs::path& name) {
+  const bool has_ending = name.extension() == ".glb" || name.extension() == ".json";
+  return has_ending && name.string().starts_with(kNodePrefix);
+}
+
+bool is_hash(const std::string& name) {
+  return name.size() == kHashDigits &&
+         name.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) entries.push_back(entry.path());
+  return entries;
+}
+
+/// Files of nodes that grow in one folder. The folder's name is a hash of its contents, so that a
+/// tileset never refers to nodes of another one.
+class NodeFolder {
+ public:
+  /// @param nodes  folder of all such folders
+  /// @param names  of the files to write
+  NodeFolder(const fs::path& nodes, std::vector<std::string> names)
+      : nodes_(nodes), folder_(nodes / kNewNodes, /*force=*/true, with_earlier(std::move(names))) {}
+
+  void write(const std::string& name, const std::string& bytes) {
+    folder_.write(name, bytes);
+    hash_.row();
+    hash_.value(std::string_view(name));
+    hash_.value(std::string_view(bytes));
+  }
+  /// @return the folder's name
+  std::string commit() {
+    std::string name = fmt::format("{:0{}x}", hash_.hash64(), kHashDigits);
+    folder_.commit_as(name);
+    return name;
+  }
+  /// Removes the nodes of earlier roots. Files of something else stay.
+  void remove_others(const std::string& kept) const {
+    std::error_code ignored;
+    for (const fs::path& entry : entries_of(nodes_)) {
+      const std::string name = entry.filename().string();
+      if (is_node_file(name)) fs::remove(entry, ignored);  // of an earlier version
+      if (!is_hash(name) || name == kept) continue;
+      for (const fs::path& file : entries_of(entry)) {
+        if (is_node_file(file.filename())) fs::remove(file, ignored);
+      }
+      fs::remove(entry, ignored);  // if it is empty
+    }
+  }
+
+ private:
+  /// With all names that earlier folders have, so that these can be replaced.
+  std::vector<std::string> with_earlier(std::vector<std::string> names) const {
+    std::error_code error;
+    fs::create_directory(nodes_, error);
+    if (error) throw_output_error(nodes_, error.value());
+    for (const fs::path& folder : entries_of(nodes_)) {
+      for (const fs::path& file : entries_of(folder)) {
+        if (is_node_file(file.filename())) names.push_back(file.filename().string());
+      }
+    }
+    return names;
+  }
+
+  fs::path nodes_;
+  OutputFolder folder_;
+  ValueHash hash_;
+};
+
 class RootWriter {
  public:
   RootWriter(const City& city, const fs::path& folder, const CityRootOptions& options)
@@ -77,7 +154,7 @@ class RootWriter {
   }
 
   CityRootFigures write() {
-    OutputFolder nodes(folder_ / kNodes, /*force=*/true, names_of_nodes());
+    NodeFolder nodes(folder_ / kNodes, names_of_nodes());
     CityRootFigures figures;
     for_each_city_node(
         root_, [&](const CityNode& node) { return points_of_tile(node); },
@@ -87,9 +164,12 @@ class RootWriter {
           ++figures.nodes;
         });
     write_subtrees(root_, nodes);
-    nodes.commit();
+    const std::string of_nodes = nodes.commit();
     for (const auto& [name, bytes] : options_.beside) write_file(name, bytes);
-    write_file(kTileset, city_tileset_json(root_, form("", fs::path(kNodes) / "")));
+    // Until now the earlier tileset is whole, and from now on this one.
+    write_file(kTileset,
+               city_tileset_json(root_, form("", fmt::format("{}/{}/", kNodes, of_nodes))));
+    nodes.remove_others(of_nodes);
     return figures;
   }
 
@@ -131,17 +211,17 @@ class RootWriter {
   }
 
   /// Tilesets of their own, each with all nodes below it.
-  void write_subtrees(const CityNode& node, OutputFolder& nodes) const {
+  void write_subtrees(const CityNode& node, NodeFolder& nodes) const {
     for (const CityNode& child : node.children) {
       if (child.tiles > kMostTilesOfTileset) {
         write_subtrees(child, nodes);
       } else if (begins_tileset(child, node.tiles)) {
-        nodes.write(child.name + ".json", city_tileset_json(child, form("../", "")));
+        nodes.write(child.name + ".json", city_tileset_json(child, form("../../", "")));
       }
     }
   }
 
-  /// All names that the folder of nodes may have, of this root or an earlier one.
+  /// All names that the files of nodes may have.
   std::vector<std::string> names_of_nodes() const {
     std::vector<std::string> names;
     const std::function<void(const CityNode&)> add = [&](const CityNode& node) {
@@ -150,15 +230,6 @@ class RootWriter {
       for (const CityNode& child : node.children) add(child);
     };
     add(root_);
-    for (const fs::path& folder : {folder_ / kNodes, partial_path(folder_ / kNodes)}) {
-      std::error_code error;
-      for (const auto& entry : fs::directory_iterator(folder, error)) {
-        const std::string name = entry.path().filename().string(),
-                          ending = entry.path().extension().string();
-        const bool is_node = name.starts_with("q") && (ending == ".glb" || ending == ".json");
-        if (is_node) names.push_back(name);
-      }
-    }
     return names;
   }
 

@@ -35,6 +35,11 @@ class CityRoot : public testing::Test {
                     {.points = {.include_uncolored = true, .exposure = kCityExposure}});
     }
   }
+  /// The file with the points of the root.
+  fs::path root_points() const {
+    const auto json = nlohmann::json::parse(content(out_ / "tileset.json"));
+    return out_ / json.at("root").at("content").at("uri").get<std::string>();
+  }
   std::string error_of_root() const {
     try {
       write_city_root(city_, out_, {.force = true});
@@ -120,7 +125,7 @@ TEST_F(CityRoot, EveryAddressOfALargeCityIsAFile) {
 TEST_F(CityRoot, ItsPointsAreThoseOfTheParts) {
   write_parts();
   write_city_root(city_, out_);
-  const auto points = read_glb(content(out_ / "q/q.glb"), "q.glb");
+  const auto points = read_glb(content(root_points()), "q.glb");
   EXPECT_GT(points.size(), 300u);
   Eigen::AlignedBox3d box;
   for (const ExportPoint& point : points) box.extend(point.position);
@@ -132,14 +137,46 @@ TEST_F(CityRoot, ItsPointsAreThoseOfTheParts) {
 TEST_F(CityRoot, TheSamePartsGiveTheSameBytesAndForceReplaces) {
   write_parts();
   write_city_root(city_, out_);
-  const std::string json = content(out_ / "tileset.json"), points = content(out_ / "q/q.glb");
+  const std::string json = content(out_ / "tileset.json"), points = content(root_points());
   EXPECT_THROW(write_city_root(city_, out_), OutputError);
   write_city_root(city_, out_, {.force = true});
   EXPECT_EQ(content(out_ / "tileset.json"), json);
-  EXPECT_EQ(content(out_ / "q/q.glb"), points);
-  std::ofstream(out_ / "q/notes.txt") << "mine";
+  EXPECT_EQ(content(root_points()), points);
+  const fs::path notes = root_points().parent_path() / "notes.txt";
+  std::ofstream(notes) << "mine";
   EXPECT_NE(error_of_root(), "");
-  EXPECT_EQ(content(out_ / "q/notes.txt"), "mine");
+  EXPECT_EQ(content(notes), "mine");
+}
+
+TEST_F(CityRoot, AnEndBeforeTheTilesetLeavesTheEarlierRoot) {
+  write_parts();
+  write_city_root(city_, out_);
+  const fs::path earlier = root_points();
+  const std::string json = content(out_ / "tileset.json"), points = content(earlier);
+  city_.tiles.pop_back();
+  // A file that cannot be written ends the writer between the nodes and the tileset.
+  std::ofstream(out_ / "file") << "no folder";
+  EXPECT_THROW(write_city_root(city_, out_, {.beside = {{"file/a.js", ""}}, .force = true}), Error);
+  EXPECT_EQ(content(out_ / "tileset.json"), json);
+  ASSERT_TRUE(fs::exists(earlier));
+  EXPECT_EQ(content(earlier), points);
+  // The next one removes what is no longer needed, but no files of something else.
+  std::ofstream(earlier.parent_path() / "notes.txt") << "mine";
+  write_city_root(city_, out_, {.force = true});
+  EXPECT_NE(root_points(), earlier);
+  EXPECT_NE(content(root_points()), points);
+  EXPECT_FALSE(fs::exists(earlier));
+  EXPECT_EQ(content(earlier.parent_path() / "notes.txt"), "mine");
+}
+
+TEST_F(CityRoot, ReplacesTheNodesOfEarlierVersions) {
+  write_parts();
+  fs::create_directory(out_ / "q");
+  std::ofstream(out_ / "q/q.glb") << "points";
+  std::ofstream(out_ / "tileset.json") << "{}";
+  write_city_root(city_, out_, {.force = true});
+  EXPECT_FALSE(fs::exists(out_ / "q/q.glb"));
+  EXPECT_TRUE(fs::exists(root_points()));
 }
 
 TEST_F(CityRoot, NamesPartsThatAreMissingOrDamaged) {
