@@ -13,6 +13,7 @@
 #include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/scans/sensor_scans.h"
 #include "fovea/geometry/voxel_grid.h"
+#include "fovea/localization/seen_through.h"
 #include "fovea/map/map_surfaces.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/optimizer.h"
@@ -30,8 +31,6 @@ constexpr std::size_t kMinPoints = 300, kMinStanding = 50;
 constexpr PlaceFitOptions kOnSurface{.pair_distance = 0.3f, .on_plane = 0.06f, .alike = 0.8f};
 constexpr double kMinHealth = 0.35, kMinHealthFound = 0.5;
 constexpr double kMaxCorrection = 1.5, kMaxTurn = 5 * kDegree;  // m, rad
-/// How far what stands in the map is looked for in a scan, m.
-constexpr float kSeenRange = 30;
 /// After this long without a pose the prediction is searched around, s.
 constexpr double kPredicts = 0.5;
 /// Streets repeat themselves every few metres: a place is tried from several along the way, and the
@@ -46,23 +45,6 @@ constexpr double kPairsAlike = 80;
 /// What prediction alone loses a scan along a direction that the scene leaves open, standard
 /// deviation, m (of turns: at kRotationArm).
 constexpr double kOpen = 0.2;
-
-/// Of what stands in the map near the sensor and in the scan's view, the share that the scan sees
-/// through.
-double seen_through(const RegistrationCloud& target, const RangeImage& image,
-                    const RigidMotion& T_target_lidar) {
-  const Eigen::Isometry3f T_lidar_target = T_target_lidar.inverse().cast<float>();
-  std::size_t free = 0, surface = 0;
-  for (std::size_t i = 0; i < target.points.size(); ++i) {
-    if (!is_vertical(target.normals[i])) continue;
-    const Eigen::Vector3f p_lidar = T_lidar_target * target.points[i];
-    if (p_lidar.norm() > kSeenRange) continue;
-    const Visibility visibility = image.visibility(p_lidar);
-    free += visibility == Visibility::kFree;
-    surface += visibility == Visibility::kSurface;
-  }
-  return free > 0 ? double(free) / double(free + surface) : 0;
-}
 
 /// @param open  standard deviation along the directions that the scene leaves open, as kOpen
 Eigen::Matrix<double, 6, 6> covariance_of(const RegistrationResult& registration, double open) {

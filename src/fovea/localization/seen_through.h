@@ -1,0 +1,17 @@
+// How much of a map contradicts a scan.
+#pragma once
+
+#include "fovea/geometry/rigid_motion.h"
+#include "fovea/mapping/range_image.h"
+#include "fovea/mapping/registration/registration.h"
+
+namespace fovea {
+
+/// The share of the map's vertical surfaces in view, up to 30 m from the sensor, that the scan sees
+/// through.
+/// @param target  surfaces of the map
+/// @param image   of the scan
+double seen_through(const RegistrationCloud& target, const RangeImage& image,
+                    const RigidMotion& T_target_lidar);
+
+}  // namespace fovea
