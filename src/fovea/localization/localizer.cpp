@@ -171,16 +171,24 @@ Localizer::Attempt Localizer::follow(const Scan& scan, const RigidMotion& guess)
                            options_.registration);
   const PlaceFit fit =
       place_fit(target.cloud, target.index, source, result.T_target_source, kOnSurface);
-  double free = seen_through(target.cloud, scan.image, result.T_target_source);
-  // At the right place of a city it is up to 0.5, at others around 0.7.
-  if (source_->is_of_many_drives()) free *= free;
-  attempt.health = fit.overlap * fit.on_plane * (1 - free);
+  attempt.health = fit.overlap * fit.on_plane * (1 - contradiction(scan, target, result));
   result.T_target_source = T_local_target * result.T_target_source;
   const RigidMotion correction = guess.inverse() * result.T_target_source;
   attempt.fits = result.converged && fit.vertical >= kMinStanding && attempt.health >= kMinHealth &&
                  correction.translation().norm() < kMaxCorrection &&
                  rotation_angle(correction.linear()) < kMaxTurn;
   return attempt;
+}
+
+double Localizer::contradiction(const Scan& scan, const PriorMap::Target& target,
+                                const RegistrationResult& result) const {
+  if (!source_->is_of_many_drives()) {
+    return seen_through(target.cloud, scan.image, result.T_target_source);
+  }
+  // A city has cars that were parked there on other days. Above the sensor there are few of them:
+  // the scan sees through up to a third at the right place, and mostly more at others.
+  const double free = seen_through(target.cloud, scan.image, result.T_target_source, /*lowest=*/0);
+  return free * free;
 }
 
 Localizer::Attempt Localizer::look_around(const Scan& scan, const RigidMotion& guess) {

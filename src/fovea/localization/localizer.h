@@ -103,6 +103,9 @@ class Localizer {
   /// The points of a scan where the map has something; none if these are too few to tell anything.
   RegistrationCloud covered(const Scan& scan, const PriorMap::Target& target,
                             const RigidMotion& T_target_lidar, double height) const;
+  /// How far the map contradicts a scan at a pose, 0 to 1.
+  double contradiction(const Scan& scan, const PriorMap::Target& target,
+                       const RegistrationResult& result) const;
   MotionModel new_motion_model() const;
   Attempt follow(const Scan& scan, const RigidMotion& guess_T_local_lidar);
   Attempt look_around(const Scan& scan, const RigidMotion& guess_T_local_lidar);

@@ -13,6 +13,7 @@
 #include "fovea/core/parallel.h"
 #include "fovea/core/random.h"
 #include "fovea/localization/localize_drive.h"
+#include "fovea/map/map_surfaces.h"
 #include "fovea/pipeline/map_drive.h"
 
 namespace fovea::localizer_test {
@@ -170,6 +171,48 @@ TEST_F(Localize, AnotherPlaceIsNotTakenForThisOne) {
       EXPECT_NE(frame.state, kLocalized) << frame.index;
       EXPECT_LT(frame.health, 0.5) << frame.index;
     }
+  }
+}
+
+/// A map in place of a city that still has the cars of other days along the street.
+class CityWithCars : public SurfaceSource {
+ public:
+  explicit CityWithCars(std::unique_ptr<SurfaceSource> map) : map_(std::move(map)) {}
+
+  std::vector<Eigen::Vector3f> points_near(const Eigen::Vector3d& center_local,
+                                           double radius) override {
+    std::vector<Eigen::Vector3f> points = map_->points_near(center_local, radius);
+    for (const double side : {-3.5, -2.5, 2.5, 3.5}) {
+      for (double x = -20; x < 40; x += MapSurfaces::kVoxel) {
+        for (double z = -1.5; z < -0.2; z += MapSurfaces::kVoxel) {
+          const Eigen::Vector3d p = Eigen::Vector3d(x, side, z) - center_local;
+          if (p.norm() < radius) points.push_back(p.cast<float>());
+        }
+      }
+    }
+    return points;
+  }
+  std::vector<FrameRecord> new_frames_near(const Eigen::Vector3d& place_local) override {
+    return map_->new_frames_near(place_local);
+  }
+  std::vector<FrameRecord> new_frames() override { return map_->new_frames(); }
+  bool is_of_many_drives() const override { return true; }
+
+ private:
+  std::unique_ptr<SurfaceSource> map_;
+};
+
+TEST_F(Localize, CarsOfOtherDaysInACityDoNotHideThePlace) {
+  const Visit visit(town_scene(), 1.5, 0.9, 12);
+  LocalizationJob job;
+  job.guess = navigation_of(visit);
+  const LocalizedDrive localized = localize_drive(
+      visit, std::make_unique<CityWithCars>(map_surface_source(map_)), job, [](int, int) {});
+  for (const Localization& frame : localized.frames) {
+    ASSERT_EQ(frame.state, kLocalized) << frame.index;
+    const RigidMotion error =
+        visit.T_local_lidar[std::size_t(frame.index)].inverse() * frame.T_local_lidar;
+    EXPECT_LT(error.translation().norm(), 0.05) << frame.index;
   }
 }
 

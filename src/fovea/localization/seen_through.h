@@ -1,6 +1,8 @@
 // How much of a map contradicts a scan.
 #pragma once
 
+#include <limits>
+
 #include "fovea/geometry/rigid_motion.h"
 #include "fovea/mapping/range_image.h"
 #include "fovea/mapping/registration/registration.h"
@@ -11,7 +13,9 @@ namespace fovea {
 /// through.
 /// @param target  surfaces of the map
 /// @param image   of the scan
+/// @param lowest  surfaces below do not count: height above the sensor, m
 double seen_through(const RegistrationCloud& target, const RangeImage& image,
-                    const RigidMotion& T_target_lidar);
+                    const RigidMotion& T_target_lidar,
+                    float lowest = std::numeric_limits<float>::lowest());
 
 }  // namespace fovea
