@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kVersion = 1;
 constexpr const char* kManifest = "city.json";
 constexpr const char* kManifests = "manifests";  // folder of all revisions
+constexpr double kMostDistance = 1e6;            // m, of a tile from the origin
 constexpr const char* kRemedy = "build the city again with 'python3 -m fovea.city build'";
 
 /// A file below the city's folder.
@@ -41,20 +42,19 @@ int revision_of(const Json& json) {
   return static_cast<int>(revision);
 }
 
-std::int32_t place_of(const Json& json) {
-  constexpr std::int64_t kMost = 1 << 30;
-  const bool is_whole = json.is_number_integer();
-  const auto place = is_whole ? json.get<std::int64_t>() : std::int64_t{0};
-  if (!is_whole || place < -kMost || place > kMost) {
+std::int32_t place_of(const Json& json, double tile_size) {
+  const double place = json.is_number_integer() ? json.get<double>() : kMostDistance;
+  if (!(std::abs(place) * tile_size < kMostDistance)) {
     throw std::invalid_argument(json.dump() + " is no place of a tile");
   }
   return static_cast<std::int32_t>(place);
 }
 
-CityTileFile tile_of(const Json& json, const fs::path& folder) {
+/// @param city  with its folder and the size of its tiles
+CityTileFile tile_of(const Json& json, const City& city) {
   CityTileFile tile;
-  tile.tile = {place_of(json.at("x")), place_of(json.at("y"))};
-  tile.map = file_of(json.at("file"), folder);
+  tile.tile = {place_of(json.at("x"), city.tile_size), place_of(json.at("y"), city.tile_size)};
+  tile.map = file_of(json.at("file"), city.folder);
   tile.points = count_of(json.at("points"));
   tile.revision = revision_of(json.at("revision"));
   return tile;
@@ -66,6 +66,7 @@ CityDrive drive_of(const Json& json, const fs::path& folder) {
   drive.path = json.at("path").get<std::string>();
   drive.frames = count_of(json.at("frames"));
   drive.length = json.at("length_m").get<double>();
+  if (!(drive.length >= 0)) throw std::invalid_argument("the length of a drive is impossible");
   for (const Json& map : list_at(json, "maps")) drive.maps.push_back(file_of(map, folder));
   return drive;
 }
@@ -84,7 +85,7 @@ void read_manifest(const Json& json, City& city) {
   city.poses = file_of(json.at("poses"), city.folder);
   for (const Json& drive : list_at(json, "drives"))
     city.drives.push_back(drive_of(drive, city.folder));
-  for (const Json& tile : list_at(json, "tiles")) city.tiles.push_back(tile_of(tile, city.folder));
+  for (const Json& tile : list_at(json, "tiles")) city.tiles.push_back(tile_of(tile, city));
 }
 
 }  // namespace

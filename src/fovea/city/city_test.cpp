@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "../../../tests/sample_city.h"
 #include "fovea/city/json_file_test_support.h"
@@ -101,8 +103,18 @@ TEST_F(Manifest, ImpossibleValuesAreRefused) {
   expect_damaged_with("/origin/latitude_deg", 91);
   expect_damaged_with("/tiles/0/file", "../other/tile.fovea");
   expect_damaged_with("/tiles/0/file", "/etc/passwd");
+  expect_damaged_with("/drives/0/length_m", -5.0);
   expect_damaged_with("/tiles/0/points", -5);
+  expect_damaged_with("/tiles/0/x", 1.5);
   expect_damaged_with("/tiles", 5);
+}
+
+TEST_F(Manifest, ATileLiesWithin1000KilometersOfTheOrigin) {
+  // Nothing of the grid is so far away: the pose of such a tile would not be finite.
+  expect_damaged_with("/tiles/0/x", 1 << 30);
+  expect_damaged_with("/tiles/0/y", -(1 << 30));
+  // As a signed number it would be -5.
+  expect_damaged_with("/tiles/0/y", std::numeric_limits<std::uint64_t>::max() - 4);
 }
 
 TEST_F(Manifest, NamesATileThatIsTwiceOrMissing) {
