@@ -100,6 +100,36 @@ TEST(GlbReader, ImpossibleLevelsAreErrors) {
   }
 }
 
+/// The file with other numbers for a text of the same length.
+std::string with(std::string bytes, const std::string& text, std::string other) {
+  other.resize(text.size(), ' ');
+  return bytes.replace(bytes.find(text), text.size(), other);
+}
+
+TEST(GlbReader, ImpossiblePositionsAreErrors) {
+  const Glb glb = make_glb(some_points(), true);
+  constexpr std::string_view kMatrix = "\"matrix\":[";
+  const std::size_t begin = glb.bytes.find(kMatrix) + kMatrix.size();
+  const std::string step = glb.bytes.substr(begin, glb.bytes.find(',', begin) - begin);
+  for (const char* impossible : {"0", "-1", "1e300", "1e5"}) {
+    EXPECT_THROW(read_glb(with(glb.bytes, step, impossible), "a.glb"), InputError) << impossible;
+  }
+  EXPECT_THROW(read_glb(with(glb.bytes, ",10,30,21,1]", ",1e9,0,0,1]"), "a.glb"), InputError);
+  EXPECT_THROW(read_glb(with(glb.bytes, "\"max\":[65535", "\"max\":[-1"), "a.glb"), InputError);
+}
+
+TEST(GlbReader, AnImpossibleFrameIsAnError) {
+  const std::string whole = make_glb(some_points(), true).bytes;
+  const float frame = 123'456;
+  const std::string known(reinterpret_cast<const char*>(&frame), sizeof(frame));
+  for (const float impossible : {1e32f, -1e32f, std::nanf("")}) {
+    const std::string other(reinterpret_cast<const char*>(&impossible), sizeof(impossible));
+    std::string bytes = whole;
+    bytes.replace(bytes.rfind(known), known.size(), other);
+    EXPECT_THROW(read_glb(bytes, "a.glb"), InputError) << impossible;
+  }
+}
+
 TEST(GlbReader, DamagedFilesAreErrors) {
   const std::string whole = make_glb(some_points(), true).bytes;
   for (const std::size_t size :
