@@ -31,7 +31,6 @@ struct SquaredDistance : nanoflann::L2_Simple_Adaptor<float, PointsAdaptor> {
 
 using NanoflannTree =
     nanoflann::KDTreeSingleIndexAdaptor<SquaredDistance, PointsAdaptor, 3, std::uint32_t>;
-constexpr std::size_t kLeafSize = 16;
 
 /// nanoflann result set that keeps one point within a bound; of equally near ones the lowest index.
 class NearestResult {
@@ -67,16 +66,31 @@ class NearestResult {
   float limit_ = 0;
 };
 
+/// The same for points without a mark.
+class NearestUnmarked : public NearestResult {
+ public:
+  NearestUnmarked(float squared_bound, std::span<const std::uint8_t> marks)
+      : NearestResult(squared_bound), marks_(marks) {}
+
+  bool addPoint(float squared, std::uint32_t index) {
+    return marks_[index] != 0 || NearestResult::addPoint(squared, index);
+  }
+
+ private:
+  std::span<const std::uint8_t> marks_;
+};
+
 }  // namespace
 
 struct KdTree::Index {
   PointsAdaptor adaptor;
   NanoflannTree tree;
-  explicit Index(std::span<const Eigen::Vector3f> points)
-      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {}
+  Index(std::span<const Eigen::Vector3f> points, std::size_t leaf_size)
+      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(leaf_size)) {}
 };
 
-KdTree::KdTree(std::span<const Eigen::Vector3f> points) : index_(std::make_unique<Index>(points)) {}
+KdTree::KdTree(std::span<const Eigen::Vector3f> points, std::size_t leaf_size)
+    : index_(std::make_unique<Index>(points, leaf_size)) {}
 KdTree::~KdTree() = default;
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
@@ -89,10 +103,19 @@ KdTree::Neighbor KdTree::nearest(const Eigen::Vector3f& query, float max_distanc
   return result.best();
 }
 
+KdTree::Neighbor KdTree::nearest_unmarked(const Eigen::Vector3f& query,
+                                          std::span<const std::uint8_t> marks) const {
+  NearestUnmarked result(kAnyDistance * kAnyDistance, marks);
+  if (!index_->adaptor.points.empty()) {
+    index_->tree.findNeighbors(result, query.data(), nanoflann::SearchParams());
+  }
+  return result.best();
+}
+
 void KdTree::nearest_k(const Eigen::Vector3f& query, std::size_t k,
                        std::vector<Neighbor>& neighbors) const {
-  thread_local std::vector<std::uint32_t> indices;
-  thread_local std::vector<float> squared;
+  static thread_local std::vector<std::uint32_t> indices;
+  static thread_local std::vector<float> squared;
   indices.resize(k);
   squared.resize(k);
   const std::size_t found =

@@ -18,9 +18,13 @@ std::vector<Eigen::Vector3f> random_points(std::size_t count, std::uint64_t seed
   return points;
 }
 
-TEST(KdTree, FindsWhatATestOfAllPointsFinds) {
+class KdTreeOfLeafSize : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(, KdTreeOfLeafSize,
+                         testing::Values(KdTree::kLeafSize, KdTree::kLargeLeafSize));
+
+TEST_P(KdTreeOfLeafSize, FindsWhatATestOfAllPointsFinds) {
   const auto points = random_points(3000, 1);
-  const KdTree tree(points);
+  const KdTree tree(points, GetParam());
   std::vector<KdTree::Neighbor> found;
   for (const Eigen::Vector3f& query : random_points(200, 2)) {
     std::vector<std::pair<float, std::uint32_t>> all;
@@ -52,6 +56,25 @@ TEST(KdTree, OfEquallyNearPointsTheFirst) {
   const KdTree tree(points);
   EXPECT_EQ(tree.nearest({1, 2, 4}).index, 1u);
   EXPECT_EQ(tree.nearest({1, 2, 3}).index, 1u);
+}
+
+TEST(KdTree, NearestUnmarkedIsTheNearestInATreeWithoutTheMarkedPoints) {
+  const auto points = random_points(3000, 3);
+  std::vector<std::uint8_t> marks;
+  std::vector<Eigen::Vector3f> others;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    marks.push_back(i % 3 != 1);
+    if (marks.back() == 0) others.push_back(points[i]);
+  }
+  const KdTree tree(points), tree_of_others(others);
+  for (const Eigen::Vector3f& query : random_points(200, 4)) {
+    const KdTree::Neighbor found = tree.nearest_unmarked(query, marks);
+    const KdTree::Neighbor expected = tree_of_others.nearest(query);
+    EXPECT_EQ(found.squared_distance, expected.squared_distance);
+    EXPECT_EQ(points[found.index], others[expected.index]);
+  }
+  const std::vector<std::uint8_t> all(points.size(), 1);
+  EXPECT_TRUE(std::isinf(tree.nearest_unmarked({0, 0, 0}, all).squared_distance));
 }
 
 TEST(KdTree, SmallAndEmptyInputs) {
