@@ -92,7 +92,12 @@ std::vector<Disc> project(const ColoredPoints& map, const std::vector<float>& sp
   const ViewVolume volume(camera, T_cam_map, options);
   const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  std::size_t candidates = 0;
+  for (const PointRun& run : map.runs) {
+    if (volume.may_contain(run)) candidates += run.end - run.begin;
+  }
   std::vector<Disc> discs;
+  discs.reserve(candidates);  // a vector that grows takes three times the memory
   for (const PointRun& run : map.runs) {
     if (!volume.may_contain(run)) continue;
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
