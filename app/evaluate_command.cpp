@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/drive_arguments.h"
@@ -136,6 +137,11 @@ std::string calibration_of(const EvaluateArguments& arguments, const ScoredMap& 
   return has_stored_calibration(map.meta) ? arguments.map : kDrive;
 }
 
+/// A copy if the map is used again, else the map itself: its points take memory.
+ScoredMap take(ScoredMap& map, bool is_used_again) {
+  return is_used_again ? map : std::exchange(map, {});
+}
+
 void run(EvaluateArguments arguments, Warnings& warnings) {
   arguments.truth = arguments.truth || arguments.protocol == kTruth;
   if (arguments.truth) arguments.protocol = kTruth;
@@ -163,7 +169,8 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
     drive = with_stored_calibration(std::move(drive), meta, calibration);
   }
   if (arguments.truth) {
-    TruthEvaluation evaluation = evaluate_truth_points(map, *drive, {.align = !arguments.no_align});
+    TruthEvaluation evaluation =
+        evaluate_truth_points(take(map, html.has_value()), *drive, {.align = !arguments.no_align});
     evaluation.report.warnings = drive->info().warnings;
     put_report(evaluation.report, json, warnings);
     if (html) {
@@ -172,7 +179,7 @@ void run(EvaluateArguments arguments, Warnings& warnings) {
       html->commit();
     }
   } else {
-    EvaluationReport report = evaluate(map, *drive, options);
+    EvaluationReport report = evaluate(take(map, html || arguments.color_rules), *drive, options);
     report.calibration = calibration;
     if (arguments.color_rules) report.color_rules = compare_color_rules(map, *drive, options);
     const std::vector<std::string>& of_drive = drive->info().warnings;

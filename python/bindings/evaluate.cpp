@@ -18,13 +18,13 @@ namespace {
 
 constexpr const char* kTruth = "truth";
 
-std::string held_to_truth(const ScoredMap& map, const FrameSource& drive) {
-  return to_json(evaluate_truth(map, drive, {}));
+std::string held_to_truth(ScoredMap map, const FrameSource& drive) {
+  return to_json(evaluate_truth(std::move(map), drive, {}));
 }
 
-std::string held_to_photographs(const ScoredMap& map, const FrameSource& drive,
+std::string held_to_photographs(ScoredMap map, const FrameSource& drive,
                                 const ProtocolOptions& options, const std::string& calibration) {
-  EvaluationReport report = evaluate(map, drive, options, [](std::size_t, std::size_t) {
+  EvaluationReport report = evaluate(std::move(map), drive, options, [](std::size_t, std::size_t) {
     const py::gil_scoped_acquire running;
     raise_signals();
   });
@@ -51,9 +51,9 @@ py::object evaluate_map(const std::filesystem::path& file, const std::filesystem
     }
     const bool corrected = has_stored_calibration(map.meta);
     if (corrected) drive = with_stored_calibration(std::move(drive), map.meta, file);
-    report = protocol == kTruth
-                 ? held_to_truth(map, *drive)
-                 : held_to_photographs(map, *drive, options, corrected ? file.string() : "drive");
+    report = protocol == kTruth ? held_to_truth(std::move(map), *drive)
+                                : held_to_photographs(std::move(map), *drive, options,
+                                                      corrected ? file.string() : "drive");
   }
   return json_object(report);
 }

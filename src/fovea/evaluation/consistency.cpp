@@ -40,8 +40,9 @@ bool patch_covered(const SplatView& drawn, int left, int top) {
   return true;
 }
 
-void add(std::int64_t& sum, std::int64_t value) {
-  std::atomic_ref<std::int64_t>(sum).fetch_add(value, std::memory_order_relaxed);
+template <class Sum>
+void add(Sum& sum, Sum value) {
+  std::atomic_ref<Sum>(sum).fetch_add(value, std::memory_order_relaxed);
 }
 
 /// Color codes of a pixel; nothing if a channel is saturated or noise.
@@ -116,8 +117,8 @@ void CrossViewTest::add_view(const SplatView& drawn, const Camera& camera,
       Sums& sums = sums_[i / kStride];
       add(sums.views, 1);
       for (int c = 0; c < 3; ++c) add(sums.codes[std::size_t(c)], in_map[c]);
-      add(sums.squares, in_map.square().sum());
-      add(sums.errors, error.square().sum());
+      add(sums.squares, std::int64_t{in_map.square().sum()});
+      add(sums.errors, std::int64_t{error.square().sum()});
     }
   }
 }

@@ -52,8 +52,9 @@ class CrossViewTest {
 
  private:
   struct Sums {
-    std::int64_t views = 0, squares = 0, errors = 0;
-    std::array<std::int64_t, 3> codes{};  // in the exposure of the map
+    std::int64_t squares = 0, errors = 0;
+    std::int32_t views = 0;
+    std::array<std::int32_t, 3> codes{};  // in the exposure of the map
   };
   const ColoredPoints& map_;
   std::vector<Sums> sums_;  // of points 0, kStride, ...

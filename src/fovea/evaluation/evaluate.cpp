@@ -1,5 +1,7 @@
 #include "fovea/evaluation/evaluate.h"
 
+#include <utility>
+
 #include "fovea/core/errors.h"
 #include "fovea/evaluation/distribution.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
@@ -55,14 +57,16 @@ class BlockCollector {
 
 }  // namespace
 
-EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
-                          const ProtocolOptions& options, const EvaluationProgress& progress) {
-  if (!has_colors(map)) return evaluate_uncolored(map, drive, options, progress);
+EvaluationReport evaluate(ScoredMap map, const FrameSource& drive, const ProtocolOptions& options,
+                          const EvaluationProgress& progress) {
+  if (!has_colors(map)) return evaluate_uncolored(std::move(map), drive, options, progress);
   const EvaluationSetup setup = prepare_evaluation(map, drive, options);
   const std::vector<PlacedFrame>& frames = setup.frames;
-  Scorer scorer(map, drive, setup.scoring);
+  const std::size_t map_points = map.points_local.size();
+  Scorer scorer(std::move(map), drive, setup.scoring);
   std::vector<FrameScore> scores =
       score_frames(frames, progress, [&](const PlacedFrame& frame) { return scorer.score(frame); });
+  scorer.free_indexes();
 
   EvaluationReport report;
   report.protocol = options.protocol;
@@ -123,7 +127,7 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
   report.thickness = plane_thickness(scorer.coloured().position);
   report.scan_scores = scan_scores(scorer.testable_points(), positions, distances);
   report.share_within_2mm = share_within(distances, 0.002f);
-  report.stray = pose_stray(map.frames, frames);
+  report.stray = pose_stray(scorer.map_frames(), frames);
   report.blocks = block_collector.reports();
   if (setup.scoring.moving) {
     report.without_moving =
@@ -135,7 +139,7 @@ EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
       paper_like_errors.position.empty() ? report.figures : summarize(paper_like_errors);
   report.free_space = scorer.free_space();
   report.density_per_m2 = surface_density(scorer.coloured().position, positions);
-  report.map_points = map.points_local.size();
+  report.map_points = map_points;
   report.map_points_coloured = scorer.coloured().position.size();
   report.warnings = warnings(report);
   return report;

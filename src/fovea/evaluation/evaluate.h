@@ -16,7 +16,8 @@ using EvaluationProgress = std::function<void(std::size_t done, std::size_t tota
 /// (evaluate_uncolored). InputError if nothing can be scored (no map point, no frame, no evaluated
 /// point) or the protocol does not fit the map (see
 /// select_frames); ConfigError for a camera that the drive was not opened with.
-EvaluationReport evaluate(const ScoredMap& map, const FrameSource& drive,
-                          const ProtocolOptions& options, const EvaluationProgress& progress = {});
+/// @param map  move it here if it is not used again: a second copy of its points takes memory
+EvaluationReport evaluate(ScoredMap map, const FrameSource& drive, const ProtocolOptions& options,
+                          const EvaluationProgress& progress = {});
 
 }  // namespace fovea

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "fovea/core/errors.h"
 #include "fovea/evaluation/evaluate_uncolored.h"
@@ -18,22 +19,27 @@ namespace {
 constexpr double kDriftLength = 10;  // m
 
 /// The points with colors; of a map without colors all points.
-PointCloud scored_points(const PointCloud& points) {
+PointCloud scored_points(PointCloud points) {
+  if (points.empty()) throw InputError("the map is empty", "evaluation", "map a drive first");
   std::vector<std::uint32_t> coloured;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (points.camera[i] != kNoCamera) coloured.push_back(i);
   }
-  if (points.empty()) throw InputError("the map is empty", "evaluation", "map a drive first");
-  return coloured.empty() ? points : points.select(coloured);
+  if (!coloured.empty()) points.keep(coloured);
+  return points;
 }
 
 PoseFigures figures(const PoseErrors& errors) {
   return {distribution(errors.position_m), distribution(errors.rotation_deg)};
 }
 
-ColorFigures figures(const ColorErrors& errors) {
-  return {distribution(errors.raw), distribution(errors.gain),
-          share_within(errors.raw, kColorWithin), share_within(errors.gain, kColorWithin)};
+ColorFigures figures(ColorErrors errors) {
+  ColorFigures figures;
+  figures.within_20 = share_within(errors.raw, kColorWithin);
+  figures.gain_within_20 = share_within(errors.gain, kColorWithin);
+  figures.raw = distribution(std::move(errors.raw));
+  figures.gain = distribution(std::move(errors.gain));
+  return figures;
 }
 
 void put_poses(const std::vector<PosePair>& pairs, const RigidMotion& T_true_map_as_given,
@@ -72,6 +78,7 @@ void put_ghosts(const PointCloud& points, const std::vector<std::uint8_t>& is_gh
 void put_accuracy(const SurfaceMatches& matches, const std::vector<std::uint8_t>& is_ghost,
                   const std::vector<std::uint8_t>& interpolated, TruthReport& report) {
   std::vector<float> all, parts[2];
+  all.reserve(matches.distance.size());
   for (std::size_t i = 0; i < matches.distance.size(); ++i) {
     if (is_ghost[i] != 0) continue;
     all.push_back(matches.distance[i]);
@@ -120,14 +127,14 @@ ExposureFigures exposure_figures(const std::vector<ViewExposure>& views,
 
 void put_colors(const ColouredTruth& coloured, const ScoredMap& map, const DriveTruth& truth,
                 const FrameSource& drive, const std::vector<PosePair>& pairs, TruthReport& report) {
-  const ColorErrorSets albedo =
+  ColorErrorSets albedo =
       albedo_errors(coloured, grey_cameras(truth, map.cameras, pairs.front().frame));
-  report.color_albedo = figures(albedo.all);
-  report.color_albedo_matte = figures(albedo.matte);
+  report.color_albedo = figures(std::move(albedo.all));
+  report.color_albedo_matte = figures(std::move(albedo.matte));
   if (coloured.points_true.frame.empty() || map.cameras.empty()) return;
   ViewErrors view = view_errors(coloured, truth, drive.info().calibration.cameras);
-  report.color_view = figures(view.errors.all);
-  report.color_view_matte = figures(view.errors.matte);
+  report.color_view = figures(std::move(view.errors.all));
+  report.color_view_matte = figures(std::move(view.errors.matte));
   report.exposure = exposure_figures(view.exposures, pairs);
   report.exposure.one_gain = distribution(std::move(view.one_gain));
   report.exposure.seam_p95_percent = find_seams(coloured.points_true).p95_percent;
@@ -145,20 +152,22 @@ void put_upsampling(UpsamplingErrors errors, TruthReport& report) {
 
 }  // namespace
 
-TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& drive,
+TruthEvaluation evaluate_truth_points(ScoredMap map, const FrameSource& drive,
                                       const TruthOptions& options) {
   map.points_local.check();
   const DriveTruth truth(drive.info().path);
   const std::vector<PosePair> pairs = pose_pairs(map.frames, truth);
-  PointCloud points = scored_points(map.points_local);
+  const bool colored = has_colors(map);
+  const std::size_t map_points = map.points_local.size();
+  PointCloud points = scored_points(std::move(map.points_local));
   const std::vector<Camera>& cameras = drive.info().calibration.cameras;
 
   TruthReport report;
   report.scene = truth.scene();
   for (const Camera& camera : cameras) report.cameras.push_back(camera.index);
   report.aligned = options.align;
-  report.map_points = map.points_local.size();
-  report.colored = has_colors(map);
+  report.map_points = map_points;
+  report.colored = colored;
   report.map_points_coloured = report.colored ? points.size() : 0;
 
   const std::optional<RigidMotion> T_true_map_earth = georeference(map.meta, truth.origin());
@@ -196,9 +205,8 @@ TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& d
       T_true_map};
 }
 
-TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
-                           const TruthOptions& options) {
-  return evaluate_truth_points(map, drive, options).report;
+TruthReport evaluate_truth(ScoredMap map, const FrameSource& drive, const TruthOptions& options) {
+  return evaluate_truth_points(std::move(map), drive, options).report;
 }
 
 }  // namespace fovea

@@ -28,10 +28,10 @@ struct TruthEvaluation {
 /// Every figure; the scored cameras are those that the drive was opened with. The report does not
 /// depend on the number of threads. InputError if the drive has no truth or it is damaged, if it
 /// knows none of the map's frames, or if the map has no coloured point.
-TruthEvaluation evaluate_truth_points(const ScoredMap& map, const FrameSource& drive,
+/// @param map  move it here if its points are not used again
+TruthEvaluation evaluate_truth_points(ScoredMap map, const FrameSource& drive,
                                       const TruthOptions& options);
 /// The report alone.
-TruthReport evaluate_truth(const ScoredMap& map, const FrameSource& drive,
-                           const TruthOptions& options);
+TruthReport evaluate_truth(ScoredMap map, const FrameSource& drive, const TruthOptions& options);
 
 }  // namespace fovea

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fovea/core/errors.h"
 #include "fovea/evaluation/distribution.h"
@@ -23,10 +24,10 @@ struct ScanScore {
 
 class UncoloredScorer {
  public:
-  UncoloredScorer(const ScoredMap& map, const FrameSource& drive)
+  UncoloredScorer(PointCloud map_local, const FrameSource& drive)
       : drive_(drive),
-        points_(all_points(map.points_local)),
-        tree_(points_.position),
+        points_(all_points(std::move(map_local))),
+        tree_(points_.position, KdTree::kLargeLeafSize),
         free_space_(points_) {}
 
   ScanScore score(const PlacedFrame& placed) {
@@ -86,12 +87,12 @@ bool has_colors(const ScoredMap& map) {
   return std::any_of(camera.begin(), camera.end(), [](std::int8_t c) { return c != kNoCamera; });
 }
 
-EvaluationReport evaluate_uncolored(const ScoredMap& map, const FrameSource& drive,
+EvaluationReport evaluate_uncolored(ScoredMap map, const FrameSource& drive,
                                     const ProtocolOptions& options,
                                     const EvaluationProgress& progress) {
   require_points(map, options);
   const std::vector<PlacedFrame> frames = select_frames(map, drive, options);
-  UncoloredScorer scorer(map, drive);
+  UncoloredScorer scorer(std::move(map.points_local), drive);
   EvaluationReport report;
   report.protocol = options.protocol;
   report.colored = false;
@@ -122,7 +123,7 @@ EvaluationReport evaluate_uncolored(const ScoredMap& map, const FrameSource& dri
   report.stray = pose_stray(map.frames, frames);
   report.free_space = scorer.free_space();
   report.density_per_m2 = surface_density(scorer.points().position, positions);
-  report.map_points = map.points_local.size();
+  report.map_points = scorer.points().position.size();
   report.warnings = warnings(report);
   return report;
 }

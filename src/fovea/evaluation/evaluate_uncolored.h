@@ -11,7 +11,7 @@ bool has_colors(const ScoredMap& map);
 /// Figures of positions, see evaluate(). The evaluated set is every scan point at 3 to 15 m, in all
 /// directions. Figures of colors and pictures are absent (NaN). InputError as evaluate(), and for
 /// the protocol cross-camera.
-EvaluationReport evaluate_uncolored(const ScoredMap& map, const FrameSource& drive,
+EvaluationReport evaluate_uncolored(ScoredMap map, const FrameSource& drive,
                                     const ProtocolOptions& options,
                                     const EvaluationProgress& progress = {});
 

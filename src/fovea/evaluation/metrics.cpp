@@ -42,14 +42,17 @@ float color_error(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool
 
 NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
                                std::span<const LogColor> color,
-                               std::span<const std::uint8_t> interpolated) {
+                               std::span<const std::uint8_t> interpolated,
+                               std::span<const std::uint8_t> left_out) {
   constexpr std::size_t kGrain = 2048;
   NearestSamples found{std::vector<float>(positions.size()),
                        std::vector<Eigen::Vector3f>(positions.size()),
                        std::vector<std::uint8_t>(interpolated.empty() ? 0 : positions.size()),
                        std::vector<std::uint32_t>(positions.size())};
   parallel_for(positions.size(), kGrain, [&](std::size_t i) {
-    const KdTree::Neighbor nearest = tree.nearest(positions[i]);
+    const KdTree::Neighbor nearest = left_out.empty()
+                                         ? tree.nearest(positions[i])
+                                         : tree.nearest_unmarked(positions[i], left_out);
     found.distance[i] = std::sqrt(nearest.squared_distance);
     found.color[i] = to_float(color[nearest.index]);
     found.index[i] = static_cast<std::uint32_t>(nearest.index);
@@ -58,17 +61,23 @@ NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, co
   return found;
 }
 
+void GainFit::add(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool grey) {
+  const Eigen::Array3d c = truth.cast<double>();
+  const Eigen::Array3d n =
+      grey ? Eigen::Array3d::Constant(luma(map)).eval() : Eigen::Array3d(map.cast<double>());
+  products_ += c * n;
+  squares_ += n * n;
+}
+
+Eigen::Vector3f GainFit::gains() const {
+  return (squares_ > 0).select(products_ / squares_, 1.0).cast<float>();
+}
+
 Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
                           const std::vector<Eigen::Vector3f>& map, bool grey) {
-  Eigen::Array3d products = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const Eigen::Array3d c = truth[i].cast<double>();
-    const Eigen::Array3d n = grey ? Eigen::Array3d::Constant(luma(map[i])).eval()
-                                  : Eigen::Array3d(map[i].cast<double>());
-    products += c * n;
-    squares += n * n;
-  }
-  return (squares > 0).select(products / squares, 1.0).cast<float>();
+  GainFit fit;
+  for (std::size_t i = 0; i < truth.size(); ++i) fit.add(truth[i], map[i], grey);
+  return fit.gains();
 }
 
 void PointErrors::append(const PointErrors& other) {

@@ -32,13 +32,24 @@ struct NearestSamples {
 /// @param tree          of the map's points, in the frame and origin of `positions`; not empty
 /// @param color         of the same points
 /// @param interpolated  of the same points, or empty
+/// @param left_out      marks of the same points: 1 is none of the map; empty: all are
 NearestSamples nearest_samples(const std::vector<Eigen::Vector3f>& positions, const KdTree& tree,
                                std::span<const LogColor> color,
-                               std::span<const std::uint8_t> interpolated = {});
+                               std::span<const std::uint8_t> interpolated = {},
+                               std::span<const std::uint8_t> left_out = {});
 
-/// The gains that take the map's exposure to this view's: per channel the g_c of least squares,
+/// Fits the gains that take the map's exposure to a view's: per channel the g_c of least squares,
 /// minimising sum (C_c - g_c * C_n,c)^2, not clamped; 1 where the map is black. One gain for a grey
 /// camera.
+class GainFit {
+ public:
+  void add(const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool grey);
+  Eigen::Vector3f gains() const;
+
+ private:
+  Eigen::Array3d products_ = Eigen::Array3d::Zero(), squares_ = Eigen::Array3d::Zero();
+};
+/// Of all points of a view.
 Eigen::Vector3f fit_gains(const std::vector<Eigen::Vector3f>& truth,
                           const std::vector<Eigen::Vector3f>& map, bool grey);
 

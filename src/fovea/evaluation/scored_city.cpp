@@ -60,29 +60,56 @@ std::map<int, int> numbers_in_tile(const MapReader& map, const DriveInCity& driv
   return numbers;
 }
 
-/// Appends the points of a tile that lie near the path.
-void append_tile(const City& city, const CityTileFile& file, const DriveInCity& drive,
-                 const std::vector<Eigen::Vector3d>& path, ScoredMap& scored) {
-  const MapReader map(file.map);
-  const auto held = map.hold_state();
-  const std::map<int, int> numbers = numbers_in_tile(map, drive);
+/// A part of a city's tile that lies near the path.
+struct NearTile {
+  TileId id;
+  std::size_t points = 0;
+  RigidMotion T_city_submap;
+};
+
+std::vector<NearTile> tiles_near(const City& city, const CityTile& tile, const MapReader& map,
+                                 const std::vector<Eigen::Vector3d>& path) {
   const double tile_size = map_tile_size(map.meta());
   const double reach = kScoredReach + reach_of_tile(tile_size);
   std::vector<RigidMotion> T_city_submap = map.submaps();
-  for (RigidMotion& T : T_city_submap) T = city.T_local_tile(file.tile) * T;
+  for (RigidMotion& T : T_city_submap) T = city.T_local_tile(tile) * T;
+  std::vector<NearTile> near;
   for (const auto& [id, points] : map.tile_sizes()) {
     const RigidMotion& T = T_city_submap.at(id.submap);
     const Eigen::Vector3d middle = T * middle_of(id.key, tile_size);
     const bool is_near = std::any_of(path.begin(), path.end(), [&](const Eigen::Vector3d& place) {
       return (place - middle).norm() <= reach;
     });
-    if (!is_near) continue;
-    PointCloud part = scored_columns(map.read_tile(id));
+    if (is_near) near.push_back({id, points, T});
+  }
+  return near;
+}
+
+std::size_t points_near(const City& city, const std::vector<std::size_t>& tiles,
+                        const std::vector<Eigen::Vector3d>& path) {
+  std::size_t points = 0;
+  for (const std::size_t number : tiles) {
+    const CityTileFile& file = city.tiles[number];
+    for (const NearTile& near : tiles_near(city, file.tile, MapReader(file.map), path)) {
+      points += near.points;
+    }
+  }
+  return points;
+}
+
+/// Appends the points of a tile that lie near the path.
+void append_tile(const City& city, const CityTileFile& file, const DriveInCity& drive,
+                 const std::vector<Eigen::Vector3d>& path, ScoredMap& scored) {
+  const MapReader map(file.map);
+  const auto held = map.hold_state();
+  const std::map<int, int> numbers = numbers_in_tile(map, drive);
+  for (const NearTile& near : tiles_near(city, file.tile, map, path)) {
+    PointCloud part = scored_columns(map.read_tile(near.id));
     for (std::int32_t& frame : part.frame) {
       const auto number = numbers.find(frame);
       frame = number == numbers.end() ? -1 : number->second;
     }
-    append_points(std::move(part), T, scored);
+    append_points(std::move(part), near.T_city_submap, scored);
   }
 }
 
@@ -96,7 +123,7 @@ ScoredMap load_scored_city(const City& city, const DriveInCity& drive) {
   if (!tiles.empty()) {
     scored.meta = meta_of(city, drive.name, city.tiles[tiles.front()].map);
   }
-  begin_points(scored);
+  begin_points(scored, points_near(city, tiles, path));
   for (const std::size_t number : tiles) {
     append_tile(city, city.tiles[number], drive, path, scored);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/core/parallel.h"
+#include "fovea/core/process_memory.h"
 #include "fovea/evaluation/evaluate.h"
 
 namespace fovea {
@@ -22,6 +23,7 @@ auto score_frames(const std::vector<PlacedFrame>& frames, const EvaluationProgre
   std::size_t done = 0;
   parallel_for(frames.size(), 1, [&](std::size_t i) {
     scores[i] = score(frames[i]);
+    release_free_memory();  // each frame has blocks of other sizes, and the allocator keeps them
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
     progress(++done, frames.size());

@@ -86,7 +86,7 @@ ScoredMap load_scored_map(const MapReader& reader) {
   ScoredMap map;
   map.frames = reader.frames();
   map.meta = reader.meta();
-  begin_points(map);
+  begin_points(map, reader.size());
   const std::vector<RigidMotion> submaps = reader.submaps();
   reader.for_each_tile([&](std::size_t submap, const TileKey&, const PointCloud& tile) {
     append_points(scored_columns(tile), submaps.at(submap), map);
@@ -95,7 +95,16 @@ ScoredMap load_scored_map(const MapReader& reader) {
   return map;
 }
 
-void begin_points(ScoredMap& map) { map.points_local.origin = center_of(map.frames); }
+void begin_points(ScoredMap& map, std::size_t points) {
+  map.points_local.origin = center_of(map.frames);
+  map.points_local.position.reserve(points);
+  map.points_local.color.reserve(points);
+  map.points_local.camera.reserve(points);
+  map.points_local.frame.reserve(points);
+  map.points_local.interpolated.reserve(points);
+  map.points_local.reason.reserve(points);
+  map.points_local.sampling_level.reserve(points);
+}
 
 PointCloud scored_columns(const PointCloud& tile) {
   PointCloud part;

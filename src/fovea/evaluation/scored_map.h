@@ -41,7 +41,8 @@ ScoredMap load_scored_map(const MapReader& reader);
 // Steps of loading, also for a city (scored_city.h).
 
 /// Puts the origin of the points near the frames.
-void begin_points(ScoredMap& map);
+/// @param points  how many append_points() will add: vectors that grow take twice the memory
+void begin_points(ScoredMap& map, std::size_t points);
 /// The columns of a tile that are scored. Points without color get their intensity as gray.
 PointCloud scored_columns(const PointCloud& tile);
 /// @param T_local_points  from the frame of the points to the local frame

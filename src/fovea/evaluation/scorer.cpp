@@ -1,6 +1,8 @@
 #include "fovea/evaluation/scorer.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "fovea/core/errors.h"
 #include "fovea/evaluation/predicted_light.h"
@@ -29,52 +31,49 @@ ColorDisplay exposure_of(const Eigen::Vector3f& gains) {
 
 }  // namespace
 
-Scorer::Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options)
-    : map_(map.points_local),
-      frames_(map.frames),
+Scorer::AllPoints::AllPoints(const PointCloud& map_local)
+    : position(map_local.position), color(map_local.color), tree(position, KdTree::kLargeLeafSize) {
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    if (map_local.camera[i] == kNoCamera) color[i] = LogColor();
+  }
+}
+
+Scorer::Scorer(ScoredMap map, const FrameSource& drive, ScorerOptions options)
+    : frames_(std::move(map.frames)),
       drive_(drive),
       options_(std::move(options)),
-      coloured_(colored_points(map_)),
-      coloured_tree_(coloured_.position),
+      all_(std::count(map.points_local.camera.begin(), map.points_local.camera.end(), kNoCamera) > 0
+               ? std::optional<AllPoints>(std::in_place, map.points_local)
+               : std::nullopt),
+      coloured_(colored_points(std::move(map.points_local))),
       spacing_(spacing_of(coloured_, map.meta)),
+      coloured_tree_(coloured_.position, KdTree::kLargeLeafSize),
       free_space_(coloured_),
       cross_view_(coloured_) {
   for (const std::size_t place : options_.cameras) {
     cameras_.push_back(drive.info().calibration.cameras[place]);
   }
-  if (coloured_.position.size() < map_.size()) {
-    all_tree_.emplace(map_.position);
-    all_color_ = map_.color;
-    for (std::size_t i = 0; i < map_.size(); ++i) {
-      if (map_.camera[i] == kNoCamera) all_color_[i] = LogColor();
-    }
-  }
-  if (options_.moving) leave_out_moving(map.frames);
+  if (options_.moving) mark_moving();
+  coloured_.frame = {};  // they take memory, and are not used again
+  coloured_.sampling_level = {};
 }
 
-void Scorer::leave_out_moving(const std::vector<FrameRecord>& frames) {
+void Scorer::mark_moving() {
+  is_moving_.resize(coloured_.position.size());
+  if (coloured_.frame.empty()) return;  // a cloud that does not name frames keeps what moved
   std::map<int, RigidMotion> T_lidar_map;
-  for (const FrameRecord& record : frames) {
+  for (const FrameRecord& record : frames_) {
     T_lidar_map[record.index] =
         record.T_local_lidar.inverse() * Eigen::Translation3d(coloured_.origin);
   }
-  static_.origin = coloured_.origin;
   for (std::size_t i = 0; i < coloured_.position.size(); ++i) {
-    if (!coloured_.frame.empty()) {  // a cloud that does not name frames keeps what moved
-      const auto placed = T_lidar_map.find(coloured_.frame[i]);
-      if (placed != T_lidar_map.end() &&
-          options_.moving->contain(placed->first,
-                                   placed->second * coloured_.position[i].cast<double>())) {
-        continue;
-      }
-    }
-    static_.position.push_back(coloured_.position[i]);
-    static_.color.push_back(coloured_.color[i]);
-    if (!coloured_.interpolated.empty()) {
-      static_.interpolated.push_back(coloured_.interpolated[i]);
-    }
+    const auto placed = T_lidar_map.find(coloured_.frame[i]);
+    if (placed == T_lidar_map.end()) continue;
+    const Eigen::Vector3d p_lidar = placed->second * coloured_.position[i].cast<double>();
+    if (!options_.moving->contain(placed->first, p_lidar)) continue;
+    is_moving_[i] = 1;
+    ++moving_points_;
   }
-  if (!static_.position.empty()) static_tree_.emplace(static_.position);
 }
 
 FrameScore Scorer::score(const PlacedFrame& placed) {
@@ -175,9 +174,11 @@ void Scorer::score_view(const Frame& frame, const PointCloud& scan, const Placed
   score.split.append(
       split_errors(view, nearest_in(placed, camera, nearest), nearest.color, camera, image));
   append(score.by_rule, errors_by_rule(errors, nearest.index, coloured_.reason));
-  if (static_tree_) score_without_moving(view, scan, score);
-  if (all_tree_) {
-    const NearestSamples any = nearest_samples(view.position, *all_tree_, all_color_);
+  if (options_.moving && moving_points_ < coloured_.position.size()) {
+    score_without_moving(view, scan, score);
+  }
+  if (all_) {
+    const NearestSamples any = nearest_samples(view.position, all_->tree, all_->color);
     score.paper_like_errors.append(
         point_errors(view, any, fit_gains(view.color, any.color, view.grey)));
   }
@@ -216,10 +217,16 @@ void Scorer::score_without_moving(const EvaluatedView& view, const PointCloud& s
                                                                                                : 1;
   }
   const EvaluatedView standing = select(view, stands);
-  const NearestSamples nearest =
-      nearest_samples(standing.position, *static_tree_, static_.color, static_.interpolated);
+  const NearestSamples nearest = nearest_samples(standing.position, coloured_tree_, coloured_.color,
+                                                 coloured_.interpolated, is_moving_);
   score.errors_without_moving.append(
       point_errors(standing, nearest, fit_gains(standing.color, nearest.color, standing.grey)));
+}
+
+void Scorer::free_indexes() {
+  all_.reset();
+  spacing_ = {};
+  coloured_tree_ = KdTree({});
 }
 
 std::vector<Eigen::Vector3f> Scorer::testable_points() const {

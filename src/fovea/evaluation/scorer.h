@@ -45,8 +45,9 @@ struct ScorerOptions {
 /// The map made ready for questions; one for all frames.
 class Scorer {
  public:
-  /// @param map, drive  must outlive the scorer
-  Scorer(const ScoredMap& map, const FrameSource& drive, ScorerOptions options);
+  /// @param map    move it here if it is not used again
+  /// @param drive  must outlive the scorer
+  Scorer(ScoredMap map, const FrameSource& drive, ScorerOptions options);
 
   /// Thread-safe.
   FrameScore score(const PlacedFrame& placed);
@@ -55,15 +56,19 @@ class Scorer {
   /// drive cannot load it. Thread-safe.
   std::vector<ViewPicture> pictures(const PlacedFrame& placed) const;
 
+  /// Frees the memory that only score() and pictures() need: neither may follow.
+  void free_indexes();
+
   const ColoredPoints& coloured() const { return coloured_; }
   const std::vector<float>& spacing() const { return spacing_; }  ///< see sample_spacing
   const std::vector<Camera>& cameras() const { return cameras_; }
+  const std::vector<FrameRecord>& map_frames() const { return frames_; }
   FreeSpaceTest::Result free_space() const { return free_space_.result(); }
   CrossViewTest::Result cross_view() const { return cross_view_.result(); }
   /// Coloured map points that any scored scan could have seen.
   std::vector<Eigen::Vector3f> testable_points() const;
   /// Coloured map points that lie in a moved box of their own frame.
-  std::size_t moving_points() const { return coloured_.position.size() - static_.position.size(); }
+  std::size_t moving_points() const { return moving_points_; }
 
  private:
   struct ScoredPoints {
@@ -89,22 +94,28 @@ class Scorer {
                                           const NearestSamples& nearest) const;
   void score_without_moving(const EvaluatedView& view, const PointCloud& scan,
                             FrameScore& score) const;
-  void leave_out_moving(const std::vector<FrameRecord>& frames);
+  void mark_moving();
 
-  const PointCloud& map_;
-  const std::vector<FrameRecord>& frames_;  // of the map
+  /// All points of a map of which some have no color: these are black.
+  struct AllPoints {
+    explicit AllPoints(const PointCloud& map_local);
+    std::vector<Eigen::Vector3f> position;
+    std::vector<LogColor> color;
+    KdTree tree;
+  };
+
+  std::vector<FrameRecord> frames_;  // of the map
   const FrameSource& drive_;
   ScorerOptions options_;
   std::vector<Camera> cameras_;
+  std::optional<AllPoints> all_;  // where there are uncoloured points
   ColoredPoints coloured_;
-  KdTree coloured_tree_;
   std::vector<float> spacing_;
+  KdTree coloured_tree_;
   FreeSpaceTest free_space_;
   CrossViewTest cross_view_;
-  ColoredPoints static_;  // without what moved; empty unless boxes are known
-  std::optional<KdTree> static_tree_;
-  std::optional<KdTree> all_tree_;  // where there are uncoloured points
-  std::vector<LogColor> all_color_;
+  std::vector<std::uint8_t> is_moving_;  // of the coloured points; empty unless boxes are known
+  std::size_t moving_points_ = 0;
 };
 
 }  // namespace fovea

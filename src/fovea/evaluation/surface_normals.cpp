@@ -33,7 +33,7 @@ std::vector<Eigen::Vector3f> surface_normals(const std::vector<Eigen::Vector3f>&
                [&](std::size_t voxel) { normal[voxel] = normal_of(voxels.around(voxel)); });
   std::vector<Eigen::Vector3f> per_point(position.size());
   parallel_for(position.size(), kGrain,
-               [&](std::size_t i) { per_point[i] = normal[voxels.voxel_of(i)]; });
+               [&](std::size_t i) { per_point[i] = normal[voxels.voxel_of(position[i])]; });
   return per_point;
 }
 

@@ -27,21 +27,36 @@ struct Samples {
     map.push_back(to_float(map_color));
     matte.push_back(is_matte);
   }
+  /// Calls f(true color, map's color, is matte) for each sample.
+  template <class F>
+  void for_each(F&& f) const {
+    for (std::size_t i = 0; i < truth.size(); ++i) f(truth[i], map[i], matte[i] != 0);
+  }
 };
 
-ColorErrorSets errors_of(const Samples& samples, bool grey) {
-  const Eigen::Vector3f gains = fit_gains(samples.truth, samples.map, grey);
+/// @param for_each  calls a function as Samples::for_each() does
+/// @param count     at most so many samples
+template <class ForEach>
+ColorErrorSets errors_of(ForEach&& for_each, std::size_t count, bool grey) {
+  GainFit fit;
+  for_each([&](const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool) {
+    fit.add(truth, map, grey);
+  });
+  const Eigen::Vector3f gains = fit.gains();
   ColorErrorSets errors;
-  for (std::size_t i = 0; i < samples.truth.size(); ++i) {
-    const Eigen::Vector3f &truth = samples.truth[i], &map = samples.map[i];
+  for (ColorErrors* set : {&errors.all, &errors.matte}) {
+    set->raw.reserve(count);
+    set->gain.reserve(count);
+  }
+  for_each([&](const Eigen::Vector3f& truth, const Eigen::Vector3f& map, bool is_matte) {
     const float raw = color_error(truth, map, grey);
     const float gain = color_error(truth, map.cwiseProduct(gains), grey);
     errors.all.raw.push_back(raw);
     errors.all.gain.push_back(gain);
-    if (samples.matte[i] == 0) continue;
+    if (!is_matte) return;
     errors.matte.raw.push_back(raw);
     errors.matte.gain.push_back(gain);
-  }
+  });
   return errors;
 }
 
@@ -180,12 +195,15 @@ std::set<int> grey_cameras(const DriveTruth& truth, const std::vector<int>& numb
 }
 
 ColorErrorSets albedo_errors(const ColouredTruth& map, const std::set<int>& grey) {
-  Samples samples;
-  for (std::size_t i = 0; i < map.points_true.size(); ++i) {
-    if (map.left_out[i] != 0 || grey.contains(map.points_true.camera[i])) continue;
-    samples.add(to_float(map.matches.albedo[i]), map.points_true.color[i], map.matches.matte[i]);
-  }
-  return errors_of(samples, /*grey=*/false);
+  // Without copies of the colors: a city has many points.
+  const auto for_each = [&](auto&& f) {
+    for (std::size_t i = 0; i < map.points_true.size(); ++i) {
+      if (map.left_out[i] != 0 || grey.contains(map.points_true.camera[i])) continue;
+      f(to_float(map.matches.albedo[i]), to_float(map.points_true.color[i]),
+        map.matches.matte[i] != 0);
+    }
+  };
+  return errors_of(for_each, map.points_true.size(), /*grey=*/false);
 }
 
 ViewErrors view_errors(const ColouredTruth& map, const DriveTruth& truth,
@@ -204,7 +222,8 @@ ViewErrors view_errors(const ColouredTruth& map, const DriveTruth& truth,
   const Eigen::Vector3f gains = common_gains(samples);
   ViewErrors all;
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const ColorErrorSets errors = errors_of(samples[v], samples[v].grey);
+    const ColorErrorSets errors = errors_of([&](auto&& f) { samples[v].for_each(f); },
+                                            samples[v].truth.size(), samples[v].grey);
     append(all.errors.all, errors.all);
     append(all.errors.matte, errors.matte);
     for (std::size_t i = 0; i < samples[v].truth.size(); ++i) {

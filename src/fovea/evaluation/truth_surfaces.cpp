@@ -74,7 +74,7 @@ std::vector<Eigen::Vector3f> seen_surface(const DriveTruth& truth,
 SurfaceShares surface_shares(const std::vector<float>& distance,
                              const std::vector<Eigen::Vector3f>& map,
                              const std::vector<Eigen::Vector3f>& seen) {
-  const KdTree tree(map);
+  const KdTree tree(map, KdTree::kLargeLeafSize);
   std::vector<float> to_map(seen.size());
   parallel_for(seen.size(), kGrain, [&](std::size_t i) {
     to_map[i] = std::sqrt(tree.nearest(seen[i]).squared_distance);

@@ -3,11 +3,10 @@
 namespace fovea {
 
 VoxelMoments::VoxelMoments(const std::vector<Eigen::Vector3f>& points, float edge) : table_(edge) {
-  voxel_of_point_.reserve(points.size());
   for (const Eigen::Vector3f& point : points) {
-    voxel_of_point_.push_back(table_.insert(table_.voxel_of(point)));
-    if (voxel_of_point_.back() == moments_.size()) moments_.emplace_back();
-    moments_[voxel_of_point_.back()].add(point.cast<double>());
+    const std::uint32_t voxel = table_.insert(table_.voxel_of(point));
+    if (voxel == moments_.size()) moments_.emplace_back();
+    moments_[voxel].add(point.cast<double>());
   }
 }
 

@@ -41,14 +41,16 @@ class VoxelMoments {
   VoxelMoments(const std::vector<Eigen::Vector3f>& points, float edge);
 
   std::size_t size() const { return moments_.size(); }  ///< voxels with points
-  std::uint32_t voxel_of(std::size_t point) const { return voxel_of_point_[point]; }
+  /// Of one of the points.
+  std::uint32_t voxel_of(const Eigen::Vector3f& point) const {
+    return table_.find(table_.voxel_of(point));
+  }
   const Moments& of(std::size_t voxel) const { return moments_[voxel]; }
   /// Of a voxel and its 26 neighbours.
   Moments around(std::size_t voxel) const;
 
  private:
   VoxelTable table_;
-  std::vector<std::uint32_t> voxel_of_point_;
   std::vector<Moments> moments_;
 };
 

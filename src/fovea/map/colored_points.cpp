@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "fovea/core/parallel.h"
 #include "fovea/geometry/voxel_grid.h"
@@ -23,36 +24,27 @@ VoxelMembers sort_into(const VoxelTable& table, const std::vector<Eigen::Vector3
   return {voxel, table.size()};
 }
 
-/// The points for which is_wanted(i) holds.
-template <class IsWanted>
-ColoredPoints chosen_points(const PointCloud& map_local, IsWanted&& is_wanted) {
-  ColoredPoints coloured;
-  coloured.origin = map_local.origin;
-  for (std::size_t i = 0; i < map_local.size(); ++i) {
-    if (!is_wanted(i)) continue;
-    coloured.position.push_back(map_local.position[i]);
-    coloured.color.push_back(map_local.color[i]);
-    if (!map_local.interpolated.empty()) {
-      coloured.interpolated.push_back(map_local.interpolated[i]);
-    }
-    if (!map_local.reason.empty()) coloured.reason.push_back(map_local.reason[i]);
-    if (!map_local.frame.empty()) coloured.frame.push_back(map_local.frame[i]);
-    if (!map_local.sampling_level.empty()) {
-      coloured.sampling_level.push_back(map_local.sampling_level[i]);
-    }
-  }
-  coloured.runs = make_runs(coloured.position, kRunLength);
-  return coloured;
-}
-
 }  // namespace
 
-ColoredPoints colored_points(const PointCloud& map_local) {
-  return chosen_points(map_local, [&](std::size_t i) { return map_local.camera[i] != kNoCamera; });
+ColoredPoints colored_points(PointCloud map_local) {
+  std::vector<std::uint8_t> is_uncolored;
+  is_uncolored.reserve(map_local.size());
+  for (const std::int8_t camera : map_local.camera) is_uncolored.push_back(camera == kNoCamera);
+  map_local.drop(is_uncolored);
+  return all_points(std::move(map_local));
 }
 
-ColoredPoints all_points(const PointCloud& map_local) {
-  return chosen_points(map_local, [](std::size_t) { return true; });
+ColoredPoints all_points(PointCloud map_local) {
+  ColoredPoints points;
+  points.origin = map_local.origin;
+  points.position = std::move(map_local.position);
+  points.color = std::move(map_local.color);
+  points.interpolated = std::move(map_local.interpolated);
+  points.reason = std::move(map_local.reason);
+  points.frame = std::move(map_local.frame);
+  points.sampling_level = std::move(map_local.sampling_level);
+  points.runs = make_runs(points.position, kRunLength);
+  return points;
 }
 
 std::vector<PointRun> make_runs(const std::vector<Eigen::Vector3f>& position, std::size_t length) {

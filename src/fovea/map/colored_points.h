@@ -33,10 +33,11 @@ struct ColoredPoints {
 };
 
 /// The points of a map (local frame, columns color and camera) that some camera has coloured.
-ColoredPoints colored_points(const PointCloud& map_local);
+/// @param map_local  move it here if it is not used again: a second copy of a city is large
+ColoredPoints colored_points(PointCloud map_local);
 
 /// All points of a map, colored or not.
-ColoredPoints all_points(const PointCloud& map_local);
+ColoredPoints all_points(PointCloud map_local);
 
 /// Runs of at most `length` points.
 std::vector<PointRun> make_runs(const std::vector<Eigen::Vector3f>& position, std::size_t length);
