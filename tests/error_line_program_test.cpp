@@ -99,7 +99,7 @@ TEST_F(ErrorLine, LoopsOfLinksAndLongNamesAreNamed) {
 // A limit that the program's start fits into.
 TEST_F(ErrorLine, OutOfMemoryNamesTheCommandsOwnRemedy) {
   const auto writer = MapWriter::create(path("large.fovea"), false);
-  put_sample_map(*writer, sample_tile_map(1'500'000));
+  put_sample_map(*writer, sample_tile_map(3'000'000));
   writer->commit();
   const std::string map = "'" + path("large.fovea") + "'";
   const std::vector<std::pair<std::string, std::string>> commands = {
