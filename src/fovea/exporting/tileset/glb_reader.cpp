@@ -36,6 +36,12 @@ T value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+/// A number that is none, such as 1e30, has no conversion.
+std::size_t count_of(const Json& json) {
+  if (!json.is_number_unsigned()) throw std::invalid_argument(json.dump() + " is no count");
+  return json.get<std::size_t>();
+}
+
 /// A file, or its bytes in memory.
 struct GlbBytes {
   std::size_t size = 0;
@@ -54,12 +60,12 @@ struct GlbHead {
   std::optional<std::size_t> offset_of(const char* attribute) const {
     const Json& attributes = json.at("meshes").at(0).at("primitives").at(0).at("attributes");
     if (!attributes.contains(attribute)) return std::nullopt;
-    const Json& accessor = json.at("accessors").at(attributes.at(attribute).get<std::size_t>());
-    if (accessor.at("count").get<std::size_t>() != points) {
+    const Json& accessor = json.at("accessors").at(count_of(attributes.at(attribute)));
+    if (count_of(accessor.at("count")) != points) {
       throw std::invalid_argument("its attributes differ in number");
     }
-    const Json& view = json.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
-    return binary + view.value("byteOffset", std::size_t{0});
+    const Json& view = json.at("bufferViews").at(count_of(accessor.at("bufferView")));
+    return binary + (view.contains("byteOffset") ? count_of(view.at("byteOffset")) : 0);
   }
 };
 
@@ -74,7 +80,7 @@ GlbHead head_of(std::string_view bytes) {
   head.binary = kHeader + json_bytes + kChunkHeader;
   if (!head.json.contains("meshes")) return head;
   const Json& position = head.json.at("accessors").at(0);
-  head.points = position.at("count").get<std::size_t>();
+  head.points = count_of(position.at("count"));
   const auto matrix = head.json.at("nodes").at(0).at("matrix").get<std::array<double, 16>>();
   head.step = matrix[0];
   head.low = {matrix[12], -matrix[14], matrix[13]};  // gltf_matrix()
@@ -185,7 +191,8 @@ std::size_t points_of_level(const GlbHead& head, std::size_t level) {
   if (head.points == 0) return 0;
   const Json& mesh = head.json.at("meshes").at(0);
   if (!mesh.contains("extras")) return head.points;
-  const auto levels = mesh.at("extras").at(kGlbLevels).get<std::vector<std::size_t>>();
+  std::vector<std::size_t> levels;
+  for (const Json& count : mesh.at("extras").at(kGlbLevels)) levels.push_back(count_of(count));
   const std::size_t points =
       levels.empty() ? head.points : levels[std::min(level, levels.size() - 1)];
   if (points > head.points) throw std::invalid_argument("its levels have too many points");

@@ -118,6 +118,19 @@ TEST(GlbReader, ImpossiblePositionsAreErrors) {
   EXPECT_THROW(read_glb(with(glb.bytes, "\"max\":[65535", "\"max\":[-1"), "a.glb"), InputError);
 }
 
+TEST(GlbReader, WhatIsNoCountIsAnError) {
+  const std::string bytes = make_glb(some_points(), true).bytes;
+  // The reader needs no types and no lengths, so that their space is free for other numbers.
+  const auto is_refused = [&](const std::string& text, const std::string& other) {
+    EXPECT_THROW(read_glb(with(bytes, text, other), "a.glb"), InputError) << other;
+  };
+  is_refused(R"("count":3,"type":"VEC4")", R"("count":3.5,"t":"VEC4")");
+  is_refused(R"("count":3,"type":"VEC4")", R"("count":1e30,"t":"VEC4")");
+  is_refused(R"("bufferView":1,"componentType")", R"("bufferView":1.5,"type")");
+  is_refused(R"("bufferView":1,"componentType")", R"("bufferView":1e24,"type")");
+  is_refused(R"("byteOffset":24,"byteLength")", R"("byteOffset":24.5,"bytes")");
+}
+
 TEST(GlbReader, AnImpossibleFrameIsAnError) {
   const std::string whole = make_glb(some_points(), true).bytes;
   const float frame = 123'456;
