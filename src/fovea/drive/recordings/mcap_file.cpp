@@ -10,19 +10,10 @@
 #include "fovea/core/printable.h"
 #include "fovea/drive/recordings/bag_stream.h"
 #include "fovea/drive/recordings/decompress.h"
+#include "fovea/drive/recordings/mcap_format.h"
 
 namespace fovea {
 namespace {
-
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-
-enum Opcode : std::uint8_t {
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-};
 
 /// Numbers (little endian) and texts of a record, one after the other.
 class Fields {
@@ -58,7 +49,8 @@ class McapReader {
       : stream_(file, shown), sink_(sink) {}
 
   void read() {
-    if (stream_.take(std::min<std::uint64_t>(kMagic.size(), stream_.size())) != kMagic) {
+    if (stream_.take(std::min<std::uint64_t>(mcap::kMagic.size(), stream_.size())) !=
+        mcap::kMagic) {
       throw InputError("this is no MCAP file", stream_.name(), "give a recording of ROS 2");
     }
     while (!ended_) next();
@@ -82,15 +74,16 @@ class McapReader {
     const auto size = head.number<std::uint64_t>();
     if (size > stream_.left()) return end_early(begin);
     switch (opcode) {
-      case kChunk:
+      case mcap::kChunk:
         return read_chunk(stream_.take(size), where);
-      case kSchema:
-      case kChannel:
-      case kMessage:
+      case mcap::kSchema:
+      case mcap::kChannel:
+      case mcap::kMessage:
         return read_record(opcode, stream_.take(size), where);
-      case kFooter:
+      case mcap::kFooter:
         stream_.take(size);
-        if (kMagic.size() > stream_.left() || stream_.take(kMagic.size()) != kMagic)
+        if (mcap::kMagic.size() > stream_.left() ||
+            stream_.take(mcap::kMagic.size()) != mcap::kMagic)
           return end_early(begin);
         ended_ = true;
         return;
@@ -138,12 +131,12 @@ class McapReader {
 
   void read_record(std::uint8_t opcode, std::string_view bytes, const std::string& where) {
     Fields record(bytes, where);
-    if (opcode == kSchema) {
+    if (opcode == mcap::kSchema) {
       const auto id = record.number<std::uint16_t>();
       schemas_[id] = record.text();
-    } else if (opcode == kChannel) {
+    } else if (opcode == mcap::kChannel) {
       add_channel(record, where);
-    } else if (opcode == kMessage) {
+    } else if (opcode == mcap::kMessage) {
       const auto channel = channels_.find(record.number<std::uint16_t>());
       if (channel == channels_.end()) {
         throw InputError("a message is of a channel that was not announced", where,
