@@ -1,0 +1,46 @@
+#include "fovea/drive/recordings/mcap_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../../../../tests/temporary_folder.h"
+#include "fovea/drive/recordings/mcap_file.h"
+
+namespace fovea::mcap_writer_test {
+
+using testing::ElementsAre;
+
+const BagTopic kPoints{"/points", "sensor_msgs/msg/PointCloud2", "cdr"};
+const BagTopic kImu{"/imu", "sensor_msgs/msg/Imu", "ros1"};
+
+class Sink : public BagSink {
+ public:
+  bool is_requested(const BagTopic& topic) override {
+    topics.push_back(topic.name + " " + topic.type + " " + topic.encoding);
+    return true;
+  }
+  void add(const BagTopic& topic, std::string_view message) override {
+    messages.push_back(topic.name + " " + std::string(message));
+  }
+  void report_loss(const std::string& problem) override { losses.push_back(problem); }
+  std::vector<std::string> topics, messages, losses;
+};
+
+TEST(McapWriter, ItsFileReadsBack) {
+  const TemporaryFolder folder;
+  McapWriter writer(folder / "a.mcap", false);
+  writer.add(kPoints, "one", 1);
+  writer.add(kImu, std::string(100'000, 'x'), 2);
+  writer.add(kPoints, "", 3);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));
+  writer.finish();
+  Sink sink;
+  read_mcap(folder / "a.mcap", folder / "a.mcap", sink);
+  EXPECT_THAT(sink.topics, ElementsAre("/points sensor_msgs/msg/PointCloud2 cdr",
+                                       "/imu sensor_msgs/msg/Imu ros1"));
+  EXPECT_THAT(sink.messages,
+              ElementsAre("/points one", "/imu " + std::string(100'000, 'x'), "/points "));
+  EXPECT_TRUE(sink.losses.empty());
+}
+
+}  // namespace fovea::mcap_writer_test
