@@ -5,7 +5,7 @@ target_compile_definitions(fovea_precompiled PRIVATE ${FOVEA_EIGEN_ALIGNMENT})
 target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
 
 # Their tests run under the thread sanitizer.
-set(FOVEA_MODULES_WITH_THREADS core map pipeline server)
+set(FOVEA_MODULES_WITH_THREADS core map pipeline bridge server)
 add_custom_target(thread_tests)
 
 # Most of a test's or a command's compilation is the same headers' templates over again. Files of most
@@ -72,28 +72,28 @@ function(fovea_part name)
   fovea_module(${name} ${ARGN})
 endfunction()
 
-# fovea_module(NAME [FOLDER folder] [WITHOUT folder] [TOGETHER] [FUZZED] [DEPENDS modules...] [PUBLIC libs...]
+# fovea_module(NAME [FOLDER folder] [WITHOUT folders...] [TOGETHER] [FUZZED] [DEPENDS modules...] [PUBLIC libs...]
 #              [PRIVATE libs...] [TEST_DEPENDS modules...])
 #
 # Makes the static library fovea_NAME (alias fovea::NAME) from src/fovea/NAME, and the test program
 # NAME_tests from the *_test.cpp files next to the sources.
 #   FOLDER        folder in src/fovea/, if it is not NAME
-#   WITHOUT       folder inside it that is a module of its own
+#   WITHOUT       folders inside it that are modules of their own
 #   TOGETHER      compiles several files together: the module computes neither maps nor figures
 #   TEST_DEPENDS  modules that only the tests include, such as the reader of the module's files
 #   FUZZED        fuzzers (fuzz/) read with it: their builds note which of its branches an input took
 function(fovea_module name)
-  cmake_parse_arguments(ARG "TOGETHER;FUZZED" "FOLDER;WITHOUT" "DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "TOGETHER;FUZZED" "FOLDER" "WITHOUT;DEPENDS;PUBLIC;PRIVATE;TEST_DEPENDS" ${ARGN})
   if(NOT ARG_FOLDER)
     set(ARG_FOLDER ${name})
   endif()
   set(root ${PROJECT_SOURCE_DIR}/src/fovea/${ARG_FOLDER})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${root}/*.cpp)
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${root}/*_test.cpp)
-  if(ARG_WITHOUT)
-    list(FILTER sources EXCLUDE REGEX "^${root}/${ARG_WITHOUT}/")
-    list(FILTER tests EXCLUDE REGEX "^${root}/${ARG_WITHOUT}/")
-  endif()
+  foreach(folder IN LISTS ARG_WITHOUT)
+    list(FILTER sources EXCLUDE REGEX "^${root}/${folder}/")
+    list(FILTER tests EXCLUDE REGEX "^${root}/${folder}/")
+  endforeach()
   list(REMOVE_ITEM sources ${tests})
 
   add_library(fovea_${name} STATIC ${sources})

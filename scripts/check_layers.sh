@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 declare -A layer=([core]=0 [geometry]=1 [drive]=2 [mapping]=2 [map]=2 [world]=2 [recordings]=3 [city]=3 [pipeline]=3
-  [rendering]=3 [simulation]=3 [evaluation]=4 [exporting]=4 [merging]=4 [localization]=4 [server]=5)
+  [rendering]=3 [simulation]=3 [bridge]=4 [evaluation]=4 [exporting]=4 [merging]=4 [localization]=4 [server]=5)
 # The simulator is the independent oracle: it shares only mathematics and the writers of drives with the product.
 oracle='^fovea/(simulation|world|geometry|core|drive/writers)/'
 failed=0
@@ -17,6 +17,7 @@ report() {
 module_of() { # PATH below src/fovea/
   case $1 in
     drive/recordings/*) echo recordings ;;
+    drive/bridge/*) echo bridge ;;
     *) echo "${1%%/*}" ;;
   esac
 }

@@ -1,0 +1,148 @@
+#include "fovea/drive/bridge/bridge_messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "fovea/core/nesting.h"
+
+namespace fovea::bridge {
+namespace {
+
+using Json = nlohmann::json;
+
+static_assert(std::endian::native == std::endian::little, "the protocol has little-endian numbers");
+
+enum Opcode : std::uint8_t { kMessageData = 1 };  // the same from server and client
+
+[[noreturn]] void throw_damaged(const std::string& problem) {
+  throw DamagedMessage(fmt::format("a message of the bridge is damaged ({})", problem),
+                       "the bridge", "check that the address is that of a Foxglove bridge");
+}
+
+std::uint32_t id_of(const Json& json) {
+  if (!json.is_number_unsigned() ||
+      json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::invalid_argument("an id is no number of 32 bits");
+  }
+  return json.get<std::uint32_t>();
+}
+
+std::vector<std::string> texts_at(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found == json.end() ? std::vector<std::string>() : found->get<std::vector<std::string>>();
+}
+
+ServerInfo server_info_of(const Json& json) {
+  ServerInfo info;
+  info.name = json.value("name", "");
+  info.session = json.value("sessionId", "");
+  const std::vector<std::string> capabilities = texts_at(json, "capabilities");
+  info.accepts_messages =
+      std::find(capabilities.begin(), capabilities.end(), "clientPublish") != capabilities.end();
+  info.encodings = texts_at(json, "supportedEncodings");
+  return info;
+}
+
+Advertised advertised_of(const Json& json) {
+  Advertised advertised;
+  for (const Json& channel : json.at("channels")) {
+    advertised.channels.push_back({id_of(channel.at("id")), channel.at("topic").get<std::string>(),
+                                   channel.at("encoding").get<std::string>(),
+                                   channel.value("schemaName", "")});
+  }
+  return advertised;
+}
+
+Unadvertised unadvertised_of(const Json& json) {
+  Unadvertised unadvertised;
+  for (const Json& id : json.at("channelIds")) unadvertised.channel_ids.push_back(id_of(id));
+  return unadvertised;
+}
+
+Status status_of(const Json& json) {
+  const int level = std::clamp(json.at("level").get<int>(), 0, 2);
+  return {static_cast<Status::Level>(level), json.at("message").get<std::string>()};
+}
+
+ServerMessage message_of(const Json& json) {
+  const auto op = json.at("op").get<std::string>();
+  if (op == "serverInfo") return server_info_of(json);
+  if (op == "advertise") return advertised_of(json);
+  if (op == "unadvertise") return unadvertised_of(json);
+  if (op == "status") return status_of(json);
+  return Unused{};
+}
+
+template <class T>
+void append(T number, std::string& bytes) {
+  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(number);
+  bytes.append(raw.data(), raw.size());
+}
+
+template <class T>
+T take(std::string_view& bytes) {
+  if (bytes.size() < sizeof(T)) throw_damaged("it ends early");
+  std::array<char, sizeof(T)> raw;
+  bytes.copy(raw.data(), raw.size());
+  bytes.remove_prefix(sizeof(T));
+  return std::bit_cast<T>(raw);
+}
+
+}  // namespace
+
+ServerMessage parse_text(std::string_view message) {
+  if (nesting_depth(message) > kMaxNesting) throw_damaged("it is nested too deep");
+  try {
+    return message_of(Json::parse(message));
+  } catch (const std::exception& error) {
+    throw_damaged(error.what());
+  }
+}
+
+ServerMessage parse_binary(std::string_view message) {
+  if (take<std::uint8_t>(message) != kMessageData) return Unused{};
+  MessageData data;
+  data.subscription = take<std::uint32_t>(message);
+  data.sent = static_cast<TimeNs>(take<std::uint64_t>(message));
+  data.payload = message;
+  return data;
+}
+
+std::string subscribe_message(std::span<const Subscription> subscriptions) {
+  Json list = Json::array();
+  for (const Subscription& subscription : subscriptions) {
+    list.push_back({{"id", subscription.id}, {"channelId", subscription.channel_id}});
+  }
+  return Json{{"op", "subscribe"}, {"subscriptions", list}}.dump();
+}
+
+std::string unsubscribe_message(std::span<const std::uint32_t> subscription_ids) {
+  const std::vector<std::uint32_t> ids(subscription_ids.begin(), subscription_ids.end());
+  return Json{{"op", "unsubscribe"}, {"subscriptionIds", ids}}.dump();
+}
+
+std::string advertise_message(std::span<const Channel> channels) {
+  Json list = Json::array();
+  for (const Channel& channel : channels) {
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", channel.encoding},
+                    {"schemaName", channel.type}});
+  }
+  return Json{{"op", "advertise"}, {"channels", list}}.dump();
+}
+
+std::string message_data(std::uint32_t channel_id, std::string_view payload) {
+  std::string bytes;
+  append(std::uint8_t{kMessageData}, bytes);
+  append(channel_id, bytes);
+  bytes += payload;
+  return bytes;
+}
+
+}  // namespace fovea::bridge
