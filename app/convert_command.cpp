@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -10,11 +11,13 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/convert_bridge.h"
 #include "app/convert_data_set.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/plain_name.h"
+#include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/recordings/convert_bags.h"
 
@@ -25,6 +28,7 @@ struct ConvertArguments {
   std::vector<std::string> bags, cameras;
   std::string output, poses = "auto";
   ConvertOptions options;
+  double reconnect = 30;  // s
   bool list = false, force = false, quiet = false;
 };
 
@@ -67,25 +71,42 @@ void list(const ConvertArguments& arguments, Warnings& warnings) {
   warnings.add(contents, "", arguments.quiet);
 }
 
-void run(const ConvertArguments& arguments, Warnings& warnings) {
-  if (arguments.bags.empty()) {
-    throw ConfigError("there is no recording", "fovea convert", "name one, or see --help");
-  }
-  if (arguments.list) return list(arguments, warnings);
-  if (arguments.output.empty()) {
-    throw ConfigError("there is no folder to make", "-o", "name one");
-  }
-  check_files({arguments.bags, {}, {arguments.output}});
+/// Whether a running robot is given. ConfigError if it is one of several inputs.
+bool is_live(const ConvertArguments& arguments) {
+  const auto address = std::find_if(arguments.bags.begin(), arguments.bags.end(),
+                                    [](const std::string& bag) { return bridge::is_address(bag); });
+  if (address == arguments.bags.end()) return false;
+  if (arguments.bags.size() == 1) return true;
+  throw ConfigError("a running robot is converted alone", *address, "give it without recordings");
+}
+
+ConvertFigures convert(const ConvertArguments& arguments, Session& session) {
   ConvertOptions options = arguments.options;
   options.cameras = parse_camera_topics(arguments.cameras);
   options.poses = kSources.at(arguments.poses);
+  if (is_live(arguments)) {
+    return convert_bridge({arguments.bags.front(), arguments.output, options, arguments.reconnect,
+                           arguments.force, arguments.quiet},
+                          session);
+  }
+  check_files({arguments.bags, {}, {arguments.output}});
   const std::vector<std::filesystem::path> bags(arguments.bags.begin(), arguments.bags.end());
-  const ConvertFigures figures = [&] {
-    ProgressBar bar(arguments.quiet, "messages");
-    return convert_bags(bags, arguments.output, arguments.force, options,
-                        [&](int done, int total) { bar.draw(done, total); });
-  }();
-  warnings.add(figures, "", arguments.quiet);
+  ProgressBar bar(arguments.quiet, "messages");
+  return convert_bags(bags, arguments.output, arguments.force, options,
+                      [&](int done, int total) { bar.draw(done, total); });
+}
+
+void run(const ConvertArguments& arguments, Session& session) {
+  if (arguments.bags.empty()) {
+    throw ConfigError("there is no recording", "fovea convert", "name one, or see --help");
+  }
+  if (arguments.list && is_live(arguments)) return list_bridge(arguments.bags.front());
+  if (arguments.list) return list(arguments, session.warnings);
+  if (arguments.output.empty()) {
+    throw ConfigError("there is no folder to make", "-o", "name one");
+  }
+  const ConvertFigures figures = convert(arguments, session);
+  session.warnings.add(figures, "", arguments.quiet);
   if (arguments.quiet) return;
   const std::string lidars =
       figures.lidars > 1 ? fmt::format(" of {} LiDARs", figures.lidars) : std::string();
@@ -100,8 +121,10 @@ void add_convert_command(CLI::App& app, Session& session) {
   ConvertOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand(
       "convert", "Turn a recording of ROS 2 or ROS 1, or a scene of a data set, into a drive");
-  command->add_option("BAG", arguments->bags,
-                      "Files (.mcap, .bag, .db3) or bags' folders of one drive");
+  command->add_option(
+      "BAG", arguments->bags,
+      "Files (.mcap, .bag, .db3) or bags' folders of one drive, or the Foxglove bridge "
+      "of a running robot (ws://HOST:8765)");
   command->add_option("-o,--output", arguments->output, "Folder to make (docs/drives.md)")
       ->type_name("DIR");
   command->add_flag("--list", arguments->list,
@@ -141,11 +164,16 @@ void add_convert_command(CLI::App& app, Session& session) {
                     "The scans' motion was undone when they were recorded");
   command->add_flag("--allow-dropped", options.allow_dropped,
                     "Convert scans even if over 10 % of their points cannot be used");
+  command
+      ->add_option("--reconnect", arguments->reconnect,
+                   "How long a lost connection to a robot is tried again, s")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--force", arguments->force, "Replace DIR");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   add_data_set_commands(*command, session);
   command->callback([arguments, command, &session] {
-    if (command->get_subcommands().empty()) run(*arguments, session.warnings);
+    if (command->get_subcommands().empty()) run(*arguments, session);
   });
 }
 
