@@ -1,8 +1,9 @@
 // fovea: the command line. Exit codes: 0 done, 1 failed at run time, 2 wrong usage, 74 the machine
-// failed, 130, 143 and 129 ended by SIGINT, SIGTERM and SIGHUP.
+// failed in a step of a job engine, 130, 143 and 129 ended by SIGINT, SIGTERM and SIGHUP.
 #include <sysexits.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -81,10 +82,16 @@ std::string_view command_of(int argc, char** argv) {
   return "";
 }
 
+/// Whether a job engine runs this command (app/job_arguments.h).
+bool has_if_missing(int argc, char** argv) {
+  return std::find(argv, argv + argc, std::string_view("--if-missing")) != argv + argc;
+}
+
 std::string_view command;  // that runs
+bool is_step = false;  // of a job engine, which needs to tell failures of the machine from others
 
 int exit_code_of(const std::exception& error) {
-  return fovea::app::is_of_machine(error) ? kMachineFailed : kFailed;
+  return is_step && fovea::app::is_of_machine(error) ? kMachineFailed : kFailed;
 }
 
 /// For an error in a thread or a destructor, which no function can catch.
@@ -120,13 +127,14 @@ int report_errors(Body&& body) noexcept {
   } catch (...) {  // of the line itself
     print_error("out of memory, this machine, end other programs");
   }
-  return kMachineFailed;
+  return is_step ? kMachineFailed : kFailed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   command = command_of(argc, argv);
+  is_step = has_if_missing(argc, argv);
   std::set_terminate(end_with_error);
   fovea::app::prepare_standard_streams();
   return report_errors([&] {
