@@ -8,6 +8,7 @@
 #include "fovea/drive/recordings/bag.h"
 #include "fovea/drive/recordings/bag_index.h"
 #include "fovea/drive/recordings/conversion_plan.h"
+#include "fovea/drive/recordings/missing_messages.h"
 #include "fovea/drive/recordings/recording_writer.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
@@ -69,6 +70,23 @@ void keep_part(const ConvertOptions& options, const ConversionPlan& plan, BagInd
   }
 }
 
+/// Warns of sensors whose stamps have gaps.
+void warn_of_gaps(const BagIndex& index, const ConversionPlan& plan, ConvertFigures& figures) {
+  const auto check = [&](const std::string& topic, const std::vector<TimeNs>& stamps,
+                         const char* kind) {
+    const std::size_t missing = missing_messages(stamps);
+    if (missing == 0) return;
+    figures.warn(fmt::format("{} of {} {} of {} are missing: their stamps have gaps", missing,
+                             missing + stamps.size(), kind, topic));
+  };
+  for (const PlannedLidar& lidar : plan.lidars) {
+    check(lidar.topic, index.lidars.at(lidar.topic).stamps, "scans");
+  }
+  for (const PlannedCamera& camera : plan.cameras) {
+    check(camera.topic, index.images.at(camera.topic).stamps, "images");
+  }
+}
+
 /// Notes each topic without use, with the number of its messages.
 void note_unused_topics(const BagIndex& index, const ConversionPlan& plan,
                         ConvertFigures& figures) {
@@ -101,6 +119,7 @@ ConvertFigures convert_bags(const std::vector<std::filesystem::path>& bags,
   figures.notes = plan.notes;
   naming(bags, [&] { recording_writer.finish(plan.drive, figures); });
   note_unused_topics(index, plan, figures);
+  warn_of_gaps(index, plan, figures);
   for (const std::string& loss : index.losses) figures.warn(loss);
   for (const auto& [topic, unusable] : index.unusable) {
     figures.warn(unusable.note(topic));

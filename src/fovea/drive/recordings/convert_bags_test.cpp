@@ -179,6 +179,20 @@ TEST_F(ConvertBags, OneBadScanDoesNotDecideForAll) {
   EXPECT_THAT(figures.notes, Contains(HasSubstr("4 messages of /points cannot be used")));
 }
 
+TEST_F(ConvertBags, ScansThatAreMissingAreCounted) {
+  for (const std::uint32_t i : {0, 1, 2, 3, 4, 6, 7, 8}) {
+    add(kPoints, cloud(i * kStep, 5));
+    add(kRaw, grey_image(i * kStep + kMiddle));
+  }
+  add(kRaw, grey_image(5 * kStep + kMiddle));
+  add(kRaw, grey_image(9 * kStep + kMiddle));
+  add(kPoints, cloud(9 * kStep, 5));
+  add(kPoints, cloud(9 * kStep + kMiddle, 5));  // jitter of the driver
+  const ConvertFigures figures = convert();
+  EXPECT_THAT(figures.warnings,
+              ElementsAre("1 of 11 scans of /points are missing: their stamps have gaps"));
+}
+
 // Topics of types that are not read, and those that were not chosen.
 TEST_F(ConvertBags, TopicsWithoutUseAreCounted) {
   records_ += mcap::channel(17, "/diagnostics", "cdr", "diagnostic_msgs/msg/DiagnosticArray");
