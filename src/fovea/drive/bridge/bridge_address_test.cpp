@@ -8,7 +8,7 @@ namespace fovea::bridge_address_test {
 
 using namespace fovea::bridge;
 
-void expect_address(const std::string& text, const Address& expected) {
+static void expect_address(const std::string& text, const Address& expected) {
   const Address address = parse_address(text);
   EXPECT_EQ(address.host, expected.host) << text;
   EXPECT_EQ(address.port, expected.port) << text;
