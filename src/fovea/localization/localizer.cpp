@@ -13,7 +13,7 @@
 #include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/scans/sensor_scans.h"
 #include "fovea/geometry/voxel_grid.h"
-#include "fovea/localization/seen_through.h"
+#include "fovea/localization/surfaces_in_view.h"
 #include "fovea/map/map_surfaces.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/optimizer.h"
@@ -182,13 +182,14 @@ Localizer::Attempt Localizer::follow(const Scan& scan, const RigidMotion& guess)
 
 double Localizer::contradiction(const Scan& scan, const PriorMap::Target& target,
                                 const RegistrationResult& result) const {
-  if (!source_->is_of_many_drives()) {
-    return seen_through(target.cloud, scan.image, result.T_target_source);
+  if (source_->is_of_many_drives()) {
+    // A city has cars that were parked there on other days. Above the sensor there are few of them:
+    // the scan sees through up to a third at the right place, and mostly more at others.
+    const SurfacesInView above = surfaces_in_view(target.cloud, scan.image, result.T_target_source,
+                                                  /*lowest=*/0);
+    if (above.count() >= kMinStanding) return std::pow(above.share_through(), 2);
   }
-  // A city has cars that were parked there on other days. Above the sensor there are few of them:
-  // the scan sees through up to a third at the right place, and mostly more at others.
-  const double free = seen_through(target.cloud, scan.image, result.T_target_source, /*lowest=*/0);
-  return free * free;
+  return surfaces_in_view(target.cloud, scan.image, result.T_target_source).share_through();
 }
 
 Localizer::Attempt Localizer::look_around(const Scan& scan, const RigidMotion& guess) {
