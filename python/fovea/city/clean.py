@@ -47,6 +47,14 @@ class Cleaned:
 
 def clean(folder: CityFolder, keep: int, dry_run: bool) -> Cleaned:
     """Deletes the files that only older revisions than the newest `keep` need. Its caller holds the lock."""
+    try:
+        return _clean(folder, keep, dry_run)
+    except OSError as error:
+        raise input_error(f"a file of the city cannot be read ({error.strerror})", error.filename or folder.path,
+                          "make it readable, and run clean again") from error
+
+
+def _clean(folder: CityFolder, keep: int, dry_run: bool) -> Cleaned:
     manifests = _kept_manifests(folder, keep)
     names = _names_of_jobs(folder)
     for manifest in manifests.values():
