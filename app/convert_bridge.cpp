@@ -1,7 +1,7 @@
 #include "app/convert_bridge.h"
 
 #include <chrono>
-#include <optional>
+#include <cstdint>
 
 #include "app/print.h"
 #include "app/progress_bar.h"
@@ -14,30 +14,38 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Prints what a recording lacks, and then how it grows: a line each time something changes, and
-/// each ten seconds.
+/// Prints how a recording proceeds: a line each time something changes, and each ten seconds.
 class RecordingStatus {
  public:
   explicit RecordingStatus(bool quiet) : quiet_(quiet) {}
 
   void show(const bridge::RecordingProgress& progress) {
-    if (quiet_ || (last_ == progress.missing && Clock::now() < next_)) return;
-    const bool is_first = !last_;
-    last_ = progress.missing;
+    const std::string problem = !progress.is_connected      ? "the connection is lost; trying again"
+                                : !progress.missing.empty() ? "still missing: " + progress.missing
+                                                            : std::string();
+    if (quiet_ || (problem == last_ && Clock::now() < next_)) return;
+    last_ = problem;
     next_ = Clock::now() + std::chrono::seconds(10);
-    if (!progress.missing.empty()) {
-      print_err("waits: {}\n", progress.missing);
-    } else if (!is_first) {
-      print_err("{} scans, {} images; Ctrl-C ends the recording\n", progress.scans,
+    if (!problem.empty()) {
+      print_err("{}\n", problem);
+    } else if (progress.scans > 0) {
+      print_err("recorded: {} scans, {} images; Ctrl-C ends the recording\n", progress.scans,
                 progress.images);
     }
   }
 
  private:
   bool quiet_;
-  std::optional<std::string> last_;
-  Clock::time_point next_ = Clock::now();
+  std::string last_;
+  Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);
 };
+
+/// OUTPUT.mcap, also of "OUTPUT/".
+fs::path recording_of(const fs::path& output) {
+  fs::path folder = output.lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  return folder.string() + ".mcap";
+}
 
 void check_output(const BridgeConversion& conversion) {
   if (conversion.force || !fs::exists(fs::symlink_status(conversion.output))) return;
@@ -53,22 +61,17 @@ ConvertFigures convert_bridge(const BridgeConversion& conversion, Session& sessi
   job.bridge.address = bridge::parse_address(conversion.address);
   job.bridge.reconnect = std::chrono::milliseconds(std::int64_t(1000 * conversion.reconnect));
   job.options = conversion.options;
-  job.output = conversion.output.lexically_normal().string() + ".mcap";
-  job.force = conversion.force;
+  job.output = recording_of(conversion.output);
   RecordingStatus status(conversion.quiet);
   const bridge::BridgeFigures recorded =
       record_bridge(job, session.interrupt.stop_gently(),
                     [&](const bridge::RecordingProgress& progress) { status.show(progress); });
-  ConvertFigures figures;
-  try {
-    ProgressBar bar(conversion.quiet, "messages");
-    figures = convert_bags({job.output}, conversion.output, conversion.force, conversion.options,
-                           [&](int done, int total) { bar.draw(done, total); });
-  } catch (const Error& error) {
-    session.warnings.add({"the recording is kept: " + job.output.string()});
-    throw;
-  }
-  fs::remove(job.output);
+  session.interrupt.stop_at_once();
+  if (!conversion.quiet) print_err("the recording is {}\n", job.output.string());
+  ProgressBar bar(conversion.quiet, "messages");
+  ConvertFigures figures =
+      convert_bags({job.output}, conversion.output, conversion.force, conversion.options,
+                   [&](int done, int total) { bar.draw(done, total); });
   figures.append(recorded);
   return figures;
 }

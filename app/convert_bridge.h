@@ -17,8 +17,8 @@ struct BridgeConversion {
   bool force = false, quiet = false;
 };
 
-/// Records until the robot or the user ends it, then converts the recording. It lies next to the
-/// output as OUTPUT.mcap meanwhile, and stays if the conversion fails.
+/// Records to OUTPUT.mcap until the robot or the user ends it, then converts the recording, which
+/// stays.
 ConvertFigures convert_bridge(const BridgeConversion& conversion, Session& session);
 
 /// Prints the topics that a bridge offers.

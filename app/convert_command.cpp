@@ -168,7 +168,7 @@ void add_convert_command(CLI::App& app, Session& session) {
       ->add_option("--reconnect", arguments->reconnect,
                    "How long a lost connection to a robot is tried again, s")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 86'400.0));
   command->add_flag("--force", arguments->force, "Replace DIR");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   add_data_set_commands(*command, session);

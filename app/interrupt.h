@@ -20,6 +20,8 @@ class InterruptGuard {
   /// From now on the first signal only requests a stop, for a command that then ends by itself. A
   /// second signal ends the program.
   std::stop_token stop_gently();
+  /// Ends that: the next signal ends the program.
+  void stop_at_once() { gently_ = false; }
 
   /// What the program exits with: `code`, or 128 + signal after a gentle stop.
   int exit_code(int code) const;

@@ -1,5 +1,6 @@
 #include "fovea/drive/bridge/bridge_address.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "fovea/core/errors.h"
@@ -24,6 +25,11 @@ bool has_odd_characters(std::string_view text) {
 
 }  // namespace
 
+std::string Address::text() const {
+  const bool is_ipv6 = host.find(':') != std::string::npos;
+  return (is_ipv6 ? "[" + host + "]" : host) + ":" + port;
+}
+
 Address parse_address(const std::string& text) {
   const auto fail = [&](const char* problem) -> ConfigError {
     return {problem, text, "give ws://HOST:PORT, as ws://robot:8765"};
@@ -39,6 +45,9 @@ Address parse_address(const std::string& text) {
   const std::size_t bracket = rest.starts_with('[') ? rest.find(']') : 0;  // of an IPv6 address
   if (bracket == std::string_view::npos) throw fail("a bracket of the host is not closed");
   const std::size_t colon = rest.find(':', bracket);
+  if (bracket > 0 && bracket + 1 != std::min(colon, rest.size())) {
+    throw fail("the bracket of the host is not followed by a port");
+  }
   address.host = bracket > 0 ? rest.substr(1, bracket - 1) : rest.substr(0, colon);
   if (address.host.empty()) throw fail("the address has no host");
   if (colon != std::string_view::npos) {

@@ -9,8 +9,8 @@ namespace fovea::bridge {
 struct Address {
   std::string host, port, path;
 
-  /// "robot:8765", for messages.
-  std::string text() const { return host + ":" + port; }
+  /// "robot:8765", "[::1]:8765".
+  std::string text() const;
 };
 
 /// Whether a text is meant as an address, not as a file: "ws://..." or "wss://...".

@@ -24,11 +24,17 @@ TEST(BridgeAddress, HasAHostAPortAndAPath) {
 }
 
 TEST(BridgeAddress, OthersAreRefused) {
-  for (const char* text : {"ws://", "ws:///path", "ws://:8765", "ws://robot:", "ws://robot:0",
-                           "ws://robot:65536", "ws://robot:8765x", "ws://[::1", "ws://a b",
-                           "ws://a\r\nHost: b", "wss://robot", "http://robot", "robot:8765"}) {
+  for (const char* text :
+       {"ws://", "ws:///path", "ws://:8765", "ws://robot:", "ws://robot:0", "ws://robot:65536",
+        "ws://robot:8765x", "ws://[::1", "ws://[::1]9000", "ws://[::1]x:90", "ws://[]:90",
+        "ws://a b", "ws://a\r\nHost: b", "wss://robot", "http://robot", "robot:8765"}) {
     EXPECT_THROW(parse_address(text), ConfigError) << text;
   }
+}
+
+TEST(BridgeAddress, HasATextForMessages) {
+  EXPECT_EQ(parse_address("ws://robot:90/path").text(), "robot:90");
+  EXPECT_EQ(parse_address("ws://[::1]").text(), "[::1]:8765");
 }
 
 TEST(BridgeAddress, IsNoFile) {

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "the protocol has little-endian numbers");
 
-enum Opcode : std::uint8_t { kMessageData = 1 };  // the same from server and client
+constexpr std::uint8_t kMessageData = 1;  // opcode
 
 [[noreturn]] void throw_damaged(const std::string& problem) {
   throw DamagedMessage(fmt::format("a message of the bridge is damaged ({})", problem),
@@ -30,22 +30,6 @@ std::uint32_t id_of(const Json& json) {
     throw std::invalid_argument("an id is no number of 32 bits");
   }
   return json.get<std::uint32_t>();
-}
-
-std::vector<std::string> texts_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found == json.end() ? std::vector<std::string>() : found->get<std::vector<std::string>>();
-}
-
-ServerInfo server_info_of(const Json& json) {
-  ServerInfo info;
-  info.name = json.value("name", "");
-  info.session = json.value("sessionId", "");
-  const std::vector<std::string> capabilities = texts_at(json, "capabilities");
-  info.accepts_messages =
-      std::find(capabilities.begin(), capabilities.end(), "clientPublish") != capabilities.end();
-  info.encodings = texts_at(json, "supportedEncodings");
-  return info;
 }
 
 Advertised advertised_of(const Json& json) {
@@ -71,17 +55,10 @@ Status status_of(const Json& json) {
 
 ServerMessage message_of(const Json& json) {
   const auto op = json.at("op").get<std::string>();
-  if (op == "serverInfo") return server_info_of(json);
   if (op == "advertise") return advertised_of(json);
   if (op == "unadvertise") return unadvertised_of(json);
   if (op == "status") return status_of(json);
   return Unused{};
-}
-
-template <class T>
-void append(T number, std::string& bytes) {
-  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(number);
-  bytes.append(raw.data(), raw.size());
 }
 
 template <class T>
@@ -119,30 +96,6 @@ std::string subscribe_message(std::span<const Subscription> subscriptions) {
     list.push_back({{"id", subscription.id}, {"channelId", subscription.channel_id}});
   }
   return Json{{"op", "subscribe"}, {"subscriptions", list}}.dump();
-}
-
-std::string unsubscribe_message(std::span<const std::uint32_t> subscription_ids) {
-  const std::vector<std::uint32_t> ids(subscription_ids.begin(), subscription_ids.end());
-  return Json{{"op", "unsubscribe"}, {"subscriptionIds", ids}}.dump();
-}
-
-std::string advertise_message(std::span<const Channel> channels) {
-  Json list = Json::array();
-  for (const Channel& channel : channels) {
-    list.push_back({{"id", channel.id},
-                    {"topic", channel.topic},
-                    {"encoding", channel.encoding},
-                    {"schemaName", channel.type}});
-  }
-  return Json{{"op", "advertise"}, {"channels", list}}.dump();
-}
-
-std::string message_data(std::uint32_t channel_id, std::string_view payload) {
-  std::string bytes;
-  append(std::uint8_t{kMessageData}, bytes);
-  append(channel_id, bytes);
-  bytes += payload;
-  return bytes;
 }
 
 }  // namespace fovea::bridge

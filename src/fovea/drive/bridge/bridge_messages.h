@@ -19,14 +19,6 @@ namespace fovea::bridge {
 inline constexpr std::array<std::string_view, 2> kProtocols = {"foxglove.sdk.v1",
                                                                "foxglove.websocket.v1"};
 
-/// What the server is. Its first message.
-struct ServerInfo {
-  std::string name;
-  std::string session;                 ///< the same after a reconnection to the same server
-  bool accepts_messages = false;       ///< clients may publish
-  std::vector<std::string> encodings;  ///< of messages that clients publish
-};
-
 /// A topic that the server can send.
 struct Channel {
   std::uint32_t id = 0;
@@ -56,11 +48,10 @@ struct MessageData {
   std::string_view payload;  ///< points into the message that it was read from
 };
 
-/// A message that no part of Fovea uses: parameters, services, assets, time.
+/// A message that no part of Fovea uses: server information, parameters, services, assets, time.
 struct Unused {};
 
-using ServerMessage =
-    std::variant<ServerInfo, Advertised, Unadvertised, Status, MessageData, Unused>;
+using ServerMessage = std::variant<Advertised, Unadvertised, Status, MessageData, Unused>;
 
 class DamagedMessage : public InputError {
  public:
@@ -74,12 +65,7 @@ ServerMessage parse_binary(std::string_view message);
 struct Subscription {
   std::uint32_t id = 0, channel_id = 0;
 };
-/// Messages to the server.
+/// The request to send the messages of some channels.
 std::string subscribe_message(std::span<const Subscription> subscriptions);
-std::string unsubscribe_message(std::span<const std::uint32_t> subscription_ids);
-/// Offers topics that this client publishes.
-std::string advertise_message(std::span<const Channel> channels);
-/// A message of a topic that was offered.
-std::string message_data(std::uint32_t channel_id, std::string_view payload);
 
 }  // namespace fovea::bridge

@@ -35,29 +35,34 @@ bool pause(milliseconds duration, const std::stop_token& stop) {
 class BridgeReader {
  public:
   BridgeReader(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
-               const std::function<void()>& idle)
+               const std::function<void(bool)>& idle)
       : options_(options), sink_(sink), stop_(stop), idle_(idle) {}
 
   BridgeFigures run() {
     std::optional<Connection> connection(std::in_place, options_.address, options_.connection,
                                          stop_);
     while (connection) {
-      ++figures_.connections;
+      offered_.clear();
       subscribed_.clear();
-      topic_of_channel_.clear();
       try {
         read(*connection);
         break;
       } catch (const ConnectionError& error) {
-        figures_.warn(error.what());
+        if (figures_.losses++ == 0) first_loss_ = error.what();
       }
       connection.reset();
       connect_again(connection);
     }
+    warn();
     return std::move(figures_);
   }
 
  private:
+  struct Subscribed {
+    std::uint32_t channel = 0;
+    BagTopic topic;
+  };
+
   /// Until the bridge closes the connection, or a stop. ConnectionError if the connection is lost.
   void read(Connection& connection) {
     while (!stop_.stop_requested()) {
@@ -67,8 +72,25 @@ class BridgeReader {
       } else if (connection.is_closed()) {
         return;
       }
-      if (idle_) idle_();
+      idle_(/*is_connected=*/true);
     }
+  }
+
+  void connect_again(std::optional<Connection>& connection) {
+    if (!lost_since_) {
+      lost_since_ = Clock::now();
+      pause_ = kFirstPause;
+    }
+    while (Clock::now() < *lost_since_ + options_.reconnect && pause(pause_, stop_)) {
+      pause_ = std::min(2 * pause_, kLongestPause);
+      idle_(/*is_connected=*/false);
+      try {
+        connection.emplace(options_.address, options_.connection, stop_);
+        return;
+      } catch (const ConnectionError&) {  // the next pause follows
+      }
+    }
+    figures_.ended_lost = !stop_.stop_requested();
   }
 
   void take(const WireMessage& message, Connection& connection) {
@@ -77,26 +99,10 @@ class BridgeReader {
           message.is_binary ? parse_binary(message.bytes) : parse_text(message.bytes);
       std::visit([&](const auto& content) { take(content, connection); }, parsed);
     } catch (const DamagedMessage& error) {
-      if (figures_.damaged++ == 0) figures_.warn(error.what());
+      if (figures_.damaged++ == 0) first_damage_ = error.problem();
     }
   }
 
-  void connect_again(std::optional<Connection>& connection) {
-    const auto until = Clock::now() + options_.reconnect;
-    milliseconds wait = kFirstPause;
-    while (Clock::now() < until && pause(wait, stop_)) {
-      if (idle_) idle_();
-      try {
-        connection.emplace(options_.address, options_.connection, stop_);
-        return;
-      } catch (const ConnectionError&) {
-        wait = std::min(2 * wait, kLongestPause);
-      }
-    }
-    figures_.lost = !stop_.stop_requested();
-  }
-
-  void take(const ServerInfo& /*info*/, Connection& /*connection*/) {}
   void take(const Unused& /*message*/, Connection& /*connection*/) {}
 
   void take(const Status& status, Connection& /*connection*/) {
@@ -105,66 +111,79 @@ class BridgeReader {
   }
 
   void take(const Advertised& advertised, Connection& connection) {
-    std::vector<Subscription> subscriptions;
     for (const Channel& channel : advertised.channels) {
-      if (is_known_topic(channel)) continue;
       BagTopic topic{channel.topic, ros2_type(channel.type), channel.encoding};
       if (!sink_.is_requested(topic) || !topic.is_readable()) continue;
-      topic_of_channel_[channel.id] = channel.topic;
-      subscribed_[next_subscription_] = {channel.id, std::move(topic)};
-      subscriptions.push_back({next_subscription_++, channel.id});
+      offered_.insert_or_assign(channel.id, std::move(topic));
     }
-    if (subscriptions.empty()) return;
-    static_cast<void>(connection.send({false, subscribe_message(subscriptions)}));
+    subscribe(connection);
   }
 
-  /// Two channels of one topic would be counted twice.
-  bool is_known_topic(const Channel& channel) {
-    for (const auto& [id, topic] : topic_of_channel_) {
-      if (topic != channel.topic) continue;
-      if (id != channel.id && twice_.insert(topic).second) {
-        figures_.warn(
-            fmt::format("two channels have the topic {}: the second one is left out", topic));
-      }
-      return true;
-    }
-    return false;
-  }
-
-  void take(const Unadvertised& unadvertised, Connection& /*connection*/) {
+  void take(const Unadvertised& unadvertised, Connection& connection) {
     for (const std::uint32_t id : unadvertised.channel_ids) {
-      topic_of_channel_.erase(id);
+      offered_.erase(id);
       std::erase_if(subscribed_, [&](const auto& entry) { return entry.second.channel == id; });
     }
+    subscribe(connection);
   }
 
   void take(const MessageData& data, Connection& /*connection*/) {
     const auto subscription = subscribed_.find(data.subscription);
     if (subscription == subscribed_.end()) return;  // of a channel that has gone
     ++figures_.messages;
+    lost_since_.reset();
     sink_.add(subscription->second.topic, data.payload);
   }
 
-  struct Subscribed {
-    std::uint32_t channel = 0;
-    BagTopic topic;
-  };
+  /// Subscribes to a channel of each offered topic that has none yet.
+  void subscribe(Connection& connection) {
+    std::vector<Subscription> subscriptions;
+    for (const auto& [channel, topic] : offered_) {
+      const auto same =
+          std::find_if(subscribed_.begin(), subscribed_.end(),
+                       [&](const auto& entry) { return entry.second.topic.name == topic.name; });
+      if (same == subscribed_.end()) {
+        subscribed_[next_subscription_] = {channel, topic};
+        subscriptions.push_back({next_subscription_++, channel});
+      } else if (same->second.channel != channel && twice_.insert(topic.name).second) {
+        figures_.warn(fmt::format("two channels have the topic {}: one of them is left out",
+                                  printable(topic.name)));
+      }
+    }
+    if (subscriptions.empty()) return;
+    static_cast<void>(connection.send({false, subscribe_message(subscriptions)}));
+  }
+
+  void warn() {
+    if (figures_.losses > 0) {
+      figures_.warn(fmt::format("the connection was lost {} time{}: {}", figures_.losses,
+                                figures_.losses == 1 ? "" : "s", first_loss_));
+    }
+    if (figures_.ended_lost) figures_.warn("the lost connection could not be made again");
+    if (figures_.damaged > 0) {
+      figures_.warn(fmt::format("{} messages of the bridge cannot be read (the first: {})",
+                                figures_.damaged, first_damage_));
+    }
+  }
 
   const BridgeOptions& options_;
   BagSink& sink_;
   const std::stop_token& stop_;
-  const std::function<void()>& idle_;
+  const std::function<void(bool)>& idle_;
   BridgeFigures figures_;
-  std::map<std::uint32_t, Subscribed> subscribed_;         // by subscription
-  std::map<std::uint32_t, std::string> topic_of_channel_;  // of channels that are subscribed
-  std::set<std::string> twice_;                            // topics with a warning
+  std::string first_loss_, first_damage_;
+  std::map<std::uint32_t, BagTopic> offered_;       // requested topics, by channel
+  std::map<std::uint32_t, Subscribed> subscribed_;  // by subscription
+  std::set<std::string> twice_;                     // topics with a warning
   std::uint32_t next_subscription_ = 0;
+  std::optional<Clock::time_point> lost_since_;  // the last message of a topic
+  milliseconds pause_ = kFirstPause;
 };
 
 }  // namespace
 
 BridgeFigures read_bridge(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
-                          const std::function<void()>& idle) {
+                          const std::function<void(bool)>& idle) {
   return BridgeReader(options, sink, stop, idle).run();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <stop_token>
 #include <string>
@@ -15,24 +16,26 @@ namespace fovea::bridge {
 struct BridgeOptions {
   Address address;
   ConnectionOptions connection;
-  /// How long a lost connection is tried again, with growing pauses.
+  /// How long a lost connection is tried again, with growing pauses, until a message comes.
   std::chrono::milliseconds reconnect{30'000};
 };
 
-/// Its warnings are remarks of the bridge, lost connections, and topics that two channels have.
+/// Its warnings count what was lost, and name the first case of each kind.
 struct BridgeFigures : Messages {
-  std::size_t connections = 0;
   std::size_t messages = 0;  ///< of topics
   std::size_t damaged = 0;   ///< messages of the bridge that cannot be read
-  bool lost = false;         ///< the connection could not be made again
+  std::size_t losses = 0;    ///< of the connection
+  bool ended_lost = false;   ///< the connection could not be made again
 };
 
 /// Passes the messages of the topics that the sink requests on, until the bridge closes the
 /// connection, `stop` is requested, or the connection is lost and cannot be made again.
-/// is_requested() is called again for a topic that comes back.
-/// ConnectionError if there is no connection to begin with.
+/// is_requested() is called again for a topic that comes back. Of two channels of one topic one is
+/// read at a time.
 /// @param idle  called about once a second, and after each message
+/// @throws ConnectionError  if there is no connection to begin with
+/// @throws InputError       if a message is too long
 BridgeFigures read_bridge(const BridgeOptions& options, BagSink& sink, const std::stop_token& stop,
-                          const std::function<void()>& idle);
+                          const std::function<void(bool is_connected)>& idle);
 
 }  // namespace fovea::bridge

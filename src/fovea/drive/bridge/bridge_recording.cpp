@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "fovea/core/output_file.h"
 #include "fovea/drive/recordings/bag_indexer.h"
 #include "fovea/drive/recordings/conversion_plan.h"
 #include "fovea/drive/recordings/mcap_writer.h"
@@ -15,9 +16,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Messages of a topic that are read while something is missing: memory does not grow.
-constexpr std::size_t kMostIndexed = 200;
-constexpr std::chrono::milliseconds kBetweenPlans{1000};
+/// Since the first message: so long what a drive lacks is reported. Memory grows with this time.
+constexpr std::chrono::seconds kWatched{60};
+constexpr std::chrono::seconds kBetweenChecks{1};
 
 TimeNs now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -25,27 +26,37 @@ TimeNs now() {
       .count();
 }
 
-class Recorder : public BagSink {
+class RecordingSink : public BagSink {
  public:
-  explicit Recorder(const RecordingJob& job) : job_(job), writer_(job.output, job.force) {}
+  explicit RecordingSink(const RecordingJob& job) : job_(job) {}
 
   bool is_requested(const BagTopic& topic) override { return indexer_.is_requested(topic); }
 
   void add(const BagTopic& topic, std::string_view message) override {
-    writer_.add(topic, message, now());
+    if (!writer_) {
+      writer_.emplace(job_.output);
+      watched_until_ = Clock::now() + kWatched;
+    }
+    writer_->add(topic, message, now());
     if (is_scan_type(topic.type)) {
       ++progress_.scans;
       if (!first_scan_) first_scan_ = Clock::now();
     }
     if (topic.type == ros::kImage || topic.type == ros::kCompressedImage) ++progress_.images;
-    if (!is_complete_ && ++indexed_[topic.name] <= kMostIndexed) indexer_.add(topic, message);
+    if (is_watched_) indexer_.add(topic, message);
   }
 
   /// Called between messages.
-  const RecordingProgress& check() {
-    if (!is_complete_ && Clock::now() >= next_plan_) {
-      next_plan_ = Clock::now() + kBetweenPlans;
-      plan();
+  const RecordingProgress& check(bool is_connected) {
+    progress_.is_connected = is_connected;
+    if (Clock::now() < next_check_) return progress_;
+    next_check_ = Clock::now() + kBetweenChecks;
+    if (writer_) writer_->flush();
+    is_watched_ = is_watched_ && Clock::now() < watched_until_;
+    if (is_watched_) {
+      find_missing();
+    } else {
+      progress_.missing.clear();
     }
     return progress_;
   }
@@ -56,27 +67,29 @@ class Recorder : public BagSink {
     return passed.count() >= job_.options.start + job_.options.duration;
   }
 
-  void finish() { writer_.finish(); }
+  void finish() {
+    if (!writer_) writer_.emplace(job_.output);  // of no message
+    writer_->finish();
+  }
 
  private:
   /// Whether what has come so far is a drive.
-  void plan() {
+  void find_missing() {
     try {
       plan_conversion(BagIndexer(indexer_).finish(), job_.options);
       progress_.missing.clear();
-      is_complete_ = true;
     } catch (const InputError& error) {
       progress_.missing = fmt::format("{} ({})", error.problem(), error.where());
     }
   }
 
   const RecordingJob& job_;
-  McapWriter writer_;
+  std::optional<McapWriter> writer_;  // from the first message on
   BagIndexer indexer_;
-  std::map<std::string, std::size_t> indexed_;  // messages by topic
   RecordingProgress progress_;
-  bool is_complete_ = false;
-  Clock::time_point next_plan_ = Clock::now() + kBetweenPlans;
+  bool is_watched_ = true;
+  Clock::time_point watched_until_ = Clock::time_point::max();
+  Clock::time_point next_check_ = Clock::now() + kBetweenChecks;
   std::optional<Clock::time_point> first_scan_;
 };
 
@@ -84,14 +97,15 @@ class Recorder : public BagSink {
 
 BridgeFigures record_bridge(const RecordingJob& job, const std::stop_token& stop,
                             const std::function<void(const RecordingProgress&)>& progress) {
-  Recorder recorder(job);
+  check_output_path(job.output, /*force=*/false);  // before anything is recorded
+  RecordingSink sink(job);
   std::stop_source ends;
   const std::stop_callback end_with_user(stop, [&] { ends.request_stop(); });
-  BridgeFigures figures = read_bridge(job.bridge, recorder, ends.get_token(), [&] {
-    progress(recorder.check());
-    if (recorder.is_over()) ends.request_stop();
+  BridgeFigures figures = read_bridge(job.bridge, sink, ends.get_token(), [&](bool is_connected) {
+    progress(sink.check(is_connected));
+    if (sink.is_over()) ends.request_stop();
   });
-  recorder.finish();
+  sink.finish();
   return figures;
 }
 
@@ -109,7 +123,7 @@ std::vector<BagTopic> list_topics(const BridgeOptions& options, std::chrono::mil
   Topics topics;
   std::stop_source ends;
   const auto until = Clock::now() + wait;
-  read_bridge(options, topics, ends.get_token(), [&] {
+  read_bridge(options, topics, ends.get_token(), [&](bool /*is_connected*/) {
     if (Clock::now() >= until) ends.request_stop();
   });
   std::vector<BagTopic> list;

@@ -61,9 +61,8 @@ class Connection::Socket {
     }
     if (!error_ || is_end(error_)) return std::nullopt;
     if (error_ == websocket::error::message_too_big) {
-      throw ConnectionError(
-          fmt::format("a message has more than {} MiB", options_.max_message >> 20),
-          address_.text(), "have the robot send smaller scans and images");
+      throw InputError(fmt::format("a message has more than {} MiB", options_.max_message >> 20),
+                       address_.text(), "have the robot send smaller scans and images");
     }
     throw ConnectionError(fmt::format("the connection is lost ({})", error_.message()),
                           address_.text(), "check the network and the bridge");
@@ -87,17 +86,19 @@ class Connection::Socket {
     while (!done() && !stop.stop_requested() && Clock::now() < until) {
       io_.restart();
       // In steps: run_one_until() overflows at time_point::max().
-      io_.run_one_until(std::min(until, Clock::now() + std::chrono::seconds(1)));
+      io_.run_one_until(std::min(until, Clock::now() + std::chrono::hours(1)));
     }
   }
 
   /// Runs an operation that sets `result`. ConnectionError if it fails or takes too long.
   void wait_for(std::optional<error_code>& result, const char* what, const std::stop_token& stop) {
-    run_until([&] { return result.has_value(); }, stop, Clock::now() + options_.patience);
+    run_until([&] { return result.has_value(); }, stop, deadline_);
     if (result && !*result) return;
-    const std::string reason = stop.stop_requested() ? "interrupted"
-                               : result              ? result->message()
-                                                     : "no answer";
+    if (stop.stop_requested()) {
+      throw ConnectionError("interrupted before there was a connection", address_.text(),
+                            "give the same command again");
+    }
+    const std::string reason = result ? result->message() : "no reply";
     throw ConnectionError(fmt::format("{} ({})", what, reason), address_.text(), kCheckAddress);
   }
 
@@ -118,8 +119,8 @@ class Connection::Socket {
 
   void shake_hands(const std::stop_token& stop) {
     websocket::stream_base::timeout timeout{};
-    timeout.handshake_timeout = options_.patience;
-    timeout.idle_timeout = options_.patience;
+    timeout.handshake_timeout = options_.timeout;
+    timeout.idle_timeout = options_.timeout;
     timeout.keep_alive_pings = true;
     stream_.set_option(timeout);
     stream_.read_message_max(options_.max_message);
@@ -135,10 +136,10 @@ class Connection::Socket {
     const auto chosen = response[beast::http::field::sec_websocket_protocol];
     const std::string_view protocol(chosen.data(), chosen.size());
     if (std::find(kProtocols.begin(), kProtocols.end(), protocol) != kProtocols.end()) return;
-    throw ConnectionError(
-        protocol.empty() ? "the server speaks no protocol of the Foxglove bridge"
-                         : fmt::format("the server speaks '{:.40}', another protocol", protocol),
-        address_.text(), "start foxglove_bridge, and give its port");
+    throw ConnectionError(protocol.empty()
+                              ? "the server does not use a protocol of the Foxglove bridge"
+                              : fmt::format("the server uses another protocol, '{:.40}'", protocol),
+                          address_.text(), "start foxglove_bridge, and give its port");
   }
 
   void read() {
@@ -164,6 +165,7 @@ class Connection::Socket {
 
   Address address_;
   ConnectionOptions options_;
+  Clock::time_point deadline_ = Clock::now() + options_.timeout;  // of the connection
   asio::io_context io_{1};  // is destroyed after those below, with the handlers that have not run
   tcp::resolver resolver_{io_};
   websocket::stream<beast::tcp_stream> stream_;

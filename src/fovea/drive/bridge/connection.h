@@ -13,15 +13,15 @@
 
 namespace fovea::bridge {
 
-/// There is no connection to the bridge, or it has ended.
+/// There is no connection to the bridge, or it is lost.
 class ConnectionError : public InputError {
  public:
   using InputError::InputError;
 };
 
 struct ConnectionOptions {
-  /// Longest wait for the connection and for signs of life. A silent bridge answers pings.
-  std::chrono::milliseconds patience{10'000};
+  /// Of the whole connection and of each reply. A bridge that sends nothing replies to pings.
+  std::chrono::milliseconds timeout{10'000};
   std::size_t max_message = std::size_t{256} << 20;  ///< bytes
   std::size_t max_unsent = std::size_t{4} << 20;     ///< bytes of messages to the bridge
 };
@@ -38,14 +38,15 @@ struct WireMessage {
 /// what it cannot send: memory does not grow.
 class Connection {
  public:
-  /// Connects. ConnectionError if no bridge of a known protocol answers in time.
+  /// Connects. ConnectionError if no bridge of a known protocol replies in time, or at a stop.
+  /// A host's name is looked up first, for as long as the system takes.
   explicit Connection(const Address& address, const ConnectionOptions& options = {},
                       const std::stop_token& stop = {});
   ~Connection();
 
   /// The next message. Nothing if the bridge has closed the connection or if `stop` is requested,
   /// or after `wait` without a message.
-  /// ConnectionError if the connection is lost, or a message is too long.
+  /// ConnectionError if the connection is lost. InputError if a message is too long.
   std::optional<WireMessage> receive(const std::stop_token& stop,
                                      std::optional<std::chrono::milliseconds> wait = {});
   /// Whether the bridge has closed the connection.

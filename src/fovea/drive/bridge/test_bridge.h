@@ -1,4 +1,4 @@
-// A bridge for tests, which can be as rude as they need.
+// A bridge for tests, which may misbehave.
 #pragma once
 
 #include <atomic>

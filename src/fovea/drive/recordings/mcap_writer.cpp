@@ -2,9 +2,11 @@
 
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <limits>
 
 #include "fovea/core/errors.h"
+#include "fovea/core/output_file.h"
 #include "fovea/core/version.h"
 #include "fovea/drive/recordings/mcap_format.h"
 
@@ -35,19 +37,31 @@ class Content {
 
 }  // namespace
 
-McapWriter::McapWriter(const std::filesystem::path& path, bool force) : file_(path, force) {
-  file_.stream() << mcap::kMagic;
+McapWriter::McapWriter(const std::filesystem::path& path)
+    : path_(check_output_path(path, /*force=*/false)), stream_(path_, std::ios::binary) {
+  stream_ << mcap::kMagic;
   put(mcap::kHeader, Content().text("").text(std::string("fovea ") + version()));
+  flush();
 }
 
 void McapWriter::put(std::uint8_t opcode, std::string_view content, std::string_view data) {
   const std::uint64_t size = content.size() + data.size();
-  file_.stream() << std::string_view(Content().number(opcode).number(size)) << content << data;
+  stream_ << std::string_view(Content().number(opcode).number(size)) << content << data;
+}
+
+void McapWriter::check() {
+  if (!stream_) throw_output_error(path_, errno);
+}
+
+void McapWriter::flush() {
+  errno = 0;
+  stream_.flush();
+  check();
 }
 
 std::uint16_t McapWriter::channel_of(const BagTopic& topic) {
-  const auto [channel, is_new] =
-      channels_.try_emplace(topic.name, std::uint16_t(channels_.size() + 1));
+  const auto [channel, is_new] = channels_.try_emplace({topic.name, topic.type, topic.encoding},
+                                                       std::uint16_t(channels_.size() + 1));
   const std::uint16_t id = channel->second;
   if (!is_new) return id;
   if (channels_.size() > std::numeric_limits<std::uint16_t>::max()) {
@@ -63,17 +77,19 @@ std::uint16_t McapWriter::channel_of(const BagTopic& topic) {
 
 void McapWriter::add(const BagTopic& topic, std::string_view message, TimeNs time) {
   constexpr std::uint32_t kSequence = 0;  // not known
+  errno = 0;
   const std::uint16_t channel = channel_of(topic);
   put(mcap::kMessage, Content().number(channel).number(kSequence).number(time).number(time),
       message);
+  check();
 }
 
 void McapWriter::finish() {
   put(mcap::kDataEnd, Content().number(std::uint32_t{0}));  // no checksum
   put(mcap::kFooter,
       Content().number(std::uint64_t{0}).number(std::uint64_t{0}).number(std::uint32_t{0}));
-  file_.stream() << mcap::kMagic;
-  file_.commit();
+  stream_ << mcap::kMagic;
+  flush();
 }
 
 }  // namespace fovea

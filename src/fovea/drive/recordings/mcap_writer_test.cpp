@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "../../../../tests/temporary_folder.h"
+#include "fovea/core/errors.h"
 #include "fovea/drive/recordings/mcap_file.h"
 
 namespace fovea::mcap_writer_test {
@@ -28,11 +31,10 @@ class Sink : public BagSink {
 
 TEST(McapWriter, ItsFileReadsBack) {
   const TemporaryFolder folder;
-  McapWriter writer(folder / "a.mcap", false);
+  McapWriter writer(folder / "a.mcap");
   writer.add(kPoints, "one", 1);
   writer.add(kImu, std::string(100'000, 'x'), 2);
   writer.add(kPoints, "", 3);
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));
   writer.finish();
   Sink sink;
   read_mcap(folder / "a.mcap", folder / "a.mcap", sink);
@@ -41,6 +43,35 @@ TEST(McapWriter, ItsFileReadsBack) {
   EXPECT_THAT(sink.messages,
               ElementsAre("/points one", "/imu " + std::string(100'000, 'x'), "/points "));
   EXPECT_TRUE(sink.losses.empty());
+}
+
+TEST(McapWriter, AFileWithoutAnEndIsReadUpToThere) {
+  const TemporaryFolder folder;
+  McapWriter writer(folder / "a.mcap");
+  writer.add(kPoints, "one", 1);
+  writer.flush();
+  Sink sink;
+  read_mcap(folder / "a.mcap", folder / "a.mcap", sink);
+  EXPECT_THAT(sink.messages, ElementsAre("/points one"));
+  EXPECT_EQ(sink.losses.size(), 1u);
+}
+
+TEST(McapWriter, ATopicMayComeBackWithAnotherEncoding) {
+  const TemporaryFolder folder;
+  McapWriter writer(folder / "a.mcap");
+  writer.add(kPoints, "one", 1);
+  writer.add({kPoints.name, kPoints.type, "ros1"}, "two", 2);
+  writer.finish();
+  Sink sink;
+  read_mcap(folder / "a.mcap", folder / "a.mcap", sink);
+  EXPECT_THAT(sink.topics, ElementsAre("/points sensor_msgs/msg/PointCloud2 cdr",
+                                       "/points sensor_msgs/msg/PointCloud2 ros1"));
+}
+
+TEST(McapWriter, AnotherFileIsNotReplaced) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.mcap") << "of the user";
+  EXPECT_THROW(McapWriter(folder / "a.mcap"), OutputError);
 }
 
 }  // namespace fovea::mcap_writer_test
