@@ -15,8 +15,9 @@ namespace fovea {
 LogGain gain_of_maps(const MapReader& a, const MapReader& b,
                      const std::vector<RigidMotion>& T_a_submap_b, double tile_size);
 
-/// Sets the gain of one match for each submap of B: the one with the most surfaces in common. It is
-/// the mode over the submaps of B near it and all their partners. The other matches have none.
+/// Sets the gain of one match for each submap of B: of the match with the most common surfaces. The
+/// gain is the mode over five submaps of B before and after, with all their partners in A. The
+/// other matches have no gain.
 void set_gains(const MapReader& a, const MapReader& b, std::vector<SubmapMatch>& matches);
 
 }  // namespace fovea

@@ -24,7 +24,7 @@ struct CityRootFigures {
 };
 
 /// Writes the root of a city above the parts of its tiles: FOLDER/tileset.json on earth, and
-/// FOLDER/q_HASH with the levels above the tiles. HASH is that of the levels, and tileset.json
+/// FOLDER/q/HASH with the levels above the tiles. HASH is that of the levels, and tileset.json
 /// comes last: a program that is killed leaves the earlier root or the new one. The parts are
 /// folders of write_tileset(): FOLDER/X_Y, or the name of the tile's map without its ending, by
 /// which jobs find parts of this revision. Only their coarsest levels are read, and the points of
