@@ -1,4 +1,5 @@
 // Messages of a Foxglove bridge. The first byte says whether one is text.
+#include "fovea/core/errors.h"
 #include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/drive/bridge/bridge_messages.h"
 #include "fuzz_input.h"
@@ -15,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       require(message.ends_with(content->payload), "the payload is the end of the message");
     }
   });
-  read_or_refuse([&] {
+  read_or_refuse<ConfigError>([&] {
     const bridge::Address address = bridge::parse_address(std::string(message));
     require(!address.host.empty() && !address.port.empty(), "an address has a host and a port");
     require(address.path.starts_with('/'), "a path begins at the root");
