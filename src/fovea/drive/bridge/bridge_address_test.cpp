@@ -5,10 +5,11 @@
 #include "fovea/core/errors.h"
 
 namespace fovea::bridge_address_test {
+namespace {
 
 using namespace fovea::bridge;
 
-static void expect_address(const std::string& text, const Address& expected) {
+void expect_address(const std::string& text, const Address& expected) {
   const Address address = parse_address(text);
   EXPECT_EQ(address.host, expected.host) << text;
   EXPECT_EQ(address.port, expected.port) << text;
@@ -44,4 +45,5 @@ TEST(BridgeAddress, IsNoFile) {
   EXPECT_FALSE(is_address("wsp.mcap"));
 }
 
+}  // namespace
 }  // namespace fovea::bridge_address_test

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 namespace fovea::bridge_messages_test {
+namespace {
 
 using namespace fovea::bridge;
 using testing::ElementsAre;
@@ -71,4 +72,5 @@ TEST(BridgeMessages, ASubscriptionIsAsTheProtocolSays) {
       "subscriptions": [{"id": 0, "channelId": 3}, {"id": 1, "channelId": 5}]})"));
 }
 
+}  // namespace
 }  // namespace fovea::bridge_messages_test

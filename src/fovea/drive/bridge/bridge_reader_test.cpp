@@ -10,6 +10,7 @@
 #include "fovea/drive/bridge/test_bridge.h"
 
 namespace fovea::bridge_reader_test {
+namespace {
 
 using namespace fovea::bridge;
 using namespace std::chrono_literals;
@@ -54,7 +55,7 @@ void send_data(TestBridge::WebSocket& stream, std::uint32_t subscription,
                const std::string& payload) {
   std::string bytes(13, '\0');
   bytes[0] = 1;
-  for (int k = 0; k < 4; ++k) bytes[std::size_t(1 + k)] = char(subscription >> (8 * k) & 0xff);
+  for (std::size_t k = 0; k < 4; ++k) bytes[1 + k] = char(subscription >> (8 * k) & 0xff);
   TestBridge::send_binary(stream, bytes + payload);
 }
 
@@ -67,7 +68,7 @@ BridgeFigures read(const TestBridge& server, Sink& sink,
 }
 
 TEST(BridgeReader, PassesTheRequestedTopicsOn) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     advertise(stream, "/other", 3);
     advertise(stream, "/json", 4, "json");
     advertise(stream, "/imu", 5);
@@ -87,7 +88,7 @@ TEST(BridgeReader, PassesTheRequestedTopicsOn) {
 }
 
 TEST(BridgeReader, ChannelsMayComeBackWithOtherIds) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     advertise(stream, "/imu", 5);
     const std::uint32_t first = subscription(stream, 5);
     send_data(stream, first, "one");
@@ -103,7 +104,7 @@ TEST(BridgeReader, ChannelsMayComeBackWithOtherIds) {
 }
 
 TEST(BridgeReader, OneOfTwoChannelsOfATopicIsReadAtATime) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     advertise(stream, "/imu", 5);
     const std::uint32_t first = subscription(stream, 5);
     advertise(stream, "/imu", 6);
@@ -119,7 +120,7 @@ TEST(BridgeReader, OneOfTwoChannelsOfATopicIsReadAtATime) {
 }
 
 TEST(BridgeReader, DamagedMessagesAreCounted) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     TestBridge::send_text(stream, "{");
     TestBridge::send_binary(stream, "\1");
     TestBridge::send_text(stream, R"({"op": "status", "level": 2, "message": "no\u0007 disk"})");
@@ -159,7 +160,7 @@ class CountingSink : public Sink {
 TEST(BridgeReader, ALostConnectionIsMadeAgain) {
   CountingSink sink;
   int number = 0;
-  TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
     ++number;
     advertise(stream, "/imu", 5 + number);
     const std::uint32_t imu = subscription(stream, 5 + number);
@@ -177,7 +178,7 @@ TEST(BridgeReader, ALostConnectionIsMadeAgain) {
 TEST(BridgeReader, GivesUpAConnectionThatStaysLost) {
   CountingSink sink;
   std::atomic<int> connections = 0;
-  TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
     if (++connections > 1) return cut(stream);
     advertise(stream, "/imu", 5);
     send_and_wait(stream, subscription(stream, 5), "one", sink.received, 1);
@@ -191,7 +192,7 @@ TEST(BridgeReader, GivesUpAConnectionThatStaysLost) {
 }
 
 TEST(BridgeReader, AMessageTooLongEndsTheReading) {
-  TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [&](TestBridge::WebSocket& stream) {
     TestBridge::send_binary(stream, std::string(2 << 20, ' '));
     TestBridge::wait_for_end(stream);
   });
@@ -203,7 +204,7 @@ TEST(BridgeReader, AMessageTooLongEndsTheReading) {
 }
 
 TEST(BridgeReader, AStopEndsTheWait) {
-  TestBridge server(kProtocol, TestBridge::wait_for_end);
+  const TestBridge server(kProtocol, TestBridge::wait_for_end);
   BridgeOptions options;
   options.address = server.address();
   std::stop_source stop;
@@ -214,4 +215,5 @@ TEST(BridgeReader, AStopEndsTheWait) {
   EXPECT_FALSE(figures.ended_lost);
 }
 
+}  // namespace
 }  // namespace fovea::bridge_reader_test

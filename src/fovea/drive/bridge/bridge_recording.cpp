@@ -127,6 +127,7 @@ std::vector<BagTopic> list_topics(const BridgeOptions& options, std::chrono::mil
     if (Clock::now() >= until) ends.request_stop();
   });
   std::vector<BagTopic> list;
+  list.reserve(topics.by_name.size());
   for (auto& [name, topic] : topics.by_name) list.push_back(std::move(topic));
   return list;
 }

@@ -6,6 +6,7 @@
 #include "fovea/drive/bridge/test_bridge.h"
 
 namespace fovea::connection_test {
+namespace {
 
 using namespace fovea::bridge;
 using namespace std::chrono_literals;
@@ -24,7 +25,7 @@ std::string failure(const TestBridge& server, const ConnectionOptions& options =
 }
 
 TEST(BridgeConnection, PassesMessagesInBothDirections) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     TestBridge::send_text(stream, "a text");
     TestBridge::send_binary(stream, std::string(1'000'000, '\1'));
     TestBridge::send_text(stream, TestBridge::receive(stream));
@@ -45,17 +46,16 @@ TEST(BridgeConnection, PassesMessagesInBothDirections) {
 }
 
 TEST(BridgeConnection, SpeaksTheNewerProtocol) {
-  TestBridge server("foxglove.sdk.v1", TestBridge::wait_for_end);
+  const TestBridge server("foxglove.sdk.v1", TestBridge::wait_for_end);
   EXPECT_EQ(failure(server), "");
 }
 
 TEST(BridgeConnection, RefusesOtherServers) {
-  TestBridge without("", TestBridge::wait_for_end);
+  const TestBridge without("", TestBridge::wait_for_end);
   EXPECT_THAT(failure(without), HasSubstr("does not use a protocol of the Foxglove bridge"));
-  TestBridge other("graphql-ws", TestBridge::wait_for_end);
+  const TestBridge other("graphql-ws", TestBridge::wait_for_end);
   EXPECT_THAT(failure(other), HasSubstr("uses another protocol, 'graphql-ws'"));
-  TestBridge web([](TestBridge::Socket socket) {
-    boost::beast::flat_buffer buffer;
+  const TestBridge web([](TestBridge::Socket socket) {
     const std::string page = "HTTP/1.1 200 OK\r\nContent-Length: 0\r\n\r\n";
     boost::asio::write(socket, boost::asio::buffer(page));
   });
@@ -63,10 +63,10 @@ TEST(BridgeConnection, RefusesOtherServers) {
 }
 
 TEST(BridgeConnection, NeedsAnAnswerInTime) {
-  TestBridge closes([](TestBridge::Socket) {});
+  const TestBridge closes([](TestBridge::Socket) {});
   EXPECT_THAT(failure(closes), HasSubstr("this is no Foxglove bridge"));
   std::stop_source ends;
-  TestBridge silent([&](TestBridge::Socket) {
+  const TestBridge silent([&](TestBridge::Socket) {
     while (!ends.stop_requested()) std::this_thread::sleep_for(5ms);
   });
   ConnectionOptions options;
@@ -91,7 +91,7 @@ TEST(BridgeConnection, NothingListens) {
 }
 
 TEST(BridgeConnection, WaitsNoLongerThanItShall) {
-  TestBridge server(kProtocol, TestBridge::wait_for_end);
+  const TestBridge server(kProtocol, TestBridge::wait_for_end);
   Connection connection(server.address());
   EXPECT_FALSE(connection.receive({}, 10ms));
   EXPECT_FALSE(connection.is_closed());
@@ -104,7 +104,7 @@ TEST(BridgeConnection, WaitsNoLongerThanItShall) {
 }
 
 TEST(BridgeConnection, ALostOneIsAnError) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     TestBridge::send_text(stream, "last");
     stream.next_layer().set_option(boost::asio::socket_base::linger(true, 0));  // resets it
     TestBridge::receive(stream);
@@ -118,7 +118,7 @@ TEST(BridgeConnection, ALostOneIsAnError) {
 }
 
 TEST(BridgeConnection, OneThatEndsWithoutACloseIsLost) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     stream.next_layer().shutdown(TestBridge::Socket::shutdown_both);
   });
   Connection connection(server.address());
@@ -127,7 +127,7 @@ TEST(BridgeConnection, OneThatEndsWithoutACloseIsLost) {
 }
 
 TEST(BridgeConnection, AMessageTooLongIsAnError) {
-  TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
     TestBridge::send_binary(stream, std::string(2 << 20, ' '));
     TestBridge::wait_for_end(stream);
   });
@@ -143,7 +143,7 @@ TEST(BridgeConnection, AMessageTooLongIsAnError) {
 }
 
 TEST(BridgeConnection, DropsWhatTheBridgeDoesNotTake) {
-  TestBridge server(kProtocol, TestBridge::wait_for_end);
+  const TestBridge server(kProtocol, TestBridge::wait_for_end);
   ConnectionOptions options;
   options.max_unsent = 100;
   Connection connection(server.address(), options);
@@ -157,4 +157,5 @@ TEST(BridgeConnection, DropsWhatTheBridgeDoesNotTake) {
   EXPECT_TRUE(is_sent);
 }
 
+}  // namespace
 }  // namespace fovea::connection_test
