@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <condition_variable>
+#include <mutex>
 #include <utility>
 
 namespace fovea {
@@ -26,6 +28,14 @@ std::jthread start_thread(const std::string& name, std::function<void(const std:
     if (priority == ThreadPriority::kBackground) set_nice(kBackgroundNice);
     body(stop);
   });
+}
+
+bool wait_until(WallClock::time_point time, const std::stop_token& stop) {
+  std::mutex guard;
+  std::unique_lock lock(guard);
+  std::condition_variable_any stopped;
+  stopped.wait_until(lock, stop, time, [] { return false; });
+  return !stop.stop_requested();
 }
 
 }  // namespace fovea

@@ -6,6 +6,8 @@
 #include <string>
 #include <thread>
 
+#include "fovea/core/wall_clock.h"
+
 namespace fovea {
 
 enum class ThreadPriority {
@@ -19,5 +21,9 @@ enum class ThreadPriority {
 [[nodiscard]] std::jthread start_thread(const std::string& name,
                                         std::function<void(const std::stop_token&)> body,
                                         ThreadPriority priority = ThreadPriority::kNormal);
+
+/// Waits until a time.
+/// @return false if `stop` ended the wait
+bool wait_until(WallClock::time_point time, const std::stop_token& stop);
 
 }  // namespace fovea

@@ -1,9 +1,9 @@
 #include "fovea/pipeline/frame_reader.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <mutex>
 #include <utility>
+
+#include "fovea/core/thread.h"
 
 namespace fovea {
 namespace {
@@ -14,15 +14,6 @@ constexpr std::size_t kExpected = 10;
 /// With a rate, decoding starts this long before the frame is due, in periods. Earlier it would
 /// slow down the frame before.
 constexpr double kDecodingTime = 0.5;
-
-/// @return false if `stop` ended the wait
-bool wait_until(WallClock::time_point time, const std::stop_token& stop) {
-  std::mutex guard;
-  std::unique_lock lock(guard);
-  std::condition_variable_any stopped;
-  stopped.wait_until(lock, stop, time, [] { return false; });
-  return !stop.stop_requested();
-}
 
 }  // namespace
 

@@ -3,34 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <vector>
 
 #include "fovea/core/printable.h"
+#include "fovea/core/thread.h"
 #include "fovea/drive/bridge/bridge_messages.h"
 
 namespace fovea::bridge {
 namespace {
 
 using std::chrono::milliseconds;
-using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds kIdle{1000};
 constexpr milliseconds kFirstPause{250}, kLongestPause{5000};  // between connections
 constexpr std::size_t kMostRemarks = 20;                       // of the bridge, that are kept
-
-/// @return false if `stop` ended the pause
-bool pause(milliseconds duration, const std::stop_token& stop) {
-  std::mutex guard;
-  std::unique_lock lock(guard);
-  std::condition_variable_any stopped;
-  stopped.wait_for(lock, stop, duration, [] { return false; });
-  return !stop.stop_requested();
-}
 
 class BridgeReader {
  public:
@@ -78,10 +67,11 @@ class BridgeReader {
 
   void connect_again(std::optional<Connection>& connection) {
     if (!lost_since_) {
-      lost_since_ = Clock::now();
+      lost_since_ = WallClock::now();
       pause_ = kFirstPause;
     }
-    while (Clock::now() < *lost_since_ + options_.reconnect && pause(pause_, stop_)) {
+    while (WallClock::now() < *lost_since_ + options_.reconnect &&
+           wait_until(WallClock::now() + pause_, stop_)) {
       pause_ = std::min(2 * pause_, kLongestPause);
       idle_(/*is_connected=*/false);
       try {
@@ -176,7 +166,7 @@ class BridgeReader {
   std::map<std::uint32_t, Subscribed> subscribed_;  // by subscription
   std::set<std::string> twice_;                     // topics with a warning
   std::uint32_t next_subscription_ = 0;
-  std::optional<Clock::time_point> lost_since_;  // the last message of a topic
+  std::optional<WallClock::time_point> lost_since_;  // the last message of a topic
   milliseconds pause_ = kFirstPause;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/core/median.h"
+
 namespace fovea {
 namespace {
 
@@ -18,10 +20,7 @@ std::size_t missing_messages(const std::vector<TimeNs>& stamps) {
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     intervals.push_back(double(stamps[i] - stamps[i - 1]));
   }
-  std::vector<double> sorted = intervals;
-  const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double period = *middle;
+  const double period = median_of(intervals);
   const auto steady = std::count_if(intervals.begin(), intervals.end(), [&](double interval) {
     return std::abs(interval - period) < kJitter * period;
   });
