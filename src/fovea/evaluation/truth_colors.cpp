@@ -35,7 +35,7 @@ struct Samples {
 };
 
 /// @param for_each  calls a function as Samples::for_each() does
-/// @param count     at most so many samples
+/// @param count     greatest number of samples
 template <class ForEach>
 ColorErrorSets errors_of(ForEach&& for_each, std::size_t count, bool grey) {
   GainFit fit;
