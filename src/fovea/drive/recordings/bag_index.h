@@ -26,6 +26,11 @@ struct UnusableMessages {
   std::string note(const std::string& topic) const;
 };
 
+/// InputError for a message without a stamp.
+void check_stamp(const ros::Header& header);
+/// InputError also if the message is of another frame than the first one of its topic.
+void check_header(const ros::Header& header, const std::string& frame);
+
 /// A topic of scans or images.
 struct SensorTopic {
   std::string frame;           ///< of its first message; those of other frames are unusable

@@ -35,18 +35,12 @@ std::string why_unread(const ros::CompressedImage& image) {
   return "";
 }
 
-void check_stamp(const ros::Header& header) {
-  if (header.stamp <= 0) throw InputError("it has no stamp", "", "");
-}
-
 /// @return whether the message is the topic's first
 bool add_stamp(const ros::Header& header, SensorTopic& topic) {
   check_stamp(header);
   const bool first = topic.stamps.empty();
   if (first) topic.frame = header.frame;
-  if (header.frame != topic.frame) {
-    throw InputError(fmt::format("its frame is '{}', not '{}'", header.frame, topic.frame), "", "");
-  }
+  check_header(header, topic.frame);
   topic.stamps.push_back(header.stamp);
   return first;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "fovea/core/errors.h"
-#include "fovea/drive/recordings/navigation_topics.h"
 #include "fovea/drive/recordings/scan_message.h"
 
 namespace fovea {
@@ -94,7 +93,7 @@ ConversionPlan plan_conversion(const BagIndex& index, const ConvertOptions& opti
                                      index.images.at(planned.topic).stamps.size(), planned.topic));
     plan.drive.cameras.push_back(planned.camera);
   }
-  plan.navigation_topics = plan_navigation(index, options, lidar.frame, plan.drive, plan.notes);
+  plan.navigation = plan_navigation(index, options, lidar.frame, plan.drive, plan.notes);
   check_sensors(index, plan);
   return plan;
 }

@@ -8,6 +8,7 @@
 #include "fovea/drive/recordings/camera_topics.h"
 #include "fovea/drive/recordings/convert_options.h"
 #include "fovea/drive/recordings/lidar_topics.h"
+#include "fovea/drive/recordings/navigation_topics.h"
 #include "fovea/drive/writers/generic_drive_writer.h"
 
 namespace fovea {
@@ -16,8 +17,8 @@ struct ConversionPlan {
   std::vector<PlannedLidar> lidars;  ///< at least one
   std::vector<PlannedCamera> cameras;
   RecordedDrive drive;
-  std::vector<std::string> navigation_topics;  ///< that are used
-  std::vector<std::string> notes;              ///< what was chosen, what is left out and why
+  NavigationPlan navigation;
+  std::vector<std::string> notes;  ///< what was chosen, what is left out and why
 };
 
 /// InputError for a recording that is no drive: without scans or cameras, without their calibration

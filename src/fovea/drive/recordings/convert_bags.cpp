@@ -90,7 +90,8 @@ void warn_of_gaps(const BagIndex& index, const ConversionPlan& plan, ConvertFigu
 /// Notes each topic without use, with the number of its messages.
 void note_unused_topics(const BagIndex& index, const ConversionPlan& plan,
                         ConvertFigures& figures) {
-  std::set<std::string> used(plan.navigation_topics.begin(), plan.navigation_topics.end());
+  const NavigationPlan& navigation = plan.navigation;
+  std::set<std::string> used = {navigation.fix, navigation.imu, navigation.odometry};
   for (const PlannedLidar& lidar : plan.lidars) used.insert(lidar.topic);
   for (const PlannedCamera& camera : plan.cameras) used.insert(camera.topic);
   for (const auto& [name, messages] : index.messages) {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <utility>
 
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/only_topic.h"
@@ -21,12 +21,10 @@ class NavigationPlanner {
                     std::vector<std::string>& notes)
       : index_(index), options_(options), lidar_frame_(lidar_frame), drive_(drive), notes_(notes) {}
 
-  /// Topics of which messages are used.
-  const std::vector<std::string>& used() const { return used_; }
-
-  void plan() {
+  NavigationPlan plan() {
     take_poses();
     take_imu();
+    return std::move(plan_);
   }
 
  private:
@@ -113,19 +111,14 @@ class NavigationPlanner {
     if (topic.empty()) return false;
     std::size_t without = 0;
     for (const ros::NavSatFix& fix : index_.fixes.at(topic)) {
-      const bool somewhere = std::isfinite(fix.latitude) && std::isfinite(fix.longitude) &&
-                             std::isfinite(fix.altitude) && fix.fix;
-      if (!somewhere) {
+      if (const auto position = position_of(fix)) {
+        drive_.positions.push_back(*position);
+      } else {
         ++without;
-        continue;
       }
-      drive_.positions.push_back({fix.header.stamp,
-                                  {fix.latitude, fix.longitude, fix.altitude},
-                                  accuracy_of(fix),
-                                  std::nullopt});
     }
     if (drive_.positions.empty()) return false;
-    used_.push_back(topic);
+    plan_.fix = topic;
     notes_.push_back(fmt::format("positions: {} of {}, {} without a fix left out",
                                  drive_.positions.size(), topic, without));
     const std::string body = usual_body();
@@ -138,12 +131,6 @@ class NavigationPlanner {
           "tf does not say where the antenna ('{}') is on '{}': taken to be there", antenna, body));
     }
     return true;
-  }
-
-  /// Of a coordinate on the ground (m).
-  static double accuracy_of(const ros::NavSatFix& fix) {
-    const double variance = (fix.covariance[0] + fix.covariance[4]) / 2;
-    return fix.covariance_known && variance >= 0 ? std::sqrt(variance) : 0;
   }
 
   /// Empty: there is none, or nothing says which.
@@ -164,14 +151,12 @@ class NavigationPlanner {
     if (topic.empty()) return;
     const std::vector<ros::Imu>& imus = index_.imus.at(topic);
     const std::string& frame = imus.front().header.frame;
-    const bool has_orientations = take_orientations(topic, imus, frame);
-    const bool has_rates = take_rates(topic, imus, frame);
+    plan_.imu_use.orientations = take_orientations(topic, imus, frame);
+    plan_.imu_use.rates = take_rates(topic, imus, frame);
     for (const ros::Imu& imu : imus) {
-      if (has_orientations ? !imu.orientation : !has_rates) continue;
-      drive_.inertia.push_back({imu.header.stamp, has_orientations ? imu.orientation : std::nullopt,
-                                imu.angular_velocity, imu.acceleration});
+      if (const auto inertia = inertia_of(imu, plan_.imu_use)) drive_.inertia.push_back(*inertia);
     }
-    if (!drive_.inertia.empty()) used_.push_back(topic);
+    if (!drive_.inertia.empty()) plan_.imu = topic;
   }
 
   bool take_orientations(const std::string& topic, const std::vector<ros::Imu>& imus,
@@ -221,13 +206,11 @@ class NavigationPlanner {
         only_topic(index_.odometries, options_.odometry, "Odometry", "--odometry");
     if (topic.empty()) return false;
     const std::vector<ros::Odometry>& odometries = index_.odometries.at(topic);
-    for (const ros::Odometry& odometry : odometries) {
-      drive_.poses.push_back({odometry.header.stamp, odometry.T_header_child});
-    }
+    for (const ros::Odometry& odometry : odometries) drive_.poses.push_back(pose_of(odometry));
     const std::string& child = odometries.front().child_frame;
     const bool from_child = options_.body.empty() && !child.empty();
     drive_.T_body_lidar = T_body_lidar(from_child ? child : usual_body());
-    used_.push_back(topic);
+    plan_.odometry = topic;
     notes_.push_back(fmt::format("poses: {} of {}", drive_.poses.size(), topic));
     return true;
   }
@@ -242,6 +225,7 @@ class NavigationPlanner {
     }
     if (drive_.poses.empty()) return false;
     drive_.T_body_lidar = T_body_lidar(body);
+    plan_.world = *world, plan_.body = body;
     notes_.push_back(
         fmt::format("poses: {} of '{}' in '{}', by tf", drive_.poses.size(), body, *world));
     return true;
@@ -252,17 +236,15 @@ class NavigationPlanner {
   const std::string& lidar_frame_;
   RecordedDrive& drive_;
   std::vector<std::string>& notes_;
-  std::vector<std::string> used_;
+  NavigationPlan plan_;
 };
 
 }  // namespace
 
-std::vector<std::string> plan_navigation(const BagIndex& index, const ConvertOptions& options,
-                                         const std::string& lidar_frame, RecordedDrive& drive,
-                                         std::vector<std::string>& notes) {
-  NavigationPlanner planner(index, options, lidar_frame, drive, notes);
-  planner.plan();
-  return planner.used();
+NavigationPlan plan_navigation(const BagIndex& index, const ConvertOptions& options,
+                               const std::string& lidar_frame, RecordedDrive& drive,
+                               std::vector<std::string>& notes) {
+  return NavigationPlanner(index, options, lidar_frame, drive, notes).plan();
 }
 
 }  // namespace fovea

@@ -153,4 +153,11 @@ Image image_of(const ros::ImageMessage& message, const std::string& where) {
   return image;
 }
 
+std::string_view extension_of(const ros::CompressedImage& image, const std::string& where) {
+  if (is_png(image.data)) return ".png";
+  if (is_jpeg(image.data)) return ".jpg";
+  throw InputError(fmt::format("images of format '{:.40}' are not read", image.format), where,
+                   "record PNG or JPEG");
+}
+
 }  // namespace fovea

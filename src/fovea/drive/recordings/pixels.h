@@ -21,4 +21,8 @@ Image image_of(const ros::ImageMessage& message, const std::string& where);
 inline bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
 inline bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 
+/// Of a file with the bytes of a compressed image: ".png" or ".jpg". InputError that names `where`
+/// for other formats.
+std::string_view extension_of(const ros::CompressedImage& image, const std::string& where);
+
 }  // namespace fovea

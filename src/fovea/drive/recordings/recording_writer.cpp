@@ -6,7 +6,6 @@
 
 #include "fovea/core/errors.h"
 #include "fovea/drive/recordings/pixels.h"
-#include "fovea/drive/scans/lidar_scan.h"
 
 namespace fovea {
 
@@ -109,9 +108,7 @@ void RecordingWriter::write_scan(const ScanMessage& message, LidarMessages& lida
   const TimeNs stamp = message.header().stamp;
   const std::string& topic = lidar.messages.topic;
   use(lidar.messages, message.header(), [&](int number) {
-    ScanRows rows(lidar.format, stamp);
-    message.read(topic, rows);
-    const LidarScan scan = rows.take(topic);
+    const LidarScan scan = scan_of(message, lidar.format, topic);
     lidar.dropped += scan.dropped;
     lidar.kept += scan.points.size();
     lidar.scale.add(scan.points.intensity);
@@ -127,13 +124,8 @@ void RecordingWriter::write_plain(const ros::ImageMessage& image, Numbered& came
 
 void RecordingWriter::write_compressed(const ros::CompressedImage& image, Numbered& camera) {
   use(camera, image.header, [&](int number) {
-    const bool png = is_png(image.data);
-    if (!png && !is_jpeg(image.data)) {
-      throw InputError(fmt::format("images of format '{:.40}' are not read", image.format),
-                       camera.topic, "record PNG or JPEG");
-    }
-    writer_.write_encoded_image(camera.name, number, image.header.stamp, image.data,
-                                png ? ".png" : ".jpg");
+    const std::string extension(extension_of(image, camera.topic));
+    writer_.write_encoded_image(camera.name, number, image.header.stamp, image.data, extension);
   });
 }
 

@@ -36,6 +36,12 @@ void ScanMessage::read(const std::string& where, CloudRows& rows) const {
   }
 }
 
+LidarScan scan_of(const ScanMessage& message, const ScanFormat& format, const std::string& where) {
+  ScanRows rows(format, message.header().stamp);
+  message.read(where, rows);
+  return rows.take(where);
+}
+
 std::string_view driver_of_packets(std::string_view type) {
   struct Packets {
     std::string_view type, driver;

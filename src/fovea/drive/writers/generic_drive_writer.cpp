@@ -106,22 +106,6 @@ std::string lidar_text(const RecordedLidar& lidar, bool has_pose) {
   return text;
 }
 
-std::string drive_text(const RecordedDrive& drive) {
-  std::string text = "version = 1\n" + lidar_text(drive.lidar, /*has_pose=*/false);
-  for (const RecordedLidar& lidar : drive.further_lidars) {
-    text += lidar_text(lidar, /*has_pose=*/true);
-  }
-  const Eigen::Vector3d& antenna = drive.antenna_body;
-  text += fmt::format("\n[body]\nT_body_lidar = {}\nT_body_imu = {}\nantenna = [{}, {}, {}]\n",
-                      motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(),
-                      antenna.y(), antenna.z());
-  if (drive.T_lidar_imu) {
-    text += fmt::format("\n[imu]\nT_lidar_imu = {}\n", motion_text(*drive.T_lidar_imu));
-  }
-  for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
-  return text;
-}
-
 std::string wheels_text(const std::vector<WheelSpeed>& wheels) {
   std::string text = "time_ns,speed\n";
   for (const WheelSpeed& wheel : wheels) text += fmt::format("{},{}\n", wheel.time, wheel.speed);
@@ -198,6 +182,22 @@ std::filesystem::path scan_folder(const std::string& lidar) {
 
 }  // namespace
 
+std::string drive_toml(const RecordedDrive& drive) {
+  std::string text = "version = 1\n" + lidar_text(drive.lidar, /*has_pose=*/false);
+  for (const RecordedLidar& lidar : drive.further_lidars) {
+    text += lidar_text(lidar, /*has_pose=*/true);
+  }
+  const Eigen::Vector3d& antenna = drive.antenna_body;
+  text += fmt::format("\n[body]\nT_body_lidar = {}\nT_body_imu = {}\nantenna = [{}, {}, {}]\n",
+                      motion_text(drive.T_body_lidar), motion_text(drive.T_body_imu), antenna.x(),
+                      antenna.y(), antenna.z());
+  if (drive.T_lidar_imu) {
+    text += fmt::format("\n[imu]\nT_lidar_imu = {}\n", motion_text(*drive.T_lidar_imu));
+  }
+  for (const RecordedCamera& camera : drive.cameras) text += camera_text(camera);
+  return text;
+}
+
 GenericDriveWriter::GenericDriveWriter(const std::filesystem::path& root, bool force)
     : folder_(root, force,
               {"drive.toml", "lidar", "images", "poses.csv", "gnss.csv", "imu.csv", "wheels.csv",
@@ -237,7 +237,7 @@ void GenericDriveWriter::write_file(const std::filesystem::path& name,
 }
 
 void GenericDriveWriter::finish(const RecordedDrive& drive) {
-  folder_.write("drive.toml", drive_text(drive));
+  folder_.write("drive.toml", drive_toml(drive));
   for (const auto& [lidar, stamps] : scan_stamps_) {
     folder_.write(scan_folder(lidar) / "stamps.csv", stamps_text(stamps));
   }

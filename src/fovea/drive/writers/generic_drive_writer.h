@@ -82,6 +82,9 @@ struct RecordedDrive {
   std::vector<WheelSpeed> wheels;
 };
 
+/// The text of drive.toml.
+std::string drive_toml(const RecordedDrive& drive);
+
 /// Everything is written below ROOT.partial, which becomes ROOT when finish() is called; what was
 /// not finished is removed. Every function throws OutputError where the disk is full or refuses.
 /// Scans and images may be written at once, from several threads.
