@@ -6,7 +6,8 @@
 namespace fovea {
 
 std::optional<std::vector<double>> course_headings(const std::vector<TimeNs>& times,
-                                                   const std::vector<Eigen::Vector3d>& positions) {
+                                                   const std::vector<Eigen::Vector3d>& positions,
+                                                   std::optional<double> before) {
   constexpr double kFar = 1;                     // m
   constexpr TimeNs kLongest = 2 * kNsPerSecond;  // from the first to the last place of a way
   const std::size_t count = positions.size();
@@ -24,12 +25,15 @@ std::optional<std::vector<double>> course_headings(const std::vector<TimeNs>& ti
     }
   }
   const auto known = [](const std::optional<double>& heading) { return heading.has_value(); };
-  const auto first_known = std::find_if(headings.begin(), headings.end(), known);
-  if (first_known == headings.end()) return std::nullopt;
+  if (!before) {
+    const auto first_known = std::find_if(headings.begin(), headings.end(), known);
+    if (first_known == headings.end()) return std::nullopt;
+    before = **first_known;
+  }
   std::vector<double> result;
   result.reserve(count);
   for (const std::optional<double>& heading : headings) {
-    result.push_back(heading.value_or(result.empty() ? **first_known : result.back()));
+    result.push_back(heading.value_or(result.empty() ? *before : result.back()));
   }
   return result;
 }

@@ -49,4 +49,14 @@ TEST(Course, IsUnknownIfTheVehicleNeverMoves) {
   EXPECT_FALSE(course_headings({0, 3600 * kNsPerSecond}, {{0, 0, 0}, {1.5, 0, 0}}));
 }
 
+TEST(Course, KeepsTheHeadingFromBeforeUntilTheVehicleMoves) {
+  const std::vector<TimeNs> times{0, 3 * kNsPerSecond, 4 * kNsPerSecond, 5 * kNsPerSecond};
+  const auto headings =
+      course_headings(times, {{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {4, 0, 0}}, /*before=*/1.5);
+  ASSERT_TRUE(headings);
+  EXPECT_EQ(headings->front(), 1.5);
+  EXPECT_EQ(headings->back(), 0);
+  EXPECT_EQ(course_headings({0}, {{0, 0, 0}}, /*before=*/1.5), std::vector<double>{1.5});
+}
+
 }  // namespace fovea::course_test
