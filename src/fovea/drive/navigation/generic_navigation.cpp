@@ -8,7 +8,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/median.h"
 #include "fovea/drive/navigation/gnss_table.h"
-#include "fovea/drive/navigation/navigation_table.h"
+#include "fovea/drive/navigation/navigation_columns.h"
 #include "fovea/geometry/position_limit.h"
 
 namespace fovea {
@@ -62,13 +62,10 @@ void require_vehicle_speed(const std::vector<StampedPose>& poses, const fs::path
                    file.string(), "give T_world_body in meters, and times in nanoseconds");
 }
 
-GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& drive,
-                                  TimeNs origin_time, const std::optional<ScanPeriod>& scans) {
-  enum { kX, kY, kZ, kQx, kAccuracy = 7, kVelocity };
-  constexpr auto kColumns = with_velocity<kVelocity>(
-      {{{"x"}, {"y"}, {"z"}, {"qx"}, {"qy"}, {"qz"}, {"qw"}, {"accuracy", false}}});
+GenericNavigation convert_poses(CsvRows rows, const fs::path& file, const DriveDescription& drive,
+                                const LocalFrame& frame) {
+  using namespace pose_column;
   GenericNavigation result;
-  CsvRows rows = read_timed_csv(file, kColumns, scans, result.notes);
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::vector<StampedPose> poses;
@@ -97,26 +94,57 @@ GenericNavigation read_pose_table(const fs::path& file, const DriveDescription& 
     pose.T_local_body = pose.T_local_body * drive.T_body_lidar;
     if (pose.velocity) pose.velocity = twist_of_part(*pose.velocity, drive.T_body_lidar);
   }
-  const Trajectory T_world_lidar(poses);
-  const Eigen::Vector3d origin =
-      T_world_lidar.at(origin_time).value_or(poses.front().T_local_body).translation();
-  for (StampedPose& pose : poses) pose.T_local_body.pretranslate(-origin);
+  result.frame = frame;
+  if (!frame.world) {
+    const Trajectory T_world_lidar(poses);
+    result.frame.world =
+        T_world_lidar.at(frame.time).value_or(poses.front().T_local_body).translation();
+  }
+  for (StampedPose& pose : poses) pose.T_local_body.pretranslate(-*result.frame.world);
   result.T_local_lidar.emplace(std::move(poses));
   return result;
 }
 
 }  // namespace
 
-GenericNavigation read_generic_navigation(const fs::path& folder, const DriveDescription& drive,
-                                          TimeNs origin_time,
-                                          const std::optional<ScanPeriod>& scans) {
-  if (fs::exists(folder / "poses.csv")) {
-    return read_pose_table(folder / "poses.csv", drive, origin_time, scans);
+NavigationTables read_navigation_tables(const fs::path& folder,
+                                        const std::optional<ScanPeriod>& scans) {
+  NavigationTables tables;
+  const auto read = [&](const char* name, std::span<const CsvColumn> columns) {
+    std::optional<CsvRows> rows;
+    if (fs::exists(folder / name)) {
+      rows = read_timed_csv(folder / name, columns, scans, tables.notes);
+    }
+    return rows;
+  };
+  tables.poses = read("poses.csv", kPoseColumns);
+  if (tables.poses) return tables;
+  tables.positions = read("gnss.csv", kPositionColumns);
+  if (tables.positions) tables.orientations = read("imu.csv", kOrientationColumns);
+  return tables;
+}
+
+GenericNavigation convert_navigation(NavigationTables tables, const fs::path& folder,
+                                     const DriveDescription& drive, const LocalFrame& frame) {
+  if (tables.poses) {
+    return convert_poses(std::move(*tables.poses), folder / "poses.csv", drive, frame);
   }
-  if (fs::exists(folder / "gnss.csv")) return read_gnss(folder, drive, origin_time, scans);
+  if (tables.positions) return convert_positions(std::move(tables), folder, drive, frame);
   GenericNavigation none;
   none.notes.push_back("the drive has neither poses.csv nor gnss.csv: no navigation");
   return none;
+}
+
+GenericNavigation read_generic_navigation(const fs::path& folder, const DriveDescription& drive,
+                                          TimeNs origin_time,
+                                          const std::optional<ScanPeriod>& scans) {
+  NavigationTables tables = read_navigation_tables(folder, scans);
+  GenericNavigation navigation;
+  navigation.append(tables);
+  GenericNavigation converted = convert_navigation(std::move(tables), folder, drive, {origin_time});
+  navigation.append(converted);
+  static_cast<Messages&>(converted) = std::move(static_cast<Messages&>(navigation));
+  return converted;
 }
 
 }  // namespace fovea

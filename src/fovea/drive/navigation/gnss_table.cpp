@@ -10,7 +10,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/drive/navigation/course.h"
 #include "fovea/drive/navigation/navigation.h"
-#include "fovea/drive/navigation/navigation_table.h"
+#include "fovea/drive/navigation/navigation_columns.h"
 #include "fovea/drive/plausible.h"
 
 namespace fovea {
@@ -21,12 +21,10 @@ namespace fs = std::filesystem;
 /// Orientations of imu.csv, interpolated.
 class ImuOrientations {
  public:
-  ImuOrientations(const fs::path& file, const RigidMotion& T_body_imu,
-                  const std::optional<ScanPeriod>& scans, Messages& messages)
-      : R_imu_body_(T_body_imu.linear().transpose()) {
-    constexpr std::array<CsvColumn, 4> kColumns = {
-        {{"qx", false}, {"qy", false}, {"qz", false}, {"qw", false}}};
-    rows_ = read_timed_csv(file, kColumns, scans, messages.notes);
+  /// @param file  of the rows, for warnings
+  ImuOrientations(CsvRows rows, const fs::path& file, const RigidMotion& T_body_imu,
+                  Messages& messages)
+      : rows_(std::move(rows)), R_imu_body_(T_body_imu.linear().transpose()) {
     LeftOut left_out(file, rows_);
     left_out.add_out_of_order(rows_.drop_out_of_order());
     left_out.warn(messages);
@@ -49,36 +47,11 @@ class ImuOrientations {
 
  private:
   static constexpr TimeNs kFarthest = kNsPerSecond / 10;  // between a position and an orientation
-  CsvRows rows_{4};
+  CsvRows rows_;
   Eigen::Matrix3d R_imu_body_;
 };
 
-enum GnssColumn : std::size_t {
-  kLatitude,
-  kLongitude,
-  kAltitude,
-  kGnssAccuracy,
-  kRoll,
-  kPitch,
-  kYaw,
-  kGnssQx,
-  kSatellites = kGnssQx + 4,
-  kStatus,
-  kGnssVelocity
-};
-constexpr auto kGnssNames = with_velocity<kGnssVelocity>({{{"latitude"},
-                                                           {"longitude"},
-                                                           {"altitude"},
-                                                           {"accuracy", false},
-                                                           {"roll", false},
-                                                           {"pitch", false},
-                                                           {"yaw", false},
-                                                           {"qx", false},
-                                                           {"qy", false},
-                                                           {"qz", false},
-                                                           {"qw", false},
-                                                           {"satellites", false},
-                                                           {"status", false}}});
+using namespace position_column;
 
 /// Why a line has no position that can be used, for LeftOut; empty if it has one.
 std::string place_problem(const CsvRows& rows, std::size_t row) {
@@ -98,7 +71,7 @@ std::string place_problem(const CsvRows& rows, std::size_t row) {
 /// sensor_msgs/NavSatStatus) has no fix.
 double position_accuracy(const CsvRows& rows, std::size_t row) {
   const bool has_fix = !(rows.at(row, kSatellites) == 0) && !(rows.at(row, kStatus) < 0);
-  return has_fix ? accuracy_of(rows, row, kGnssAccuracy) : std::numeric_limits<double>::infinity();
+  return has_fix ? accuracy_of(rows, row, kAccuracy) : std::numeric_limits<double>::infinity();
 }
 
 /// InputError if more than a few lines have an angle of over a turn, which radians do not need.
@@ -107,7 +80,7 @@ void require_radians(const CsvRows& rows, const fs::path& file) {
   double largest = 0;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     double angle = 0;
-    for (const GnssColumn column : {kRoll, kPitch, kYaw}) {
+    for (const PositionColumn column : {kRoll, kPitch, kYaw}) {
       angle = std::max(angle, std::abs(rows.at(row, column)));  // NaN never counts
     }
     with_angles += std::isfinite(rows.at(row, kYaw)) ? 1 : 0;
@@ -124,7 +97,7 @@ void require_radians(const CsvRows& rows, const fs::path& file) {
 
 /// The attitude that the line itself gives, if any.
 std::optional<Eigen::Matrix3d> own_attitude(const CsvRows& rows, std::size_t row) {
-  if (const auto q = quaternion_of(rows, row, kGnssQx)) return q->toRotationMatrix();
+  if (const auto q = quaternion_of(rows, row, kQx)) return q->toRotationMatrix();
   OxtsRecord angles;
   angles.roll = rows.at(row, kRoll);
   angles.pitch = rows.at(row, kPitch);
@@ -135,8 +108,8 @@ std::optional<Eigen::Matrix3d> own_attitude(const CsvRows& rows, std::size_t row
   return angles.R_enu_imu();
 }
 
-/// Lays the body level along its way; false if it never moves.
-bool take_courses(std::vector<GeodeticPose>& poses) {
+/// Lays the body level along its way; false if it never moves, and no heading is known from before.
+bool take_courses(std::vector<GeodeticPose>& poses, std::optional<double> heading_before) {
   const LocalTangentPlane local(poses.front().position);
   std::vector<TimeNs> times;
   std::vector<Eigen::Vector3d> places;
@@ -144,7 +117,7 @@ bool take_courses(std::vector<GeodeticPose>& poses) {
     times.push_back(pose.time);
     places.emplace_back(local.T_local_enu(pose.position).translation());
   }
-  const auto headings = course_headings(times, places);
+  const auto headings = course_headings(times, places, heading_before);
   if (!headings) return false;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     poses[i].R_enu_body =
@@ -177,7 +150,7 @@ std::vector<GnssLine> lines_with_position(const CsvRows& rows, const DriveDescri
     pose.time = rows.times[row];
     pose.position = {rows.at(row, kLatitude), rows.at(row, kLongitude), rows.at(row, kAltitude)};
     pose.accuracy = position_accuracy(rows, row);
-    if (const auto velocity = velocity_of(rows, row, kGnssVelocity)) {
+    if (const auto velocity = velocity_of(rows, row, kVelocity)) {
       pose.velocity = twist_of_part(*velocity, T_body_antenna);
     }
     std::optional<Eigen::Matrix3d> R = own_attitude(rows, row);
@@ -219,7 +192,8 @@ std::string what_lacks(const std::vector<GnssLine>& lines) {
 /// The poses of lines with an attitude. If no line has one, the vehicle heads along its way; a note
 /// states that. Empty if it never moves then.
 std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, const fs::path& file,
-                                         LeftOut& left_out, Messages& messages) {
+                                         std::optional<double> heading_before, LeftOut& left_out,
+                                         Messages& messages) {
   std::vector<GeodeticPose> poses;
   for (const GnssLine& line : lines) {
     if (line.has_attitude) poses.push_back(line.pose);
@@ -231,7 +205,7 @@ std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, con
     return poses;
   }
   for (const GnssLine& line : lines) poses.push_back(line.pose);
-  if (poses.empty() || !take_courses(poses)) return {};
+  if (poses.empty() || !take_courses(poses, heading_before)) return {};
   messages.warn(file.string() +
                 " has no attitude: headings are those of the way, roll and pitch 0");
   return poses;
@@ -239,29 +213,33 @@ std::vector<GeodeticPose> oriented_poses(const std::vector<GnssLine>& lines, con
 
 }  // namespace
 
-GenericNavigation read_gnss(const fs::path& folder, const DriveDescription& drive,
-                            TimeNs origin_time, const std::optional<ScanPeriod>& scans) {
-  const fs::path file = folder / "gnss.csv", imu_file = folder / "imu.csv";
+GenericNavigation convert_positions(NavigationTables tables, const fs::path& folder,
+                                    const DriveDescription& drive, const LocalFrame& frame) {
+  const fs::path file = folder / "gnss.csv";
   GenericNavigation result;
-  CsvRows rows = read_timed_csv(file, kGnssNames, scans, result.notes);
+  CsvRows& rows = *tables.positions;
   require_radians(rows, file);
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   std::optional<ImuOrientations> imu;
-  if (fs::exists(imu_file)) imu.emplace(imu_file, drive.T_body_imu, scans, result);
+  if (tables.orientations) {
+    imu.emplace(std::move(*tables.orientations), folder / "imu.csv", drive.T_body_imu, result);
+  }
   std::vector<GnssLine> lines = lines_with_position(rows, drive, imu, left_out);
   leave_out_far_positions(lines, left_out);
   const std::string lack = what_lacks(lines);
-  const auto poses = oriented_poses(lines, file, left_out, result);
+  const auto poses = oriented_poses(lines, file, tables.heading_before, left_out, result);
   left_out.warn(result);
   if (poses.empty()) {
     result.warn(fmt::format("{} has no {}: no navigation, the map will not be georeferenced",
                             file.string(), lack));
     return result;
   }
-  const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body));
-  Navigation navigation =
-      navigation_of(poses, T_body_antenna.inverse() * drive.T_body_lidar, origin_time);
+  const RigidMotion T_body_antenna(Eigen::Translation3d(drive.antenna_body)),
+      T_antenna_lidar = T_body_antenna.inverse() * drive.T_body_lidar;
+  result.frame = frame;
+  if (!frame.point) result.frame.point = lidar_position(poses, T_antenna_lidar, frame.time);
+  Navigation navigation = navigation_around(*result.frame.point, poses, T_antenna_lidar);
   if (!navigation.origin) result.warn(no_fix_note(file));
   result.T_local_lidar = std::move(navigation.trajectory);
   result.accuracy = std::move(navigation.accuracy);

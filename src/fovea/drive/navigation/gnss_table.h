@@ -5,8 +5,9 @@
 
 namespace fovea {
 
-/// Reads the tables of a drive's folder; see read_generic_navigation().
-GenericNavigation read_gnss(const std::filesystem::path& folder, const DriveDescription& drive,
-                            TimeNs origin_time, const std::optional<ScanPeriod>& scans);
+/// See convert_navigation().
+/// @param tables  with positions
+GenericNavigation convert_positions(NavigationTables tables, const std::filesystem::path& folder,
+                                    const DriveDescription& drive, const LocalFrame& frame);
 
 }  // namespace fovea

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "fovea/core/median.h"
-#include "fovea/drive/navigation/navigation_table.h"
+#include "fovea/drive/navigation/navigation_columns.h"
 #include "fovea/geometry/imu_gap.h"
 
 namespace fovea {
@@ -18,10 +18,6 @@ namespace fs = std::filesystem;
 constexpr double kStandardGravity = 9.80665;  // m/s^2
 /// No IMU measures more: rad/s, or degrees a second that are to be radians; m/s^2.
 constexpr double kLargestRate = 500, kLargestForce = 5000;
-
-enum ImuColumn : std::size_t { kRateX, kForceX = 3, kImuColumns = 6 };
-constexpr std::array<CsvColumn, kImuColumns> kImuNames = {
-    {{"wx", false}, {"wy", false}, {"wz", false}, {"ax", false}, {"ay", false}, {"az", false}}};
 
 Eigen::Vector3d vector_at(const CsvRows& rows, std::size_t row, std::size_t first) {
   return {rows.at(row, first), rows.at(row, first + 1), rows.at(row, first + 2)};
@@ -127,27 +123,36 @@ void report_saturation(const std::vector<ImuSample>& samples, const fs::path& fi
 
 }  // namespace
 
-ImuTable read_imu(const fs::path& file, const ImuDescription& description,
-                  const std::optional<ScanPeriod>& scans) {
+const char* why_unusable(const ImuSample& sample) {
+  if (!sample.rate.allFinite() || !sample.force.allFinite()) {
+    return "without rates and accelerations";
+  }
+  if (sample.rate.norm() > kLargestRate || sample.force.norm() > kLargestForce) {
+    return "with rates or accelerations out of range";
+  }
+  return nullptr;
+}
+
+ImuSample imu_sample(TimeNs stamp, const Eigen::Vector3d& rate, const Eigen::Vector3d& force,
+                     const ImuDescription& description) {
+  const double rate_scale = description.rate_unit == RateUnit::kDegrees ? kDegree : 1;
+  return {stamp + from_seconds(description.delay), rate_scale * rate, force};
+}
+
+ImuTable convert_imu(CsvRows rows, const fs::path& file, const ImuDescription& description) {
+  constexpr std::size_t kRateX = 0, kForceX = 3;
   ImuTable table;
-  CsvRows rows = read_timed_csv(file, kImuNames, scans, table.notes);
   LeftOut left_out(file, rows);
   left_out.add_out_of_order(rows.drop_out_of_order());
   ImuData imu{description.T_lidar_imu, description.noise, {}};
-  const double rate_scale = description.rate_unit == RateUnit::kDegrees ? kDegree : 1;
-  const TimeNs delay = from_seconds(description.delay);
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    const ImuSample sample{rows.times[row] + delay, rate_scale * vector_at(rows, row, kRateX),
-                           vector_at(rows, row, kForceX)};
-    if (!sample.rate.allFinite() || !sample.force.allFinite()) {
-      left_out.add(rows.lines[row], "without rates and accelerations");
-      continue;
+    const ImuSample sample = imu_sample(rows.times[row], vector_at(rows, row, kRateX),
+                                        vector_at(rows, row, kForceX), description);
+    if (const char* const reason = why_unusable(sample)) {
+      left_out.add(rows.lines[row], reason);
+    } else {
+      imu.samples.push_back(sample);
     }
-    if (sample.rate.norm() > kLargestRate || sample.force.norm() > kLargestForce) {
-      left_out.add(rows.lines[row], "with rates or accelerations out of range");
-      continue;
-    }
-    imu.samples.push_back(sample);
   }
   left_out.warn(table);
   if (imu.samples.size() < 2) {
@@ -157,11 +162,25 @@ ImuTable read_imu(const fs::path& file, const ImuDescription& description,
                     file.string()));
     return table;
   }
-  const double scale = force_scale(imu.samples, description.force_unit, file, table);
-  for (ImuSample& sample : imu.samples) sample.force *= scale;
+  table.force_scale = force_scale(imu.samples, description.force_unit, file, table);
+  for (ImuSample& sample : imu.samples) sample.force *= table.force_scale;
   report_faults(imu.samples, file, table);
   table.imu = std::move(imu);
   return table;
+}
+
+ImuTable read_imu(const fs::path& file, const ImuDescription& description,
+                  const std::optional<ScanPeriod>& scans) {
+  Messages read;
+  CsvRows rows = read_timed_csv(file, kInertiaColumns, scans, read.notes);
+  ImuTable table = convert_imu(std::move(rows), file, description);
+  table.notes.insert(table.notes.begin(), read.notes.begin(), read.notes.end());
+  return table;
+}
+
+bool is_wheel_speed(double speed) {
+  constexpr double kFastest = 200;  // m/s
+  return std::isfinite(speed) && std::abs(speed) < kFastest;
 }
 
 void report_faults(const std::vector<ImuSample>& samples, const fs::path& file,
@@ -180,8 +199,7 @@ WheelTable read_wheels(const fs::path& file, const WheelDescription& description
   WheelData wheels{description.T_lidar_body, description.sigma, {}};
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const double speed = rows.at(row, 0);
-    constexpr double kFastest = 200;  // m/s
-    if (std::isfinite(speed) && std::abs(speed) < kFastest) {
+    if (is_wheel_speed(speed)) {
       wheels.samples.push_back({rows.times[row], speed});
     } else {
       left_out.add(rows.lines[row], "without a speed");

@@ -53,14 +53,22 @@ Trajectory lidar_trajectory(const LocalTangentPlane& local, const std::vector<Ge
 
 Navigation navigation_of(const std::vector<GeodeticPose>& poses, const RigidMotion& T_body_lidar,
                          TimeNs origin_time) {
+  return navigation_around(lidar_position(poses, T_body_lidar, origin_time), poses, T_body_lidar);
+}
+
+GeodeticPoint lidar_position(const std::vector<GeodeticPose>& poses,
+                             const RigidMotion& T_body_lidar, TimeNs time) {
   if (poses.empty()) throw std::invalid_argument("navigation needs at least one pose");
-  // The origin is a pose of the very trajectory that is wanted: first in the frame of the first
-  // pose, then again in the origin's own.
+  // A pose of the very trajectory that is wanted, here in the frame of the first pose.
   const LocalTangentPlane first(poses.front().position);
-  const Trajectory provisional = lidar_trajectory(first, poses, T_body_lidar);
+  const Trajectory trajectory = lidar_trajectory(first, poses, T_body_lidar);
   const RigidMotion T_first_lidar =
-      provisional.at(origin_time).value_or(provisional.poses().front().T_local_body);
-  const GeodeticPoint origin = first.to_geodetic(T_first_lidar.translation());
+      trajectory.at(time).value_or(trajectory.poses().front().T_local_body);
+  return first.to_geodetic(T_first_lidar.translation());
+}
+
+Navigation navigation_around(const GeodeticPoint& origin, const std::vector<GeodeticPose>& poses,
+                             const RigidMotion& T_body_lidar) {
   const bool any_fix = std::any_of(poses.begin(), poses.end(), has_fix);
   std::vector<double> accuracy;
   accuracy.reserve(poses.size());

@@ -43,6 +43,15 @@ struct Navigation {
 Navigation navigation_of(const std::vector<GeodeticPose>& poses, const RigidMotion& T_body_lidar,
                          TimeNs origin_time);
 
+/// Where the LiDAR was at a time; at the first pose, where they do not reach that time.
+/// @param poses  as navigation_of()
+GeodeticPoint lidar_position(const std::vector<GeodeticPose>& poses,
+                             const RigidMotion& T_body_lidar, TimeNs time);
+
+/// The same as navigation_of() for a given origin of `local`.
+Navigation navigation_around(const GeodeticPoint& origin, const std::vector<GeodeticPose>& poses,
+                             const RigidMotion& T_body_lidar);
+
 /// For each position whether the vehicle cannot reach it from the others, such as those that a
 /// receiver states before it has a fix.
 std::vector<bool> far_positions(const std::vector<GeodeticPose>& poses);
