@@ -100,6 +100,15 @@ void BagIndexer::add(const BagTopic& topic, std::string_view bytes) {
   }
 }
 
+void BagIndexer::forget_past() {
+  BagIndex index;
+  index.topics = std::move(index_.topics);
+  index.camera_infos = std::move(index_.camera_infos);
+  index.transforms = std::move(index_.transforms);
+  index.transforms.forget_past();
+  index_ = std::move(index);
+}
+
 BagIndex BagIndexer::finish() {
   sort(index_.fixes);
   sort(index_.imus);

@@ -21,6 +21,10 @@ class BagIndexer : public BagSink {
   /// A message that cannot be used is counted.
   void add(const BagTopic& topic, std::string_view bytes) override;
 
+  /// Forgets the measurements, so that memory is bounded. Topics, calibration and the latest
+  /// transforms stay.
+  void forget_past();
+
   /// In order of stamps.
   BagIndex finish();
 

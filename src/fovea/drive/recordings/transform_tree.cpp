@@ -99,22 +99,46 @@ std::optional<std::string> TransformTree::world_of(const std::string& frame) con
 
 std::vector<TransformTree::TimedMotion> TransformTree::course(const std::string& a,
                                                               const std::string& b) const {
-  std::vector<std::string> frames = ancestors(b);
-  const auto world = std::find(frames.begin(), frames.end(), a);
-  if (world == frames.end()) return {};
-  frames.erase(world, frames.end());
-  const auto nearest = std::find_if(frames.begin(), frames.end(),
-                                    [&](const std::string& frame) { return link(frame).moves(); });
+  const std::vector<Step> way = steps(a, b);
+  const auto nearest = nearest_moving(way);
   std::vector<TimedMotion> motions;
-  if (nearest == frames.end()) return motions;
-  for (const auto& [time, unused] : link(*nearest).T_parent_child) {
-    QuaternionMotion T = link(frames.front()).at(time);
-    for (auto frame = frames.begin() + 1; frame != frames.end(); ++frame) {
-      T = link(*frame).at(time) * T;
-    }
-    motions.push_back({time, T});
+  if (nearest == way.end()) return motions;
+  for (const auto& [time, unused] : nearest->link.T_parent_child) {
+    motions.push_back({time, motion_at(way, time)});
   }
   return motions;
+}
+
+std::vector<TransformTree::Step> TransformTree::steps(const std::string& a,
+                                                      const std::string& b) const {
+  const std::vector<std::string> frames = ancestors(b);
+  const auto world = std::find(frames.begin(), frames.end(), a);
+  if (world == frames.end()) return {};
+  std::vector<Step> steps;
+  for (auto frame = frames.begin(); frame != world; ++frame) {
+    steps.push_back({*(frame + 1), *frame, link(*frame)});
+  }
+  return steps;
+}
+
+std::vector<TransformTree::Step>::const_iterator TransformTree::nearest_moving(
+    const std::vector<Step>& steps) {
+  return std::find_if(steps.begin(), steps.end(),
+                      [](const Step& step) { return step.link.moves(); });
+}
+
+QuaternionMotion TransformTree::motion_at(const std::vector<Step>& steps, TimeNs time) {
+  QuaternionMotion T = steps.front().link.at(time);
+  for (auto step = steps.begin() + 1; step != steps.end(); ++step) T = step->link.at(time) * T;
+  return T;
+}
+
+void TransformTree::forget_past() {
+  for (auto& [child, links] : links_) {
+    for (auto& [parent, link] : links) {
+      link.T_parent_child.erase(link.T_parent_child.begin(), std::prev(link.T_parent_child.end()));
+    }
+  }
 }
 
 }  // namespace fovea

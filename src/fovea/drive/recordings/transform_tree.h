@@ -13,6 +13,19 @@ namespace fovea {
 
 class TransformTree {
  public:
+  /// Where a frame was in its parent.
+  struct Link {
+    std::map<TimeNs, QuaternionMotion> T_parent_child;  ///< what is fixed: at time 0
+
+    bool moves() const;
+    const QuaternionMotion& any() const { return T_parent_child.begin()->second; }
+    QuaternionMotion at(TimeNs time) const;  ///< interpolated, and held beyond the ends
+  };
+  struct Step {
+    std::string parent, child;
+    Link link;
+  };
+
   /// Takes note of where a frame was in its parent. Of several parents the one told of most often
   /// counts.
   /// @param fixed  whether it is there always (/tf_static)
@@ -42,15 +55,18 @@ class TransformTree {
   /// above `b` or nothing moves.
   std::vector<TimedMotion> course(const std::string& a, const std::string& b) const;
 
+  /// The links from `b` up to a frame `a` above it. Empty if `a` is not above `b`.
+  std::vector<Step> steps(const std::string& a, const std::string& b) const;
+
+  /// The first that moves.
+  static std::vector<Step>::const_iterator nearest_moving(const std::vector<Step>& steps);
+  /// T_a_b. @param steps  at least one
+  static QuaternionMotion motion_at(const std::vector<Step>& steps, TimeNs time);
+
+  /// Keeps the latest transform of each frame.
+  void forget_past();
+
  private:
-  struct Link {
-    std::map<TimeNs, QuaternionMotion> T_parent_child;  // what is fixed: at time 0
-
-    bool moves() const;
-    const QuaternionMotion& any() const { return T_parent_child.begin()->second; }
-    QuaternionMotion at(TimeNs time) const;
-  };
-
   /// The frame and all above it.
   std::vector<std::string> ancestors(const std::string& frame) const;
   /// Frames of the way from `a` and from `b` up to what they have in common.

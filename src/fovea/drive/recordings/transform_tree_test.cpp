@@ -89,6 +89,17 @@ TEST(TransformTree, OfSeveralParentsTheMostFrequentCounts) {
   EXPECT_EQ(tree.world_of("base_link"), "odom");
 }
 
+TEST(TransformTree, ForgetsAllButTheLatest) {
+  TransformTree tree = vehicle();
+  for (int i = 0; i < 5; ++i) tree.add("odom", "base_link", 10 * i, some_motion(i), false);
+  tree.forget_past();
+  EXPECT_TRUE(same(*tree.fixed("base_link", "lidar"), some_motion(1)));
+  EXPECT_TRUE(same(*tree.fixed("odom", "base_link"), some_motion(4)));
+  EXPECT_TRUE(tree.course("odom", "base_link").empty());
+  tree.add("odom", "base_link", 50, some_motion(5), false);
+  EXPECT_EQ(tree.course("odom", "base_link").size(), 2u);
+}
+
 TEST(TransformTree, ARingOfFramesEnds) {
   TransformTree tree;
   tree.add("a", "b", 0, some_motion(1), true);

@@ -1,0 +1,80 @@
+#include "fovea/drive/recordings/transform_course.h"
+
+#include <gtest/gtest.h>
+
+namespace fovea::transform_course_test {
+
+constexpr TimeNs kStep = kNsPerSecond / 100;
+
+QuaternionMotion some_motion(double seed) {
+  return exp_se3((Twist() << 0.3 * seed, -0.2, 0.1, seed, 2, -0.5 * seed).finished());
+}
+
+ros::Transform transform(const std::string& parent, const std::string& child, TimeNs time,
+                         double seed) {
+  return {{time, parent}, child, some_motion(seed)};
+}
+
+void add(TransformTree& tree, const ros::Transform& t) {
+  tree.add(t.header.frame, t.child_frame, t.header.stamp, t.T_header_child, /*fixed=*/false);
+}
+
+void expect_same(const std::vector<RecordedPose>& poses,
+                 const std::vector<TransformTree::TimedMotion>& course) {
+  ASSERT_EQ(poses.size(), course.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(poses[i].time, course[i].time);
+    EXPECT_EQ(poses[i].T_world_body.translation, course[i].T_a_b.translation);
+    EXPECT_EQ(poses[i].T_world_body.rotation.coeffs(), course[i].T_a_b.rotation.coeffs());
+  }
+}
+
+TEST(TransformCourse, GivesThePosesOfAWholeRecording) {
+  // `odom` in `map` comes every 20th time, and is interpolated: its poses wait for it.
+  std::vector<ros::Transform> all;
+  for (int i = 1; i <= 81; ++i) {
+    if (i % 10 == 1) all.push_back(transform("map", "odom", i * kStep, 0.1 * i));
+    all.push_back(transform("odom", "base_link", i * kStep, 0.01 * i));
+  }
+  TransformTree whole, first;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    add(whole, all[i]);
+    if (i < 40) add(first, all[i]);
+  }
+  TransformCourse course(first, "map", "base_link");
+  std::vector<RecordedPose> poses;
+  for (const ros::Transform& t : all) {
+    for (const RecordedPose& pose : course.add({t})) poses.push_back(pose);
+  }
+  expect_same(poses, whole.course("map", "base_link"));
+}
+
+TEST(TransformCourse, WaitsATenthOfASecondForAFrameThatStoppedComing) {
+  TransformTree tree;
+  for (int i = 1; i <= 3; ++i) {
+    add(tree, transform("map", "odom", i * kStep, i));
+    add(tree, transform("odom", "base_link", i * kStep, i));
+  }
+  TransformCourse course(tree, "map", "base_link");
+  EXPECT_EQ(course.add({}).size(), 3u);
+  EXPECT_TRUE(course.add({transform("odom", "base_link", 4 * kStep, 4)}).empty());
+  EXPECT_TRUE(course.add({transform("odom", "base_link", 13 * kStep, 5)}).empty());
+  const auto late = course.add({transform("odom", "base_link", 14 * kStep, 6)});
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0].time, 4 * kStep);
+  EXPECT_TRUE(
+      late[0].T_world_body.matrix().isApprox((some_motion(3) * some_motion(4)).matrix(), 1e-12));
+}
+
+TEST(TransformCourse, GivesAPoseOnce) {
+  TransformTree tree;
+  for (int i = 1; i <= 2; ++i) add(tree, transform("odom", "base_link", i * kStep, i));
+  TransformCourse course(tree, "odom", "base_link");
+  EXPECT_EQ(course.add({}).size(), 2u);
+  EXPECT_TRUE(course.add({transform("odom", "base_link", 2 * kStep, 9)}).empty());
+  EXPECT_TRUE(course.add({transform("odom", "base_link", kStep, 9)}).empty());
+  EXPECT_TRUE(course.add({transform("base_link", "wheel", 3 * kStep, 9)}).empty());
+  EXPECT_EQ(course.add({transform("odom", "base_link", 3 * kStep, 3)}).size(), 1u);
+}
+
+}  // namespace fovea::transform_course_test
