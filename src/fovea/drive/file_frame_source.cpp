@@ -1,15 +1,14 @@
 // FrameSource over numbered files: checks that a frame has its parts, then reads them.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <set>
 
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/drive_files.h"
+#include "fovea/drive/frame_parts.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/lost_drive.h"
-#include "fovea/drive/motion_compensation.h"
 #include "fovea/drive/scans/lidar_scan.h"
 #include "fovea/drive/scans/sensor_scans.h"
 
@@ -38,7 +37,7 @@ class FileFrameSource : public FrameSource {
       frame.dropped_points = scan.dropped;
       if (info_.sweep_compensated) frame.scan.time.clear();
       if (!files_.further_lidars.empty()) {
-        set_times(frame.scan, files_.first_lidar_compensated, info_.sweep);
+        set_point_times(frame.scan, files_.first_lidar_compensated, info_.sweep);
         frame.scan.sensor.assign(frame.scan.size(), 0);
       }
     } catch (const InputError& error) {
@@ -48,7 +47,7 @@ class FileFrameSource : public FrameSource {
     add_further_scans(frame);
     read_images(frame);
     const std::size_t cameras = files_.images.size();
-    if (cameras > 0 && frame.missing_images.size() == cameras) return without_images(frame);
+    if (cameras > 0 && frame.missing_images.size() == cameras) return frame_without_images(frame);
     return frame;
   }
 
@@ -89,15 +88,6 @@ class FileFrameSource : public FrameSource {
     return fmt::format("no time stamp {}", place);
   }
 
-  /// Times from the stamp of the scan.
-  static void set_times(PointCloud& scan, bool is_compensated, const SweepTiming& sweep) {
-    if (is_compensated) {
-      scan.time.assign(scan.size(), 0);
-    } else if (scan.time.empty()) {
-      add_point_times(scan, sweep);
-    }
-  }
-
   void add_further_scans(Frame& frame) const {
     for (std::size_t k = 0; k < files_.further_lidars.size(); ++k) {
       const FurtherLidar& lidar = files_.further_lidars[k];
@@ -112,7 +102,7 @@ class FileFrameSource : public FrameSource {
       try {
         LidarScan scan = read_lidar_scan(file->second, lidar.format, stamp);
         frame.dropped_points += scan.dropped;
-        set_times(scan.points, lidar.sweep_compensated, lidar.sweep);
+        set_point_times(scan.points, lidar.sweep_compensated, lidar.sweep);
         append_scan(frame.scan, std::move(scan.points), static_cast<std::uint16_t>(k + 1),
                     lidar.T_lidar_sensor, seconds(stamp - frame.stamp));
       } catch (const InputError& error) {
@@ -143,36 +133,20 @@ class FileFrameSource : public FrameSource {
       return MissingImage{camera.index, SkipReason::kMissingImage,
                           fmt::format("no image {} of camera {}", index, camera.index)};
     }
-    const auto damaged = [&](std::string detail) {
-      return MissingImage{camera.index, SkipReason::kDamagedImage, std::move(detail)};
-    };
-    try {
-      Image read = read_image(file->second);
-      const ImageRectifier* rectifier = rectifier_of(k);
-      const int width = rectifier ? rectifier->width() : camera.width,
-                height = rectifier ? rectifier->height() : camera.height;
-      if (read.width != width || read.height != height) {
-        return damaged(fmt::format("the image has {} x {} pixels, its camera {} x {}, {}",
-                                   read.width, read.height, width, height, file->second.string()));
+    const auto read = [&] {
+      try {
+        return read_image(file->second);
+      } catch (const InputError&) {
+        require_drive(files_.images[k], index, info_.path);
+        throw;
       }
-      image = rectifier ? rectifier->rectify(read) : std::move(read);
-      return std::nullopt;
-    } catch (const InputError& error) {
-      require_drive(files_.images[k], index, info_.path);
-      return damaged(error.what());
-    }
+    };
+    return load_image(camera, rectifier_of(k), file->second.string(), read, image);
   }
 
   /// Null where the images of the k-th camera are rectified already.
   const ImageRectifier* rectifier_of(std::size_t k) const {
     return k < files_.rectifiers.size() && files_.rectifiers[k] ? &*files_.rectifiers[k] : nullptr;
-  }
-
-  static SkippedFrame without_images(const Frame& frame) {
-    std::vector<std::string> details;
-    for (const MissingImage& image : frame.missing_images) details.push_back(image.detail);
-    return {frame.index, frame.missing_images.front().reason,
-            fmt::format("{}", fmt::join(details, "; "))};
   }
 
   DriveInfo info_;

@@ -35,15 +35,17 @@ std::vector<ScanNumbers> read_first_numbers(const NumberedFiles& scans, int coun
   return numbers;
 }
 
+std::optional<double> sweep_middle(const PointCloud& scan) {
+  if (scan.time.empty()) return std::nullopt;
+  const auto [begin, end] = std::minmax_element(scan.time.begin(), scan.time.end());
+  return 0.5 * (double(*begin) + double(*end));
+}
+
 std::optional<double> first_sweep_middle(const NumberedFiles& scans, const ScanFormat& format,
                                          const StampOfScan& stamp) {
   std::optional<double> middle;
   until(scans, stamp, [&](const std::filesystem::path& file, TimeNs time) {
-    const PointCloud points = read_lidar_scan(file, format, time).points;
-    if (!points.time.empty()) {
-      const auto [begin, end] = std::minmax_element(points.time.begin(), points.time.end());
-      middle = 0.5 * (double(*begin) + double(*end));
-    }
+    middle = sweep_middle(read_lidar_scan(file, format, time).points);
     return true;
   });
   return middle;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fovea/core/point_cloud.h"
 #include "fovea/core/read_file.h"
 #include "fovea/core/time.h"
 #include "fovea/drive/scans/scan_format.h"
@@ -18,7 +19,10 @@ using StampOfScan = std::function<std::optional<TimeNs>(int scan)>;
 std::vector<ScanNumbers> read_first_numbers(const NumberedFiles& scans, int count,
                                             const StampOfScan& stamp);
 
-/// Middle of the sweep, s from the stamp, by the point times of the first scan that can be read;
+/// Middle of the times of a scan's points, s from the stamp; absent if they have none.
+std::optional<double> sweep_middle(const PointCloud& scan);
+
+/// sweep_middle() of the first scan that can be read;
 /// absent if its points have no times.
 std::optional<double> first_sweep_middle(const NumberedFiles& scans, const ScanFormat& format,
                                          const StampOfScan& stamp);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "fovea/core/errors.h"
+#include "fovea/drive/described_camera.h"
 #include "fovea/drive/drive_description.h"
 #include "fovea/drive/drive_files.h"
 #include "fovea/drive/drive_stamps.h"
@@ -13,12 +14,9 @@
 #include "fovea/drive/navigation/generic_navigation.h"
 #include "fovea/drive/navigation/imu_table.h"
 #include "fovea/drive/nearest_images.h"
-#include "fovea/geometry/rectified_camera.h"
 
 namespace fovea {
 namespace {
-
-constexpr double kNotableSpread = 0.001;  // s, of an image's delay: 1 cm at 10 m/s
 
 class GenericDrive {
  public:
@@ -147,56 +145,25 @@ class GenericDrive {
     }
   }
 
-  /// ConfigError if the first images that can be read all have another size than drive.toml says:
-  /// it is that which is wrong, and a table for rectification may be of any size by it.
-  void check_image_size(const CameraDescription& described, const NumberedFiles& images) const {
-    constexpr int kLookedAt = 10;
-    int looked_at = 0;
-    std::string found = "cannot be read";
-    for (const auto& [number, file] : images) {
-      if (looked_at++ == kLookedAt) break;
-      try {
-        const Image image = read_image(file);
-        if (image.width == described.optics.width && image.height == described.optics.height)
-          return;
-        found = fmt::format("have {} x {} pixels, not {} x {}", image.width, image.height,
-                            described.optics.width, described.optics.height);
-      } catch (const InputError&) {
-        continue;  // load() reports it when its turn comes
-      }
-    }
-    throw ConfigError(fmt::format("the images of camera {} {}", described.name, found),
-                      images.begin()->second.parent_path().string(),
-                      "give their width and height in drive.toml, or restore them");
-  }
-
   void add_camera(const CameraDescription& described, const NumberedFiles& images) {
-    check_image_size(described, images);
-    const auto pinhole =
-        rectified_camera(described.optics, described.max_field_of_view, kMaxImageSide);
-    const bool distorted = described.optics.lens.model() != LensModel::kNone;
-    files_.rectifiers.push_back(
-        distorted && pinhole ? ImageRectifier::make(described.optics, *pinhole) : std::nullopt);
-    if (!pinhole || (distorted && !files_.rectifiers.back())) {
-      throw ConfigError(
-          fmt::format("the lens of camera {} leaves no image, or one too large", described.name),
-          (info_.path / "drive.toml").string(), "check K and D, or lower its field_of_view");
-    }
-    Camera camera = *pinhole;
-    camera.index = described.index;
-    camera.T_cam_lidar = described.T_cam_lidar;
-    camera.image_delay = described.delay;
+    auto next = images.begin();
+    require_image_size(
+        described,
+        [&]() -> std::optional<Image> {
+          if (next == images.end()) return std::nullopt;
+          return read_image((next++)->second);
+        },
+        images.begin()->second.parent_path());
+    DescribedCamera used = described_camera(described, info_.path / "drive.toml");
+    Camera& camera = used.camera;
     info_.image_offsets.emplace_back();
     info_.image_exposures.emplace_back();
     files_.images.push_back(images_of_scans(described, images, camera));
     info_.calibration.cameras.push_back(camera);
-    const auto asked = options_.masks.find(camera.index);
-    const std::filesystem::path mask = asked != options_.masks.end() ? asked->second
-                                       : described.mask.empty()      ? std::filesystem::path()
-                                                                     : info_.path / described.mask;
-    if (mask.empty()) return;
-    const auto& rectifier = files_.rectifiers.back();
-    info_.masks.emplace(camera.index, read_mask(mask, camera, rectifier ? &*rectifier : nullptr));
+    if (auto mask = find_mask(described, used, options_, info_.path)) {
+      info_.masks.emplace(camera.index, std::move(*mask));
+    }
+    files_.rectifiers.push_back(std::move(used.rectifier));
   }
 
   /// The images by the numbers of the scans they belong to; sets the camera's median delay, the
@@ -221,7 +188,7 @@ class GenericDrive {
                        "give stamps of one clock, or leave the camera out (--cameras)");
     }
     camera.image_delay += matches.median_delay;
-    note_matches(described, matches, scans.size());
+    note_matches(described, matches, scans.size(), description_.image_tolerance, info_);
     info_.image_stamps_are_capture_times = true;
     const std::map<int, double> exposures = read_image_exposures(file, info_);
     NumberedFiles result;
@@ -233,21 +200,6 @@ class GenericDrive {
       info_.image_offsets.back()[scan] = delay - matches.median_delay;
     }
     return result;
-  }
-
-  void note_matches(const CameraDescription& camera, const ImageMatches& matches,
-                    std::size_t scans) {
-    if (matches.image_of_scan.size() < scans) {
-      info_.warn(fmt::format("camera {} ({}) has no image within {:g} s of {} of {} scans",
-                             camera.index, camera.name, description_.image_tolerance,
-                             scans - matches.image_of_scan.size(), scans));
-    }
-    if (matches.max_delay - matches.min_delay > kNotableSpread) {
-      info_.notes.push_back(fmt::format(
-          "camera {} ({}) takes images {:.1f} to {:.1f} ms after the scans; each is projected at "
-          "its own time",
-          camera.index, camera.name, 1e3 * matches.min_delay, 1e3 * matches.max_delay));
-    }
   }
 
   void find_navigation() {

@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFirstScans = 5;  // whose numbers give the units
-
 NumberedTimes times_of(const TimeStamps& stamps) {
   NumberedTimes times;
   for (std::size_t i = 0; i < stamps.times.size(); ++i) {
@@ -56,19 +54,28 @@ TimeStamps read_stamps_of_scans(const fs::path& table, const NumberedFiles& scan
 ScanReading recognize_scans(const fs::path& drive, const LidarDescription& lidar,
                             const NumberedFiles& scans, const StampOfScan& stamp,
                             std::optional<double> stamp_step, Messages& messages) {
-  const std::vector<ScanNumbers> numbers = read_first_numbers(scans, kFirstScans, stamp);
+  return recognize_scans(
+      drive / "drive.toml", lidar,
+      {read_first_numbers(scans, kFirstScans, stamp),
+       [&](const ScanFormat& format) { return first_sweep_middle(scans, format, stamp); }},
+      stamp_step, messages);
+}
+
+ScanReading recognize_scans(const fs::path& toml, const LidarDescription& lidar,
+                            const FirstScans& first, std::optional<double> stamp_step,
+                            Messages& messages) {
   StatedScanFormat stated = lidar.scan_format;
   if (lidar.sweep_compensated) stated.time_reference = TimeReference::kNone;
   ScanReading reading;
-  reading.format = recognize_format_of_drive(numbers, stated, drive / "drive.toml", lidar.table(),
-                                             messages.notes);
+  reading.format =
+      recognize_format_of_drive(first.numbers, stated, toml, lidar.table(), messages.notes);
   const SweepDescription& sweep = lidar.sweep;
   reading.sweep = sweep_timing(sweep, stamp_step);
   if (lidar.sweep_compensated) return reading;
-  const auto middle = first_sweep_middle(scans, reading.format, stamp);
+  const auto middle = first.middle(reading.format);
   reading.has_times = middle.has_value();
   reading.sweep_middle = middle.value_or(reading.sweep.middle_time());
-  if (numbers.empty() || middle) return reading;
+  if (first.numbers.empty() || middle) return reading;
   std::string note = assumed_sweep_note(reading.sweep, lidar, stamp_step);
   const bool all_stated =
       sweep.period && sweep.direction && sweep.start_azimuth && sweep.stamp_phase;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,9 @@ NumberedFiles list_scans(const std::filesystem::path& drive, const LidarDescript
 TimeStamps read_stamps_of_scans(const std::filesystem::path& table, const NumberedFiles& scans,
                                 Messages& messages);
 
+/// Scans whose numbers show the units.
+inline constexpr int kFirstScans = 5;
+
 /// Units of scans and timing of their sweeps.
 struct ScanReading {
   ScanFormat format;
@@ -30,8 +34,21 @@ struct ScanReading {
   double sweep_middle = 0;  ///< s from the stamp, by the times of the points if they have any
 };
 
+/// What the first scans of a LiDAR show.
+struct FirstScans {
+  std::vector<ScanNumbers> numbers;
+  /// sweep_middle() of the first scan in its units.
+  std::function<std::optional<double>(const ScanFormat&)> middle;
+};
+
 /// By drive.toml and the first scans. Notes and warns of what is assumed.
+/// @param toml        the file, for messages
 /// @param stamp_step  s, between the scans; absent if it cannot be the period of a sweep
+ScanReading recognize_scans(const std::filesystem::path& toml, const LidarDescription& lidar,
+                            const FirstScans& first, std::optional<double> stamp_step,
+                            Messages& messages);
+
+/// The same of files.
 ScanReading recognize_scans(const std::filesystem::path& drive, const LidarDescription& lidar,
                             const NumberedFiles& scans, const StampOfScan& stamp,
                             std::optional<double> stamp_step, Messages& messages);

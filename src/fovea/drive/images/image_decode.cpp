@@ -17,20 +17,23 @@ constexpr const char* kRemedy = "restore the file from the drive's archive";
 }  // namespace
 
 Image read_image(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_bytes(file, kImageFile);
+  return decode_image(read_bytes(file, kImageFile), file.string());
+}
+
+Image decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
   const SniffedFormat found = sniff_format(
       {reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kSniffedBytes)});
   const bool png = found.format == FileFormat::kPng;
   if (!png && found.format != FileFormat::kJpeg) {
     throw InputError("the file is neither a PNG nor a JPEG image, but " + std::string(found.name),
-                     file.string(), kRemedy);
+                     name, kRemedy);
   }
   try {
     return png ? decode_png(bytes) : decode_jpeg(bytes);
   } catch (const std::runtime_error& error) {
     throw InputError(
         std::string(png ? "the PNG" : "the JPEG") + " image cannot be read (" + error.what() + ")",
-        file.string(), kRemedy);
+        name, kRemedy);
   }
 }
 

@@ -1,7 +1,10 @@
 // Images from files, PNG or JPEG.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "fovea/core/image.h"
@@ -15,6 +18,9 @@ inline constexpr unsigned kMaxImageSide = 8'192;
 /// InputError with the file's name if it is neither, damaged, truncated, of 16 bits or absurdly
 /// large.
 Image read_image(const std::filesystem::path& file);
+
+/// The same of a file's bytes; `name` stands for the file in errors.
+Image decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 
 /// Distance of what each pixel shows.
 struct DepthImage {
