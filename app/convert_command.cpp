@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -15,8 +14,8 @@
 #include "app/convert_data_set.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
+#include "app/topic_arguments.h"
 #include "fovea/core/errors.h"
-#include "fovea/core/plain_name.h"
 #include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/drive/recordings/convert_bags.h"
@@ -25,9 +24,9 @@ namespace fovea::app {
 namespace {
 
 struct ConvertArguments {
-  std::vector<std::string> bags, cameras;
+  std::vector<std::string> bags;
   std::string output, poses = "auto";
-  ConvertOptions options;
+  TopicArguments topics;
   double reconnect = 30;  // s
   bool list = false, force = false, quiet = false;
 };
@@ -37,24 +36,6 @@ const std::map<std::string, NavigationSource> kSources = {{"auto", NavigationSou
                                                           {"odometry", NavigationSource::kOdometry},
                                                           {"tf", NavigationSource::kTf},
                                                           {"none", NavigationSource::kNone}};
-
-/// NAME=TOPIC of each.
-std::vector<ConvertOptions::CameraTopic> parse_camera_topics(
-    const std::vector<std::string>& texts) {
-  std::vector<ConvertOptions::CameraTopic> cameras;
-  std::set<std::string> names, topics;
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    if (equals == std::string::npos || !is_plain_name(name) || !names.insert(name).second ||
-        !topics.insert(text.substr(equals + 1)).second) {
-      throw ConfigError("this names no camera, or one or its topic twice", "--camera " + text,
-                        "give NAME=TOPIC, the name of letters, digits, '_' and '-'");
-    }
-    cameras.push_back({name, text.substr(equals + 1)});
-  }
-  return cameras;
-}
 
 std::string line_of(const RecordingContents::Topic& topic) {
   std::string line = fmt::format("{:>8} {}  {}", topic.messages, topic.name, topic.type);
@@ -81,8 +62,7 @@ bool is_live(const ConvertArguments& arguments) {
 }
 
 ConvertFigures convert(const ConvertArguments& arguments, Session& session) {
-  ConvertOptions options = arguments.options;
-  options.cameras = parse_camera_topics(arguments.cameras);
+  ConvertOptions options = arguments.topics.options();
   options.poses = kSources.at(arguments.poses);
   if (is_live(arguments)) {
     return convert_bridge({arguments.bags.front(), arguments.output, options, arguments.reconnect,
@@ -118,7 +98,7 @@ void run(const ConvertArguments& arguments, Session& session) {
 
 void add_convert_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<ConvertArguments>();
-  ConvertOptions& options = arguments->options;
+  ConvertOptions& options = arguments->topics.chosen;
   CLI::App* command = app.add_subcommand(
       "convert", "Turn a recording of ROS 2 or ROS 1, or a scene of a data set, into a drive");
   command->add_option(
@@ -134,34 +114,12 @@ void add_convert_command(CLI::App& app, Session& session) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--duration", options.duration, "Length of the part to convert, s")
       ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--lidar", options.lidars,
-                   "The scans (default: the only topic of scans); repeated for further LiDARs of "
-                   "the vehicle")
-      ->type_name("TOPIC")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--camera", arguments->cameras,
-                   "A camera's images, may be repeated (default: all with calibration and place)")
-      ->type_name("NAME=TOPIC")
-      ->allow_extra_args(false);
+  add_topic_options(*command, arguments->topics);
   command
       ->add_option("--poses", arguments->poses,
                    "Where they come from: auto takes the first of the others that there is")
       ->capture_default_str()
       ->check(CLI::IsMember(kSources));
-  command->add_option("--fix", options.fix, "NavSatFix, where there are several")
-      ->type_name("TOPIC");
-  command->add_option("--imu", options.imu, "Imu, where there are several, or none")
-      ->type_name("TOPIC");
-  command->add_option("--odometry", options.odometry, "Odometry, where there are several")
-      ->type_name("TOPIC");
-  command->add_option("--body", options.body, "Frame of the vehicle (default: base_link)")
-      ->type_name("FRAME");
-  command->add_option("--world", options.world, "Frame that --poses tf are in (default: outermost)")
-      ->type_name("FRAME");
-  command->add_flag("--compensated", options.sweep_compensated,
-                    "The scans' motion was undone when they were recorded");
   command->add_flag("--allow-dropped", options.allow_dropped,
                     "Convert scans even if over 10 % of their points cannot be used");
   command
