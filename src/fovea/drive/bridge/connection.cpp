@@ -78,6 +78,15 @@ class Connection::Socket {
     return true;
   }
 
+  void send_from(Source source) {
+    source_ = std::move(source);
+    write_from_source();
+  }
+
+  void wake() {
+    asio::post(io_, [this] { write_from_source(); });
+  }
+
  private:
   /// Runs handlers until `done`, a stop or a time.
   void run_until(const std::function<bool()>& done, const std::stop_token& stop,
@@ -115,6 +124,8 @@ class Connection::Socket {
     asio::async_connect(beast::get_lowest_layer(stream_).socket(), hosts,
                         [&](error_code error, const tcp::endpoint&) { result = error; });
     wait_for(result, "no bridge can be reached", stop);
+    error_code ignored;  // messages leave at once, not when earlier ones are acknowledged
+    beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true), ignored);
   }
 
   void shake_hands(const std::stop_token& stop) {
@@ -159,8 +170,18 @@ class Connection::Socket {
       unsent_bytes_ -= unsent_.front().bytes.size();
       unsent_.pop_front();
       if (error && !error_) error_ = error;
-      if (!error_ && !unsent_.empty()) write();
+      if (error_) return;
+      if (unsent_.empty()) {
+        write_from_source();
+      } else {
+        write();
+      }
     });
+  }
+
+  void write_from_source() {
+    if (error_ || !unsent_.empty() || !source_) return;
+    if (std::optional<WireMessage> message = source_()) send(std::move(*message));
   }
 
   Address address_;
@@ -174,6 +195,7 @@ class Connection::Socket {
   error_code error_;
   std::deque<WireMessage> unsent_;
   std::size_t unsent_bytes_ = 0;
+  Source source_;
 };
 
 Connection::Connection(const Address& address, const ConnectionOptions& options,
@@ -189,5 +211,9 @@ std::optional<WireMessage> Connection::receive(const std::stop_token& stop,
 bool Connection::is_closed() const { return socket_->is_closed(); }
 
 bool Connection::send(WireMessage message) { return socket_->send(std::move(message)); }
+
+void Connection::send_from(Source source) { socket_->send_from(std::move(source)); }
+
+void Connection::wake() { socket_->wake(); }
 
 }  // namespace fovea::bridge

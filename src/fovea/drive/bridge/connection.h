@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -34,8 +35,8 @@ struct WireMessage {
 ///   Connection connection(parse_address("ws://robot:8765"));
 ///   while (const auto message = connection.receive(stop)) use(*message);
 ///
-/// One thread uses it. While that thread does not call receive(), the bridge waits, and then drops
-/// what it cannot send: memory does not grow.
+/// One thread uses it, except for wake(). While that thread does not call receive(), the bridge
+/// waits, and then drops what it cannot send: memory does not grow.
 class Connection {
  public:
   /// Connects. ConnectionError if no bridge of a known protocol replies in time, or at a stop.
@@ -55,6 +56,13 @@ class Connection {
   /// Appends a message to those that receive() sends.
   /// @return false if the bridge does not take the earlier ones: the message is dropped
   bool send(WireMessage message);
+
+  using Source = std::function<std::optional<WireMessage>()>;
+  /// receive() calls the source each time it has sent all messages, and sends what it returns: the
+  /// bridge sets the pace. After the source has returned nothing, wake() calls it again.
+  void send_from(Source source);
+  /// From any thread: makes receive() call the source, also while it waits for a message.
+  void wake();
 
  private:
   class Socket;

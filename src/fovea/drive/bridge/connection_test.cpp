@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "fovea/drive/bridge/test_bridge.h"
 
 namespace fovea::connection_test {
@@ -155,6 +157,27 @@ TEST(BridgeConnection, DropsWhatTheBridgeDoesNotTake) {
     is_sent = connection.send({true, std::string(60, 'x')});
   }
   EXPECT_TRUE(is_sent);
+}
+
+TEST(BridgeConnection, SendsForOtherThreadsWhileItWaits) {
+  const TestBridge server(kProtocol, [](TestBridge::WebSocket& stream) {
+    for (const char* expected : {"1", "2", "3"}) EXPECT_EQ(TestBridge::receive(stream), expected);
+    TestBridge::close(stream);
+  });
+  std::atomic<int> offered = 0;
+  int sent = 0;
+  Connection connection(server.address());
+  connection.send_from([&]() -> std::optional<WireMessage> {
+    if (sent == offered) return std::nullopt;
+    return WireMessage{true, std::to_string(++sent)};
+  });
+  const std::jthread publisher([&] {
+    std::this_thread::sleep_for(20ms);  // while the connection waits
+    offered = 3;
+    connection.wake();
+  });
+  EXPECT_FALSE(connection.receive({}, 1h));
+  EXPECT_TRUE(connection.is_closed());
 }
 
 }  // namespace
