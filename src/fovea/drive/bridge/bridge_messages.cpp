@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "the protocol has little-endian numbers");
 
-constexpr std::uint8_t kMessageData = 1;  // opcode
+constexpr std::uint8_t kMessageData = 1;  // opcode of the server, and of the client
 
 [[noreturn]] void throw_damaged(const std::string& problem) {
   throw DamagedMessage(fmt::format("a message of the bridge is damaged ({})", problem),
@@ -30,6 +30,18 @@ std::uint32_t id_of(const Json& json) {
     throw std::invalid_argument("an id is no number of 32 bits");
   }
   return json.get<std::uint32_t>();
+}
+
+std::vector<std::string> texts_at(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found == json.end() ? std::vector<std::string>() : found->get<std::vector<std::string>>();
+}
+
+ServerInfo server_info_of(const Json& json) {
+  const std::vector<std::string> capabilities = texts_at(json, "capabilities");
+  return {
+      std::find(capabilities.begin(), capabilities.end(), "clientPublish") != capabilities.end(),
+      texts_at(json, "supportedEncodings")};
 }
 
 Advertised advertised_of(const Json& json) {
@@ -55,6 +67,7 @@ Status status_of(const Json& json) {
 
 ServerMessage message_of(const Json& json) {
   const auto op = json.at("op").get<std::string>();
+  if (op == "serverInfo") return server_info_of(json);
   if (op == "advertise") return advertised_of(json);
   if (op == "unadvertise") return unadvertised_of(json);
   if (op == "status") return status_of(json);
@@ -96,6 +109,33 @@ std::string subscribe_message(std::span<const Subscription> subscriptions) {
     list.push_back({{"id", subscription.id}, {"channelId", subscription.channel_id}});
   }
   return Json{{"op", "subscribe"}, {"subscriptions", list}}.dump();
+}
+
+std::string advertise_message(std::span<const ClientChannel> channels) {
+  Json list = Json::array();
+  for (const ClientChannel& channel : channels) {
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", channel.encoding},
+                    {"schemaName", channel.schema_name},
+                    {"schema", channel.schema},
+                    {"schemaEncoding", channel.schema_encoding}});
+  }
+  return Json{{"op", "advertise"}, {"channels", list}}.dump();
+}
+
+std::string unadvertise_message(std::span<const ClientChannel> channels) {
+  Json ids = Json::array();
+  for (const ClientChannel& channel : channels) ids.push_back(channel.id);
+  return Json{{"op", "unadvertise"}, {"channelIds", ids}}.dump();
+}
+
+std::string client_message_data(std::uint32_t channel_id, std::string_view payload) {
+  const auto id = std::bit_cast<std::array<char, sizeof(channel_id)>>(channel_id);
+  std::string message(1, char{kMessageData});
+  message.append(id.data(), id.size());
+  message += payload;
+  return message;
 }
 
 }  // namespace fovea::bridge

@@ -19,6 +19,12 @@ namespace fovea::bridge {
 inline constexpr std::array<std::string_view, 2> kProtocols = {"foxglove.sdk.v1",
                                                                "foxglove.websocket.v1"};
 
+/// What the server can do. Its first message.
+struct ServerInfo {
+  bool accepts_messages = false;       ///< clients may publish ("clientPublish")
+  std::vector<std::string> encodings;  ///< of the messages that clients may publish
+};
+
 /// A topic that the server can send.
 struct Channel {
   std::uint32_t id = 0;
@@ -48,10 +54,11 @@ struct MessageData {
   std::string_view payload;  ///< points into the message that it was read from
 };
 
-/// A message that no part of Fovea uses: server information, parameters, services, assets, time.
+/// A message that no part of Fovea uses: parameters, services, assets, time.
 struct Unused {};
 
-using ServerMessage = std::variant<Advertised, Unadvertised, Status, MessageData, Unused>;
+using ServerMessage =
+    std::variant<ServerInfo, Advertised, Unadvertised, Status, MessageData, Unused>;
 
 class DamagedMessage : public InputError {
  public:
@@ -67,5 +74,21 @@ struct Subscription {
 };
 /// The request to send the messages of some channels.
 std::string subscribe_message(std::span<const Subscription> subscriptions);
+
+/// A topic that this client publishes.
+struct ClientChannel {
+  std::uint32_t id = 0;
+  std::string topic;
+  std::string encoding;     ///< of its messages: "cdr", "ros1", "json"
+  std::string schema_name;  ///< "nav_msgs/msg/Odometry"
+  std::string schema;       ///< the definition of that type
+  std::string schema_encoding;
+};
+/// Offers the topics. Only for a server that accepts messages.
+std::string advertise_message(std::span<const ClientChannel> channels);
+/// Withdraws the offer.
+std::string unadvertise_message(std::span<const ClientChannel> channels);
+/// A message of an offered topic, for a binary frame.
+std::string client_message_data(std::uint32_t channel_id, std::string_view payload);
 
 }  // namespace fovea::bridge

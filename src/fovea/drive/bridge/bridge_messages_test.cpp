@@ -17,6 +17,17 @@ T parsed(std::string_view text) {
   return std::get<T>(parse_text(text));
 }
 
+TEST(BridgeMessages, TheServerTellsWhatItAccepts) {
+  const auto info = parsed<ServerInfo>(
+      R"({"op": "serverInfo", "name": "robot", "capabilities": ["time", "clientPublish"],
+          "supportedEncodings": ["json", "cdr"], "metadata": {"ROS_DISTRO": "humble"},
+          "sessionId": "1675789422160"})");
+  EXPECT_TRUE(info.accepts_messages);
+  EXPECT_THAT(info.encodings, ElementsAre("json", "cdr"));
+  EXPECT_FALSE(parsed<ServerInfo>(R"({"op": "serverInfo", "capabilities": []})").accepts_messages);
+  EXPECT_FALSE(parsed<ServerInfo>(R"({"op": "serverInfo"})").accepts_messages);
+}
+
 TEST(BridgeMessages, ChannelsComeAndGo) {
   const auto advertised = parsed<Advertised>(
       R"({"op": "advertise", "channels": [{"id": 4294967295, "topic": "/points", "encoding": "cdr",
@@ -58,7 +69,8 @@ TEST(BridgeMessages, DamagedOnesAreErrors) {
         R"({"op": "advertise", "channels": [{"id": 4294967296, "topic": "t", "encoding": "cdr"}]})",
         R"({"op": "advertise", "channels": [{"id": 1, "topic": 2, "encoding": "cdr"}]})",
         R"({"op": "advertise", "channels": 7})", R"({"op": "unadvertise", "channelIds": ["1"]})",
-        "\xff\xfe"}) {
+        R"({"op": "serverInfo", "capabilities": "clientPublish"})",
+        R"({"op": "serverInfo", "supportedEncodings": [1]})", "\xff\xfe"}) {
     EXPECT_THROW(parse_text(text), DamagedMessage) << text;
   }
   EXPECT_THROW(parse_text(std::string(100'000, '[')), DamagedMessage);
@@ -70,6 +82,18 @@ TEST(BridgeMessages, ASubscriptionIsAsTheProtocolSays) {
   const std::vector<Subscription> subscriptions{{0, 3}, {1, 5}};
   EXPECT_EQ(Json::parse(subscribe_message(subscriptions)), Json::parse(R"({"op": "subscribe",
       "subscriptions": [{"id": 0, "channelId": 3}, {"id": 1, "channelId": 5}]})"));
+}
+
+TEST(BridgeMessages, PublishedTopicsAreAsTheProtocolSays) {
+  const std::vector<ClientChannel> channels{
+      {7, "/pose", "cdr", "nav_msgs/msg/Odometry", "string child_frame_id", "ros2msg"}};
+  EXPECT_EQ(Json::parse(advertise_message(channels)), Json::parse(R"({"op": "advertise",
+      "channels": [{"id": 7, "topic": "/pose", "encoding": "cdr",
+                    "schemaName": "nav_msgs/msg/Odometry", "schema": "string child_frame_id",
+                    "schemaEncoding": "ros2msg"}]})"));
+  EXPECT_EQ(Json::parse(unadvertise_message(channels)),
+            Json::parse(R"({"op": "unadvertise", "channelIds": [7]})"));
+  EXPECT_EQ(client_message_data(0x80000002, "hello"), std::string("\x01\x02\x00\x00\x80hello", 10));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "fovea/core/printable.h"
 #include "fovea/core/thread.h"
 #include "fovea/drive/bridge/bridge_messages.h"
+#include "fovea/drive/bridge/pose_messages.h"
 
 namespace fovea::bridge {
 namespace {
@@ -20,6 +21,22 @@ using std::chrono::milliseconds;
 constexpr milliseconds kIdle{1000};
 constexpr milliseconds kFirstPause{250}, kLongestPause{5000};  // between connections
 constexpr std::size_t kMostRemarks = 20;                       // of the bridge, that are kept
+
+/// Publishes over a connection while it lives.
+class Publishing {
+ public:
+  Publishing(PosePublisher* poses, Connection& connection) : poses_(poses) {
+    if (poses_ != nullptr) poses_->begin(connection);
+  }
+  ~Publishing() {
+    if (poses_ != nullptr) poses_->end();
+  }
+  Publishing(const Publishing&) = delete;
+  Publishing& operator=(const Publishing&) = delete;
+
+ private:
+  PosePublisher* poses_;
+};
 
 class BridgeReader {
  public:
@@ -54,6 +71,7 @@ class BridgeReader {
 
   /// Until the bridge closes the connection, or a stop. ConnectionError if the connection is lost.
   void read(Connection& connection) {
+    const Publishing publishing(options_.poses, connection);
     while (!stop_.stop_requested()) {
       const std::optional<WireMessage> message = connection.receive(stop_, kIdle);
       if (message) {
@@ -95,6 +113,10 @@ class BridgeReader {
 
   void take(const Unused& /*message*/, Connection& /*connection*/) {}
 
+  void take(const ServerInfo& info, Connection& connection) {
+    if (options_.poses != nullptr) options_.poses->take(info, connection);
+  }
+
   void take(const Status& status, Connection& /*connection*/) {
     if (status.level == Status::Level::kInfo || figures_.warnings.size() >= kMostRemarks) return;
     figures_.warn(fmt::format("the bridge reports: {}", printable(status.text)));
@@ -102,6 +124,7 @@ class BridgeReader {
 
   void take(const Advertised& advertised, Connection& connection) {
     for (const Channel& channel : advertised.channels) {
+      if (channel.topic == kOdometryTopic || channel.topic == kStateTopic) continue;
       BagTopic topic{channel.topic, ros2_type(channel.type), channel.encoding};
       if (!sink_.is_requested(topic) || !topic.is_readable()) continue;
       offered_.insert_or_assign(channel.id, std::move(topic));
@@ -154,6 +177,8 @@ class BridgeReader {
       figures_.warn(fmt::format("{} messages of the bridge cannot be read (the first: {})",
                                 figures_.damaged, first_damage_));
     }
+    if (options_.poses == nullptr) return;
+    for (std::string& warning : options_.poses->warnings()) figures_.warn(std::move(warning));
   }
 
   const BridgeOptions& options_;

@@ -9,6 +9,7 @@
 
 #include "fovea/core/messages.h"
 #include "fovea/drive/bridge/connection.h"
+#include "fovea/drive/bridge/pose_publisher.h"
 #include "fovea/drive/recordings/bag_sink.h"
 
 namespace fovea::bridge {
@@ -18,6 +19,7 @@ struct BridgeOptions {
   ConnectionOptions connection;
   /// How long a lost connection is tried again, with growing pauses, until a message comes.
   std::chrono::milliseconds reconnect{30'000};
+  PosePublisher* poses = nullptr;  ///< publishes over the same connection; may be none
 };
 
 /// Its warnings count what was lost, and name the first case of each kind.
@@ -31,7 +33,7 @@ struct BridgeFigures : Messages {
 /// Passes the messages of the topics that the sink requests on, until the bridge closes the
 /// connection, `stop` is requested, or the connection is lost and cannot be made again.
 /// is_requested() is called again for a topic that comes back. Of two channels of one topic one is
-/// read at a time.
+/// read at a time. Topics of Fovea's own poses are not read.
 /// @param idle  called about once a second, and after each message
 /// @throws ConnectionError  if there is no connection to begin with
 /// @throws InputError       if a message is too long
