@@ -15,12 +15,12 @@
 #include "app/drive_check_text.h"
 #include "app/job_arguments.h"
 #include "app/live_view.h"
+#include "app/map_job.h"
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "fovea/core/errors.h"
-#include "fovea/core/machine_error.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/process_memory.h"
 #include "fovea/drive/command_files.h"
@@ -35,81 +35,6 @@ namespace {
 /// What a drive played live begins with, bytes, but no more than this part of what it is to keep
 /// to.
 constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
-
-/// Values of --poses that are no file.
-constexpr const char* kRefinedPoses = "refine";
-constexpr const char* kNavigationPoses = "navigation";
-
-struct MapArguments {
-  DriveArguments drive;
-  std::string output, preset = "default", config, hold_out, poses = kRefinedPoses, variant, report,
-                      scratch;
-  std::vector<std::string> settings;
-  int threads = 0;
-  double rate = 0;
-  std::size_t memory = std::size_t{1} << 30;
-  bool calibrate = false, resume = false, force = false, quiet = false, allow_dropped = false;
-  bool if_missing = false;
-  std::string live;  // see live_view.h
-};
-
-MapSettings resolve_settings(const MapArguments& arguments) {
-  MapSettings settings = load_preset(arguments.preset);
-  if (!arguments.config.empty()) apply_config_file(arguments.config, settings);
-  if (!arguments.variant.empty()) settings = with_variant(arguments.variant, settings);
-  for (const std::string& setting : arguments.settings) apply_setting(setting, settings);
-  return settings;
-}
-
-void print_summary(const MapSummary& summary, const MapArguments& arguments) {
-  print_out("{}: {} points from {} frames", arguments.output, summary.points,
-            summary.frames_mapped);
-  if (summary.frames_held_out > 0) print_out(", {} held out", summary.frames_held_out);
-  print_out(", {:.1f} frames/s, {:.0f} MB peak\n", summary.frames_per_second, summary.peak_rss_mb);
-  if (summary.rate > 0) {
-    print_out("at {} Hz: {} frame{} late: not yet in the map when the next one was due\n",
-              summary.rate, summary.late_frames, summary.late_frames == 1 ? "" : "s");
-  }
-  if (!summary.first_damage.empty()) {
-    print_out("the first damaged frame: {}\n", summary.first_damage);
-  }
-  if (summary.loops_closed > 0) {
-    print_out("loops closed: {} scans were registered to places seen before\n",
-              summary.loops_closed);
-  }
-}
-
-/// What an interrupted run keeps. It is an error line of a quiet run.
-void print_interruption(const MapSummary& summary, const MapArguments& arguments) {
-  std::FILE* const out = arguments.quiet ? stderr : stdout;
-  if (summary.interrupted) {
-    print_to(out, "interrupted: {} keeps the frames mapped so far, --resume continues\n",
-             arguments.output);
-  } else {
-    print_to(out, "interrupted: {} is whole\n", arguments.output);
-  }
-}
-
-/// Throws the error that is handled, with what to do with the log that the run leaves next to its
-/// map, if there is one.
-[[noreturn]] void rethrow_with_log_remedy(const OutputError& error, const std::string& map) {
-  const std::string remedy = log_remedy(map);
-  if (log_of_map(map).empty() || error.remedy() == remedy) throw;
-  const bool of_machine = dynamic_cast<const MachineError*>(&error) != nullptr;
-  throw_error<OutputError>(of_machine, error.problem(), error.where(),
-                           error.remedy() + "; " + remedy);
-}
-
-CommandFiles files_of(const MapArguments& arguments) {
-  CommandFiles files;
-  files.inputs = {arguments.drive.drive, arguments.config};
-  if (arguments.poses != kRefinedPoses && arguments.poses != kNavigationPoses) {
-    files.inputs.push_back(arguments.poses);
-  }
-  files.outputs = {{arguments.output, ContentKind::kMap, arguments.force || arguments.resume},
-                   {arguments.report, ContentKind::kReport, /*force=*/true}};
-  return files;
-}
 
 /// Prints the contents of the drive if something about it is odd, without the notes that the run
 /// prints. A drive that cannot be read is left to the run, whose error says more.
@@ -128,27 +53,19 @@ void print_if_odd(const FrameSource& source, const MapArguments& arguments) {
 
 void run(const MapArguments& arguments, Session& session) {
   if (is_done(arguments.output, arguments.if_missing, arguments.quiet)) return;
-  check_files(files_of(arguments));
+  const bool has_file = arguments.poses != kRefinedPoses && arguments.poses != kNavigationPoses;
+  CommandFiles files = files_of(arguments);
+  files.inputs.push_back(arguments.drive.drive);
+  if (has_file) files.inputs.push_back(arguments.poses);
+  check_files(files);
   const ThreadLimit threads(arguments.threads);
-  MapJob job;
-  job.output = arguments.output;
-  job.settings = resolve_settings(arguments);
-  job.variant = arguments.variant;
-  job.hold_out = parse_hold_out(arguments.hold_out);
-  job.rate = arguments.rate;
-  job.memory = arguments.memory;
-  job.calibrate = arguments.calibrate;
-  job.allow_dropped = arguments.allow_dropped;
-  job.force = arguments.force;
-  job.scratch = arguments.scratch;
-  job.resume = arguments.resume;
-
+  MapJob job = job_of(arguments);
   std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
   if (!arguments.report.empty()) report.emplace(arguments.report, /*force=*/true);
   const std::shared_ptr<const FrameSource> source = arguments.drive.open();
   if (arguments.poses == kNavigationPoses) {
     job.pose_source = PoseSource::kNavigation;
-  } else if (arguments.poses != kRefinedPoses) {
+  } else if (has_file) {
     job.pose_source = PoseSource::kGiven;
     const DriveInfo& info = source->info();
     job.given_poses = read_poses(arguments.poses, info.begin, info.end);
@@ -162,23 +79,17 @@ void run(const MapArguments& arguments, Session& session) {
   // In a scratch folder nothing is kept of a run that does not end.
   if (job.scratch.empty()) job.stop = session.interrupt.stop_gently();
   LiveView view(arguments.live, job, source, arguments.quiet);
-  const MapSummary summary = [&] {
+  const MapSummary summary = naming_log(arguments.output, [&] {
     ProgressBar bar(arguments.quiet);
-    try {
-      return map_drive(*source, job, std::ref(bar));
-    } catch (const OutputError& error) {
-      rethrow_with_log_remedy(error, arguments.output);
-    }
-  }();
+    return map_drive(*source, job, std::ref(bar));
+  });
   const Messages calibration = calibration_messages(summary.calibration, summary.calibrated);
   if (report) {
     MapSummary reported = summary;
     reported.append(calibration);
     write_json(*report, {{"map", to_json(reported)}});
   }
-  session.warnings.add(summary, "note: ", arguments.quiet);
-  if (!arguments.quiet) print_summary(summary, arguments);
-  session.warnings.add(calibration, "", arguments.quiet);
+  print_run(summary, calibration, arguments, session);
   if (job.stop.stop_requested()) print_interruption(summary, arguments);
   view.keep_serving();
 }
