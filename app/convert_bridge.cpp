@@ -1,8 +1,11 @@
 #include "app/convert_bridge.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdint>
 
+#include "app/bridge_status.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
 #include "fovea/core/errors.h"
@@ -12,33 +15,12 @@ namespace fovea::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
-/// Prints how a recording proceeds: a line each time something changes, and each ten seconds.
-class RecordingStatus {
- public:
-  explicit RecordingStatus(bool quiet) : quiet_(quiet) {}
-
-  void show(const bridge::RecordingProgress& progress) {
-    const std::string problem = !progress.is_connected      ? "the connection is lost; trying again"
-                                : !progress.missing.empty() ? "still missing: " + progress.missing
-                                                            : std::string();
-    if (quiet_ || (problem == last_ && Clock::now() < next_)) return;
-    last_ = problem;
-    next_ = Clock::now() + std::chrono::seconds(10);
-    if (!problem.empty()) {
-      print_err("{}\n", problem);
-    } else if (progress.scans > 0) {
-      print_err("recorded: {} scans, {} images; Ctrl-C ends the recording\n", progress.scans,
-                progress.images);
-    }
-  }
-
- private:
-  bool quiet_;
-  std::string last_;
-  Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);
-};
+std::string line_of(const bridge::RecordingProgress& progress) {
+  if (progress.scans == 0) return "";
+  return fmt::format("recorded: {} scans, {} images; Ctrl-C ends the recording", progress.scans,
+                     progress.images);
+}
 
 /// OUTPUT.mcap, also of "OUTPUT/".
 fs::path recording_of(const fs::path& output) {
@@ -62,10 +44,11 @@ ConvertFigures convert_bridge(const BridgeConversion& conversion, Session& sessi
   job.bridge.reconnect = std::chrono::milliseconds(std::int64_t(1000 * conversion.reconnect));
   job.options = conversion.options;
   job.output = recording_of(conversion.output);
-  RecordingStatus status(conversion.quiet);
-  const bridge::BridgeFigures recorded =
-      record_bridge(job, session.interrupt.stop_gently(),
-                    [&](const bridge::RecordingProgress& progress) { status.show(progress); });
+  BridgeStatus status(conversion.quiet);
+  const bridge::BridgeFigures recorded = record_bridge(
+      job, session.interrupt.stop_gently(), [&](const bridge::RecordingProgress& progress) {
+        status.show(progress.is_connected, progress.missing, line_of(progress));
+      });
   session.interrupt.stop_at_once();
   if (!conversion.quiet) print_err("the recording is {}\n", job.output.string());
   ProgressBar bar(conversion.quiet, "messages");
