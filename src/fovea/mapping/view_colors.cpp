@@ -25,10 +25,12 @@ float trust(float darkest, float brightest) {
 }
 
 /// Replaces gray values by color codes.
+/// @param values  a row of a ColorBlock
 void to_codes(std::span<float> values) {
   constexpr float kLeastValue = 0.5f;  // half a gray value: a black pixel
   constexpr float kCodesPerE = float(kColorCodesPerStop) * std::numbers::log2e_v<float>;
-  Eigen::Map<Eigen::ArrayXf> codes(values.data(), Eigen::Index(values.size()));
+  Eigen::Map<Eigen::ArrayXf, EIGEN_MAX_ALIGN_BYTES> codes(values.data(),
+                                                          Eigen::Index(values.size()));
   codes = float(kColorCodeOfOne) + kCodesPerE * codes.max(kLeastValue).log();
 }
 
