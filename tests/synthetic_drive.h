@@ -120,7 +120,8 @@ class SyntheticDrive : public FrameSource {
       }
     }
     for (std::size_t k = 0; k < info_.calibration.cameras.size(); ++k) {
-      const Camera camera = info_.camera_at(k, index);
+      frame.image_offsets.push_back(info_.image_offset(k, index));
+      const Camera camera = camera_of(info_, frame, k);
       const TimeNs taken = frame.stamp + from_seconds(camera.image_delay);
       frame.images.push_back(
           photo(camera, taken == frame.stamp ? T : info_.navigation->at(taken).value()));

@@ -123,6 +123,11 @@ class FileFrameSource : public FrameSource {
     for (std::optional<MissingImage>& image : missing) {
       if (image) frame.missing_images.push_back(std::move(*image));
     }
+    for (std::size_t k = 0; k < count; ++k) {
+      frame.image_offsets.push_back(info_.image_offset(k, frame.index));
+      frame.image_exposures.push_back(
+          info_.image_exposure(info_.calibration.cameras[k].index, frame.index));
+    }
   }
 
   /// Reads one camera's image; why it stays empty, if it does.

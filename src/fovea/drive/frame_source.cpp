@@ -71,6 +71,12 @@ Camera DriveInfo::camera_at(std::size_t slot, int index) const {
   return camera;
 }
 
+Camera camera_of(const DriveInfo& drive, const Frame& frame, std::size_t slot) {
+  Camera camera = drive.calibration.cameras.at(slot);
+  if (slot < frame.image_offsets.size()) camera.image_delay += frame.image_offsets[slot];
+  return camera;
+}
+
 void require_cameras(const DriveInfo& drive, std::string_view purpose) {
   if (!drive.calibration.cameras.empty()) return;
   throw InputError(fmt::format("the drive has no camera, which {} needs", purpose),

@@ -15,6 +15,7 @@
 #include "fovea/core/messages.h"
 #include "fovea/core/point_cloud.h"
 #include "fovea/core/time.h"
+#include "fovea/drive/motion_data.h"
 #include "fovea/drive/scans/dropped_points.h"
 #include "fovea/geometry/camera.h"
 #include "fovea/geometry/geodesy.h"
@@ -50,15 +51,20 @@ struct MissingScan {
 /// One LiDAR sweep with the images that belong to it.
 struct Frame {
   int index = 0;     ///< the number in the file's name
-  TimeNs stamp = 0;  ///< scan time; see DriveInfo::camera_at() for the images
+  TimeNs stamp = 0;  ///< scan time; see camera_of() for the images
   /// Lidar frame, as measured, with intensity. Of several LiDARs with the columns sensor and time.
   PointCloud scan;
   DroppedPoints dropped_points;  ///< not in `scan`
   /// One a camera of the calibration, in its order; empty where the camera has none that can be
   /// used, which at most all but one are.
   std::vector<Image> images;
+  /// As DriveInfo has them, of each camera; none: all are 0, or not stated.
+  std::vector<double> image_offsets;
+  std::vector<std::optional<double>> image_exposures;
   std::vector<MissingImage> missing_images;  ///< why images are empty, in the cameras' order
   std::vector<MissingScan> missing_scans;    ///< the frame is used without them
+  /// Of a live drive: measured since the frame before. Other drives have it in DriveInfo.
+  MotionData motion;
 };
 
 /// A frame that cannot be used, for want of a scan, a stamp or any image: counted and reported, and
@@ -136,8 +142,7 @@ struct DriveInfo : Messages {
   std::optional<double> image_exposure(int camera, int index) const;
   /// nullptr: every pixel of the camera shows the scene.
   const ImageMask* mask(int camera) const;
-  /// A camera with the delay of its own image of one frame. Camera::at_image() then moves the
-  /// camera to the place where it took that image.
+  /// camera_of() of a frame that is not read.
   Camera camera_at(std::size_t slot, int index) const;
   /// The indices of all frames, ascending.
   std::vector<int> frame_indices() const;
@@ -145,6 +150,11 @@ struct DriveInfo : Messages {
   /// Whether any image is taken at another time than its scan's stamp.
   bool has_image_delays() const;
 };
+
+/// A camera with the delay of its own image of a frame. Camera::at_image() then moves the camera to
+/// the place where it took that image.
+/// @param slot  place of the camera in the calibration
+Camera camera_of(const DriveInfo& drive, const Frame& frame, std::size_t slot);
 
 /// Reads the frames of a drive. All methods may be called by several threads at the same time.
 class FrameSource {

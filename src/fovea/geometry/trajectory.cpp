@@ -34,16 +34,33 @@ TimeNs reach_of(TimeNs time, TimeNs known_until) {
 
 }  // namespace
 
-Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
-  if (poses_.empty()) throw std::invalid_argument("a trajectory needs at least one pose");
-  for (std::size_t i = 1; i < poses_.size(); ++i) {
-    if (poses_[i].time <= poses_[i - 1].time) {
-      throw std::invalid_argument("the times of a trajectory must increase");
-    }
-    if (poses_[i].T_local_body.translation() == poses_[i - 1].T_local_body.translation()) {
-      poses_[i].velocity.reset();
-    }
+Trajectory::Trajectory(std::vector<StampedPose> poses) {
+  if (poses.empty()) throw std::invalid_argument("a trajectory needs at least one pose");
+  extend(poses);
+}
+
+void Trajectory::extend(const std::vector<StampedPose>& poses) {
+  poses_.reserve(poses_.size() + poses.size());
+  for (const StampedPose& pose : poses) append(pose);
+}
+
+void Trajectory::append(const StampedPose& pose) {
+  if (!poses_.empty() && pose.time <= poses_.back().time) {
+    throw std::invalid_argument("the times of a trajectory must increase");
   }
+  const bool is_frozen = !poses_.empty() && pose.T_local_body.translation() ==
+                                                poses_.back().T_local_body.translation();
+  poses_.push_back(pose);
+  if (is_frozen) poses_.back().velocity.reset();
+}
+
+std::size_t Trajectory::drop_before(TimeNs time) {
+  if (poses_.empty()) return 0;
+  const auto kept = std::find_if(poses_.begin(), std::prev(poses_.end()),
+                                 [&](const StampedPose& pose) { return pose.time >= time; });
+  const auto dropped = std::size_t(kept - poses_.begin());
+  poses_.erase(poses_.begin(), kept);
+  return dropped;
 }
 
 std::optional<RigidMotion> Trajectory::at(TimeNs time) const {

@@ -30,6 +30,12 @@ class Trajectory {
 
   const std::vector<StampedPose>& poses() const { return poses_; }
 
+  /// Appends poses, which follow the last one in strictly increasing time; std::invalid_argument
+  /// otherwise.
+  void extend(const std::vector<StampedPose>& poses);
+  /// Removes the poses before a time, but not the last pose. Returns their number.
+  std::size_t drop_before(TimeNs time);
+
   /// Pose at a time, by the constant twist between neighboring poses. Beyond the ends and in an
   /// outage, by the velocity of the nearest two poses for at most kMaxExtrapolation. A pose between
   /// two outages needs a measured velocity for that; the only pose of a trajectory holds as long.
@@ -55,6 +61,8 @@ class Trajectory {
   /// Of what was measured from `begin` on, before `end`.
   std::optional<MeanVelocity> mean_velocity(TimeNs begin, TimeNs end, TimeNs about) const;
   std::optional<SweepMotion> measured_motion(TimeNs time, TimeNs known_until) const;
+  void append(const StampedPose& pose);
+
   std::vector<StampedPose> poses_;
 };
 

@@ -211,6 +211,18 @@ TEST(Trajectory, AFrozenPoseHasNoVelocity) {
   EXPECT_NEAR(speed(trajectory, 2, 2.05), 0, 1e-12);
 }
 
+TEST(Trajectory, GrowsAndForgets) {
+  Trajectory grown({{0, at_x(0)}, {kNsPerSecond / 2, at_x(1)}});
+  grown.extend({{kNsPerSecond, at_x(2)}, {2 * kNsPerSecond, at_x(5)}});
+  EXPECT_NEAR(grown.at(from_seconds(1.5))->translation().x(), 3.5, 1e-12);
+  EXPECT_THROW(grown.extend({{2 * kNsPerSecond, at_x(5)}}), std::invalid_argument);
+  EXPECT_EQ(grown.drop_before(kNsPerSecond), 2u);
+  EXPECT_EQ(grown.poses().size(), 2u);
+  EXPECT_NEAR(grown.at(from_seconds(1.5))->translation().x(), 3.5, 1e-12);
+  EXPECT_EQ(grown.drop_before(9 * kNsPerSecond), 1u);  // the last one stays
+  EXPECT_EQ(grown.poses().size(), 1u);
+}
+
 TEST(Trajectory, RejectsTimesThatDoNotIncrease) {
   EXPECT_THROW(Trajectory(std::vector<StampedPose>{}), std::invalid_argument);
   EXPECT_THROW(Trajectory({{5, at_x(0)}, {5, at_x(1)}}), std::invalid_argument);

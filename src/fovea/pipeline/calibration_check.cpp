@@ -29,7 +29,7 @@ void CalibrationCheck::add_edges(const Frame& frame, const FrameMotion& motion) 
   next_ = frame.index + stride_;
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
     const auto profiles =
-        profiles_of(frame, k, drive_.camera_at(k, frame.index), drive_, compensate_, motion);
+        profiles_of(frame, k, camera_of(drive_, frame, k), drive_, compensate_, motion);
     profiles_[k].insert(profiles_[k].end(), profiles.begin(), profiles.end());
   }
 }

@@ -64,7 +64,7 @@ void add_views(const Frame& frame, const DriveInfo& drive, const FrameResult& re
   if (result.colors) colored.views = result.colors->views;
   for (std::size_t slot = 0; slot < frame.images.size(); ++slot) {
     if (frame.images[slot].empty()) continue;
-    const Camera camera = drive.camera_at(slot, frame.index);
+    const Camera camera = camera_of(drive, frame, slot);
     const ViewRecord* known = colored.find_view(camera.index);
     ViewRecord view = known != nullptr ? *known : ViewRecord();
     view.camera = camera.index;

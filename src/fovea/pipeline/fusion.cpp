@@ -26,10 +26,9 @@ Twist deviations(double rotation, double translation) {
 }  // namespace
 
 Fusion::Fusion(const FusionOptions& options, const RegistrationOptions& registration,
-               const DriveInfo& drive)
+               const MotionHistory& history)
     : options_(options),
-      navigation_(options.enabled && drive.navigation ? &*drive.navigation : nullptr,
-                  drive.navigation_accuracy),
+      navigation_(options.enabled ? history.navigation() : nullptr, history.navigation_accuracy()),
       closer_(registration) {}
 
 bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "fovea/drive/frame_source.h"
 #include "fovea/mapping/fusion/loop_closure.h"
 #include "fovea/mapping/fusion/navigation_check.h"
 #include "fovea/mapping/fusion/pose_graph.h"
 #include "fovea/pipeline/frame_result.h"
+#include "fovea/pipeline/motion_history.h"
 
 namespace fovea {
 
@@ -24,9 +24,9 @@ struct FusionOptions {
 /// Depends only on the frames so far: a resumed run that replays them has the same result.
 class Fusion {
  public:
-  /// @param drive  must outlive the fusion
+  /// @param history  must outlive the fusion
   Fusion(const FusionOptions& options, const RegistrationOptions& registration,
-         const DriveInfo& drive);
+         const MotionHistory& history);
 
   /// Adds the next frame by its pose in odom, and opens a submap if one is due or the track
   /// restarts. Sets the frame's submap and T_local_lidar; appends faults of navigation to its note.

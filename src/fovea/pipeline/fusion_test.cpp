@@ -87,7 +87,8 @@ double error_of(const RigidMotion& T_local_lidar, int frame) {
 
 TEST(Fusion, WithoutNavigationAndLoopsLocalIsOdom) {
   DriveInfo info;
-  Fusion fusion({}, {}, info);
+  const MotionHistory history(info);
+  Fusion fusion({}, {}, history);
   const auto results = drive(fusion, 1e-4, 100, /*with_scans=*/false);
   for (const FrameResult& result : results) {
     EXPECT_TRUE(result.poses.T_local_lidar.isApprox(result.poses.T_odom_lidar, 1e-9))
@@ -100,7 +101,8 @@ TEST(Fusion, WithoutNavigationAndLoopsLocalIsOdom) {
 
 TEST(Fusion, AStandingVehicleStaysInItsSubmap) {
   DriveInfo info;
-  Fusion fusion({}, {}, info);
+  const MotionHistory history(info);
+  Fusion fusion({}, {}, history);
   for (int i = 0; i < 200; ++i) {
     FrameResult result;
     result.stamp = i * kTenth;
@@ -112,7 +114,8 @@ TEST(Fusion, AStandingVehicleStaysInItsSubmap) {
 TEST(Fusion, ARevisitedPlaceClosesTheLoop) {
   constexpr double kTurn = 1e-4;  // 1.7 degrees a lap
   DriveInfo info;
-  Fusion open({.loop_closure = false}, {}, info), closed({}, {}, info);
+  const MotionHistory history(info);
+  Fusion open({.loop_closure = false}, {}, history), closed({}, {}, history);
   const int frames = kLap + 40;
   const auto drifted = drive(open, kTurn, frames, true);
   auto results = drive(closed, kTurn, frames, true);
@@ -128,7 +131,8 @@ TEST(Fusion, ARevisitedPlaceClosesTheLoop) {
 
 TEST(Fusion, OtherPlacesCloseNoLoop) {
   DriveInfo info;
-  Fusion fusion({}, {}, info);
+  const MotionHistory history(info);
+  Fusion fusion({}, {}, history);
   for (const FrameResult& result : drive(fusion, 0, kLap * 3 / 4, true)) {
     EXPECT_FALSE(result.poses.revisit) << result.index;
   }
@@ -145,7 +149,8 @@ TEST(Fusion, NavigationHoldsALongDriveInPlace) {
   }
   info.navigation = Trajectory(poses);
   info.navigation_accuracy.assign(poses.size(), 0.1);
-  Fusion fusion({.loop_closure = false}, {}, info);
+  const MotionHistory history(info);
+  Fusion fusion({.loop_closure = false}, {}, history);
   auto results = drive(fusion, 6e-5, 3 * kLap, false);
   const double without = error_of(results.back().poses.T_odom_lidar, 3 * kLap - 1);
   EXPECT_GT(without, 2);
@@ -169,7 +174,8 @@ TEST(Fusion, NavigationThatBeginsLaterMovesTheSubmapsBeforeIt) {
       info.navigation_accuracy.push_back(has_fix ? 0.1 : std::numeric_limits<double>::infinity());
     }
     info.navigation = Trajectory(poses);
-    Fusion fusion({.loop_closure = false}, {}, info);
+    const MotionHistory history(info);
+    Fusion fusion({.loop_closure = false}, {}, history);
     const auto results = drive(fusion, 0, 200, false);
     for (int i = 0; i < 200; ++i) {
       const RigidMotion T = fusion.T_local_lidar(results[std::size_t(i)]);
@@ -186,7 +192,8 @@ TEST(Fusion, SwitchedOffItChangesNoPose) {
     poses.push_back({i * kTenth, RigidMotion(Eigen::Translation3d(1, 2, 3)) * true_pose(i)});
   }
   info.navigation = Trajectory(poses);
-  Fusion fusion({.enabled = false}, {}, info);
+  const MotionHistory history(info);
+  Fusion fusion({.enabled = false}, {}, history);
   for (const FrameResult& result : drive(fusion, 1e-3, 100, false)) {
     EXPECT_EQ(result.poses.T_local_lidar.matrix(), result.poses.T_odom_lidar.matrix());
   }
@@ -194,7 +201,8 @@ TEST(Fusion, SwitchedOffItChangesNoPose) {
 
 TEST(Fusion, ReplayedFramesGiveTheSameResult) {
   DriveInfo info;
-  Fusion first({}, {}, info), again({}, {}, info);
+  const MotionHistory history(info);
+  Fusion first({}, {}, history), again({}, {}, history);
   const auto results = drive(first, 1e-4, kLap + 30, true);
   for (const FrameResult& result : results) {
     FrameResult tracked = result;

@@ -29,6 +29,10 @@ double reach_of(const MapperOptions& options, double foveal_reach) {
   return std::max(dynamic, foveal_reach) + 2 * kMargin;  // cells, and a margin for them
 }
 
+std::optional<double> exposure_of(const Frame& frame, std::size_t slot) {
+  return slot < frame.image_exposures.size() ? frame.image_exposures[slot] : std::nullopt;
+}
+
 std::vector<Eigen::Vector3f> marked(const std::vector<Eigen::Vector3f>& points,
                                     const std::vector<std::uint8_t>& marks) {
   std::vector<Eigen::Vector3f> chosen;
@@ -68,7 +72,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   if (tracked.task.held_out) return result;
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
-  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, result.poses.motion);
+  const std::vector<Camera> cameras = frame_cameras(drive_, frame, result.poses.motion);
   // One frame later than the periphery, so that the slowest frames do less.
   if (frame_before_has_periphery_) remove_replaced(cameras, result);
   const bool with_periphery = periphery_is_due(result.poses.T_odom_lidar);
@@ -83,7 +87,7 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   const bool has_image = !frame.images.empty();  // a LiDAR without cameras has views alone
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     if (has_image && !has_content(frame.images[k], result)) continue;
-    map_view(tracked.scan_lidar, has_image ? frame.images[k] : kNoImage,
+    map_view(tracked.scan_lidar, {has_image ? frame.images[k] : kNoImage, exposure_of(frame, k)},
              FovealRegion(foveal_options(with_periphery), cameras[k], lidar_origins_), T_odom_local,
              result);
   }
@@ -118,8 +122,10 @@ FovealOptions Mapper::foveal_options(bool with_periphery) const {
   return foveal;
 }
 
-void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const FovealRegion& region,
-                      const RigidMotion& T_odom_local, FrameResult& result) {
+void Mapper::map_view(const PointCloud& scan_lidar, const ViewImage& view,
+                      const FovealRegion& region, const RigidMotion& T_odom_local,
+                      FrameResult& result) {
+  const Image& image = view.image;
   const Camera& camera = region.camera();
   const RigidMotion& T_local_lidar = result.poses.T_local_lidar;
   const RigidMotion T_local_cam = T_local_lidar * camera.T_cam_lidar.inverse();
@@ -161,7 +167,7 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Fo
   result.clock.lap("filter");
 
   if (pyramid) {
-    color_view(visible_cam, *pyramid, camera, new_cam, result);
+    color_view(visible_cam, *pyramid, view.exposure, camera, new_cam, result);
   } else {
     color_points(new_cam, {image, camera, result.index});  // no image: empty columns
   }
@@ -177,14 +183,16 @@ void Mapper::map_view(const PointCloud& scan_lidar, const Image& image, const Fo
 }
 
 void Mapper::color_view(const PointCloud& visible_cam, const ImagePyramid& image,
-                        const Camera& camera, PointCloud& new_cam, FrameResult& result) {
+                        std::optional<double> exposure, const Camera& camera, PointCloud& new_cam,
+                        FrameResult& result) {
   const ImageMask* mask = drive_.mask(camera.index);
   const ViewColors image_colors(image, camera, options_.footprint, mask);
   // 7. Light: the response of the camera, and the gain of the image.
   light_.learn_response(unmasked(visible_cam.position, camera, mask), image, camera,
                         result.poses.T_odom_lidar * camera.T_cam_lidar.inverse(),
                         options_.footprint);
-  const ViewColors colors = image_colors.in_light(find_light(image_colors, camera.index, result));
+  const ViewColors colors =
+      image_colors.in_light(find_light(image_colors, exposure, camera.index, result));
   // 8. Colors in the exposure of the map: known points fuse one more view, new ones get a first.
   std::size_t& recolored = stats_of(result.colors).recolored;
   run_both([&] { recolored += visible_map_.recolor(map_, colors, result.index); },
@@ -194,11 +202,11 @@ void Mapper::color_view(const PointCloud& visible_cam, const ImagePyramid& image
            });
 }
 
-ViewLight Mapper::find_light(const ViewColors& image_colors, int camera, FrameResult& result) {
+ViewLight Mapper::find_light(const ViewColors& image_colors, std::optional<double> exposure,
+                             int camera, FrameResult& result) {
   constexpr std::size_t kEnough = 100;  // of fewer points the error is chance
   const ViewColors colors = image_colors.in_light({LogGain::Zero(), light_.response(camera)});
   const MapDifferences differences = visible_map_.differences(colors, ground_below_);
-  const std::optional<double> exposure = drive_.image_exposure(camera, result.index);
   ColorStats& stats = stats_of(result.colors);
   stats.views.push_back(light_.next(camera, differences, exposure, map_));
   const ViewLight light = light_.light(stats.views.back(), map_.submaps().size() - 1);

@@ -36,8 +36,13 @@ class Mapper : public IncrementalMapper {
               const FrameSource& source) override;
 
  private:
-  /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras (`image` is empty).
-  void map_view(const PointCloud& scan_lidar, const Image& image, const FovealRegion& region,
+  /// What colors a view.
+  struct ViewImage {
+    const Image& image;                             ///< empty: a view of a LiDAR without cameras
+    std::optional<double> exposure = std::nullopt;  ///< as Frame has it
+  };
+  /// Steps 3 to 9 for one camera, or for one view of a LiDAR without cameras.
+  void map_view(const PointCloud& scan_lidar, const ViewImage& view, const FovealRegion& region,
                 const RigidMotion& T_odom_local, FrameResult& result);
   /// Removes coarse points that finer ones replace, in view of the cameras.
   void remove_replaced(const std::vector<Camera>& cameras, const FrameResult& result);
@@ -47,10 +52,13 @@ class Mapper : public IncrementalMapper {
   /// Steps 7 and 8.
   /// @param visible_cam  points of the scan
   /// @param new_cam      gets colors
-  void color_view(const PointCloud& visible_cam, const ImagePyramid& image, const Camera& camera,
-                  PointCloud& new_cam, FrameResult& result);
+  /// @param exposure     of the image
+  void color_view(const PointCloud& visible_cam, const ImagePyramid& image,
+                  std::optional<double> exposure, const Camera& camera, PointCloud& new_cam,
+                  FrameResult& result);
   /// Light of an image relative to that of the map; adds to the figures.
-  ViewLight find_light(const ViewColors& image_colors, int camera, FrameResult& result);
+  ViewLight find_light(const ViewColors& image_colors, std::optional<double> exposure, int camera,
+                       FrameResult& result);
   /// What later frames need of a frame of an earlier run.
   struct ReplayedParts {
     bool votes = false;           ///< its scan decides which points are dynamic

@@ -79,7 +79,7 @@ void Mapper::replay(const Frame& read, const FrameResult& frame, const ReplayedP
 
 void Mapper::replay_response(const Frame& read, const PointCloud& scan_lidar,
                              const FrameResult& frame, const FovealOptions& foveal) {
-  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, frame.poses.motion);
+  const std::vector<Camera> cameras = frame_cameras(drive_, read, frame.poses.motion);
   for (std::size_t k = 0; k < read.images.size(); ++k) {
     if (read.images[k].empty() || is_blank(read.images[k])) continue;
     PointCloud visible_cam =

@@ -9,6 +9,7 @@
 #include "fovea/core/time.h"
 #include "fovea/geometry/trajectory.h"
 #include "fovea/pipeline/inertial_motion.h"
+#include "fovea/pipeline/motion_history.h"
 
 namespace fovea {
 
@@ -70,6 +71,9 @@ class VelocityError {
 class MotionModel {
  public:
   explicit MotionModel(const MotionSources& sources, const MotionModelOptions& options = {});
+  explicit MotionModel(const MotionHistory& history, const MotionModelOptions& options = {})
+      : MotionModel(MotionSources{history.navigation(), history.imu(), history.wheels()}, options) {
+  }
   explicit MotionModel(const Trajectory* navigation, const MotionModelOptions& options = {})
       : MotionModel(MotionSources{.navigation = navigation}, options) {}
 

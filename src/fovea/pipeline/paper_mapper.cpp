@@ -22,7 +22,8 @@ PaperMapper::PaperMapper(const DriveInfo& drive, const PaperOptions& options,
       options_(suited_to(drive, options)),
       pose_source_(pose_source),
       services_(std::move(services)),
-      motion_model_(drive.navigation ? &*drive.navigation : nullptr,
+      history_(drive),
+      motion_model_(history_.navigation(),
                     {.doubt = false, .sweep_rest = from_seconds(drive.sweep.end_time())}),
       map_(options.tile_size) {}
 
@@ -65,7 +66,7 @@ FrameResult PaperMapper::map_frame(const Frame& frame, TrackedScan tracked) {
   apply_pose(T_local_lidar, result);
   if (tracked.task.held_out) return result;
 
-  const std::vector<Camera> cameras = frame_cameras(drive_, frame.index, raw.motion);
+  const std::vector<Camera> cameras = frame_cameras(drive_, frame, raw.motion);
   if (!options_.foveal_enabled) {
     add_whole_scan(scan_lidar, frame, cameras, result);  // baselines
     return result;
@@ -104,6 +105,7 @@ bool PaperMapper::uses_registration() const {
 }
 
 MotionGuess PaperMapper::raw_pose(const Frame& frame, const FrameTask& task, FrameResult& result) {
+  history_.add(frame.motion);
   motion_model_.begin_if_needed(frame.stamp, frame.index, services_.initial_velocity);
   const MotionPrediction prediction = motion_model_.predict(frame.stamp);
   MotionGuess raw = prediction.guesses.front();

@@ -59,6 +59,7 @@ class PaperMapper : public IncrementalMapper {
   PaperOptions options_;
   PoseSource pose_source_;
   MapperServices services_;
+  MotionHistory history_;
   MotionModel motion_model_;
   TimeNs submap_start_ = 0;  // of the last submap
   std::optional<RegisteredScan> previous_;

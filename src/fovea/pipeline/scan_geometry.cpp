@@ -23,7 +23,7 @@ SweepSpan sweep_span(const PointCloud& scan, const DriveInfo& drive) {
   return {double(first), double(last)};
 }
 
-std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
+std::vector<Camera> frame_cameras(const DriveInfo& drive, const Frame& frame,
                                   const std::optional<SweepMotion>& motion) {
   if (drive.calibration.cameras.empty()) {
     std::vector<Camera> views;
@@ -35,7 +35,7 @@ std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
   std::vector<Camera> cameras;
   cameras.reserve(drive.calibration.cameras.size());
   for (std::size_t slot = 0; slot < drive.calibration.cameras.size(); ++slot) {
-    cameras.push_back(drive.camera_at(slot, frame).at_image(motion));
+    cameras.push_back(camera_of(drive, frame, slot).at_image(motion));
   }
   return cameras;
 }

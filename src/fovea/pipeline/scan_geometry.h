@@ -19,7 +19,7 @@ SweepSpan sweep_span(const PointCloud& scan, const DriveInfo& drive);
 
 /// The drive's cameras, each where it took its image of a frame. lidar_views() of a drive without
 /// cameras.
-std::vector<Camera> frame_cameras(const DriveInfo& drive, int frame,
+std::vector<Camera> frame_cameras(const DriveInfo& drive, const Frame& frame,
                                   const std::optional<SweepMotion>& motion);
 
 /// The points that a mask does not cover.

@@ -44,12 +44,6 @@ bool becomes_target(Keyframes& keyframes, const FrameResult& frame, int lost_bef
   return keyframes.add_if_due(frame.poses.T_odom_lidar, frame.tracking.overlap());
 }
 
-MotionSources motion_sources(const DriveInfo& drive) {
-  return {.navigation = drive.navigation ? &*drive.navigation : nullptr,
-          .imu = drive.imu ? &*drive.imu : nullptr,
-          .wheels = drive.wheels ? &*drive.wheels : nullptr};
-}
-
 PoseEvidence evidence_of(const TrackingStats& tracking) {
   if (tracking.is_lost || tracking.has_restarted) return PoseEvidence::kNone;
   if (!tracking.registration) return PoseEvidence::kFirm;  // the pose is given
@@ -64,15 +58,16 @@ PoseEvidence evidence_of(const TrackingStats& tracking) {
 Tracker::Tracker(const DriveInfo& drive, const MapperOptions& options, PoseSource pose_source,
                  InitialVelocity initial_velocity)
     : drive_(drive),
+      history_(drive),
       compensate_motion_(options.compensate_motion),
       pose_source_(pose_source),
       initial_velocity_(std::move(initial_velocity)),
-      motion_model_(motion_sources(drive), {.doubt = fusion_options(options, pose_source).enabled,
-                                            .stated_accuracy = stated_accuracy(drive),
-                                            .sweep_rest = from_seconds(drive.sweep.end_time()),
-                                            .navigation_is_level = drive.origin.has_value()}),
+      motion_model_(history_, {.doubt = fusion_options(options, pose_source).enabled,
+                               .stated_accuracy = stated_accuracy(drive),
+                               .sweep_rest = from_seconds(drive.sweep.end_time()),
+                               .navigation_is_level = drive.origin.has_value()}),
       refiner_(options.refinement),
-      fusion_(fusion_options(options, pose_source), options.refinement.registration, drive),
+      fusion_(fusion_options(options, pose_source), options.refinement.registration, history_),
       keyframes_(refiner_.keyframes()) {}
 
 TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
@@ -82,6 +77,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   FrameResult& result = tracked.result;
   apply_deferred();
 
+  history_.add(frame.motion);
   const MotionPrediction motion = predict(frame);
   result.poses.T_local_lidar_navigation = motion.T_local_lidar_navigation;
   PlacedScan placed = place(frame, motion, task);

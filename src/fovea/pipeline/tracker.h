@@ -9,6 +9,7 @@
 #include "fovea/pipeline/fusion.h"
 #include "fovea/pipeline/incremental_mapper.h"
 #include "fovea/pipeline/mapper_options.h"
+#include "fovea/pipeline/motion_history.h"
 #include "fovea/pipeline/motion_model.h"
 #include "fovea/pipeline/pose_refiner.h"
 
@@ -67,6 +68,7 @@ class Tracker {
   bool registers() const;
 
   const DriveInfo& drive_;
+  MotionHistory history_;
   bool compensate_motion_;
   PoseSource pose_source_;
   InitialVelocity initial_velocity_;
