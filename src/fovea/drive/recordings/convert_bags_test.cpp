@@ -3,92 +3,25 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 
-#include "../../../../tests/cdr_writer.h"
 #include "../../../../tests/mcap_writer.h"
 #include "../../../../tests/temporary_folder.h"
 #include "fovea/core/errors.h"
 #include "fovea/drive/frame_source.h"
 #include "fovea/drive/images/image_decode.h"
 #include "fovea/drive/recordings/ros_messages.h"
+#include "fovea/drive/recordings/test_messages.h"
 
 namespace fovea::convert_bags_test {
+
+using namespace test_messages;
 
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-constexpr int kSecond = 1'700'000'000;
-constexpr std::uint32_t kStep = 100'000'000, kMiddle = kStep / 2;  // ns, of a sweep
-
-/// @param spoiled  points without coordinates
-std::string cloud(std::uint32_t nanosec, std::uint32_t points, std::string_view frame = "lidar",
-                  float intensity = 0.5f, std::uint32_t spoiled = 0) {
-  CdrWriter message;
-  message.header(kSecond, nanosec, frame).number(1u).number(points).number(5u);
-  std::uint32_t offset = 0;
-  for (const char* name : {"x", "y", "z", "intensity", "time"}) {
-    message.text(name).number(offset).number(std::uint8_t{7}).number(1u);
-    offset += 4;
-  }
-  std::string data;
-  for (std::uint32_t i = 0; i < points; ++i) {
-    const float time = 0.1f * float(i) / float(points - 1);
-    const float x = i < spoiled ? std::nanf("") : float(i + 1);
-    for (const float value : {x, 2.0f, 3.0f, intensity, time}) {
-      data += mcap::number(value);
-    }
-  }
-  return message.number(std::uint8_t{0})
-      .number(offset)
-      .number(offset * points)
-      .bytes(data)
-      .number(std::uint8_t{1})
-      .message();
-}
-
-std::string grey_image(std::uint32_t nanosec, std::uint32_t width = 16) {
-  return CdrWriter()
-      .header(kSecond, nanosec, "front")
-      .number(8u)
-      .number(width)
-      .text("mono8")
-      .number(std::uint8_t{0})
-      .number(width)
-      .bytes(std::string(8 * width, 'g'))
-      .message();
-}
-
-std::string compressed_image(std::uint32_t nanosec, std::string_view format,
-                             std::string_view bytes) {
-  return CdrWriter().header(kSecond, nanosec, "front").text(format).bytes(bytes).message();
-}
-
-std::string camera_info() {
-  CdrWriter message;
-  message.header(kSecond, 0, "front").number(8u).number(16u).text("plumb_bob").number(0u);
-  for (const double k : {20.0, 0.0, 7.5, 0.0, 20.0, 3.5, 0.0, 0.0, 1.0}) message.number(k);
-  message.doubles(9).doubles(12);
-  for (int i = 0; i < 6; ++i) message.number(0u);
-  return message.number(std::uint8_t{0}).message();
-}
-
-std::string transforms() {
-  const QuaternionMotion T(exp_se3((Twist() << 0.1, 0.2, 0.3, 1, 2, 3).finished()));
-  return CdrWriter()
-      .number(2u)
-      .header(kSecond, 0, "base_link")
-      .text("lidar")
-      .motion({})
-      .header(kSecond, 0, "lidar")
-      .text("front")
-      .motion(T)
-      .message();
-}
 
 enum Topic { kPoints = 1, kRaw, kCompressed, kInfo, kStatic };
 
