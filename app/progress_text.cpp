@@ -33,6 +33,10 @@ std::string duration_text(double seconds) {
 
 std::string progress_text(const ProgressRate::Reading& reading, std::string_view unit,
                           std::string_view detail) {
+  if (reading.total <= 0) {
+    return fmt::format("{} {}, {:.1f}/s{}{}", reading.done, unit, reading.per_second,
+                       detail.empty() ? "" : ", ", detail);
+  }
   return fmt::format("{} of {} {}, {:.1f}/s{}{}, {} left", reading.done, reading.total, unit,
                      reading.per_second, detail.empty() ? "" : ", ", detail,
                      duration_text(reading.seconds_left));

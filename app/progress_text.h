@@ -33,6 +33,7 @@ class ProgressRate {
 std::string duration_text(double seconds);
 
 /// One line: "120 of 1200 frames, 10.2/s, 4.31 M points, 512 MB, 1 min 46 s left".
+/// Without total and rest if the total is 0: it is not known.
 /// @param detail  what else to tell, or nothing
 std::string progress_text(const ProgressRate::Reading& reading, std::string_view unit,
                           std::string_view detail);

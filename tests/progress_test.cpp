@@ -52,6 +52,7 @@ TEST(ProgressText, TellsAllInALine) {
   const std::string text = progress_text(reading, "frames", "4.31 M points, 512 MB");
   EXPECT_EQ(text, "120 of 1200 frames, 10.2/s, 4.31 M points, 512 MB, 1 min 46 s left");
   EXPECT_EQ(progress_text(reading, "rows", ""), "120 of 1200 rows, 10.2/s, 1 min 46 s left");
+  EXPECT_EQ(progress_text({120, 0, 10.24, 0}, "frames", "512 MB"), "120 frames, 10.2/s, 512 MB");
   const std::string bar = progress_bar(reading, text, 0);
   EXPECT_THAT(bar, testing::StartsWith("[###                           ] 120 of 1200"));
   EXPECT_THAT(bar, testing::EndsWith(" left"));
