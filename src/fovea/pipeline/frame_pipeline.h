@@ -15,7 +15,7 @@
 
 #include "fovea/core/bounded_queue.h"
 #include "fovea/core/wall_clock.h"
-#include "fovea/pipeline/frame_reader.h"
+#include "fovea/pipeline/frame_stream.h"
 #include "fovea/pipeline/incremental_mapper.h"
 
 namespace fovea {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fovea/pipeline/frame_reader.h"
 #include "fovea/pipeline/numbered_frames.h"
 
 namespace fovea::frame_pipeline_test {

@@ -8,18 +8,11 @@
 
 #include "fovea/core/wall_clock.h"
 #include "fovea/drive/frame_source.h"
+#include "fovea/pipeline/frame_stream.h"
 
 namespace fovea {
 
-/// A frame in memory, or a skipped one.
-struct ReadFrame {
-  LoadedFrame result;
-  double decode_ms = 0;  ///< wall time of reading and decoding
-  /// When a live sensor would have delivered the frame; absent at full speed.
-  std::optional<WallClock::time_point> due = {};
-};
-
-class FrameReader {
+class FrameReader : public FrameStream {
  public:
   /// @param source   must outlive the reader
   /// @param indices  of the frames, in order
@@ -28,7 +21,7 @@ class FrameReader {
 
   /// The next frame; with a rate, not before it is due. Nothing at the end or if `stop` is
   /// requested. Throws the errors of FrameSource::load.
-  std::optional<ReadFrame> next(const std::stop_token& stop);
+  std::optional<ReadFrame> next(const std::stop_token& stop) override;
 
  private:
   void expect_until(std::size_t place);

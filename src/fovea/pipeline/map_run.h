@@ -1,0 +1,85 @@
+// A run of a mapper over a drive, with its figures and its file.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fovea/drive/lost_drive.h"
+#include "fovea/map/tile_cache.h"
+#include "fovea/pipeline/calibration_check.h"
+#include "fovea/pipeline/drive_log.h"
+#include "fovea/pipeline/frame_pipeline.h"
+#include "fovea/pipeline/keyframe_recorder.h"
+#include "fovea/pipeline/map_drive.h"
+#include "fovea/pipeline/view_check.h"
+
+namespace fovea {
+
+/// Error if the run was stopped, for steps before there is a map to keep.
+void require_no_stop(const MapJob& job);
+
+///   MapRun run(source, drive, job, meta);
+///   run.map_frames(stream, progress);
+///   run.finish();
+///
+/// Over ten members: all state that lives as long as the run. The order counts: the mapper loads
+/// tiles through the cache, the cache through the file.
+class MapRun {
+ public:
+  /// @param source  of the drive
+  /// @param drive   its description, with profiles of the LiDARs and corrections of the calibration
+  /// @param meta    of the map
+  /// All but `meta` must outlive the run. Errors as map_drive().
+  MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta);
+
+  /// The frames that are not in the map yet.
+  std::vector<int> remaining_frames() const;
+  /// Maps the frames, or those before the drive was lost.
+  void map_frames(FrameStream& stream, const std::function<void(const MapProgress&)>& progress);
+  /// Ends the file. InputError if no frame could be mapped.
+  void finish();
+  /// InputError if the drive was lost or too many of its frames are damaged. The file is complete
+  /// as far as the frames go.
+  void require_whole_drive() const;
+  MapSummary summary() const;
+
+ private:
+  CheckpointerOptions checkpointer_options();
+  void resume_from_file();
+  std::unique_ptr<IncrementalMapper> mapper_of_drive();
+  TrackedScan track(const Frame& frame);  // runs in the tracker's thread
+  void map_next(TrackedFrame& tracked, const std::function<void(const MapProgress&)>& progress);
+  void account_for(const FrameRecord& record, bool is_new);
+  void checkpoint_if_due();
+  void check_calibration(const TrackedFrame& tracked, FrameRecord& record);
+  /// InputError if too many points were dropped so far.
+  void check_points() const;
+  MapRows fresh_rows(bool last);  // of a checkpoint
+  bool complete() const { return log_.size() == drive_.frame_count(); }
+
+  const FrameSource& source_;
+  const DriveInfo& drive_;
+  const MapJob& job_;
+  // Of the first checkpoint.
+  MapMeta meta_;
+  std::vector<DriveRecord> drive_records_;
+  std::vector<SensorRecord> sensor_records_;
+  bool threaded_;
+  Checkpointer file_;
+  TileCache cache_;
+  std::unique_ptr<IncrementalMapper> mapper_;
+  DriveLog log_;
+  KeyframeRecorder keyframes_;
+  DriveFigures figures_;
+  ViewCheck views_;
+  std::optional<CalibrationCheck> check_;
+  DriveCalibration calibration_;  // found by check_
+  std::optional<FrameRecord> latest_;
+  Eigen::Vector3d position_local_ = Eigen::Vector3d::Zero();  // of the last frame with a pose
+  std::size_t frames_before_ = 0;                             // of an earlier run
+  std::optional<DriveLostError> lost_;
+};
+
+}  // namespace fovea
