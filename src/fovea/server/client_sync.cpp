@@ -22,7 +22,7 @@ WebMessage text(const Json& json) {
   return {std::make_shared<const std::string>(json.dump()), false};
 }
 
-Json frame_json(const LiveFrame& frame, std::optional<TimeNs> first, int done, int total) {
+Json frame_json(const ShownFrame& frame, std::optional<TimeNs> first, int done, int total) {
   const FrameRecord& record = frame.record;
   return {{"type", "frame"},
           {"index", record.index},
@@ -58,7 +58,7 @@ std::optional<WebMessage> ClientSync::next() {
   if (std::exchange(image_was_last_, false)) {
     if (auto message = tiles_message()) return message;
   }
-  if (std::shared_ptr<LiveImage> image = new_image()) {
+  if (std::shared_ptr<ShownImage> image = new_image()) {
     image_was_last_ = true;
     return WebMessage{image->message(), true};
   }
@@ -143,7 +143,7 @@ std::optional<WebMessage> ClientSync::new_poses() {
   return text({{"type", "poses"}, {"T_local_submap", submaps}, {"T_local_lidar", frames}});
 }
 
-std::shared_ptr<LiveImage> ClientSync::new_image() {
+std::shared_ptr<ShownImage> ClientSync::new_image() {
   const std::lock_guard lock(session_.guard_);
   if (session_.image_ == image_) return nullptr;
   image_ = session_.image_;

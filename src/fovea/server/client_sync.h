@@ -39,7 +39,7 @@ class ClientSync : public WebFeed {
 
   std::optional<WebMessage> new_poses();
 
-  std::shared_ptr<LiveImage> new_image();
+  std::shared_ptr<ShownImage> new_image();
 
   /// The last queued tiles, as many as fit into a message.
   std::optional<WebMessage> tiles_message();
@@ -55,7 +55,7 @@ class ClientSync : public WebFeed {
   int checkpoints_seen_ = 0;  // since it has missed points
   std::size_t next_frame_ = 0, poses_known_ = 0, increments_taken_ = 0;
   std::vector<RigidMotion> T_local_submap_;
-  std::shared_ptr<LiveImage> image_;
+  std::shared_ptr<ShownImage> image_;
   std::set<TileId> queued_tiles_;
   std::optional<MapReader> reader_;
 };

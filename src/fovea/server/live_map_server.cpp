@@ -75,7 +75,7 @@ LiveMapServer::~LiveMapServer() {
 
 void LiveMapServer::frame_mapped(const FrameRecord& record, const Frame* frame,
                                  const TileMap& map) {
-  LiveFrame live;
+  ShownFrame live;
   live.record = told(record);
   live.points = map.size();
   live.late = is_late(record, job_.rate);
@@ -93,13 +93,13 @@ void LiveMapServer::frame_mapped(const FrameRecord& record, const Frame* frame,
 }
 
 /// The first camera's image that there is, unless the last one was shown just now.
-std::shared_ptr<LiveImage> LiveMapServer::next_image(const Frame* frame) {
+std::shared_ptr<ShownImage> LiveMapServer::next_image(const Frame* frame) {
   if (frame == nullptr || now_ms() - image_at_ < kImagePause) return nullptr;
   for (std::size_t i = 0; i < frame->images.size(); ++i) {
     if (frame->images[i].empty()) continue;
     image_at_ = now_ms();
-    return std::make_shared<LiveImage>(frame->index, description_.cameras.at(i).index,
-                                       frame->images[i]);
+    return std::make_shared<ShownImage>(frame->index, description_.cameras.at(i).index,
+                                        frame->images[i]);
   }
   return nullptr;
 }

@@ -43,7 +43,7 @@ class LiveMapServer : public MapObserver {
   std::string live_json() const;
   LiveSession::Bytes new_points(int frame, const TileMap& map);
   LiveSession::Bytes whole_section(const TileId& id, const TileMap& map);
-  std::shared_ptr<LiveImage> next_image(const Frame* frame);
+  std::shared_ptr<ShownImage> next_image(const Frame* frame);
 
   const MapJob& job_;
   std::shared_ptr<const DriveImages> images_;

@@ -26,15 +26,15 @@ void LiveSession::resume_from(const std::vector<FrameRecord>& frames, std::size_
   const std::lock_guard lock(guard_);
   for (const FrameRecord& record : frames) {
     if (!first_stamp_) first_stamp_ = record.stamp;
-    LiveFrame frame;
+    ShownFrame frame;
     frame.record = record;
     frame.points = points;
     frames_.push_back(std::move(frame));
   }
 }
 
-void LiveSession::add_frame(LiveFrame frame, const std::vector<RigidMotion>& T_local_submap,
-                            Bytes points, std::shared_ptr<LiveImage> image) {
+void LiveSession::add_frame(ShownFrame frame, const std::vector<RigidMotion>& T_local_submap,
+                            Bytes points, std::shared_ptr<ShownImage> image) {
   const std::lock_guard lock(guard_);
   if (!first_stamp_) first_stamp_ = frame.record.stamp;
   frames_.push_back(std::move(frame));
@@ -56,7 +56,7 @@ void LiveSession::move_frames(const std::vector<std::pair<int, RigidMotion>>& T_
   for (const auto& [index, T] : T_local_lidar) {
     const auto frame =
         std::lower_bound(frames_.begin(), frames_.end(), index,
-                         [](const LiveFrame& a, int number) { return a.record.index < number; });
+                         [](const ShownFrame& a, int number) { return a.record.index < number; });
     if (frame == frames_.end() || frame->record.index != index) continue;
     frame->record.T_local_lidar = T;
     places.push_back(static_cast<int>(frame - frames_.begin()));
@@ -99,7 +99,7 @@ LiveSession::Bytes LiveSession::section_of(const TileId& id) const {
 std::vector<FrameRecord> LiveSession::records() const {
   std::vector<FrameRecord> records;
   records.reserve(frames_.size());
-  for (const LiveFrame& frame : frames_) records.push_back(frame.record);
+  for (const ShownFrame& frame : frames_) records.push_back(frame.record);
   return records;
 }
 

@@ -15,7 +15,7 @@
 
 #include "fovea/map/frame_record.h"
 #include "fovea/map/tile_map.h"
-#include "fovea/server/live_image.h"
+#include "fovea/server/shown_image.h"
 #include "fovea/server/web_server.h"
 
 namespace fovea {
@@ -23,7 +23,7 @@ namespace fovea {
 class ClientSync;
 
 /// A frame as the clients get it.
-struct LiveFrame {
+struct ShownFrame {
   FrameRecord record;      ///< with the score as its only figure
   std::size_t points = 0;  ///< of the map, after this frame
   bool late = false;
@@ -54,8 +54,8 @@ class LiveSession {
   bool has_clients() const;
   /// @param points  a message; nullptr without clients
   /// @param image   or nullptr
-  void add_frame(LiveFrame frame, const std::vector<RigidMotion>& T_local_submap, Bytes points,
-                 std::shared_ptr<LiveImage> image);
+  void add_frame(ShownFrame frame, const std::vector<RigidMotion>& T_local_submap, Bytes points,
+                 std::shared_ptr<ShownImage> image);
   /// Poses of earlier frames that a closed loop has moved.
   void move_frames(const std::vector<std::pair<int, RigidMotion>>& T_local_lidar);
   /// Call it when the file has all tiles of the checkpoint before.
@@ -91,14 +91,14 @@ class LiveSession {
   std::string id_;
 
   mutable std::mutex guard_;  // of what follows
-  std::vector<LiveFrame> frames_;
+  std::vector<ShownFrame> frames_;
   std::optional<TimeNs> first_stamp_;
   std::vector<RigidMotion> T_local_submap_;
   std::size_t poses_moved_ = 0;                // how often
   std::deque<std::vector<int>> moved_frames_;  // by place in frames_, of the last times
   std::size_t increments_made_ = 0;
   std::deque<Bytes> increments_;  // the last of them
-  std::shared_ptr<LiveImage> image_;
+  std::shared_ptr<ShownImage> image_;
   std::map<TileId, Bytes> tiles_, tiles_before_;  // settled at the last checkpoints
   std::vector<TileId> written_;                   // by the last checkpoint
   std::set<ClientSync*> clients_;

@@ -1,4 +1,4 @@
-#include "fovea/server/live_image.h"
+#include "fovea/server/shown_image.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -32,7 +32,7 @@ Image halved(const Image& image) {
 
 }  // namespace
 
-std::shared_ptr<const std::string> LiveImage::message() {
+std::shared_ptr<const std::string> ShownImage::message() {
   std::call_once(made_, [this] {
     std::string bytes;
     BytePacker packer(bytes);

@@ -11,9 +11,9 @@
 namespace fovea {
 
 /// An image of a camera. The first client that needs it makes the JPEG.
-class LiveImage {
+class ShownImage {
  public:
-  LiveImage(int frame, int camera, Image image)
+  ShownImage(int frame, int camera, Image image)
       : frame_(frame), camera_(camera), image_(std::move(image)) {}
   /// Reduced to half its width, as a message. For several threads.
   std::shared_ptr<const std::string> message();
