@@ -52,8 +52,7 @@ void require_image_size(const CameraDescription& described,
     }
   }
   throw ConfigError(fmt::format("the images of camera {} {}", described.name, found),
-                    where.string(),
-                    "give their width and height in drive.toml, or restore them");
+                    where.string(), "give their width and height in drive.toml, or restore them");
 }
 
 void note_matches(const CameraDescription& camera, const ImageMatches& matches, std::size_t scans,

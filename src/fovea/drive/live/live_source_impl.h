@@ -1,0 +1,100 @@
+// The threads of a live source: locks, waits, and the state that they share.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fovea/drive/live/first_frames.h"
+#include "fovea/drive/live/live_motion.h"
+#include "fovea/drive/live/live_source.h"
+
+namespace fovea {
+
+/// See LiveSource, whose functions these are.
+class LiveSource::Impl {
+ public:
+  Impl(std::string_view drive_toml, const LiveOptions& options);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void add_scan(LiveScan scan);
+  void add_image(LiveImage image);
+  template <class Record>
+  void add_motion(const Record& record) {
+    const std::lock_guard lock(guard_);
+    if (closed_) return;
+    ++figures_.poses;
+    if (!motion_.add(record)) ++figures_.poses_late;
+    notify();
+  }
+  void close();
+
+  std::unique_ptr<FrameSource> begin(const std::stop_token& stop);
+  std::optional<LiveFrame> next(const std::stop_token& stop);
+
+  void set_image_delay(std::size_t camera, double delay);
+  std::string missing() const;
+  std::optional<Eigen::Vector3d> world_origin() const;
+  LiveFigures figures() const;
+
+ private:
+  static WallClock::duration wall_time(double seconds) {
+    return std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(seconds));
+  }
+  FrameQueueLimits first_limits() const;
+  /// Place among the further LiDARs; absent: the first LiDAR.
+  std::optional<std::size_t> find_further_lidar(const std::string& name) const;
+  std::size_t find_camera(const std::string& name) const;
+
+  // All below with guard_ locked.
+
+  void notify();
+  /// Waits for room if the options want that. Without a scan that waits for a frame it waits for a
+  /// short time only: the sender may be the thread that sends the next scan.
+  /// @return false if the source is closed
+  template <class HasRoom>
+  bool wait_for_room(std::unique_lock<std::mutex>& lock, HasRoom&& has_room);
+  /// Waits until `is_done`, or a time.
+  /// @return false if `stop` is requested
+  template <class IsDone>
+  bool wait(std::unique_lock<std::mutex>& lock, const std::stop_token& stop,
+            std::optional<WallClock::time_point> end, IsDone&& is_done);
+
+  /// What begin() waits for.
+  std::vector<std::string> missing_data() const;
+  void add_missing_images(std::vector<std::string>& missing) const;
+  FirstData first_data() const;
+  /// Waits until the oldest scan is a frame; nothing at the end.
+  std::optional<RawFrame> take_frame(std::unique_lock<std::mutex>& lock,
+                                     const std::stop_token& stop);
+  TimeNs end_of_sweep(TimeNs stamp) const { return stamp + sweep_end(*decoder_); }
+  /// Adds the motion since the frame before.
+  void add_motion_to(RawFrame& raw);
+
+  const LiveOptions options_;
+  const DriveDescription description_;
+
+  mutable std::mutex guard_;  // of all below
+  std::condition_variable_any changed_;
+  std::size_t version_ = 0;  // of the data
+  std::size_t callers_ = 0;  // that wait for room
+  bool closed_ = false;
+  FrameQueue queue_;
+  LiveMotion motion_;
+  std::optional<WallClock::time_point> first_arrival_;  // of a scan
+  LiveFigures figures_;
+  int next_index_;
+  std::shared_ptr<const LiveDecoder> decoder_;
+  std::vector<std::size_t> used_cameras_;  // places in drive.toml
+  std::deque<RawFrame> first_frames_;      // that next() has not returned
+  MotionData skipped_motion_;              // of frames that were skipped
+};
+
+}  // namespace fovea

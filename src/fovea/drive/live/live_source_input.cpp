@@ -1,0 +1,137 @@
+// What sensors call.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/drive_files.h"
+#include "fovea/drive/live/live_source_impl.h"
+
+namespace fovea {
+namespace {
+
+/// Scans that the beginning keeps beyond the first ones, until it has their images.
+constexpr std::size_t kMoreScans = 4;
+
+/// ConfigError for cameras that the drive lacks, and for options out of range.
+void check(const DriveDescription& description, const LiveOptions& options) {
+  if (options.first_scans < 1 || options.max_scans < 1) {
+    throw ConfigError("a live drive needs a scan", "first_scans or max_scans", "give 1 or more");
+  }
+  if (!(options.max_wait >= 0) || !(options.longest_beginning >= 0)) {
+    throw ConfigError("a wait is no time", "max_wait or longest_beginning", "give 0 s or more");
+  }
+  if (!options.drive.use_images || options.drive.cameras.empty()) return;
+  choose_cameras(camera_numbers(description), options.drive, options.name);
+}
+
+}  // namespace
+
+LiveSource::Impl::Impl(std::string_view drive_toml, const LiveOptions& options)
+    : options_(options),
+      description_(parse_drive_description(drive_toml, "drive.toml")),
+      queue_(description_.further_lidars.size(), description_.cameras.size(), first_limits()),
+      motion_(description_, options.drive, options.name, options.max_wait),
+      next_index_(options.first_frame) {
+  check(description_, options_);
+}
+
+LiveSource::Impl::~Impl() {
+  close();
+  std::unique_lock lock(guard_);
+  changed_.wait(lock, [&] { return callers_ == 0; });
+}
+
+void LiveSource::Impl::add_scan(LiveScan scan) {
+  const std::optional<std::size_t> further = find_further_lidar(scan.lidar);
+  auto shared = std::make_shared<const LiveScan>(std::move(scan));
+  std::unique_lock lock(guard_);
+  const auto has_room = [&] {
+    return further ? queue_.has_room_for_further_scan(*further) : queue_.has_room_for_scan();
+  };
+  if (!wait_for_room(lock, has_room)) return;
+  const WallClock::time_point now = WallClock::now();
+  if (!further && !first_arrival_) first_arrival_ = now;
+  const FrameQueue::Added added = further ? queue_.add_further_scan(*further, std::move(shared))
+                                          : queue_.add_scan(std::move(shared), now);
+  ++figures_.scans;
+  figures_.scans_out_of_order += added == FrameQueue::Added::kOutOfOrder ? 1 : 0;
+  notify();
+}
+
+void LiveSource::Impl::add_image(LiveImage image) {
+  const std::size_t camera = find_camera(image.camera);
+  auto shared = std::make_shared<const LiveImage>(std::move(image));
+  std::unique_lock lock(guard_);
+  if (!wait_for_room(lock, [&] { return queue_.has_room_for_image(camera); })) return;
+  ++figures_.images;
+  if (!options_.drive.use_images) return;
+  const FrameQueue::Added added = queue_.add_image(camera, std::move(shared));
+  figures_.images_late += added == FrameQueue::Added::kLate ? 1 : 0;
+  notify();
+}
+
+void LiveSource::Impl::close() {
+  const std::lock_guard lock(guard_);
+  closed_ = true;
+  notify();
+}
+
+void LiveSource::Impl::set_image_delay(std::size_t camera, double delay) {
+  const std::lock_guard lock(guard_);
+  auto changed = std::make_shared<LiveDecoder>(*decoder_);
+  changed->cameras.at(camera).added_delay =
+      delay - description_.cameras[used_cameras_[camera]].delay;
+  decoder_ = std::move(changed);
+}
+
+FrameQueueLimits LiveSource::Impl::first_limits() const {
+  FrameQueueLimits limits;
+  limits.scans = std::max(options_.first_scans + kMoreScans, options_.max_scans);
+  return limits;
+}
+
+std::optional<std::size_t> LiveSource::Impl::find_further_lidar(const std::string& name) const {
+  if (name.empty() || name == description_.lidar.name) return std::nullopt;
+  const auto& further = description_.further_lidars;
+  const auto found = std::find_if(further.begin(), further.end(),
+                                  [&](const LidarDescription& l) { return l.name == name; });
+  if (found != further.end()) return std::size_t(found - further.begin());
+  throw std::invalid_argument(fmt::format("the drive has no LiDAR '{}'", name));
+}
+
+std::size_t LiveSource::Impl::find_camera(const std::string& name) const {
+  const auto& cameras = description_.cameras;
+  const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                  [&](const CameraDescription& c) { return c.name == name; });
+  if (found != cameras.end()) return std::size_t(found - cameras.begin());
+  throw std::invalid_argument(fmt::format("the drive has no camera '{}'", name));
+}
+
+void LiveSource::Impl::notify() {
+  ++version_;
+  changed_.notify_all();
+}
+
+template <class HasRoom>
+bool LiveSource::Impl::wait_for_room(std::unique_lock<std::mutex>& lock, HasRoom&& has_room) {
+  if (!options_.waits) return !closed_;
+  ++callers_;
+  const auto deadline = [&] { return WallClock::now() + wall_time(options_.max_wait); };
+  auto end = deadline();
+  while (!closed_ && !has_room()) {
+    if (!queue_.scans().empty()) {
+      changed_.wait(lock);
+      end = deadline();
+    } else if (changed_.wait_until(lock, end) == std::cv_status::timeout) {
+      break;
+    }
+  }
+  --callers_;
+  if (closed_) changed_.notify_all();
+  return !closed_;
+}
+
+}  // namespace fovea

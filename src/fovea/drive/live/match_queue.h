@@ -1,0 +1,119 @@
+// Data of a sensor that wait for the scan that they belong to.
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "fovea/core/median.h"
+#include "fovea/core/time.h"
+
+namespace fovea {
+
+/// The usual step between the stamps of a sensor.
+class StampStep {
+ public:
+  /// @param stamp  after the one before
+  void add(TimeNs stamp) {
+    if (last_) steps_.push_back(stamp - *last_);
+    if (steps_.size() > kKept) steps_.pop_front();
+    last_ = stamp;
+  }
+  /// Median of the latest steps; absent before there are some.
+  std::optional<TimeNs> usual() const {
+    if (steps_.size() < kFewest) return std::nullopt;
+    return median_of(std::vector<TimeNs>(steps_.begin(), steps_.end()));
+  }
+  const std::optional<TimeNs>& last() const { return last_; }
+
+ private:
+  static constexpr std::size_t kFewest = 4, kKept = 32;
+  std::deque<TimeNs> steps_;
+  std::optional<TimeNs> last_;
+};
+
+/// A sensor that has sent nothing for so long is not waited for.
+inline constexpr TimeNs kStoppedAfter = 2 * kNsPerSecond;
+
+/// Images of a camera, or scans of a further LiDAR, in the order of their stamps. Each scan of the
+/// first LiDAR takes the item that is nearest to its expected time, as match_nearest() does.
+/// @tparam Item  has a stamp and content_bytes()
+template <class Item>
+class MatchQueue {
+ public:
+  using Pointer = std::shared_ptr<const Item>;
+
+  /// @param item  with a later stamp than the one before
+  void add(Pointer item) {
+    step_.add(item->stamp);
+    bytes_ += content_bytes(*item);
+    items_.push_back(std::move(item));
+  }
+
+  /// An item that is not kept.
+  void pass(TimeNs stamp) {
+    step_.add(stamp);
+    ++unused_;
+  }
+
+  /// Whether no item that comes later can be nearer to a time than those at hand. A sensor with a
+  /// steady rate shows that before its next item comes.
+  bool is_decided(TimeNs time, TimeNs tolerance) const {
+    if (!step_.last()) return false;
+    const TimeNs gap = time - *step_.last();
+    if (gap <= 0 || gap > kStoppedAfter) return true;
+    const std::optional<TimeNs> step = step_.usual();
+    if (!step) return false;
+    if (gap <= tolerance) return 10 * gap < 3 * *step;
+    return 10 * (*step - gap) > 10 * tolerance + 2 * *step;
+  }
+
+  /// Takes the item nearest to a time; nothing if none is within the tolerance, or if it is nearer
+  /// to the time of the next scan, or belongs to the one before.
+  Pointer take(TimeNs time, TimeNs tolerance, TimeNs next_time) {
+    const auto away = [&](TimeNs stamp) { return std::abs(stamp - time); };
+    const auto nearest = std::min_element(
+        items_.begin(), items_.end(),
+        [&](const Pointer& a, const Pointer& b) { return away(a->stamp) < away(b->stamp); });
+    Pointer taken;
+    if (nearest != items_.end()) {
+      const TimeNs stamp = (*nearest)->stamp, distance = away(stamp);
+      const bool is_before = last_taken_ && away(*last_taken_) <= distance;
+      const bool is_next = std::abs(stamp - next_time) < distance;
+      if (distance <= tolerance && !is_before && !is_next) taken = *nearest;
+    }
+    if (taken) last_taken_ = taken->stamp;
+    drop_until(std::max(time, last_taken_.value_or(time)));
+    if (taken) --unused_;
+    return taken;
+  }
+
+  /// Drops the oldest item.
+  void drop_oldest() {
+    bytes_ -= content_bytes(*items_.front());
+    items_.pop_front();
+    ++unused_;
+  }
+
+  const std::deque<Pointer>& items() const { return items_; }
+  const StampStep& step() const { return step_; }
+  std::size_t bytes() const { return bytes_; }
+  /// Stamp of the last one that a scan has taken.
+  const std::optional<TimeNs>& last_taken() const { return last_taken_; }
+  /// Items that no scan has taken and none can take any more.
+  std::size_t unused() const { return unused_; }
+
+ private:
+  void drop_until(TimeNs time) {
+    while (!items_.empty() && items_.front()->stamp <= time) drop_oldest();
+  }
+
+  std::deque<Pointer> items_;
+  std::optional<TimeNs> last_taken_;
+  StampStep step_;
+  std::size_t unused_ = 0, bytes_ = 0;
+};
+
+}  // namespace fovea
