@@ -4,7 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "fovea/merging/keyframe_returns.h"
+#include "fovea/map/keyframe_returns.h"
+#include "fovea/merging/placed_keyframes.h"
 
 namespace fovea {
 namespace {

@@ -3,7 +3,8 @@
 #include <utility>
 
 #include "fovea/geometry/voxel_grid.h"
-#include "fovea/merging/keyframe_returns.h"
+#include "fovea/map/keyframe_returns.h"
+#include "fovea/merging/placed_keyframes.h"
 
 namespace fovea {
 namespace {

@@ -1,16 +1,13 @@
-// The range images that a map keeps.
+// Where the range images of a map were taken.
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
 #include <functional>
-#include <vector>
 
+#include "fovea/map/map_store.h"
 #include "fovea/merging/map_content.h"
 
 namespace fovea {
-
-/// The returns up to a range (m), in the frame of the sensor.
-std::vector<Eigen::Vector3f> returns_of(const KeyframeRecord& keyframe, double max_range = 1000);
 
 /// A range image and where it was taken.
 struct PlacedKeyframe {
