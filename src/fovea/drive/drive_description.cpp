@@ -52,6 +52,7 @@ class CameraKeys {
     visit(key("D"), D_);
     visit(key("field_of_view"), Degrees{camera_.max_field_of_view});
     visit(key("delay"), camera_.delay);
+    visit(key("stamp_delay"), camera_.stamp_delay);
     visit(key("mask"), mask_);
     T_cam_lidar_.visit(visit);
   }
@@ -82,6 +83,7 @@ class CameraKeys {
                  "give 10 to 170 degrees");
     }
     check_key(key("delay"), camera_.delay, -1, 1);
+    if (camera_.stamp_delay) check_key(key("stamp_delay"), *camera_.stamp_delay, -1, 1);
     const auto T = T_cam_lidar_.motion();
     if (!T) reject_key("a key is missing", T_cam_lidar_.forward.key, "say where the camera sits");
     camera_.T_cam_lidar = *T;

@@ -27,6 +27,8 @@ struct CameraDescription {
       100 * kDegree;           ///< rad, of the rectified image; not of pinhole cameras
   std::filesystem::path mask;  ///< a picture, below the drive's folder; empty: none
   double delay = 0;  ///< s from an image's stamp (or its scan's, if it has none) to its exposure
+  /// s from the stamps of scans to those of their images, about; absent: the median of the drive.
+  std::optional<double> stamp_delay;
 };
 
 /// What drive.toml states of SweepTiming.

@@ -179,14 +179,14 @@ class GenericDrive {
     const NumberedTimes scans = stamps_of_scans();
     NumberedTimes times = read_image_stamps(file, scans, info_);
     std::erase_if(times, [&](const auto& stamp) { return !images.contains(stamp.first); });
-    const ImageMatches matches =
-        match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
+    ImageMatches matches = match_nearest(scans, times, sweep_middle_, description_.image_tolerance);
     if (matches.image_of_scan.empty()) {
       throw InputError(fmt::format("no image of camera {} belongs to a scan: {}", described.name,
                                    why_none_matches(scans, times, description_.image_tolerance)),
                        file.string(),
                        "give stamps of one clock, or leave the camera out (--cameras)");
     }
+    matches.median_delay = described.stamp_delay.value_or(matches.median_delay);
     camera.image_delay += matches.median_delay;
     note_matches(described, matches, scans.size(), description_.image_tolerance, info_);
     info_.image_stamps_are_capture_times = true;

@@ -386,6 +386,11 @@ TEST_F(GenericDrive, EachImageHasItsOwnDelay) {
   for (int i = 0; i < kFrames; ++i) {
     EXPECT_NEAR(info.camera_at(0, i).image_delay, 0.001 + i * 0.002, 1e-9) << i;
   }
+  // A stated delay takes the place of the median; each image keeps its own.
+  test::edit(toml_, "delay = 0.001\n", "delay = 0.001\nstamp_delay = 0.005\n");
+  const auto stated = open();
+  EXPECT_NEAR(stated->info().calibration.cameras[0].image_delay, 0.006, 1e-9);
+  EXPECT_NEAR(stated->info().camera_at(0, 3).image_delay, 0.007, 1e-9);
 }
 
 TEST_F(GenericDrive, DistortedImagesComeOutAsAPinholeCameras) {

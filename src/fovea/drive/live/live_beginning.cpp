@@ -184,7 +184,7 @@ class Builder {
         where);
     DescribedCamera used = described_camera(described, toml_);
     const NumberedTimes scans = times_of(first_.scans), times = times_of(images);
-    const ImageMatches matches =
+    ImageMatches matches =
         match_nearest(scans, times, decoder_.lidar.sweep_middle, description_.image_tolerance);
     if (matches.image_of_scan.empty()) {
       throw InputError(fmt::format("no image of camera {} belongs to a scan: {}", described.name,
@@ -192,6 +192,7 @@ class Builder {
                        info_.path.string(),
                        "give stamps of one clock, or leave the camera out (--cameras)");
     }
+    matches.median_delay = described.stamp_delay.value_or(matches.median_delay);
     used.camera.image_delay += matches.median_delay;
     if (auto mask = find_mask(described, used, options_, {})) {
       info_.masks.emplace(described.index, std::move(*mask));
