@@ -67,6 +67,11 @@ class BoundedQueue {
     return item;
   }
 
+  bool empty() const {
+    const std::lock_guard lock(guard_);
+    return items_.empty();
+  }
+
   /// Closes the queue and returns the items that pop() has not returned.
   std::deque<T> close_and_take() {
     const std::lock_guard lock(guard_);
@@ -87,7 +92,7 @@ class BoundedQueue {
 
  private:
   const std::size_t capacity_;
-  std::mutex guard_;  // of all below
+  mutable std::mutex guard_;  // of all below
   std::condition_variable_any changed_;
   std::deque<T> items_;
   std::ptrdiff_t urgent_ = 0;  // of the items: the first ones

@@ -108,6 +108,7 @@ void Checkpointer::write(const ChangedRows& changed) {
   for (const KeyframeRecord& keyframe : rows.keyframes) writer_->put_keyframe(keyframe);
   for (const auto& [frame, T_local_lidar] : rows.poses) writer_->put_pose(frame, T_local_lidar);
   for (const auto& [id, submap] : rows.submaps) writer_->put_submap(id, submap);
+  for (const auto& [name, state] : rows.states) writer_->put_checkpoint(name, state);
   for (const TileId& id : changed.removed) writer_->remove_tile(id);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <string>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -27,6 +28,7 @@ struct MapRows {
   std::vector<KeyframeRecord> keyframes;
   std::vector<std::pair<int, RigidMotion>> poses;  ///< T_local_lidar of frames written before
   std::vector<std::pair<std::size_t, SubmapRecord>> submaps;
+  std::vector<std::pair<std::string, CheckpointRecord>> states;  ///< by name
 };
 
 struct CheckpointerOptions {

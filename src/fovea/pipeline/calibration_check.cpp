@@ -7,6 +7,9 @@
 namespace fovea {
 namespace {
 
+/// Frames of a live drive, whose length is not known: the check ends after a minute at 10 Hz.
+constexpr int kLiveStride = 30;
+
 std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const Camera& camera,
                                      const DriveInfo& drive, bool compensate,
                                      const FrameMotion& motion) {
@@ -18,15 +21,18 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
 
 }  // namespace
 
-CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate)
+CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate, bool is_live)
     : drive_(drive),
       compensate_(compensate),
-      stride_(std::max(kMinStride, (int(drive.frame_count()) + kFrames - 1) / kFrames)),
+      checks_imu_(drive.imu && !is_live),
+      stride_(is_live ? kLiveStride
+                      : std::max(kMinStride, (int(drive.frame_count()) + kFrames - 1) / kFrames)),
       next_(drive.begin + stride_ / 2),
       profiles_(drive.calibration.cameras.size()) {}
 
 void CalibrationCheck::add_edges(const Frame& frame, const FrameMotion& motion) {
   next_ = frame.index + stride_;
+  ++used_;
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
     const auto profiles =
         profiles_of(frame, k, camera_of(drive_, frame, k), drive_, compensate_, motion);
@@ -40,7 +46,7 @@ DriveCalibration CalibrationCheck::estimate() const {
     found.cameras.push_back(
         {drive_.calibration.cameras[k].index, estimate_calibration(profiles_[k])});
   }
-  if (drive_.imu) found.imu = imu_.estimate(*drive_.imu);
+  if (checks_imu_) found.imu = imu_.estimate(*drive_.imu);
   return found;
 }
 

@@ -18,15 +18,16 @@ class CalibrationCheck {
   /// cost small for drives of any length.
   static constexpr int kFrames = 20, kMinStride = 2;
 
-  /// @param drive       must outlive the check
+  /// @param drive       must outlive the check. A live drive has no measurements of the whole
+  ///                    IMU, which is then not checked
   /// @param compensate  whether scans need motion compensation
-  CalibrationCheck(const DriveInfo& drive, bool compensate);
+  CalibrationCheck(const DriveInfo& drive, bool compensate, bool is_live);
 
   /// Whether enough frames have passed since the last one whose edges were added.
-  bool is_due(int index) const { return !profiles_.empty() && index >= next_; }
+  bool is_due(int index) const { return !profiles_.empty() && index >= next_ && used_ < kFrames; }
   void add_edges(const Frame& frame, const FrameMotion& motion);
   void add_pose(const FrameRecord& record) {
-    if (drive_.imu) imu_.add(record);
+    if (checks_imu_) imu_.add(record);
   }
   /// Rotation and delay of each camera, in the calibration's order, and of the IMU, if there is
   /// one.
@@ -35,7 +36,9 @@ class CalibrationCheck {
  private:
   const DriveInfo& drive_;
   bool compensate_;
+  bool checks_imu_;
   int stride_, next_;
+  int used_ = 0;                                    // frames whose edges were added
   std::vector<std::vector<EdgeProfile>> profiles_;  ///< by camera
   ImuCheck imu_;
 };

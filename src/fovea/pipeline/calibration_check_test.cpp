@@ -19,7 +19,7 @@ DriveInfo drive_of(int frames) {
 TEST(CalibrationCheck, UsesFewFramesSpreadOverTheDrive) {
   for (const int frames : {1, 7, 40, 400, 10000}) {
     const DriveInfo drive = drive_of(frames);
-    CalibrationCheck check(drive, true);
+    CalibrationCheck check(drive, true, /*is_live=*/false);
     std::vector<int> looked_at;
     for (int index = drive.begin; index < drive.end; ++index) {
       if (!check.is_due(index)) continue;

@@ -78,6 +78,25 @@ bool is_complete(const MapMeta& meta) {
   return stated != meta.end() && stated->second == "1";
 }
 
+void require_same_live_run(const MapReader& map, MapMeta& meta, DriveRecord& record,
+                           const std::filesystem::path& path) {
+  const MapMeta before = map.meta();
+  require_resumable(map, before, path.string());
+  const std::vector<DriveRecord> drives = map.drives();
+  if (drives.size() != 1 || !drives[0].calibration_fingerprint) {
+    throw InputError("the map does not state which drive it is of", path.string(),
+                     "start a new map");
+  }
+  record.first_frame = drives[0].first_frame;
+  record.session = drives[0].session;
+  for (const char* key : {meta_key::kFramesBegin, meta_key::kFramesEnd}) {
+    if (const auto found = before.find(key); found != before.end()) meta[key] = found->second;
+  }
+  require_same_values(before, meta, path.string());
+  record.stamps_fingerprint = drives[0].stamps_fingerprint;
+  require_same_drive(drives[0], record, path.string());
+}
+
 void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& record,
                       const FrameSource& drive, const std::filesystem::path& path) {
   const MapMeta before = map.meta();

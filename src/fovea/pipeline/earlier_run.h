@@ -20,6 +20,11 @@ bool is_complete(const MapMeta& meta);
 void require_same_run(const MapReader& map, const MapMeta& meta, const DriveRecord& record,
                       const FrameSource& drive, const std::filesystem::path& path);
 
+/// The same of a map of a live drive, whose frames continue those of the map. Takes the first frame
+/// of the map into `meta` and `record`.
+void require_same_live_run(const MapReader& map, MapMeta& meta, DriveRecord& record,
+                           const std::filesystem::path& path);
+
 /// The summary of a complete map that a run would resume; nothing if frames are missing.
 /// @param meta  the settings of the present run
 std::optional<MapSummary> complete_run(const FrameSource& source, const DriveInfo& drive,

@@ -65,6 +65,7 @@ Figures figures_of(const FrameResult& result) {
   if (const auto accuracy = result.poses.navigation_accuracy) {
     figures["navigation_accuracy"] = *accuracy;
   }
+  if (result.skips_texture) figures["texture_skipped"] = 1;
   if (result.blank_images > 0) figures["images_blank"] = result.blank_images;
   if (result.foveal) report(*result.foveal, figures);
   if (result.hidden) figures["filter_hidden"] = as_figure(*result.hidden);
@@ -136,6 +137,8 @@ FrameResult tracked_result(const FrameRecord& record) {
   result.poses = {record.T_local_lidar, record.T_local_lidar_navigation,
                   record.T_odom_lidar,  record.submap,
                   record.revisit,       record.motion};
+  result.skips_texture = record.has("texture_skipped");
+  result.poses.navigation_accuracy = figure("navigation_accuracy");
   result.tracking.is_lost = record.has("registration_lost");
   result.tracking.has_restarted = record.has("track_restarted");
   if (const auto points = figure("registration_points")) {

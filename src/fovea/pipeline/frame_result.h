@@ -103,6 +103,7 @@ struct FrameResult {
   ScanStats scan;
   TrackingStats tracking;
   int blank_images = 0;
+  bool skips_texture = false;  ///< see FrameTask
   // Absent if the mapper lacks the stage.
   std::optional<FovealStats> foveal;
   std::optional<std::size_t> hidden;  ///< foveal points that other points of the scan hide

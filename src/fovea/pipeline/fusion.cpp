@@ -39,16 +39,16 @@ bool Fusion::is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const {
   return seconds(stamp - submap.start) >= options_.submap_duration && moved >= kSubmapLength;
 }
 
-void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts) {
+void Fusion::open_submap(const FrameResult& frame, const std::optional<AbsolutePose>& measured) {
+  const RigidMotion& T_odom_lidar = frame.poses.T_odom_lidar;
   const std::size_t node = graph_.add_node(T_local_odom() * T_odom_lidar);
-  const auto measured = navigation_.measurement(node, stamp);
   if (measured && !std::exchange(has_navigation_pose_, true) && node > 0) {
     graph_.move(measured->T_local_node * graph_.poses().back().inverse());
   }
   if (node > 0) {
     const Submap& before = submaps_.back();
     graph_.add(RelativePose{node - 1, node, before.T_odom_submap.inverse() * T_odom_lidar,
-                            restarts
+                            frame.tracking.has_restarted
                                 ? restart_deviations()
                                 : odometry_deviations(path_ - before.start_path, weak_frames_)});
   } else if (!measured) {
@@ -56,7 +56,7 @@ void Fusion::open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool res
                             navigation_.has_fix() ? deviations(kFreeRotation, kFreeTranslation)
                                                   : deviations(kAnchor, kAnchor)});
   }
-  submaps_.push_back({T_odom_lidar, stamp, path_});
+  submaps_.push_back({T_odom_lidar, *frame.stamp, path_});
   weak_frames_ = 0;
   if (!options_.enabled) return;
   if (measured) graph_.add(*measured);
@@ -68,11 +68,9 @@ void Fusion::apply_deferred() {
   if (!std::exchange(is_solved_, true)) graph_.optimize();
 }
 
-void Fusion::track(FrameResult& frame) {
-  apply_deferred();
+void Fusion::advance(const FrameResult& frame) {
   const RigidMotion& T_odom_lidar = frame.poses.T_odom_lidar;
-  const bool restarts = frame.tracking.has_restarted;
-  if (restarts) {
+  if (frame.tracking.has_restarted) {
     last_T_odom_lidar_.reset();
     path_ += kRestartPath;
     navigation_.restart();
@@ -81,15 +79,34 @@ void Fusion::track(FrameResult& frame) {
     path_ += (T_odom_lidar.translation() - last_T_odom_lidar_->translation()).norm();
   }
   last_T_odom_lidar_ = T_odom_lidar;
+  weak_frames_ += frame.tracking.is_weak() ? 1 : 0;
+}
+
+void Fusion::follow(const FrameResult& frame) {
+  apply_deferred();
+  advance(frame);
+  const std::size_t node = submaps_.size();
+  if (frame.poses.submap != int(node)) return;
+  std::optional<AbsolutePose> measured;
+  if (options_.enabled && frame.poses.T_local_lidar_navigation) {
+    measured = navigation_.measurement(node, *frame.poses.T_local_lidar_navigation,
+                                       frame.poses.navigation_accuracy.value_or(0));
+  }
+  open_submap(frame, measured);
+}
+
+void Fusion::track(FrameResult& frame) {
+  apply_deferred();
+  advance(frame);
+  const RigidMotion& T_odom_lidar = frame.poses.T_odom_lidar;
   const std::string problem = navigation_.observe(frame.stamp.value(), T_odom_lidar);
   frame.poses.navigation_accuracy = navigation_.stated_accuracy(*frame.stamp);
   if (!problem.empty()) {
     frame.tracking.has_navigation_jumped = true;
     frame.note += (frame.note.empty() ? "" : "; ") + problem;
   }
-  weak_frames_ += frame.tracking.is_weak() ? 1 : 0;
-  if (restarts || is_due(*frame.stamp, T_odom_lidar)) {
-    open_submap(*frame.stamp, T_odom_lidar, restarts);
+  if (frame.tracking.has_restarted || is_due(*frame.stamp, T_odom_lidar)) {
+    open_submap(frame, navigation_.measurement(submaps_.size(), *frame.stamp));
   }
   frame.poses.submap = static_cast<int>(submaps_.size()) - 1;
   frame.poses.T_local_lidar = T_local_lidar(frame);

@@ -31,6 +31,8 @@ class Fusion {
   /// Adds the next frame by its pose in odom, and opens a submap if one is due or the track
   /// restarts. Sets the frame's submap and T_local_lidar; appends faults of navigation to its note.
   void track(FrameResult& frame);
+  /// Adds a frame of an earlier run of a live drive, whose submap and navigation are known.
+  void follow(const FrameResult& frame);
   /// Deferred work: solves the graph with the submap that the last frame opened. The run time
   /// grows with the drive. track() does this first if it was not called.
   void apply_deferred();
@@ -59,7 +61,10 @@ class Fusion {
     double start_path;  // m
   };
   bool is_due(TimeNs stamp, const RigidMotion& T_odom_lidar) const;
-  void open_submap(TimeNs stamp, const RigidMotion& T_odom_lidar, bool restarts);
+  /// Adds the path to a frame.
+  void advance(const FrameResult& frame);
+  /// @param measured  the frame's pose by navigation
+  void open_submap(const FrameResult& frame, const std::optional<AbsolutePose>& measured);
   RigidMotion T_submap_lidar(const FrameResult& frame) const;
   void close_loop(const FrameResult& frame);
   std::vector<LoopCandidate> candidates(const RigidMotion& T_local_lidar) const;

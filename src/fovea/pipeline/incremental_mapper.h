@@ -23,6 +23,8 @@ enum class PoseSource {
 struct FrameTask {
   /// The frame gets a pose. It adds no point, color or registration target.
   bool held_out = false;
+  /// The frame adds no point and no color, since there is no time for it. Registration uses it.
+  bool skips_texture = false;
   /// T_local_lidar: of all frames with kGiven, of the first frames with kGivenFirst.
   std::optional<RigidMotion> given_pose = {};
 };
@@ -33,6 +35,8 @@ struct TrackedScan {
   FrameTask task;
   FrameResult result;
   PointCloud scan_lidar;  ///< motion compensated
+  /// The registered points if later scans are registered to this scan; else none. LiDAR frame.
+  std::vector<Eigen::Vector3f> target_lidar;
   /// T_local_submap of all submaps, and T_local_odom of the latest submap.
   std::vector<RigidMotion> submaps;
   RigidMotion T_local_odom = RigidMotion::Identity();
@@ -48,6 +52,8 @@ struct MapperServices {
   std::function<void(TileMap& map, const Eigen::Vector3d& center_local, double radius)> load_near =
       [](TileMap&, const Eigen::Vector3d&, double) {};
 };
+
+using FindScan = std::function<std::optional<PointCloud>(int frame)>;
 
 /// Builds a map frame by frame, in increasing order of the stamps.
 class IncrementalMapper {
@@ -75,6 +81,12 @@ class IncrementalMapper {
   /// @param source   gives the scans that later frames depend on
   virtual void resume(TileMap map, const std::vector<FrameRecord>& records,
                       const FrameSource& source) = 0;
+
+  /// Continues an earlier run of a live drive, whose frames cannot be read again. The motion of
+  /// other sensors and evidence of moving objects begin anew.
+  /// @param find_scan  gives the motion compensated scan of a frame if the map has it
+  virtual void resume_live(TileMap map, const std::vector<FrameRecord>& records,
+                           const FindScan& find_scan) = 0;
 
   /// track() and map_frame().
   FrameResult process(const Frame& frame, const FrameTask& task = {}) {

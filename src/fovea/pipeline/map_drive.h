@@ -42,6 +42,10 @@ struct MapJob {
   /// Reading, tracking, mapping and writing run in parallel if there is more than one thread. The
   /// map is the same.
   bool overlap = true;
+  /// Of a live drive: no frame is left without texture if time is short (FrameTask).
+  bool texture_every_frame = false;
+  /// Called in the tracker's thread with each frame that has a pose; not of the paper's method.
+  std::function<void(const FrameResult&)> on_tracked;
   bool calibrate = false;      ///< correct the calibration first (pipeline/drive_calibration.h)
   bool force = false;          ///< overwrite `output`
   bool allow_dropped = false;  ///< no limit for the share of dropped points

@@ -7,7 +7,9 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/drive/recalibrated_source.h"
+#include "fovea/map/drive_fingerprint.h"
 #include "fovea/map/meta_keys.h"
+#include "fovea/mapping/registration/local_map.h"
 #include "fovea/pipeline/drive_records.h"
 #include "fovea/pipeline/earlier_run.h"
 #include "fovea/pipeline/initial_motion.h"
@@ -29,13 +31,15 @@ void require_no_stop(const MapJob& job) {
               "give the same command again");
 }
 
-MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta)
+MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta,
+               bool is_live)
     : source_(source),
       drive_(drive),
       job_(job),
       meta_(std::move(meta)),
       drive_records_{drive_record(source)},
       sensor_records_(sensor_records(drive)),
+      is_live_(is_live),
       threaded_(job.overlap && available_threads() > 1),
       file_(open_output(job), checkpointer_options()),
       cache_(file_, job.memory),
@@ -44,7 +48,10 @@ MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& 
       figures_(drive, job.rate),
       views_(drive) {
   if (job.settings.run.check_calibration && !job.calibrate) {
-    check_.emplace(drive, has_sweep_motion(drive, job));
+    check_.emplace(drive, has_sweep_motion(drive, job), is_live);
+  }
+  for (const Camera& camera : drive.calibration.cameras) {
+    live_state_.image_delays[camera.index] = camera.image_delay;
   }
   if (job.resume) resume_from_file();
   frames_before_ = log_.size();
@@ -52,6 +59,7 @@ MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& 
 
 void MapRun::account_for(const FrameRecord& record, bool is_new) {
   figures_.add(record, is_new);
+  if (is_live_) live_stamps_.push_back(record.stamp);
   if (check_) check_->add_pose(record);
   if (record.status != FrameStatus::kSkipped) {
     position_local_ = record.T_local_lidar.translation();
@@ -88,7 +96,11 @@ std::unique_ptr<IncrementalMapper> MapRun::mapper_of_drive() {
 
 void MapRun::resume_from_file() {
   const MapReader reader(job_.output);
-  require_same_run(reader, meta_, drive_records_.front(), source_, job_.output);
+  if (is_live_) {
+    require_same_live_run(reader, meta_, drive_records_.front(), job_.output);
+  } else {
+    require_same_run(reader, meta_, drive_records_.front(), source_, job_.output);
+  }
   keep_names(reader, meta_, drive_records_.front());
   const std::vector<FrameRecord> records = reader.stored_frames();
   for (const FrameRecord& record : records) {
@@ -96,9 +108,29 @@ void MapRun::resume_from_file() {
     keyframes_.add_stored(record);
     account_for(record, /*is_new=*/false);
   }
-  mapper_->resume(stored_map(reader, job_.settings.tile_size()), records, source_);
+  if (is_live_) {
+    resume_live(reader, records);
+  } else {
+    mapper_->resume(stored_map(reader, job_.settings.tile_size()), records, source_);
+  }
   if (!records.empty()) latest_ = records.back();
   if (log_.has_mapped()) views_.skip();
+}
+
+void MapRun::resume_live(const MapReader& reader, const std::vector<FrameRecord>& records) {
+  const LiveState earlier = live_state(reader).value_or(LiveState());
+  live_state_.targets = earlier.targets;
+  const EarlierScans scans(reader, earlier);
+  mapper_->resume_live(stored_map(reader, job_.settings.tile_size()), records,
+                       [&](int frame) { return scans.find(frame); });
+}
+
+void MapRun::keep_target(TrackedScan& tracked) {
+  // As many as the local map depends on.
+  const auto kept = std::size_t(LocalMap::memory(LocalMapOptions{}));
+  if (tracked.target_lidar.empty()) return;
+  live_state_.targets.push_back({tracked.result.index, std::move(tracked.target_lidar)});
+  if (live_state_.targets.size() > kept) live_state_.targets.pop_front();
 }
 
 void MapRun::check_calibration(const TrackedFrame& tracked, FrameRecord& record) {
@@ -114,10 +146,21 @@ MapRows MapRun::fresh_rows(bool last) {
   MapRows rows = log_.rows(mapper_->map(), /*exact=*/last);
   rows.keyframes = keyframes_.take();
   rows.meta = std::exchange(meta_, {});
-  rows.drives = std::exchange(drive_records_, {});
+  rows.drives = is_live_ ? std::vector{live_record()} : std::exchange(drive_records_, {});
   rows.sensors = std::exchange(sensor_records_, {});
   rows.meta[meta_key::kComplete] = fmt::to_string(last && complete() ? 1 : 0);
+  if (!is_live_) return rows;
+  const int end = rows.drives.front().end_frame;
+  rows.meta[meta_key::kFramesEnd] = fmt::to_string(end);
+  rows.states.emplace_back(kLiveState, checkpoint_of(live_state_, end - 1));
   return rows;
+}
+
+DriveRecord MapRun::live_record() const {
+  DriveRecord record = drive_records_.front();
+  record.end_frame = record.first_frame + int(live_stamps_.size());
+  record.stamps_fingerprint = stamps_fingerprint(record.first_frame, live_stamps_);
+  return record;
 }
 
 std::vector<int> MapRun::remaining_frames() const {
@@ -132,8 +175,10 @@ void MapRun::map_frames(FrameStream& stream,
                         .track = [&](const Frame& frame) { return track(frame); },
                         .apply_deferred = [&] { mapper_->apply_deferred_tracking(); }},
                        threaded_, job_.stop);
+  const bool may_skip = is_live_ && !job_.texture_every_frame && !job_.settings.is_paper();
   try {
     while (std::optional<TrackedFrame> frame = frames.next()) {
+      if (may_skip && frame->tracked) frame->tracked->task.skips_texture = frames.has_next();
       map_next(*frame, progress);
       checkpoint_if_due();
     }
@@ -146,7 +191,9 @@ TrackedScan MapRun::track(const Frame& frame) {
   FrameTask task{.held_out = job_.hold_out.contains(frame.index)};
   const auto place = std::size_t(frame.index - drive_.begin);
   if (place < job_.given_poses.size()) task.given_pose = job_.given_poses[place];
-  return mapper_->track(frame, task);
+  TrackedScan tracked = mapper_->track(frame, task);
+  if (job_.on_tracked && !job_.settings.is_paper()) job_.on_tracked(tracked.result);
+  return tracked;
 }
 
 void MapRun::map_next(TrackedFrame& tracked,
@@ -154,6 +201,7 @@ void MapRun::map_next(TrackedFrame& tracked,
   const auto* frame = std::get_if<Frame>(&tracked.read.result);
   if (frame != nullptr) views_.add(frame->scan);
   keyframes_.add(tracked);
+  if (is_live_ && tracked.tracked) keep_target(*tracked.tracked);
   FrameRecord record = map_tracked_frame(*mapper_, source_, drive_, tracked);
   check_calibration(tracked, record);
   account_for(record, /*is_new=*/true);
@@ -161,7 +209,8 @@ void MapRun::map_next(TrackedFrame& tracked,
   if (log_.size() % kPointsCheckedEvery == 0) check_points();
   if (job_.observer != nullptr) job_.observer->frame_mapped(record, frame, mapper_->map());
   if (progress) {
-    progress({int(log_.size()), int(drive_.frame_count()), mapper_->map().size(), &record});
+    const int total = is_live_ ? 0 : int(drive_.frame_count());
+    progress({int(log_.size()), total, mapper_->map().size(), &record});
   }
   latest_ = std::move(record);
   mapper_->apply_deferred_mapping();

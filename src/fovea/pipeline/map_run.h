@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fovea/drive/lost_drive.h"
@@ -12,6 +13,7 @@
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/keyframe_recorder.h"
+#include "fovea/pipeline/live_state.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/view_check.h"
 
@@ -32,7 +34,17 @@ class MapRun {
   /// @param drive   its description, with profiles of the LiDARs and corrections of the calibration
   /// @param meta    of the map
   /// All but `meta` must outlive the run. Errors as map_drive().
-  MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta);
+  MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta)
+      : MapRun(source, drive, job, std::move(meta), /*is_live=*/false) {}
+  /// Of a drive that has further frames than the source, as it continues while it is mapped.
+  static MapRun live(const FrameSource& first_frames, const DriveInfo& drive, const MapJob& job,
+                     MapMeta meta) {
+    return {first_frames, drive, job, std::move(meta), /*is_live=*/true};
+  }
+  /// Origin of `local` in the world of a live drive's poses, for a later run.
+  void keep_world_origin(const std::optional<Eigen::Vector3d>& origin) {
+    live_state_.world_origin = origin;
+  }
 
   /// The frames that are not in the map yet.
   std::vector<int> remaining_frames() const;
@@ -46,6 +58,8 @@ class MapRun {
   MapSummary summary() const;
 
  private:
+  MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& job, MapMeta meta,
+         bool is_live);
   CheckpointerOptions checkpointer_options();
   void resume_from_file();
   std::unique_ptr<IncrementalMapper> mapper_of_drive();
@@ -57,7 +71,11 @@ class MapRun {
   /// InputError if too many points were dropped so far.
   void check_points() const;
   MapRows fresh_rows(bool last);  // of a checkpoint
-  bool complete() const { return log_.size() == drive_.frame_count(); }
+  /// Of a live drive: its identity so far, which is that of a drive of these frames.
+  DriveRecord live_record() const;
+  void resume_live(const MapReader& reader, const std::vector<FrameRecord>& records);
+  void keep_target(TrackedScan& tracked);
+  bool complete() const { return is_live_ || log_.size() == drive_.frame_count(); }
 
   const FrameSource& source_;
   const DriveInfo& drive_;
@@ -66,6 +84,10 @@ class MapRun {
   MapMeta meta_;
   std::vector<DriveRecord> drive_records_;
   std::vector<SensorRecord> sensor_records_;
+  bool is_live_;
+  // Of a live drive.
+  std::vector<std::optional<TimeNs>> live_stamps_;  // of all frames
+  LiveState live_state_;
   bool threaded_;
   Checkpointer file_;
   TileCache cache_;

@@ -74,6 +74,7 @@ void DriveFigures::add(const FrameRecord& record, bool is_new) {
       }
       break;
   }
+  if (record.has("texture_skipped")) ++summary_.textures_skipped;
   if (record.has("registration_failed")) ++summary_.registrations_failed;
   points_.add(record);
   if (const auto missing = record.figures.find("scans_missing"); missing != record.figures.end()) {
@@ -132,6 +133,10 @@ MapSummary DriveFigures::summary() const {
   }
   for (const auto& [reason, count] : summary.frames_skipped) {
     summary.warn(fmt::format("skipped: {} frame{} ({})", count, count == 1 ? "" : "s", reason));
+  }
+  if (summary.textures_skipped > 0) {
+    summary.warn(fmt::format("time was short: {} frame{} got a pose and added nothing to the map",
+                             summary.textures_skipped, summary.textures_skipped == 1 ? "" : "s"));
   }
   if (summary.scans_missing > 0) {
     summary.warn(

@@ -44,6 +44,7 @@ struct MapSummary : Messages {
   double rate = 0;               ///< Hz, of the released frames; 0: as fast as possible
   /// At a rate: frames that were not yet in the map when the next one was due.
   int late_frames = 0;
+  int textures_skipped = 0;  ///< frames that only got a pose (FrameTask::skips_texture)
   double peak_rss_mb = 0;
   std::map<std::string, StageLatency> latency_ms;
   bool interrupted = false;

@@ -69,7 +69,8 @@ FrameResult Mapper::map_frame(const Frame& frame, TrackedScan tracked) {
   map_.place_submaps(tracked.submaps);
   light_.follow(std::size_t(result.poses.submap), result.poses.T_odom_lidar, map_);
   services_.load_near(map_, result.poses.T_local_lidar.translation(), reach_);
-  if (tracked.task.held_out) return result;
+  result.skips_texture = tracked.task.skips_texture;
+  if (tracked.task.held_out || result.skips_texture) return result;
 
   const RigidMotion T_odom_local = tracked.T_local_odom.inverse();
   const std::vector<Camera> cameras = frame_cameras(drive_, frame, result.poses.motion);

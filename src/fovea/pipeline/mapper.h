@@ -34,6 +34,8 @@ class Mapper : public IncrementalMapper {
 
   void resume(TileMap map, const std::vector<FrameRecord>& records,
               const FrameSource& source) override;
+  void resume_live(TileMap map, const std::vector<FrameRecord>& records,
+                   const FindScan& find_scan) override;
 
  private:
   /// What colors a view.

@@ -10,12 +10,16 @@
 namespace fovea {
 namespace {
 
+bool is_textured(const FrameResult& frame) {
+  return frame.status == FrameStatus::kMapped && !frame.skips_texture;
+}
+
 /// Index of the first frame whose scan the filter of dynamic points depends on.
 int first_voting_frame(const std::vector<FrameResult>& frames) {
   constexpr std::size_t kScans = DynamicPointFilter::kVotingScans;
   std::vector<int> mapped;
   for (const FrameResult& frame : frames) {
-    if (frame.status == FrameStatus::kMapped) mapped.push_back(frame.index);
+    if (is_textured(frame)) mapped.push_back(frame.index);
   }
   if (mapped.size() <= kScans) return 0;
   return std::min(mapped[mapped.size() - kScans], mapped.back() - DynamicPointFilter::kMemory + 1);
@@ -40,17 +44,17 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
     const FrameResult& frame = frames[i];
     tracker_.follow(frame);
     map_.place_submaps(tracker_.submaps());
-    const bool with_periphery =
-        frame.status == FrameStatus::kMapped && periphery_is_due(frame.poses.T_odom_lidar);
+    const bool with_periphery = is_textured(frame) && periphery_is_due(frame.poses.T_odom_lidar);
     if (frame.status == FrameStatus::kHeldOut) {
       light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
       continue;
     }
-    const bool votes = frame.index >= first_voting;
-    if (votes || needs_images || tracker_.needs_scan(first_target)) {
+    const bool votes = is_textured(frame) && frame.index >= first_voting;
+    const bool response = is_textured(frame) && needs_images;
+    if (votes || response || tracker_.needs_scan(first_target)) {
       const LoadedFrame loaded = source.load(frame.index);
       if (const auto* read = std::get_if<Frame>(&loaded)) {
-        replay(*read, frame, {votes, needs_images, with_periphery});
+        replay(*read, frame, {votes, response, with_periphery});
       }
     }
     // After replay(), which may have moved submaps.
@@ -60,6 +64,25 @@ void Mapper::resume(TileMap map, const std::vector<FrameRecord>& records,
       if (view == nullptr) continue;
       light_.replay(*view, drive_.image_exposure(camera.index, frame.index), map_);
     }
+  }
+}
+
+void Mapper::resume_live(TileMap map, const std::vector<FrameRecord>& records,
+                         const FindScan& find_scan) {
+  map_ = std::move(map);
+  static_cast<void>(light_.needs_images(records));  // there are none: responses are learned on
+  for (const FrameRecord& record : records) {
+    if (record.status == FrameStatus::kSkipped) continue;
+    const FrameResult frame = tracked_result(record);
+    tracker_.follow_live(frame);
+    map_.place_submaps(tracker_.submaps());
+    if (is_textured(frame)) periphery_is_due(frame.poses.T_odom_lidar);
+    if (frame.status == FrameStatus::kMapped) {
+      if (const auto scan_lidar = find_scan(frame.index)) tracker_.replay(*scan_lidar, frame);
+      map_.place_submaps(tracker_.submaps());
+    }
+    light_.follow(std::size_t(frame.poses.submap), frame.poses.T_odom_lidar, map_);
+    for (const ViewRecord& view : record.views) light_.replay(view, /*exposure=*/{}, map_);
   }
 }
 

@@ -185,4 +185,20 @@ TEST(Mapper, HeldOutFramesAddNothingButGetAPose) {
       1e-3);
 }
 
+// A frame without time for texture is tracked as any other, and leaves the map as it is.
+TEST(Mapper, AFrameMayOnlyBeTracked) {
+  const SyntheticDrive& drive = street();
+  Mapper all(drive.info(), {}, PoseSource::kRefine), some(drive.info(), {}, PoseSource::kRefine);
+  for (int i = 0; i < 6; ++i) {
+    const Frame frame = std::get<Frame>(drive.load(i));
+    const std::size_t before = some.map().size();
+    const FrameResult expected = all.process(frame);
+    const FrameResult result = some.process(frame, {.skips_texture = i == 3});
+    EXPECT_EQ(result.poses.T_odom_lidar.matrix(), expected.poses.T_odom_lidar.matrix()) << i;
+    EXPECT_EQ(record_of(result).has("texture_skipped"), i == 3);
+    if (i == 3) EXPECT_EQ(some.map().size(), before);
+  }
+  EXPECT_LT(some.map().size(), all.map().size());
+}
+
 }  // namespace fovea::mapper_test

@@ -222,9 +222,7 @@ void PaperMapper::add_whole_scan(const PointCloud& scan_lidar, const Frame& fram
   result.clock.lap("texture");
 }
 
-void PaperMapper::resume(TileMap map, const std::vector<FrameRecord>& records,
-                         const FrameSource& source) {
-  map_ = std::move(map);
+const FrameRecord* PaperMapper::follow(const std::vector<FrameRecord>& records) {
   const FrameRecord* last_mapped = nullptr;
   int last_submap = -1;
   for (const FrameRecord& record : records) {
@@ -235,14 +233,34 @@ void PaperMapper::resume(TileMap map, const std::vector<FrameRecord>& records,
     last_submap = record.submap;
     if (record.status == FrameStatus::kMapped) last_mapped = &record;
   }
+  return last_mapped;
+}
+
+void PaperMapper::keep_previous(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar) {
+  const std::vector<std::uint8_t> is_ground = segment_ground(scan_lidar.position, options_.ground);
+  previous_ = {prepare_cloud(densified(scan_lidar, is_ground), registration_options()),
+               T_local_lidar};
+}
+
+void PaperMapper::resume(TileMap map, const std::vector<FrameRecord>& records,
+                         const FrameSource& source) {
+  map_ = std::move(map);
+  const FrameRecord* const last_mapped = follow(records);
   if (last_mapped == nullptr || !uses_registration()) return;
   const LoadedFrame loaded = source.load(last_mapped->index);
   const auto* frame = std::get_if<Frame>(&loaded);
   if (frame == nullptr) return;
-  const PointCloud scan_lidar = deskewed(frame->scan, last_mapped->motion, drive_);
-  const std::vector<std::uint8_t> is_ground = segment_ground(scan_lidar.position, options_.ground);
-  previous_ = {prepare_cloud(densified(scan_lidar, is_ground), registration_options()),
-               last_mapped->T_odom_lidar};
+  keep_previous(deskewed(frame->scan, last_mapped->motion, drive_), last_mapped->T_odom_lidar);
+}
+
+void PaperMapper::resume_live(TileMap map, const std::vector<FrameRecord>& records,
+                              const FindScan& find_scan) {
+  map_ = std::move(map);
+  const FrameRecord* const last_mapped = follow(records);
+  if (last_mapped == nullptr || !uses_registration()) return;
+  if (const auto scan_lidar = find_scan(last_mapped->index)) {
+    keep_previous(*scan_lidar, last_mapped->T_odom_lidar);
+  }
 }
 
 }  // namespace fovea

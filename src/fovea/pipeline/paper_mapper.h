@@ -28,8 +28,15 @@ class PaperMapper : public IncrementalMapper {
 
   void resume(TileMap map, const std::vector<FrameRecord>& records,
               const FrameSource& source) override;
+  void resume_live(TileMap map, const std::vector<FrameRecord>& records,
+                   const FindScan& find_scan) override;
 
  private:
+  /// Enters the poses of an earlier run.
+  /// @return the last mapped frame; null if there is none
+  const FrameRecord* follow(const std::vector<FrameRecord>& records);
+  /// Makes a scan the one that the next scan is registered to.
+  void keep_previous(const PointCloud& scan_lidar, const RigidMotion& T_local_lidar);
   struct RegisteredScan {
     RegistrationCloud cloud_lidar;
     RigidMotion T_local_lidar;

@@ -41,6 +41,7 @@ nlohmann::ordered_json to_json(const MapSummary& summary) {
           {"fps", summary.frames_per_second},
           {"rate_hz", at_rate ? nlohmann::ordered_json(summary.rate) : nullptr},
           {"late_frames", at_rate ? nlohmann::ordered_json(summary.late_frames) : nullptr},
+          {"textures_skipped", summary.textures_skipped},
           {"peak_rss_mb", summary.peak_rss_mb},
           {"interrupted", summary.interrupted},
           {"latency_ms", latency},

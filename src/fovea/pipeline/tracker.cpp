@@ -104,6 +104,7 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   if (!task.held_out) {
     fusion_.add_scan_and_close_loops(result, refined.cloud.points);
     if (registers() && becomes_target(keyframes_, result, lost_frames_)) {
+      tracked.target_lidar = refined.cloud.points;
       next_target_ = {std::move(refined.cloud), refined.T_odom_lidar};  // see apply_deferred()
     }
   }
@@ -209,11 +210,25 @@ bool Tracker::registers() const {
 }
 
 void Tracker::follow(const FrameResult& frame) {
+  follow_motion(frame);
+  FrameResult tracked = frame;
+  fusion_.track(tracked);
+  follow_target(frame);
+}
+
+void Tracker::follow_live(const FrameResult& frame) {
+  follow_motion(frame);
+  fusion_.follow(frame);
+  follow_target(frame);
+}
+
+void Tracker::follow_motion(const FrameResult& frame) {
   motion_model_.begin_if_needed(*frame.stamp, frame.index, initial_velocity_);
   motion_model_.update(*frame.stamp, frame.poses.T_odom_lidar, evidence_of(frame.tracking));
   if (frame.tracking.has_restarted) restart();
-  FrameResult tracked = frame;
-  fusion_.track(tracked);
+}
+
+void Tracker::follow_target(const FrameResult& frame) {
   is_target_ = frame.status == FrameStatus::kMapped && registers() &&
                becomes_target(keyframes_, frame, lost_frames_);
   followed_frame_ = frame.index;

@@ -32,6 +32,8 @@ class Tracker {
 
   /// Enters the next frame of an earlier run, which was not skipped.
   void follow(const FrameResult& frame);
+  /// The same of a live drive, whose navigation of that time is only in the frames.
+  void follow_live(const FrameResult& frame);
   /// Whether the frame just followed has to be given to replay(): as a registration target, from
   /// first_target() on, or as a place to come back to.
   bool needs_scan(int first_target) const {
@@ -64,6 +66,8 @@ class Tracker {
   /// confirmed it, or else the guess, from which the track restarts.
   void search_after_pause(RefinedPose& refined, const MotionGuess& guess, FrameResult& result);
   void count_lost(const FrameResult& frame);
+  void follow_motion(const FrameResult& frame);
+  void follow_target(const FrameResult& frame);
   void restart();
   bool registers() const;
 

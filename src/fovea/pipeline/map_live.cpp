@@ -1,0 +1,67 @@
+#include "fovea/pipeline/map_live.h"
+
+#include <utility>
+
+#include "fovea/core/errors.h"
+#include "fovea/pipeline/config.h"
+#include "fovea/pipeline/drive_sensors.h"
+#include "fovea/pipeline/map_run.h"
+#include "fovea/pipeline/run_meta.h"
+#include "fovea/pipeline/run_preparation.h"
+
+namespace fovea {
+namespace {
+
+class LiveStream : public FrameStream {
+ public:
+  explicit LiveStream(LiveSource& source) : source_(source) {}
+
+  std::optional<ReadFrame> next(const std::stop_token& stop) override {
+    std::optional<LiveFrame> frame = source_.next(stop);
+    if (!frame) return std::nullopt;
+    return ReadFrame{std::move(frame->frame), frame->decode_ms, frame->arrival};
+  }
+
+ private:
+  LiveSource& source_;
+};
+
+/// Closes a source: no thread waits to add data that nothing reads.
+class ClosedAtEnd {
+ public:
+  explicit ClosedAtEnd(LiveSource& source) : source_(source) {}
+  ~ClosedAtEnd() { source_.close(); }
+  ClosedAtEnd(const ClosedAtEnd&) = delete;
+  ClosedAtEnd& operator=(const ClosedAtEnd&) = delete;
+
+ private:
+  LiveSource& source_;
+};
+
+}  // namespace
+
+MapSummary map_live(LiveSource& source, const MapJob& job,
+                    const std::function<void(const MapProgress&)>& progress) {
+  const ClosedAtEnd closed(source);
+  validate(job.settings);
+  const std::unique_ptr<FrameSource> first_frames = source.begin(job.stop);
+  require_no_stop(job);
+  if (!first_frames) {
+    throw InputError("the live source ended before the first scan", job.output.string(),
+                     "see docs/live.md for what a drive needs");
+  }
+  const WallClock::time_point start = WallClock::now();
+  const DriveInfo drive = info_with_lidars(*first_frames);
+  require_sources(drive, job);
+  MapRun run = MapRun::live(*first_frames, drive, job, meta_of_run(drive, job));
+  run.keep_world_origin(source.world_origin());
+  LiveStream frames(source);
+  run.map_frames(frames, progress);
+  run.finish();
+  run.require_whole_drive();
+  MapSummary summary = run.summary();
+  summary.frames_per_second = double(summary.frames_new) / (milliseconds_since(start) / 1000);
+  return summary;
+}
+
+}  // namespace fovea

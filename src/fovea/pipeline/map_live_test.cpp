@@ -1,0 +1,204 @@
+#include "fovea/pipeline/map_live.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <thread>
+
+#include "../../../tests/temporary_folder.h"
+#include "fovea/core/errors.h"
+#include "fovea/drive/live/test_live_drive.h"
+#include "fovea/map/map_store.h"
+#include "fovea/pipeline/live_state.h"
+#include "fovea/pipeline/mapper_test_support.h"
+
+namespace fovea::map_live_test {
+
+constexpr int kFrames = 24;
+
+const SyntheticDrive& town() {
+  static const SyntheticDrive drive(town_scene(), kFrames, 0.8);
+  return drive;
+}
+
+/// What the sensors of the town's vehicle send during some frames. Its poses are true.
+test::LiveData town_data(int begin, int end) {
+  test::LiveData data;
+  data.drive.lidar.sweep_compensated = true;
+  const Camera& camera = town().info().calibration.cameras.front();
+  data.drive.cameras = {
+      {"front",
+       2,
+       {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, Lens()},
+       camera.T_cam_lidar.inverse()}};
+  for (int i = begin; i < end; ++i) {
+    const Frame frame = std::get<Frame>(town().load(i));
+    const TimeNs stamp = test::kLiveStart + frame.stamp;
+    data.scans.push_back({"", stamp, frame.scan});
+    const std::vector<std::uint8_t> png = encode_png(frame.images.front());
+    data.images.push_back({"front", stamp, std::string(png.begin(), png.end())});
+    data.poses.push_back({stamp, town().T_local_lidar[std::size_t(i)]});
+  }
+  return data;
+}
+
+LiveOptions all_data() {
+  LiveOptions options;
+  options.waits = true;
+  options.max_wait = options.longest_beginning = 60;  // nothing is late
+  return options;
+}
+
+class MapLive : public testing::Test {
+ protected:
+  MapJob job(const std::string& name) const {
+    MapJob job;
+    job.output = folder_ / name;
+    job.settings.mapper().surface.spacing = 0.05;  // a sparse map is soon made
+    job.texture_every_frame = true;
+    return job;
+  }
+
+  std::string drive_toml() const { return town_data(0, 1).write(folder_ / "sensors"); }
+
+  /// Maps data as they come.
+  MapSummary map(const test::LiveData& data, const MapJob& job, const LiveOptions& options) const {
+    LiveSource source(drive_toml(), options);
+    const std::jthread sensors([&] {
+      for (const auto& [stamp, call] : data.calls()) call(source);
+      source.close();
+    });
+    return map_live(source, job, {});
+  }
+
+  TemporaryFolder folder_;
+};
+
+struct PointsOfMap {
+  std::vector<std::pair<TileId, std::size_t>> tiles;
+  std::vector<Eigen::Vector3f> position;
+  std::vector<std::array<std::uint8_t, 3>> color;
+};
+
+PointsOfMap points_in(const MapReader& map) {
+  PointsOfMap points;
+  points.tiles = map.tile_sizes();
+  map.for_each_tile([&](std::size_t, const TileKey&, const PointCloud& tile) {
+    points.position.insert(points.position.end(), tile.position.begin(), tile.position.end());
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      const Rgb color = to_rgb(tile.color[i]);
+      points.color.push_back({color.r, color.g, color.b});
+    }
+  });
+  return points;
+}
+
+TEST_F(MapLive, TheMapIsThatOfTheDrive) {
+  const test::LiveData data = town_data(0, kFrames);
+  data.write(folder_ / "drive");
+  const MapSummary of_file = map_drive(*open_drive(folder_ / "drive", {}), job("file.fovea"), {});
+  const MapSummary of_live = map(data, job("live.fovea"), all_data());
+  EXPECT_EQ(of_live.frames_mapped, kFrames);
+  EXPECT_EQ(of_live.textures_skipped, 0);
+  EXPECT_FALSE(of_live.interrupted);
+  EXPECT_EQ(of_live.points, of_file.points);
+
+  const MapReader file(folder_ / "file.fovea"), live(folder_ / "live.fovea");
+  const std::vector<FrameRecord> frames = live.frames();
+  for (const FrameRecord& frame : file.frames()) {
+    const FrameRecord& same = frames.at(std::size_t(frame.index));
+    EXPECT_EQ(same.stamp, frame.stamp);
+    EXPECT_EQ(same.T_local_lidar.matrix(), frame.T_local_lidar.matrix()) << frame.index;
+    EXPECT_EQ(same.figures, frame.figures) << frame.index;
+  }
+  const PointsOfMap a = points_in(file), b = points_in(live);
+  EXPECT_EQ(a.tiles, b.tiles);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_TRUE(a.color == b.color);
+  const DriveRecord drive = live.drives().front(), same = file.drives().front();
+  EXPECT_EQ(drive.stamps_fingerprint, same.stamps_fingerprint);
+  EXPECT_EQ(drive.calibration_fingerprint, same.calibration_fingerprint);
+  EXPECT_EQ(drive.end_frame, kFrames);
+}
+
+TEST_F(MapLive, ALaterRunContinuesTheMap) {
+  constexpr int kBefore = 14;
+  map(town_data(0, kBefore), job("map.fovea"), all_data());
+  MapJob further = job("map.fovea");
+  further.resume = true;
+  LiveOptions options = all_data();
+  continue_map(further.output, options);
+  EXPECT_EQ(options.first_frame, kBefore);
+  const MapSummary summary = map(town_data(kBefore, kFrames), further, options);
+  EXPECT_EQ(summary.frames_mapped, kFrames);
+  EXPECT_EQ(summary.frames_new, std::size_t(kFrames - kBefore));
+
+  map(town_data(0, kFrames), job("whole.fovea"), all_data());
+  const MapReader resumed(further.output), whole(folder_ / "whole.fovea");
+  const DriveRecord drive = resumed.drives().front(), same = whole.drives().front();
+  EXPECT_EQ(drive.first_frame, 0);
+  EXPECT_EQ(drive.end_frame, kFrames);
+  EXPECT_EQ(drive.stamps_fingerprint, same.stamps_fingerprint);
+  EXPECT_EQ(drive.calibration_fingerprint, same.calibration_fingerprint);
+  const std::vector<FrameRecord> frames = resumed.frames();
+  ASSERT_EQ(frames.size(), std::size_t(kFrames));
+  for (const FrameRecord& frame : whole.frames()) {
+    const RigidMotion apart =
+        frames[std::size_t(frame.index)].T_local_lidar.inverse() * frame.T_local_lidar;
+    EXPECT_LT(apart.translation().norm(), 0.02) << frame.index;
+  }
+}
+
+TEST_F(MapLive, AMapOfFilesIsNotContinuedLive) {
+  const test::LiveData data = town_data(0, 6);
+  data.write(folder_ / "drive");
+  map_drive(*open_drive(folder_ / "drive", {}), job("file.fovea"), {});
+  LiveOptions options;
+  EXPECT_THROW(continue_map(folder_ / "file.fovea", options), InputError);
+}
+
+TEST_F(MapLive, OtherSettingsDoNotContinueAMap) {
+  map(town_data(0, 12), job("map.fovea"), all_data());
+  LiveOptions options = all_data();
+  continue_map(folder_ / "map.fovea", options);
+  MapJob further = job("map.fovea");
+  further.resume = true;
+  further.settings.mapper().surface.spacing = 0.1;
+  EXPECT_THROW(map(town_data(12, kFrames), further, options), InputError);
+}
+
+TEST_F(MapLive, EachFrameIsTrackedBeforeItIsMapped) {
+  MapJob job = this->job("map.fovea");
+  std::vector<int> tracked;
+  job.on_tracked = [&](const FrameResult& frame) { tracked.push_back(frame.index); };
+  map(town_data(0, 12), job, all_data());
+  std::vector<int> all(12);
+  std::iota(all.begin(), all.end(), 0);
+  EXPECT_EQ(tracked, all);
+}
+
+TEST_F(MapLive, WithoutAScanThereIsNoMap) {
+  EXPECT_THROW(map({}, job("map.fovea"), all_data()), InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "map.fovea"));
+}
+
+TEST_F(MapLive, AStopEndsTheRunWithACompleteMap) {
+  std::stop_source stop;
+  MapJob job = this->job("map.fovea");
+  job.stop = stop.get_token();
+  LiveSource source(drive_toml(), all_data());
+  const std::jthread sensors([&] {
+    for (const auto& [stamp, call] : town_data(0, kFrames).calls()) call(source);
+    source.close();
+  });
+  int done = 0;
+  const MapSummary summary = map_live(source, job, [&](const MapProgress& progress) {
+    done = progress.done;
+    if (progress.done == 6) stop.request_stop();
+  });
+  EXPECT_EQ(summary.frames_mapped, done);
+  EXPECT_FALSE(summary.interrupted);
+  EXPECT_EQ(MapReader(job.output).frames().size(), std::size_t(done));
+}
+
+}  // namespace fovea::map_live_test
