@@ -12,8 +12,8 @@ FrameQueue::FrameQueue(std::size_t further_lidars, std::size_t cameras, FrameQue
       image_places_(cameras) {}
 
 FrameQueue::Added FrameQueue::add_scan(ScanPointer scan, WallClock::time_point now) {
-  if (scan_step_.last() && scan->stamp <= *scan_step_.last()) return Added::kOutOfOrder;
-  scan_step_.add(scan->stamp);
+  if (scan_stamps_.last() && scan->stamp <= *scan_stamps_.last()) return Added::kOutOfOrder;
+  scan_stamps_.add(scan->stamp);
   if (!has_room_for_scan()) {
     scans_.pop_front();
     ++scans_dropped_;
@@ -25,7 +25,7 @@ FrameQueue::Added FrameQueue::add_scan(ScanPointer scan, WallClock::time_point n
 template <class Item>
 FrameQueue::Added FrameQueue::add(MatchQueue<Item>& queue, std::shared_ptr<const Item> item,
                                   const std::optional<ExpectedPlace>& place) {
-  if (queue.step().last() && item->stamp <= *queue.step().last()) return Added::kOutOfOrder;
+  if (queue.stamps().last() && item->stamp <= *queue.stamps().last()) return Added::kOutOfOrder;
   if (sensors_ && !place) return Added::kTaken;  // not in use
   if (place && last_taken_) {
     const TimeNs expected = *last_taken_ + place->delay,
@@ -69,8 +69,8 @@ bool FrameQueue::has_room_for_further_scan(std::size_t lidar) const {
 
 bool FrameQueue::has_room_for_image(std::size_t camera) const {
   const MatchQueue<LiveImage>& queue = images_[camera];
-  const bool is_ahead = queue.step().last() && scan_step_.last() &&
-                        *queue.step().last() - *scan_step_.last() > limits_.images;
+  const bool is_ahead = queue.stamps().last() && scan_stamps_.last() &&
+                        *queue.stamps().last() - *scan_stamps_.last() > limits_.images;
   return !is_ahead && queue.items().size() < limits_.image_count &&
          queue.bytes() < limits_.image_bytes;
 }
@@ -107,7 +107,7 @@ void FrameQueue::use(Sensors sensors, std::size_t scan_limit) {
 
 TimeNs FrameQueue::next_stamp() const {
   if (scans_.size() > 1) return scans_[1].scan->stamp;
-  return scans_.front().scan->stamp + scan_step_.usual().value_or(sensors_->period);
+  return scans_.front().scan->stamp + scan_stamps_.usual_step().value_or(sensors_->period);
 }
 
 bool FrameQueue::is_complete() const {

@@ -68,6 +68,7 @@ class FrameQueue {
   const std::deque<PendingScan>& scans() const { return scans_; }
   const MatchQueue<LiveScan>& further_scans(std::size_t lidar) const { return further_[lidar]; }
   const MatchQueue<LiveImage>& images(std::size_t camera) const { return images_[camera]; }
+  const SensorStamps& scan_stamps() const { return scan_stamps_; }
   std::size_t scans_dropped() const { return scans_dropped_; }
 
  private:
@@ -80,7 +81,7 @@ class FrameQueue {
 
   FrameQueueLimits limits_;
   std::deque<PendingScan> scans_;
-  StampStep scan_step_;
+  SensorStamps scan_stamps_;
   std::vector<MatchQueue<LiveScan>> further_;
   std::vector<MatchQueue<LiveImage>> images_;
   std::optional<Sensors> sensors_;

@@ -26,10 +26,10 @@ TimeNs end_of(const RecordWindow<Record>& window, TimeNs until) {
 }
 
 /// Whether a sensor need not be waited for, to have its records up to a time.
-bool has_reached(const StampStep& step, TimeNs time, TimeNs max_wait) {
-  if (!step.last()) return true;
-  const TimeNs gap = time - *step.last();
-  return gap <= 0 || gap > kStoppedAfter || step.usual().value_or(0) >= max_wait;
+bool has_reached(const SensorStamps& stamps, TimeNs time, TimeNs max_wait) {
+  if (!stamps.last()) return true;
+  const TimeNs gap = time - *stamps.last();
+  return gap <= 0 || gap > kStoppedAfter || stamps.usual_step().value_or(0) >= max_wait;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ bool LiveMotion::uses_orientations() const {
 
 bool LiveMotion::reaches(TimeNs time) const {
   const auto reached = [&](const auto& window) {
-    return has_reached(window.step(), time, max_wait_);
+    return has_reached(window.stamps(), time, max_wait_);
   };
   const bool uses_navigation = has_begun_ ? has_navigation_ : options_.use_navigation;
   const bool uses_imu = has_begun_ ? has_imu_ : options_.use_imu && description_.imu.has_value();
@@ -59,7 +59,8 @@ bool LiveMotion::reaches(TimeNs time) const {
   if (has_begun_ ? by_poses_ : !poses_.empty()) return reached(poses_);
   if (!reached(positions_)) return false;
   // A position gets its attitude from the orientations around it.
-  return !uses_orientations() || has_reached(inertia_.step(), end_of(positions_, time), max_wait_);
+  return !uses_orientations() ||
+         has_reached(inertia_.stamps(), end_of(positions_, time), max_wait_);
 }
 
 NavigationTables LiveMotion::tables(TimeNs until) const {

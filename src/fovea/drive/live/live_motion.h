@@ -20,8 +20,8 @@ class RecordWindow {
  public:
   /// @return false if the record is not later than the one before: it is dropped
   bool add(const Record& record) {
-    if (step_.last() && record.time <= *step_.last()) return false;
-    step_.add(record.time);
+    if (stamps_.last() && record.time <= *stamps_.last()) return false;
+    stamps_.add(record.time);
     records_.push_back(record);
     drop_before(record.time - kLongest);
     if (records_.size() > kMost) records_.pop_front();
@@ -31,14 +31,14 @@ class RecordWindow {
     while (!records_.empty() && records_.front().time < time) records_.pop_front();
   }
   const std::deque<Record>& records() const { return records_; }
-  const StampStep& step() const { return step_; }
+  const SensorStamps& stamps() const { return stamps_; }
   bool empty() const { return records_.empty(); }
 
  private:
   static constexpr TimeNs kLongest = 60 * kNsPerSecond;
   static constexpr std::size_t kMost = 1 << 16;
   std::deque<Record> records_;
-  StampStep step_;
+  SensorStamps stamps_;
 };
 
 /// What the drive has from its beginning.
@@ -81,6 +81,7 @@ class LiveMotion {
   /// The results after those before, up to the first record at `until` or later.
   MotionData take(TimeNs until);
 
+  bool is_by_poses() const { return by_poses_; }
   const LocalFrame& frame() const { return frame_; }
   /// Problems that came up after begin(); each of them once.
   const Messages& messages() const { return messages_; }

@@ -12,10 +12,10 @@ LiveSource::~LiveSource() = default;
 
 void LiveSource::add_scan(LiveScan scan) { impl_->add_scan(std::move(scan)); }
 void LiveSource::add_image(LiveImage image) { impl_->add_image(std::move(image)); }
-void LiveSource::add_pose(const RecordedPose& pose) { impl_->add_motion(pose); }
-void LiveSource::add_position(const RecordedPosition& position) { impl_->add_motion(position); }
-void LiveSource::add_inertia(const RecordedInertia& inertia) { impl_->add_motion(inertia); }
-void LiveSource::add_wheel_speed(const WheelSpeed& speed) { impl_->add_motion(speed); }
+void LiveSource::add_pose(const RecordedPose& pose) { impl_->add_pose(pose); }
+void LiveSource::add_position(const RecordedPosition& position) { impl_->add_position(position); }
+void LiveSource::add_inertia(const RecordedInertia& inertia) { impl_->add_inertia(inertia); }
+void LiveSource::add_wheel_speed(const WheelSpeed& speed) { impl_->add_wheel_speed(speed); }
 void LiveSource::close() { impl_->close(); }
 std::unique_ptr<FrameSource> LiveSource::begin(const std::stop_token& stop) {
   return impl_->begin(stop);

@@ -12,7 +12,9 @@
 
 #include "fovea/drive/live/first_frames.h"
 #include "fovea/drive/live/live_motion.h"
+#include "fovea/drive/live/live_sensors.h"
 #include "fovea/drive/live/live_source.h"
+#include "fovea/drive/live/sensor_watch.h"
 
 namespace fovea {
 
@@ -26,14 +28,10 @@ class LiveSource::Impl {
 
   void add_scan(LiveScan scan);
   void add_image(LiveImage image);
-  template <class Record>
-  void add_motion(const Record& record) {
-    const std::lock_guard lock(guard_);
-    if (closed_) return;
-    ++figures_.poses;
-    if (!motion_.add(record)) ++figures_.poses_late;
-    notify();
-  }
+  void add_pose(const RecordedPose& pose) { add_motion(sensors_.poses(), pose); }
+  void add_position(const RecordedPosition& p) { add_motion(sensors_.positions(), p); }
+  void add_inertia(const RecordedInertia& inertia) { add_motion(sensors_.imu(), inertia); }
+  void add_wheel_speed(const WheelSpeed& speed) { add_motion(sensors_.wheels(), speed); }
   void close();
 
   std::unique_ptr<FrameSource> begin(const std::stop_token& stop);
@@ -52,6 +50,16 @@ class LiveSource::Impl {
   /// Place among the further LiDARs; absent: the first LiDAR.
   std::optional<std::size_t> find_further_lidar(const std::string& name) const;
   std::size_t find_camera(const std::string& name) const;
+
+  template <class Record>
+  void add_motion(std::size_t sensor, const Record& record) {
+    const std::lock_guard lock(guard_);
+    if (closed_) return;
+    ++figures_.poses;
+    watch_.add(sensor, record.time);
+    if (!motion_.add(record)) ++figures_.poses_late;
+    notify();
+  }
 
   // All below with guard_ locked.
 
@@ -75,11 +83,13 @@ class LiveSource::Impl {
   std::optional<RawFrame> take_frame(std::unique_lock<std::mutex>& lock,
                                      const std::stop_token& stop);
   TimeNs end_of_sweep(TimeNs stamp) const { return stamp + sweep_end(*decoder_); }
+  void begin_watch(const LiveBeginning& beginning);
   /// Adds the motion since the frame before.
   void add_motion_to(RawFrame& raw);
 
   const LiveOptions options_;
   const DriveDescription description_;
+  const LiveSensors sensors_{description_};
 
   mutable std::mutex guard_;  // of all below
   std::condition_variable_any changed_;
@@ -88,6 +98,7 @@ class LiveSource::Impl {
   bool closed_ = false;
   FrameQueue queue_;
   LiveMotion motion_;
+  SensorWatch watch_;
   std::optional<WallClock::time_point> first_arrival_;  // of a scan
   LiveFigures figures_;
   int next_index_;

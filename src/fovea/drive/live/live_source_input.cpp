@@ -15,6 +15,13 @@ namespace {
 /// Scans that the beginning keeps beyond the first ones, until it has their images.
 constexpr std::size_t kMoreScans = 4;
 
+std::vector<std::string> names_of(const LiveSensors& sensors) {
+  std::vector<std::string> names;
+  names.reserve(sensors.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i) names.push_back(sensors.name(i));
+  return names;
+}
+
 /// ConfigError for cameras that the drive lacks, and for options out of range.
 void check(const DriveDescription& description, const LiveOptions& options) {
   if (options.first_scans < 1 || options.max_scans < 1) {
@@ -34,6 +41,7 @@ LiveSource::Impl::Impl(std::string_view drive_toml, const LiveOptions& options)
       description_(parse_drive_description(drive_toml, "drive.toml")),
       queue_(description_.further_lidars.size(), description_.cameras.size(), first_limits()),
       motion_(description_, options.drive, options.name, options.max_wait),
+      watch_(names_of(sensors_)),
       next_index_(options.first_frame) {
   check(description_, options_);
 }
@@ -46,12 +54,13 @@ LiveSource::Impl::~Impl() {
 
 void LiveSource::Impl::add_scan(LiveScan scan) {
   const std::optional<std::size_t> further = find_further_lidar(scan.lidar);
-  auto shared = std::make_shared<const LiveScan>(std::move(scan));
   std::unique_lock lock(guard_);
   const auto has_room = [&] {
     return further ? queue_.has_room_for_further_scan(*further) : queue_.has_room_for_scan();
   };
   if (!wait_for_room(lock, has_room)) return;
+  watch_.add(further ? sensors_.further_lidar(*further) : LiveSensors::kLidar, scan.stamp);
+  auto shared = std::make_shared<const LiveScan>(std::move(scan));
   const WallClock::time_point now = WallClock::now();
   if (!further && !first_arrival_) first_arrival_ = now;
   const FrameQueue::Added added = further ? queue_.add_further_scan(*further, std::move(shared))
@@ -63,12 +72,13 @@ void LiveSource::Impl::add_scan(LiveScan scan) {
 
 void LiveSource::Impl::add_image(LiveImage image) {
   const std::size_t camera = find_camera(image.camera);
-  auto shared = std::make_shared<const LiveImage>(std::move(image));
   std::unique_lock lock(guard_);
   if (!wait_for_room(lock, [&] { return queue_.has_room_for_image(camera); })) return;
   ++figures_.images;
   if (!options_.drive.use_images) return;
-  const FrameQueue::Added added = queue_.add_image(camera, std::move(shared));
+  watch_.add(sensors_.camera(camera), image.stamp);
+  const FrameQueue::Added added =
+      queue_.add_image(camera, std::make_shared<const LiveImage>(std::move(image)));
   figures_.images_late += added == FrameQueue::Added::kLate ? 1 : 0;
   notify();
 }

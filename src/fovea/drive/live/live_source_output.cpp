@@ -25,9 +25,15 @@ LiveFigures LiveSource::Impl::figures() const {
   const std::lock_guard lock(guard_);
   LiveFigures figures = figures_;
   figures.append(motion_.messages());
+  figures.append(watch_.messages());
   figures.scans_dropped = queue_.scans_dropped();
+  figures.scans_missing = queue_.scan_stamps().missing();
+  for (std::size_t i = 0; i < description_.further_lidars.size(); ++i) {
+    figures.scans_missing += queue_.further_scans(i).stamps().missing();
+  }
   for (std::size_t i = 0; i < description_.cameras.size(); ++i) {
     figures.images_unused += queue_.images(i).unused();
+    figures.images_missing += queue_.images(i).stamps().missing();
   }
   figures.images_unused -= std::min(figures.images_unused, figures.images_late);
   return figures;
@@ -124,6 +130,7 @@ std::unique_ptr<FrameSource> LiveSource::Impl::begin(const std::stop_token& stop
   const LocalFrame local{0, options_.origin, options_.world_origin};
   add_first_frames(frames, description_, motion_, local, beginning);
   first_frames_.assign(frames.begin(), frames.end());
+  begin_watch(beginning);
   notify();
   return first_frames_source(std::move(beginning.info), decoder_, std::move(frames));
 }
@@ -144,6 +151,38 @@ std::optional<RawFrame> LiveSource::Impl::take_frame(std::unique_lock<std::mutex
   raw.index = next_index_++;
   notify();
   return raw;
+}
+
+void LiveSource::Impl::begin_watch(const LiveBeginning& beginning) {
+  const DriveInfo& info = beginning.info;
+  std::vector<bool> is_used(sensors_.size()), is_wanted(sensors_.size());
+  is_used[LiveSensors::kLidar] = true;
+  for (std::size_t i = 0; i < description_.further_lidars.size(); ++i) {
+    is_wanted[sensors_.further_lidar(i)] = true;
+  }
+  for (const std::size_t i : beginning.sensors.further_lidars) {
+    is_used[sensors_.further_lidar(i)] = true;
+  }
+  const std::vector<int> numbers = camera_numbers(description_), chosen = options_.drive.cameras;
+  const auto has = [](const std::vector<int>& cameras, int camera) {
+    return std::find(cameras.begin(), cameras.end(), camera) != cameras.end();
+  };
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    is_wanted[sensors_.camera(i)] = options_.drive.use_images &&
+                                    has(chosen.empty() ? numbers : chosen, numbers[i]) &&
+                                    !has(info.unused_cameras, numbers[i]);
+  }
+  for (const std::size_t i : used_cameras_) is_used[sensors_.camera(i)] = true;
+  const bool by_poses = motion_.is_by_poses();
+  is_used[sensors_.poses()] = info.navigation && by_poses;
+  is_used[sensors_.positions()] = info.navigation && !by_poses;
+  is_used[sensors_.imu()] = info.imu.has_value();
+  is_used[sensors_.wheels()] = info.wheels.has_value();
+  is_wanted[sensors_.poses()] = options_.drive.use_navigation && !info.navigation;
+  is_wanted[sensors_.positions()] = is_wanted[sensors_.poses()];
+  is_wanted[sensors_.imu()] = options_.drive.use_imu && description_.imu;
+  is_wanted[sensors_.wheels()] = options_.drive.use_imu;
+  watch_.begin(is_used, is_wanted);
 }
 
 void LiveSource::Impl::add_motion_to(RawFrame& raw) {

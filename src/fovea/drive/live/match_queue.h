@@ -7,35 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "fovea/core/median.h"
 #include "fovea/core/time.h"
+#include "fovea/drive/live/sensor_stamps.h"
 
 namespace fovea {
-
-/// The usual step between the stamps of a sensor.
-class StampStep {
- public:
-  /// @param stamp  after the one before
-  void add(TimeNs stamp) {
-    if (last_) steps_.push_back(stamp - *last_);
-    if (steps_.size() > kKept) steps_.pop_front();
-    last_ = stamp;
-  }
-  /// Median of the latest steps; absent before there are some.
-  std::optional<TimeNs> usual() const {
-    if (steps_.size() < kFewest) return std::nullopt;
-    return median_of(std::vector<TimeNs>(steps_.begin(), steps_.end()));
-  }
-  const std::optional<TimeNs>& last() const { return last_; }
-
- private:
-  static constexpr std::size_t kFewest = 4, kKept = 32;
-  std::deque<TimeNs> steps_;
-  std::optional<TimeNs> last_;
-};
-
-/// A sensor that has sent nothing for so long is not waited for.
-inline constexpr TimeNs kStoppedAfter = 2 * kNsPerSecond;
 
 /// Images of a camera, or scans of a further LiDAR, in the order of their stamps. Each scan of the
 /// first LiDAR takes the item that is nearest to its expected time, as match_nearest() does.
@@ -47,24 +22,24 @@ class MatchQueue {
 
   /// @param item  with a later stamp than the one before
   void add(Pointer item) {
-    step_.add(item->stamp);
+    stamps_.add(item->stamp);
     bytes_ += content_bytes(*item);
     items_.push_back(std::move(item));
   }
 
   /// An item that is not kept.
   void pass(TimeNs stamp) {
-    step_.add(stamp);
+    stamps_.add(stamp);
     ++unused_;
   }
 
   /// Whether no item that comes later can be nearer to a time than those at hand. A sensor with a
   /// steady rate shows that before its next item comes.
   bool is_decided(TimeNs time, TimeNs tolerance) const {
-    if (!step_.last()) return false;
-    const TimeNs gap = time - *step_.last();
+    if (!stamps_.last()) return false;
+    const TimeNs gap = time - *stamps_.last();
     if (gap <= 0 || gap > kStoppedAfter) return true;
-    const std::optional<TimeNs> step = step_.usual();
+    const std::optional<TimeNs> step = stamps_.usual_step();
     if (!step) return false;
     if (gap <= tolerance) return 10 * gap < 3 * *step;
     return 10 * (*step - gap) > 10 * tolerance + 2 * *step;
@@ -98,7 +73,7 @@ class MatchQueue {
   }
 
   const std::deque<Pointer>& items() const { return items_; }
-  const StampStep& step() const { return step_; }
+  const SensorStamps& stamps() const { return stamps_; }
   std::size_t bytes() const { return bytes_; }
   /// Stamp of the last one that a scan has taken.
   const std::optional<TimeNs>& last_taken() const { return last_taken_; }
@@ -112,7 +87,7 @@ class MatchQueue {
 
   std::deque<Pointer> items_;
   std::optional<TimeNs> last_taken_;
-  StampStep step_;
+  SensorStamps stamps_;
   std::size_t unused_ = 0, bytes_ = 0;
 };
 

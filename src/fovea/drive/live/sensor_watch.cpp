@@ -1,0 +1,57 @@
+#include "fovea/drive/live/sensor_watch.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace fovea {
+namespace {
+
+constexpr std::size_t kMostWarnings = 100;
+
+}  // namespace
+
+SensorWatch::SensorWatch(std::vector<std::string> names) {
+  sensors_.reserve(names.size());
+  for (std::string& name : names) sensors_.push_back({std::move(name), State::kBefore, {}});
+}
+
+void SensorWatch::begin(const std::vector<bool>& is_used, const std::vector<bool>& is_wanted) {
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    sensors_[i].state = is_used[i]     ? State::kUsed
+                        : is_wanted[i] ? State::kUnused
+                                       : State::kReported;
+  }
+}
+
+void SensorWatch::add(std::size_t sensor, TimeNs stamp) {
+  Sensor& of = sensors_[sensor];
+  if (sensor == 0 && !first_) first_ = stamp;
+  if (of.state == State::kUnused) {
+    warn(fmt::format("{} sends data after the beginning: they are not used", of.name));
+    of.state = State::kReported;
+  } else if (of.state == State::kStopped) {
+    warn(fmt::format("{} sends data again, after {:.1f} s", of.name, seconds(stamp - *of.last)));
+    of.state = State::kUsed;
+  }
+  of.last = stamp;
+  if (sensor == 0) check(stamp);
+}
+
+void SensorWatch::check(TimeNs now) {
+  for (Sensor& sensor : sensors_) {
+    if (sensor.state != State::kUsed || !sensor.last) continue;
+    if (now - *sensor.last <= kStoppedAfter) continue;
+    warn(fmt::format("{} has sent no data since {:.1f} s of the drive", sensor.name,
+                     seconds(*sensor.last - *first_)));
+    sensor.state = State::kStopped;
+  }
+}
+
+void SensorWatch::warn(std::string text) {
+  if (messages_.warnings.size() == kMostWarnings) return;
+  if (messages_.warnings.size() + 1 == kMostWarnings) text = "further warnings are left out";
+  messages_.warn(std::move(text));
+}
+
+}  // namespace fovea
