@@ -10,6 +10,7 @@
 
 #include "fovea/core/angle.h"
 #include "fovea/core/plain_name.h"
+#include "fovea/drive/writers/motion_tables.h"
 #include "fovea/drive/writers/png_encode.h"
 
 namespace fovea {
@@ -106,64 +107,6 @@ std::string lidar_text(const RecordedLidar& lidar, bool has_pose) {
   return text;
 }
 
-std::string wheels_text(const std::vector<WheelSpeed>& wheels) {
-  std::string text = "time_ns,speed\n";
-  for (const WheelSpeed& wheel : wheels) text += fmt::format("{},{}\n", wheel.time, wheel.speed);
-  return text;
-}
-
-std::string poses_text(const std::vector<RecordedPose>& poses) {
-  std::string text = "time_ns,x,y,z,qx,qy,qz,qw\n";
-  for (const RecordedPose& pose : poses) {
-    const Eigen::Vector3d& t = pose.T_world_body.translation;
-    const Eigen::Quaterniond& q = pose.T_world_body.rotation;
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", pose.time, t.x(), t.y(), t.z(), q.x(), q.y(),
-                        q.z(), q.w());
-  }
-  return text;
-}
-
-std::string positions_text(const std::vector<RecordedPosition>& positions) {
-  std::string text = "time_ns,latitude,longitude,altitude,accuracy,roll,pitch,yaw";
-  const bool has_velocities =
-      std::any_of(positions.begin(), positions.end(),
-                  [](const RecordedPosition& position) { return position.velocity.has_value(); });
-  text += has_velocities ? ",vx,vy,vz,wx,wy,wz\n" : "\n";
-  for (const RecordedPosition& position : positions) {
-    const GeodeticPoint& p = position.antenna;
-    text += fmt::format("{},{},{},{},{}", position.time, p.latitude, p.longitude, p.altitude,
-                        position.accuracy);
-    if (const auto& angles = position.roll_pitch_yaw) {
-      text += fmt::format(",{},{},{}", angles->x(), angles->y(), angles->z());
-    } else {
-      text += ",,,";
-    }
-    if (const auto& v = position.velocity) {
-      text +=
-          fmt::format(",{},{},{},{},{},{}", (*v)[3], (*v)[4], (*v)[5], (*v)[0], (*v)[1], (*v)[2]);
-    } else if (has_velocities) {
-      text += ",,,,,,";
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-std::string inertia_text(const std::vector<RecordedInertia>& inertia) {
-  std::string text = "time_ns,qx,qy,qz,qw,wx,wy,wz,ax,ay,az\n";
-  for (const RecordedInertia& moment : inertia) {
-    const Eigen::Vector3d &w = moment.angular_velocity, &a = moment.acceleration;
-    text += fmt::format("{}", moment.time);
-    if (const auto& q = moment.R_enu_imu) {
-      text += fmt::format(",{},{},{},{}", q->x(), q->y(), q->z(), q->w());
-    } else {
-      text += ",,,,";
-    }
-    text += fmt::format(",{},{},{},{},{},{}\n", w.x(), w.y(), w.z(), a.x(), a.y(), a.z());
-  }
-  return text;
-}
-
 /// A folder below the drive's: names of other characters could lead out of it.
 std::filesystem::path sensor_folder(const char* kind, const std::string& name) {
   if (!is_plain_name(name)) {
@@ -244,10 +187,8 @@ void GenericDriveWriter::finish(const RecordedDrive& drive) {
   for (const auto& [camera, stamps] : image_stamps_) {
     folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps, exposures_[camera]));
   }
-  if (!drive.poses.empty()) folder_.write("poses.csv", poses_text(drive.poses));
-  if (!drive.positions.empty()) folder_.write("gnss.csv", positions_text(drive.positions));
-  if (!drive.inertia.empty()) folder_.write("imu.csv", inertia_text(drive.inertia));
-  if (!drive.wheels.empty()) folder_.write("wheels.csv", wheels_text(drive.wheels));
+  const MotionTables tables = motion_tables(drive);
+  for (const auto& [name, text] : tables) folder_.write(name, text);
   folder_.commit();
 }
 
