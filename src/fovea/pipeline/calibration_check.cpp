@@ -21,13 +21,14 @@ std::vector<EdgeProfile> profiles_of(const Frame& frame, std::size_t slot, const
 
 }  // namespace
 
-CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate, bool is_live)
+CalibrationCheck::CalibrationCheck(const DriveInfo& drive, bool compensate, bool is_live,
+                                   std::optional<int> begin)
     : drive_(drive),
       compensate_(compensate),
       checks_imu_(drive.imu && !is_live),
       stride_(is_live ? kLiveStride
                       : std::max(kMinStride, (int(drive.frame_count()) + kFrames - 1) / kFrames)),
-      next_(drive.begin + stride_ / 2),
+      next_(begin.value_or(drive.begin) + stride_ / 2),
       profiles_(drive.calibration.cameras.size()) {}
 
 void CalibrationCheck::add_edges(const Frame& frame, const FrameMotion& motion) {

@@ -1,6 +1,7 @@
 // Checks the calibration while a drive is mapped (docs/calibration.md).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fovea/drive/frame_source.h"
@@ -21,7 +22,9 @@ class CalibrationCheck {
   /// @param drive       must outlive the check. A live drive has no measurements of the whole
   ///                    IMU, which is then not checked
   /// @param compensate  whether scans need motion compensation
-  CalibrationCheck(const DriveInfo& drive, bool compensate, bool is_live);
+  /// @param begin       first frame; absent: that of the drive
+  CalibrationCheck(const DriveInfo& drive, bool compensate, bool is_live,
+                   std::optional<int> begin = {});
 
   /// Whether enough frames have passed since the last one whose edges were added.
   bool is_due(int index) const { return !profiles_.empty() && index >= next_ && used_ < kFrames; }

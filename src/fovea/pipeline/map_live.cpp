@@ -14,16 +14,20 @@ namespace {
 
 class LiveStream : public FrameStream {
  public:
-  explicit LiveStream(LiveSource& source) : source_(source) {}
+  /// @param clocks  or null
+  LiveStream(LiveSource& source, LiveClocks* clocks) : source_(source), clocks_(clocks) {}
 
   std::optional<ReadFrame> next(const std::stop_token& stop) override {
     std::optional<LiveFrame> frame = source_.next(stop);
     if (!frame) return std::nullopt;
+    auto* const usable = std::get_if<Frame>(&frame->frame);
+    if (clocks_ != nullptr && usable != nullptr) clocks_->correct(*usable);
     return ReadFrame{std::move(frame->frame), frame->decode_ms, frame->arrival};
   }
 
  private:
   LiveSource& source_;
+  LiveClocks* clocks_;
 };
 
 /// Closes a source: no thread waits to add data that nothing reads.
@@ -55,7 +59,7 @@ MapSummary map_live(LiveSource& source, const MapJob& job,
   require_sources(drive, job);
   MapRun run = MapRun::live(*first_frames, drive, job, meta_of_run(drive, job));
   run.keep_world_origin(source.world_origin());
-  LiveStream frames(source);
+  LiveStream frames(source, run.clocks());
   run.map_frames(frames, progress);
   run.finish();
   run.require_whole_drive();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <utility>
 
 #include "fovea/core/errors.h"
@@ -48,7 +49,11 @@ MapRun::MapRun(const FrameSource& source, const DriveInfo& drive, const MapJob& 
       figures_(drive, job.rate),
       views_(drive) {
   if (job.settings.run.check_calibration && !job.calibrate) {
-    check_.emplace(drive, has_sweep_motion(drive, job), is_live);
+    if (is_live) {
+      clocks_ = std::make_unique<LiveClocks>(drive, has_sweep_motion(drive, job));
+    } else {
+      check_.emplace(drive, has_sweep_motion(drive, job), /*is_live=*/false);
+    }
   }
   for (const Camera& camera : drive.calibration.cameras) {
     live_state_.image_delays[camera.index] = camera.image_delay;
@@ -142,6 +147,16 @@ void MapRun::check_calibration(const TrackedFrame& tracked, FrameRecord& record)
   record.milliseconds["calibration"] = milliseconds_since(start);
 }
 
+void MapRun::check_clocks(const TrackedFrame& tracked, FrameRecord& record) {
+  const auto* frame = std::get_if<Frame>(&tracked.read.result);
+  if (!clocks_ || frame == nullptr) return;
+  const WallClock::time_point start = WallClock::now();
+  std::optional<FrameMotion> motion;
+  if (record.status == FrameStatus::kMapped) motion = mapped_motion(record, latest_);
+  clocks_->add(*frame, record, motion);
+  record.milliseconds["calibration"] = milliseconds_since(start);
+}
+
 MapRows MapRun::fresh_rows(bool last) {
   MapRows rows = log_.rows(mapper_->map(), /*exact=*/last);
   rows.keyframes = keyframes_.take();
@@ -204,6 +219,7 @@ void MapRun::map_next(TrackedFrame& tracked,
   if (is_live_ && tracked.tracked) keep_target(*tracked.tracked);
   FrameRecord record = map_tracked_frame(*mapper_, source_, drive_, tracked);
   check_calibration(tracked, record);
+  check_clocks(tracked, record);
   account_for(record, /*is_new=*/true);
   log_.add(record);
   if (log_.size() % kPointsCheckedEvery == 0) check_points();
@@ -238,6 +254,7 @@ void MapRun::finish() {
   check_points();
   // While the writer thread writes the checkpoint before.
   if (check_) calibration_ = check_->estimate();
+  if (clocks_) calibration_ = clocks_->first_calibration();
   if (!job_.scratch.empty()) require_whole_drive();
   file_.finish(mapper_->map(), fresh_rows(/*last=*/true));
 }
@@ -261,6 +278,7 @@ MapSummary MapRun::summary() const {
                     job_.given_poses.size(), drive_.end - drive_.begin));
   }
   for (std::string& note : views_.notes()) summary.warn(std::move(note));
+  if (clocks_) summary.append(clocks_->messages());
   warn_of_memory(summary, job_.memory);
   summary.points = mapper_->map().size();
   summary.frames_new = log_.size() - frames_before_;

@@ -13,6 +13,7 @@
 #include "fovea/pipeline/drive_log.h"
 #include "fovea/pipeline/frame_pipeline.h"
 #include "fovea/pipeline/keyframe_recorder.h"
+#include "fovea/pipeline/live_clocks.h"
 #include "fovea/pipeline/live_state.h"
 #include "fovea/pipeline/map_drive.h"
 #include "fovea/pipeline/view_check.h"
@@ -41,6 +42,8 @@ class MapRun {
                      MapMeta meta) {
     return {first_frames, drive, job, std::move(meta), /*is_live=*/true};
   }
+  /// Of a live drive: null if the calibration is not checked.
+  LiveClocks* clocks() const { return clocks_.get(); }
   /// Origin of `local` in the world of a live drive's poses, for a later run.
   void keep_world_origin(const std::optional<Eigen::Vector3d>& origin) {
     live_state_.world_origin = origin;
@@ -68,6 +71,7 @@ class MapRun {
   void account_for(const FrameRecord& record, bool is_new);
   void checkpoint_if_due();
   void check_calibration(const TrackedFrame& tracked, FrameRecord& record);
+  void check_clocks(const TrackedFrame& tracked, FrameRecord& record);
   /// InputError if too many points were dropped so far.
   void check_points() const;
   MapRows fresh_rows(bool last);  // of a checkpoint
@@ -88,6 +92,7 @@ class MapRun {
   // Of a live drive.
   std::vector<std::optional<TimeNs>> live_stamps_;  // of all frames
   LiveState live_state_;
+  std::unique_ptr<LiveClocks> clocks_;
   bool threaded_;
   Checkpointer file_;
   TileCache cache_;
