@@ -76,14 +76,20 @@ std::optional<double> NavigationCheck::stated_accuracy(TimeNs stamp) const {
 std::optional<AbsolutePose> NavigationCheck::measurement(std::size_t node, TimeNs stamp) const {
   if (navigation_ == nullptr) return std::nullopt;
   const auto pose = navigation_->at(stamp);
-  const double stated = accuracy_at(stamp);
-  if (!pose || !std::isfinite(stated)) return std::nullopt;
+  if (!pose) return std::nullopt;
+  return measurement(node, *pose, accuracy_at(stamp));
+}
+
+std::optional<AbsolutePose> NavigationCheck::measurement(std::size_t node,
+                                                         const RigidMotion& T_local_lidar,
+                                                         double stated) const {
+  if (!std::isfinite(stated)) return std::nullopt;
   Eigen::Vector3d jumped = Eigen::Vector3d::Zero();
   for (const Jump& jump : jumps_) jumped += jump.offset;
   const double accuracy =
       kCorrelation * (stated > 0 ? std::max(stated, kLeastAccuracy) : kUnknownAccuracy) +
       jumped.norm();
-  AbsolutePose measurement{node, *pose, Twist::Ones(), /*robust=*/true};
+  AbsolutePose measurement{node, T_local_lidar, Twist::Ones(), /*robust=*/true};
   measurement.sigma << kCorrelation * kTiltAccuracy, kCorrelation * kTiltAccuracy,
       kCorrelation * kHeadingAccuracy, accuracy, accuracy, kHeightFactor * accuracy;
   return measurement;

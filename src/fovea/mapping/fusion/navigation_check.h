@@ -42,6 +42,10 @@ class NavigationCheck {
   /// The pose of a node by navigation, with standard deviations that include its faults; empty in
   /// an outage.
   std::optional<AbsolutePose> measurement(std::size_t node, TimeNs stamp) const;
+  /// The same of a pose that is known.
+  /// @param stated  its accuracy, m: 0 where nothing is stated, infinite without a fix
+  std::optional<AbsolutePose> measurement(std::size_t node, const RigidMotion& T_local_lidar,
+                                          double stated) const;
 
  private:
   double accuracy_at(TimeNs stamp) const;
