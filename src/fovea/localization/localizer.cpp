@@ -60,20 +60,6 @@ Eigen::Matrix<double, 6, 6> covariance_of(const RegistrationResult& registration
 
 }  // namespace
 
-const char* to_string(LocalizationState state) {
-  switch (state) {
-    case LocalizationState::kLocalized:
-      return "localized";
-    case LocalizationState::kLost:
-      return "lost";
-    case LocalizationState::kOutside:
-      return "outside";
-    case LocalizationState::kSkipped:
-      return "skipped";
-  }
-  return "unknown";
-}
-
 void LocalizerOptions::validate() const {
   if (registration.method == RegistrationMethod::kPointToPoint) {
     throw ConfigError("scans are localized by surfaces", "registration.method",
