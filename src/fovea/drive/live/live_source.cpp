@@ -26,7 +26,7 @@ std::optional<Eigen::Vector3d> LiveSource::world_origin() const { return impl_->
 void LiveSource::set_image_delay(std::size_t camera, double delay) {
   impl_->set_image_delay(camera, delay);
 }
-void LiveSource::finish_recording() {}
+void LiveSource::finish_recording() { impl_->finish_recording(); }
 LiveFigures LiveSource::figures() const { return impl_->figures(); }
 
 }  // namespace fovea

@@ -12,6 +12,7 @@
 
 #include "fovea/drive/live/first_frames.h"
 #include "fovea/drive/live/live_motion.h"
+#include "fovea/drive/live/live_recorder.h"
 #include "fovea/drive/live/live_sensors.h"
 #include "fovea/drive/live/live_source.h"
 #include "fovea/drive/live/sensor_watch.h"
@@ -33,6 +34,7 @@ class LiveSource::Impl {
   void add_inertia(const RecordedInertia& inertia) { add_motion(sensors_.imu(), inertia); }
   void add_wheel_speed(const WheelSpeed& speed) { add_motion(sensors_.wheels(), speed); }
   void close();
+  void finish_recording();
 
   std::unique_ptr<FrameSource> begin(const std::stop_token& stop);
   std::optional<LiveFrame> next(const std::stop_token& stop);
@@ -57,11 +59,26 @@ class LiveSource::Impl {
     if (closed_) return;
     ++figures_.poses;
     watch_.add(sensor, record.time);
-    if (!motion_.add(record)) ++figures_.poses_late;
+    if (!motion_.add(record)) {
+      ++figures_.poses_late;
+    } else if (recorder_) {
+      record_later(record);
+    }
     notify();
   }
 
   // All below with guard_ locked.
+
+  /// Keeps a record for the recording.
+  void record_later(const RecordedPose& pose) { keep(pose, unrecorded_.poses); }
+  void record_later(const RecordedPosition& position) { keep(position, unrecorded_.positions); }
+  void record_later(const RecordedInertia& inertia) { keep(inertia, unrecorded_.inertia); }
+  void record_later(const WheelSpeed& speed) { keep(speed, unrecorded_.wheels); }
+  template <class Record>
+  static void keep(const Record& record, std::vector<Record>& records) {
+    constexpr std::size_t kMost = 1 << 16;
+    if (records.size() < kMost) records.push_back(record);
+  }
 
   void notify();
   /// Waits for room if the options want that. Without a scan that waits for a frame it waits for a
@@ -106,6 +123,8 @@ class LiveSource::Impl {
   std::vector<std::size_t> used_cameras_;  // places in drive.toml
   std::deque<RawFrame> first_frames_;      // that next() has not returned
   MotionData skipped_motion_;              // of frames that were skipped
+  std::optional<LiveRecorder> recorder_;   // for the thread that maps
+  RawMotion unrecorded_;
 };
 
 }  // namespace fovea

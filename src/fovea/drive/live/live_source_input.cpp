@@ -22,6 +22,16 @@ std::vector<std::string> names_of(const LiveSensors& sensors) {
   return names;
 }
 
+/// With the delays of cameras that an earlier run has found.
+DriveDescription description_of(std::string_view drive_toml, const LiveOptions& options) {
+  DriveDescription description = parse_drive_description(drive_toml, "drive.toml");
+  for (CameraDescription& camera : description.cameras) {
+    const auto found = options.image_delays.find(camera.index);
+    if (found != options.image_delays.end()) camera.stamp_delay = found->second - camera.delay;
+  }
+  return description;
+}
+
 /// ConfigError for cameras that the drive lacks, and for options out of range.
 void check(const DriveDescription& description, const LiveOptions& options) {
   if (options.first_scans < 1 || options.max_scans < 1) {
@@ -38,12 +48,15 @@ void check(const DriveDescription& description, const LiveOptions& options) {
 
 LiveSource::Impl::Impl(std::string_view drive_toml, const LiveOptions& options)
     : options_(options),
-      description_(parse_drive_description(drive_toml, "drive.toml")),
+      description_(description_of(drive_toml, options)),
       queue_(description_.further_lidars.size(), description_.cameras.size(), first_limits()),
       motion_(description_, options.drive, options.name, options.max_wait),
       watch_(names_of(sensors_)),
       next_index_(options.first_frame) {
   check(description_, options_);
+  if (!options_.record.empty()) {
+    recorder_.emplace(options_.record, std::string(drive_toml), description_);
+  }
 }
 
 LiveSource::Impl::~Impl() {

@@ -185,6 +185,14 @@ void LiveSource::Impl::begin_watch(const LiveBeginning& beginning) {
   watch_.begin(is_used, is_wanted);
 }
 
+void LiveSource::Impl::finish_recording() {
+  if (!recorder_) return;
+  std::unique_lock lock(guard_);
+  RawMotion unrecorded = std::exchange(unrecorded_, {});
+  lock.unlock();
+  recorder_->finish(std::move(unrecorded));
+}
+
 void LiveSource::Impl::add_motion_to(RawFrame& raw) {
   raw.motion = std::exchange(skipped_motion_, {});
   const MotionData data = motion_.take(end_of_sweep(raw.stamp));
@@ -211,7 +219,9 @@ std::optional<LiveFrame> LiveSource::Impl::next(const std::stop_token& stop) {
     add_motion_to(raw);
   }
   const std::shared_ptr<const LiveDecoder> decoder = decoder_;
+  RawMotion unrecorded = std::exchange(unrecorded_, {});
   lock.unlock();
+  if (recorder_) recorder_->add(raw, std::move(unrecorded));
   const WallClock::time_point start = WallClock::now();
   LiveFrame frame{decoder->decode(raw), raw.arrival, 0};
   frame.decode_ms = milliseconds_since(start);

@@ -58,13 +58,18 @@ std::string kitti_text(const PointCloud& scan) {
   return bytes;
 }
 
-/// @param exposures  s, of all files or of none
+/// @param exposures  s
 std::string stamps_text(const std::map<int, TimeNs>& stamps,
                         const std::map<int, double>& exposures = {}) {
   std::string text = exposures.empty() ? "index,time_ns\n" : "index,time_ns,exposure_s\n";
   for (const auto& [number, time] : stamps) {
     text += fmt::format("{},{}", number, time);
-    if (!exposures.empty()) text += fmt::format(",{}", exposures.at(number));
+    const auto exposure = exposures.find(number);
+    if (exposure != exposures.end()) {
+      text += fmt::format(",{}", exposure->second);
+    } else if (!exposures.empty()) {
+      text += ',';
+    }
     text += '\n';
   }
   return text;
@@ -180,15 +185,18 @@ void GenericDriveWriter::write_file(const std::filesystem::path& name,
 }
 
 void GenericDriveWriter::finish(const RecordedDrive& drive) {
-  folder_.write("drive.toml", drive_toml(drive));
+  for (const auto& [name, text] : motion_tables(drive)) folder_.write(name, text);
+  finish(std::string_view(drive_toml(drive)));
+}
+
+void GenericDriveWriter::finish(std::string_view toml) {
+  folder_.write("drive.toml", toml);
   for (const auto& [lidar, stamps] : scan_stamps_) {
     folder_.write(scan_folder(lidar) / "stamps.csv", stamps_text(stamps));
   }
   for (const auto& [camera, stamps] : image_stamps_) {
     folder_.write(image_folder(camera) / "stamps.csv", stamps_text(stamps, exposures_[camera]));
   }
-  const MotionTables tables = motion_tables(drive);
-  for (const auto& [name, text] : tables) folder_.write(name, text);
   folder_.commit();
 }
 

@@ -101,7 +101,7 @@ class GenericDriveWriter {
                   ScanFile format = ScanFile::kPcd, const std::string& lidar = "");
   /// As PNG. std::invalid_argument for a name that RecordedCamera does not allow.
   void write_image(const std::string& camera, int number, TimeNs stamp, const Image& image);
-  /// States the exposure time of an image, s. Of a camera all images have one, or none.
+  /// States the exposure time of an image, s.
   void set_exposure(const std::string& camera, int number, double exposure);
   /// An image that is encoded already; as above.
   /// @param extension  ".png" or ".jpg"
@@ -116,6 +116,8 @@ class GenericDriveWriter {
 
   /// Writes drive.toml and the tables, makes everything durable and gives ROOT its name.
   void finish(const RecordedDrive& drive);
+  /// The same for a drive.toml of the caller, who has written the tables of motion into folder().
+  void finish(std::string_view drive_toml);
 
  private:
   using Stamps = std::map<int, TimeNs>;

@@ -1,0 +1,68 @@
+// Writes the frames of a live drive as a drive (docs/drives.md).
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "fovea/core/bounded_queue.h"
+#include "fovea/drive/drive_description.h"
+#include "fovea/drive/live/raw_frame.h"
+#include "fovea/drive/writers/generic_drive_writer.h"
+
+namespace fovea {
+
+/// Motion as it came.
+struct RawMotion {
+  std::vector<RecordedPose> poses;
+  std::vector<RecordedPosition> positions;
+  std::vector<RecordedInertia> inertia;
+  std::vector<WheelSpeed> wheels;
+};
+
+/// One thread calls it, another one writes. The first OutputError ends the recording.
+class LiveRecorder {
+ public:
+  /// @param drive_toml  is written as it is: its folders must be the default ones
+  /// @throws OutputError  as GenericDriveWriter
+  /// @throws ConfigError  for other folders, and for files that drive.toml names and that cannot be
+  ///                      part of the recording
+  LiveRecorder(const std::filesystem::path& root, std::string drive_toml,
+               const DriveDescription& description);
+  ~LiveRecorder();
+  LiveRecorder(const LiveRecorder&) = delete;
+  LiveRecorder& operator=(const LiveRecorder&) = delete;
+
+  /// Waits if the writer is behind.
+  void add(RawFrame frame, RawMotion motion);
+  /// Writes what has come, and gives the drive its name. OutputError if that, or a frame before,
+  /// could not be written.
+  void finish(RawMotion motion);
+
+ private:
+  struct Item {
+    std::optional<RawFrame> frame;
+    RawMotion motion;
+  };
+  void copy_masks() const;
+  void run();
+  void write(const Item& item);
+  void write_scan(int number, const std::string& lidar, const LiveScan& scan);
+  void write_image(int number, const LiveImage& image);
+  void write_motion(const RawMotion& motion);
+  void append(const char* table, const char* header, const std::string& rows);
+
+  std::string drive_toml_;
+  DriveDescription description_;
+  GenericDriveWriter writer_;
+  BoundedQueue<Item> queue_;
+  std::promise<void> written_;  // by the writer thread
+  std::future<void> result_ = written_.get_future();
+  std::jthread thread_;
+};
+
+}  // namespace fovea

@@ -1,0 +1,100 @@
+#include "fovea/drive/live/live_recorder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fovea/core/errors.h"
+#include "fovea/drive/live/test_live_run.h"
+
+namespace fovea::live_recorder_test {
+
+using namespace test;
+using testing::HasSubstr;
+
+class LiveRecording : public testing::Test {
+ protected:
+  LiveOptions recording() const {
+    LiveOptions options = all_data();
+    options.record = root_;
+    return options;
+  }
+  /// Plays the data with a recording.
+  LiveRun record(const LiveData& data, const std::string& toml) const {
+    LiveSource source(toml, recording());
+    const std::jthread sensors([&] {
+      for (const auto& [time, call] : data.calls()) call(source);
+      source.close();
+    });
+    LiveRun run = read_all(source);
+    source.finish_recording();
+    return run;
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path root_ = folder_ / "recording";
+};
+
+TEST_F(LiveRecording, IsTheDriveOfItsFrames) {
+  const LiveData data = live_car(30);
+  const LiveRun live = record(data, data.write(folder_ / "drive"));
+  expect_same(live, *open_drive(root_, all_data().drive));
+}
+
+TEST_F(LiveRecording, HasPositionsAndSeveralLidars) {
+  LiveData data = live_car_by_positions(20, /*has_attitudes=*/false);
+  data.drive.lidar.name = "top";
+  RecordedLidar& side = data.drive.further_lidars.emplace_back();
+  side.name = "side";
+  for (LiveScan& scan : data.scans) scan.lidar = "top";
+  for (int i = 0; i < 20; ++i) data.scans.push_back(live_scan(i, /*has_times=*/true, "side"));
+  const LiveRun live = record(data, data.write(folder_ / "drive"));
+  expect_same(live, *open_drive(root_, all_data().drive));
+}
+
+TEST_F(LiveRecording, HasPlainImagesAndLeavesOutDamagedScans) {
+  LiveData data = live_car(20);
+  const std::string toml = data.write(folder_ / "drive");
+  for (LiveImage& image : data.images) {
+    if (image.camera == "side") {
+      image.content = pattern(kLiveWidth, kLiveHeight, 1);
+      image.exposure.reset();
+    }
+  }
+  data.scans[12].points.intensity.resize(2);
+  data.images[15].content = "no image";
+  const LiveRun live = record(data, toml);
+  const auto drive = open_drive(root_, all_data().drive);
+  EXPECT_EQ(drive->info().frames.size(), 19u);
+  EXPECT_EQ(std::get<Frame>(drive->load(13)).images[0].data,
+            pattern(kLiveWidth, kLiveHeight, 1).data);
+  EXPECT_EQ(std::get<Frame>(drive->load(15)).missing_images.size(), 1u);
+}
+
+TEST_F(LiveRecording, IsNotThereUnlessItIsFinished) {
+  const LiveData data = live_car(15);
+  const std::string toml = data.write(folder_ / "drive");
+  {
+    LiveSource source(toml, recording());
+    for (const auto& [time, call] : data.calls()) {
+      if (time < data.scans[12].stamp) call(source);
+    }
+    source.close();
+    read_all(source);
+  }
+  EXPECT_FALSE(std::filesystem::exists(root_));
+  EXPECT_FALSE(std::filesystem::exists(root_.string() + ".partial"));
+}
+
+TEST_F(LiveRecording, RefusesWhatItCannotWrite) {
+  const LiveData data = live_car(1);
+  std::string toml = data.write(folder_ / "drive");
+  LiveOptions options = recording();
+  options.record = folder_ / "drive";
+  EXPECT_THROW(LiveSource(toml, options), OutputError);
+  const std::string lidar = "[lidar]\n";
+  toml.replace(toml.find(lidar), lidar.size(), lidar + "folder = \"scans\"\n");
+  EXPECT_THAT(error_of<ConfigError>([&] { LiveSource(toml, recording()); }),
+              HasSubstr("lidar.folder"));
+}
+
+}  // namespace fovea::live_recorder_test
