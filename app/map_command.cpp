@@ -16,6 +16,7 @@
 #include "app/job_arguments.h"
 #include "app/live_view.h"
 #include "app/map_job.h"
+#include "app/map_live_command.h"
 #include "app/number_checks.h"
 #include "app/print.h"
 #include "app/progress_bar.h"
@@ -23,6 +24,7 @@
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/process_memory.h"
+#include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/drive/command_files.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/pipeline/config.h"
@@ -101,7 +103,8 @@ void add_map_command(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("map", "Build a textured map from a drive");
   command
       ->add_option("DRIVE", arguments->drive.drive,
-                   "KITTI raw drive, odometry sequence or folder with a drive.toml")
+                   "KITTI raw drive, odometry sequence, folder with a drive.toml, or the Foxglove "
+                   "bridge of a running robot (ws://HOST:8765)")
       ->required();
   command->add_option("-o,--output", arguments->output, "Map file to write")
       ->required()
@@ -127,7 +130,10 @@ void add_map_command(CLI::App& app, Session& session) {
       ->add_option("--hold-out", arguments->hold_out,
                    "Frames that only get a pose: N:R (index % N == R) or blocks A-B,C-D")
       ->type_name("SPEC");
-  command->add_option("--poses", arguments->poses, "refine, navigation, or a file of T_local_lidar")
+  command
+      ->add_option("--poses", arguments->poses,
+                   "refine, navigation, or a file of T_local_lidar; of a running robot refine, "
+                   "navigation, or what refines: gnss, odometry, tf or none")
       ->capture_default_str();
   command
       ->add_option("--variant", arguments->variant,
@@ -164,7 +170,14 @@ void add_map_command(CLI::App& app, Session& session) {
       ->type_name("FILE.json");
   add_live_option(*command, arguments->live);
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments, &session] { run(*arguments, session); });
+  auto live = std::make_shared<LiveArguments>();
+  add_live_arguments(*command, *live);
+  command->callback([arguments, live, command, &session] {
+    const bool is_live = bridge::is_address(arguments->drive.drive);
+    check_kind_of_options(*command, is_live);
+    if (is_live) return map_robot(*arguments, *live, session);
+    run(*arguments, session);
+  });
 }
 
 }  // namespace fovea::app

@@ -27,6 +27,7 @@ export class BridgeServer {
     }
     this.server.on('subscribe', (channel) => this.subscribed.add(channel));
     this.server.on('unsubscribe', (channel) => this.subscribed.delete(channel));
+    this.needed = new Set(this.channels.keys());
     this.web = new WebSocketServer({ port: 0, host: '127.0.0.1',
       handleProtocols: (protocols) => this.server.handleProtocols(protocols) });
     this.web.on('connection', (connection) => {
@@ -39,9 +40,10 @@ export class BridgeServer {
     return `ws://127.0.0.1:${this.web.address().port}`;
   }
 
-  /// Until the client has subscribed to all topics.
+  /// Until the client has subscribed to all topics, or to those that are `needed`.
   async subscribedToAll() {
-    while (this.subscribed.size < this.channels.size) await new Promise((done) => setTimeout(done, 5));
+    const isReady = () => [...this.needed].every((topic) => this.subscribed.has(this.channels.get(topic)));
+    while (!isReady()) await new Promise((done) => setTimeout(done, 5));
   }
 
   /// Sends some of the messages, and waits until the client has read them: it answers a ping after them.

@@ -69,6 +69,11 @@ const rewrite = { poses: writePoses, gnss: moveAttitudes };
 export class ConvertDrives {
   root = mkdtempSync(join(tmpdir(), 'fovea_convert_'));
   #program = programNamedBy('FOVEA_PROGRAM');
+  #frames;
+
+  constructor({ frames = 4 } = {}) {
+    this.#frames = frames;
+  }
 
   path(...names) {
     return join(this.root, ...names);
@@ -77,7 +82,7 @@ export class ConvertDrives {
   simulate(name, ...settings) {
     mkdirSync(this.path(name));
     execFileSync(this.#program, ['simulate', '-o', this.path(name, 'drive'), '--format', 'generic',
-      '--seed', '3', '--quiet', ...[...smallCameras, ...settings].flatMap((setting) => ['--set', setting]), '--frames', '4']);
+      '--seed', '3', '--quiet', ...[...smallCameras, ...settings].flatMap((setting) => ['--set', setting]), '--frames', `${this.#frames}`]);
   }
 
   /// A simulated drive again, with other navigation.

@@ -1,0 +1,194 @@
+#include "app/map_live_command.h"
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/pose_lines.h"
+#include "app/progress_bar.h"
+#include "app/reports.h"
+#include "app/robot_reader.h"
+#include "fovea/core/errors.h"
+#include "fovea/core/parallel.h"
+#include "fovea/core/process_memory.h"
+#include "fovea/drive/bridge/pose_publisher.h"
+#include "fovea/pipeline/live_state.h"
+#include "fovea/pipeline/map_live.h"
+#include "fovea/pipeline/summary_json.h"
+
+namespace fovea::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// Values of --poses that choose the source of the first guess.
+const std::map<std::string, NavigationSource> kSources = {
+    {kRefinedPoses, NavigationSource::kAuto},
+    {kNavigationPoses, NavigationSource::kAuto},
+    {"gnss", NavigationSource::kGnss},
+    {"odometry", NavigationSource::kOdometry},
+    {"tf", NavigationSource::kTf},
+    {"none", NavigationSource::kNone}};
+
+LiveTopicsOptions options_of(const MapArguments& arguments, const LiveArguments& live) {
+  const auto poses = kSources.find(arguments.poses);
+  if (poses == kSources.end()) {
+    throw ConfigError("poses of a file need a drive that is recorded", "--poses " + arguments.poses,
+                      "give refine, navigation, gnss, odometry, tf or none");
+  }
+  LiveTopicsOptions options;
+  options.topics = live.topics.options();
+  options.topics.poses = poses->second;
+  options.topics.duration = live.duration;
+  options.topics.allow_dropped = arguments.allow_dropped;
+  options.live.name = arguments.drive.drive;
+  options.live.drive = arguments.drive.options();
+  options.live.max_wait = live.max_wait;
+  options.live.waits = live.every_frame;
+  options.live.record = live.record;
+  if (arguments.resume) continue_map(arguments.output, options.live);
+  return options;
+}
+
+void check_recording(const LiveArguments& live) {
+  std::error_code ignored;
+  if (live.record.empty() || !fs::exists(fs::symlink_status(live.record, ignored))) return;
+  throw OutputError("the folder exists already", live.record, "remove it, or choose another name");
+}
+
+/// "tracked", "lost" or "restarted".
+const char* state_of(const TrackingStats& tracking) {
+  if (tracking.is_lost) return "lost";
+  return tracking.has_restarted || tracking.is_pose_unknown ? "restarted" : "tracked";
+}
+
+ordered_json live_json(const RobotReader& reader, const LiveTopics& topics,
+                       const LiveFigures& figures, const bridge::PosePublisher& poses) {
+  const bridge::BridgeFigures& of_bridge = reader.figures();
+  return {{"messages", of_bridge.messages},
+          {"messages_damaged", of_bridge.damaged},
+          {"messages_unusable", topics.unusable_counts()},
+          {"connection_losses", of_bridge.losses},
+          {"scans", figures.scans},
+          {"scans_dropped", figures.scans_dropped},
+          {"scans_out_of_order", figures.scans_out_of_order},
+          {"scans_missing", figures.scans_missing},
+          {"images", figures.images},
+          {"images_late", figures.images_late},
+          {"images_missing", figures.images_missing},
+          {"images_unused", figures.images_unused},
+          {"poses", figures.poses},
+          {"poses_late", figures.poses_late},
+          {"poses_published", poses.counts().posted - poses.counts().dropped}};
+}
+
+class RobotMap {
+ public:
+  RobotMap(const MapArguments& arguments, const LiveArguments& live, Session& session)
+      : arguments_(arguments),
+        live_(live),
+        session_(session),
+        topics_(options_of(arguments, live)),
+        job_(job_of(arguments)) {
+    if (arguments.poses == kNavigationPoses) job_.pose_source = PoseSource::kNavigation;
+    job_.texture_every_frame = live.every_frame;
+    job_.on_tracked = [this](const FrameResult& frame) { report_pose(frame); };
+  }
+
+  void run() {
+    std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
+    if (!arguments_.report.empty()) report.emplace(arguments_.report, /*force=*/true);
+    bridge::BridgeOptions bridge;
+    bridge.address = bridge::parse_address(arguments_.drive.drive);
+    bridge.reconnect = std::chrono::milliseconds(std::int64_t(1000 * live_.reconnect));
+    bridge.poses = &poses_;
+    warm_memory(std::min(kWarmMemory, job_.memory / kWarmShare));
+    RobotReader reader(bridge, topics_, session_.interrupt.stop_gently(), arguments_.quiet);
+    LiveSource* const source = reader.wait_for_source();
+    if (source == nullptr) return throw_missing(reader);
+    if (!is_quiet()) {
+      for (const std::string& line : topics_.chosen()) print_out("{}\n", line);
+    }
+    MapSummary summary = naming_log(arguments_.output, [&] { return map(*source); });
+    reader.join();
+    source->finish_recording();
+    const LiveFigures figures = source->figures();
+    summary.append(figures);
+    summary.append(reader.figures());
+    summary.append(topics_.unusable());
+    print(summary);
+    if (report) {
+      write_json(*report, {{"map", to_json(summary)},
+                           {"live", live_json(reader, topics_, figures, poses_)}});
+    }
+    reader.rethrow();
+  }
+
+ private:
+  static constexpr std::size_t kWarmMemory = std::size_t{512} << 20, kWarmShare = 2;
+
+  /// Whether standard output is for poses, or for nothing.
+  bool is_quiet() const { return arguments_.quiet || live_.pose_stream; }
+
+  [[noreturn]] void throw_missing(RobotReader& reader) {
+    reader.join();
+    try {
+      reader.rethrow();
+    } catch (const bridge::ConnectionError&) {
+      throw;
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), error.where() + " of " + arguments_.drive.drive,
+                       error.remedy());
+    }
+    throw InputError("the robot has sent no drive", arguments_.drive.drive, "see docs/live.md");
+  }
+
+  MapSummary map(LiveSource& source) {
+    ProgressBar bar(arguments_.quiet);
+    return map_live(source, job_, std::ref(bar));
+  }
+
+  void report_pose(const FrameResult& frame) {
+    if (!frame.stamp) return;
+    bridge::PublishedPose pose;
+    pose.frame = frame.index;
+    pose.stamp = *frame.stamp;
+    pose.T_world_lidar = frame.poses.T_local_lidar;
+    pose.state = state_of(frame.tracking);
+    if (live_.pose_stream) print_pose(pose);
+    poses_.publish(std::move(pose));
+  }
+
+  void print(const MapSummary& summary) {
+    if (live_.pose_stream) {
+      session_.warnings.add(summary.warnings, arguments_.quiet);
+    } else {
+      print_run(summary, {}, arguments_, session_);
+    }
+  }
+
+  const MapArguments& arguments_;
+  const LiveArguments& live_;
+  Session& session_;
+  bridge::PosePublisher poses_;
+  LiveTopics topics_;
+  MapJob job_;
+};
+
+}  // namespace
+
+void map_robot(const MapArguments& arguments, const LiveArguments& live, Session& session) {
+  if (!arguments.live.empty()) {
+    throw ConfigError("the map of a running robot is not shown yet", "--live", "leave it out");
+  }
+  CommandFiles files = files_of(arguments);
+  files.folder = {live.record, FolderUse::kReplace};
+  check_files(files);
+  check_recording(live);
+  const ThreadLimit threads(arguments.threads);
+  RobotMap(arguments, live, session).run();
+}
+
+}  // namespace fovea::app

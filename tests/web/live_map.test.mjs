@@ -1,0 +1,173 @@
+// `fovea map ws://...`: the map of a running robot is the map of its recording.
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { once } from 'node:events';
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+
+import { record } from './bags.mjs';
+import { BridgeServer } from './bridge_server.mjs';
+import { ConvertDrives } from './convert_drives.mjs';
+import { programNamedBy } from './test_map.mjs';
+
+const limit = { timeout: 240_000 };  // a client that does not come would be waited for
+const program = programNamedBy('FOVEA_PROGRAM');
+
+const frames = 24;
+
+/// The points and frames of a map. The digest is also of the kind and name of the drive, which differ.
+function contentOf(name) {
+  const hash = createHash('sha256');
+  for (const file of ['map.ply', 'frames.csv']) {
+    const path = drives.path(name, file);
+    execFileSync(program, ['export', drives.path(name, 'map.fovea'), path,
+      ...(file === 'frames.csv' ? ['--format', 'frames'] : [])]);
+    hash.update(readFileSync(path));
+  }
+  return hash.digest('hex');
+}
+
+let drives, plain, expected;
+before(() => {
+  drives = new ConvertDrives({ frames });
+  drives.simulate('simulated', 'camera.numbers=[0]', 'lidar.columns=900');
+  drives.derive('simulated', 'poses', 'poses');
+  plain = record(drives.drive('poses'));
+  const map = drives.path('poses', 'map.fovea');
+  execFileSync(program, ['map', drives.path('poses', 'drive'), '-o', map, '--cameras', '0', '--quiet']);
+  expected = contentOf('poses');
+});
+after(() => drives.remove());
+
+/// `fovea map URL`, as the process, a promise of {status, out, err} and a wait for words on stderr.
+function mapOf(url, name, ...options) {
+  mkdirSync(drives.path(name), { recursive: true });
+  const child = spawn(program, ['map', url, '-o', drives.path(name, 'map.fovea'), '--cameras', '0',
+    '--report', drives.path(name, 'report.json'), ...options]);
+  const said = { out: '', err: '' };
+  child.stdout.on('data', (bytes) => { said.out += bytes; });
+  child.stderr.on('data', (bytes) => { said.err += bytes; });
+  const ended = once(child, 'close').then(([status]) => ({ status, ...said }));
+  const saying = async (pattern) => {
+    while (!pattern.test(said.err)) await once(child.stderr, 'data');
+  };
+  return { child, ended, saying };
+}
+
+async function bridge(t, messages, options) {
+  const server = await BridgeServer.start(messages, options);
+  t.after(() => server.close());
+  return server;
+}
+
+const reportOf = (name) => JSON.parse(readFileSync(drives.path(name, 'report.json'), 'utf8'));
+
+/// Plays all messages to `fovea map`, and returns what it has printed.
+async function play(t, name, messages, options, ...more) {
+  const server = await bridge(t, messages, options);
+  const { ended } = mapOf(server.url, name, '--every-frame', '--quiet', ...more);
+  await server.play();
+  server.close();
+  const { status, err, out } = await ended;
+  assert.equal(status, 0, err);
+  assert.equal(err, '');
+  return out;
+}
+
+for (const ros1 of [false, true]) {
+  test(`a robot with ROS ${ros1 ? 1 : 2}`, limit, async (t) => {
+    const name = `ros${ros1 ? 1 : 2}`;
+    await play(t, name, record(drives.drive('poses'), { ros1 }), { ros1 });
+    assert.equal(contentOf(name), expected);
+    const { live, map } = reportOf(name);
+    assert.equal(map.frames, frames);
+    assert.equal(live.scans, frames);
+    for (const lost of ['scans_dropped', 'scans_missing', 'images_late', 'images_missing', 'poses_late',
+      'connection_losses', 'messages_damaged']) assert.equal(live[lost], 0, lost);
+  });
+}
+
+test('three lost connections: all that arrived is in the map', limit, async (t) => {
+  const server = await bridge(t, plain);
+  const { ended } = mapOf(server.url, 'cut', '--every-frame');
+  const part = Math.ceil(plain.length / 4);
+  for (let begin = 0; begin < plain.length; begin += part) {
+    await server.play(begin, begin + part);
+    // Calibration and fixed transforms have come.
+    server.needed = new Set(plain.map(({ topic }) => topic).filter((topic) => !/info|static/.test(topic)));
+    if (begin + part < plain.length) await server.cut();
+  }
+  server.close();
+  const { status, err } = await ended;
+  assert.equal(status, 0, err);
+  assert.match(err, /warning: the connection was lost 3 times/);
+  assert.equal(contentOf('cut'), expected);
+  assert.equal(reportOf('cut').live.connection_losses, 3);
+});
+
+test('Ctrl-C ends the map, which is complete', limit, async (t) => {
+  const server = await bridge(t, plain);
+  const { child, ended } = mapOf(server.url, 'stopped', '--every-frame');
+  await server.play();
+  child.kill('SIGINT');
+  const { status, err } = await ended;
+  assert.equal(status, 130, err);
+  assert.equal(contentOf('stopped'), expected);
+});
+
+test('what is missing is named', limit, async (t) => {
+  const server = await bridge(t, plain.filter(({ topic }) => topic !== '/tf_static'));
+  const { ended, saying } = mapOf(server.url, 'incomplete');
+  await server.play();
+  await saying(/^still missing: .*camera/m);
+  server.close();
+  const { status, err } = await ended;
+  assert.equal(status, 1, err);
+  assert.match(err, /error: .*camera.*ws:/);
+  assert.ok(!existsSync(drives.path('incomplete', 'map.fovea')));
+});
+
+test('scans and images that the bridge drops are counted', limit, async (t) => {
+  const counts = new Map();
+  const kept = plain.filter(({ topic }) => {
+    if (!/points|image_raw/.test(topic)) return true;
+    const count = (counts.get(topic) ?? 0) + 1;
+    counts.set(topic, count);
+    return count < 10 || count % 10 !== (topic.includes('points') ? 3 : 2);  // a steady rate, and then gaps
+  });
+  await play(t, 'dropped', kept, {});
+  const { live, map } = reportOf('dropped');
+  assert.equal(live.scans_missing, 2);
+  assert.equal(live.images_missing, 2);
+  assert.equal(map.frames, frames - 4);
+  assert.deepEqual(Object.values(map.frames_skipped), [2]);  // of one camera, without its image
+});
+
+test('images that come 150 ms late are used', limit, async (t) => {
+  const late = plain.map((message) => (message.topic.includes('image_raw')
+    ? { ...message, time: message.time + 150_000_000n } : message))
+    .sort((a, b) => (a.time < b.time ? -1 : Number(a.time > b.time)));
+  await play(t, 'late', late, {});
+  const { live } = reportOf('late');
+  assert.equal(live.images_late, 0);
+  assert.equal(contentOf('late'), expected);
+});
+
+test('poses come as lines', limit, async (t) => {
+  const out = await play(t, 'poses_out', plain, {}, '--pose-stream');
+  const lines = out.trim().split('\n');
+  assert.equal(lines.length, frames);
+  for (const [i, line] of lines.entries()) assert.match(line, new RegExp(`^${i} \\d+ tracked( -?[\\d.]+){7}$`));
+});
+
+test('options that contradict a running robot are wrong usage', limit, async () => {
+  for (const [option, value] of [['--frames', '0:3'], ['--rate', '10']]) {
+    const { status, err } = await mapOf('ws://127.0.0.1:1', 'refused', option, value).ended;
+    assert.equal(status, 2);
+    assert.match(err, new RegExp(`${option}.*running robot`));
+  }
+  const { status, err } = await mapOf(drives.path('poses', 'drive'), 'refused', '--every-frame').ended;
+  assert.equal(status, 2);
+  assert.match(err, /--every-frame.*running robot/);
+});
