@@ -46,6 +46,8 @@ struct RegistrationStats {
   std::size_t points = 0;
   std::optional<AlignmentStats> alignment;  ///< absent where there is no target yet
   std::optional<double> vertical_fit;       ///< share, with the local map (VerticalFit)
+  /// See pose_covariance(); absent where the first guess is kept.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance;
 
   /// Share of the points that have a counterpart; 1 without an alignment or without points.
   double overlap() const;

@@ -167,6 +167,16 @@ TEST_F(MapLive, OtherSettingsDoNotContinueAMap) {
   EXPECT_THROW(map(town_data(12, kFrames), further, options), InputError);
 }
 
+TEST_F(MapLive, OtherSensorsDoNotContinueAMap) {
+  map(town_data(0, 12), job("map.fovea"), all_data());
+  LiveOptions options = all_data();
+  continue_map(folder_ / "map.fovea", options);
+  MapJob further = job("map.fovea");
+  further.resume = true;
+  options.image_delays[2] = 0.02;
+  EXPECT_THROW(map(town_data(12, kFrames), further, options), InputError);
+}
+
 TEST_F(MapLive, EachFrameIsTrackedBeforeItIsMapped) {
   MapJob job = this->job("map.fovea");
   std::vector<int> tracked;

@@ -152,4 +152,16 @@ TEST(Mapper, AScanOfWhatIsNotInTheTargetBecomesPartOfIt) {
   EXPECT_EQ(last_pose(1000, 0.1), first_alone);
 }
 
+TEST(Mapper, ARegisteredPoseHasACovariance) {
+  Mapper mapper(street().info(), {}, PoseSource::kRefine);
+  for (int i = 0; i < 4; ++i) {
+    const FrameResult result = mapper.process(std::get<Frame>(street().load(i)));
+    const auto& covariance = result.tracking.registration.value().covariance;
+    ASSERT_EQ(covariance.has_value(), i > 0);  // the first scan has no target
+    if (!covariance) continue;
+    EXPECT_GT(covariance->diagonal().minCoeff(), 0);
+    EXPECT_LT(std::sqrt((*covariance)(4, 4)), 0.1);  // m, across the street
+  }
+}
+
 }  // namespace fovea::mapper_poses_test

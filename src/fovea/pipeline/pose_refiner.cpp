@@ -4,6 +4,7 @@
 
 #include "fovea/geometry/voxel_grid.h"
 #include "fovea/mapping/registration/place_search.h"
+#include "fovea/mapping/registration/pose_covariance.h"
 #include "fovea/pipeline/registration_check.h"
 
 namespace fovea {
@@ -16,6 +17,9 @@ constexpr double kLeastOverlap = 0.3;
 NormalOptions target_normals(const RefinementOptions& options) {
   return {.neighbors = options.registration.neighbors, .range_noise = options.range_noise};
 }
+
+/// Error of a predicted pose along a direction that the scene leaves open, m.
+constexpr double kOpen = 0.2;
 
 }  // namespace
 
@@ -78,6 +82,7 @@ RefinedPose PoseRefiner::refine(const PointCloud& scan_lidar, const RigidMotion&
   } else {
     refined.T_odom_lidar = result.T_target_source;
     refined.fit = fit_of(result, options_.registration);
+    stats.covariance = pose_covariance(result, kOpen);
   }
   // The pairs of the registration give the overlap, even if its pose is rejected.
   const double overlap = stats.overlap();
@@ -104,6 +109,7 @@ RefinedPose PoseRefiner::search(RefinedPose lost, const RigidMotion& guess, doub
     refined.stats->alignment =
         alignment_stats(found->registration, guess.inverse() * refined.T_odom_lidar);
     refined.stats->vertical_fit = found->fit.share;
+    refined.stats->covariance = pose_covariance(found->registration, kOpen);
   }
   return refined;
 }

@@ -1,0 +1,16 @@
+// Covariance of a registered pose.
+#pragma once
+
+#include "fovea/mapping/registration/registration.h"
+
+namespace fovea {
+
+/// Of a twist of the source in its own frame, rotation first (rad^2, m^2). Errors of the pairs of a
+/// scan are alike (normals, bends of the target, calibration), so many pairs count as one; the
+/// number is that with which covariances equal squared errors on simulated drives
+/// (docs/localization.md).
+/// @param open  standard deviation along directions that the scene leaves open, m (of turns: at a
+///              tenth of a radian)
+Eigen::Matrix<double, 6, 6> pose_covariance(const RegistrationResult& registration, double open);
+
+}  // namespace fovea
