@@ -1,5 +1,7 @@
 #include "fovea/drive/live/live_recorder.h"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <fstream>
 #include <utility>
@@ -88,6 +90,16 @@ void LiveRecorder::copy_masks() const {
 void LiveRecorder::add(RawFrame frame, RawMotion motion) {
   // After an error the queue is closed.
   static_cast<void>(queue_.push({std::move(frame), std::move(motion)}));
+}
+
+void LiveRecorder::set_stamp_delay(const std::string& camera, double delay) {
+  for (const CameraDescription& described : description_.cameras) {
+    if (described.name == camera && described.stamp_delay) return;  // drive.toml states it
+  }
+  const std::string table = fmt::format("[camera.{}]\n", camera);
+  const std::size_t place = drive_toml_.find(table);
+  if (place == std::string::npos) return;  // another way of writing: the median counts
+  drive_toml_.insert(place + table.size(), fmt::format("stamp_delay = {}\n", delay));
 }
 
 void LiveRecorder::finish(RawMotion motion) {

@@ -39,6 +39,8 @@ class LiveRecorder {
 
   /// Waits if the writer is behind.
   void add(RawFrame frame, RawMotion motion);
+  /// States the delay of a camera in drive.toml, since a median of the recording may differ.
+  void set_stamp_delay(const std::string& camera, double delay);
   /// Writes what has come, and gives the drive its name. OutputError if that, or a frame before,
   /// could not be written.
   void finish(RawMotion motion);

@@ -70,6 +70,22 @@ TEST_F(LiveRecording, HasPlainImagesAndLeavesOutDamagedScans) {
   EXPECT_EQ(std::get<Frame>(drive->load(15)).missing_images.size(), 1u);
 }
 
+// The median of all delays is another one than that of the first.
+TEST_F(LiveRecording, StatesTheDelaysOfItsCameras) {
+  LiveData data = live_car(30);
+  const std::string toml = data.write(folder_ / "drive");
+  for (LiveImage& image : data.images) {
+    if (image.stamp > kLiveStart + 12 * kLiveStep) image.stamp += kNsPerSecond / 250;
+  }
+  const LiveRun live = record(data, toml);
+  const DriveInfo recorded = open_drive(root_, all_data().drive)->info();
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(recorded.calibration.cameras[k].image_delay,
+              live.info.calibration.cameras[k].image_delay);
+    EXPECT_NEAR(recorded.image_offset(k, 20), 0.004, 1e-9);
+  }
+}
+
 TEST_F(LiveRecording, IsNotThereUnlessItIsFinished) {
   const LiveData data = live_car(15);
   const std::string toml = data.write(folder_ / "drive");

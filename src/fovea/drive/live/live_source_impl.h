@@ -15,6 +15,7 @@
 #include "fovea/drive/live/live_recorder.h"
 #include "fovea/drive/live/live_sensors.h"
 #include "fovea/drive/live/live_source.h"
+#include "fovea/drive/live/sensor_clocks.h"
 #include "fovea/drive/live/sensor_watch.h"
 
 namespace fovea {
@@ -45,6 +46,9 @@ class LiveSource::Impl {
   LiveFigures figures() const;
 
  private:
+  static TimeNs wall_clock_now() {
+    return std::chrono::nanoseconds(WallClock::now().time_since_epoch()).count();
+  }
   static WallClock::duration wall_time(double seconds) {
     return std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(seconds));
   }
@@ -54,10 +58,17 @@ class LiveSource::Impl {
   std::size_t find_camera(const std::string& name) const;
 
   template <class Record>
-  void add_motion(std::size_t sensor, const Record& record) {
+  void add_motion(std::size_t sensor, Record record) {
+    const TimeNs arrival = wall_clock_now();
     const std::lock_guard lock(guard_);
     if (closed_) return;
     ++figures_.poses;
+    const std::optional<TimeNs> time = clocks_.time_of(sensor, record.time, arrival);
+    if (!time) {
+      ++figures_.poses_late;
+      return;
+    }
+    record.time = *time;
     watch_.add(sensor, record.time);
     if (!motion_.add(record)) {
       ++figures_.poses_late;
@@ -116,6 +127,7 @@ class LiveSource::Impl {
   FrameQueue queue_;
   LiveMotion motion_;
   SensorWatch watch_;
+  SensorClocks clocks_;
   std::optional<WallClock::time_point> first_arrival_;  // of a scan
   LiveFigures figures_;
   int next_index_;

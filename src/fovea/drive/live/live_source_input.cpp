@@ -52,6 +52,7 @@ LiveSource::Impl::Impl(std::string_view drive_toml, const LiveOptions& options)
       queue_(description_.further_lidars.size(), description_.cameras.size(), first_limits()),
       motion_(description_, options.drive, options.name, options.max_wait),
       watch_(names_of(sensors_)),
+      clocks_(names_of(sensors_), !options.waits),
       next_index_(options.first_frame) {
   check(description_, options_);
   if (!options_.record.empty()) {
@@ -67,28 +68,44 @@ LiveSource::Impl::~Impl() {
 
 void LiveSource::Impl::add_scan(LiveScan scan) {
   const std::optional<std::size_t> further = find_further_lidar(scan.lidar);
+  const TimeNs arrival = wall_clock_now();
   std::unique_lock lock(guard_);
   const auto has_room = [&] {
     return further ? queue_.has_room_for_further_scan(*further) : queue_.has_room_for_scan();
   };
   if (!wait_for_room(lock, has_room)) return;
-  watch_.add(further ? sensors_.further_lidar(*further) : LiveSensors::kLidar, scan.stamp);
+  ++figures_.scans;
+  const std::size_t sensor = further ? sensors_.further_lidar(*further) : LiveSensors::kLidar;
+  const std::optional<TimeNs> time = clocks_.time_of(sensor, scan.stamp, arrival);
+  if (!time) {
+    ++figures_.scans_out_of_order;
+    return;
+  }
+  scan.stamp = *time;
+  watch_.add(sensor, scan.stamp);
   auto shared = std::make_shared<const LiveScan>(std::move(scan));
   const WallClock::time_point now = WallClock::now();
   if (!further && !first_arrival_) first_arrival_ = now;
   const FrameQueue::Added added = further ? queue_.add_further_scan(*further, std::move(shared))
                                           : queue_.add_scan(std::move(shared), now);
-  ++figures_.scans;
   figures_.scans_out_of_order += added == FrameQueue::Added::kOutOfOrder ? 1 : 0;
   notify();
 }
 
 void LiveSource::Impl::add_image(LiveImage image) {
   const std::size_t camera = find_camera(image.camera);
+  const TimeNs arrival = wall_clock_now();
   std::unique_lock lock(guard_);
   if (!wait_for_room(lock, [&] { return queue_.has_room_for_image(camera); })) return;
   ++figures_.images;
   if (!options_.drive.use_images) return;
+  const std::optional<TimeNs> time =
+      clocks_.time_of(sensors_.camera(camera), image.stamp, arrival);
+  if (!time) {
+    ++figures_.images_late;
+    return;
+  }
+  image.stamp = *time;
   watch_.add(sensors_.camera(camera), image.stamp);
   const FrameQueue::Added added =
       queue_.add_image(camera, std::make_shared<const LiveImage>(std::move(image)));

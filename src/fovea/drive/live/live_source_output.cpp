@@ -25,6 +25,7 @@ LiveFigures LiveSource::Impl::figures() const {
   const std::lock_guard lock(guard_);
   LiveFigures figures = figures_;
   figures.append(motion_.messages());
+  figures.append(clocks_.messages());
   figures.append(watch_.messages());
   figures.scans_dropped = queue_.scans_dropped();
   figures.scans_missing = queue_.scan_stamps().missing();
@@ -127,6 +128,9 @@ std::unique_ptr<FrameSource> LiveSource::Impl::begin(const std::stop_token& stop
     frames.push_back(std::move(*raw));
   }
   queue_.use(beginning.sensors, options_.max_scans);
+  for (const LiveCamera& camera : decoder_->cameras) {
+    if (recorder_) recorder_->set_stamp_delay(camera.name, camera.usual_delay);
+  }
   const LocalFrame local{0, options_.origin, options_.world_origin};
   add_first_frames(frames, description_, motion_, local, beginning);
   first_frames_.assign(frames.begin(), frames.end());
