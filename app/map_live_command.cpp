@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/live_view.h"
 #include "app/pose_lines.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
@@ -113,7 +114,6 @@ class RobotMap {
     }
     MapSummary summary = naming_log(arguments_.output, [&] { return map(*source); });
     reader.join();
-    source->finish_recording();
     const LiveFigures figures = source->figures();
     summary.append(figures);
     summary.append(reader.figures());
@@ -123,7 +123,9 @@ class RobotMap {
       write_json(*report, {{"map", to_json(summary)},
                            {"live", live_json(reader, topics_, figures, poses_)}});
     }
+    source->finish_recording();
     reader.rethrow();
+    if (view_) view_->keep_serving();
   }
 
  private:
@@ -146,6 +148,9 @@ class RobotMap {
   }
 
   MapSummary map(LiveSource& source) {
+    job_.on_begin = [&](const std::shared_ptr<const FrameSource>& first_frames) {
+      view_.emplace(arguments_.live, job_, first_frames, is_quiet());
+    };
     ProgressBar bar(arguments_.quiet);
     return map_live(source, job_, std::ref(bar));
   }
@@ -157,6 +162,9 @@ class RobotMap {
     pose.stamp = *frame.stamp;
     pose.T_world_lidar = frame.poses.T_local_lidar;
     pose.state = state_of(frame.tracking);
+    if (const auto& registration = frame.tracking.registration) {
+      pose.covariance = registration->covariance;
+    }
     if (live_.pose_stream) print_pose(pose);
     poses_.publish(std::move(pose));
   }
@@ -175,14 +183,12 @@ class RobotMap {
   bridge::PosePublisher poses_;
   LiveTopics topics_;
   MapJob job_;
+  std::optional<LiveView> view_;  // observes the job
 };
 
 }  // namespace
 
 void map_robot(const MapArguments& arguments, const LiveArguments& live, Session& session) {
-  if (!arguments.live.empty()) {
-    throw ConfigError("the map of a running robot is not shown yet", "--live", "leave it out");
-  }
   CommandFiles files = files_of(arguments);
   files.folder = {live.record, FolderUse::kReplace};
   check_files(files);

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { once } from 'node:events';
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, renameSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 
 import { record } from './bags.mjs';
@@ -21,7 +21,7 @@ function contentOf(name) {
   const hash = createHash('sha256');
   for (const file of ['map.ply', 'frames.csv']) {
     const path = drives.path(name, file);
-    execFileSync(program, ['export', drives.path(name, 'map.fovea'), path,
+    execFileSync(program, ['export', drives.path(name, 'map.fovea'), path, '--force',
       ...(file === 'frames.csv' ? ['--format', 'frames'] : [])]);
     hash.update(readFileSync(path));
   }
@@ -34,11 +34,15 @@ before(() => {
   drives.simulate('simulated', 'camera.numbers=[0]', 'lidar.columns=900');
   drives.derive('simulated', 'poses', 'poses');
   plain = record(drives.drive('poses'));
-  const map = drives.path('poses', 'map.fovea');
-  execFileSync(program, ['map', drives.path('poses', 'drive'), '-o', map, '--cameras', '0', '--quiet']);
+  mapDrive('poses');
   expected = contentOf('poses');
 });
 after(() => drives.remove());
+
+function mapDrive(name) {
+  execFileSync(program, ['map', drives.path(name, 'drive'), '-o', drives.path(name, 'map.fovea'), '--cameras', '0',
+    '--quiet']);
+}
 
 /// `fovea map URL`, as the process, a promise of {status, out, err} and a wait for words on stderr.
 function mapOf(url, name, ...options) {
@@ -114,6 +118,30 @@ test('Ctrl-C ends the map, which is complete', limit, async (t) => {
   const { status, err } = await ended;
   assert.equal(status, 130, err);
   assert.equal(contentOf('stopped'), expected);
+});
+
+test('a recorded run gives its map again, and a later one continues it', limit, async (t) => {
+  const half = plain.length / 2, isFixed = ({ topic }) => /info|static/.test(topic);
+  const run = async (messages, ...more) => {
+    const server = await bridge(t, messages);
+    const { ended } = mapOf(server.url, 'continued', '--every-frame', ...more);
+    await server.play();
+    server.close();
+    const { status, err } = await ended;
+    assert.equal(status, 0, err);
+    const { map } = reportOf('continued');
+    return map.frames + Object.values(map.frames_skipped).reduce((sum, count) => sum + count, 0);
+  };
+  const first = await run(plain.slice(0, half), '--record', drives.path('continued', 'drive'));
+  assert.ok(first > 5 && first < frames);
+  const live = contentOf('continued');
+  mkdirSync(drives.path('recorded'));
+  renameSync(drives.path('continued', 'drive'), drives.path('recorded', 'drive'));
+  mapDrive('recorded');
+  assert.equal(contentOf('recorded'), live);
+  // The last image of the first run may belong to the first scan of the second one.
+  const again = [...plain.slice(0, half).filter(isFixed), ...plain.slice(half)];
+  assert.equal(await run(again, '--resume'), frames);
 });
 
 test('what is missing is named', limit, async (t) => {
