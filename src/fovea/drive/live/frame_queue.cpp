@@ -39,7 +39,7 @@ FrameQueue::Added FrameQueue::add(MatchQueue<Item>& queue, std::shared_ptr<const
     const bool is_late =
         belongs(item->stamp) && !(queue.last_taken() && belongs(*queue.last_taken()));
     if (is_late || item->stamp <= expected) {
-      queue.pass(item->stamp);
+      queue.pass(item->stamp, is_late);
       return is_late ? Added::kLate : Added::kTaken;
     }
   }

@@ -61,7 +61,7 @@ class Builder {
           const FirstData& first)
       : description_(description), options_(options), first_(first), toml_(name / "drive.toml") {
     info_.path = name;
-    info_.kind = "live";
+    info_.kind = kLiveDrive;
     decoder_.name = name;
   }
 

@@ -2,7 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "fovea/drive/live/live_source.h"
 #include "fovea/drive/live/test_live_run.h"
@@ -13,7 +17,11 @@ using namespace test;
 using testing::Contains;
 using testing::HasSubstr;
 
-static const Frame& frame_of(const LoadedFrame& loaded) { return std::get<Frame>(loaded); }
+namespace {
+
+const Frame& frame_of(const LoadedFrame& loaded) { return std::get<Frame>(loaded); }
+
+}  // namespace
 
 class LiveBounds : public testing::Test {
  protected:
@@ -77,7 +85,7 @@ TEST_F(LiveBounds, DropsDataOutOfOrder) {
   source.add_inertia(data_.inertia[3]);
   source.add_wheel_speed(data_.wheels[1]);
   source.close();
-  const LiveRun run = read_all(source);
+  const PlayedDrive run = read_all(source);
   EXPECT_EQ(run.frames.size(), 12u);
   EXPECT_EQ(run.figures.scans_out_of_order, 1u);
   EXPECT_EQ(run.figures.poses_late, 3u);
@@ -109,7 +117,7 @@ TEST_F(LiveBounds, ALidarAloneIsADrive) {
   LiveSource source(toml_, short_waits());
   for (int i = 0; i < 12; ++i) source.add_scan(data_.scans[i]);
   source.close();
-  const LiveRun run = read_all(source);
+  const PlayedDrive run = read_all(source);
   EXPECT_TRUE(run.info.calibration.cameras.empty());
   EXPECT_EQ(run.frames.size(), 12u);
   EXPECT_EQ(frame_of(run.frames.back()).scan.size(), 90u);
@@ -123,7 +131,7 @@ TEST_F(LiveBounds, ReportsACameraThatStopsAndComesBack) {
   LiveOptions options = short_waits();
   options.max_wait = 0.2;
   const auto start = WallClock::now();
-  const LiveRun run = play(data_, toml_, options);
+  const PlayedDrive run = play(data_, toml_, options);
   EXPECT_EQ(run.frames.size(), 40u);
   EXPECT_EQ(frame_of(run.frames[20]).missing_images.size(), 1u);
   EXPECT_TRUE(frame_of(run.frames[37]).missing_images.empty());
@@ -140,7 +148,7 @@ TEST_F(LiveBounds, CountsGaps) {
   std::erase_if(data_.images, [](const LiveImage& image) {
     return image.camera == "front" && image.stamp / kLiveStep == kLiveStart / kLiveStep + 25;
   });
-  const LiveRun run = play(data_, toml_, short_waits());
+  const PlayedDrive run = play(data_, toml_, short_waits());
   EXPECT_EQ(run.figures.scans_missing, 2u);
   EXPECT_EQ(run.figures.images_missing, 1u);
   EXPECT_EQ(run.figures.images_unused, 4u);  // of the missing scans
@@ -172,7 +180,7 @@ TEST_F(LiveBounds, DamagedDataCostOneFrameAtMost) {
   data.scans[17].points.intensity.clear();
   data.scans[18].points.intensity.resize(3);
   data.scans[20].points.position.assign(90, Eigen::Vector3f::Constant(NAN));
-  const LiveRun run = play(data, toml_, short_waits());
+  const PlayedDrive run = play(data, toml_, short_waits());
   ASSERT_EQ(run.frames.size(), 40u);
   EXPECT_EQ(frame_of(run.frames[15]).missing_images.size(), 1u);
   for (const std::size_t i : {17u, 18u, 20u}) {
@@ -205,7 +213,7 @@ TEST_F(LiveBounds, CloseGivesTheFramesAtHand) {
     if (image.stamp < data_.scans[3].stamp) source.add_image(image);
   }
   source.close();
-  const LiveRun run = read_all(source);
+  const PlayedDrive run = read_all(source);
   EXPECT_EQ(run.frames.size(), 3u);
 }
 
@@ -236,6 +244,53 @@ TEST_F(LiveBounds, DestructionEndsAWaitForRoom) {
   });
   while (sent < 14) std::this_thread::yield();
   source.reset();
+}
+
+TEST_F(LiveBounds, AClockThatJumpsBackIsShifted) {
+  constexpr TimeNs kJump = -3600 * kNsPerSecond;
+  const auto shift = [](auto& stamp) {
+    if (stamp > kLiveStart + 20 * kLiveStep + kLiveStep / 2) stamp += kJump;
+  };
+  LiveData data = data_;
+  for (LiveScan& scan : data.scans) shift(scan.stamp);
+  for (LiveImage& image : data.images) shift(image.stamp);
+  for (RecordedPose& pose : data.poses) shift(pose.time);
+  for (RecordedInertia& inertia : data.inertia) shift(inertia.time);
+  for (WheelSpeed& wheel : data.wheels) shift(wheel.time);
+  LiveSource source(toml_, short_waits());
+  const std::jthread sensors([&] {
+    // In the order in which they were measured.
+    std::vector<std::pair<TimeNs, std::function<void(LiveSource&)>>> calls = data.calls();
+    std::stable_sort(calls.begin(), calls.end(), [](const auto& a, const auto& b) {
+      const auto measured = [](TimeNs time) {
+        return time < kLiveStart - kNsPerSecond ? time - kJump : time;
+      };
+      return measured(a.first) < measured(b.first);
+    });
+    for (const auto& [time, call] : calls) call(source);
+    source.close();
+  });
+  const PlayedDrive run = read_all(source);
+  EXPECT_THAT(run.figures.warnings,
+              testing::ElementsAre("the clock of the LiDAR jumps back by 3600.0 s"));
+  // Each sensor loses one message.
+  ASSERT_EQ(run.frames.size(), 39u);
+  TimeNs last = 0;
+  for (const LoadedFrame& loaded : run.frames) {
+    if (const auto* skipped = std::get_if<SkippedFrame>(&loaded)) {
+      EXPECT_EQ(skipped->reason, SkipReason::kMissingImage);
+      continue;
+    }
+    const Frame& frame = frame_of(loaded);
+    EXPECT_GT(frame.stamp, last);
+    last = frame.stamp;
+    if (frame.index > 22) {
+      EXPECT_EQ(frame.stamp, data_.scans[std::size_t(frame.index) + 1].stamp);
+      EXPECT_TRUE(frame.missing_images.empty());
+      EXPECT_FALSE(frame.motion.poses.empty());
+      EXPECT_FALSE(frame.motion.imu.empty());
+    }
+  }
 }
 
 }  // namespace fovea::live_bounds_test

@@ -19,13 +19,13 @@ class LiveRecording : public testing::Test {
     return options;
   }
   /// Plays the data with a recording.
-  LiveRun record(const LiveData& data, const std::string& toml) const {
+  PlayedDrive record(const LiveData& data, const std::string& toml) const {
     LiveSource source(toml, recording());
     const std::jthread sensors([&] {
       for (const auto& [time, call] : data.calls()) call(source);
       source.close();
     });
-    LiveRun run = read_all(source);
+    PlayedDrive run = read_all(source);
     source.finish_recording();
     return run;
   }
@@ -36,7 +36,7 @@ class LiveRecording : public testing::Test {
 
 TEST_F(LiveRecording, IsTheDriveOfItsFrames) {
   const LiveData data = live_car(30);
-  const LiveRun live = record(data, data.write(folder_ / "drive"));
+  const PlayedDrive live = record(data, data.write(folder_ / "drive"));
   expect_same(live, *open_drive(root_, all_data().drive));
 }
 
@@ -47,7 +47,7 @@ TEST_F(LiveRecording, HasPositionsAndSeveralLidars) {
   side.name = "side";
   for (LiveScan& scan : data.scans) scan.lidar = "top";
   for (int i = 0; i < 20; ++i) data.scans.push_back(live_scan(i, /*has_times=*/true, "side"));
-  const LiveRun live = record(data, data.write(folder_ / "drive"));
+  const PlayedDrive live = record(data, data.write(folder_ / "drive"));
   expect_same(live, *open_drive(root_, all_data().drive));
 }
 
@@ -62,7 +62,7 @@ TEST_F(LiveRecording, HasPlainImagesAndLeavesOutDamagedScans) {
   }
   data.scans[12].points.intensity.resize(2);
   data.images[15].content = "no image";
-  const LiveRun live = record(data, toml);
+  const PlayedDrive live = record(data, toml);
   const auto drive = open_drive(root_, all_data().drive);
   EXPECT_EQ(drive->info().frames.size(), 19u);
   EXPECT_EQ(std::get<Frame>(drive->load(13)).images[0].data,
@@ -77,7 +77,7 @@ TEST_F(LiveRecording, StatesTheDelaysOfItsCameras) {
   for (LiveImage& image : data.images) {
     if (image.stamp > kLiveStart + 12 * kLiveStep) image.stamp += kNsPerSecond / 250;
   }
-  const LiveRun live = record(data, toml);
+  const PlayedDrive live = record(data, toml);
   const DriveInfo recorded = open_drive(root_, all_data().drive)->info();
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(recorded.calibration.cameras[k].image_delay,

@@ -99,8 +99,7 @@ void LiveSource::Impl::add_image(LiveImage image) {
   if (!wait_for_room(lock, [&] { return queue_.has_room_for_image(camera); })) return;
   ++figures_.images;
   if (!options_.drive.use_images) return;
-  const std::optional<TimeNs> time =
-      clocks_.time_of(sensors_.camera(camera), image.stamp, arrival);
+  const std::optional<TimeNs> time = clocks_.time_of(sensors_.camera(camera), image.stamp, arrival);
   if (!time) {
     ++figures_.images_late;
     return;

@@ -36,7 +36,6 @@ LiveFigures LiveSource::Impl::figures() const {
     figures.images_unused += queue_.images(i).unused();
     figures.images_missing += queue_.images(i).stamps().missing();
   }
-  figures.images_unused -= std::min(figures.images_unused, figures.images_late);
   return figures;
 }
 

@@ -21,7 +21,7 @@ class LiveSourceTest : public testing::Test {
     const std::string toml = data.write(folder_ / "drive");
     LiveOptions options = all_data();
     if (data.drive.cameras.empty()) options.drive.cameras.clear();
-    const LiveRun live = play(data, toml, options);
+    const PlayedDrive live = play(data, toml, options);
     expect_same(live, *open_drive(folder_ / "drive", options.drive));
   }
 
@@ -96,7 +96,7 @@ TEST_F(LiveSourceTest, TakesDataFromAThreadForEachSensor) {
   start([&] {
     for (const RecordedInertia& inertia : data.inertia) source.add_inertia(inertia);
   });
-  const LiveRun live = read_all(source);
+  const PlayedDrive live = read_all(source);
   expect_same(live, *open_drive(folder_ / "drive", all_data().drive));
 }
 

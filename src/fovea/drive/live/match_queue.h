@@ -28,9 +28,10 @@ class MatchQueue {
   }
 
   /// An item that is not kept.
-  void pass(TimeNs stamp) {
+  /// @param is_late  its scan is a frame already
+  void pass(TimeNs stamp, bool is_late) {
     stamps_.add(stamp);
-    ++unused_;
+    unused_ += is_late ? 0 : 1;
   }
 
   /// Whether no item that comes later can be nearer to a time than those at hand. A sensor with a
@@ -77,7 +78,7 @@ class MatchQueue {
   std::size_t bytes() const { return bytes_; }
   /// Stamp of the last one that a scan has taken.
   const std::optional<TimeNs>& last_taken() const { return last_taken_; }
-  /// Items that no scan has taken and none can take any more.
+  /// Items that no scan has taken and none can take any more, but for those that were late.
   std::size_t unused() const { return unused_; }
 
  private:

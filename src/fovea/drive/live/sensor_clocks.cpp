@@ -101,8 +101,7 @@ std::optional<TimeNs> SensorClocks::go_back(Sensor& sensor, const Moment& now) {
     return std::nullopt;
   }
   const Moment first = *std::exchange(sensor.back, std::nullopt);
-  switch_clock(sensor,
-               *sensor.stamps.last() + elapsed(sensor, first.arrival) - first.stamp);
+  switch_clock(sensor, *sensor.stamps.last() + elapsed(sensor, first.arrival) - first.stamp);
   sensor.stamps = {};
   return accept(sensor, now);
 }

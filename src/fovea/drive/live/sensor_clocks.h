@@ -16,7 +16,8 @@ namespace fovea {
 /// - A sensor whose stamps go back by over half a second, twice in a row, has jumped. Its later
 ///   stamps are shifted by the amount. Sensors that jump by the same amount, such as those of one
 ///   computer, get the same shift: their stamps keep their distances.
-/// - Stamps that go ahead of the arrivals by over half a second are a pause if those of the LiDAR do
+/// - Stamps that go ahead of the arrivals by over half a second are a pause if those of the LiDAR
+/// do
 ///   so, too. Otherwise the sensor has jumped alone, or the LiDAR has. Then the sensor is shifted,
 ///   after several messages that show it.
 /// - A single message with another time is dropped.
@@ -27,8 +28,9 @@ class SensorClocks {
   SensorClocks(std::vector<std::string> names, bool has_arrivals);
 
   /// The shifted stamp; absent if the message is dropped.
+  /// @param number   of the sensor
   /// @param arrival  on another clock, which never jumps
-  std::optional<TimeNs> time_of(std::size_t sensor, TimeNs stamp, TimeNs arrival);
+  std::optional<TimeNs> time_of(std::size_t number, TimeNs stamp, TimeNs arrival);
 
   const Messages& messages() const { return messages_; }
 

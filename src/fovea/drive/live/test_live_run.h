@@ -10,7 +10,7 @@
 namespace fovea::test {
 
 /// All that a source gives.
-struct LiveRun {
+struct PlayedDrive {
   DriveInfo info;
   std::vector<LoadedFrame> first;  ///< of begin()
   std::vector<LoadedFrame> frames;
@@ -28,8 +28,8 @@ inline LiveOptions all_data() {
 }
 
 /// Reads a source to its end.
-inline LiveRun read_all(LiveSource& source) {
-  LiveRun run;
+inline PlayedDrive read_all(LiveSource& source) {
+  PlayedDrive run;
   const std::unique_ptr<FrameSource> first = source.begin({});
   if (!first) {
     ADD_FAILURE() << "no beginning";
@@ -45,7 +45,7 @@ inline LiveRun read_all(LiveSource& source) {
 }
 
 /// Sends the data from one thread, in the order of the stamps.
-inline LiveRun play(const LiveData& data, const std::string& toml, const LiveOptions& options) {
+inline PlayedDrive play(const LiveData& data, const std::string& toml, const LiveOptions& options) {
   LiveSource source(toml, options);
   const std::jthread sensors([&] {
     for (const auto& [time, call] : data.calls()) call(source);
@@ -147,7 +147,7 @@ inline void expect_same_sensors(const DriveInfo& live, const DriveInfo& file) {
 }
 
 /// Poses, accelerations and speeds of a run, from its beginning and its frames.
-inline void expect_same_motion(const LiveRun& live, const DriveInfo& file) {
+inline void expect_same_motion(const PlayedDrive& live, const DriveInfo& file) {
   const auto append = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
@@ -176,7 +176,7 @@ inline void expect_same_motion(const LiveRun& live, const DriveInfo& file) {
   if (file.wheels) expect_beginning(all.wheels, file.wheels->samples, 2);
 }
 
-inline void expect_same(const LiveRun& live, const FrameSource& file) {
+inline void expect_same(const PlayedDrive& live, const FrameSource& file) {
   expect_same_sensors(live.info, file.info());
   expect_same_motion(live, file.info());
   const std::vector<int> indices = file.info().frame_indices();
