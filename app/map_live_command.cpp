@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -85,6 +86,24 @@ ordered_json live_json(const RobotReader& reader, const LiveTopics& topics,
           {"poses_published", poses.counts().posted - poses.counts().dropped}};
 }
 
+/// A live drive for the view of its map. No frame can be read again.
+class ShownDrive : public FrameSource {
+ public:
+  explicit ShownDrive(DriveInfo info) : info_(std::move(info)) {
+    info_.begin = info_.end = 0;  // not known
+    info_.frames.clear();
+  }
+
+  const DriveInfo& info() const override { return info_; }
+  LoadedFrame load(int index) const override {
+    return SkippedFrame{index, SkipReason::kMissingScan, "a running robot was mapped"};
+  }
+  std::optional<TimeNs> stamp(int /*index*/) const override { return std::nullopt; }
+
+ private:
+  DriveInfo info_;
+};
+
 class RobotMap {
  public:
   RobotMap(const MapArguments& arguments, const LiveArguments& live, Session& session)
@@ -106,7 +125,8 @@ class RobotMap {
     bridge.reconnect = std::chrono::milliseconds(std::int64_t(1000 * live_.reconnect));
     bridge.poses = &poses_;
     warm_memory(std::min(kWarmMemory, job_.memory / kWarmShare));
-    RobotReader reader(bridge, topics_, session_.interrupt.stop_gently(), arguments_.quiet);
+    const std::stop_token stop = session_.interrupt.stop_gently();
+    RobotReader reader(bridge, topics_, stop, arguments_.quiet);
     LiveSource* const source = reader.wait_for_source();
     if (source == nullptr) return throw_missing(reader);
     if (!is_quiet()) {
@@ -125,6 +145,7 @@ class RobotMap {
     }
     source->finish_recording();
     reader.rethrow();
+    job_.stop = stop;  // of the view: a stop has completed the map
     if (view_) view_->keep_serving();
   }
 
@@ -149,7 +170,8 @@ class RobotMap {
 
   MapSummary map(LiveSource& source) {
     job_.on_begin = [&](const std::shared_ptr<const FrameSource>& first_frames) {
-      view_.emplace(arguments_.live, job_, first_frames, is_quiet());
+      view_.emplace(arguments_.live, job_, std::make_shared<ShownDrive>(first_frames->info()),
+                    is_quiet());
     };
     ProgressBar bar(arguments_.quiet);
     return map_live(source, job_, std::ref(bar));

@@ -44,7 +44,7 @@ function mapDrive(name) {
     '--quiet']);
 }
 
-/// `fovea map URL`, as the process, a promise of {status, out, err} and a wait for words on stderr.
+/// `fovea map URL`, as the process, a promise of {status, out, err} and a wait for words that it prints.
 function mapOf(url, name, ...options) {
   mkdirSync(drives.path(name), { recursive: true });
   const child = spawn(program, ['map', url, '-o', drives.path(name, 'map.fovea'), '--cameras', '0',
@@ -53,8 +53,9 @@ function mapOf(url, name, ...options) {
   child.stdout.on('data', (bytes) => { said.out += bytes; });
   child.stderr.on('data', (bytes) => { said.err += bytes; });
   const ended = once(child, 'close').then(([status]) => ({ status, ...said }));
-  const saying = async (pattern) => {
-    while (!pattern.test(said.err)) await once(child.stderr, 'data');
+  const saying = async (pattern, where = 'err') => {
+    while (!pattern.test(said[where])) await once(where === 'err' ? child.stderr : child.stdout, 'data');
+    return pattern.exec(said[where]);
   };
   return { child, ended, saying };
 }
@@ -187,6 +188,19 @@ test('poses come as lines', limit, async (t) => {
   const lines = out.trim().split('\n');
   assert.equal(lines.length, frames);
   for (const [i, line] of lines.entries()) assert.match(line, new RegExp(`^${i} \\d+ tracked( -?[\\d.]+){7}$`));
+});
+
+test('the growing map is shown, and after the end', limit, async (t) => {
+  const server = await bridge(t, plain);
+  const { child, ended, saying } = mapOf(server.url, 'shown', '--every-frame', '--live=0');
+  await server.play();
+  server.close();
+  const [, url] = await saying(/is still shown at (\S+)/, 'out');
+  assert.equal((await (await fetch(new URL('frames.json', url))).json()).index.length, frames);
+  child.kill('SIGINT');
+  const { status, err } = await ended;
+  assert.equal(status, 130, err);
+  assert.equal(contentOf('shown'), expected);
 });
 
 test('options that contradict a running robot are wrong usage', limit, async () => {

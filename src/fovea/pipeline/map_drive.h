@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -44,6 +45,8 @@ struct MapJob {
   bool overlap = true;
   /// Of a live drive: no frame is left without texture if time is short (FrameTask).
   bool texture_every_frame = false;
+  /// Called with the first frames of a live drive before they are mapped, to set the observer.
+  std::function<void(const std::shared_ptr<const FrameSource>& first_frames)> on_begin;
   /// Called in the tracker's thread with each frame that has a pose; not of the paper's method.
   std::function<void(const FrameResult&)> on_tracked;
   bool calibrate = false;      ///< correct the calibration first (pipeline/drive_calibration.h)

@@ -48,7 +48,7 @@ MapSummary map_live(LiveSource& source, const MapJob& job,
                     const std::function<void(const MapProgress&)>& progress) {
   const ClosedAtEnd closed(source);
   validate(job.settings);
-  const std::unique_ptr<FrameSource> first_frames = source.begin(job.stop);
+  const std::shared_ptr<const FrameSource> first_frames = source.begin(job.stop);
   require_no_stop(job);
   if (!first_frames) {
     throw InputError("the live source ended before the first scan", job.output.string(),
@@ -57,6 +57,7 @@ MapSummary map_live(LiveSource& source, const MapJob& job,
   const WallClock::time_point start = WallClock::now();
   const DriveInfo drive = info_with_lidars(*first_frames);
   require_sources(drive, job);
+  if (job.on_begin) job.on_begin(first_frames);
   MapRun run = MapRun::live(*first_frames, drive, job, meta_of_run(drive, job));
   run.keep_world_origin(source.world_origin());
   LiveStream frames(source, run.clocks());
