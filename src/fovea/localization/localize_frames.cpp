@@ -54,7 +54,8 @@ class LocalizationRun {
     const double took = milliseconds_since(began);
     times_["decode"].push_back(float(read.decode_ms));
     times_["localize"].push_back(float(took));
-    times_["frame"].push_back(float(read.decode_ms + took));
+    times_["frame"].push_back(
+        float(read.due ? milliseconds_since(*read.due) : read.decode_ms + took));
   }
 
   void skip(const SkippedFrame& frame) {

@@ -19,7 +19,8 @@ struct LocalizedDrive : Messages {
   std::vector<Localization> frames;
   double frames_per_second = 0;
   double peak_rss_mb = 0;
-  /// "decode": the scan; "localize"; "frame": both, as if one waited for the other.
+  /// "decode": the scan; "localize"; "frame": both, as if one waited for the other, or of a live
+  /// sensor the time from the arrival of the scan.
   std::map<std::string, StageLatency> latency_ms;
 
   int count(LocalizationState state) const;

@@ -45,6 +45,8 @@ constexpr double kPairsAlike = 80;
 /// What prediction alone loses a scan along a direction that the scene leaves open, standard
 /// deviation, m (of turns: at kRotationArm).
 constexpr double kOpen = 0.2;
+/// Navigation that is kept: so long before the last pose, but no longer than kMostNavigation.
+constexpr TimeNs kNavigation = 60 * kNsPerSecond, kMostNavigation = 600 * kNsPerSecond;
 
 /// @param open  standard deviation along the directions that the scene leaves open, as kOpen
 Eigen::Matrix<double, 6, 6> covariance_of(const RegistrationResult& registration, double open) {
@@ -85,6 +87,20 @@ Localizer::Localizer(std::unique_ptr<SurfaceSource> source, const DriveInfo& dri
 MotionModel Localizer::new_motion_model() const {
   return MotionModel(guess_.trajectory ? &*guess_.trajectory : nullptr,
                      {.sweep_rest = from_seconds(drive_.sweep.end_time())});
+}
+
+void Localizer::add_navigation(const std::vector<StampedPose>& T_local_lidar) {
+  if (!guess_.trajectory) throw std::invalid_argument("the guess has no trajectory to continue");
+  if (T_local_lidar.empty()) return;
+  Trajectory& navigation = *guess_.trajectory;  // the motion model has its address
+  navigation.extend(T_local_lidar);
+  const TimeNs newest = T_local_lidar.back().time;
+  const TimeNs used = last_ ? std::min(last_->time, newest) : newest;
+  const std::size_t dropped =
+      navigation.drop_before(std::max(used - kNavigation, newest - kMostNavigation));
+  if (dropped > 0 && last_ && last_->time < navigation.poses().front().time) {
+    motion_model_ = new_motion_model();  // as at the beginning: the motion since is not known
+  }
 }
 
 Localization Localizer::localize(const Frame& frame) {

@@ -53,6 +53,13 @@ class Localizer {
   Localizer(const Localizer&) = delete;
   Localizer& operator=(const Localizer&) = delete;
 
+  /// Continues the trajectory of the guess, for a drive whose navigation comes with its frames.
+  /// Forgets navigation of more than a minute before the last pose, or ten minutes if there is no
+  /// pose that long.
+  /// @param T_local_lidar  later than the poses before, in the map's frame
+  /// @throws std::invalid_argument  if the guess has no trajectory
+  void add_navigation(const std::vector<StampedPose>& T_local_lidar);
+
   /// The next scan of the drive. InputError if the map is damaged where it is looked at,
   /// std::invalid_argument if the scan is not later than the one before.
   Localization localize(const Frame& frame);

@@ -6,44 +6,19 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "../../../tests/synthetic_drive.h"
 #include "../../../tests/temporary_folder.h"
 #include "fovea/core/angle.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
-#include "fovea/core/random.h"
 #include "fovea/localization/localize_drive.h"
+#include "fovea/localization/test_visit.h"
 #include "fovea/map/map_surfaces.h"
-#include "fovea/pipeline/map_drive.h"
 
 namespace fovea::localizer_test {
 
+using test::Visit;
 using testing::HasSubstr;
 using enum LocalizationState;
-
-/// Drives through the town on its own way, with a LiDAR whose ranges have noise.
-class Visit : public SyntheticDrive {
- public:
-  double noise = 0.01;  // m
-  Visit(BoxScene scene_, double start, double step, int frames)
-      : SyntheticDrive(std::move(scene_), frames, step) {
-    std::vector<StampedPose> navigation;
-    for (int i = 0; i < frames; ++i) {
-      RigidMotion& T = T_local_lidar[std::size_t(i)];
-      T = RigidMotion(Eigen::Translation3d(start, 0.4, 0)) * T;
-      navigation.push_back({stamp_of(i), RigidMotion(Eigen::Translation3d(1.2, -0.8, 0.3)) * T});
-    }
-    editable_info().navigation = Trajectory(navigation);  // off, as GPS is
-  }
-  LoadedFrame load(int index) const override {
-    LoadedFrame result = SyntheticDrive::load(index);
-    Random random(static_cast<std::uint64_t>(index));
-    for (Eigen::Vector3f& p : std::get<Frame>(result).scan.position) {
-      p *= 1 + float(noise * random.normal()) / p.norm();
-    }
-    return result;
-  }
-};
 
 class Localize : public testing::Test {
  protected:
@@ -52,13 +27,7 @@ class Localize : public testing::Test {
     mapped(town_scene(), "map.fovea");
   }
   static std::filesystem::path mapped(BoxScene scene, const std::string& name) {
-    const SyntheticDrive drive(std::move(scene), 14, 1.0);
-    MapJob job;
-    job.output = *folder_ / name;
-    job.pose_source = PoseSource::kNavigation;
-    job.settings.mapper().surface.spacing = 0.06;
-    map_drive(drive, job, {});
-    return job.output;
+    return test::map_scene(std::move(scene), *folder_ / name);
   }
   static void TearDownTestSuite() { delete folder_; }
 
