@@ -91,10 +91,13 @@ struct DriveOptions {
   bool use_images = true;
 };
 
+/// DriveInfo::kind of a drive whose frames come while it is mapped.
+inline constexpr const char* kLiveDrive = "live";
+
 /// What is known of a drive before any frame is read.
 struct DriveInfo : Messages {
   std::filesystem::path path;
-  std::string kind;  ///< "kitti-raw", "kitti-odometry" or "generic"
+  std::string kind;  ///< "kitti-raw", "kitti-odometry", "generic" or "live"
   Calibration calibration;
   std::vector<int> unused_cameras;  ///< numbers of those that have images and were not chosen
   int begin = 0, end = 0;           ///< frame indices, half-open; some may turn out to be skipped

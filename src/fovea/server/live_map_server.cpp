@@ -46,6 +46,11 @@ FrameRecord told(const FrameRecord& record) {
   return told;
 }
 
+/// 0: the drive has no known end.
+int frames_of(const DriveInfo& drive) {
+  return drive.kind == kLiveDrive ? 0 : static_cast<int>(drive.frame_count());
+}
+
 }  // namespace
 
 LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<const DriveImages> images,
@@ -54,8 +59,7 @@ LiveMapServer::LiveMapServer(const MapJob& job, std::shared_ptr<const DriveImage
       images_(std::move(images)),
       page_(page),
       description_(describe_run(images_->info(), job)),
-      session_(job.output, job.resume, job.settings.tile_size(),
-               static_cast<int>(images_->info().frame_count())),
+      session_(job.output, job.resume, job.settings.tile_size(), frames_of(images_->info())),
       server_(options,
               [this](const std::string& path, WebServer::Reply reply) {
                 answer(path, std::move(reply));

@@ -43,7 +43,7 @@ class LiveSession {
   /// @param map       its file
   /// @param has_file  whether the file is of this map: before the first commit, another map may
   ///                  have its name
-  /// @param total     frames of the drive
+  /// @param total     frames of the drive; 0: not known
   LiveSession(std::filesystem::path map, bool has_file, double tile_size, int total);
 
   // For the mapping thread.
