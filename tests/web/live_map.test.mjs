@@ -39,9 +39,9 @@ before(() => {
 });
 after(() => drives.remove());
 
-function mapDrive(name) {
+function mapDrive(name, ...options) {
   execFileSync(program, ['map', drives.path(name, 'drive'), '-o', drives.path(name, 'map.fovea'), '--cameras', '0',
-    '--quiet']);
+    '--quiet', '--force', ...options]);
 }
 
 /// `fovea map URL`, as the process, a promise of {status, out, err} and a wait for words that it prints.
@@ -83,13 +83,23 @@ async function play(t, name, messages, options, ...more) {
 for (const ros1 of [false, true]) {
   test(`a robot with ROS ${ros1 ? 1 : 2}`, limit, async (t) => {
     const name = `ros${ros1 ? 1 : 2}`;
-    await play(t, name, record(drives.drive('poses'), { ros1 }), { ros1 });
+    await play(t, name, record(drives.drive('poses'), { ros1, images: ros1 ? 'rgb8' : 'compressed' }), { ros1 });
     assert.equal(contentOf(name), expected);
     const { live, map } = reportOf(name);
     assert.equal(map.frames, frames);
     assert.equal(live.scans, frames);
     for (const lost of ['scans_dropped', 'scans_missing', 'images_late', 'images_missing', 'poses_late',
       'connection_losses', 'messages_damaged']) assert.equal(live[lost], 0, lost);
+  });
+}
+
+for (const poses of ['tf', 'gnss']) {
+  test(`poses by ${poses}`, limit, async (t) => {
+    if (poses === 'gnss') drives.derive('simulated', 'gnss', 'gnss');
+    const from = poses === 'gnss' ? 'gnss' : 'poses';
+    mapDrive(from, '--no-imu');  // its rates are made up
+    await play(t, `by_${poses}`, record(drives.drive(from), { poses }), {}, '--poses', poses, '--no-imu');
+    assert.equal(contentOf(`by_${poses}`), contentOf(from));
   });
 }
 
