@@ -1,6 +1,5 @@
 #include "app/map_live_command.h"
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "app/robot_reader.h"
+#include "app/robot_run.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
 #include "fovea/core/process_memory.h"
@@ -21,9 +21,6 @@
 
 namespace fovea::app {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 /// Values of --poses that choose the source of the first guess.
 const std::map<std::string, NavigationSource> kSources = {
@@ -40,50 +37,17 @@ LiveTopicsOptions options_of(const MapArguments& arguments, const LiveArguments&
     throw ConfigError("poses of a file need a drive that is recorded", "--poses " + arguments.poses,
                       "give refine, navigation, gnss, odometry, tf or none");
   }
-  LiveTopicsOptions options;
-  options.topics = live.topics.options();
+  LiveTopicsOptions options = topics_options(arguments.drive, live);
   options.topics.poses = poses->second;
-  options.topics.duration = live.duration;
   options.topics.allow_dropped = arguments.allow_dropped;
-  options.live.name = arguments.drive.drive;
-  options.live.drive = arguments.drive.options();
-  options.live.max_wait = live.max_wait;
-  options.live.waits = live.every_frame;
-  options.live.record = live.record;
   if (arguments.resume) continue_map(arguments.output, options.live);
   return options;
-}
-
-void check_recording(const LiveArguments& live) {
-  std::error_code ignored;
-  if (live.record.empty() || !fs::exists(fs::symlink_status(live.record, ignored))) return;
-  throw OutputError("the folder exists already", live.record, "remove it, or choose another name");
 }
 
 /// "tracked", "lost" or "restarted".
 const char* state_of(const TrackingStats& tracking) {
   if (tracking.is_lost) return "lost";
   return tracking.has_restarted || tracking.is_pose_unknown ? "restarted" : "tracked";
-}
-
-ordered_json live_json(const RobotReader& reader, const LiveTopics& topics,
-                       const LiveFigures& figures, const bridge::PosePublisher& poses) {
-  const bridge::BridgeFigures& of_bridge = reader.figures();
-  return {{"messages", of_bridge.messages},
-          {"messages_damaged", of_bridge.damaged},
-          {"messages_unusable", topics.unusable_counts()},
-          {"connection_losses", of_bridge.losses},
-          {"scans", figures.scans},
-          {"scans_dropped", figures.scans_dropped},
-          {"scans_out_of_order", figures.scans_out_of_order},
-          {"scans_missing", figures.scans_missing},
-          {"images", figures.images},
-          {"images_late", figures.images_late},
-          {"images_missing", figures.images_missing},
-          {"images_unused", figures.images_unused},
-          {"poses", figures.poses},
-          {"poses_late", figures.poses_late},
-          {"poses_published", poses.counts().posted - poses.counts().dropped}};
 }
 
 /// A live drive for the view of its map. No frame can be read again.
@@ -120,15 +84,12 @@ class RobotMap {
   void run() {
     std::optional<OutputFile> report;  // opened first: a bad path must not cost a run
     if (!arguments_.report.empty()) report.emplace(arguments_.report, /*force=*/true);
-    bridge::BridgeOptions bridge;
-    bridge.address = bridge::parse_address(arguments_.drive.drive);
-    bridge.reconnect = std::chrono::milliseconds(std::int64_t(1000 * live_.reconnect));
-    bridge.poses = &poses_;
+    const bridge::BridgeOptions bridge = bridge_options(arguments_.drive.drive, live_, poses_);
     warm_memory(std::min(kWarmMemory, job_.memory / kWarmShare));
     const std::stop_token stop = session_.interrupt.stop_gently();
     RobotReader reader(bridge, topics_, stop, arguments_.quiet);
     LiveSource* const source = reader.wait_for_source();
-    if (source == nullptr) return throw_missing(reader);
+    if (source == nullptr) throw_missing(reader, arguments_.drive.drive);
     if (!is_quiet()) {
       for (const std::string& line : topics_.chosen()) print_out("{}\n", line);
     }
@@ -154,19 +115,6 @@ class RobotMap {
 
   /// Whether standard output is for poses, or for nothing.
   bool is_quiet() const { return arguments_.quiet || live_.pose_stream; }
-
-  [[noreturn]] void throw_missing(RobotReader& reader) {
-    reader.join();
-    try {
-      reader.rethrow();
-    } catch (const bridge::ConnectionError&) {
-      throw;
-    } catch (const InputError& error) {
-      throw InputError(error.problem(), error.where() + " of " + arguments_.drive.drive,
-                       error.remedy());
-    }
-    throw InputError("the robot has sent no drive", arguments_.drive.drive, "see docs/live.md");
-  }
 
   MapSummary map(LiveSource& source) {
     job_.on_begin = [&](const std::shared_ptr<const FrameSource>& first_frames) {

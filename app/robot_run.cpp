@@ -1,0 +1,74 @@
+#include "app/robot_run.h"
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fovea/core/errors.h"
+
+namespace fovea::app {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+bridge::BridgeOptions bridge_options(const std::string& address, const LiveArguments& live,
+                                     bridge::PosePublisher& poses) {
+  bridge::BridgeOptions options;
+  options.address = bridge::parse_address(address);
+  options.reconnect = std::chrono::milliseconds(std::int64_t(1000 * live.reconnect));
+  options.poses = &poses;
+  return options;
+}
+
+LiveTopicsOptions topics_options(const DriveArguments& drive, const LiveArguments& live) {
+  LiveTopicsOptions options;
+  options.topics = live.topics.options();
+  options.topics.duration = live.duration;
+  options.live.name = drive.drive;
+  options.live.drive = drive.options();
+  options.live.max_wait = live.max_wait;
+  options.live.waits = live.every_frame;
+  options.live.record = live.record;
+  return options;
+}
+
+void check_recording(const LiveArguments& live) {
+  std::error_code ignored;
+  if (live.record.empty() || !fs::exists(fs::symlink_status(live.record, ignored))) return;
+  throw OutputError("the folder exists already", live.record, "remove it, or choose another name");
+}
+
+void throw_missing(RobotReader& reader, const std::string& address) {
+  reader.join();
+  try {
+    reader.rethrow();
+  } catch (const bridge::ConnectionError&) {
+    throw;
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), error.where() + " of " + address, error.remedy());
+  }
+  throw InputError("the robot has sent no drive", address, "see docs/live.md");
+}
+
+ordered_json live_json(const RobotReader& reader, const LiveTopics& topics,
+                       const LiveFigures& figures, const bridge::PosePublisher& poses) {
+  const bridge::BridgeFigures& of_bridge = reader.figures();
+  return {{"messages", of_bridge.messages},
+          {"messages_damaged", of_bridge.damaged},
+          {"messages_unusable", topics.unusable_counts()},
+          {"connection_losses", of_bridge.losses},
+          {"scans", figures.scans},
+          {"scans_dropped", figures.scans_dropped},
+          {"scans_out_of_order", figures.scans_out_of_order},
+          {"scans_missing", figures.scans_missing},
+          {"images", figures.images},
+          {"images_late", figures.images_late},
+          {"images_missing", figures.images_missing},
+          {"images_unused", figures.images_unused},
+          {"poses", figures.poses},
+          {"poses_late", figures.poses_late},
+          {"poses_published", poses.counts().posted - poses.counts().dropped}};
+}
+
+}  // namespace fovea::app
