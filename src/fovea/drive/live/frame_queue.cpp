@@ -1,6 +1,7 @@
 #include "fovea/drive/live/frame_queue.h"
 
 #include <cstdlib>
+#include <set>
 
 namespace fovea {
 
@@ -85,7 +86,26 @@ void FrameQueue::trim_images(std::size_t camera) {
     return items.front()->stamp < begin || items.size() > limits_.image_count ||
            queue.bytes() > limits_.image_bytes;
   };
-  while (is_over()) queue.drop_oldest();
+  while (is_over()) {
+    if (!drop_unneeded(camera)) queue.drop_oldest();
+  }
+}
+
+bool FrameQueue::drop_unneeded(std::size_t camera) {
+  const std::optional<ExpectedPlace>& place = image_places_[camera];
+  if (!place || scans_.empty()) return false;
+  MatchQueue<LiveImage>& queue = images_[camera];
+  std::set<std::size_t> needed;
+  for (const PendingScan& pending : scans_) {
+    needed.insert(queue.find_nearest(pending.scan->stamp + place->delay));
+  }
+  const TimeNs last = scans_.back().scan->stamp + place->delay;
+  for (std::size_t i = 0; i < queue.items().size() && queue.items()[i]->stamp < last; ++i) {
+    if (needed.contains(i)) continue;
+    queue.drop(i);
+    return true;
+  }
+  return false;
 }
 
 void FrameQueue::use(Sensors sensors, std::size_t scan_limit) {

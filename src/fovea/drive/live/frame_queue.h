@@ -78,6 +78,8 @@ class FrameQueue {
   Added add(MatchQueue<Item>& queue, std::shared_ptr<const Item> item,
             const std::optional<ExpectedPlace>& place);
   void trim_images(std::size_t camera);
+  /// Drops an image that no scan that waits can take; false if there is none.
+  bool drop_unneeded(std::size_t camera);
 
   FrameQueueLimits limits_;
   std::deque<PendingScan> scans_;

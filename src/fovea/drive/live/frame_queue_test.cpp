@@ -96,11 +96,37 @@ TEST_F(FrameQueueTest, DoesNotWaitForASlowCamera) {
 
 TEST_F(FrameQueueTest, DoesNotWaitForACameraThatHasStopped) {
   add_image(0);
-  add_scan(kStoppedAfter - 20 * kMs);
+  for (int i = 1; i < 21; ++i) {
+    add_scan(i * kStep);
+    EXPECT_EQ(queue_.is_complete(), i * kStep + 10 * kMs > kStoppedAfter) << i;
+    queue_.take();
+  }
+}
+
+TEST_F(FrameQueueTest, WaitsForACameraAfterAPause) {
+  add_image(10 * kMs);
+  add_scan(0);
+  EXPECT_EQ(next_image(), 10 * kMs);
+  add_scan(100 * kStep);
   EXPECT_FALSE(queue_.is_complete());
-  queue_.take();
-  add_scan(kStoppedAfter);
-  EXPECT_TRUE(queue_.is_complete());
+}
+
+TEST_F(FrameQueueTest, KeepsTheImagesOfScansThatWait) {
+  FrameQueueLimits limits;
+  limits.image_bytes = 100;
+  FrameQueue queue(0, 1, limits);
+  queue.use({{}, {0}, {}, {{10 * kMs, 60 * kMs}}, kStep}, 4);
+  for (int i = 0; i < 4; ++i) {
+    queue.add_scan(scan(i * kStep), {});
+    for (const TimeNs phase : {10, 35, 60, 85}) {
+      queue.add_image(0, image(i * kStep + phase * kMs, 12));  // 8 of 16 fit
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    const RawFrame frame = queue.take();
+    ASSERT_TRUE(frame.images[0]);
+    EXPECT_EQ(frame.images[0]->stamp, i * kStep + 10 * kMs);
+  }
 }
 
 TEST_F(FrameQueueTest, CountsImagesAfterTheirFrame) {

@@ -52,9 +52,8 @@ class LiveBounds : public testing::Test {
     for (const auto& [stamp, call] : part.calls()) call(source);
   }
 
-  TemporaryFolder folder_;
   LiveData data_ = live_car(40);
-  std::string toml_ = data_.write(folder_ / "drive");
+  std::string toml_ = drive_toml(data_.drive);
 };
 
 TEST_F(LiveBounds, AFrameComesWithoutDataThatAreLate) {
@@ -195,7 +194,7 @@ TEST_F(LiveBounds, CloseEndsEachWait) {
     const std::jthread closing([&] { no_data.close(); });
     EXPECT_FALSE(no_data.begin({}));
   }
-  EXPECT_FALSE(no_data.next({}));
+  EXPECT_THROW(no_data.next({}), std::logic_error);
   LiveSource source(toml_, all_data());
   send(data_, source, -3, 11);
   ASSERT_TRUE(source.begin({}));

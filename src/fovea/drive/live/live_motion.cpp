@@ -29,7 +29,7 @@ TimeNs end_of(const RecordWindow<Record>& window, TimeNs until) {
 bool has_reached(const SensorStamps& stamps, TimeNs time, TimeNs max_wait) {
   if (!stamps.last()) return true;
   const TimeNs gap = time - *stamps.last();
-  return gap <= 0 || gap > kStoppedAfter || stamps.usual_step().value_or(0) >= max_wait;
+  return gap <= 0 || stamps.has_stopped(time) || stamps.usual_step().value_or(0) >= max_wait;
 }
 
 }  // namespace
@@ -61,6 +61,13 @@ bool LiveMotion::reaches(TimeNs time) const {
   // A position gets its attitude from the orientations around it.
   return !uses_orientations() ||
          has_reached(inertia_.stamps(), end_of(positions_, time), max_wait_);
+}
+
+void LiveMotion::pass(TimeNs time) {
+  poses_.pass(time);
+  positions_.pass(time);
+  inertia_.pass(time);
+  wheels_.pass(time);
 }
 
 NavigationTables LiveMotion::tables(TimeNs until) const {

@@ -23,20 +23,21 @@ class RecordWindow {
     if (stamps_.last() && record.time <= *stamps_.last()) return false;
     stamps_.add(record.time);
     records_.push_back(record);
-    drop_before(record.time - kLongest);
     if (records_.size() > kMost) records_.pop_front();
     return true;
   }
   void drop_before(TimeNs time) {
     while (!records_.empty() && records_.front().time < time) records_.pop_front();
   }
+  void pass(TimeNs time) {
+    if (stamps_.last() && *stamps_.last() < time) stamps_.miss();
+  }
   const std::deque<Record>& records() const { return records_; }
   const SensorStamps& stamps() const { return stamps_; }
   bool empty() const { return records_.empty(); }
 
  private:
-  static constexpr TimeNs kLongest = 60 * kNsPerSecond;
-  static constexpr std::size_t kMost = 1 << 16;
+  static constexpr std::size_t kMost = 1 << 16;  // a minute of a fast IMU
   std::deque<Record> records_;
   SensorStamps stamps_;
 };
@@ -69,6 +70,9 @@ class LiveMotion {
   /// Whether every sensor that the drive uses, and that is fast enough to wait for, has sent a
   /// record at a time or later. A sensor that has stopped is not waited for.
   bool reaches(TimeNs time) const;
+
+  /// A frame ends at this time, whether all have reached it or not.
+  void pass(TimeNs time);
 
   /// Fixes the frame `local`, the units and the sensors. Converts the records up to the first one
   /// at `until` or later.

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "fovea/drive/drive_files.h"
@@ -152,6 +153,7 @@ std::optional<RawFrame> LiveSource::Impl::take_frame(std::unique_lock<std::mutex
   if (!wait(lock, stop, end, is_complete)) return std::nullopt;
   RawFrame raw = queue_.take();
   raw.index = next_index_++;
+  motion_.pass(end_of_sweep(raw.stamp));
   notify();
   return raw;
 }
@@ -210,6 +212,7 @@ void LiveSource::Impl::add_motion_to(RawFrame& raw) {
 
 std::optional<LiveFrame> LiveSource::Impl::next(const std::stop_token& stop) {
   std::unique_lock lock(guard_);
+  if (!decoder_) throw std::logic_error("begin() comes before next()");
   if (stop.stop_requested()) return std::nullopt;
   RawFrame raw;
   if (!first_frames_.empty()) {

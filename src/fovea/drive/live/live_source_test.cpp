@@ -100,6 +100,23 @@ TEST_F(LiveSourceTest, TakesDataFromAThreadForEachSensor) {
   expect_same(live, *open_drive(folder_ / "drive", all_data().drive));
 }
 
+TEST_F(LiveSourceTest, GivesADriveWithAPause) {
+  LiveData data = live_car(30);
+  const auto pause = [](auto& stamp) {
+    if (stamp > kLiveStart + 20 * kLiveStep - kLiveStep / 2) stamp += 60 * kNsPerSecond;
+  };
+  for (LiveScan& scan : data.scans) pause(scan.stamp);
+  for (LiveImage& image : data.images) pause(image.stamp);
+  for (RecordedPose& pose : data.poses) pause(pose.time);
+  for (RecordedInertia& inertia : data.inertia) pause(inertia.time);
+  for (WheelSpeed& wheel : data.wheels) pause(wheel.time);
+  const std::string toml = data.write(folder_ / "drive");
+  LiveOptions options = all_data();
+  options.max_wait = 0.5;  // for an image that comes before the first scan after the pause
+  const PlayedDrive live = play(data, toml, options);
+  expect_same(live, *open_drive(folder_ / "drive", options.drive));
+}
+
 TEST_F(LiveSourceTest, RefusesWhatTheDriveLacks) {
   const std::string toml = live_car(1).write(folder_ / "drive");
   LiveSource source(toml, {});

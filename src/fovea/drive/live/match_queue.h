@@ -39,7 +39,7 @@ class MatchQueue {
   bool is_decided(TimeNs time, TimeNs tolerance) const {
     if (!stamps_.last()) return false;
     const TimeNs gap = time - *stamps_.last();
-    if (gap <= 0 || gap > kStoppedAfter) return true;
+    if (gap <= 0 || stamps_.has_stopped(time)) return true;
     const std::optional<TimeNs> step = stamps_.usual_step();
     if (!step) return false;
     if (gap <= tolerance) return 10 * gap < 3 * *step;
@@ -50,27 +50,35 @@ class MatchQueue {
   /// to the time of the next scan, or belongs to the one before.
   Pointer take(TimeNs time, TimeNs tolerance, TimeNs next_time) {
     const auto away = [&](TimeNs stamp) { return std::abs(stamp - time); };
-    const auto nearest = std::min_element(
-        items_.begin(), items_.end(),
-        [&](const Pointer& a, const Pointer& b) { return away(a->stamp) < away(b->stamp); });
     Pointer taken;
-    if (nearest != items_.end()) {
-      const TimeNs stamp = (*nearest)->stamp, distance = away(stamp);
+    if (!items_.empty()) {
+      const Pointer& nearest = items_[find_nearest(time)];
+      const TimeNs stamp = nearest->stamp, distance = away(stamp);
       const bool is_before = last_taken_ && away(*last_taken_) <= distance;
       const bool is_next = std::abs(stamp - next_time) < distance;
-      if (distance <= tolerance && !is_before && !is_next) taken = *nearest;
+      if (distance <= tolerance && !is_before && !is_next) taken = nearest;
     }
     if (taken) last_taken_ = taken->stamp;
+    if (!taken) stamps_.miss();
     drop_until(std::max(time, last_taken_.value_or(time)));
     if (taken) --unused_;
     return taken;
   }
 
   /// Drops the oldest item.
-  void drop_oldest() {
-    bytes_ -= content_bytes(*items_.front());
-    items_.pop_front();
+  void drop_oldest() { drop(0); }
+  void drop(std::size_t i) {
+    bytes_ -= content_bytes(*items_[i]);
+    items_.erase(items_.begin() + std::ptrdiff_t(i));
     ++unused_;
+  }
+  /// The item nearest to a time. The queue is not empty.
+  std::size_t find_nearest(TimeNs time) const {
+    const auto away = [&](const Pointer& item) { return std::abs(item->stamp - time); };
+    const auto found =
+        std::min_element(items_.begin(), items_.end(),
+                         [&](const Pointer& a, const Pointer& b) { return away(a) < away(b); });
+    return std::size_t(found - items_.begin());
   }
 
   const std::deque<Pointer>& items() const { return items_; }

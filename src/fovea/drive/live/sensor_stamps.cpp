@@ -29,6 +29,7 @@ void SensorStamps::add(TimeNs stamp) {
     if (steps_.size() > kKept) steps_.pop_front();
   }
   last_ = stamp;
+  misses_ = 0;
 }
 
 std::optional<TimeNs> SensorStamps::usual_step() const {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace fovea {
 namespace {
 
 constexpr std::size_t kMostWarnings = 100;
+constexpr TimeNs kLongestStep = kNsPerSecond;  // longer ones are pauses
 
 }  // namespace
 
@@ -25,8 +27,11 @@ void SensorWatch::begin(const std::vector<bool>& is_used, const std::vector<bool
 }
 
 void SensorWatch::add(std::size_t sensor, TimeNs stamp) {
-  Sensor& of = sensors_[sensor];
+  if (!newest_) newest_ = stamp;
   if (sensor == 0 && !first_) first_ = stamp;
+  clock_ += std::clamp<TimeNs>(stamp - *newest_, 0, kLongestStep);
+  newest_ = std::max(*newest_, stamp);
+  Sensor& of = sensors_[sensor];
   if (of.state == State::kUnused) {
     warn(fmt::format("{} sends data after the beginning: they are not used", of.name));
     of.state = State::kReported;
@@ -34,17 +39,21 @@ void SensorWatch::add(std::size_t sensor, TimeNs stamp) {
     warn(fmt::format("{} sends data again, after {:.1f} s", of.name, seconds(stamp - *of.last)));
     of.state = State::kUsed;
   }
+  if (of.last) of.step = stamp - *of.last;
   of.last = stamp;
-  if (sensor == 0) check(stamp);
+  of.last_clock = clock_;
+  check();
 }
 
-void SensorWatch::check(TimeNs now) {
+void SensorWatch::check() {
   for (Sensor& sensor : sensors_) {
     if (sensor.state != State::kUsed || !sensor.last) continue;
-    if (now - *sensor.last <= kStoppedAfter) continue;
+    // A slow sensor may send nothing for longer.
+    if (clock_ - sensor.last_clock <= std::max(kStoppedAfter, 3 * sensor.step)) continue;
     warn(fmt::format("{} has sent no data since {:.1f} s of the drive", sensor.name,
-                     seconds(*sensor.last - *first_)));
+                     seconds(*sensor.last - first_.value_or(*sensor.last))));
     sensor.state = State::kStopped;
+    sensor.step = 0;
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace fovea {
 
-/// Compares the stamps of sensors with those of the LiDAR.
+/// Compares the stamps of sensors. A time in which no sensor sends data is a pause.
 class SensorWatch {
  public:
   /// @param names  of all sensors: "camera front"; the first one is the LiDAR
@@ -31,13 +31,17 @@ class SensorWatch {
     std::string name;
     State state = State::kBefore;
     std::optional<TimeNs> last;  // stamp
+    TimeNs step = 0;             // before it
+    TimeNs last_clock = 0;       // when it came
   };
   /// Looks for sensors that have stopped.
-  void check(TimeNs now);
+  void check();
   void warn(std::string text);
 
   std::vector<Sensor> sensors_;
-  std::optional<TimeNs> first_;  // stamp of the LiDAR
+  std::optional<TimeNs> first_;   // stamp of the LiDAR
+  std::optional<TimeNs> newest_;  // stamp
+  TimeNs clock_ = 0;              // advances with the stamps, but for pauses
   Messages messages_;
 };
 
