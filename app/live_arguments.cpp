@@ -15,7 +15,8 @@ constexpr std::array kOfRobots = {"--lidar",       "--camera",   "--fix",      "
                                   "--odometry",    "--body",     "--world",    "--compensated",
                                   "--reconnect",   "--max-wait", "--duration", "--every-frame",
                                   "--pose-stream", "--record"};
-constexpr std::array kOfDrives = {"--frames", "--rate", "--calibrate", "--if-missing", "--scratch"};
+constexpr std::array kOfDrives = {"--frames",  "--rate", "--calibrate", "--if-missing",
+                                  "--scratch", "--only", "--truth"};
 
 }  // namespace
 
@@ -40,11 +41,11 @@ void add_live_arguments(CLI::App& command, LiveArguments& arguments) {
       ->group(kGroup);
   command
       .add_flag("--every-frame", arguments.every_frame,
-                "The robot waits while frames are mapped, for a bridge that plays a recording")
+                "The robot waits for each frame, for a bridge that plays a recording")
       ->group(kGroup);
   command
       .add_option("--record", arguments.record,
-                  "Write the frames that are mapped as a drive, too (docs/drives.md)")
+                  "Write the frames that are used as a drive, too (docs/drives.md)")
       ->type_name("DIR")
       ->group(kGroup);
   command
@@ -56,7 +57,8 @@ void add_live_arguments(CLI::App& command, LiveArguments& arguments) {
 void check_kind_of_options(const CLI::App& command, bool is_live) {
   const auto refuse = [&](const auto& options, const char* kind) {
     for (const char* option : options) {
-      if (command.get_option(option)->count() > 0) throw CLI::ValidationError(option, kind);
+      const CLI::Option* const given = command.get_option_no_throw(option);
+      if (given != nullptr && given->count() > 0) throw CLI::ValidationError(option, kind);
     }
   };
   if (is_live) {

@@ -9,7 +9,7 @@
 
 namespace fovea::app {
 
-/// Options of `fovea map ws://HOST:PORT`, as typed.
+/// Options of commands with ws://HOST:PORT in place of a drive, as typed.
 struct LiveArguments {
   TopicArguments topics;
   double reconnect = 30;                                      ///< s

@@ -9,11 +9,13 @@
 #include "app/commands.h"
 #include "app/localization_truth.h"
 #include "app/localize_job.h"
+#include "app/localize_live_command.h"
 #include "app/number_checks.h"
 #include "app/progress_bar.h"
 #include "app/reports.h"
 #include "fovea/core/errors.h"
 #include "fovea/core/parallel.h"
+#include "fovea/drive/bridge/bridge_address.h"
 #include "fovea/geometry/pose_file.h"
 #include "fovea/localization/localize_drive.h"
 
@@ -114,7 +116,10 @@ void add_localize_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<LocalizeArguments>();
   CLI::App* command =
       app.add_subcommand("localize", "Find where a drive's scans were taken in a map or a city");
-  command->add_option("DRIVE", arguments->drive.drive, "Drive folder; its images are not needed")
+  command
+      ->add_option("DRIVE", arguments->drive.drive,
+                   "Drive folder, whose images are not needed, or the Foxglove bridge of a "
+                   "running robot (ws://HOST:8765)")
       ->required();
   command->add_option("MAP", arguments->map, "Map file, or the folder or manifest of a city")
       ->required();
@@ -141,7 +146,14 @@ void add_localize_command(CLI::App& app, Session& session) {
       ->check(whole_number(0, kMaxThreads));
   command->add_flag("--force", arguments->force, "Overwrite the output");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
-  command->callback([arguments, &session] { run(*arguments, session.warnings); });
+  auto live = std::make_shared<LiveArguments>();
+  add_live_arguments(*command, *live);
+  command->callback([arguments, live, command, &session] {
+    const bool is_live = bridge::is_address(arguments->drive.drive);
+    check_kind_of_options(*command, is_live);
+    if (is_live) return localize_robot(*arguments, *live, session);
+    run(*arguments, session.warnings);
+  });
 }
 
 }  // namespace fovea::app

@@ -9,15 +9,17 @@ import { ros1SchemaOf, schemaOf } from './ros_messages.mjs';
 
 export class BridgeServer {
   /// @param messages  of record()
-  static async start(messages, { ros1 = false } = {}) {
-    const server = new BridgeServer(messages, ros1);
+  /// @param takesPoses  clients may publish, as JSON
+  static async start(messages, { ros1 = false, takesPoses = false } = {}) {
+    const server = new BridgeServer(messages, ros1, takesPoses);
     await once(server.web, 'listening');
     return server;
   }
 
-  constructor(messages, ros1) {
+  constructor(messages, ros1, takesPoses) {
     this.messages = messages;
-    this.server = new protocol.FoxgloveServer({ name: 'fovea tests', capabilities: [] });
+    this.server = new protocol.FoxgloveServer({ name: 'fovea tests',
+      capabilities: takesPoses ? ['clientPublish'] : [], supportedEncodings: takesPoses ? ['json'] : undefined });
     this.subscribed = new Set();
     this.channels = new Map();
     for (const { name, type } of topicsOf(messages)) {

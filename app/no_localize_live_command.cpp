@@ -1,0 +1,13 @@
+// A build without FOVEA_WITH_BRIDGE.
+#include "app/localize_live_command.h"
+#include "fovea/core/errors.h"
+
+namespace fovea::app {
+
+void localize_robot(const LocalizeArguments& arguments, const LiveArguments& /*live*/,
+                    Session& /*session*/) {
+  throw ConfigError("this build of fovea reads no running robot", arguments.drive.drive,
+                    "build it with FOVEA_WITH_BRIDGE, or give a drive");
+}
+
+}  // namespace fovea::app
