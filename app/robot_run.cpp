@@ -28,7 +28,7 @@ LiveTopicsOptions topics_options(const DriveArguments& drive, const LiveArgument
   options.live.name = drive.drive;
   options.live.drive = drive.options();
   options.live.max_wait = live.max_wait;
-  options.live.waits = live.every_frame;
+  options.live.waits = options.live.has_one_sender = live.every_frame;
   options.live.record = live.record;
   return options;
 }

@@ -103,6 +103,7 @@ void LiveClocks::report(const Sensor& sensor, Messages& messages) const {
                               sensor.name, 1e3 * sensor.corrected));
   }
   std::vector<std::pair<double, double>> offsets;
+  offsets.reserve(sensor.measured.size());
   for (const Measurement& measured : sensor.measured) {
     offsets.emplace_back(seconds(measured.time - sensor.measured.front().time), measured.offset);
   }

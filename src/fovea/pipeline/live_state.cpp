@@ -18,14 +18,14 @@ constexpr float kVoxel = 0.5;  // m, of scans for loop closures: memory grows by
 json::binary_t bytes_of(const std::vector<Eigen::Vector3f>& points) {
   json::binary_t bytes;
   bytes.resize(points.size() * sizeof(Eigen::Vector3f));
-  if (!points.empty()) std::memcpy(bytes.data(), points.data(), bytes.size());
+  if (!points.empty()) std::memcpy(bytes.data(), points.front().data(), bytes.size());
   return bytes;
 }
 
 std::vector<Eigen::Vector3f> points_of(const json::binary_t& bytes) {
   std::vector<Eigen::Vector3f> points(bytes.size() / sizeof(Eigen::Vector3f));
   if (!points.empty()) {
-    std::memcpy(points.data(), bytes.data(), points.size() * sizeof(Eigen::Vector3f));
+    std::memcpy(points.front().data(), bytes.data(), points.size() * sizeof(Eigen::Vector3f));
   }
   return points;
 }

@@ -26,20 +26,20 @@ TimeNs end_of(const RecordWindow<Record>& window, TimeNs until) {
 }
 
 /// Whether a sensor need not be waited for, to have its records up to a time.
-bool has_reached(const SensorStamps& stamps, TimeNs time, TimeNs max_wait) {
+bool has_reached(const SensorStamps& stamps, TimeNs time, TimeNs longest_step) {
   if (!stamps.last()) return true;
   const TimeNs gap = time - *stamps.last();
-  return gap <= 0 || stamps.has_stopped(time) || stamps.usual_step().value_or(0) >= max_wait;
+  return gap <= 0 || stamps.has_stopped(time) || stamps.usual_step().value_or(0) >= longest_step;
 }
 
 }  // namespace
 
 LiveMotion::LiveMotion(const DriveDescription& description, const DriveOptions& options,
-                       std::filesystem::path name, double max_wait)
+                       std::filesystem::path name, double longest_step)
     : description_(description),
       options_(options),
       name_(std::move(name)),
-      max_wait_(from_seconds(max_wait)) {}
+      longest_step_(from_seconds(longest_step)) {}
 
 bool LiveMotion::uses_orientations() const {
   return !inertia_.empty() && inertia_.records().back().R_enu_imu && !positions_.empty() &&
@@ -48,7 +48,7 @@ bool LiveMotion::uses_orientations() const {
 
 bool LiveMotion::reaches(TimeNs time) const {
   const auto reached = [&](const auto& window) {
-    return has_reached(window.stamps(), time, max_wait_);
+    return has_reached(window.stamps(), time, longest_step_);
   };
   const bool uses_navigation = has_begun_ ? has_navigation_ : options_.use_navigation;
   const bool uses_imu = has_begun_ ? has_imu_ : options_.use_imu && description_.imu.has_value();
@@ -60,7 +60,7 @@ bool LiveMotion::reaches(TimeNs time) const {
   if (!reached(positions_)) return false;
   // A position gets its attitude from the orientations around it.
   return !uses_orientations() ||
-         has_reached(inertia_.stamps(), end_of(positions_, time), max_wait_);
+         has_reached(inertia_.stamps(), end_of(positions_, time), longest_step_);
 }
 
 void LiveMotion::pass(TimeNs time) {

@@ -54,9 +54,10 @@ struct FirstMotion : Messages {
 /// Converts records as the tables of a drive's folder are converted. Each result comes once.
 class LiveMotion {
  public:
-  /// @param name  of the drive, for messages
+  /// @param name          of the drive, for messages
+  /// @param longest_step  s, between the records of sensors that are waited for
   LiveMotion(const DriveDescription& description, const DriveOptions& options,
-             std::filesystem::path name, double max_wait);
+             std::filesystem::path name, double longest_step);
 
   // False for a record that is not later than the one before: it is dropped.
   bool add(const RecordedPose& pose) { return poses_.add(pose); }
@@ -102,7 +103,7 @@ class LiveMotion {
   DriveDescription description_;
   DriveOptions options_;
   std::filesystem::path name_;
-  TimeNs max_wait_;
+  TimeNs longest_step_;
 
   RecordWindow<RecordedPose> poses_;
   RecordWindow<RecordedPosition> positions_;

@@ -53,6 +53,9 @@ struct LiveOptions {
   std::size_t max_scans = 8;  ///< that wait to become frames, for each LiDAR
   /// A full queue makes add_scan() wait. Otherwise the oldest scan is dropped, and counted.
   bool waits = false;
+  /// With `waits`: all data come from one thread. While it waits for room nothing else comes, so a
+  /// frame then waits no longer, and no other wait has an end: frames do not depend on the clock.
+  bool has_one_sender = false;
   /// Continues an earlier run: the number of the next frame, and the origin of its frame `local`.
   int first_frame = 0;
   std::optional<GeodeticPoint> origin;

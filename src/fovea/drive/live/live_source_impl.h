@@ -103,6 +103,9 @@ class LiveSource::Impl {
   bool wait(std::unique_lock<std::mutex>& lock, const std::stop_token& stop,
             std::optional<WallClock::time_point> end, IsDone&& is_done);
 
+  /// Nothing: without an end.
+  std::optional<WallClock::time_point> end_of_wait(WallClock::time_point begin,
+                                                   double longest) const;
   /// What begin() waits for.
   std::vector<std::string> missing_data() const;
   void add_missing_images(std::vector<std::string>& missing) const;
@@ -123,6 +126,7 @@ class LiveSource::Impl {
   std::condition_variable_any changed_;
   std::size_t version_ = 0;  // of the data
   std::size_t callers_ = 0;  // that wait for room
+  bool is_stuck_ = false;    // the only sender waits, and no frame was taken since
   bool closed_ = false;
   FrameQueue queue_;
   LiveMotion motion_;

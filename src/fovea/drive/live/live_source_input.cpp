@@ -15,6 +15,10 @@ namespace {
 /// Scans that the beginning keeps beyond the first ones, until it has their images.
 constexpr std::size_t kMoreScans = 4;
 
+/// s between records of navigation that a frame waits for: a frame in a hurry takes the motion up
+/// to the last one of slower sensors.
+constexpr double kLongestStep = 0.03, kAnyStep = 60;
+
 std::vector<std::string> names_of(const LiveSensors& sensors) {
   std::vector<std::string> names;
   names.reserve(sensors.size());
@@ -50,7 +54,8 @@ LiveSource::Impl::Impl(std::string_view drive_toml, const LiveOptions& options)
     : options_(options),
       description_(description_of(drive_toml, options)),
       queue_(description_.further_lidars.size(), description_.cameras.size(), first_limits()),
-      motion_(description_, options.drive, options.name, options.max_wait),
+      motion_(description_, options.drive, options.name,
+              options.waits ? kAnyStep : std::min(options.max_wait, kLongestStep)),
       watch_(names_of(sensors_)),
       clocks_(names_of(sensors_), !options.waits),
       next_index_(options.first_frame) {
@@ -162,8 +167,11 @@ bool LiveSource::Impl::wait_for_room(std::unique_lock<std::mutex>& lock, HasRoom
   auto end = deadline();
   while (!closed_ && !has_room()) {
     if (!queue_.scans().empty()) {
+      if (options_.has_one_sender && !std::exchange(is_stuck_, true)) notify();
       changed_.wait(lock);
       end = deadline();
+    } else if (options_.has_one_sender) {
+      break;
     } else if (changed_.wait_until(lock, end) == std::cv_status::timeout) {
       break;
     }

@@ -57,6 +57,12 @@ bool LiveSource::Impl::wait(std::unique_lock<std::mutex>& lock, const std::stop_
   return !stop.stop_requested();
 }
 
+std::optional<WallClock::time_point> LiveSource::Impl::end_of_wait(WallClock::time_point begin,
+                                                                   double longest) const {
+  if (options_.waits && options_.has_one_sender) return std::nullopt;
+  return begin + wall_time(longest);
+}
+
 std::vector<std::string> LiveSource::Impl::missing_data() const {
   std::vector<std::string> missing;
   if (queue_.scans().size() < options_.first_scans) {
@@ -111,8 +117,9 @@ std::unique_ptr<FrameSource> LiveSource::Impl::begin(const std::stop_token& stop
   std::unique_lock lock(guard_);
   if (!wait(lock, stop, std::nullopt, [&] { return first_arrival_ || closed_; })) return nullptr;
   if (!first_arrival_) return nullptr;
-  const auto end = *first_arrival_ + wall_time(options_.longest_beginning);
-  if (!wait(lock, stop, end, [&] { return missing_data().empty() || closed_; })) return nullptr;
+  const auto end = end_of_wait(*first_arrival_, options_.longest_beginning);
+  const auto has_all = [&] { return missing_data().empty() || closed_ || is_stuck_; };
+  if (!wait(lock, stop, end, has_all)) return nullptr;
   const FirstData first = first_data();
   lock.unlock();
   LiveBeginning beginning = find_sensors(description_, options_.drive, options_.name, first);
@@ -145,14 +152,15 @@ std::optional<RawFrame> LiveSource::Impl::take_frame(std::unique_lock<std::mutex
   if (!wait(lock, stop, std::nullopt, [&] { return has_scan() || closed_; })) return std::nullopt;
   if (!has_scan()) return std::nullopt;
   // The oldest scan may be dropped meanwhile. The one after it then waits as long as this one.
-  const auto end = queue_.scans().front().arrival + wall_time(options_.max_wait);
+  const auto end = end_of_wait(queue_.scans().front().arrival, options_.max_wait);
   const auto is_complete = [&] {
     const TimeNs stamp = queue_.scans().front().scan->stamp;
-    return closed_ || (queue_.is_complete() && motion_.reaches(end_of_sweep(stamp)));
+    return closed_ || is_stuck_ || (queue_.is_complete() && motion_.reaches(end_of_sweep(stamp)));
   };
   if (!wait(lock, stop, end, is_complete)) return std::nullopt;
   RawFrame raw = queue_.take();
   raw.index = next_index_++;
+  is_stuck_ = false;
   motion_.pass(end_of_sweep(raw.stamp));
   notify();
   return raw;

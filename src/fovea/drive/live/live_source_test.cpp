@@ -128,4 +128,25 @@ TEST_F(LiveSourceTest, RefusesWhatTheDriveLacks) {
   EXPECT_THROW(LiveSource("version = 2", {}), ConfigError);
 }
 
+// A sender that waits for room sends nothing else: frames do not depend on a clock, even if a
+// camera stops.
+TEST_F(LiveSourceTest, OneSenderNeedsNoClock) {
+  LiveData data = live_car(40);
+  const std::string toml = data.write(folder_ / "drive");
+  std::erase_if(data.images, [](const LiveImage& image) {
+    return image.camera == "side" && image.stamp > kLiveStart + 15 * kLiveStep;
+  });
+  LiveOptions options = all_data();
+  options.has_one_sender = true;
+  for (const double wait : {0.0, 1e6}) {
+    options.max_wait = options.longest_beginning = wait;
+    const PlayedDrive run = play(data, toml, options);
+    ASSERT_EQ(run.frames.size(), 40u);
+    for (int i = 0; i < 40; ++i) {
+      const Frame& frame = std::get<Frame>(run.frames[std::size_t(i)]);
+      EXPECT_EQ(frame.missing_images.size(), i > 15 ? 1u : 0u) << i;
+    }
+  }
+}
+
 }  // namespace fovea::live_source_test
