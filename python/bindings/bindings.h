@@ -15,5 +15,6 @@ void bind_map_drive(pybind11::module_& module);
 void bind_mapper(pybind11::module_& module);
 void bind_evaluate(pybind11::module_& module);
 void bind_localizer(pybind11::module_& module);
+void bind_live_mapper(pybind11::module_& module);
 
 }  // namespace fovea::python

@@ -35,6 +35,8 @@ __all__ = [
     "Frame",
     "FrameRecord",
     "InputError",
+    "LiveMapper",
+    "LivePose",
     "Localization",
     "Localizer",
     "Map",
@@ -290,6 +292,86 @@ class Mapper:
     @property
     def submaps(self) -> _Doubles: ...
     def tiles(self) -> Dict[_TileId, Points]: ...
+
+class LivePose:
+    """A frame of a LiveMapper when it has its pose."""
+
+    @property
+    def index(self) -> int: ...
+    @property
+    def stamp(self) -> int: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def T_local_lidar(self) -> _Doubles: ...
+    @property
+    def covariance(self) -> Optional[_Doubles]: ...
+
+class LiveMapper:
+    """Maps scans, images and poses while a program's threads measure them."""
+
+    def __init__(
+        self,
+        drive: _Path,
+        output: _Path,
+        *,
+        preset: str = "default",
+        settings: Dict[str, Any] = ...,
+        cameras: Sequence[int] = ...,
+        threads: int = 0,
+        resume: bool = False,
+        force: bool = False,
+        max_wait: float = 0.3,
+        every_frame: bool = False,
+        expects_navigation: bool = False,
+        record: Optional[_Path] = None,
+        on_pose: Optional[Callable[[LivePose], object]] = None,
+    ) -> None: ...
+    def add_scan(
+        self,
+        stamp: int,
+        points: npt.ArrayLike,
+        *,
+        intensity: Optional[npt.ArrayLike] = None,
+        times: Optional[npt.ArrayLike] = None,
+        rings: Optional[npt.ArrayLike] = None,
+        lidar: str = "",
+    ) -> None: ...
+    def add_image(
+        self,
+        camera: str,
+        stamp: int,
+        image: Union[npt.NDArray[np.uint8], bytes],
+        *,
+        exposure: Optional[float] = None,
+    ) -> None: ...
+    def add_pose(self, stamp: int, T_world_body: npt.ArrayLike) -> None: ...
+    def add_position(
+        self,
+        stamp: int,
+        latitude: float,
+        longitude: float,
+        altitude: float,
+        *,
+        accuracy: float = 0.0,
+        roll_pitch_yaw: Optional[npt.ArrayLike] = None,
+    ) -> None: ...
+    def add_imu(
+        self,
+        stamp: int,
+        angular_velocity: npt.ArrayLike,
+        acceleration: npt.ArrayLike,
+        *,
+        R_enu_imu: Optional[npt.ArrayLike] = None,
+    ) -> None: ...
+    def add_wheel_speed(self, stamp: int, speed: float) -> None: ...
+    def close(self) -> Dict[str, Any]: ...
+    @property
+    def missing(self) -> str: ...
+    @property
+    def figures(self) -> Dict[str, int]: ...
+    def __enter__(self) -> LiveMapper: ...
+    def __exit__(self, type: object, value: object, traceback: object) -> None: ...
 
 class Localization:
     """Where one scan was taken."""
