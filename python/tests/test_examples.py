@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run, and they and the stubs are typed."""
+"""The examples of docs/python.md and docs/live.md run, and they and the stubs are typed."""
 import os
 import pathlib
 import subprocess
@@ -6,7 +6,9 @@ import sys
 import unittest
 
 import fovea
+import numpy as np
 
+import live_sample
 import sample
 
 ROOT = pathlib.Path(__file__).parents[2]
@@ -27,10 +29,10 @@ class ExamplesTest(unittest.TestCase):
             self.assertIn(text, run.stdout)
 
     def test_the_page_shows_them(self):
-        page = (ROOT / "docs" / "python.md").read_text()
+        pages = "".join((ROOT / "docs" / page).read_text() for page in ("python.md", "live.md"))
         for example in EXAMPLES.glob("*.py"):
             code = example.read_text().split('"""\n', 1)[1].strip()
-            self.assertIn(code, page, example)
+            self.assertIn(code, pages, example)
 
     def test_read_map(self):
         self.expect(run_python(EXAMPLES / "read_map.py", sample.map_file()), "points from",
@@ -43,6 +45,18 @@ class ExamplesTest(unittest.TestCase):
     def test_localize(self):
         self.expect(run_python(EXAMPLES / "localize.py", sample.drive(), sample.map_file()),
                     "health", "is skipped")
+
+    def test_live_mapping(self):
+        output = sample.folder() / "live_example.fovea"
+        self.expect(run_python(EXAMPLES / "live_mapping.py", live_sample.simulated(), output),
+                    "0 tracked", "points", "'scans': 14")
+        made = fovea.Map(output)
+        self.assertGreater(made.size, 1000)
+        # The machine may be slow: the example lets late data go.
+        self.assertGreaterEqual(len(made.frames), live_sample.FRAMES // 2)
+        for frame in made.frames:
+            apart = frame.T_local_lidar[:3, 3] - frame.T_local_lidar_navigation[:3, 3]
+            self.assertLess(np.linalg.norm(apart), 1)
 
     def test_types(self):
         cache = sample.folder() / "mypy"
