@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fovea/core/errors.h"
+#include "fovea/drive/lost_drive.h"
 #include "fovea/drive/motion_compensation.h"
 
 namespace fovea {
@@ -34,6 +35,8 @@ std::optional<MissingImage> load_image(const Camera& camera, const ImageRectifie
     }
     image = rectifier != nullptr ? rectifier->rectify(as_taken) : std::move(as_taken);
     return std::nullopt;
+  } catch (const DriveLostError&) {
+    throw;
   } catch (const InputError& error) {
     return damaged(error.what());
   }
