@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "app/kept_recording.h"
 #include "app/pose_lines.h"
 #include "app/reports.h"
 #include "app/robot_reader.h"
@@ -74,24 +75,25 @@ class RobotLocalization {
     if (!is_quiet()) {
       for (const std::string& line : topics_.chosen()) print_out("{}\n", line);
     }
-    LocalizedLive localized = localize_live(*source, place_.surfaces(), job_);
-    reader.join();
-    const LiveFigures figures = source->figures();
-    require_poses(localized, arguments_);
-    write_poses(localized, 0, localized.frames.back().index + 1, arguments_, output);
-    for (const Messages& messages : {Messages(figures), Messages(reader.figures()),
-                                     topics_.unusable(), missing_poses(localized)}) {
-      localized.append(messages);
-    }
-    print(localized);
-    output.commit();
-    if (report) {
-      nlohmann::ordered_json json = to_json(localized, guess_of(localized));
-      json["warnings"] = localized.warnings;
-      write_json(*report,
-                 {{"localize", json}, {"live", live_json(reader, topics_, figures, poses_)}});
-    }
-    source->finish_recording();
+    keep_recording(*source, [&] {
+      LocalizedLive localized = localize_live(*source, place_.surfaces(), job_);
+      reader.join();
+      const LiveFigures figures = source->figures();
+      require_poses(localized, arguments_);
+      write_poses(localized, 0, localized.frames.back().index + 1, arguments_, output);
+      for (const Messages& messages : {Messages(figures), Messages(reader.figures()),
+                                       topics_.unusable(), missing_poses(localized)}) {
+        localized.append(messages);
+      }
+      print(localized);
+      output.commit();
+      if (report) {
+        nlohmann::ordered_json json = to_json(localized, guess_of(localized));
+        json["warnings"] = localized.warnings;
+        write_json(*report,
+                   {{"localize", json}, {"live", live_json(reader, topics_, figures, poses_)}});
+      }
+    });
     reader.rethrow();
   }
 

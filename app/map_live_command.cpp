@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/kept_recording.h"
 #include "app/live_view.h"
 #include "app/pose_lines.h"
 #include "app/progress_bar.h"
@@ -93,18 +94,19 @@ class RobotMap {
     if (!is_quiet()) {
       for (const std::string& line : topics_.chosen()) print_out("{}\n", line);
     }
-    MapSummary summary = naming_log(arguments_.output, [&] { return map(*source); });
-    reader.join();
-    const LiveFigures figures = source->figures();
-    summary.append(figures);
-    summary.append(reader.figures());
-    summary.append(topics_.unusable());
-    print(summary);
-    if (report) {
-      write_json(*report, {{"map", to_json(summary)},
-                           {"live", live_json(reader, topics_, figures, poses_)}});
-    }
-    source->finish_recording();
+    keep_recording(*source, [&] {
+      MapSummary summary = naming_log(arguments_.output, [&] { return map(*source); });
+      reader.join();
+      const LiveFigures figures = source->figures();
+      summary.append(figures);
+      summary.append(reader.figures());
+      summary.append(topics_.unusable());
+      print(summary);
+      if (report) {
+        write_json(*report, {{"map", to_json(summary)},
+                             {"live", live_json(reader, topics_, figures, poses_)}});
+      }
+    });
     reader.rethrow();
     job_.stop = stop;  // of the view: a stop has completed the map
     if (view_) view_->keep_serving();
