@@ -1,6 +1,5 @@
 #include "fovea/localization/localizer.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "fovea/map/map_surfaces.h"
 #include "fovea/mapping/fusion/place_match.h"
 #include "fovea/mapping/registration/optimizer.h"
+#include "fovea/mapping/registration/pose_covariance.h"
 
 namespace fovea {
 namespace {
@@ -39,26 +39,11 @@ constexpr std::array kAlong{0.0, -1.5, 1.5, -3.0, 3.0, -4.5, 4.5};
 constexpr double kFarPairs = 2;
 /// Places tried a scan, besides the prediction.
 constexpr int kTries = 1;
-/// Pairs of a scan err alike (normals, the map's own bends, calibration): so many count as one.
-/// With it covariances are as large as errors are on simulated drives (docs/localization.md).
-constexpr double kPairsAlike = 80;
 /// What prediction alone loses a scan along a direction that the scene leaves open, standard
 /// deviation, m (of turns: at kRotationArm).
 constexpr double kOpen = 0.2;
 /// Navigation that is kept: so long before the last pose, but no longer than kMostNavigation.
 constexpr TimeNs kNavigation = 60 * kNsPerSecond, kMostNavigation = 600 * kNsPerSecond;
-
-/// @param open  standard deviation along the directions that the scene leaves open, as kOpen
-Eigen::Matrix<double, 6, 6> covariance_of(const RegistrationResult& registration, double open) {
-  Twist unit = Twist::Ones();  // turns beside shifts, as degeneracy is judged
-  unit.head<3>().setConstant(1 / kRotationArm);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(
-      unit.asDiagonal() * registration.information * unit.asDiagonal());
-  Twist variances = kPairsAlike * solver.eigenvalues().cwiseInverse();
-  for (int i = 0; i < registration.degenerate_directions; ++i) variances[i] = open * open;
-  return unit.asDiagonal() * solver.eigenvectors() * variances.asDiagonal() *
-         solver.eigenvectors().transpose() * unit.asDiagonal();
-}
 
 }  // namespace
 
@@ -282,7 +267,7 @@ void Localizer::accept(const Attempt& attempt, Localization& result) {
   result.T_local_lidar = registration.T_target_source;
   result.degenerate_directions = registration.degenerate_directions;
   open_frames_ = registration.degenerate_directions > 0 ? open_frames_ + 1 : 0;
-  result.covariance = covariance_of(registration, kOpen * open_frames_);
+  result.covariance = pose_covariance(registration, kOpen * open_frames_);
   if (result.found) motion_model_ = new_motion_model();
   motion_model_.update(*result.stamp, result.T_local_lidar);
   last_ = StampedPose{*result.stamp, result.T_local_lidar};
