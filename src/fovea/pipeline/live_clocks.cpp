@@ -44,6 +44,7 @@ LiveClocks::LiveClocks(const DriveInfo& drive, bool compensate)
 void LiveClocks::add(const Frame& frame, const FrameRecord& record,
                      const std::optional<FrameMotion>& motion) {
   if (!window_begin_) window_begin_ = frame.index;
+  if (frame.index < *window_begin_) return;
   if (motion && is_due(frame.index)) check_->add_edges(frame, *motion);
   imu_check_.add(record);
   samples_.insert(samples_.end(), frame.motion.imu.begin(), frame.motion.imu.end());

@@ -1,7 +1,13 @@
 #include "fovea/pipeline/live_state.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <string>
 
 #include "fovea/core/errors.h"
 #include "fovea/geometry/voxel_grid.h"
@@ -15,34 +21,63 @@ using nlohmann::json;
 
 constexpr float kVoxel = 0.5;  // m, of scans for loop closures: memory grows by 50 kB a submap
 
-json::binary_t bytes_of(const std::vector<Eigen::Vector3f>& points) {
-  json::binary_t bytes;
-  bytes.resize(points.size() * sizeof(Eigen::Vector3f));
-  if (!points.empty()) std::memcpy(bytes.data(), points.front().data(), bytes.size());
-  return bytes;
+static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+
+/// The state as bytes: length of the header (8 bytes), header (JSON), points of the targets
+/// (float).
+using Bytes = std::vector<std::byte>;
+using HeaderSize = std::uint64_t;
+
+void append(Bytes& bytes, const void* data, std::size_t size) {
+  const auto* begin = static_cast<const std::byte*>(data);
+  bytes.insert(bytes.end(), begin, begin + size);
 }
 
-std::vector<Eigen::Vector3f> points_of(const json::binary_t& bytes) {
-  std::vector<Eigen::Vector3f> points(bytes.size() / sizeof(Eigen::Vector3f));
-  if (!points.empty()) {
-    std::memcpy(points.front().data(), bytes.data(), points.size() * sizeof(Eigen::Vector3f));
+double finite(const json& value) {
+  const auto number = value.get<double>();
+  if (!std::isfinite(number)) throw std::invalid_argument("a number is not finite");
+  return number;
+}
+
+/// Takes bytes from the beginning.
+std::span<const std::byte> take(std::span<const std::byte>& bytes, std::size_t size) {
+  if (size > bytes.size()) throw std::invalid_argument("it ends early");
+  const auto taken = bytes.first(size);
+  bytes = bytes.subspan(size);
+  return taken;
+}
+
+std::vector<Eigen::Vector3f> take_points(std::span<const std::byte>& bytes, std::size_t count) {
+  if (count > bytes.size()) throw std::invalid_argument("it ends early");
+  const auto taken = take(bytes, count * sizeof(Eigen::Vector3f));
+  std::vector<Eigen::Vector3f> points(count);
+  if (count > 0) std::memcpy(points.front().data(), taken.data(), taken.size());
+  const auto is_finite = [](const Eigen::Vector3f& p) { return p.allFinite(); };
+  if (!std::all_of(points.begin(), points.end(), is_finite)) {
+    throw std::invalid_argument("a point is not finite");
   }
   return points;
 }
 
 LiveState state_of(const CheckpointRecord& record) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(record.state.data());
-  const json stored = json::from_cbor(bytes, bytes + record.state.size());
+  std::span<const std::byte> bytes = record.state;
+  HeaderSize size = 0;
+  std::memcpy(&size, take(bytes, sizeof(size)).data(), sizeof(size));
+  const auto text = take(bytes, size);
+  const json header = json::parse(reinterpret_cast<const char*>(text.data()),
+                                  reinterpret_cast<const char*>(text.data() + text.size()));
   LiveState state;
-  for (const json& camera : stored.at("cameras")) {
-    state.image_delays[camera.at("number")] = camera.at("delay");
+  for (const json& camera : header.at("cameras")) {
+    state.image_delays[camera.at("number").get<int>()] = finite(camera.at("delay"));
   }
-  if (stored.contains("world_origin")) {
-    const auto origin = stored.at("world_origin").get<std::array<double, 3>>();
-    state.world_origin = Eigen::Vector3d(origin[0], origin[1], origin[2]);
+  if (header.contains("world_origin")) {
+    const json& origin = header.at("world_origin");
+    state.world_origin =
+        Eigen::Vector3d(finite(origin.at(0)), finite(origin.at(1)), finite(origin.at(2)));
   }
-  for (const json& target : stored.at("targets")) {
-    state.targets.push_back({target.at("frame"), points_of(target.at("points").get_binary())});
+  for (const json& target : header.at("targets")) {
+    state.targets.push_back({target.at("frame").get<int>(),
+                             take_points(bytes, target.at("points").get<std::size_t>())});
   }
   return state;
 }
@@ -50,22 +85,27 @@ LiveState state_of(const CheckpointRecord& record) {
 }  // namespace
 
 CheckpointRecord checkpoint_of(const LiveState& state, int last_frame) {
-  json stored = {{"cameras", json::array()}, {"targets", json::array()}};
+  json header = {{"cameras", json::array()}, {"targets", json::array()}};
   for (const auto& [number, delay] : state.image_delays) {
-    stored["cameras"].push_back({{"number", number}, {"delay", delay}});
+    header["cameras"].push_back({{"number", number}, {"delay", delay}});
   }
   if (state.world_origin) {
-    stored["world_origin"] = {state.world_origin->x(), state.world_origin->y(),
+    header["world_origin"] = {state.world_origin->x(), state.world_origin->y(),
                               state.world_origin->z()};
   }
   for (const TargetScan& target : state.targets) {
-    stored["targets"].push_back(
-        {{"frame", target.frame}, {"points", json::binary(bytes_of(target.points_lidar))}});
+    header["targets"].push_back({{"frame", target.frame}, {"points", target.points_lidar.size()}});
   }
+  const std::string text = header.dump();
+  const HeaderSize size = text.size();
   CheckpointRecord record{last_frame, {}};
-  const std::vector<std::uint8_t> bytes = json::to_cbor(stored);
-  record.state.resize(bytes.size());
-  std::memcpy(record.state.data(), bytes.data(), bytes.size());
+  append(record.state, &size, sizeof(size));
+  append(record.state, text.data(), text.size());
+  for (const TargetScan& target : state.targets) {
+    if (target.points_lidar.empty()) continue;
+    append(record.state, target.points_lidar.front().data(),
+           target.points_lidar.size() * sizeof(Eigen::Vector3f));
+  }
   return record;
 }
 
@@ -75,6 +115,8 @@ std::optional<LiveState> live_state(const MapReader& map) {
   try {
     return state_of(*record);
   } catch (const json::exception& error) {
+    throw InputError("the state of a live map cannot be read", error.what(), kRestoreMap);
+  } catch (const std::invalid_argument& error) {
     throw InputError("the state of a live map cannot be read", error.what(), kRestoreMap);
   }
 }

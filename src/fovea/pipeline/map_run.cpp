@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -123,6 +124,15 @@ void MapRun::resume_from_file() {
 }
 
 void MapRun::resume_live(const MapReader& reader, const std::vector<FrameRecord>& records) {
+  const std::optional<TimeNs> first = source_.stamp(drive_.begin);
+  const auto last = std::find_if(records.rbegin(), records.rend(), [](const FrameRecord& record) {
+    return record.stamp.has_value();
+  });
+  if (first && last != records.rend() && *first <= *last->stamp) {
+    throw InputError(fmt::format("the first scan is {:.1f} s before the last one of the map",
+                                 seconds(*last->stamp - *first)),
+                     job_.output.string(), "set the clock of the robot, or start a new map");
+  }
   const LiveState earlier = live_state(reader).value_or(LiveState());
   live_state_.targets = earlier.targets;
   const EarlierScans scans(reader, earlier);

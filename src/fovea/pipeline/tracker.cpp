@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,6 +26,12 @@ FusionOptions fusion_options(const MapperOptions& options, PoseSource pose_sourc
   FusionOptions fusion = options.fusion;
   fusion.enabled = fusion.enabled && pose_source == PoseSource::kRefine;
   return fusion;
+}
+
+/// Whether an image is taken at another time than is usual for its camera.
+bool has_image_offset(const Frame& frame) {
+  return std::any_of(frame.image_offsets.begin(), frame.image_offsets.end(),
+                     [](double offset) { return offset != 0; });
 }
 
 /// Median of the accuracy that navigation states where it has a fix (m); 0 if it states none.
@@ -90,7 +97,8 @@ TrackedScan Tracker::track(const Frame& frame, const FrameTask& task) {
   }
   result.tracking.registration = refined.stats;
   const bool has_sweep_motion = compensate_motion_ && !drive_.sweep_compensated;
-  if (has_sweep_motion || drive_.has_image_delays()) result.poses.motion = placed.motion;
+  if (has_sweep_motion || drive_.has_image_delays() || has_image_offset(frame))
+    result.poses.motion = placed.motion;
   result.note = refined.note;
   result.poses.T_odom_lidar = refined.T_odom_lidar;
   const bool had_fault = !motion_model_.fault_of_imu().empty();
