@@ -5,7 +5,7 @@ target_compile_definitions(fovea_precompiled PRIVATE ${FOVEA_EIGEN_ALIGNMENT})
 target_precompile_headers(fovea_precompiled PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.h)
 
 # Their tests run under the thread sanitizer.
-set(FOVEA_MODULES_WITH_THREADS core map pipeline server)
+set(FOVEA_MODULES_WITH_THREADS core drive map pipeline server)
 add_custom_target(thread_tests)
 
 # Most of a test's or a command's compilation is the same headers' templates over again. Files of most
