@@ -187,10 +187,11 @@ class Builder {
     ImageMatches matches =
         match_nearest(scans, times, decoder_.lidar.sweep_middle, description_.image_tolerance);
     if (matches.image_of_scan.empty()) {
-      throw InputError(fmt::format("no image of camera {} belongs to a scan: {}", described.name,
-                                   why_none_matches(scans, times, description_.image_tolerance)),
-                       info_.path.string(),
-                       "give stamps of one clock, or leave the camera out (--cameras)");
+      info_.warn(fmt::format("no image of camera {} belongs to a scan, it is left out: {}",
+                             described.name,
+                             why_none_matches(scans, times, description_.image_tolerance)));
+      info_.unused_cameras.push_back(described.index);
+      return;
     }
     matches.median_delay = described.stamp_delay.value_or(matches.median_delay);
     used.camera.image_delay += matches.median_delay;

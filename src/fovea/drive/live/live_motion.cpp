@@ -177,7 +177,13 @@ void LiveMotion::take_poses(TimeNs until, MotionData& data) {
   } catch (const InputError& error) {
     warn_once(error.what());
   }
-  if (data.poses.empty()) return;
+  if (data.poses.empty()) {
+    // Records that give no pose are not kept for longer.
+    poses_.drop_before(until - kWindow);
+    positions_.drop_before(until - kWindow);
+    if (!has_imu_) inertia_.drop_before(until - kWindow);
+    return;
+  }
   last_pose_ = data.poses.back().time;
   const Eigen::Matrix3d R =
       data.poses.back().T_local_body.linear() * description_.T_body_lidar.linear().transpose();

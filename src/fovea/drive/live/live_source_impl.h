@@ -108,6 +108,8 @@ class LiveSource::Impl {
                                                    double longest) const;
   /// What begin() waits for.
   std::vector<std::string> missing_data() const;
+  /// Whether images of a camera began before the last of the first scans.
+  bool has_image_of_first_scans(std::size_t camera) const;
   void add_missing_images(std::vector<std::string>& missing) const;
   FirstData first_data() const;
   /// Waits until the oldest scan is a frame; nothing at the end.

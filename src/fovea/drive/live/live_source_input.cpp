@@ -41,8 +41,11 @@ void check(const DriveDescription& description, const LiveOptions& options) {
   if (options.first_scans < 1 || options.max_scans < 1) {
     throw ConfigError("a live drive needs a scan", "first_scans or max_scans", "give 1 or more");
   }
-  if (!(options.max_wait >= 0) || !(options.longest_beginning >= 0)) {
-    throw ConfigError("a wait is no time", "max_wait or longest_beginning", "give 0 s or more");
+  constexpr double kLongest = 1e6;  // s
+  const auto is_time = [](double wait) { return wait >= 0 && wait <= kLongest; };
+  if (!is_time(options.max_wait) || !is_time(options.longest_beginning)) {
+    throw ConfigError("a wait is no time", "max_wait or longest_beginning",
+                      "give 0 to 1,000,000 s");
   }
   if (!options.drive.use_images || options.drive.cameras.empty()) return;
   choose_cameras(camera_numbers(description), options.drive, options.name);
@@ -61,7 +64,8 @@ LiveSource::Impl::Impl(std::string_view drive_toml, const LiveOptions& options)
       next_index_(options.first_frame) {
   check(description_, options_);
   if (!options_.record.empty()) {
-    recorder_.emplace(options_.record, std::string(drive_toml), description_);
+    recorder_.emplace(options_.record, std::string(drive_toml),
+                      parse_drive_description(drive_toml, "drive.toml"));
   }
 }
 

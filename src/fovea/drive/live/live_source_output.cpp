@@ -10,6 +10,26 @@
 #include "fovea/drive/live/live_source_impl.h"
 
 namespace fovea {
+namespace {
+
+/// Of skipped frames, that the next frame gets.
+constexpr TimeNs kSkippedMotion = 10 * kNsPerSecond;
+
+/// Drops what is older than the last measurement of a sensor by more than a time.
+void keep_last(MotionData& motion, TimeNs kept) {
+  const auto old = [&](const auto& samples) {
+    std::size_t count = 0;
+    while (count < samples.size() && samples[count].time < samples.back().time - kept) ++count;
+    return std::ptrdiff_t(count);
+  };
+  const std::ptrdiff_t poses = old(motion.poses);
+  motion.poses.erase(motion.poses.begin(), motion.poses.begin() + poses);
+  motion.accuracy.erase(motion.accuracy.begin(), motion.accuracy.begin() + poses);
+  motion.imu.erase(motion.imu.begin(), motion.imu.begin() + old(motion.imu));
+  motion.wheels.erase(motion.wheels.begin(), motion.wheels.begin() + old(motion.wheels));
+}
+
+}  // namespace
 
 std::string LiveSource::Impl::missing() const {
   const std::lock_guard lock(guard_);
@@ -92,9 +112,16 @@ void LiveSource::Impl::add_missing_images(std::vector<std::string>& missing) con
   const std::vector<int> chosen = choose_cameras(all, options_.drive, options_.name);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool is_used = std::find(chosen.begin(), chosen.end(), all[i]) != chosen.end();
-    if (!is_used || !queue_.images(i).items().empty()) continue;
+    if (!is_used || has_image_of_first_scans(i)) continue;
     missing.push_back("images of camera " + description_.cameras[i].name);
   }
+}
+
+bool LiveSource::Impl::has_image_of_first_scans(std::size_t camera) const {
+  const auto& images = queue_.images(camera).items();
+  if (images.empty() || queue_.scans().empty()) return false;
+  const std::size_t last = std::min(options_.first_scans, queue_.scans().size()) - 1;
+  return images.front()->stamp <= queue_.scans()[last].scan->stamp;
 }
 
 FirstData LiveSource::Impl::first_data() const {
@@ -239,7 +266,10 @@ std::optional<LiveFrame> LiveSource::Impl::next(const std::stop_token& stop) {
   const WallClock::time_point start = WallClock::now();
   LiveFrame frame{decoder->decode(raw), raw.arrival, 0};
   frame.decode_ms = milliseconds_since(start);
-  if (std::holds_alternative<SkippedFrame>(frame.frame)) skipped_motion_ = std::move(raw.motion);
+  if (std::holds_alternative<SkippedFrame>(frame.frame)) {
+    skipped_motion_ = std::move(raw.motion);
+    keep_last(skipped_motion_, kSkippedMotion);
+  }
   return frame;
 }
 

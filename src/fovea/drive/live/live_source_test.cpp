@@ -149,4 +149,37 @@ TEST_F(LiveSourceTest, OneSenderNeedsNoClock) {
   }
 }
 
+TEST_F(LiveSourceTest, ACameraMayBeginAfterTheLidar) {
+  LiveData data = live_car(40);
+  const std::string toml = data.write(folder_ / "drive");
+  std::erase_if(data.images, [](const LiveImage& image) {
+    return image.camera == "side" && image.stamp < kLiveStart + 8 * kLiveStep;
+  });
+  LiveOptions options = all_data();
+  options.waits = false;  // the oldest scans are dropped while the beginning waits
+  LiveSource source(toml, options);
+  for (const auto& [time, call] : data.calls()) {
+    if (time < kLiveStart + 30 * kLiveStep) call(source);
+  }
+  source.close();
+  const PlayedDrive run = read_all(source);
+  EXPECT_EQ(run.info.calibration.cameras.size(), 2u);
+  ASSERT_FALSE(run.frames.empty());
+  for (const LoadedFrame& frame : run.frames) {
+    EXPECT_TRUE(std::get<Frame>(frame).missing_images.empty());
+  }
+}
+
+TEST_F(LiveSourceTest, ACameraOfAnotherClockIsLeftOut) {
+  LiveData data = live_car(30);
+  const std::string toml = data.write(folder_ / "drive");
+  for (LiveImage& image : data.images) {
+    if (image.camera == "side") image.stamp -= 1000 * kNsPerSecond;
+  }
+  const PlayedDrive run = play(data, toml, all_data());
+  EXPECT_EQ(run.info.calibration.cameras.size(), 1u);
+  EXPECT_THAT(run.info.warnings, testing::Contains(HasSubstr("no image of camera side belongs")));
+  EXPECT_EQ(run.frames.size(), 30u);
+}
+
 }  // namespace fovea::live_source_test
