@@ -13,8 +13,8 @@ namespace {
 
 /// Scans of the first LiDAR that show the units of its numbers, as those of a recording.
 constexpr std::size_t kFirstScans = 5;
-/// So many scans later, a topic without a message is not waited for.
-constexpr std::size_t kPatience = 20;
+/// Scans, since the messages are a drive, for which a topic without a message delays the source.
+constexpr std::size_t kMaxScansWaited = 20;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void LiveTopics::add(const BagTopic& topic, std::string_view message) {
       indexer_.add(recent.topic, recent.bytes);
     }
   }
-  if (is_scan_type(topic.type)) try_to_begin(kFirstScans, scans_since_plan_ < kPatience);
+  if (is_scan_type(topic.type)) try_to_begin(kFirstScans, scans_since_plan_ < kMaxScansWaited);
 }
 
 void LiveTopics::update() {
