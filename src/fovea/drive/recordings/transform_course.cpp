@@ -1,12 +1,15 @@
 #include "fovea/drive/recordings/transform_course.h"
 
 #include <iterator>
+#include <utility>
 
 namespace fovea {
 namespace {
 
 /// A frame far from the body, such as `odom` in `map`, may come later. Then it counts as still.
 constexpr TimeNs kLongestWait = kNsPerSecond / 10;
+/// A stamp further back or ahead than these counts once the next one continues it.
+constexpr TimeNs kFarBack = kNsPerSecond / 2, kFarAhead = 10 * kNsPerSecond;
 
 TimeNs latest_of(const TransformTree::Step& step) {
   return step.link.T_parent_child.rbegin()->first;
@@ -19,18 +22,53 @@ TransformCourse::TransformCourse(const TransformTree& tree, const std::string& w
     : steps_(tree.steps(world, body)),
       nearest_(std::size_t(TransformTree::nearest_moving(steps_) - steps_.cbegin())) {
   for (const TransformTree::Step& step : steps_) moves_.push_back(step.link.moves());
+  far_.resize(steps_.size());
 }
 
 std::vector<RecordedPose> TransformCourse::add(const std::vector<ros::Transform>& transforms) {
   for (const ros::Transform& transform : transforms) {
     for (std::size_t k = 0; k < steps_.size(); ++k) {
-      TransformTree::Step& step = steps_[k];
+      const TransformTree::Step& step = steps_[k];
       if (transform.child_frame != step.child || transform.header.frame != step.parent) continue;
-      step.link.T_parent_child.insert_or_assign(transform.header.stamp, transform.T_header_child);
-      moves_[k] = moves_[k] || step.link.moves();
+      add(k, {transform.header.stamp, transform.T_header_child});
     }
   }
   return known_poses();
+}
+
+void TransformCourse::add(std::size_t k, const TransformTree::TimedMotion& transform) {
+  TransformTree::Link& link = steps_[k].link;
+  const TimeNs latest = latest_of(steps_[k]);
+  const auto earlier = std::exchange(far_[k], std::nullopt);
+  const bool is_back = transform.time < latest - kFarBack;
+  if (is_back || transform.time > latest + kFarAhead) {
+    const bool continues = earlier && transform.time > earlier->time &&
+                           (earlier->time < latest) == (transform.time < latest);
+    if (!continues) {
+      far_[k] = transform;
+      return;
+    }
+    if (is_back) restart(k, transform.time);
+    link.T_parent_child.insert_or_assign(earlier->time, earlier->T_a_b);
+  }
+  link.T_parent_child.insert_or_assign(transform.time, transform.T_a_b);
+  moves_[k] = moves_[k] || link.moves();
+}
+
+void TransformCourse::restart(std::size_t k, TimeNs time) {
+  steps_[k].link.T_parent_child.clear();
+  if (k != nearest_) return;
+  latest_ = 0;
+  for (std::size_t other = 0; other < steps_.size(); ++other) {
+    auto& times = steps_[other].link.T_parent_child;
+    if (times.empty() || times.rbegin()->first <= time + kFarBack) continue;
+    const auto next = std::exchange(far_[other], std::nullopt);
+    if (next && next->time <= time + kFarBack) {
+      times = {{next->time, next->T_a_b}};
+    } else {  // the last transform counts until one with a new stamp comes
+      times = {{TimeNs(0), QuaternionMotion(times.rbegin()->second)}};
+    }
+  }
 }
 
 bool TransformCourse::is_known(TimeNs time) const {

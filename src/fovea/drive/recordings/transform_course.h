@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,17 +13,25 @@
 namespace fovea {
 
 /// T_world_body, as TransformTree::course() gives it for a whole recording. Memory is bounded.
+///
+/// Stamps may go back, as when the robot's clock is set. Then the poses do, too. A single stamp far
+/// from those before and after it is left out.
 class TransformCourse {
  public:
   /// @param tree  the transforms so far. In them, a frame moves between `world` and `body`.
   TransformCourse(const TransformTree& tree, const std::string& world, const std::string& body);
 
-  /// @return the poses that are known now, in order of time, each once
+  /// @return the poses that are known now, each once. They are in order of time, unless stamps go
+  ///         back.
   std::vector<RecordedPose> add(const std::vector<ros::Transform>& transforms);
 
  private:
   using Links = std::vector<TransformTree::Step>;
 
+  /// @param k  of the step
+  void add(std::size_t k, const TransformTree::TimedMotion& transform);
+  /// Drops the transforms of a step, and those of the others that are later than `time`.
+  void restart(std::size_t k, TimeNs time);
   bool is_known(TimeNs time) const;
   std::vector<RecordedPose> known_poses();
   void forget_past();
@@ -31,6 +40,8 @@ class TransformCourse {
   std::size_t nearest_;      // the one to the body that moves
   TimeNs latest_ = 0;        // of the poses that were returned
   std::vector<bool> moves_;  // of each step, so far
+  /// Of each step: a transform whose stamp is far from those before it, until the next one comes.
+  std::vector<std::optional<TransformTree::TimedMotion>> far_;
 };
 
 }  // namespace fovea

@@ -77,4 +77,73 @@ TEST(TransformCourse, GivesAPoseOnce) {
   EXPECT_EQ(course.add({transform("odom", "base_link", 3 * kStep, 3)}).size(), 1u);
 }
 
+std::vector<TimeNs> times_of(const std::vector<RecordedPose>& poses) {
+  std::vector<TimeNs> times;
+  for (const RecordedPose& pose : poses) times.push_back(pose.time);
+  return times;
+}
+
+/// The times of the poses that `odom` to `base_link` gives, one message at a time.
+std::vector<TimeNs> times_of_poses(const std::vector<TimeNs>& stamps) {
+  TransformTree tree;
+  for (int i = 1; i <= 2; ++i) add(tree, transform("odom", "base_link", stamps[i - 1], i));
+  TransformCourse course(tree, "odom", "base_link");
+  std::vector<TimeNs> times = times_of(course.add({}));
+  for (std::size_t i = 2; i < stamps.size(); ++i) {
+    for (const TimeNs time :
+         times_of(course.add({transform("odom", "base_link", stamps[i], 0.1 * double(i))}))) {
+      times.push_back(time);
+    }
+  }
+  return times;
+}
+
+constexpr TimeNs kStart = 1000 * kNsPerSecond;
+
+TEST(TransformCourse, ContinuesAfterTheClockGoesBack) {
+  const std::vector<TimeNs> stamps = {kStart,
+                                      kStart + kStep,
+                                      kStart + 2 * kStep,
+                                      kStart / 2,
+                                      kStart / 2 + kStep,
+                                      kStart / 2 + 2 * kStep,
+                                      kStart + 3 * kStep,
+                                      kStart + 4 * kStep};
+  EXPECT_EQ(times_of_poses(stamps), stamps);
+}
+
+TEST(TransformCourse, LeavesOutASingleStampFarFromTheOthers) {
+  for (const TimeNs far : {kStart / 2, 2 * kStart}) {
+    const std::vector<TimeNs> stamps = {kStart, kStart + kStep, far, kStart + 2 * kStep,
+                                        kStart + 3 * kStep};
+    std::vector<TimeNs> expected = stamps;
+    expected.erase(expected.begin() + 2);
+    EXPECT_EQ(times_of_poses(stamps), expected);
+  }
+}
+
+TEST(TransformCourse, AFarStampAmongTheFirstBlocksNoPose) {
+  const std::vector<TimeNs> stamps = {kStart, 2 * kStart, kStart + kStep, kStart + 2 * kStep};
+  EXPECT_EQ(times_of_poses(stamps), stamps);
+}
+
+TEST(TransformCourse, NoOldTransformOfAnotherFrameCountsAfterTheClockWentBack) {
+  TransformTree tree;
+  for (int i = 1; i <= 2; ++i) {
+    add(tree, transform("map", "odom", kStart + i * kStep, i));
+    add(tree, transform("odom", "base_link", kStart + i * kStep, i));
+  }
+  TransformCourse course(tree, "map", "base_link");
+  EXPECT_EQ(course.add({}).size(), 2u);
+  const TimeNs time = kStart / 2;
+  course.add({transform("map", "odom", time, 0.7), transform("odom", "base_link", time, 0.3)});
+  const auto poses = course.add({transform("odom", "base_link", time + kStep, 0.4),
+                                 transform("map", "odom", time + kStep, 0.8)});
+  ASSERT_EQ(times_of(poses), (std::vector<TimeNs>{time, time + kStep}));
+  EXPECT_TRUE(poses[0].T_world_body.matrix().isApprox(
+      (some_motion(0.7) * some_motion(0.3)).matrix(), 1e-12));
+  EXPECT_TRUE(poses[1].T_world_body.matrix().isApprox(
+      (some_motion(0.8) * some_motion(0.4)).matrix(), 1e-12));
+}
+
 }  // namespace fovea::transform_course_test
