@@ -68,7 +68,7 @@ ordered_json live_json(const RobotReader& reader, const LiveTopics& topics,
           {"images_unused", figures.images_unused},
           {"poses", figures.poses},
           {"poses_late", figures.poses_late},
-          {"poses_published", poses.counts().posted - poses.counts().dropped}};
+          {"poses_published", poses.sent()}};
 }
 
 }  // namespace fovea::app

@@ -59,6 +59,7 @@ std::optional<WireMessage> PosePublisher::next() {
   }
   WireMessage message{true, std::move(messages_.front())};
   messages_.pop_front();
+  if (messages_.empty()) ++sent_;
   return message;
 }
 

@@ -1,6 +1,7 @@
 // Publishes poses over the connection that brings the scans.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -19,7 +20,7 @@ namespace fovea::bridge {
 ///   options.poses = &poses;         // BridgeOptions
 ///   poses.publish({frame, stamp, T_world_lidar, covariance, "tracked"});  // any thread
 ///
-/// publish() and counts() may be called by any thread. The others are for read_bridge.
+/// publish(), counts() and sent() may be called by any thread. The others are for read_bridge.
 class PosePublisher {
  public:
   static constexpr std::size_t kMostUnsent = 32;  ///< poses: about 3 s of a LiDAR of 10 Hz
@@ -30,6 +31,8 @@ class PosePublisher {
 
   using Counts = Outbox<PublishedPose>::Counts;
   Counts counts() const { return unsent_.counts(); }
+  /// Poses that were passed to a connection.
+  std::size_t sent() const { return sent_; }
 
   /// The connection sends the poses from now on, after its bridge has sent its information.
   void begin(Connection& connection);
@@ -48,6 +51,7 @@ class PosePublisher {
   std::vector<ClientChannel> channels_;  // offered on this connection
   std::deque<std::string> messages_;     // of the last pose that was taken, unsent
   std::string refusal_;
+  std::atomic<std::size_t> sent_ = 0;
 };
 
 }  // namespace fovea::bridge

@@ -114,6 +114,7 @@ TEST(PosePublisher, PublishesInAnEncodingOfTheBridge) {
     EXPECT_THAT(read(server, poses).warnings, IsEmpty());
     EXPECT_EQ(offered, encoding);
     EXPECT_THAT(frames, ElementsAre(4, 5));
+    EXPECT_EQ(poses.sent(), 2u);
   }
 }
 
@@ -188,6 +189,7 @@ TEST(PosePublisher, PublishesNothingToABridgeThatAcceptsNothing) {
     for (int frame = 0; frame < 100; ++frame) poses.publish(pose_of(frame));
     EXPECT_THAT(read(server, poses, sink).warnings, ElementsAre(HasSubstr(warning)));
     EXPECT_THAT(first_message, HasSubstr("subscribe"));
+    EXPECT_EQ(poses.sent(), 0u);
   }
 }
 
